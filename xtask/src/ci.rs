@@ -4,6 +4,7 @@ mod exchange;
 mod fuzz;
 mod page;
 mod python;
+mod web;
 
 use crate::tidy;
 use crate::tidy::workspace::{Member, Workspace};
@@ -31,6 +32,8 @@ pub(crate) enum Step {
     Exchange,
     /// The page of the studio, where Node is.
     Page,
+    /// The studio without a server, where the compiler can make it.
+    Web,
     /// The Python package, where Python is.
     Python,
     /// Each fuzz target for some seconds, where nightly Rust and cargo-fuzz are.
@@ -39,7 +42,7 @@ pub(crate) enum Step {
 
 impl Step {
     /// The steps, in the order in which CI runs them.
-    pub(crate) const ALL: [Self; 11] = [
+    pub(crate) const ALL: [Self; 12] = [
         Self::Test,
         Self::Fmt,
         Self::Clippy,
@@ -49,6 +52,7 @@ impl Step {
         Self::Package,
         Self::Exchange,
         Self::Page,
+        Self::Web,
         Self::Python,
         Self::Fuzz,
     ];
@@ -65,6 +69,7 @@ impl Step {
             Self::Package => "package",
             Self::Exchange => "exchange",
             Self::Page => "page",
+            Self::Web => "web",
             Self::Python => "python",
             Self::Fuzz => "fuzz",
         }
@@ -101,6 +106,7 @@ fn run(shell: &Shell, step: Step) -> anyhow::Result<()> {
         Step::Package => return package(shell),
         Step::Exchange => return exchange::exchange(shell),
         Step::Page => return page::page(shell),
+        Step::Web => return web::web(shell),
         Step::Python => return python::python(shell),
         Step::Fuzz => return fuzz::fuzz(shell),
     };

@@ -4,6 +4,7 @@ use crate::ci::Step;
 use anyhow::{anyhow, bail};
 use lexopt::{Arg, Parser};
 use std::ffi::OsString;
+use std::path::PathBuf;
 
 /// What `cargo xtask` prints without a command.
 pub(crate) const HELP: &str = "\
@@ -23,10 +24,11 @@ Usage: cargo xtask <command>
       --json FILE         write the rows to a file, too
       --check             fail when a row misses its bar
   studio [argument...]  build the page of the studio with Node, and open it; arguments are those of `dapple studio`
+  web [--out DIR]       build the studio without a server, for any host of files, into target/web/
   golden [--bless]      compare the golden images of tests/golden/, or rewrite them
   tidy                  check the house rules: layers, lints, headers, lengths, figures.lock
   ci [step...]          what CI runs, or some of its steps: test fmt clippy doc tidy
-                      features package exchange page python fuzz";
+                      features package exchange page web python fuzz";
 
 /// What is to be done.
 #[derive(Debug, PartialEq)]
@@ -42,6 +44,11 @@ pub(crate) enum Command {
     Bench(Vec<OsString>),
     /// Build the page of the studio, and open it; the arguments are those of `dapple studio`.
     Studio(Vec<OsString>),
+    /// Build the studio without a server.
+    Web {
+        /// The folder.
+        out: Option<PathBuf>,
+    },
     /// Compare or rewrite the golden images.
     Golden {
         /// Rewrite them.
@@ -69,6 +76,7 @@ pub(crate) fn parse(mut parser: Parser) -> anyhow::Result<Command> {
         "docs-images" => Ok(Command::DocsImages {
             check: flag(parser, &name, "check")?,
         }),
+        "web" => web(parser),
         "golden" => Ok(Command::Golden {
             bless: flag(parser, &name, "bless")?,
         }),
@@ -76,7 +84,7 @@ pub(crate) fn parse(mut parser: Parser) -> anyhow::Result<Command> {
         "ci" => ci(parser),
         "help" => nothing_more(parser, Command::Help),
         _ => bail!(
-            "there is no command `{name}`; there are gallery, docs-images, bench, studio, golden, tidy, ci and help"
+            "there is no command `{name}`; there are gallery, docs-images, bench, studio, web, golden, tidy, ci and help"
         ),
     }
 }
@@ -94,6 +102,20 @@ fn flag(mut parser: Parser, command: &str, option: &str) -> anyhow::Result<bool>
         }
     }
     Ok(is_there)
+}
+
+fn web(mut parser: Parser) -> anyhow::Result<Command> {
+    let mut out = None;
+    while let Some(argument) = parser.next()? {
+        match argument {
+            Arg::Long("out") => out = Some(parser.value()?.into()),
+            other => bail!(
+                "{}; `web` takes `--out DIR` and nothing else",
+                other.unexpected()
+            ),
+        }
+    }
+    Ok(Command::Web { out })
 }
 
 fn ci(mut parser: Parser) -> anyhow::Result<Command> {
@@ -150,6 +172,8 @@ mod tests {
             Ok(Command::Ci(vec![Step::Fmt, Step::Tidy]))
         );
         assert_eq!(command(&["ci"]), Ok(Command::Ci(Step::ALL.to_vec())));
+        let out = Some("a".into());
+        assert_eq!(command(&["web", "--out", "a"]), Ok(Command::Web { out }));
         for help in [&[][..], &["help"], &["--help"], &["-h"]] {
             assert_eq!(command(help), Ok(Command::Help));
         }
@@ -162,6 +186,7 @@ mod tests {
             (&["--chek"], "cargo xtask help"),
             (&["golden", "--check"], "takes `--bless`"),
             (&["docs-images", "pups"], "takes `--check`"),
+            (&["web", "now"], "takes `--out DIR`"),
             (&["tidy", "now"], "takes no arguments"),
             (&["ci", "lint"], "clippy"),
         ] {

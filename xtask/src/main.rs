@@ -1,4 +1,4 @@
-//! The chores of the workspace: `cargo xtask gallery`, `docs-images`, `bench`, `studio`, `golden`, `tidy` and `ci`.
+//! The chores of the workspace: `cargo xtask gallery`, `docs-images`, `bench`, `studio`, `web`, `golden`, `tidy` and `ci`.
 //!
 //! It depends on no crate of ours, so that it starts at once; what needs them runs through `cargo run --release`.
 
@@ -8,6 +8,7 @@ mod ci;
 mod command;
 mod run;
 mod tidy;
+mod web;
 
 use command::{Command, HELP};
 use std::path::Path;
@@ -32,6 +33,7 @@ fn perform(command: &Command) -> anyhow::Result<()> {
         Command::DocsImages { check } => run::docs_images(&shell, *check),
         Command::Bench(arguments) => run::bench(&shell, arguments),
         Command::Studio(arguments) => run::studio(&shell, arguments),
+        Command::Web { out } => web::web(&shell, out.clone()),
         Command::Golden { bless } => run::golden(&shell, *bless),
         Command::Tidy => tidy::tidy(&shell),
         Command::Ci(steps) => ci::ci(&shell, steps),

@@ -34,7 +34,17 @@ pub(crate) const NPM: &str = if cfg!(windows) { "npm.cmd" } else { "npm" };
 
 /// Builds the page of the studio, then runs the studio with the page in it.
 pub(crate) fn studio(shell: &Shell, arguments: &[OsString]) -> anyhow::Result<()> {
-    let page = shell.push_dir("crates/dapple-studio/web");
+    page(shell, &["run", "build"])?;
+    let run = cmd!(
+        shell,
+        "cargo run --quiet --release --package dapple-cli -- studio {arguments...}"
+    );
+    Ok(run.quiet().run()?)
+}
+
+/// Gets the packages of the studio's page, and has npm build it.
+pub(crate) fn page(shell: &Shell, build: &[&str]) -> anyhow::Result<()> {
+    let _page = shell.push_dir("crates/dapple-studio/web");
     let npm = NPM;
     if cmd!(shell, "{npm} --version")
         .quiet()
@@ -48,13 +58,7 @@ pub(crate) fn studio(shell: &Shell, arguments: &[OsString]) -> anyhow::Result<()
         );
     }
     cmd!(shell, "{npm} ci --no-audit --no-fund").run()?;
-    cmd!(shell, "{npm} run build").run()?;
-    drop(page);
-    let run = cmd!(
-        shell,
-        "cargo run --quiet --release --package dapple-cli -- studio {arguments...}"
-    );
-    Ok(run.quiet().run()?)
+    Ok(cmd!(shell, "{npm} {build...}").run()?)
 }
 
 /// Compares or rewrites the golden images, which a test of the crate `dapple-tests` draws.

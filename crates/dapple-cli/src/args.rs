@@ -1,4 +1,4 @@
-//! Options that many subcommands share: size, output, format.
+//! Options shared by many subcommands: size, output, format.
 
 mod alpha;
 mod frame;
@@ -25,7 +25,7 @@ use anyhow::Result;
 use clap::Args;
 use std::path::{Path, PathBuf};
 
-/// Options of every subcommand.
+/// Options of all subcommands.
 #[derive(Args, Clone, Debug)]
 #[command(next_help_heading = "Common")]
 pub(crate) struct Common {
@@ -33,8 +33,8 @@ pub(crate) struct Common {
     #[arg(long, global = true, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=1024))]
     pub(crate) threads: u16,
 
-    /// How progress is shown on standard error: as a bar on a terminal and as lines elsewhere, or always as lines, or as lines
-    /// of JSON.
+    /// How progress is shown on standard error: as a bar on a terminal and as lines elsewhere, or always as lines, or
+    /// as lines of JSON.
     #[arg(long, global = true, value_name = "STYLE", value_parser = Word::<Style>::all(), default_value_t = Style::Auto)]
     pub(crate) progress: Style,
 
@@ -43,12 +43,12 @@ pub(crate) struct Common {
     pub(crate) quiet: bool,
 }
 
-/// The output of every subcommand that writes files.
+/// The output of subcommands that write files.
 #[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Output")]
 pub(crate) struct OutputArgs {
-    /// Where to write: a file, a folder, or `-` for standard output. An existing folder and a path that ends with a slash are
-    /// folders; for several files, so is a path without an ending. Missing folders are created.
+    /// The output: a file, a folder, or `-` for standard output. An existing folder and a path that ends with a slash
+    /// are folders; for several files, so is a path without an ending. Missing folders are created.
     #[arg(short, long, value_name = "FILE|DIR/")]
     pub(crate) output: Option<PathBuf>,
 
@@ -69,13 +69,13 @@ pub(crate) struct OutputArgs {
 /// The files of a run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Targets {
-    /// `NAME.ENDING`, whether it is written or not: the JSON file lies beside it.
+    /// The path `NAME.ENDING`, whether it is written or not: the JSON file is written beside it.
     pub(crate) main: Target,
     /// The file of each part.
     pub(crate) files: Vec<Target>,
 }
 
-/// How images are written.
+/// Options of subcommands that write images.
 #[derive(Args, Clone, Debug)]
 #[command(next_help_heading = "Output")]
 pub(crate) struct ImageArgs {
@@ -95,7 +95,7 @@ pub(crate) struct ImageArgs {
 }
 
 dapple::raster::named! {
-    /// Along which axes something repeats.
+    /// The axes along which a picture repeats.
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     pub(crate) enum Axes {
         /// Left and right fit together.
@@ -110,7 +110,7 @@ dapple::raster::named! {
 }
 
 impl Axes {
-    /// Reads one or both axes, where `none` has no meaning.
+    /// Parses one or both axes, for options where `none` has no meaning.
     pub(crate) fn some() -> Word<Self> {
         Word::some(&[Self::X, Self::Y, Self::Both])
     }
@@ -125,14 +125,14 @@ impl Axes {
 }
 
 impl ImageArgs {
-    /// The ending of images whose names the command makes.
+    /// The ending of images whose names the command chooses.
     pub(crate) fn ending(&self) -> &'static str {
         self.format.map_or("png", Format::ending)
     }
 }
 
 impl OutputArgs {
-    /// The file of a run that writes one.
+    /// The file of a run that writes a single one.
     ///
     /// # Errors
     ///
@@ -147,7 +147,7 @@ impl OutputArgs {
     ///
     /// # Errors
     ///
-    /// If there is no output, or it cannot hold them.
+    /// If there is no output, or it cannot take the files.
     pub(crate) fn targets<S: AsRef<str>>(
         &self,
         name: &str,
@@ -183,7 +183,7 @@ impl OutputArgs {
         Ok(Targets { main, files })
     }
 
-    /// The folder, if the output is one for this number of files.
+    /// The folder of the output, if it is a folder for this number of files.
     pub(crate) fn folder(&self, n_files: usize) -> Option<&Path> {
         let output = self.output.as_deref()?;
         let ends_with_slash = output
@@ -196,11 +196,11 @@ impl OutputArgs {
     }
 }
 
-/// A seed as it is typed.
+/// Parses a seed.
 ///
 /// # Errors
 ///
-/// If it is none, with what seeds are.
+/// If the text is not a seed, with the range of seeds.
 pub(crate) fn seed(text: &str) -> Result<u64, String> {
     let range = format!("a seed is a whole number from 0 to {}", u64::MAX);
     text.trim()
@@ -211,17 +211,15 @@ pub(crate) fn seed(text: &str) -> Result<u64, String> {
         })
 }
 
-/// A name of files that leads to no other folder.
+/// Parses a name of files without a folder.
 fn plain_name(text: &str) -> Result<String, String> {
     if text.is_empty() || text.starts_with('.') || text.contains(['/', '\\']) {
-        return Err(
-            "it is a part of the names of files, without a slash or a leading dot".to_owned(),
-        );
+        return Err("it becomes part of file names, without a slash or a leading dot".to_owned());
     }
     Ok(text.to_owned())
 }
 
-/// A name as a part of the names of files: what is no letter, digit, `.` or `_` becomes `-`.
+/// A name as a part of file names: characters other than letters, digits, `.` and `_` become `-`.
 pub(crate) fn file_name(name: &str) -> String {
     let plain = |c: char| {
         if c.is_alphanumeric() || c == '.' || c == '_' {

@@ -1,7 +1,7 @@
-//! The command line as people type it.
+//! Parsing of the command line.
 //!
-//! Options are read in any case and with `_` for `-`, and a negative number after an option is its value. The names that
-//! other programs give to options are answered with the names here.
+//! Options are read in any case and with `_` for `-`, and a negative number after an option is its value. For options
+//! of other programs, the error names the option here.
 
 use crate::cli::{Cli, command};
 use crate::words::with_dashes;
@@ -10,7 +10,7 @@ use clap::builder::StyledStr;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use std::ffi::OsString;
 
-/// Options of other programs: the subcommands, the option, and what to type instead.
+/// Options of other programs: the subcommands, the option, and the option to use instead.
 const ELSEWHERE: [(&[&str], &str, &str); 9] = [
     (
         &["worley", "noise", "wavelet"],
@@ -55,7 +55,7 @@ const ELSEWHERE: [(&[&str], &str, &str); 9] = [
     ),
 ];
 
-/// The command line of this process. Where it is wrong, the process ends.
+/// Parses the command line of this process. If it is invalid, the process ends.
 pub(crate) fn parse() -> Cli {
     let words = normalized(std::env::args_os());
     let mut command = command();
@@ -65,7 +65,7 @@ pub(crate) fn parse() -> Cli {
     parsed.unwrap_or_else(|error| advised(error.format(&mut command), &words).exit())
 }
 
-/// The words with the names of options as they are defined, and negative numbers joined with their options.
+/// Normalizes the arguments: option names are spelled as defined, and negative numbers are joined with their options.
 fn normalized(typed: impl IntoIterator<Item = OsString>) -> Vec<OsString> {
     let mut words: Vec<OsString> = Vec::new();
     let mut are_options = true;
@@ -84,7 +84,7 @@ fn normalized(typed: impl IntoIterator<Item = OsString>) -> Vec<OsString> {
     words
 }
 
-/// An option with its name in small letters and dashes.
+/// The name of an option in lower case, with dashes.
 fn option(text: &str) -> String {
     match text.split_once('=') {
         Some((name, value)) => format!("{}={value}", with_dashes(name)),
@@ -98,13 +98,13 @@ fn is_negative(text: &str) -> bool {
     digits.starts_with(|digit: char| digit.is_ascii_digit())
 }
 
-/// Whether it is a long option without its value.
+/// Whether an argument is a long option without its value.
 fn takes_more(word: &OsString) -> bool {
     let word = word.to_string_lossy();
     word.starts_with("--") && word.len() > 2 && !word.contains('=')
 }
 
-/// The error with the name that an option of another program has here.
+/// Adds the name of the option here to an error about an option of another program.
 fn advised(mut error: clap::Error, words: &[OsString]) -> clap::Error {
     let unknown = match error.get(ContextKind::InvalidArg) {
         Some(ContextValue::String(option)) if error.kind() == ErrorKind::UnknownArgument => option,

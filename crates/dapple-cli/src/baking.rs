@@ -1,4 +1,4 @@
-//! Recipes drawn: bands of maps, each map into a file of its own.
+//! Baking of recipes: bands of maps, each map into a file of its own.
 
 use crate::encode::Format;
 use crate::error::Hint;
@@ -21,12 +21,12 @@ use std::io::{BufWriter, Cursor, Write};
 use std::path::Path;
 use std::sync::Arc;
 
-/// A file for an image of maps.
+/// The file of an image of maps.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct MapFile {
     pub(crate) image: Image,
     pub(crate) output: OutputIdx,
-    /// Where 2 x 2 copies go, if there are to be any.
+    /// The file for 2 x 2 copies, if requested.
     pub(crate) sheet: Option<OutputIdx>,
 }
 
@@ -42,11 +42,12 @@ pub(crate) fn report(recipe: &Recipe) -> Value {
     })
 }
 
-/// A recipe, from a file, from standard input (`-`), or by the name of a built-in one, with the folder of its images.
+/// Reads a recipe from a file, from standard input (`-`), or by the name of a built-in one, and returns it with the
+/// folder of its images.
 ///
 /// # Errors
 ///
-/// If there is none, or it cannot be read, with what was perhaps meant.
+/// If there is no such recipe, with the nearest name, or it cannot be read.
 pub(crate) fn read_recipe(name: &str) -> Result<(Recipe, &Path)> {
     let path = Path::new(name);
     let builtin = with_dashes(name);
@@ -77,17 +78,17 @@ pub(crate) fn read_recipe(name: &str) -> Result<(Recipe, &Path)> {
     Ok((recipe, path.parent().unwrap_or(Path::new(""))))
 }
 
-/// Whether a recipe in this file is one in JSON.
+/// Whether a recipe file is in JSON, by its ending.
 pub(crate) fn is_json(path: &Path) -> bool {
     let ending = path.extension();
     ending.is_some_and(|ending| ending.eq_ignore_ascii_case("json"))
 }
 
-/// The images that a recipe names, from a folder.
+/// Reads the images of a recipe from a folder.
 ///
 /// # Errors
 ///
-/// If one is not there, or cannot be read.
+/// If one does not exist, or cannot be read.
 pub(crate) fn read_images(recipe: &Recipe, folder: &Path) -> Result<Images> {
     let mut images = Images::new();
     let hint = "give its node alpha = \"drop\" or alpha = \"over:#rrggbb\"";
@@ -98,11 +99,12 @@ pub(crate) fn read_images(recipe: &Recipe, folder: &Path) -> Result<Images> {
     Ok(images)
 }
 
-/// An image for a recipe.
+/// Reads an image for a recipe.
 ///
 /// # Errors
 ///
-/// If it is not there, or cannot be read; with the hint, if it is partly transparent and nothing is said of that.
+/// If it does not exist, or cannot be read; with the hint, if it is partly transparent and there is no option for
+/// alpha.
 pub(crate) fn read_picture(path: &Path, alpha: Option<ImageAlpha>, hint: &str) -> Result<Picture> {
     let loaded = input::map(path, input::Kind::ByChannels, None, alpha, hint)?;
     Ok(match loaded.map {
@@ -116,7 +118,7 @@ pub(crate) fn read_picture(path: &Path, alpha: Option<ImageAlpha>, hint: &str) -
 ///
 /// # Errors
 ///
-/// A refusal of the recipe or of the operating system.
+/// Errors of the recipe or of the operating system.
 pub(crate) fn write(
     job: &mut Job<'_>,
     bake: Bake<'_>,
@@ -128,7 +130,7 @@ pub(crate) fn write(
     for file in files {
         rows.push(Rows::new(job, file, size)?);
     }
-    // The lower half of a sheet is baked a second time, and so takes no memory.
+    // The lower half of a sheet is baked a second time, which needs no memory.
     let has_sheets = files.iter().any(|file| file.sheet.is_some());
     let again = has_sheets.then(|| bake.clone());
     draw(bake, &mut rows, progress, Rows::write)?;
@@ -151,7 +153,7 @@ pub(crate) fn write(
 ///
 /// # Errors
 ///
-/// A refusal of the recipe.
+/// Errors of the recipe.
 pub(crate) fn encode(
     bake: Bake<'_>,
     images: &[Image],
@@ -175,7 +177,7 @@ pub(crate) fn encode(
     finished.map(|file| Ok(file?.into_inner())).collect()
 }
 
-/// Gives the bands of a bake to all files.
+/// Passes the bands of a bake to all files.
 fn draw(
     bake: Bake<'_>,
     rows: &mut [Rows],
@@ -215,7 +217,7 @@ pub(crate) fn advise(error: RecipeError) -> Error {
                 .wrong_value();
         }
         RecipeErrorKind::UnknownRecipe { .. } => return Error::new(error).wrong_value(),
-        RecipeErrorKind::NoImage { .. } => "images lie in the folder of the recipe",
+        RecipeErrorKind::NoImage { .. } => "put the images into the folder of the recipe",
         RecipeErrorKind::Schema { .. } => "see the changelog for what has changed in recipes",
         _ => return error.into(),
     };
@@ -227,23 +229,23 @@ pub(crate) fn advise_shard(error: RecipeError) -> Error {
     match error.kind() {
         RecipeErrorKind::Global { .. } => Error::new(error)
             .context("the recipe cannot be baked in shards")
-            .hint("make what the node makes beforehand, with `dapple tile`, `dapple blend-map` or a bake of its own, and let the recipe name the result in an `image` node"),
+            .hint("make the picture of the node beforehand, with `dapple tile`, `dapple blend-map` or `dapple bake`, and read it with an `image` node"),
         _ => advise(error),
     }
 }
 
-/// A file that gets an image row by row, and its name for errors.
+/// A file that receives an image row by row, and its name for errors.
 struct Writer {
     target: Target,
     rows: RowWriter<BufWriter<File>>,
 }
 
-/// An image on its way into a file, and into 2 x 2 copies of it.
+/// The rows of an image for a file, and for 2 x 2 copies of it.
 struct Rows {
     layers: Layers,
     map: Writer,
     sheet: Option<Writer>,
-    /// The smallest and the largest number so far.
+    /// The smallest and the largest number written so far.
     range: [f32; 2],
 }
 

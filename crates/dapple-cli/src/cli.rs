@@ -1,4 +1,4 @@
-//! The command line as a whole.
+//! The definition of the command line.
 
 use crate::args::Common;
 use crate::commands::Command;
@@ -46,7 +46,7 @@ pub(crate) struct Cli {
     pub(crate) command: Command,
 }
 
-/// The command line, which reads its words without regard to case.
+/// Defines the command line; words are read without regard to case.
 pub(crate) fn command() -> ClapCommand {
     let any_case = |arg: Arg| {
         let takes_values = arg.get_action().takes_values();

@@ -1,4 +1,4 @@
-//! From maps to the bytes of image files.
+//! Encoding of maps as image files.
 
 use crate::args::RampArg;
 use crate::error::{Hint, usage};
@@ -29,11 +29,11 @@ dapple::raster::named! {
 }
 
 impl Format {
-    /// The format for a target: as asked for, or by its ending.
+    /// The format for a target: the requested one, or that of its ending.
     ///
     /// # Errors
     ///
-    /// If the ending is that of no image, or of another format than what was asked for.
+    /// If the ending is not that of an image, or conflicts with the requested format.
     pub(crate) fn choose(asked: Option<Self>, target: &Target, default: Self) -> Result<Self> {
         let by_ending = match (target, target.ending().as_str()) {
             (Target::Stdout, _) => return Ok(asked.unwrap_or(default)),
@@ -49,7 +49,7 @@ impl Format {
             }
             (_, ending) => {
                 let error = usage(format!("{target}: unknown image format {ending:?}"));
-                return Err(error.hint("let the name end in .png, .exr, .npy or .r16"));
+                return Err(error.hint("use a name that ends in .png, .exr, .npy or .r16"));
             }
         };
         let format = asked.or(by_ending).unwrap_or(Self::Png16);
@@ -63,7 +63,7 @@ impl Format {
         Err(error.hint(format!("let it end in .{}", format.ending())))
     }
 
-    /// How the numbers of such a file are written.
+    /// The encoding of the numbers of a file of this format.
     pub(crate) fn encoding(self) -> Encoding {
         match self {
             Self::Png8 => Encoding::Png(Depth::Eight),
@@ -74,12 +74,12 @@ impl Format {
         }
     }
 
-    /// Whether numbers are kept as they are, also those below 0 and above 1.
+    /// Whether numbers are kept unchanged, also those below 0 and above 1.
     pub(crate) fn keeps_numbers(self) -> bool {
         matches!(self, Self::Exr | Self::Npy)
     }
 
-    /// How many bytes a number takes, and what they are.
+    /// The bytes of a number, and their description.
     pub(crate) fn depth(self) -> (u64, &'static str) {
         match self {
             Self::Png8 => (1, "8 bits"),
@@ -88,7 +88,7 @@ impl Format {
         }
     }
 
-    /// Refuses raw heights for content that is not a single number at each pixel.
+    /// Checks that the content of raw heights is a single number at each pixel.
     ///
     /// # Errors
     ///
@@ -102,7 +102,7 @@ impl Format {
         Err(usage(message).hint("write a height as .r16, and this as .png, .exr or .npy"))
     }
 
-    /// The ending of the names of such files, without its dot.
+    /// The ending of files of this format, without its dot.
     pub(crate) fn ending(self) -> &'static str {
         match self {
             Self::Png8 | Self::Png16 => "png",
@@ -113,7 +113,7 @@ impl Format {
     }
 }
 
-/// The default format of a map: PNG with 8 bits for color that is not deeper, with 16 for everything else.
+/// The default format of a map: PNG with 8 bits for color of at most 8 bits, with 16 for all others.
 pub(crate) fn default_format(map: &Map, is_deep: bool) -> Format {
     match map {
         Map::Color(_) if !is_deep => Format::Png8,
@@ -121,7 +121,7 @@ pub(crate) fn default_format(map: &Map, is_deep: bool) -> Format {
     }
 }
 
-/// A map with its values turned to colors, if there is a ramp and they are values.
+/// A map with its values colored, if there is a ramp and they are values.
 pub(crate) fn ramped(map: Map, ramp: Option<&RampArg>) -> Map {
     match (map, ramp) {
         (Map::Value(values), Some(ramp)) => Map::Color(ramp.ramp.apply(&values)),
@@ -142,7 +142,7 @@ pub(crate) fn ramped_recipe(ramp: &RampArg, input: &Input) -> Node {
     })
 }
 
-/// The map of the same kind whose raster an expression makes of the raster of a map.
+/// A map of the same kind, with the raster replaced by an expression of it.
 macro_rules! map_raster {
     ($map:expr, $raster:ident => $make:expr) => {
         match $map {
@@ -154,10 +154,10 @@ macro_rules! map_raster {
 }
 pub(crate) use map_raster;
 
-/// The bytes of a file with a map.
+/// Encodes a map as the bytes of a file.
 ///
-/// Values are `round(value * max)` in PNG and raw heights, and as they are in EXR and NumPy arrays; color is sRGB in PNG
-/// and linear in the others; normals are `(part + 1) / 2` in images and as they are in arrays.
+/// Values are `round(value * max)` in PNG and raw heights, and unchanged in EXR and NumPy arrays; color is sRGB in PNG
+/// and linear in the others; normals are `(part + 1) / 2` in images and unchanged in arrays.
 pub(crate) fn encode(map: &Map, format: Format) -> Result<Vec<u8>> {
     let (sink, encoding) = (Cursor::new(Vec::new()), format.encoding());
     let sink = match map {
@@ -180,7 +180,7 @@ pub(crate) fn encode(map: &Map, format: Format) -> Result<Vec<u8>> {
     Ok(sink.into_inner())
 }
 
-/// The bytes of a file with colors and their alpha, in the coding of [`encode`].
+/// Encodes colors and their alpha as the bytes of a file, like [`encode`].
 pub(crate) fn encode_with_alpha(
     colors: &Raster<LinearRgb>,
     alpha: &Raster<f32>,
@@ -205,7 +205,7 @@ pub(crate) fn content(map: &Map) -> Content {
     }
 }
 
-/// The smallest and the largest number of a map that are finite, over all channels; normals are from -1 to 1.
+/// The smallest and the largest finite number of a map, over all channels; normals are from -1 to 1.
 pub(crate) fn range(map: &Map) -> [f32; 2] {
     let fold = |range: [f32; 2], value: f32| {
         if value.is_finite() {

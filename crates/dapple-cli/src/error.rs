@@ -1,4 +1,4 @@
-//! Errors for people: a message, its causes, a hint what to do about it, and the exit code.
+//! Errors for users: a message, its causes, a hint, and the exit code.
 
 use anyhow::Error;
 use dapple::points::{PointsError, PointsErrorKind};
@@ -11,18 +11,18 @@ use std::fmt;
 use std::io::{self, Write};
 use std::process::ExitCode;
 
-/// How the command ended.
+/// The exit code of the command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Exit {
-    /// All was done.
+    /// The work is done.
     Done = 0,
-    /// Something was refused or failed; nothing was written.
+    /// The work failed; no file was written.
     Failed = 1,
-    /// The command line was wrong; clap exits with the same code.
+    /// The command line was invalid; clap exits with the same code.
     Usage = 2,
-    /// All was done, but what `--check` asks for does not hold.
+    /// The work is done, but a condition of `--check` does not hold.
     Check = 3,
-    /// The user stopped it: 128 and the number of SIGINT.
+    /// The user interrupted the command: 128 and the number of SIGINT.
     Interrupted = 130,
 }
 
@@ -41,7 +41,7 @@ impl From<Exit> for ExitCode {
     }
 }
 
-/// An error with a hint, or with an exit code of its own.
+/// An error with a hint, or with a specific exit code.
 #[derive(Debug)]
 struct Refusal {
     error: Error,
@@ -61,7 +61,7 @@ impl std::error::Error for Refusal {
     }
 }
 
-/// An error of the command line that clap does not find.
+/// An error of the command line that clap does not detect.
 pub(crate) fn usage(message: impl Into<String>) -> Error {
     Error::new(Refusal {
         error: Error::msg(message.into()),
@@ -78,7 +78,7 @@ pub(crate) trait Hint {
     /// Adds a hint: an imperative sentence without a full stop.
     fn hint(self, hint: impl Into<String>) -> Self::Hinted;
 
-    /// Marks it as an error of the command line: a library has refused a value that was typed.
+    /// Marks an error as one of the command line: a library has rejected a value of an option.
     fn wrong_value(self) -> Self::Hinted;
 }
 
@@ -122,7 +122,7 @@ impl<T, E: Into<Error>> Hint for Result<T, E> {
     }
 }
 
-/// Tells the user of an error, beginning with the option that it is about, and says how to exit.
+/// Reports an error to the user, beginning with the option that caused it, and returns the exit code.
 pub(crate) fn report(error: &Error, arguments: &[String]) -> Exit {
     let exit = exit(error);
     if exit != Exit::Done {
@@ -131,13 +131,13 @@ pub(crate) fn report(error: &Error, arguments: &[String]) -> Exit {
             _ => None,
         };
         let text = text(error, option.as_deref());
-        // Where even this cannot be written, the exit code has to do.
+        // If even this cannot be written, the exit code must suffice.
         let _ = io::stderr().lock().write_all(text.as_bytes());
     }
     exit
 }
 
-/// The number that a library finds out of its range.
+/// The number that a library reports as out of range.
 fn refused_number(error: &Error) -> Option<f64> {
     use PointsErrorKind::{NotDescending, NotPositive, OutOfRange, PeriodTooShort, Radius};
     error.chain().find_map(|cause| {
@@ -169,11 +169,11 @@ fn refused_number(error: &Error) -> Option<f64> {
     })
 }
 
-/// The only option that was typed with a number, as it was typed.
+/// The only option with this number, as it was typed.
 fn option_with(number: f64, arguments: &[String]) -> Option<String> {
     let holds = |value: &str| {
         let mut parts = value.split([',', 'x']).map(str::parse);
-        // Some numbers are kept with fewer digits.
+        // Some numbers are stored with fewer digits.
         parts.any(|part| {
             part.is_ok_and(|part: f64| part == number || f64::from(part as f32) == number)
         })
@@ -197,10 +197,10 @@ fn option_with(number: f64, arguments: &[String]) -> Option<String> {
     found.is_empty().then_some(only)
 }
 
-/// How to exit after an error.
+/// The exit code after an error.
 fn exit(error: &Error) -> Exit {
     if is_broken_pipe(error) {
-        // The reader of the pipe has closed it.
+        // The reader of the pipe has closed it, which is no failure.
         return Exit::Done;
     }
     let refusals = error.chain().filter_map(|cause| cause.downcast_ref());
@@ -210,7 +210,7 @@ fn exit(error: &Error) -> Exit {
         .unwrap_or(Exit::Failed)
 }
 
-/// The option that it is about, the message, the causes that say more, and the hint.
+/// The text of an error: the option, the message, the causes that add to it, and the hint.
 fn text(error: &Error, option: Option<&str>) -> String {
     let mut said = error.to_string();
     let option = option.map_or(String::new(), |option| format!("{option}: "));

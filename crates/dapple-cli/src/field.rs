@@ -1,4 +1,4 @@
-//! A single field drawn: what `worley`, `pups` and `wavelet` share. Each makes a recipe of one node and bakes it.
+//! Drawing of a single field, shared by `worley`, `pups` and `wavelet`: each makes a recipe of one node and bakes it.
 
 use crate::args::{Axes, Frame, ImageArgs, Region, Size, Targets, seed};
 use crate::baking::{self, MapFile, advise, report};
@@ -25,11 +25,11 @@ pub(crate) struct FieldArgs {
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = seed)]
     pub(crate) seed: u64,
 
-    /// Columns and rows, in pixels.
+    /// The columns and rows, in pixels.
     #[arg(long, value_name = "WxH", default_value = "512")]
     pub(crate) size: Size,
 
-    /// Along which axes the picture repeats.
+    /// The axes along which the picture repeats.
     #[arg(long, value_parser = Word::<Axes>::all(), default_value_t = Axes::Both)]
     pub(crate) wrap: Axes,
 
@@ -42,7 +42,7 @@ pub(crate) struct FieldArgs {
     #[arg(long, value_name = "LO,HI|raw", allow_hyphen_values = true)]
     pub(crate) range: Option<RangeArg>,
 
-    /// Write the recipe of the picture as TOML, for `dapple bake`, and draw nothing; without -o it is printed.
+    /// Write the recipe of the picture as TOML, for `dapple bake`, without drawing it; without -o it is printed.
     #[arg(long)]
     pub(crate) recipe: bool,
 }
@@ -51,9 +51,9 @@ pub(crate) struct FieldArgs {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum RangeArg {
-    /// The values as they are.
+    /// The values are unchanged.
     Raw,
-    /// The values that become 0 and 1.
+    /// The values that are mapped to 0 and 1.
     Ends([f32; 2]),
 }
 
@@ -76,22 +76,22 @@ impl std::str::FromStr for RangeArg {
     }
 }
 
-/// A field that a command draws.
+/// A field to draw, and its defaults.
 #[derive(Clone, Debug)]
 pub(crate) struct Field {
     /// The name of the subcommand.
     pub(crate) command: &'static str,
-    /// The node that makes it.
+    /// The node of the field.
     pub(crate) node: Node,
-    /// Whether it makes colors.
+    /// Whether the field has colors.
     pub(crate) is_color: bool,
     /// The width and height of the picture in units of the plane.
     pub(crate) extent: [f64; 2],
     /// The values that become black and white in files with whole numbers.
     pub(crate) range: [f32; 2],
-    /// How many pictures of a loop there are, if it moves.
+    /// The number of frames of a loop, if the field moves.
     pub(crate) frames: Option<u32>,
-    /// The images that it follows.
+    /// The images that the field uses.
     pub(crate) images: Images,
 }
 
@@ -99,7 +99,7 @@ pub(crate) struct Field {
 ///
 /// # Errors
 ///
-/// Options out of range, and files that cannot be written.
+/// Errors of options out of range, and of writing.
 pub(crate) fn draw(
     field: &Field,
     args: &FieldArgs,
@@ -174,7 +174,8 @@ pub(crate) fn draw(
     Ok(Exit::Done)
 }
 
-/// A refusal of the recipe, which is about what was typed. Of nodes, which the user knows nothing of, nothing is said.
+/// An error of the recipe, as an error of an option. The node is left out, since users of this subcommand do not know
+/// it.
 fn refused(error: RecipeError) -> Error {
     let message = error.kind().to_string();
     Error::new(error).context(message).wrong_value()
@@ -231,7 +232,7 @@ fn recipe(field: &Field, args: &FieldArgs, image: &ImageArgs, format: Format) ->
     Ok(recipe)
 }
 
-/// The numbers of the pictures of a loop, `001` and so on, as parts of their names; no number for a single picture.
+/// The labels of the frames of a loop, `001` and so on, as parts of file names; an empty label for a single picture.
 fn frames(count: Option<u32>) -> Vec<String> {
     let label = |frame: Option<Frame>| frame.map_or(String::new(), Frame::label);
     Frame::all(count).map(label).collect()
@@ -240,12 +241,12 @@ fn frames(count: Option<u32>) -> Vec<String> {
 /// The width and height of a picture that is `shorter` units along its shorter side and has square pixels.
 pub(crate) fn extent_of(size: Size, shorter: f64) -> [f64; 2] {
     let [width, height] = size.0.map(f64::from);
-    // Products first: where there are whole numbers of units along both sides, they come out as such.
+    // The products come first, so that whole numbers of units along both sides are exact.
     let side = |pixels: f64| pixels * shorter / width.min(height);
     [side(width), side(height)]
 }
 
-/// Refuses numbers of cells along the sides that cannot repeat where they have to; `option` is what to choose others with.
+/// Checks that the numbers of cells along the sides are whole along axes that repeat; `option` is the option to change.
 pub(crate) fn check_whole_cells(cells: [f64; 2], repeats: [bool; 2], option: &str) -> Result<()> {
     for (cells, repeats) in cells.into_iter().zip(repeats) {
         if repeats && cells.fract() != 0.0 {

@@ -1,4 +1,4 @@
-//! An estimate of the work of a bake, before it begins: pixels, bytes, and about how long.
+//! An estimate of the work of a bake before it begins: pixels, bytes, and time.
 
 use crate::baking::advise;
 use crate::error::Hint;
@@ -9,18 +9,18 @@ use dapple::recipe::{Bake, BakeMemory, BakeOptions, Plan};
 use indicatif::{DecimalBytes, HumanDuration};
 use std::time::{Duration, Instant};
 
-/// The most pixels that are baked without `--banded`: 32768 × 32768.
+/// The largest number of pixels that are baked without `--banded`: 32768 × 32768.
 const MOST_PIXELS: u64 = 1 << 30;
 /// The number of pixels from which on the estimate is printed: 8192 × 8192.
 const TOLD_PIXELS: u64 = 1 << 26;
-/// Columns and rows of the small bake whose pace is measured.
+/// The columns and rows of the small bake for the measurement.
 const PROBE: [u32; 2] = [256; 2];
 
 /// Prints an estimate of the work of a large bake.
 ///
 /// # Errors
 ///
-/// If there are more than [`MOST_PIXELS`] and the bake is not banded, or if the recipe is refused.
+/// If there are more than [`MOST_PIXELS`] and the bake is not banded, or if the recipe fails.
 pub(crate) fn foresee(
     plan: &Plan,
     options: &BakeOptions,
@@ -37,14 +37,14 @@ pub(crate) fn foresee(
     if pixels > MOST_PIXELS && options.memory == BakeMemory::Whole {
         let error =
             anyhow!("without --banded at most 32768 × 32768 pixels are baked, and this is {work}");
-        let hint = "add --banded if you mean it, or make a part with --region";
+        let hint = "add --banded to bake it anyway, or bake a part with --region";
         return Err(error.hint(hint).wrong_value());
     }
     job.note_work(&format!("baking {work}"));
     Ok(())
 }
 
-/// Seconds for each pixel, measured on a small picture of the same tile.
+/// The seconds for each pixel, measured on a small picture of the same tile.
 #[expect(
     clippy::disallowed_methods,
     reason = "the time is told to the user, and no value depends on it"
@@ -62,7 +62,7 @@ fn probe(plan: &Plan, options: &BakeOptions) -> Result<f64> {
     Ok(start.elapsed().as_secs_f64() / n_pixels(PROBE) as f64)
 }
 
-/// The work in words.
+/// The work as text.
 fn work([width, height]: [u32; 2], images: &[Image], pace: f64) -> String {
     let pixels = n_pixels([width, height]);
     let bytes = images.iter().map(n_bytes);
@@ -80,7 +80,7 @@ fn n_pixels(size: [u32; 2]) -> u64 {
     u64::from(size[0]) * u64::from(size[1])
 }
 
-/// The bytes of a pixel of an image in a file that is not compressed.
+/// The bytes of a pixel of an image in an uncompressed file.
 fn n_bytes(image: &Image) -> u64 {
     image.layers.n_channels() * image.format.depth().0
 }

@@ -1,4 +1,4 @@
-//! Input files: images, meshes and text, with errors that say what to do.
+//! Input files: images, meshes and text, with errors that suggest a remedy.
 
 #![expect(
     clippy::disallowed_methods,
@@ -23,32 +23,32 @@ use std::fs;
 use std::io::{self, Read};
 use std::path::Path;
 
-/// The most bytes of a text that is read.
+/// The largest number of bytes of a text.
 const TEXT_MAX: u64 = 1 << 28;
-/// The number of similar names in an error message.
+/// The largest number of similar names in an error message.
 const NAMES_MAX: usize = 3;
 
-/// The quantity that the numbers of an image stand for.
+/// The kind of quantity in an image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
-    /// Gray images are values as they are, others are color.
+    /// Values if the image is gray, else color.
     ByChannels,
-    /// Color, also if it is gray.
+    /// Color, even if the image is gray.
     Colors,
     /// Normals: `2 code / max - 1`.
     Normals,
 }
 
-/// An image that was read.
+/// An image that was read, with its properties.
 #[derive(Clone, Debug)]
 pub(crate) struct Loaded {
-    /// Its pixels.
+    /// The pixels of the image.
     pub(crate) map: Map,
-    /// The alpha of its pixels, where some are transparent and that is kept.
+    /// The alpha of the pixels, if some are transparent and it is kept.
     pub(crate) alpha: Option<Raster<f32>>,
     /// Whether the file has more than 8 bits per channel.
     pub(crate) is_deep: bool,
-    /// Whether its numbers are linear light, as in OpenEXR; in a photograph of another format they are sRGB codes.
+    /// Whether the numbers are linear light, as in OpenEXR; in other formats they are sRGB codes.
     is_linear: bool,
 }
 
@@ -85,12 +85,12 @@ pub(crate) fn image(path: &Path) -> Result<Image> {
 /// The hint for an image with alpha where an option handles it.
 pub(crate) const ALPHA_HINT: &str = "add --alpha drop or --alpha over:COLOR";
 
-/// Reads an image as a map that has no alpha, or a part of it.
+/// Reads an image, or a part of it, as a map without alpha.
 ///
 /// # Errors
 ///
-/// Those of [`image`]; channels that do not fit the kind; a part that is not inside of the image; and, with the hint,
-/// transparent pixels where `alpha` is `None`.
+/// Those of [`image`]; channels that do not fit the kind; a part outside of the image; and, with the hint, transparent
+/// pixels where `alpha` is `None`.
 pub(crate) fn map(
     path: &Path,
     kind: Kind,
@@ -114,11 +114,11 @@ pub(crate) fn map(
     Ok(loaded)
 }
 
-/// Reads an image as a map, or a part of it, and keeps, drops or composites its alpha. Normals have no alpha.
+/// Reads an image, or a part of it, as a map, and keeps, drops or composites its alpha. Normals have no alpha.
 ///
 /// # Errors
 ///
-/// Those of [`image`]; channels that do not fit the kind; a part that is not inside of the image.
+/// Those of [`image`]; channels that do not fit the kind; a part outside of the image.
 pub(crate) fn map_with_alpha(
     path: &Path,
     kind: Kind,
@@ -154,7 +154,7 @@ pub(crate) fn map_with_alpha(
     part(path, &image, region, map, alpha)
 }
 
-/// The values of a gray image with alpha, as they are.
+/// The uncoded values of a gray image with alpha.
 fn values_beside_alpha(image: &Image) -> Option<Raster<f32>> {
     let Image::Png(png) = image else {
         return None;
@@ -178,7 +178,7 @@ fn opaque(image: &Image, kind: Kind) -> Result<Map> {
     }
 }
 
-/// A part of what was read, or all of it.
+/// A part of an image that was read, or all of it.
 fn part(
     path: &Path,
     image: &Image,
@@ -207,11 +207,11 @@ fn part(
     })
 }
 
-/// Refuses an image that has not the size of another.
+/// Checks that an image has the size of another.
 ///
 /// # Errors
 ///
-/// If it has another, with both names and sizes.
+/// If the sizes differ, with both names and sizes.
 pub(crate) fn check_size(
     path: &Path,
     size: [u32; 2],
@@ -251,7 +251,7 @@ pub(crate) fn model(path: &Path) -> Result<Model> {
                 Some(format!("a mesh is a file in {}", mesh_endings()))
             }
             MeshIoErrorKind::Unsupported { .. } => {
-                Some("export it again without that, or as .obj or .ply".to_owned())
+                Some("export it without this feature, or as .obj or .ply".to_owned())
             }
             _ => None,
         };
@@ -276,7 +276,7 @@ pub(crate) fn mesh_endings() -> String {
 ///
 /// # Errors
 ///
-/// If there is no such file, or it is too long or no UTF-8.
+/// If there is no such file, it is too long, or it is not UTF-8.
 pub(crate) fn text(path: &Path) -> Result<String> {
     let mut bytes = Vec::new();
     let read = if path == Path::new("-") {
@@ -299,11 +299,11 @@ pub(crate) fn text(path: &Path) -> Result<String> {
 ///
 /// # Errors
 ///
-/// If there is no such file, or it is damaged, larger or another image.
+/// If there is no such file, or it is damaged, too large, or of another size.
 pub(crate) fn exr(path: &Path, size: [u32; 2]) -> Result<ExrImage> {
     check_file(path, "an image")?;
     let pixels = u64::from(size[0]) * u64::from(size[1]);
-    // Four planes, and what a file has beside its pixels: its header and the places of its tiles.
+    // Four planes, and the rest of the file: its header and the places of its tiles.
     let bytes = pixels.saturating_mul(20).saturating_add(1 << 20);
     match read_image(path, &Limits { pixels, bytes }).map_err(advise)? {
         Image::Exr(image) => Ok(image),
@@ -323,13 +323,13 @@ pub(crate) fn sha256(path: &Path) -> Result<String> {
     Ok(content.sha256)
 }
 
-/// A part of a map.
+/// Crops a map.
 fn crop(map: &Map, region: Region) -> Result<Map> {
     let Region { first, size } = region;
     Ok(map_raster!(map, raster => raster.crop(first, size)?))
 }
 
-/// The normals that the channels of an image stand for.
+/// The normals in the channels of an image.
 fn normals(image: &Image) -> Result<Raster<Normal>> {
     match image {
         Image::Png(png) | Image::Jpeg(png) => match &png.pixels {
@@ -346,16 +346,16 @@ fn normals(image: &Image) -> Result<Raster<Normal>> {
             )),
         },
         image => {
-            // The parts are the numbers of the file as they are, from 0 to 1.
+            // The parts are the uncoded numbers of the file, from 0 to 1.
             let parts = image.color()?;
             Ok(parts.map(|parts| normal(parts.to_array())))
         }
     }
 }
 
-/// The unit vector of three parts from 0 to 1.
+/// The unit vector for three parts from 0 to 1.
 fn normal(parts: [f32; 3]) -> Normal {
-    // As exact as 16-bit codes are, and normalized by the same rule.
+    // With the precision of 16-bit codes, and normalized by the same rule.
     Normal::from_codes(parts.map(u16::from_unit))
 }
 
@@ -376,7 +376,7 @@ fn advise(error: ImageError) -> Error {
     }
 }
 
-/// Refuses a path that does not exist, a folder, and an empty file.
+/// Fails for a path that does not exist, a folder, and an empty file.
 fn check_file(path: &Path, what: &str) -> Result<()> {
     let found = match fs::metadata(path) {
         Ok(found) => found,

@@ -1,4 +1,4 @@
-//! A run of a subcommand: its files, what it says, and the JSON file beside the output.
+//! A run of a subcommand: its files, its messages, and the JSON file beside the output.
 
 use crate::args::{ImageArgs, OutputArgs, Targets};
 use crate::encode::{Format, content, default_format, encode, encode_with_alpha, ramped, range};
@@ -20,17 +20,17 @@ use std::path::Path;
 pub(crate) struct Context {
     /// Whether only errors and requested reports are printed.
     pub(crate) quiet: bool,
-    /// How progress is shown.
+    /// The style of the progress display.
     pub(crate) progress: Style,
     /// The number of threads, or 0 for one on each core.
     pub(crate) threads: u16,
-    /// The command line, as it was given.
+    /// The command line.
     pub(crate) arguments: Vec<String>,
 }
 
 #[cfg(feature = "studio")]
 impl Context {
-    /// These settings, for work that nobody reads of.
+    /// These settings without output, for work whose messages are not shown.
     pub(crate) fn silent(&self) -> Self {
         Self {
             quiet: true,
@@ -66,7 +66,7 @@ struct FileRecord {
     sha256: String,
 }
 
-/// The JSON file beside the output.
+/// The content of the JSON file beside the output.
 #[derive(Serialize)]
 struct Sidecar<'a> {
     dapple: &'static str,
@@ -80,7 +80,7 @@ struct Sidecar<'a> {
     raw: Option<RawSize>,
 }
 
-/// The size and bits of raw heights, which the file does not hold, by the names that the landscape importer of Unreal reads
+/// The size and bits of raw heights, which their file lacks, with the names that the landscape importer of Unreal reads
 /// from the JSON file beside it.
 #[derive(Serialize)]
 struct RawSize {
@@ -114,11 +114,11 @@ impl<'a> Job<'a> {
         }
     }
 
-    /// Claims a file that is no text.
+    /// Claims a binary file.
     ///
     /// # Errors
     ///
-    /// Those of [`Outputs::claim`], and if it would go to a terminal.
+    /// Those of [`Outputs::claim`], and if the output is a terminal.
     pub(crate) fn claim(&mut self, target: &Target) -> Result<OutputIdx> {
         if *target == Target::Stdout && io::stdout().is_terminal() {
             let error = usage("standard output is a terminal, which cannot show this file");
@@ -127,7 +127,7 @@ impl<'a> Job<'a> {
         self.claim_text(target)
     }
 
-    /// Claims a file for each image, and the JSON file. A name or a format that no image has is refused here, before the work.
+    /// Claims a file for each image, and the JSON file. Invalid names and formats fail here, before the work.
     ///
     /// # Errors
     ///
@@ -161,12 +161,13 @@ impl<'a> Job<'a> {
         Ok(output)
     }
 
-    /// Claims the JSON file, if one was asked for: beside the output, unless the command line names it. Raw heights always
-    /// have one, by their own name, since they do not say their size. The outputs have to be claimed before.
+    /// Claims the JSON file, if it is requested: beside the output, unless the command line names it. Raw heights
+    /// always have one, with their own name, since they do not contain their size. The outputs have to be claimed
+    /// before.
     ///
     /// # Errors
     ///
-    /// Those of [`Outputs::claim`], and if there is no name for it.
+    /// Those of [`Outputs::claim`], and if no name for it is given.
     pub(crate) fn claim_sidecar(&mut self, main: &Target) -> Result<()> {
         let target = match &self.args.json {
             None => {
@@ -195,7 +196,7 @@ impl<'a> Job<'a> {
         self.outputs.write(output, bytes)
     }
 
-    /// Writes a map as an image of a format that was chosen before, and notes its size and range.
+    /// Writes a map as an image of a given format, and records its size and range.
     ///
     /// # Errors
     ///
@@ -207,6 +208,11 @@ impl<'a> Job<'a> {
         Ok(())
     }
 
+    /// The options of the files.
+    pub(crate) fn args(&self) -> &'a OutputArgs {
+        self.args
+    }
+
     /// Announces work on standard error, unless the command is quiet.
     pub(crate) fn note_work(&self, text: &str) {
         if !self.context.quiet {
@@ -214,7 +220,7 @@ impl<'a> Job<'a> {
         }
     }
 
-    /// The target of a file that was claimed.
+    /// The target of a claimed file.
     pub(crate) fn target(&self, output: OutputIdx) -> &Target {
         self.outputs.target(output)
     }
@@ -228,7 +234,7 @@ impl<'a> Job<'a> {
         self.outputs.writer(output)
     }
 
-    /// Notes the format, the size and the range of an image that was written.
+    /// Records the format, the size and the range of an image.
     pub(crate) fn note(
         &mut self,
         output: OutputIdx,
@@ -261,7 +267,7 @@ impl<'a> Job<'a> {
         self.write_map(output, &map, format)
     }
 
-    /// Writes an image as [`write_image`](Self::write_image) does, with its alpha if it is one of colors that has some.
+    /// Writes an image like [`write_image`](Self::write_image), with its alpha if it is a color image with alpha.
     ///
     /// # Errors
     ///
@@ -300,7 +306,7 @@ impl<'a> Job<'a> {
         say(text)
     }
 
-    /// Puts all files in their places and says so.
+    /// Moves all files to their places and reports them.
     ///
     /// # Errors
     ///
@@ -339,7 +345,7 @@ impl<'a> Job<'a> {
         Ok(())
     }
 
-    /// Claims a file, and makes its folder if that is missing.
+    /// Claims a file, and makes its folder if it does not exist.
     fn claim_in_folder(&mut self, target: &Target) -> Result<OutputIdx> {
         let folder = target.path().and_then(Path::parent);
         if let Some(folder) = folder.filter(|folder| !folder.as_os_str().is_empty()) {
@@ -348,18 +354,21 @@ impl<'a> Job<'a> {
         self.outputs.claim(target)
     }
 
-    /// The JSON file where none was named: the output's name with the ending `.json`.
+    /// The default JSON file: the output's name with the ending `.json`.
     fn beside(&self, main: &Target) -> Result<Target> {
         let Some(path) = main.path() else {
-            return Err(usage("the JSON file has no output to be written beside")
-                .hint("name it: --json=FILE"));
+            return Err(
+                usage("there is no output file beside which to write the JSON file")
+                    .hint("name it: --json=FILE"),
+            );
         };
         let target = Target::Path(path.with_extension("json"));
         let is_target =
             |(output, _): &(OutputIdx, FileRecord)| *self.outputs.target(*output) == target;
         if self.files.iter().any(is_target) {
             return Err(
-                usage("the output is a JSON file itself").hint("name the other: --json=FILE")
+                usage("the output and the JSON file would have the same name")
+                    .hint("name the other: --json=FILE"),
             );
         }
         Ok(target)
@@ -378,7 +387,7 @@ pub(crate) fn say(text: &str) -> Result<()> {
     Ok(stdout.flush()?)
 }
 
-/// Writes a text to the output, or prints it where there is none. In a folder the file has a name of its own: `NAME.ENDING`.
+/// Writes a text to the output, or prints it without an output. In a folder the file has a default name: `NAME.ENDING`.
 ///
 /// # Errors
 ///

@@ -22,7 +22,7 @@ pub(crate) struct Image {
 pub(crate) enum Layers {
     /// A map with all of its channels.
     Map(MapKind),
-    /// Red, green, blue and alpha, each for itself.
+    /// Red, green, blue and alpha, each a channel of its own.
     Rgba([Channel; 4]),
 }
 
@@ -33,7 +33,7 @@ pub(crate) enum Channel {
     Of(MapKind),
     /// One minus a map of numbers.
     OneLess(MapKind),
-    /// A constant.
+    /// A constant number.
     Always(f32),
 }
 
@@ -44,7 +44,7 @@ pub(crate) enum LayerRows<'a> {
 }
 
 impl Layers {
-    /// The maps that the channels hold.
+    /// The maps in the channels.
     pub(crate) fn kinds(&self) -> Vec<MapKind> {
         match self {
             Self::Map(kind) => vec![*kind],
@@ -52,7 +52,7 @@ impl Layers {
         }
     }
 
-    /// The kind of image, which decides how it is written.
+    /// The kind of image, which determines how it is written.
     pub(crate) fn content(&self) -> Content {
         match self {
             Self::Map(MapKind::Normal) => Content::Normal,
@@ -63,7 +63,7 @@ impl Layers {
         }
     }
 
-    /// How many numbers a pixel has.
+    /// The number of numbers in a pixel.
     pub(crate) fn n_channels(&self) -> u64 {
         match self.content() {
             Content::Gray => 1,
@@ -72,7 +72,7 @@ impl Layers {
         }
     }
 
-    /// The rows of a band that has all maps of the image.
+    /// The rows of the image, from a band that has all of its maps.
     pub(crate) fn rows<'a>(&self, band: &'a Band) -> Result<LayerRows<'a>> {
         match self {
             Self::Map(kind) => Ok(LayerRows::Map(Cow::Borrowed(map_of(*kind, band)?))),
@@ -100,7 +100,7 @@ impl Channel {
         }
     }
 
-    /// Its value where the map has this number.
+    /// The value of the channel for a number of its map.
     fn value(self, number: Option<f32>) -> f32 {
         match self {
             Self::Of(_) => number.unwrap_or_default(),
@@ -110,7 +110,7 @@ impl Channel {
     }
 }
 
-/// The text of help: `albedo in sRGB`, or `R metallic, G ao, B 1, A 1 - roughness`.
+/// The text for help: `albedo in sRGB`, or `R metallic, G ao, B 1, A 1 - roughness`.
 impl fmt::Display for Layers {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -136,7 +136,7 @@ impl fmt::Display for Channel {
 }
 
 impl LayerRows<'_> {
-    /// Writes them as the next rows of an image with this content.
+    /// Writes the rows as the next ones of an image with this content.
     pub(crate) fn write<W: Write + Seek>(
         &self,
         writer: &mut RowWriter<W>,
@@ -152,7 +152,7 @@ impl LayerRows<'_> {
         }
     }
 
-    /// A range of numbers, made as wide as the finite numbers of these rows need.
+    /// A range of numbers, extended by the finite numbers of these rows.
     pub(crate) fn range(&self, range: [f32; 2]) -> [f32; 2] {
         match self {
             Self::Map(rows) => rows.range(range),
@@ -188,14 +188,14 @@ impl LayerRows<'_> {
     }
 }
 
-/// The rows of a map that was asked for.
+/// The rows of a baked map.
 fn map_of(kind: MapKind, band: &Band) -> Result<&MapRows> {
     let found = band.maps.iter().find(|(other, _)| *other == kind);
     let (_, rows) = found.ok_or_else(|| anyhow!("the map {} was not baked", kind.name()))?;
     Ok(rows)
 }
 
-/// The rows of a map that is one number at each pixel.
+/// The rows of a map with one number at each pixel.
 fn numbers_of(kind: MapKind, band: &Band) -> Result<&Raster<f32>> {
     match map_of(kind, band)? {
         MapRows::Gray(rows) => Ok(rows),

@@ -1,10 +1,10 @@
 //! The command `dapple`: textures from the command line.
 //!
-//! `cli.rs` has the command line as a whole, `commands/` a file for each subcommand, and the other files what they share:
-//! `arguments.rs` the words as they are typed, `words.rs` names of values, `args.rs` options, `input.rs` reading, `encode.rs`
-//! and `output.rs` writing, `baking.rs` recipes drawn band by band, `layers.rs` the channels of an image, `field.rs` a single
-//! field as a recipe, `shards.rs` the shards of a picture, `job.rs` a run from its first claimed file to its end, `error.rs`
-//! errors.
+//! `cli.rs` defines the command line, `commands/` has a file for each subcommand, and the other files are shared:
+//! `arguments.rs` normalizes the arguments, `words.rs` has names of values, `args.rs` options, `input.rs` reading,
+//! `encode.rs` and `output.rs` writing, `baking.rs` bakes recipes band by band, `layers.rs` has the channels of an
+//! image, `field.rs` a single field as a recipe, `shards.rs` the shards of a picture, `job.rs` a run from its first
+//! claimed file to its end, `error.rs` errors.
 
 #![forbid(unsafe_code)]
 

@@ -1,4 +1,5 @@
-//! The files of a run: claimed before the work starts, written aside, and all put in their places at the end.
+//! The files of a run: claimed before the work starts, written under temporary names, and all moved to their places at
+//! the end.
 //!
 //! Each file is written under a temporary name in its folder. When all of them are complete they are renamed, one right
 //! after the other: a reader finds the old file or the whole new one, however the command ends. Without `--force` no
@@ -25,7 +26,7 @@ use std::fs::{self, File};
 use std::io::{self, BufWriter, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-/// Where something is to be written.
+/// The target of an output.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Target {
     /// Standard output, `-` on the command line.
@@ -34,16 +35,16 @@ pub(crate) enum Target {
     Path(PathBuf),
 }
 
-/// A file that was claimed.
+/// The index of a claimed file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct OutputIdx(usize);
 
 /// The size and checksum of a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Content {
-    /// How many bytes it has.
+    /// The number of bytes.
     pub(crate) bytes: u64,
-    /// Their SHA-256, in hexadecimal, as `sha256sum` prints it.
+    /// The SHA-256 of the bytes, in hexadecimal, as `sha256sum` prints it.
     pub(crate) sha256: String,
 }
 
@@ -52,7 +53,7 @@ pub(crate) struct Content {
 pub(crate) struct Outputs {
     force: bool,
     files: Vec<Pending>,
-    /// Folders that were made, the outermost first.
+    /// The folders that were made, the outermost first.
     folders: Vec<PathBuf>,
 }
 
@@ -63,18 +64,18 @@ struct Pending {
     temporary: Temporary,
 }
 
-/// Where the bytes go at the end.
+/// The final destination of the bytes.
 #[derive(Debug, PartialEq, Eq)]
 enum Place {
     Stdout,
     /// A device or a named pipe, which is written to and not replaced.
     Device(PathBuf),
-    /// A file, with links resolved if it is there.
+    /// A file, with links resolved if it exists.
     File(PathBuf),
 }
 
 impl Target {
-    /// The path, or nothing for standard output.
+    /// The path, or `None` for standard output.
     pub(crate) fn path(&self) -> Option<&Path> {
         match self {
             Self::Stdout => None,
@@ -88,7 +89,7 @@ impl Target {
         name.unwrap_or_default().to_string_lossy().into_owned()
     }
 
-    /// The ending in small letters, without its dot; empty where there is none.
+    /// The ending in lower case, without its dot; empty if there is none.
     pub(crate) fn ending(&self) -> String {
         let ending = self.path().and_then(Path::extension);
         ending
@@ -105,18 +106,18 @@ impl Target {
         }
     }
 
-    /// The file beside it for a part of what is written: `NAME_PART.ENDING`; itself for a part without a name.
+    /// The file beside this one for a part of the output: `NAME_PART.ENDING`; this file for a part without a name.
     ///
     /// # Errors
     ///
-    /// If it is standard output, which has nothing beside it.
+    /// If this is standard output, which has no file beside it.
     pub(crate) fn part(&self, part: &str) -> Result<Self> {
         match self {
             _ if part.is_empty() => Ok(self.clone()),
-            Self::Stdout => Err(
-                usage("there are several files, and standard output takes one")
-                    .hint("give a file or a folder with -o"),
-            ),
+            Self::Stdout => Err(usage(
+                "there are several files, but standard output takes only one",
+            )
+            .hint("give a file or a folder with -o")),
             Self::Path(path) => {
                 let mut name = path.file_stem().unwrap_or_default().to_owned();
                 name.push(format!("_{part}"));
@@ -150,7 +151,7 @@ impl fmt::Display for Target {
 }
 
 impl Outputs {
-    /// Begins without any file. With `force`, existing files are replaced.
+    /// A run without files. With `force`, existing files are replaced.
     pub(crate) fn new(force: bool) -> Self {
         Self {
             force,
@@ -159,11 +160,11 @@ impl Outputs {
         }
     }
 
-    /// Makes a folder, and those around it, if it is not there.
+    /// Makes a folder, and its missing parents, if it does not exist.
     ///
     /// # Errors
     ///
-    /// If it cannot be made, as where a file has its name.
+    /// If it cannot be made, for example because a file has its name.
     pub(crate) fn make_folder(&mut self, folder: &Path) -> Result<()> {
         let missing = |folder: &&Path| !folder.as_os_str().is_empty() && !folder.exists();
         let missing: Vec<_> = folder.ancestors().take_while(missing).collect();
@@ -178,11 +179,11 @@ impl Outputs {
         Err(anyhow!("{} is a file, and not a folder", folder.display()))
     }
 
-    /// Makes a folder that stays, whatever becomes of this run: other runs may write into it at the same time.
+    /// Makes a folder that stays, even if this run fails: other runs may write into it at the same time.
     ///
     /// # Errors
     ///
-    /// If it cannot be made, as where a file has its name.
+    /// If it cannot be made, for example because a file has its name.
     pub(crate) fn make_lasting_folder(folder: &Path) -> Result<()> {
         let made = fs::create_dir_all(folder);
         made.with_context(|| format!("{}: the folder cannot be made", folder.display()))
@@ -192,7 +193,7 @@ impl Outputs {
     ///
     /// # Errors
     ///
-    /// If the file is there and may not be replaced, is a folder, was claimed before, or cannot be written.
+    /// If the file exists and may not be replaced, is a folder, was claimed before, or cannot be written.
     pub(crate) fn claim(&mut self, target: &Target) -> Result<OutputIdx> {
         let place = place(target)?;
         if self.files.iter().any(|file| file.place == place) {
@@ -206,7 +207,7 @@ impl Outputs {
                 }
                 Temporary::beside(path).map_err(|error| no_room(path, error))?
             }
-            // There is no place beside it, and its bytes are copied anyway.
+            // There is no folder beside it, and its bytes are copied anyway.
             Place::Stdout | Place::Device(_) => {
                 let path = std::env::temp_dir().join("dapple");
                 temporary::remove_left_behind(&path);
@@ -235,18 +236,18 @@ impl Outputs {
         Ok(BufWriter::with_capacity(1 << 18, file))
     }
 
-    /// Writes all of a file that was claimed.
+    /// Writes the whole content of a claimed file.
     ///
     /// # Errors
     ///
-    /// If the operating system refuses, as where the disk is full.
+    /// If the operating system fails, for example because the disk is full.
     pub(crate) fn write(&self, output: OutputIdx, bytes: &[u8]) -> Result<()> {
         let mut writer = self.writer(output)?;
         let written = writer.write_all(bytes).and_then(|()| writer.flush());
         written.with_context(|| cannot_be_written(self.target(output)))
     }
 
-    /// The target of a file that was claimed.
+    /// The target of a claimed file.
     pub(crate) fn target(&self, output: OutputIdx) -> &Target {
         &self.files[output.0].target
     }
@@ -263,12 +264,12 @@ impl Outputs {
         read_back(temporary.file()).with_context(|| format!("{target} cannot be read back"))
     }
 
-    /// Puts all files in their places.
+    /// Moves all files to their places.
     ///
     /// # Errors
     ///
-    /// If a file is there by now that may not be replaced, or the operating system refuses; the message says which files are
-    /// in their places all the same.
+    /// If a file has appeared that may not be replaced, or the operating system fails; the message lists the files that
+    /// are in their places already.
     pub(crate) fn commit(mut self) -> Result<()> {
         for file in &self.files {
             file.copy_if_stream()
@@ -302,7 +303,7 @@ impl Drop for Outputs {
             file.temporary.remove(&mut held);
         }
         for folder in self.folders.drain(..).rev() {
-            // One that somebody put a file into stays.
+            // A folder that is not empty stays.
             let _ = fs::remove_dir(&folder);
             registry::forget(&mut held, &folder);
         }
@@ -310,7 +311,7 @@ impl Drop for Outputs {
 }
 
 impl Pending {
-    /// Copies the bytes to where they are not renamed to.
+    /// Copies the bytes to a stream, where a rename is not possible.
     fn copy_if_stream(&self) -> io::Result<()> {
         let mut from = self.temporary.file();
         from.seek(SeekFrom::Start(0))?;
@@ -329,7 +330,7 @@ impl Pending {
     }
 }
 
-/// Where the bytes of a target go, as far as can be seen now.
+/// The final destination of a target, as far as it is known now.
 fn place(target: &Target) -> Result<Place> {
     let Target::Path(path) = target else {
         if is_stdout_closed() {
@@ -344,13 +345,13 @@ fn place(target: &Target) -> Result<Place> {
         }
         Ok(found) if !found.is_file() => Ok(Place::Device(path.clone())),
         Ok(_) => {
-            // The target of a link is replaced, and the link stays.
+            // The target of a link is replaced, and the link remains.
             let path = fs::canonicalize(path);
             Ok(Place::File(
                 path.with_context(|| cannot_be_written(target))?,
             ))
         }
-        // The temporary name is shorter, so that only this would be found out at the end.
+        // The temporary name is shorter, so that only this would be noticed at the end.
         Err(error) if error.kind() == io::ErrorKind::InvalidFilename => {
             Err(error).with_context(|| cannot_be_written(target))
         }
@@ -361,8 +362,8 @@ fn place(target: &Target) -> Result<Place> {
     }
 }
 
-/// Whether standard output was closed when the process began. The null device is opened in its place then, also for
-/// reading, which it is not where somebody throws the output away.
+/// Whether standard output was closed when the process began. Then the null device is open in its place, also for
+/// reading; it is not readable if the user redirects the output to it.
 #[cfg(unix)]
 fn is_stdout_closed() -> bool {
     use std::os::{fd::AsFd, unix::fs::MetadataExt};
@@ -419,7 +420,7 @@ fn not_placed(target: &Target, error: io::Error, placed: &[Target]) -> Error {
 ///
 /// # Errors
 ///
-/// If the operating system refuses.
+/// If the operating system fails.
 pub(crate) fn read_back(mut file: &File) -> io::Result<Content> {
     file.seek(SeekFrom::Start(0))?;
     let mut hash = Sha256::new();

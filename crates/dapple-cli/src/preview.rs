@@ -1,4 +1,4 @@
-//! A baked material in light: on a plane, seen at a slant, on a ball or on a ring.
+//! Lit previews of a baked material: on a plane, seen at a slant, on a ball or on a ring.
 
 use crate::baking::advise;
 use anyhow::{Result, bail};
@@ -12,14 +12,14 @@ use dapple::recipe::{Bake, BakeOptions, Images, MapKind, MapRows, Plan, Recipe};
 
 /// The side of the picture, in pixels.
 const SIDE: u32 = 512;
-/// The pixels along the longer side of the maps that it shows.
+/// The pixels along the longer side of the maps in the picture.
 const TILE: u32 = 512;
 
 /// The radii of a ring and of its tube.
 const RING: [f64; 2] = [0.9, 0.4];
 
 dapple::raster::named! {
-    /// The shape that the material is on.
+    /// The shape with the material.
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     pub(crate) enum Thing {
         /// A plane of 2 x 2 tiles.
@@ -37,15 +37,15 @@ struct Maps {
     albedo: Raster<LinearRgb>,
     /// Occlusion, roughness and metallic.
     orm: Raster<Vec3>,
-    /// How many tiles there are along u and v.
+    /// The number of tiles along u and v.
     tiles: DVec2,
 }
 
-/// The picture of a recipe on a thing.
+/// Renders the picture of a recipe on a shape.
 ///
 /// # Errors
 ///
-/// A refusal of the recipe.
+/// Errors of the recipe.
 pub(crate) fn picture(
     recipe: &Recipe,
     images: &Images,
@@ -57,19 +57,20 @@ pub(crate) fn picture(
         Thing::Plane => {
             let half = [aspect.min(1.0), (1.0 / aspect).min(1.0)];
             let camera = Camera::look_at(DVec3::new(0.0, 3.1, 1.9), DVec3::new(0.0, 0.0, 0.06));
-            // u and v are units of the plane: the rectangle is 2 wide, and so is the picture of 2 tiles.
+            // u and v are in units of the plane: the rectangle is 2 wide, and so is the picture of 2 tiles.
             let tiles = DVec2::new(1.0 / half[0], 1.0 / half[1]);
             (Shape::rectangle(half[0], half[1]), camera, tiles)
         }
         Thing::Sphere => {
             let camera = Camera::look_at(DVec3::new(0.0, 0.6, 3.2), DVec3::ZERO);
-            // Around a ball is twice as far as from pole to pole; the number of tiles around it is whole.
+            // The equator of a ball is twice as long as a meridian from pole to pole; the number of tiles around it is
+            // whole.
             let around = (2.0 / aspect).round().max(1.0);
             (Shape::sphere(1.0), camera, DVec2::new(around, 1.0))
         }
         Thing::Torus => {
             let camera = Camera::look_at(DVec3::new(0.0, 2.6, 2.9), DVec3::ZERO);
-            // Around the ring is as far as around its tube, times the ratio of their radii.
+            // The way around the ring is that around its tube, times the ratio of their radii.
             let around = (RING[0] / RING[1] / aspect).round().max(1.0);
             let shape = Shape::torus(RING[0], RING[1]);
             (shape, camera, DVec2::new(around, 1.0))
@@ -137,7 +138,7 @@ impl Maps {
         let gloss = 1.0 - roughness.clamp(0.1, 1.0);
         let rough = roughness.clamp(0.1, 1.0) * roughness.clamp(0.1, 1.0);
         let [right, up] = directions(surface);
-        // A normal is level at the edge of a hole; such slopes are cut off.
+        // A normal is level at the edge of a hole; such slopes are limited.
         let slope = normal.as_dvec3() / f64::from(normal.z.max(0.05));
         Material::matte(color * free)
             .with_bump(-slope.x * right - slope.y * up)
@@ -146,7 +147,7 @@ impl Maps {
     }
 }
 
-/// Where right and up of the maps point at a place of a thing.
+/// The directions of right and up of the maps at a point of a shape.
 fn directions(surface: &Surface) -> [DVec3; 2] {
     let at = surface.position;
     let outward = DVec2::new(at.x, at.z).length();

@@ -21,7 +21,7 @@ const PERIOD: Duration = Duration::from_secs(5);
 const PERIOD_JSON: Duration = Duration::from_millis(100);
 
 dapple::raster::named! {
-    /// How progress is shown.
+    /// The style of the progress display.
     #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
     pub(crate) enum Style {
         /// A bar on a terminal, and lines elsewhere.
@@ -34,13 +34,13 @@ dapple::raster::named! {
     }
 }
 
-/// A bar, or a spinner where the length is not known. It is removed on drop.
+/// A bar, or a spinner for work of unknown length. It is removed on drop.
 #[derive(Debug)]
 pub(crate) struct Progress {
     bar: ProgressBar,
     label: &'static str,
     style: Style,
-    /// When the next line is due, if there are lines.
+    /// The time of the next line, if lines are printed.
     next_line: Option<Mutex<Instant>>,
 }
 
@@ -51,13 +51,13 @@ impl Progress {
         Self::new(ProgressBar::no_length(), style, label, context)
     }
 
-    /// Shows how much of `length` is done.
+    /// Shows a bar for work of a given length.
     pub(crate) fn bar(label: &'static str, length: u64, context: &Context) -> Self {
         let style = ProgressStyle::with_template("{msg} {wide_bar} {percent:>3} % {eta}");
         Self::new(ProgressBar::new(length), style, label, context)
     }
 
-    /// Sets how much is done.
+    /// Sets the amount of work done.
     pub(crate) fn set(&self, done: u64) {
         if done > 0 && done == self.bar.position() {
             return;
@@ -75,7 +75,7 @@ impl Progress {
         eprintln_if_possible(&line(self.label, done, length, is_json));
     }
 
-    /// Adds to what is done.
+    /// Adds to the amount of work done.
     pub(crate) fn add(&self, more: u64) {
         self.set(self.bar.position() + more);
     }
@@ -87,7 +87,7 @@ impl Progress {
         context: &Context,
     ) -> Self {
         bar.set_draw_target(ProgressDrawTarget::hidden());
-        // The templates above are right; if they were not, a plain bar would do.
+        // The templates above are valid; otherwise, a plain bar is shown.
         if let Ok(template) = template {
             bar.set_style(template);
         }

@@ -1,8 +1,9 @@
-//! The shards of a recipe in a folder: what they are, where their files lie, and which ones belong together.
+//! The shards of a recipe in a folder: their description, their files, and their identity.
 //!
-//! Files of one list lie in a folder whose name has a part of the list's checksum: that of the version of dapple, the recipe
-//! as it is baked, the content of its images, and the sizes. A file under its name is therefore finished and right, whoever
-//! baked it, and a recipe that has changed finds none of the old files. The list itself is `shards.json` beside that folder.
+//! Files of one list lie in a folder whose name has a part of the list's checksum: that of the version of dapple, the
+//! recipe as it is baked, the content of its images, and the sizes. A file under its name is therefore complete and
+//! valid, whichever process baked it, and a recipe that has changed finds none of the old files. The list itself is
+//! `shards.json` beside that folder.
 
 use crate::args::{Frame, Shard, Size, file_name};
 use crate::error::Hint;
@@ -15,7 +16,7 @@ use std::path::{Path, PathBuf};
 
 /// The file of a list.
 const FILE: &str = "shards.json";
-/// How many digits of the checksum are in the name of a folder.
+/// The number of digits of the checksum in the name of a folder.
 const DIGITS: usize = 12;
 
 /// The shards of a recipe.
@@ -23,19 +24,19 @@ const DIGITS: usize = 12;
 pub(crate) struct List {
     /// The version of dapple.
     dapple: String,
-    /// The recipe, as it was typed.
+    /// The recipe, as on the command line.
     recipe: String,
     /// The name of the recipe.
     pub(crate) name: String,
-    /// The checksum of all that the bits of a shard depend on.
+    /// The checksum of all data that the bits of a shard depend on.
     sha256: String,
-    /// Columns and rows of the picture.
+    /// The columns and rows of the picture.
     pub(crate) size: [u32; 2],
-    /// Columns and rows of a shard.
+    /// The columns and rows of a shard.
     pub(crate) shard: [u32; 2],
     /// The names of the maps.
     maps: Vec<String>,
-    /// How many pictures the loop has, if it is one.
+    /// The number of frames of the loop, if it is one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) frames: Option<u32>,
 }
@@ -43,15 +44,15 @@ pub(crate) struct List {
 /// A shard of a list.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Task {
-    /// The picture of the loop that it is a part of.
+    /// The frame of the loop to which it belongs.
     pub(crate) frame: Option<Frame>,
-    /// What the command line says of it.
+    /// The shard, as on the command line.
     pub(crate) shard: Shard,
-    /// Its pixels.
+    /// The pixels of the shard.
     pub(crate) region: Region,
 }
 
-/// What a list is made for.
+/// The options for which a list is made.
 pub(crate) struct Wanted<'a> {
     pub(crate) size: Size,
     pub(crate) shard: Size,
@@ -60,7 +61,7 @@ pub(crate) struct Wanted<'a> {
 }
 
 impl List {
-    /// The list of a recipe, as it is baked, whose images lie in `folder`.
+    /// The list for a recipe, as it is baked, with its images in `folder`.
     ///
     /// # Errors
     ///
@@ -114,7 +115,7 @@ impl List {
     ///
     /// # Errors
     ///
-    /// If there is one of other shards, or the file cannot be written.
+    /// If there is a list of other shards, or the file cannot be written.
     pub(crate) fn write(&self, folder: &Path, may_replace: bool) -> Result<()> {
         if !may_replace {
             self.check_folder(folder)?;
@@ -128,11 +129,11 @@ impl List {
         outputs.commit()
     }
 
-    /// Refuses a folder that has a list of other shards.
+    /// Fails for a folder with a list of other shards.
     ///
     /// # Errors
     ///
-    /// If it has one.
+    /// If there is such a list.
     pub(crate) fn check_folder(&self, folder: &Path) -> Result<()> {
         let Some(other) = Self::read(folder)? else {
             return Ok(());
@@ -160,7 +161,7 @@ impl List {
         self.maps.iter().map(kind).collect()
     }
 
-    /// How many shards there are side by side, and one below the other.
+    /// The numbers of shards side by side, and one below the other.
     ///
     /// # Errors
     ///
@@ -169,7 +170,7 @@ impl List {
         Ok(self.shards()?.grid())
     }
 
-    /// All shards, the pictures of a loop one after the other.
+    /// All shards; the frames of a loop follow one after the other.
     ///
     /// # Errors
     ///
@@ -220,7 +221,8 @@ impl List {
         (0..columns).map(task).collect()
     }
 
-    /// The file of a map of a shard, in the folder of the list. A row of shards has a folder, so that none has very many files.
+    /// The file of a map of a shard, in the folder of the list. Each row of shards has a folder, so that none has very
+    /// many files.
     pub(crate) fn file(&self, frame: Option<Frame>, place: [u32; 2], kind: MapKind) -> PathBuf {
         let [column, row] = place;
         let digits = self.sha256.get(..DIGITS).unwrap_or(&self.sha256);

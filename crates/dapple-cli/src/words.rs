@@ -9,12 +9,12 @@ use serde::de::value::Error as WordError;
 use serde::de::{DeserializeOwned, IntoDeserializer};
 use std::ffi::OsStr;
 
-/// A word as the names of maps and of fields are written: in small letters, with `_`.
+/// A word in the form of the names of maps and fields: in lower case, with `_`.
 pub(crate) fn with_underscores(word: &str) -> String {
     word.trim().to_lowercase().replace('-', "_")
 }
 
-/// A word as options and recipes are written: in small letters, with `-`.
+/// A word in the form of options and recipes: in lower case, with `-`.
 pub(crate) fn with_dashes(word: &str) -> String {
     word.trim().to_lowercase().replace('_', "-")
 }
@@ -40,17 +40,17 @@ pub(crate) fn slip<'a>(
     (near != written).then(|| format!("unknown {kind} {word:?}: did you mean {near}?"))
 }
 
-/// Reads a value by its name, and lists the names in the help.
+/// A parser of a value by its name, which lists the names in the help.
 #[derive(Clone, Debug)]
 pub(crate) struct Word<T>(Vec<(PossibleValue, T)>);
 
 impl<T: Named> Word<T> {
-    /// Reads all values of a kind. The help of each is the first sentence of its documentation.
+    /// A parser of all values of a kind. The help of each is the first sentence of its documentation.
     pub(crate) fn all() -> Self {
         Self::some(T::ALL)
     }
 
-    /// Reads some values of a kind.
+    /// A parser of some values of a kind.
     pub(crate) fn some(values: &[T]) -> Self {
         let named = |&value: &T| {
             let aliases = value.aliases().iter().map(|alias| with_dashes(alias));
@@ -63,7 +63,7 @@ impl<T: Named> Word<T> {
         Self(values.iter().map(named).collect())
     }
 
-    /// Reads other values, each of which is made of one of these.
+    /// A parser of other values, each of which is made from one of these.
     pub(crate) fn map<U>(self, change: fn(T) -> U) -> Word<U> {
         let changed = |(name, value)| (name, change(value));
         Word(self.0.into_iter().map(changed).collect())
@@ -71,12 +71,12 @@ impl<T: Named> Word<T> {
 }
 
 impl<T> Word<T> {
-    /// Reads no value yet.
+    /// A parser without values.
     pub(crate) fn none() -> Self {
         Self(Vec::new())
     }
 
-    /// Reads one more value.
+    /// Adds one more value.
     pub(crate) fn or(mut self, name: &'static str, help: &'static str, value: T) -> Self {
         self.0.push((PossibleValue::new(name).help(help), value));
         self
@@ -84,7 +84,7 @@ impl<T> Word<T> {
 }
 
 impl<T: DeserializeOwned> Word<T> {
-    /// Reads values that recipes write by these names, with `-` where recipes have `_`.
+    /// A parser of values with these names in recipes, with `-` where recipes have `_`.
     pub(crate) fn of(names: &'static [&'static str]) -> Self {
         let named = |&name: &&'static str| {
             let written = with_underscores(name);
@@ -115,7 +115,7 @@ impl<T: Clone + Send + Sync + 'static> TypedValueParser for Word<T> {
     }
 }
 
-/// The first sentence of a documentation in Markdown, without its full stop.
+/// The first sentence of a Markdown documentation, without its full stop.
 fn first_sentence(documentation: &str) -> String {
     let words: Vec<_> = documentation.split_whitespace().collect();
     let text = words.join(" ");

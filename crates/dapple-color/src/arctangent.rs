@@ -1,4 +1,4 @@
-//! The arctangent of a register of numbers, with the same bits everywhere.
+//! The arctangent of a register of numbers, with the same bits on every platform.
 //!
 //! Above 1 it is a right angle less the arctangent of the reciprocal. Up to 1 it is `x P(x²)` with the polynomial of
 //! degree 8 whose largest relative error is least (found by the exchange algorithm of Remez), 1.5e-8 before rounding.

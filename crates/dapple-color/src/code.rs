@@ -1,11 +1,11 @@
-//! Whole numbers that stand for values in a file: quantizing, and the sRGB curve by exact tables.
+//! Whole-number codes of values in a file: quantization, and the sRGB curve by exact tables.
 //!
 //! Data (heights, masks, normals) is quantized with `round(value · max)`. Color goes through the sRGB transfer
 //! function of IEC 61966-2-1, whose two directions are in [`crate::srgb`].
 
 use crate::srgb;
 
-/// A whole number that stands for a value from 0 to 1 in a file: `u8` or `u16`.
+/// A whole number that codes a value from 0 to 1 in a file: `u8` or `u16`.
 ///
 /// # Examples
 ///
@@ -17,7 +17,7 @@ use crate::srgb;
 /// assert_eq!(u8::srgb_from_linear(0.5), 188);
 /// ```
 pub trait Code: Copy + Send + Sync + sealed::Sealed + 'static {
-    /// The largest code, which stands for 1.
+    /// The largest code, which codes the value 1.
     const MAX: u16;
 
     /// The code nearest to a value: `round(value · max)`, halves up.
@@ -26,11 +26,11 @@ pub trait Code: Copy + Send + Sync + sealed::Sealed + 'static {
     #[must_use]
     fn from_unit(value: f32) -> Self;
 
-    /// The value that a code stands for, from 0 to 1: `code / max`, correctly rounded.
+    /// The value of a code, from 0 to 1: `code / max`, correctly rounded.
     #[must_use]
     fn to_unit(self) -> f32;
 
-    /// The code of a linear value under the sRGB curve: the true curve, times the largest code, rounded.
+    /// The code of a linear value under the sRGB curve: the exact curve, times the largest code, rounded.
     ///
     /// The result is that of exact arithmetic, for every `f32`. Values below 0 become 0, values above 1 the largest
     /// code, and NaN becomes 0.
@@ -93,7 +93,7 @@ impl Code for u16 {
 }
 
 mod sealed {
-    /// Keeps [`super::Code`] to the two depths that files have.
+    /// Restricts [`super::Code`] to the two depths of files.
     pub trait Sealed {}
     impl Sealed for u8 {}
     impl Sealed for u16 {}

@@ -20,7 +20,7 @@ use crate::{ColorError, HeightPlane, plane};
 use dapple_raster::Raster;
 use dapple_raster::glam::DVec2;
 
-/// How heights become curvature.
+/// Options of curvature: the plane and the scale.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -28,10 +28,10 @@ use dapple_raster::glam::DVec2;
     serde(default, deny_unknown_fields)
 )]
 pub struct CurvatureOptions {
-    /// How the heights lie in the plane.
+    /// The plane of the heights.
     pub plane: HeightPlane,
-    /// The size of what is measured, in units of the plane, at least zero. By default 1/128. It is rounded to whole pixels,
-    /// and less than one is one.
+    /// The scale of the measurement: the radius of its differences in units of the plane, at least zero. By default
+    /// 1/128. It is rounded to whole pixels, and at least one pixel.
     pub radius: f64,
 }
 
@@ -42,7 +42,7 @@ impl Default for CurvatureOptions {
 }
 
 impl From<HeightPlane> for CurvatureOptions {
-    /// The other options are the default.
+    /// The options for heights in a plane, with the default radius.
     fn from(plane: HeightPlane) -> Self {
         Self {
             plane,
@@ -52,7 +52,7 @@ impl From<HeightPlane> for CurvatureOptions {
 }
 
 impl CurvatureOptions {
-    /// How many columns and rows around a pixel its value depends on, in a raster of `size` pixels.
+    /// The numbers of columns and rows around a pixel on which its value depends, in a raster of `size` pixels.
     ///
     /// A crop that has these margins on each side has the same bits inside: see [`curvature_of_part`]. Options that
     /// [`curvature`] refuses have a halo of 1 × 1.
@@ -102,7 +102,7 @@ pub fn curvature(
     curvature_of_part(height, height.size(), options)
 }
 
-/// Curvature, as by [`curvature`], of a part of a raster of `whole` pixels, whose extent is that of the options.
+/// The curvature of a part of a raster of `whole` pixels, whose extent is that of the options; see [`curvature`].
 ///
 /// Every pixel that is further from the edges of the part than the [halo](CurvatureOptions::halo) of the whole has the
 /// bits that it has in the whole.
@@ -140,8 +140,8 @@ pub fn curvature_of_part(
 
 /// The gray of a curvature: 0.5 where it is flat, brighter where it is convex, from 0 to 1.
 ///
-/// `radius` is in units of the plane: a hill that is part of a sphere of that radius, or a sharper one, is white, and a pit
-/// of that radius black. A curvature that is not a number gives 0.5.
+/// `radius` is in units of the plane: a hill that is part of a sphere of that radius, or a sharper one, is white, and a
+/// pit of that radius black. NaN becomes 0.5.
 #[must_use]
 pub fn curvature_to_gray(curvature: f32, radius: f32) -> f32 {
     let part = curvature * radius;
@@ -153,11 +153,11 @@ pub fn curvature_to_gray(curvature: f32, radius: f32) -> f32 {
 
 /// Derivatives per difference of heights.
 struct Scales {
-    /// Of the two neighbors of a pixel, across and downward.
+    /// The factors of the difference of a pixel's two neighbors, across and downward.
     first: DVec2,
-    /// Of the differences on both sides of a pixel.
+    /// The factors of the difference of the differences on both sides of a pixel, across and downward.
     second: DVec2,
-    /// Across, of the differences downward.
+    /// The factor of the difference across of the differences downward.
     mixed: f64,
 }
 
@@ -172,7 +172,7 @@ impl Scales {
         }
     }
 
-    /// The curvature in the middle of nine heights.
+    /// The curvature in the middle of 3 × 3 heights.
     #[inline(always)]
     fn mean_curvature(&self, heights: [[f32; 3]; 3]) -> f32 {
         let [above, here, below] = heights;

@@ -1,12 +1,12 @@
-//! Why a color, a ramp or a map was refused.
+//! Errors of colors, ramps and maps.
 
 use dapple_raster::RasterError;
 use dapple_raster::glam::DVec2;
 
 dapple_raster::error! {
-    /// Why a color, a ramp or a map was refused.
+    /// An error of a color, a ramp or a map.
     ColorError,
-    /// The limit that was broken.
+    /// The cause of a [`ColorError`], with the limit and the value.
     ColorErrorKind {
         /// A text is not a color in hexadecimal.
         Hex {
@@ -15,14 +15,14 @@ dapple_raster::error! {
         } => "{text:?} is not a color; it must be 3 or 6 hexadecimal digits, with or without #";
         /// A ramp has no stop.
         NoStops => "a color ramp needs at least one stop";
-        /// A number that has to be finite is not.
+        /// A number is not finite.
         NotFinite {
-            /// What the number is.
+            /// The name of the number.
             what: &'static str,
             /// The number.
             value: f64,
         } => "the {what} is {value}, but it must be finite";
-        /// A size that has to be above zero and finite is not.
+        /// A size is not above zero and finite.
         Extent {
             /// The size.
             extent: DVec2,
@@ -31,9 +31,9 @@ dapple_raster::error! {
         Radius {
             /// The radius.
             radius: f64,
-            /// How many pixels it is along the axis on which they are smaller.
+            /// The radius in pixels, along the axis on which pixels are smaller.
             pixels: f64,
-            /// How many pixels it may be.
+            /// The largest radius in pixels.
             limit: u32,
         } => "the radius {radius} is {pixels} pixels, but it must be from 0 to {limit} pixels";
         /// The part of a radius over which something fades is not from 0 to 1.
@@ -50,7 +50,7 @@ dapple_raster::error! {
         } => "the stop at {position} follows the stop at {before}, but stops must be in order";
     }
     from {
-        /// The raster that was to result was refused.
+        /// An error of the resulting raster.
         Raster(RasterError),
     }
 }

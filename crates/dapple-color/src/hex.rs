@@ -4,7 +4,7 @@ use crate::{ColorError, ColorErrorKind, LinearRgb};
 use core::str::FromStr;
 
 impl LinearRgb {
-    /// The color of an sRGB code in hexadecimal: `"#ff8000"`, `"ff8000"`, or `"#f80"`, which is the same as `"#ff8800"`.
+    /// The color of an sRGB code in hexadecimal: `"#ff8000"`, `"ff8000"`, or `"#f80"`, which is short for `"#ff8800"`.
     ///
     /// # Errors
     ///
@@ -34,7 +34,7 @@ impl FromStr for LinearRgb {
     }
 }
 
-/// Red, green and blue.
+/// The codes of red, green and blue.
 fn codes(text: &str) -> Option<[u8; 3]> {
     let text = text.strip_prefix('#').unwrap_or(text);
     let digits: Option<Vec<u8>> = text.chars().map(digit).collect();

@@ -1,11 +1,11 @@
 //! sRGB and linear color, color ramps, and maps from heights: normals, ambient occlusion, curvature.
 //!
-//! Inside of dapple color is linear light in `f32` ([`LinearRgb`]); it becomes sRGB only on the way to a file with 8 or
-//! 16 bits per channel, by tables that give the result of exact arithmetic. Data (heights, masks, normals) is linear
-//! everywhere. [`Code`] is the door between both and the numbers in a file.
+//! Inside of dapple color is linear light in `f32` ([`LinearRgb`]); it becomes sRGB only in a file with 8 or 16 bits
+//! per channel, by tables that equal exact arithmetic. Data (heights, masks, normals) is linear everywhere. [`Code`]
+//! converts both to and from the numbers in a file.
 //!
-//! Heights become normals ([`normal_map`]), the part of the sky that each place sees ([`ambient_occlusion`]) and how the
-//! surface bends ([`curvature`]). Lengths are in units of the plane, so that the resolution does not change the maps:
+//! Maps from heights are normals ([`normal_map`]), the visible part of the sky ([`ambient_occlusion`]) and the bend of
+//! the surface ([`curvature`]). Lengths are in units of the plane, so that the resolution does not change the maps:
 //!
 //! ```
 //! use dapple_color::{HeightPlane, OcclusionOptions, ambient_occlusion};

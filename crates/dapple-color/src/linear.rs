@@ -5,8 +5,8 @@ use core::ops::{Add, Mul, Sub};
 
 /// A color in linear light with the primaries and the white of sRGB.
 ///
-/// Each part is 0 for none and 1 for the most that a screen shows; more, less and NaN are allowed in between steps. The
-/// color can be added and scaled, so a `Raster<LinearRgb>` can be read between its pixels.
+/// Each component is 0 for no light and 1 for the maximum of a screen; values below and above, and NaN, are allowed
+/// between steps. The color can be added and scaled, so a `Raster<LinearRgb>` can be interpolated between its pixels.
 ///
 /// # Examples
 ///
@@ -19,11 +19,11 @@ use core::ops::{Add, Mul, Sub};
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct LinearRgb {
-    /// Red, linear.
+    /// The red component, linear.
     pub r: f32,
-    /// Green, linear.
+    /// The green component, linear.
     pub g: f32,
-    /// Blue, linear.
+    /// The blue component, linear.
     pub b: f32,
 }
 
@@ -31,19 +31,19 @@ pub struct LinearRgb {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct LinearRgba {
-    /// The color where it covers.
+    /// The color of the covered part.
     pub color: LinearRgb,
-    /// How much it covers, from 0 (nothing) to 1 (all). It is linear in files, too.
+    /// The coverage, from 0 (none) to 1 (full). It is linear in files, too.
     pub alpha: f32,
 }
 
 impl LinearRgb {
     /// Black: no light.
     pub const BLACK: Self = Self::gray(0.0);
-    /// White: the most light that a screen shows.
+    /// White: the maximum of a screen.
     pub const WHITE: Self = Self::gray(1.0);
 
-    /// A color from its linear parts.
+    /// A color from its linear components.
     #[must_use]
     pub const fn new(r: f32, g: f32, b: f32) -> Self {
         Self { r, g, b }
@@ -55,13 +55,13 @@ impl LinearRgb {
         Self::new(value, value, value)
     }
 
-    /// The color that a file means with these sRGB codes, red first.
+    /// The color of sRGB codes in a file, red first.
     #[must_use]
     pub fn from_srgb<C: Code>(codes: [C; 3]) -> Self {
         codes.map(C::linear_from_srgb).into()
     }
 
-    /// The nearest sRGB codes, red first; parts below 0 or above 1 are clamped, NaN becomes 0.
+    /// The nearest sRGB codes, red first; components below 0 or above 1 are clamped, NaN becomes 0.
     #[must_use]
     pub fn to_srgb<C: Code>(self) -> [C; 3] {
         self.to_array().map(C::srgb_from_linear)
@@ -73,15 +73,15 @@ impl LinearRgb {
         [self.r, self.g, self.b]
     }
 
-    /// The light that an eye sees: the Y of CIE XYZ under ITU-R BT.709 primaries, linear, 1 for white.
+    /// The relative luminance: the Y of CIE XYZ under ITU-R BT.709 primaries, linear, 1 for white.
     ///
-    /// `0.2126 r + 0.7152 g + 0.0722 b`, as BT.709-6 item 3.2 has it.
+    /// `0.2126 r + 0.7152 g + 0.0722 b`, as in BT.709-6 item 3.2.
     #[must_use]
     pub fn luminance(self) -> f32 {
         0.2126 * self.r + 0.7152 * self.g + 0.0722 * self.b
     }
 
-    /// The color a part of the way to another one: this one at 0, `other` at 1, and beyond for numbers beyond.
+    /// The linear interpolation to another color: this one at 0, `other` at 1; other numbers extrapolate.
     #[must_use]
     pub fn lerp(self, other: Self, part: f32) -> Self {
         // In this form both ends are exact.
@@ -90,13 +90,13 @@ impl LinearRgb {
 }
 
 impl LinearRgba {
-    /// A color that covers all.
+    /// A color with full coverage.
     #[must_use]
     pub const fn opaque(color: LinearRgb) -> Self {
         Self { color, alpha: 1.0 }
     }
 
-    /// The color that a file means with these codes: red, green and blue under the sRGB curve, then alpha, linear.
+    /// The color of codes in a file: red, green and blue under the sRGB curve, then alpha, linear.
     #[must_use]
     pub fn from_srgb<C: Code>([r, g, b, alpha]: [C; 4]) -> Self {
         Self {

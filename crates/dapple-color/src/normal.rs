@@ -19,14 +19,14 @@ use dapple_raster::glam::DVec2;
 pub struct Normal {
     /// To the right, from -1 to 1.
     pub x: f32,
-    /// Up (OpenGL) or down (DirectX), from -1 to 1.
+    /// Up (OpenGL) or down (DirectX), from -1 to 1; see [`NormalY`].
     pub y: f32,
     /// Out of the surface, from 0 to 1.
     pub z: f32,
 }
 
 dapple_raster::named! {
-    /// Where the second part of a normal, the green one of its color, points.
+    /// The direction of the second component of a normal, the green channel of its color.
     #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
     pub enum NormalY {
         /// Up, as in OpenGL, glTF, Blender, Unity and Godot.
@@ -37,7 +37,7 @@ dapple_raster::named! {
     }
 }
 
-/// How a height becomes a normal.
+/// Options of normals from heights or gradients.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -45,14 +45,14 @@ dapple_raster::named! {
     serde(default, deny_unknown_fields)
 )]
 pub struct NormalOptions {
-    /// How the heights lie in the plane.
+    /// The plane of the heights.
     pub plane: HeightPlane,
-    /// Where green points. By default up.
+    /// The direction of green. By default up.
     pub y: NormalY,
 }
 
 impl From<HeightPlane> for NormalOptions {
-    /// Green points up.
+    /// The options for heights in a plane, with green up.
     fn from(plane: HeightPlane) -> Self {
         let y = NormalY::default();
         Self { plane, y }
@@ -60,7 +60,7 @@ impl From<HeightPlane> for NormalOptions {
 }
 
 impl NormalOptions {
-    /// The normal of a slope: heights per unit of the plane to the right, and downward.
+    /// The normal for a slope: heights per unit of the plane to the right, and downward.
     #[must_use]
     pub fn normal(&self, slope: DVec2) -> Normal {
         let strength = self.plane.strength;
@@ -111,7 +111,7 @@ pub fn normal_map(
     normal_map_of_part(height, height.size(), options)
 }
 
-/// Normals, as by [`normal_map`], of a part of a raster of `whole` pixels, whose extent is that of the options.
+/// The normals of a part of a raster of `whole` pixels, whose extent is that of the options; see [`normal_map`].
 ///
 /// Every pixel that is further from the edges of the part than a pixel has the bits that it has in the whole.
 ///
@@ -152,7 +152,8 @@ pub fn normal_map_of_part(
 
 /// The normals of a raster of exact slopes: heights per unit of the plane to the right, and downward.
 ///
-/// Of the options, the strength and the direction of green are used. Runs on all cores where the feature `rayon` is on.
+/// Only the strength and the direction of green of the options are used. Runs on all cores where the feature `rayon` is
+/// on.
 ///
 /// # Errors
 ///
@@ -167,7 +168,7 @@ pub fn normal_map_from_gradient(
 }
 
 impl Normal {
-    /// Straight out of the surface.
+    /// The normal of a flat surface, straight out of it.
     pub const FLAT: Self = Self {
         x: 0.0,
         y: 0.0,
@@ -188,10 +189,10 @@ impl Normal {
         self.to_array().map(|part| C::from_unit(part * 0.5 + 0.5))
     }
 
-    /// The unit vector that a program understands from the codes of an image: `2 code / max - 1`, made as long as 1.
+    /// The unit vector for the codes of an image, as programs read it: `2 code / max - 1`, normalized.
     ///
-    /// No code stands for 0, so a flat normal comes back tilted by `1 / max` to the right and in y. Codes that make no
-    /// vector that can be normalized give a flat normal.
+    /// No code has the value 0, so a flat normal comes back tilted by `1 / max` to the right and in y. Codes whose
+    /// vector cannot be normalized become a flat normal.
     #[must_use]
     pub fn from_codes<C: Code>(codes: [C; 3]) -> Self {
         let [x, y, z] = codes.map(|code| 2.0 * code.to_unit() - 1.0);

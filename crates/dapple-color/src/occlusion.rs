@@ -1,4 +1,4 @@
-//! Ambient occlusion of heights: how much of the sky each place sees.
+//! Ambient occlusion of heights: the part of the sky that is visible from each place.
 //!
 //! A place on the surface `z = s h(x, y)` with the unit normal `n` is lit by the sky where nothing rises above it. Around
 //! it, in each of 16 azimuths `d`, the horizon is the largest slope `H` from the place to a place on the ray, within the
@@ -21,8 +21,8 @@
 //! Of the true value, 16 azimuths miss about 0.005 on smooth and 0.015 on broken heights (root mean square). Samples are
 //! one pixel apart, or an eighth of the way, so that a sharp edge far away is seen up to a ninth too low.
 //!
-//! Heights times the strength, the radius and the extent are in units of the plane. A height that is not finite hides
-//! nothing, and the tangent plane beside it is level, as in a normal map.
+//! Heights times the strength, the radius and the extent are in units of the plane. A height that is not finite
+//! occludes nothing, and the tangent plane beside it is level, as in a normal map.
 
 use crate::{ColorError, ColorErrorKind, HeightPlane, plane};
 use dapple_raster::simd::dispatch;
@@ -36,7 +36,7 @@ mod lines;
 mod rays;
 mod sky;
 
-/// How heights hide the sky.
+/// Options of ambient occlusion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -44,13 +44,13 @@ mod sky;
     serde(default, deny_unknown_fields)
 )]
 pub struct OcclusionOptions {
-    /// How the heights lie in the plane.
+    /// The plane of the heights.
     pub plane: HeightPlane,
-    /// How far away heights hide the sky, in units of the plane, at least zero; less than a pixel hides nothing. By
-    /// default 1/16. The time grows with its logarithm once it is more than 16 pixels.
+    /// The distance within which heights occlude the sky, in units of the plane, at least zero; with less than a pixel
+    /// there is no occlusion. By default 1/16. The computing time grows with its logarithm above 16 pixels.
     pub radius: f64,
-    /// Over which outer part of the radius heights lose their effect, from 0 to 1. By default 1/2. Without a fade the map is
-    /// exact for what lies within the radius, but what lies across it begins to hide the sky all at once.
+    /// The outer part of the radius over which occlusion fades, from 0 to 1. By default 1/2. Without a fade the map is
+    /// exact for heights within the radius, but a height that crosses it occludes the sky all at once.
     pub fade: f64,
 }
 
@@ -61,7 +61,7 @@ impl Default for OcclusionOptions {
 }
 
 impl From<HeightPlane> for OcclusionOptions {
-    /// The other options are the default.
+    /// The options for heights in a plane, with the default radius and fade.
     fn from(plane: HeightPlane) -> Self {
         Self {
             plane,
@@ -72,7 +72,7 @@ impl From<HeightPlane> for OcclusionOptions {
 }
 
 impl OcclusionOptions {
-    /// How many columns and rows around a pixel its value depends on, in a raster of `size` pixels.
+    /// The numbers of columns and rows around a pixel on which its value depends, in a raster of `size` pixels.
     ///
     /// A crop that has these margins on each side has the same bits inside: see [`ambient_occlusion_of_part`]. Options
     /// that [`ambient_occlusion`] refuses have a halo of 1 × 1.
@@ -92,7 +92,7 @@ impl OcclusionOptions {
             return Err(ColorError::new(ColorErrorKind::Extent { extent }));
         }
         plane::check_radius("radius of the occlusion", self.radius, pixel)?;
-        // Written so that what is not a number is refused too.
+        // Written so that NaN is an error too.
         if !(0.0..=1.0).contains(&self.fade) {
             let fade = self.fade;
             return Err(ColorError::new(ColorErrorKind::Fade { fade }));
@@ -101,8 +101,8 @@ impl OcclusionOptions {
     }
 }
 
-/// The part of the sky that each place of a raster of heights sees, from 0 to 1, on all cores where the feature `rayon` is
-/// on.
+/// The part of the sky that is visible from each place of a raster of heights, from 0 to 1, on all cores where the
+/// feature `rayon` is on.
 ///
 /// The sky is the half space above the tangent plane, and counts with the cosine to the normal, as for a matte surface
 /// under an even sky. A flat raster is 1 everywhere, the wall of a long groove that opens by an angle `a` is `sin²(a/2)`,
@@ -134,15 +134,16 @@ pub fn ambient_occlusion(
     ambient_occlusion_of_part(height, [0; 2], height.size(), options)
 }
 
-/// Occlusion, as by [`ambient_occlusion`], of a part of a raster of `whole` pixels, whose extent is that of the options:
-/// of all pixels between margins of so many columns and rows at each side, which are only looked at.
+/// The occlusion of a part of a raster of `whole` pixels, whose extent is that of the options; see
+/// [`ambient_occlusion`]. The result has the pixels between margins of the given columns and rows at each side; the
+/// margins are only read.
 ///
 /// If the margins are the [halo](OcclusionOptions::halo) of the whole, or wider, every pixel has the bits that it has in
 /// the whole.
 ///
 /// # Errors
 ///
-/// Those of [`ambient_occlusion`], and [`ColorErrorKind::Raster`] if nothing lies between the margins.
+/// Those of [`ambient_occlusion`], and [`ColorErrorKind::Raster`] if there are no pixels between the margins.
 pub fn ambient_occlusion_of_part(
     height: &Raster<f32>,
     margin: [u32; 2],

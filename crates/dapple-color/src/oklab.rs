@@ -1,4 +1,4 @@
-//! Oklab, a space of colors in which equal steps look about equal.
+//! Oklab, a color space in which equal steps look about equal.
 //!
 //! Reference: Björn Ottosson, "A perceptual color space for image processing", 2020,
 //! <https://bottosson.github.io/posts/oklab/>, with his matrices of 2021 from and to linear sRGB. Lightness is 0 for black
@@ -6,7 +6,7 @@
 
 use crate::LinearRgb;
 
-/// Lightness, a and b of a color, which may lie outside of what a screen shows.
+/// Lightness, a and b of a color, which may lie outside of the gamut of a screen.
 pub(crate) fn oklab_from_linear(color: LinearRgb) -> [f64; 3] {
     let [r, g, b] = color.to_array().map(f64::from);
     let l = libm::cbrt(0.412_221_470_8 * r + 0.536_332_536_3 * g + 0.051_445_992_9 * b);

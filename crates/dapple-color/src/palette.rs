@@ -1,4 +1,4 @@
-//! A handful of ramps by name, to begin with.
+//! A few ramps by name, as a start.
 //!
 //! The colors are our own, chosen by eye for the textures of the gallery; each list goes from the color of low values to
 //! that of high ones.
@@ -66,7 +66,7 @@ impl Palette {
         ColorRamp::even_unchecked(&self.colors())
     }
 
-    /// The color of a label; after the last one the first comes again.
+    /// The color of a label; after the last color the first follows again.
     #[must_use]
     pub fn color(self, label: u32) -> LinearRgb {
         let codes = self.codes();

@@ -1,4 +1,4 @@
-//! The plane in which heights lie, which all maps from heights share.
+//! The plane in which heights lie, shared by all maps from heights.
 //!
 //! Lengths are in units of the plane; a raster covers a stated extent of it.
 
@@ -6,12 +6,12 @@ use crate::{ColorError, ColorErrorKind};
 use dapple_raster::glam::DVec2;
 use dapple_raster::{Raster, Window, Wrap, parallel};
 
-/// How many pixels a radius may reach over.
+/// The largest radius in pixels.
 const MAX_RADIUS: u32 = 1 << 14;
 
-/// How a raster of heights lies in the plane, for normals, occlusion and curvature.
+/// The position of a raster of heights in the plane, for normals, occlusion and curvature.
 ///
-/// The options of each are made of it with [`From`], and hold it.
+/// The options of each map can be made from it with [`From`], and contain it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -19,12 +19,12 @@ const MAX_RADIUS: u32 = 1 << 14;
     serde(default, deny_unknown_fields)
 )]
 pub struct HeightPlane {
-    /// How many units of the plane a height of 1 stands for; negative turns hills into dents. By default 1.
+    /// The height in units of the plane of a value of 1; negative turns hills into dents. By default 1.
     pub strength: f64,
     /// The width and height of the raster in the plane, above zero. By default 1 × 1, as in [`Window::unit`]; a raster
     /// with square pixels that is not square needs its true proportions here.
     pub extent: DVec2,
-    /// What lies past the edges of the height, per axis. By default both repeat.
+    /// The wrapping past the edges of the height, along x and y. By default both repeat.
     pub wrap: [Wrap; 2],
 }
 
@@ -49,7 +49,7 @@ impl HeightPlane {
         }
     }
 
-    /// Refuses a strength that is not finite and an extent that is not above zero and finite. `what` names the strength.
+    /// Checks that the strength is finite and the extent is above zero and finite. `what` names the strength.
     pub(crate) fn check(&self, what: &'static str) -> Result<(), ColorError> {
         let Self {
             strength, extent, ..
@@ -70,7 +70,7 @@ impl HeightPlane {
     }
 }
 
-/// Refuses a radius that is not a number of pixels from 0 to [`MAX_RADIUS`].
+/// Checks that a radius is from 0 to [`MAX_RADIUS`] pixels.
 pub(crate) fn check_radius(
     what: &'static str,
     radius: f64,
@@ -81,7 +81,7 @@ pub(crate) fn check_radius(
         return Err(ColorError::new(ColorErrorKind::NotFinite { what, value }));
     }
     let pixels = radius / pixel.min_element();
-    // Written so that a pixel of no size, whose quotient is not a number, is refused too.
+    // Written so that a pixel without a size, whose quotient is NaN, is an error too.
     if !(pixels >= 0.0 && pixels <= f64::from(MAX_RADIUS)) {
         return Err(ColorError::new(ColorErrorKind::Radius {
             radius,
@@ -92,7 +92,7 @@ pub(crate) fn check_radius(
     Ok(())
 }
 
-/// The index within the line, as by [`Wrap::index`], and quick where nothing has to be brought back.
+/// The index within the line, like [`Wrap::index`], but fast for indices inside.
 #[inline(always)]
 pub(crate) fn index(wrap: Wrap, index: i64, length: u32) -> usize {
     if (0..i64::from(length)).contains(&index) {
@@ -102,7 +102,7 @@ pub(crate) fn index(wrap: Wrap, index: i64, length: u32) -> usize {
     }
 }
 
-/// Has `fill` write every row, on all cores where the feature `rayon` is on.
+/// Calls `fill` for every row, on all cores where the feature `rayon` is on.
 pub(crate) fn fill_rows(raster: &mut Raster<f32>, fill: impl Fn(u32, &mut [f32]) + Sync) {
     let width = raster.width() as usize;
     parallel::for_each_chunk(raster.pixels_mut(), width, |row, values| {

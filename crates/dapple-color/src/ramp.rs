@@ -1,8 +1,9 @@
-//! Color ramps: from a number to a color.
+//! Color ramps, which map numbers to colors.
 //!
-//! A ramp is a list of stops, each a position and a color, with positions that never decrease; two stops at one position
-//! make a hard edge, and the later one holds at the position itself. Colors between stops are mixed in a [`RampSpace`].
-//! The colors of the stops are brought into it when the ramp is made, so that Oklab costs a color no root.
+//! A ramp is a list of stops, each a position and a color, with positions that never decrease; two stops at one
+//! position make a hard edge, and the later one holds at the position itself. Colors between stops are mixed in a
+//! [`RampSpace`]. The colors of the stops are converted to it when the ramp is made, so that a color in Oklab costs no
+//! root.
 //!
 //! Reference: our own; the space Oklab has its own in `oklab.rs`.
 
@@ -11,18 +12,18 @@ use crate::srgb::{linear_from_srgb, srgb_from_linear};
 use crate::{ColorError, ColorErrorKind, LinearRgb};
 use dapple_raster::Raster;
 
-/// A place on a color ramp.
+/// A stop of a color ramp: a position and its color.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ColorStop {
-    /// Where it is, in the unit of the numbers that the ramp colors; mostly from 0 to 1.
+    /// The position, in the unit of the numbers that the ramp colors; mostly from 0 to 1.
     pub position: f32,
-    /// The color there, linear.
+    /// The color at the position, linear.
     pub color: LinearRgb,
 }
 
 dapple_raster::named! {
-    /// What lies between two stops of a color ramp.
+    /// The interpolation between two stops of a color ramp.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/interpolation.md"))]
     #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -41,8 +42,8 @@ dapple_raster::named! {
     /// The space in which a color ramp mixes the colors of two stops.
     #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
     pub enum RampSpace {
-        /// Oklab (Ottosson 2020): equal steps look about equal, and the middle of two colors is halfway in lightness and hue.
-        /// Between two strong colors a part may be a little below 0 or above 1, which files cut off.
+        /// Oklab (Ottosson 2020): equal steps look about equal, and the middle of two colors is halfway in lightness
+        /// and hue. Between two strong colors a component may be a little below 0 or above 1, which files clamp.
         #[default]
         Oklab = "oklab",
         /// The codes of sRGB, as most drawing programs mix. Parts below 0 are mixed as those above, with their sign.
@@ -53,7 +54,7 @@ dapple_raster::named! {
 }
 
 dapple_raster::named! {
-    /// What lies before the first stop and after the last.
+    /// The colors before the first stop and after the last.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/outside.md"))]
     #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -67,7 +68,7 @@ dapple_raster::named! {
     }
 }
 
-/// Turns numbers into colors.
+/// A color ramp, which maps numbers to colors.
 ///
 /// # Examples
 ///
@@ -186,7 +187,7 @@ impl ColorRamp {
         }
     }
 
-    /// Sets how colors change between two stops.
+    /// Sets the interpolation between two stops.
     #[must_use]
     pub fn with_interpolation(self, interpolation: Interpolation) -> Self {
         Self {
@@ -229,14 +230,14 @@ impl ColorRamp {
         }
     }
 
-    /// The color a part of the way to a stop from the one before it.
+    /// The mixture of a stop and the one before it; `part` is 0 at the earlier one.
     fn mixture(&self, to: usize, part: f32) -> LinearRgb {
         let from = to - 1;
         let (before, after) = (self.stops[from].color, self.stops[to].color);
         if self.space == RampSpace::Linear {
             return before.lerp(after, part);
         }
-        // The way there and back rounds, and the stops themselves are met.
+        // The conversion there and back rounds, so stops themselves are returned as they are.
         if part == 0.0 || before == after {
             return before;
         }
@@ -251,7 +252,7 @@ impl ColorRamp {
         values.par_map(|&value| self.at(value))
     }
 
-    /// A number within the stops that has the same color, or the number where that is given by [`Outside::Clamp`].
+    /// A number within the stops that has the same color; with [`Outside::Clamp`] the number itself.
     fn bring_inside(&self, value: f32) -> f32 {
         let [first, last] =
             [self.stops[0], self.stops[self.stops.len() - 1]].map(|stop| stop.position);
@@ -262,7 +263,7 @@ impl ColorRamp {
         // In `f64` no difference of two `f32` overflows.
         let (first, last, value) = (f64::from(first), f64::from(last), f64::from(value));
         let wrapped = first + (value - first).rem_euclid(last - first);
-        // Rounding may reach the end, which is where the ramp begins again.
+        // Rounding may reach the end, where the ramp begins again.
         let wrapped = wrapped as f32;
         if f64::from(wrapped) < last {
             wrapped
@@ -273,7 +274,7 @@ impl ColorRamp {
 }
 
 impl RampSpace {
-    /// A color in this space.
+    /// Converts a color to this space.
     fn of_linear(self, color: LinearRgb) -> [f64; 3] {
         match self {
             Self::Oklab => oklab_from_linear(color),
@@ -284,7 +285,7 @@ impl RampSpace {
         }
     }
 
-    /// The color of a place of this space.
+    /// Converts a place of this space to a color.
     fn to_linear(self, parts: [f64; 3]) -> LinearRgb {
         match self {
             Self::Oklab => linear_from_oklab(parts),
@@ -296,7 +297,7 @@ impl RampSpace {
     }
 }
 
-/// A curve of numbers that are not negative, continued to the others by its mirror image.
+/// A curve for nonnegative numbers, extended to negative ones with their sign.
 fn signed(value: f64, curve: fn(f64) -> f64) -> f64 {
     curve(value.abs()).copysign(value)
 }

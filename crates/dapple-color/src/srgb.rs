@@ -8,15 +8,15 @@
 //! A table per depth, made at first use, holds the linear value of every code and, for every code, the smallest `f32`
 //! that belongs to it. Encoding guesses the code and then walks until the value lies between two borders: the guess
 //! costs or saves time, and the borders alone decide. The powers come from `libm` in `f64`, so that the tables are the
-//! same everywhere; that each entry is the right one is proved in the tests with whole numbers of any length, where the
-//! curve is `x^5 = y^12`.
+//! same on every platform; that each entry is the right one is proved in the tests with whole numbers of any length,
+//! where the curve is `x^5 = y^12`.
 
 use std::sync::LazyLock;
 
-/// How many mantissa bits select a part of the guessing table.
+/// The number of mantissa bits that select a part of the guessing table.
 const GUESS_BITS: u32 = 8;
 
-/// The bits of a number that do not select a part.
+/// The number of mantissa bits that do not select a part.
 const FRACTION_BITS: u32 = 23 - GUESS_BITS;
 
 /// The curve for codes up to a maximum.
@@ -24,11 +24,11 @@ const FRACTION_BITS: u32 = 23 - GUESS_BITS;
 pub(crate) struct Curve {
     /// The linear value of each code.
     linear: Vec<f32>,
-    /// `borders[k]` is the smallest number with a code above `k`; at the end stands infinity.
+    /// `borders[k]` is the smallest number with a code above `k`; the last element is infinity.
     borders: Vec<f32>,
     /// The selecting bits of the first border.
     first_part: u32,
-    /// The code, not rounded, at the start of each part, and at the end of the last.
+    /// The unrounded code at the start of each part, and at the end of the last.
     guesses: Vec<f32>,
 }
 
@@ -95,7 +95,7 @@ impl Curve {
         code as u16
     }
 
-    /// A code near to that of a number between the first border and 1: linear within each part.
+    /// An approximate code of a number between the first border and 1: linear within each part.
     ///
     /// At least 1, since the guess at the first border is, and at most the maximum.
     #[inline]
@@ -109,7 +109,7 @@ impl Curve {
     }
 }
 
-/// The standard's curve from a code value to a linear one, both from 0 to 1, and on beyond 1.
+/// The standard's curve from a code value to a linear one, both from 0 to 1; it extends beyond 1.
 pub(crate) fn linear_from_srgb(value: f64) -> f64 {
     if value <= 0.040_45 {
         value / 12.92
@@ -118,7 +118,7 @@ pub(crate) fn linear_from_srgb(value: f64) -> f64 {
     }
 }
 
-/// The standard's curve from a linear value to a code value, both from 0 to 1, and on beyond 1.
+/// The standard's curve from a linear value to a code value, both from 0 to 1; it extends beyond 1.
 pub(crate) fn srgb_from_linear(value: f64) -> f64 {
     if value <= 0.003_130_8 {
         value * 12.92

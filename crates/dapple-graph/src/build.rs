@@ -1,11 +1,11 @@
-//! Rows of axes put together into a graph, for the graphs that choose each point's axes on their own.
+//! Construction of a graph from the axes that each point chose on its own.
 
 use crate::lattice::Lattice;
 use crate::{Axis, Graph, GraphError, GraphErrorKind};
 use dapple_points::PointIdx;
 use glam::DVec2;
 
-/// Whether an edge counts from one end or from both.
+/// Whether an edge counts for the point that chose it or for both of its ends.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Direction {
@@ -16,14 +16,14 @@ pub enum Direction {
     Symmetric,
 }
 
-/// A candidate for an axis: the point, and where its image lies in steps from the one that chooses.
+/// A candidate for an axis: the point, and the offset of its image, in steps, from the point that chooses.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Choice {
     pub(crate) to: u32,
     pub(crate) steps: DVec2,
 }
 
-/// The graph of the chosen axes: `rows` has one list for each site, in any order.
+/// Builds the graph of the chosen axes: `rows` has one list for each site, in any order.
 pub(crate) fn graph_of(
     lattice: Lattice,
     sites: Vec<DVec2>,

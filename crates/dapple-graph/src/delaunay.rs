@@ -3,11 +3,11 @@
 //! Reference: Boris Delaunay, "Sur la sphère vide", Izvestia Akademii Nauk SSSR, 1934. The triangulations come from the
 //! crate `spade`.
 //!
-//! On a domain that wraps, the graph is that of the points and all of their images, seen from the points in the domain.
-//! It needs only few of the images: first those in a margin around the domain, then, disc by disc, the ones that lie in the
-//! circumcircle of a triangle at a point of the domain. When no such circumcircle holds another image, all of these
-//! triangles are true ones. So any number of points is welcome, one or two as well, and points may lead to their own
-//! images.
+//! On a domain that wraps, the graph is that of the points and all of their images, restricted to the points in the
+//! domain. Only few of the images are needed: first those in a margin around the domain, then, disc by disc, the ones
+//! that lie in the circumcircle of a triangle at a point of the domain. When no such circumcircle holds another image,
+//! all of these triangles belong to the true triangulation. Any number of points is accepted, one or two as well, and
+//! points may be connected to their own images.
 //!
 //! Where four or more points (images counted) lie on one empty circle, the triangulation is not unique; the diagonals
 //! in that circle are dropped, by exact predicates. What is left is unique: the pairs of points whose Voronoi cells
@@ -84,7 +84,7 @@ pub fn delaunay(points: &PointSet) -> Result<Graph, GraphError> {
     })
 }
 
-/// Why there are no rows.
+/// The reason why no rows could be made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Refusal {
     /// Two sites coincide.
@@ -116,7 +116,7 @@ fn whole(lattice: &Lattice, sites: &[DVec2], margin: f64) -> Result<Rows, Refusa
     Ok(patch.rows(&LazyGrid::new(lattice, sites))?)
 }
 
-/// The margin of images around the domain at first, in mean distances (the root of the area per point).
+/// The initial margin of images around the domain, in mean distances (the root of the area per point).
 const MARGIN: f64 = 1.6;
 
 #[cfg(test)]

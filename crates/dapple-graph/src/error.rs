@@ -1,19 +1,19 @@
-//! Why a graph was refused.
+//! Errors of graphs.
 
 use crate::grid::Budget;
 use dapple_points::{PointIdx, PointSet};
 use glam::DVec2;
 
 dapple_raster::error! {
-    /// Why a graph could not be made, or is not sane.
+    /// An error of making or checking a graph.
     GraphError,
-    /// The limit that was broken.
+    /// The cause of a [`GraphError`], with the limit and the value.
     GraphErrorKind {
         /// Two points lie at the same place, so that no direction leads from one to the other.
         Coincident {
-            /// The one with the smaller index.
+            /// The point with the smaller index.
             first: PointIdx,
-            /// The other.
+            /// The other point.
             second: PointIdx,
         } => "points {} and {} coincide, but an axis needs a direction", first.0, second.0;
         /// The adjacency has another number of rows than there are points.
@@ -27,47 +27,48 @@ dapple_raster::error! {
         NoSuchPoint {
             /// The point whose row it is.
             from: PointIdx,
-            /// The index that was named.
+            /// The index in the row.
             to: PointIdx,
             /// The number of points.
             n_points: usize,
         } => "the row of point {} names point {}, but the set has {n_points} points", from.0, to.0;
-        /// A point is named that is not there.
+        /// A point with this index does not exist.
         NotThere {
-            /// The index that was named.
+            /// The index.
             point: PointIdx,
             /// The number of points.
             n_points: usize,
         } => "point {} is named, but there are {n_points} points", point.0;
-        /// A point is to be where the domain is not.
+        /// A position for a point lies outside of the domain.
         Outside {
-            /// Where.
+            /// The position.
             position: DVec2,
         } => "the position {position} lies outside of the domain";
-        /// Fewer than one or too many nearest neighbors were asked for.
+        /// The number of nearest neighbors is zero or too large.
         Neighbors {
-            /// How many.
+            /// The number of neighbors.
             k: u32,
-            /// How many are allowed, or can be had.
+            /// The largest number of neighbors that is allowed and exists.
             limit: u32,
         } => "asked for {k} nearest neighbors, but 1 to {limit} can be had";
-        /// Fewer than one or too many cones were asked for.
+        /// The number of cones is zero or too large.
         Cones {
-            /// How many.
+            /// The number of cones.
             cones: u32,
-            /// How many are allowed.
+            /// The largest number allowed.
             limit: u32,
         } => "asked for {cones} cones, but 1 to {limit} are allowed";
-        /// More axes than 32 bits can count.
+        /// The graph has more axes than 32 bits can count.
         TooManyAxes {
-            /// How many.
+            /// The number of axes.
             n_axes: usize,
         } => "the graph has {n_axes} axes, but the limit is {}", u32::MAX;
-        /// The domain wraps, and is so thin for the distance of its points that too many copies of them count.
+        /// The domain wraps, and is so thin for the distance of its points that too many copies of them would be
+        /// needed.
         Thin {
-            /// Its width and height.
+            /// Width and height of the domain.
             size: DVec2,
-            /// The most copies of points that all searches together may go through.
+            /// The largest number of copies of points that all searches together may go through.
             limit: u64,
         } =>
             "the domain has size {size} and wraps, so thin that the search for neighbors goes through more than \
@@ -81,12 +82,12 @@ dapple_raster::error! {
         Vector {
             /// The point that the axis starts at.
             from: PointIdx,
-            /// The point that it says it leads to.
+            /// The point that the axis claims to lead to.
             to: PointIdx,
-            /// Its vector.
+            /// The vector of the axis.
             vector: DVec2,
         } => "the axis {vector} of point {} does not lead to an image of point {}", from.0, to.0;
-        /// The graph says that it is symmetric, but an axis has no opposite.
+        /// The graph claims to be symmetric, but an axis has no opposite.
         OneWay {
             /// The point that the axis starts at.
             from: PointIdx,

@@ -3,8 +3,8 @@
 //! Reference: K. Ruben Gabriel and Robert R. Sokal, "A New Statistical Approach to Geographic Variation Analysis",
 //! Systematic Zoology 18(3), 1969, doi:10.2307/2412323.
 //!
-//! It is a part of the Delaunay graph. A point on the circle itself counts as inside of it, as in the paper, so that the
-//! edges that stay are those that cross the side that their Voronoi cells share.
+//! The Gabriel graph is a part of the Delaunay graph. A point on the circle itself counts as inside of it, as in the
+//! paper, so that the remaining edges are those that cross the side that the Voronoi cells of their ends share.
 
 use crate::build::{Choice, Direction, graph_of};
 use crate::{Axis, Graph, GraphError, delaunay};
@@ -61,7 +61,7 @@ pub fn gabriel(points: &PointSet) -> Result<Graph, GraphError> {
     graph_of(lattice, sites, rows, Direction::Directed)
 }
 
-/// Whether a place lies outside of the circle from the origin to `edge`, or is its end; exact.
+/// Whether a place lies outside of the circle with the diameter from the origin to `edge`, or is its end; exact.
 fn is_outside(edge: DVec2, at: DVec2) -> bool {
     // The angle at the place is acute: at · (at - edge) > 0. Whole numbers below 2^53 have products below 2^106.
     let dot = at.x as i128 * (at.x - edge.x) as i128 + at.y as i128 * (at.y - edge.y) as i128;

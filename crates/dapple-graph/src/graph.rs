@@ -7,16 +7,16 @@ use crate::{Direction, GraphError, GraphErrorKind};
 use dapple_points::{PointIdx, PointSet};
 use glam::DVec2;
 
-/// One edge, seen from one of its ends.
+/// One edge, as seen from one of its ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Axis {
     /// The point that the axis leads to.
     pub to: PointIdx,
-    /// From the point to that image of `to`, in the units of the positions; never zero.
+    /// The vector from the point to that image of `to`, in the units of the positions; never zero.
     pub vector: DVec2,
 }
 
-/// A graph over a point set: for each point its axes.
+/// A graph over a point set: a list of axes for each point.
 ///
 /// Vectors are exact differences of the positions after these were snapped to the nearest multiple (from the origin
 /// of the domain) of a power of two between 2^-50 and 2^-49 of the domain's larger side.
@@ -30,7 +30,7 @@ pub struct Graph {
 }
 
 impl Graph {
-    /// The graph that the caller says: row `i` names the points that point `i` is connected to.
+    /// The graph given by the caller: row `i` names the points that point `i` is connected to.
     ///
     /// Each axis takes the shortest way around the wrapped axes. A name that comes twice in a row counts once. Edges
     /// are directed: name both ends in each other's rows for a symmetric graph.
@@ -72,8 +72,8 @@ impl Graph {
         graph_of(lattice, sites, rows, Direction::Directed)
     }
 
-    /// The axes of a point, counterclockwise, from the smallest angle in `[0, 2π)` from the x axis towards y; those of
-    /// one angle by length, then by index.
+    /// The axes of a point, counterclockwise, from the smallest angle in `[0, 2π)` from the x axis towards y; axes with
+    /// the same angle by length, then by index.
     ///
     /// # Panics
     ///
@@ -97,7 +97,7 @@ impl Graph {
         self.axes.len()
     }
 
-    /// Where the axes of each point begin in [`all_axes`](Self::all_axes), and at the end where the last ones end.
+    /// The index of each point's first axis in [`all_axes`](Self::all_axes), and at the end the number of axes.
     #[must_use]
     pub fn offsets(&self) -> &[u32] {
         &self.offsets
@@ -109,8 +109,8 @@ impl Graph {
         &self.axes
     }
 
-    /// Each edge of a symmetric graph once: a point, and its axis along the edge, which leads towards larger y, or towards
-    /// larger x where y stays.
+    /// The edges of a symmetric graph, each once: a point, and its axis along the edge. The axis leads towards larger
+    /// y, or, where y is the same, towards larger x.
     pub fn edges(&self) -> impl Iterator<Item = (PointIdx, Axis)> + '_ {
         let points = (0..self.n_points() as u32).map(PointIdx);
         let axes = points.flat_map(|from| self.axes(from).iter().map(move |&axis| (from, axis)));
@@ -132,8 +132,8 @@ impl Axis {
     }
 }
 
-/// A power of two that takes a length to between 1 and 2, so that products of tiny or huge ones do not round to nothing or
-/// infinity. On a lattice, vectors of such lengths are multiplied without rounding.
+/// The power of two that scales a length to between 1 and 2, so that products of tiny or huge ones do not underflow or
+/// overflow. On a lattice, vectors of such lengths are multiplied without rounding.
 fn scale(length: f64) -> f64 {
     let exponent_only = f64::from_bits(length.to_bits() & f64::INFINITY.to_bits());
     1.0 / exponent_only.max(f64::MIN_POSITIVE)

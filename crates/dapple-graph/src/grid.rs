@@ -4,15 +4,15 @@ use crate::lattice::Lattice;
 use glam::DVec2;
 use std::sync::OnceLock;
 
-/// The refusal of a domain so thin that a search goes through too many copies of it.
+/// The error of a domain so thin that a search goes through too many copies of it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct TooThin;
 
-/// How many images the searches around the points of a set may still go through, all together.
+/// The number of images that the searches around the points of a set may still go through, all together.
 ///
-/// Any domain takes up to the square of the number of points where they crowd into one spot, and a square torus has up
-/// to 25 copies within the reach of a search that finds little. On a domain that is thin beside the distance of its points
-/// there would be any number of copies.
+/// On any domain this can take up to the square of the number of points where they crowd into one spot, and a square
+/// torus has up to 25 copies within the reach of a search that finds little. On a domain that is thin beside the
+/// distance of its points the number of copies would have no bound.
 #[derive(Debug)]
 pub(crate) struct Budget {
     left: u64,
@@ -26,7 +26,7 @@ impl Budget {
         }
     }
 
-    /// The images that may be gone through for `n` points. For few, that is the work of a tenth of a second.
+    /// The largest number of images for `n` points. For few points, this is the work of a tenth of a second.
     pub(crate) fn limit(n: usize) -> u64 {
         let n = n as u64;
         (1 << 21) + 32_u64.saturating_mul(n.saturating_mul(n))
@@ -38,9 +38,9 @@ impl Budget {
     }
 }
 
-/// The most images of `n` points that a triangulation is begun with, or that are added to it.
+/// The largest number of images of `n` points for the start of a triangulation, or for insertion into it.
 ///
-/// Where they lie on one line, as those of a single point do, the time grows with the square of their number.
+/// If they lie on one line, as the images of a single point do, the time grows with the square of their number.
 pub(crate) fn triangulated_limit(n: usize) -> u64 {
     64 * n as u64 + 4096
 }
@@ -52,7 +52,7 @@ pub(crate) struct Grid<'a> {
     sites: &'a [DVec2],
     cells: [usize; 2],
     per_step: DVec2,
-    /// Where each cell begins in `order`, and at the end where the last one ends.
+    /// The index of each cell's first site in `order`, and at the end the number of sites.
     starts: Vec<u32>,
     order: Vec<u32>,
 }
@@ -91,7 +91,7 @@ impl<'a> Grid<'a> {
 
     /// Calls `visit` with the number and the place of every image in the box, and maybe of some beside it.
     ///
-    /// Fails past the budget, when `visit` has been called for some.
+    /// Fails past the budget, possibly after some calls of `visit`.
     pub(crate) fn visit_box(
         &self,
         low: DVec2,
@@ -133,10 +133,10 @@ impl<'a> Grid<'a> {
         (size.x * (size.y / self.sites.len().max(1) as f64)).sqrt()
     }
 
-    /// A radius that is large enough for all neighbors that a graph may ask for; within it images are still exact.
+    /// A radius that is large enough for all neighbors that a graph may need; within it images are still exact.
     ///
-    /// Without wrapping, all points lie within the domain's diagonal. With it, of each point there are at least ten
-    /// images within five periods, and one in each cone of 1/32 of a turn that has any: 1 / sin(2π / 32) is below 5.2.
+    /// Without wrapping, all points lie within the domain's diagonal. With wrapping, each point has at least ten images
+    /// within five periods, and one in each cone of 1/32 of a turn that has any: 1 / sin(2π / 32) is below 5.2.
     pub(crate) fn farthest(&self) -> f64 {
         let size = self.lattice.size;
         if self.lattice.wraps() {
@@ -158,7 +158,7 @@ impl<'a> Grid<'a> {
     }
 }
 
-/// A grid that is made when it is first needed.
+/// A grid that is built on first use.
 #[derive(Debug)]
 pub(crate) struct LazyGrid<'a> {
     lattice: &'a Lattice,

@@ -40,7 +40,7 @@ impl Lattice {
         points.positions().iter().map(|&p| self.site(p)).collect()
     }
 
-    /// Where a position lies in steps, in the domain along the wrapped axes.
+    /// The site of a position, in steps, brought into the domain along the wrapped axes.
     pub(crate) fn site(&self, position: DVec2) -> DVec2 {
         let mut site = round((position - self.origin) * self.per_step);
         for axis in 0..2 {
@@ -57,7 +57,7 @@ impl Lattice {
         steps * self.step
     }
 
-    /// A vector of the caller's unit, in steps.
+    /// A vector in the caller's unit, converted to steps.
     #[inline]
     pub(crate) fn steps(&self, vector: DVec2) -> DVec2 {
         vector * self.per_step
@@ -90,7 +90,7 @@ impl Lattice {
     }
 }
 
-/// Names the first two points that share a site, if any do.
+/// Fails with the first two points that share a site, if there are any.
 pub(crate) fn check_distinct(sites: &[DVec2]) -> Result<(), GraphError> {
     let key = |&index: &u32| {
         let site = sites[index as usize];
@@ -106,13 +106,13 @@ pub(crate) fn check_distinct(sites: &[DVec2]) -> Result<(), GraphError> {
     coincident.map_or(Ok(()), |(a, b)| Err(GraphError::coincident(a, b)))
 }
 
-/// The power of two that goes into `side` between 2^49 and 2^50 times, if it is not too small to be one.
+/// The power of two that goes into `side` between 2^49 and 2^50 times, or the smallest positive number.
 fn step_of(side: f64) -> f64 {
     let exponent_only = f64::from_bits(side.to_bits() & f64::INFINITY.to_bits());
     (exponent_only / (1_u64 << 49) as f64).max(f64::MIN_POSITIVE)
 }
 
-/// To the nearest whole number, for numbers from 0 to 2^51.
+/// Rounds to the nearest whole number, for numbers from 0 to 2^51.
 fn round(v: DVec2) -> DVec2 {
     // Without a call of `floor`, which is slow on processors that have no instruction for it.
     DVec2::new((v.x + 0.5) as i64 as f64, (v.y + 0.5) as i64 as f64)

@@ -1,4 +1,4 @@
-//! The graph of nearest neighbors, and the search from near to far that other graphs use as well.
+//! The graph of nearest neighbors, and the search for neighbors, nearest first, which other graphs use as well.
 
 use crate::build::{Choice, Direction, graph_of};
 use crate::grid::{Budget, Grid, TooThin};
@@ -9,8 +9,8 @@ use glam::DVec2;
 
 /// The graph in which each point has axes to its `k` nearest neighbors.
 ///
-/// Images count as neighbors of their own, those of the point itself too. Of equally near ones, those with the smaller
-/// index come first, then those with the smaller angle from the x axis.
+/// Images count as separate neighbors, including those of the point itself. Of equally near ones, those with the
+/// smaller index come first, then those with the smaller angle from the x axis.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/k-nearest.md"))]
 ///
@@ -48,7 +48,7 @@ pub fn k_nearest(points: &PointSet, k: u32, direction: Direction) -> Result<Grap
     let wanted = k as usize;
     let mut budget = Budget::new(sites.len());
     let rows = sites.iter().map(|&site| {
-        // A disc of this radius holds about twice as many as wanted.
+        // A disc of this radius holds about twice the number of neighbors needed.
         let mut radius = 0.8 * grid.mean_distance() * f64::from(k + 1).sqrt();
         loop {
             radius = radius.min(grid.farthest());
@@ -68,7 +68,7 @@ pub fn k_nearest(points: &PointSet, k: u32, direction: Direction) -> Result<Grap
 /// The largest number of neighbors that can be asked for.
 const MAX_NEIGHBORS: u32 = 4096;
 
-/// All images within a distance of a site but the site itself, nearest first.
+/// All images within a distance of a site, except the site itself, nearest first.
 pub(crate) fn near(
     grid: &Grid<'_>,
     site: DVec2,

@@ -1,4 +1,4 @@
-//! What is true of every graph.
+//! The check of the invariants of a graph.
 
 use crate::{Axis, Graph, GraphError, GraphErrorKind};
 use core::cmp::Ordering;
@@ -6,7 +6,7 @@ use dapple_points::PointIdx;
 use glam::DVec2;
 
 impl Graph {
-    /// Looks through the whole graph for what must never be: for tests, and for graphs that went through other hands.
+    /// Checks the invariants of the whole graph: for tests, and for graphs that passed through other code.
     ///
     /// Every axis leads to a point of the graph, with a vector that is not zero and leads exactly to an image of that
     /// point; the axes of each point are in their order, and none comes twice; and if the graph
@@ -14,8 +14,8 @@ impl Graph {
     ///
     /// # Errors
     ///
-    /// The first thing that is wrong: [`GraphErrorKind::NoSuchPoint`], [`GraphErrorKind::Vector`],
-    /// [`GraphErrorKind::Order`] or [`GraphErrorKind::OneWay`].
+    /// The first violation: [`GraphErrorKind::NoSuchPoint`], [`GraphErrorKind::Vector`], [`GraphErrorKind::Order`] or
+    /// [`GraphErrorKind::OneWay`].
     pub fn sanity_check(&self) -> Result<(), GraphError> {
         let n_points = self.n_points();
         for from in self.points() {
@@ -45,7 +45,7 @@ impl Graph {
         (0..self.n_points() as u32).map(PointIdx)
     }
 
-    /// Whether the vector differs from that to the point itself by whole periods.
+    /// Whether the vector differs by whole periods from the one between the positions of the two points.
     fn leads_to_an_image(&self, from: PointIdx, axis: &Axis) -> bool {
         let steps = self.lattice.steps(axis.vector);
         let direct = self.sites[axis.to.index()] - self.sites[from.index()];

@@ -22,9 +22,9 @@ use glam::DVec2;
 /// The Yao graph: each point has an axis to its nearest neighbor in each of `cones` equal cones, the first of which
 /// begins at the x axis.
 ///
-/// Images count as neighbors of their own, those of the point itself too. Of equally near ones, the one with the
-/// smaller index is taken, then the one with the smaller angle. Where a cone is empty (at the border of a domain that
-/// does not wrap) there is no axis.
+/// Images count as separate neighbors, including those of the point itself. Of equally near ones, the one with the
+/// smaller index is taken, then the one with the smaller angle. A point has no axis in an empty cone, as at the border
+/// of a domain that does not wrap.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/yao.md"))]
 ///
@@ -75,7 +75,7 @@ pub fn yao(points: &PointSet, cones: u32, direction: Direction) -> Result<Graph,
 /// The largest number of cones.
 const MAX_CONES: u32 = 32;
 
-/// The first of the neighbors in each cone.
+/// The first of the neighbors in each cone, if any.
 fn nearest_per_cone(neighbors: &[Choice], borders: &[DVec2]) -> Vec<Option<Choice>> {
     let mut chosen = vec![None; borders.len()];
     let mut left = borders.len();
@@ -99,7 +99,7 @@ fn is_at_or_after(v: DVec2, border: DVec2) -> bool {
     turn(border, v) == 0.0 && v.dot(border) > 0.0 || by_angle(v, border) == Ordering::Greater
 }
 
-/// Where a cone begins; exact in multiples of a quarter turn.
+/// The direction at which a cone begins; exact in multiples of a quarter turn.
 fn border(index: u32, cones: u32) -> DVec2 {
     let quarter = 4 * index / cones;
     let rest = f64::from(4 * index % cones) / f64::from(4 * cones);

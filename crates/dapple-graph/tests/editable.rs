@@ -5,7 +5,7 @@ use dapple_points::hash::{Seed, rand_core::Rng, unit_f64};
 use dapple_points::{Domain, poisson_disk, white_noise};
 use glam::DVec2;
 
-/// Everything random of a test.
+/// The random numbers of a test.
 struct Dice(Box<dyn Rng>);
 
 impl Dice {
@@ -22,7 +22,7 @@ impl Dice {
     }
 }
 
-/// Checks an edited graph, and that the stars are those that are no more and those that are new.
+/// Checks an edited graph, and that the returned stars are exactly those that vanished and those that are new.
 fn check(
     graph: &EditableDelaunay,
     positions: &[DVec2],

@@ -76,7 +76,7 @@ fn edges(graph: &Graph) -> Vec<Edge> {
     edges
 }
 
-/// The edges that `choose` takes of each point's neighbors.
+/// The edges to those of each point's neighbors that `choose` returns.
 fn oracle(points: &PointSet, choose: impl Fn(Vec<(u32, DVec2)>) -> Vec<(u32, DVec2)>) -> Vec<Edge> {
     let mut edges = Vec::new();
     for (from, _) in points.iter() {

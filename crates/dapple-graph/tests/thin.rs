@@ -1,5 +1,5 @@
-//! Domains of odd sizes. Those that wrap and are much thinner than their points are apart have a graph or a refusal, and
-//! soon; tiny and huge ones have the graphs of others.
+//! Domains of extreme sizes. Domains that wrap and are much thinner than the distance of their points get a graph or an
+//! error within a short time; tiny and huge domains get the same graphs as others.
 
 use dapple_graph::glam::DVec2;
 use dapple_graph::points::hash::{Seed, rand_core::Rng, unit_f64};

@@ -46,14 +46,14 @@ pub const fn hash4(seed: Seed, cell: [i64; 4], index: u32) -> u64 {
     CellHash::new(seed, cell).at(index)
 }
 
-/// A seed and a cell, taken in once, for drawing as many numbers as the cell needs.
+/// The hash state after a seed and a cell, from which as many numbers as the cell needs can be drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CellHash {
     pub(crate) state: [u32; 2],
 }
 
 impl CellHash {
-    /// Takes in `seed` and `cell`, the last axis first. Any number of axes serves; [`hash1`] to [`hash4`] use 1 to 4.
+    /// Absorbs `seed` and `cell`, the last axis first, for any number of axes. [`hash1`] to [`hash4`] use 1 to 4.
     #[must_use]
     #[inline]
     pub const fn new<const N: usize>(seed: Seed, cell: [i64; N]) -> Self {
@@ -68,7 +68,7 @@ impl CellHash {
         hash
     }
 
-    /// Takes in the coordinate of one more axis, a faster one than those before.
+    /// Absorbs the coordinate of one more axis, a faster one than those before.
     ///
     /// # Examples
     ///
@@ -96,7 +96,7 @@ impl CellHash {
     }
 }
 
-/// The low and the high half.
+/// The low and the high half of a word.
 #[expect(
     clippy::cast_possible_truncation,
     reason = "the halves are what is asked for"

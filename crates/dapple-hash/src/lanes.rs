@@ -14,7 +14,7 @@ pub struct CellHashes<S: Simd> {
 }
 
 impl<S: Simd> CellHashes<S> {
-    /// One hash in every lane: where a row of cells begins.
+    /// The same hash in all lanes, for the beginning of a row of cells.
     #[inline(always)]
     pub fn splat(simd: S, hash: CellHash) -> Self {
         let [a, b] = hash.state;
@@ -23,7 +23,7 @@ impl<S: Simd> CellHashes<S> {
         }
     }
 
-    /// Takes in the coordinate of one more axis, a faster one than those before: its low and its high 32 bits.
+    /// Absorbs the coordinate of one more axis, a faster one than those before: its low and its high 32 bits.
     #[inline(always)]
     pub fn axis(self, low: u32x16<S>, high: u32x16<S>) -> Self {
         let [hashes] = Self::axis_each([self], [[low, high]]);
@@ -37,8 +37,8 @@ impl<S: Simd> CellHashes<S> {
         bits
     }
 
-    /// [`axis`](Self::axis) for several registers in step: faster, because a hash is one long chain of operations that
-    /// wait for each other.
+    /// [`axis`](Self::axis) for several registers in step. This is faster than one after the other, because a hash is
+    /// one long chain of dependent operations.
     #[inline(always)]
     pub fn axis_each<const C: usize>(hashes: [Self; C], words: [[u32x16<S>; 2]; C]) -> [Self; C] {
         let [low, high] = in_step(words);
@@ -50,7 +50,7 @@ impl<S: Simd> CellHashes<S> {
         hashes
     }
 
-    /// [`at`](Self::at) for several registers in step.
+    /// [`at`](Self::at) for several registers in step, which is faster than one after the other.
     #[inline(always)]
     pub fn at_each<const C: usize>(
         hashes: [Self; C],
@@ -99,7 +99,7 @@ fn finish<S: Simd, const C: usize>([mut a, mut b]: [InStep<S, C>; 2]) -> [InStep
     [a ^ (b << 7 | b >> 25), b]
 }
 
-/// Registers that all take one operation before any takes the next.
+/// Several registers on which each operation is done before the next one begins.
 #[derive(Clone, Copy)]
 struct InStep<S: Simd, const C: usize>([u32x16<S>; C]);
 
@@ -130,7 +130,7 @@ fn out_of_step<S: Simd, const C: usize>([a, b]: [InStep<S, C>; 2]) -> [[u32x16<S
     pairs
 }
 
-/// Implements operators that take registers or a number, by those that assign.
+/// Implements binary operators, with registers or a number, by the assigning operators.
 macro_rules! operators {
     ($($operator:ident $function:ident $assign:tt $other:ty $(, $register:tt)?;)*) => {$(
         impl<S: Simd, const C: usize> $operator<$other> for InStep<S, C> {

@@ -1,6 +1,6 @@
 //! Seeds, counter-based lattice hashes, random streams and Poisson counts.
 //!
-//! Everything random in dapple begins with a [`Seed`] that the caller passed. From it there are two ways on:
+//! All randomness in dapple begins with a [`Seed`] that the caller passes. There are two ways to draw numbers from it:
 //!
 //! * **by place**: [`hash2`] and its siblings turn a cell of the integer lattice and a counter into 64 bits, without
 //!   any state, so that a cell gives the same bits whoever asks for it and in whatever order;

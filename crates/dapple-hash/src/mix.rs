@@ -1,4 +1,4 @@
-//! The two mixing functions under everything else in this crate.
+//! The two mixing functions of all hashes of this crate.
 //!
 //! [`mix64`] is David Stafford's thirteenth variant of the MurmurHash3 finalizer ("Better Bit Mixing", 2011), as used
 //! by SplitMix64. [`absorb`] and [`finish`] work on two 32-bit lanes, with multiplications that keep the low half
@@ -36,7 +36,7 @@ pub const fn mix32(mut bits: u32) -> u32 {
     bits ^ (bits >> 16)
 }
 
-/// Takes one word into the state. For a fixed word it is a bijection of the state, so no state is ever lost.
+/// Absorbs one word into the state. For a fixed word it is a bijection of the state, so no state is ever lost.
 #[inline(always)]
 pub(crate) const fn absorb([mut a, mut b]: [u32; 2], word: u32) -> [u32; 2] {
     a = (a ^ word).wrapping_mul(M0);

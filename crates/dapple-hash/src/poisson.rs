@@ -32,8 +32,8 @@ pub struct PoissonCounts {
 impl PoissonCounts {
     /// The table for `mean` (above 0, at most 64) with the counts clamped to `range`.
     ///
-    /// The probability of a count below the range goes to its start, of one above to its end. A range up to
-    /// `u32::MAX` leaves the counts unclamped, but for those that are less likely than 2^-32 together.
+    /// The probability of the counts below the range goes to its start, that of the counts above to its end. A range up
+    /// to `u32::MAX` leaves the counts unclamped, except for those with a total probability below 2^-32.
     ///
     /// # Errors
     ///
@@ -73,7 +73,7 @@ impl PoissonCounts {
         Ok(Self { least, thresholds })
     }
 
-    /// The count that belongs to these random bits; more bits, more points.
+    /// The count for 32 random bits; it never falls as the bits grow.
     #[must_use]
     #[inline]
     pub fn count(&self, bits: u32) -> u32 {
@@ -84,21 +84,22 @@ impl PoissonCounts {
             })
     }
 
-    /// The count of the smallest bits.
+    /// The smallest count, which belongs to the smallest bits.
     #[must_use]
     #[inline]
     pub fn least(&self) -> u32 {
         self.least
     }
 
-    /// The bits from which on the count is one more than the smallest, two more, and so on.
+    /// The thresholds of the bits, ascending: the count is the smallest one plus the number of thresholds at or below
+    /// the bits.
     #[must_use]
     #[inline]
     pub fn thresholds(&self) -> &[u32] {
         &self.thresholds
     }
 
-    /// The smallest and the largest count that [`count`](Self::count) gives.
+    /// The smallest and the largest count that [`count`](Self::count) returns.
     #[must_use]
     pub fn range(&self) -> core::ops::RangeInclusive<u32> {
         self.count(0)..=self.count(u32::MAX)
@@ -117,7 +118,7 @@ impl PoissonCounts {
 
 /// The count of an unclamped table with this mean, without a table: for means that are used once.
 ///
-/// The mean is clamped to what a table accepts; one that is not a number counts as the least.
+/// The mean is clamped to the range that a table accepts; NaN counts as its lower end.
 ///
 /// # Examples
 ///
@@ -153,13 +154,13 @@ pub fn poisson_count(mean: f64, bits: u32) -> u32 {
     }
 }
 
-/// Why a table of Poisson counts was refused.
+/// The error of a table of Poisson counts with parameters out of range.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PoissonError {
     kind: PoissonErrorKind,
 }
 
-/// The limit that was broken.
+/// The cause of a [`PoissonError`], with the value.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum PoissonErrorKind {
@@ -170,15 +171,15 @@ pub enum PoissonErrorKind {
     },
     /// The range holds no number.
     EmptyRange {
-        /// Its start.
+        /// The start of the range.
         least: u32,
-        /// Its end.
+        /// The end of the range.
         most: u32,
     },
 }
 
 impl PoissonError {
-    /// The limit that was broken.
+    /// The cause of the error, with the value.
     #[must_use]
     pub fn kind(&self) -> &PoissonErrorKind {
         &self.kind

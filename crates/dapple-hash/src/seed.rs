@@ -2,7 +2,7 @@
 
 use crate::mix::{GOLDEN, mix64};
 
-/// Where all randomness comes from: 64 bits that the caller chose.
+/// The source of all randomness: 64 bits that the caller chose.
 ///
 /// Any value is as good as any other; `Seed(0)` and `Seed(1)` have nothing in common.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -16,8 +16,8 @@ pub struct Seed(pub u64);
 impl Seed {
     /// The seed of a part: its bits depend on this seed, on `name` and on `index`.
     ///
-    /// Give every random choice a child of its own, so that no two of them share their bits: the name says what is
-    /// chosen, the index tells the members of a series apart.
+    /// Give every random choice a child of its own, so that no two of them share their bits. The name says what is
+    /// chosen; the index distinguishes the members of a series.
     ///
     /// # Examples
     ///

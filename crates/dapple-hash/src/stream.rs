@@ -3,7 +3,7 @@
 use crate::{CellHash, Pcg32, Seed};
 
 impl Seed {
-    /// A random stream of its own: `Pcg32`, Melissa O'Neill's XSH RR 64/32 generator, started by two hashes.
+    /// A random stream from this seed: `Pcg32`, Melissa O'Neill's XSH RR 64/32 generator, started by two hashes.
     ///
     /// # Examples
     ///

@@ -1,4 +1,4 @@
-//! What an image holds, in short, for reports and for choosing a way to go on.
+//! The channels of an image, its format and its depth, for reports and decisions.
 
 use crate::{ExrImage, Image, PngImage, PngPixels};
 use core::fmt;
@@ -20,7 +20,7 @@ pub enum Channels {
 }
 
 impl Channels {
-    /// If there is alpha among them.
+    /// Whether there is an alpha channel.
     #[must_use]
     pub const fn has_alpha(self) -> bool {
         matches!(self, Self::GrayAlpha | Self::Rgba)
@@ -59,7 +59,7 @@ impl Image {
         }
     }
 
-    /// The bits of a channel: 8 or 16, and 32 for OpenEXR, all of whose numbers are read as `f32`.
+    /// The bits of a channel: 8 or 16, and 32 for OpenEXR, whose numbers are all read as `f32`.
     #[must_use]
     pub const fn bits(&self) -> u32 {
         match self {

@@ -1,13 +1,13 @@
-//! What an image holds, and how each kind of it becomes the numbers of a file.
+//! The content of images, and the encoding of each kind as the numbers of a file.
 //!
-//! Here alone values turn into codes and planes; the writers of whole images and of rows share it.
+//! Only this module turns values into codes and planes; the writers of whole images and of rows share it.
 
 use crate::PngPixel;
 #[cfg(feature = "png")]
 use crate::Transfer;
 use dapple_color::{Code, LinearRgb, LinearRgba, Normal};
 
-/// The quantity that the pixels of an image hold, which decides how they are written.
+/// The quantity that the pixels of an image hold, which determines how they are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Content {
     /// Data such as heights and masks. PNG: gray from 0 to 1, `round(value · max)`, linear, without a color chunk.
@@ -19,9 +19,8 @@ pub enum Content {
     /// Color with alpha. PNG: RGBA, color under the sRGB curve, alpha linear. OpenEXR: the planes `R`, `G`, `B` and `A`,
     /// linear, with alpha multiplied into the color.
     ColorAlpha,
-    /// Unit vectors. PNG: RGB of `round((part + 1) / 2 · max)`, linear, without a color chunk. OpenEXR: the same numbers
-    /// before they are rounded, `(part + 1) / 2`, in the planes `R`, `G` and `B`, since that is where programs look for a
-    /// normal map and what they undo.
+    /// Unit vectors. PNG: RGB of `round((part + 1) / 2 · max)`, linear, without a color chunk. OpenEXR: `(part + 1) /
+    /// 2`, unrounded, in the planes `R`, `G` and `B`, as programs expect of a normal map.
     Normal,
     /// Three numbers that are no color, such as occlusion, roughness and metallic. PNG: RGB from 0 to 1, linear, without a
     /// color chunk. OpenEXR: the planes `R`, `G` and `B`, any numbers.
@@ -32,13 +31,13 @@ pub enum Content {
     PackedFour,
 }
 
-/// How many bits a channel has in a PNG file.
+/// The number of bits of a channel in a PNG file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Depth {
     /// 8 bits: 256 steps.
     #[default]
     Eight,
-    /// 16 bits: 65536 steps, for heights and whatever is computed with later.
+    /// 16 bits: 65536 steps, for heights and other data for further computation.
     Sixteen,
 }
 
@@ -53,8 +52,8 @@ pub enum Encoding {
     #[cfg(feature = "exr")]
     Exr,
     /// A NumPy array (`.npy`, format 1.0) of little-endian `f32` in C order, with the shape (height, width) for gray,
-    /// (height, width, 3) and, with alpha or a fourth number, (height, width, 4). The numbers are as they are: colors
-    /// linear, alpha not multiplied into them, the parts of normals from -1 to 1.
+    /// (height, width, 3) and, with alpha or a fourth number, (height, width, 4). The numbers are not coded: colors are
+    /// linear, alpha is not multiplied into them, the components of normals are from -1 to 1.
     Npy,
     /// Raw heights (`.r16`, and `.raw` for some): `round(value · 65535)` as two bytes, the low one first, the top row
     /// first, without a header. Only for [`Content::Gray`].
@@ -62,7 +61,7 @@ pub enum Encoding {
 }
 
 impl Content {
-    /// How an error calls it.
+    /// The name in error messages.
     pub(crate) const fn name(self) -> &'static str {
         match self {
             Self::Gray => "gray",
@@ -82,7 +81,7 @@ impl Content {
         }
     }
 
-    /// The names of the planes of an OpenEXR file, sorted as that format wants them.
+    /// The names of the planes of an OpenEXR file, sorted as the format requires.
     pub(crate) const fn planes(self) -> &'static [&'static str] {
         match self {
             Self::Gray => &["Y"],
@@ -92,29 +91,29 @@ impl Content {
     }
 }
 
-/// A value of an image that can be written.
+/// A type of pixels that can be written.
 #[cfg_attr(
     not(feature = "png"),
     expect(dead_code, reason = "codes are what PNG files hold")
 )]
 pub(crate) trait Pixel: Sync {
-    /// The content that is made of such values.
+    /// The content of images with such pixels.
     const CONTENT: Content;
-    /// Its codes of 8 bits.
+    /// The pixel in codes of 8 bits.
     type Eight: PngPixel;
-    /// Its codes of 16 bits.
+    /// The pixel in codes of 16 bits.
     type Sixteen: PngPixel;
-    /// Its numbers as an array has them.
+    /// The numbers of a pixel in an array.
     type Numbers: AsRef<[f32]>;
 
     fn eight(&self) -> Self::Eight;
 
     fn sixteen(&self) -> Self::Sixteen;
 
-    /// Its number in a plane, by the place of that in [`Content::planes`].
+    /// The number of the pixel in a plane; the index is that in [`Content::planes`].
     fn part(&self, plane: usize) -> f32;
 
-    /// Its numbers, neither coded nor moved.
+    /// The numbers of the pixel, uncoded.
     fn numbers(&self) -> Self::Numbers;
 }
 

@@ -1,13 +1,13 @@
-//! Why an image was not read or written.
+//! Errors of reading and writing images.
 
 use core::fmt;
 use std::error::Error;
 use std::path::{Path, PathBuf};
 
-/// Why an image was not read or written.
+/// An error of reading or writing an image.
 ///
-/// Match on [`kind`](Self::kind); the text is for people. Where a file or a codec refused, [`source`](Error::source)
-/// holds what it said.
+/// Match on [`kind`](Self::kind); the text is for people. [`source`](Error::source) is the error of the file system or
+/// codec, if there is one.
 #[derive(Debug)]
 pub struct ImageError {
     kind: ImageErrorKind,
@@ -18,13 +18,13 @@ pub struct ImageError {
 dapple_raster::error_kind! {
     /// The kind of failure.
     ImageErrorKind {
-        /// The operating system refused to read or write; the source says why.
+        /// A file could not be read or written; the source is the error of the operating system.
         Io => "the file cannot be read or written";
-        /// The bytes begin like no format that is read, or not like the one that was asked for.
+        /// The first bytes are not those of a format that is read, or not those of the expected format.
         UnknownFormat => "the bytes are of no format that is known here";
         /// The bytes break the rules of their format, or end too soon.
         Damaged {
-            /// The format that they seemed to have.
+            /// The format whose signature the bytes have.
             format: &'static str,
         } => "the {format} data is damaged";
         /// The file uses a feature of its format that is not read.
@@ -34,68 +34,68 @@ dapple_raster::error_kind! {
         } => "{feature} is not supported";
         /// The image has no pixel.
         Empty {
-            /// Columns and rows.
+            /// The numbers of columns and rows.
             size: [u64; 2],
         } => "an image of {} × {} pixels is empty", size[0], size[1];
         /// The image has more pixels than the limit.
         TooManyPixels {
-            /// Columns and rows.
+            /// The numbers of columns and rows.
             size: [u64; 2],
-            /// The limit.
+            /// The largest number of pixels.
             limit: u64,
         } => "an image of {} × {} pixels is larger than the limit of {limit} pixels", size[0], size[1];
         /// The image takes more memory than the limit, in bytes.
         TooManyBytes {
-            /// How many it takes, as far as that is known.
+            /// The number of bytes, as far as it is known.
             bytes: u64,
-            /// The limit.
+            /// The largest number of bytes.
             limit: u64,
         } => "the image takes {bytes} bytes or more, but the limit is {limit}";
-        /// The image has a side that the format has no room for.
+        /// The image has a side that is too long for the format.
         TooLarge {
-            /// The format.
+            /// The name of the format.
             format: &'static str,
-            /// Columns and rows.
+            /// The numbers of columns and rows.
             size: [u32; 2],
-            /// The longest side, in pixels.
+            /// The longest allowed side, in pixels.
             limit: u32,
         } => "an image of {} × {} pixels does not fit into {format}: the limit is {limit} a side", size[0], size[1];
-        /// Rows of the wrong width were to be written.
+        /// The rows to write have another width than the image.
         RowWidth {
             /// The width of the rows, in pixels.
             width: u32,
             /// The width of the image.
             needed: u32,
         } => "the rows have {width} pixels, but the image has {needed} columns";
-        /// More rows were to be written than the image has.
+        /// More rows were passed to a writer than the image has.
         TooManyRows {
-            /// How many there would be.
+            /// The number of rows with the additional ones.
             rows: u64,
-            /// How many the image has.
+            /// The number of rows of the image.
             needed: u32,
         } => "there are {rows} rows to write, but the image has {needed}";
-        /// The image was to be finished before all of its rows were written.
+        /// The file was finished before all of its rows were written.
         MissingRows {
-            /// How many there are.
+            /// The number of rows written.
             rows: u32,
-            /// How many the image has.
+            /// The number of rows of the image.
             needed: u32,
         } => "only {rows} rows of {needed} are written";
-        /// The image has other channels than what was asked for.
+        /// The image has other channels than the requested ones.
         Channels {
             /// The channels of the image.
             found: &'static str,
-            /// The channels that were asked for.
+            /// The requested channels.
             needed: &'static str,
         } => "the image is {found}, but {needed} is needed";
         /// The file has no plane of this name.
         MissingPlane {
-            /// The name.
+            /// The name of the plane.
             name: String,
         } => "there is no plane named {name:?}";
-        /// The names of the planes to be written are empty, too long, or not different.
+        /// The names of the planes to write are empty, too long, or not different.
         PlaneName {
-            /// The first name that is wrong.
+            /// The first bad name.
             name: String,
         } => "the plane name {name:?} is empty, longer than 255 bytes, or used twice";
         /// Two planes of one image have different sizes.
@@ -117,7 +117,7 @@ impl ImageError {
         }
     }
 
-    /// The bytes break the rules of `format`, as `source` says.
+    /// An error of bytes that break the rules of `format`; the reason is `source`.
     pub(crate) fn damaged(
         format: &'static str,
         source: impl Into<Box<dyn Error + Send + Sync>>,
@@ -125,13 +125,13 @@ impl ImageError {
         Self::new(ImageErrorKind::Damaged { format }).because(source)
     }
 
-    /// Adds what a file or a codec said.
+    /// Adds the error of a file or a codec as the source.
     pub(crate) fn because(mut self, source: impl Into<Box<dyn Error + Send + Sync>>) -> Self {
         self.source = Some(source.into());
         self
     }
 
-    /// Adds the file that was read or written.
+    /// Adds the path of the file.
     pub(crate) fn at(mut self, path: &Path) -> Self {
         self.path = Some(path.to_owned());
         self
@@ -143,7 +143,7 @@ impl ImageError {
         &self.kind
     }
 
-    /// The file that was read or written, if there was one.
+    /// The path of the file that was read or written, if there was one.
     #[must_use]
     pub fn path(&self) -> Option<&Path> {
         self.path.as_deref()

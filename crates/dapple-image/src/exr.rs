@@ -1,8 +1,8 @@
 //! OpenEXR files: named planes of `f32`, writing and reading.
 //!
 //! The format is that of the Academy Software Foundation's "OpenEXR File Layout", <https://openexr.com>; the codec is
-//! the crate `exr`. Colors are linear with the primaries of ITU-R BT.709, which OpenEXR assumes where a file says nothing,
-//! and, as OpenEXR has it, alpha is multiplied into them in the file.
+//! the crate `exr`. Colors are linear with the primaries of ITU-R BT.709, the default of OpenEXR, and alpha is
+//! multiplied into them in the file, as the format requires.
 
 #[cfg(feature = "exr")]
 mod decode;
@@ -34,7 +34,7 @@ use dapple_raster::Raster;
 pub struct ExrPlane {
     /// The name: 1 to 255 bytes of ASCII.
     pub name: String,
-    /// The numbers; every `f32`, NaN and infinity among them, is kept bit for bit.
+    /// The numbers; every `f32` is kept bit for bit, also NaN and infinity.
     pub values: Raster<f32>,
 }
 
@@ -76,11 +76,11 @@ pub struct ExrImage {
 }
 
 impl ExrImage {
-    /// The plane of a name.
+    /// The plane with a name.
     ///
     /// # Errors
     ///
-    /// [`ImageErrorKind::MissingPlane`] if there is none.
+    /// [`ImageErrorKind::MissingPlane`] if there is no such plane.
     pub fn plane(&self, name: &str) -> Result<&Raster<f32>, ImageError> {
         let plane = self.planes.iter().find(|plane| plane.name == name);
         plane.map(|plane| &plane.values).ok_or_else(|| {
@@ -89,7 +89,7 @@ impl ExrImage {
         })
     }
 
-    /// The only plane, or else the one named `Y`.
+    /// The only plane, or else the plane `Y`.
     ///
     /// # Errors
     ///
@@ -109,8 +109,8 @@ impl ExrImage {
 
     /// The colors of the planes `R`, `G`, `B` with the alpha of `A` divided out, or 1 where there is no plane `A`.
     ///
-    /// Without a plane `R`, those of the only layer that has one are taken, as of `beauty.R`. A gray image gives grays.
-    /// Where alpha is 0, the color is as in the file.
+    /// Without a plane `R`, the planes of the only layer that has one are used, such as `beauty.R`. A gray image
+    /// becomes gray colors. Where alpha is 0, the color is as in the file.
     ///
     /// # Errors
     ///
@@ -135,7 +135,7 @@ impl ExrImage {
         Raster::from_vec(red.size(), pixels).map_err(|error| ImageError::damaged("OpenEXR", error))
     }
 
-    /// The prefix of the names of the planes of color: empty, or the only layer of color with its dot.
+    /// The prefix of the names of the color planes: empty, or the only layer of color with its dot.
     pub(crate) fn color_layer(&self) -> &str {
         let layers = self.planes.iter().filter_map(|plane| {
             let layer = plane.name.strip_suffix("R")?;
@@ -152,7 +152,7 @@ impl ExrImage {
     }
 }
 
-/// Refuses a plane that has another size than those before it.
+/// Checks that a plane has the size of those before it.
 fn check_size(size: [u32; 2], needed: [u32; 2]) -> Result<(), ImageError> {
     if size == needed {
         Ok(())
@@ -164,7 +164,7 @@ fn check_size(size: [u32; 2], needed: [u32; 2]) -> Result<(), ImageError> {
     }
 }
 
-/// A color with its alpha divided out.
+/// A color with its alpha divided out of it.
 fn straight(multiplied: [f32; 3], alpha: f32) -> LinearRgba {
     let color = if alpha == 0.0 {
         multiplied

@@ -1,7 +1,7 @@
-//! The two places that touch files: reading all of one within a limit, and replacing one as a whole.
+//! Access to files: reading a whole file within a limit, and replacing one as a whole.
 //!
-//! A file is written under a temporary name beside its own and then renamed, so that nobody ever sees half of it, and
-//! what was there before stays if writing fails.
+//! A file is written under a temporary name beside its own and then renamed. So no program ever sees half of it, and
+//! the previous content remains if writing fails.
 
 #![expect(
     clippy::disallowed_methods,
@@ -14,11 +14,11 @@ use std::io::{self, Read, Write};
 use std::path::Path;
 use tempfile::Builder;
 
-/// All bytes of a file, if there are at most `limit`.
+/// All bytes of a file with at most `limit` bytes.
 pub(crate) fn read(path: &Path, limit: u64) -> Result<Vec<u8>, ImageError> {
     let io = |error: io::Error| ImageError::new(ImageErrorKind::Io).because(error);
     let mut bytes = Vec::new();
-    // A device or a pipe has no length to trust, so the reader stops by itself, one byte past the limit.
+    // The length of a device or a pipe is unknown, so the reader stops by itself, one byte past the limit.
     File::open(path)
         .and_then(|file| file.take(limit.saturating_add(1)).read_to_end(&mut bytes))
         .map_err(|error| io(error).at(path))?;
@@ -29,13 +29,13 @@ pub(crate) fn read(path: &Path, limit: u64) -> Result<Vec<u8>, ImageError> {
     Ok(bytes)
 }
 
-/// Makes `bytes` the content of the file at `path`, which is new or the old one until all of it is written.
+/// Replaces the content of the file at `path` with `bytes`: it changes from the old to the new content at once.
 ///
-/// A file that is there keeps its permissions, and one that a link leads to, the link.
+/// An existing file keeps its permissions; if `path` is a link, the file that it leads to is replaced.
 ///
 /// # Errors
 ///
-/// [`ImageErrorKind::Io`] with the path, if the folder is not there or the system refuses.
+/// [`ImageErrorKind::Io`] with the path, if the folder does not exist or the system fails.
 pub fn replace(path: &Path, bytes: &[u8]) -> Result<(), ImageError> {
     write_and_rename(path, bytes)
         .map_err(|error| ImageError::new(ImageErrorKind::Io).because(error).at(path))
@@ -44,7 +44,7 @@ pub fn replace(path: &Path, bytes: &[u8]) -> Result<(), ImageError> {
 fn write_and_rename(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let path = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
     let folder = path.parent().unwrap_or(Path::new(""));
-    // Made here, so that its permissions are those of any new file.
+    // Created here, so that its permissions are those of any new file.
     let create = |path: &Path| File::options().write(true).create_new(true).open(path);
     let mut file = Builder::new().prefix(".dapple-").make_in(folder, create)?;
     file.as_file_mut().write_all(bytes)?;

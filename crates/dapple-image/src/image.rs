@@ -1,4 +1,4 @@
-//! Images whose format is found out by their first bytes.
+//! Images whose format is recognized by their first bytes.
 
 use crate::{ExrImage, ImageError, ImageErrorKind, Limits, PngImage, file};
 use dapple_color::{LinearRgb, LinearRgba};
@@ -14,24 +14,24 @@ pub(crate) const JPEG_SIGNATURE: [u8; 3] = [0xff, 0xd8, 0xff];
 /// The bytes that every OpenEXR file begins with.
 pub(crate) const EXR_SIGNATURE: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
 
-/// An image of one of the formats that are read.
+/// An image of one of the supported formats.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Image {
     /// A PNG file.
     Png(PngImage),
-    /// A JPEG file, as the PNG image of the same pixels.
+    /// A JPEG file, as a PNG image of the same pixels.
     Jpeg(PngImage),
     /// An OpenEXR file.
     Exr(ExrImage),
 }
 
-/// The image in the bytes of a file, whose format is found out by the first of them.
+/// Decodes the bytes of an image file, whose format is recognized by its first bytes.
 ///
 /// # Errors
 ///
-/// [`ImageErrorKind::UnknownFormat`] if it is none that is known, [`ImageErrorKind::Unsupported`] if the feature of the
-/// crate that reads it is off, else those of `decode_png`, `decode_jpeg` and `decode_exr`.
+/// [`ImageErrorKind::UnknownFormat`] if it is not a known format, [`ImageErrorKind::Unsupported`] if the feature of the
+/// crate for the format is off, else those of `decode_png`, `decode_jpeg` and `decode_exr`.
 pub fn decode_image(bytes: &[u8], limits: &Limits) -> Result<Image, ImageError> {
     #[cfg(feature = "png")]
     if bytes.starts_with(&PNG_SIGNATURE) {
@@ -55,14 +55,14 @@ pub fn decode_image(bytes: &[u8], limits: &Limits) -> Result<Image, ImageError> 
     }))
 }
 
-/// The signatures of formats whose codec may not be compiled in, and the text of the refusal.
+/// The signatures of formats whose codec may be compiled out, and the text of the error.
 const LEFT_OUT: [(&[u8], &str); 3] = [
     (&PNG_SIGNATURE, "PNG without the feature `png`"),
     (&JPEG_SIGNATURE, "JPEG without the feature `jpeg`"),
     (&EXR_SIGNATURE, "OpenEXR without the feature `exr`"),
 ];
 
-/// Reads an image file, whose format is found out by its first bytes (the name does not matter).
+/// Reads an image file, whose format is recognized by its first bytes (the name does not matter).
 ///
 /// # Errors
 ///
@@ -74,7 +74,7 @@ pub fn read_image(path: impl AsRef<Path>, limits: &Limits) -> Result<Image, Imag
 }
 
 impl Image {
-    /// Columns and rows (of the first plane, where there are several).
+    /// The numbers of columns and rows (of the first plane, where there are several).
     #[must_use]
     pub fn size(&self) -> [u32; 2] {
         match self {
@@ -86,10 +86,10 @@ impl Image {
         }
     }
 
-    /// The numbers of a gray image as they are: from 0 to 1 in PNG and JPEG, of any size in OpenEXR.
+    /// The uncoded numbers of a gray image: from 0 to 1 in PNG and JPEG, of any size in OpenEXR.
     ///
-    /// This is for data (heights, masks). No transfer curve is undone, whatever the file says. Alpha is allowed where it is
-    /// 1 everywhere.
+    /// This is for data (heights, masks). No transfer curve is applied, whatever the file says. Alpha is allowed if it
+    /// is 1 everywhere.
     ///
     /// # Errors
     ///
@@ -101,9 +101,9 @@ impl Image {
         }
     }
 
-    /// The colors of the image in linear light. Gray images give grays; alpha is allowed where it is 1 everywhere.
+    /// The colors of the image in linear light. Gray images become gray colors; alpha is allowed if it is 1 everywhere.
     ///
-    /// PNG and JPEG are read as sRGB, also where the file does not say so, as the web does.
+    /// PNG and JPEG are read as sRGB, even if the file does not say so, as on the web.
     ///
     /// # Errors
     ///
@@ -124,7 +124,7 @@ impl Image {
 
     /// The colors of the image in linear light with their alpha, which is 1 where the file has none.
     ///
-    /// PNG and JPEG are read as sRGB, also where the file does not say so, as the web does.
+    /// PNG and JPEG are read as sRGB, even if the file does not say so, as on the web.
     ///
     /// # Errors
     ///
@@ -138,7 +138,7 @@ impl Image {
     }
 }
 
-/// The refusal of an image with alpha where none is wanted.
+/// The error of an image with alpha where no alpha is allowed.
 pub(crate) fn transparent(needed: &'static str) -> ImageError {
     ImageError::new(ImageErrorKind::Channels {
         found: "partly transparent",

@@ -1,9 +1,9 @@
-//! Reading JPEG: gray and color with 8 bits, baseline and progressive.
+//! Decoder of JPEG: gray and color with 8 bits, baseline and progressive.
 //!
-//! Reference: ITU-T T.81, "Digital compression and coding of continuous-tone still images", 1992, with JFIF (ITU-T T.871)
-//! and Exif. The codec is the crate `zune-jpeg`, without its SIMD, so that a file gives the same pixels on every machine.
-//! Profiles are ignored, and the codes are sRGB. An image with an Exif orientation is turned the way that it is meant to be
-//! seen, as browsers and editors do. Other codings, other depths and CMYK are refused by name.
+//! Reference: ITU-T T.81, "Digital compression and coding of continuous-tone still images", 1992, with JFIF (ITU-T
+//! T.871) and Exif. The codec is the crate `zune-jpeg`, without its SIMD, so that a file has the same pixels on every
+//! machine. Profiles are ignored, and the codes are sRGB. An image with an Exif orientation is turned upright, as in
+//! browsers and editors. Other codings, other depths and CMYK are errors that name the feature.
 //!
 //! Where a program unwinds on panic (the default), a panic of the codec is caught here and becomes
 //! [`ImageErrorKind::Damaged`].
@@ -20,20 +20,20 @@ use zune_jpeg::zune_core::bytestream::ZCursor;
 use zune_jpeg::zune_core::colorspace::ColorSpace;
 use zune_jpeg::zune_core::options::DecoderOptions;
 
-/// The second byte of the marker that a scan begins with.
+/// The second byte of the marker at the beginning of a scan.
 const START_OF_SCAN: u8 = 0xda;
 
-/// The second byte of the marker that an image ends with.
+/// The second byte of the marker at the end of an image.
 const END_OF_IMAGE: u8 = 0xd9;
 
-/// The longest side that the format has, in pixels.
+/// The longest side of the format, in pixels.
 const SIDE_LIMIT: usize = 65_535;
 
 /// Bytes of memory for each sample: its code, and its coefficient of 16 bits, of which a progressive file needs all.
 const SAMPLE_BYTES: u64 = 3;
 
-/// The image in the bytes of a JPEG file, as the PNG image of the same pixels: [`PngPixels::Gray8`] or
-/// [`PngPixels::Rgb8`], under the sRGB curve.
+/// Decodes the bytes of a JPEG file to a PNG image of the same pixels: [`PngPixels::Gray8`] or [`PngPixels::Rgb8`],
+/// under the sRGB curve.
 ///
 /// # Errors
 ///
@@ -45,7 +45,7 @@ pub fn decode_jpeg(bytes: &[u8], limits: &Limits) -> Result<PngImage, ImageError
     if !bytes.starts_with(&SIGNATURE) {
         return Err(ImageError::new(ImageErrorKind::UnknownFormat));
     }
-    // Nothing outlives the call that a panic could leave half done.
+    // No data that a panic could leave half done outlives the call.
     catch_unwind(AssertUnwindSafe(|| decode(bytes, limits)))
         .unwrap_or_else(|_| Err(ImageError::damaged("JPEG", "the codec gave up")))
 }
@@ -94,7 +94,7 @@ fn decode(bytes: &[u8], limits: &Limits) -> Result<PngImage, ImageError> {
     })
 }
 
-/// Refuses a file whose last scan has no end; the codec makes up the last pixels of it.
+/// Checks that the last scan of a file has an end; otherwise the codec makes up its last pixels.
 ///
 /// Within a scan neither marker can occur, and a preview in the header ends before the first scan begins.
 fn check_end(bytes: &[u8]) -> Result<(), ImageError> {
@@ -113,9 +113,9 @@ fn frame(bytes: &[u8]) -> Option<[u8; 3]> {
     let mut rest = bytes.get(2..)?;
     loop {
         match *rest {
-            // A marker may have any number of these before it.
+            // A marker may be preceded by any number of these.
             [0xff, 0xff, ..] => rest = &rest[1..],
-            // Tables of Huffman and arithmetic codes, and what is reserved, are no frames.
+            // Tables of Huffman and arithmetic codes, and reserved markers, are no frames.
             [
                 0xff,
                 marker @ (0xc0..=0xcf | 0xf7),
@@ -139,7 +139,7 @@ fn frame(bytes: &[u8]) -> Option<[u8; 3]> {
     }
 }
 
-/// The unsupported feature of a frame (T.81, table B.1; T.87 for JPEG-LS).
+/// The name of the unsupported feature of a frame (T.81, table B.1; T.87 for JPEG-LS).
 fn unread_feature([marker, bits, channels]: [u8; 3]) -> Option<&'static str> {
     Some(match marker {
         0xc3 | 0xc7 | 0xcb | 0xcf => "lossless JPEG",

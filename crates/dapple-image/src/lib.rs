@@ -1,8 +1,8 @@
 //! Image files: PNG with 8 or 16 bits, OpenEXR and JPEG, with typed errors and limits.
 //!
-//! This is the only crate of dapple that knows an image format. Data (heights, masks, normals) is written as it is;
-//! color is linear inside of dapple and in OpenEXR, and sRGB in PNG and JPEG. A file is written under a temporary name and
-//! then renamed, so that half a file is never seen. Whatever the bytes that are read: the result is an image or an
+//! This is the only crate of dapple that knows image formats. Data (heights, masks, normals) is written unchanged;
+//! color is linear inside of dapple and in OpenEXR, and sRGB in PNG and JPEG. A file is written under a temporary name
+//! and then renamed, so that half a file is never visible. Any bytes can be read: the result is an image or an
 //! [`ImageError`], within the [`Limits`].
 //!
 //! | to write | in one call | with more choice |
@@ -12,9 +12,9 @@
 //! | any numbers | [`write_gray_exr`], [`write_color_exr`], [`write_color_alpha_exr`] | [`write_exr`], [`encode_exr`] |
 //!
 //! An image that is too large for memory is written row by row with a [`RowWriter`], as PNG, as OpenEXR in tiles, as a
-//! NumPy array or as raw heights; its [`Content`] and its [`Encoding`] say how.
+//! NumPy array or as raw heights, according to its [`Content`] and its [`Encoding`].
 //!
-//! [`read_image`] reads images back, and JPEG, too:
+//! [`read_image`] reads images back, including JPEG:
 //!
 //! ```no_run
 //! use dapple_image::{Depth, Limits, read_image, write_gray_png};
@@ -24,10 +24,10 @@
 //! # Ok::<(), dapple_image::ImageError>(())
 //! ```
 //!
-//! Each format is a feature of its own (`png`, `exr`, `jpeg`, all on by default) and brings its codec; the others are then
-//! refused by name.
+//! Each format is a feature of its own (`png`, `exr`, `jpeg`, all on by default) and adds its codec; other formats are
+//! then errors that name the format.
 //!
-//! What a file holds is said by [`Image::format`], [`Image::channels`], [`Image::bits`] and [`Image::size`].
+//! [`Image::format`], [`Image::channels`], [`Image::bits`] and [`Image::size`] describe the content of a file.
 
 #![forbid(unsafe_code)]
 #![cfg_attr(

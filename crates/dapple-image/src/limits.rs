@@ -1,11 +1,11 @@
-//! How large an image may be before it is refused.
+//! Limits of the size of images that are read.
 
 use crate::{ImageError, ImageErrorKind};
 
-/// How large an image may be before reading refuses it.
+/// Limits of the size of images that are read.
 ///
-/// A few kilobytes of PNG can ask for terabytes of pixels; the limits are checked against what the file says of its size,
-/// before memory for the pixels is taken.
+/// A few kilobytes of PNG can claim terabytes of pixels; the limits are checked against the claimed size, before memory
+/// for the pixels is allocated.
 ///
 /// # Examples
 ///
@@ -17,9 +17,9 @@ use crate::{ImageError, ImageErrorKind};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Limits {
-    /// The most pixels. By default 2^28, which is 16384 × 16384.
+    /// The largest number of pixels. By default 2^28, which is 16384 × 16384.
     pub pixels: u64,
-    /// The most bytes: of the file, and again of its pixels in memory. By default 2^32, which is 4 GiB.
+    /// The largest number of bytes: of the file, and again of its pixels in memory. By default 2^32, which is 4 GiB.
     pub bytes: u64,
 }
 
@@ -33,7 +33,7 @@ impl Default for Limits {
 }
 
 impl Limits {
-    /// Refuses an image without pixels or with too many.
+    /// Checks that an image has pixels, and no more than the limit.
     pub(crate) fn check_pixels(&self, size: [u64; 2]) -> Result<(), ImageError> {
         let limit = self.pixels;
         if size.contains(&0) {
@@ -48,7 +48,7 @@ impl Limits {
         Ok(())
     }
 
-    /// Refuses an image that takes too much memory.
+    /// Checks that an image takes no more memory than the limit.
     pub(crate) fn check_bytes(&self, bytes: u64) -> Result<(), ImageError> {
         let limit = self.bytes;
         if bytes > limit {
@@ -61,7 +61,7 @@ impl Limits {
     }
 }
 
-/// Refuses to write an image without pixels, or with a side that a format has no room for.
+/// Checks that an image to be written has pixels, and no side that is too long for the format.
 pub(crate) fn check_side(
     size: [u32; 2],
     limit: u32,

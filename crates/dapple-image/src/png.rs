@@ -1,4 +1,4 @@
-//! PNG files: the pixels they hold, writing and reading.
+//! PNG files: their pixels, writing and reading.
 //!
 //! The format is that of the W3C recommendation "Portable Network Graphics (PNG) Specification (Third Edition)", 2025,
 //! <https://www.w3.org/TR/png-3/>; the codec is the crate `png`.
@@ -26,7 +26,7 @@ pub use shortcut::{write_color_alpha_png, write_color_png, write_gray_png, write
 #[cfg(feature = "png")]
 pub(crate) use stream::PngStream;
 
-/// The `gAMA` of sRGB, 0.45455 times 100 000, as the specification has it.
+/// The `gAMA` of sRGB, 0.45455 times 100 000, by the specification.
 #[cfg(feature = "png")]
 const GAMMA_OF_SRGB: u32 = 45_455;
 
@@ -34,9 +34,9 @@ const GAMMA_OF_SRGB: u32 = 45_455;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Transfer {
-    /// Values as they are: heights, masks, normals. The file says nothing about color.
+    /// Unchanged values: heights, masks, normals. The file has no color chunk.
     Data,
-    /// Colors under the sRGB curve. The file says so.
+    /// Colors under the sRGB curve. The file has a chunk that declares it.
     Srgb,
 }
 

@@ -1,4 +1,4 @@
-//! Numbers one after the other: NumPy arrays and raw heights, written row by row.
+//! Files of plain numbers, NumPy arrays and raw heights, written row by row.
 //!
 //! Reference: NumPy Developers, "A Simple File Format for NumPy Arrays" (`numpy.lib.format`), version 1.0; there is no
 //! standard for raw heights, which the terrain importers of Unity and Unreal call RAW and r16: codes of 16 bits, the low
@@ -11,12 +11,12 @@ use dapple_color::Code;
 use dapple_raster::RasterView;
 use std::io::Write;
 
-/// The header of a NumPy file ends at a multiple of this.
+/// The alignment of the end of the header of a NumPy file, in bytes.
 const ALIGNMENT: usize = 64;
-/// The bytes before the text of the header: the magic string, the version 1.0, and the length of the text.
+/// The length of the part before the text of the header: the magic string, the version 1.0, and the length of the text.
 const PREAMBLE: usize = 10;
 
-/// A file of plain numbers on its way into `sink`.
+/// A file of plain numbers that is being written into `sink`.
 pub(crate) struct RawStream<W> {
     sink: W,
     /// The bytes of a row.
@@ -24,7 +24,7 @@ pub(crate) struct RawStream<W> {
 }
 
 impl<W: Write> RawStream<W> {
-    /// A NumPy array of `f32` with the shape (height, width), or (height, width, channels) where there are several.
+    /// Begins a NumPy array of `f32` with the shape (height, width), or (height, width, channels) for several channels.
     pub(crate) fn npy(mut sink: W, size: [u32; 2], n_channels: usize) -> Result<Self, ImageError> {
         check_side(size, u32::MAX, "a NumPy array")?;
         sink.write_all(&npy_header(size, n_channels))
@@ -32,7 +32,7 @@ impl<W: Write> RawStream<W> {
         Ok(Self::headless(sink))
     }
 
-    /// Heights as codes of 16 bits without a header.
+    /// Begins a file of heights as codes of 16 bits, without a header.
     pub(crate) fn r16(sink: W, size: [u32; 2]) -> Result<Self, ImageError> {
         check_side(size, u32::MAX, "raw heights")?;
         Ok(Self::headless(sink))

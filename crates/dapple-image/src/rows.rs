@@ -1,4 +1,4 @@
-//! Writing an image by its rows, from the top down, however large it is.
+//! Writing of an image of any size by its rows, from the top down.
 
 #[cfg(feature = "png")]
 use crate::Depth;
@@ -16,13 +16,12 @@ use std::io::{Seek, Write};
 
 /// Writes an image by its rows, from the top down, so that it never has to be in memory as a whole.
 ///
-/// The rows come in bands of any height; how they are divided does not change a byte of the file. PNG takes a few rows of
-/// memory, and gives the bytes of [`encode_png`](crate::encode_png). OpenEXR is written in tiles of 64 × 64 pixels and
-/// takes a band of these: 64 rows of 4 bytes for each plane. It is compressed on all cores where the feature `rayon` is
-/// on. NumPy arrays and raw heights take a row.
+/// The rows come in bands of any height; how they are divided does not change a byte of the file. PNG takes a few rows
+/// of memory, and the file equals that of [`encode_png`](crate::encode_png). OpenEXR is written in tiles of 64 × 64
+/// pixels and takes a band of these: 64 rows of 4 bytes for each plane. It is compressed on all cores where the feature
+/// `rayon` is on. NumPy arrays and raw heights take a row.
 ///
-/// The sink should be empty, and buffered if it is a file. What is in it is an image only after
-/// [`finish`](Self::finish).
+/// The sink should be empty, and buffered if it is a file. Its content is complete only after [`finish`](Self::finish).
 ///
 /// # Examples
 ///
@@ -44,14 +43,14 @@ use std::io::{Seek, Write};
 pub struct RowWriter<W: Write + Seek> {
     content: Content,
     size: [u32; 2],
-    /// How many rows are written.
+    /// The number of rows written so far.
     rows: u32,
-    /// If a row went astray, and the file can never be whole.
+    /// Whether writing a row failed, so that the file can never be complete.
     is_broken: bool,
     file: File<W>,
 }
 
-/// The file of each encoding.
+/// The state of the file for each encoding.
 enum File<W: Write + Seek> {
     #[cfg(feature = "png")]
     Eight(Box<PngStream<W>>),
@@ -64,15 +63,14 @@ enum File<W: Write + Seek> {
 }
 
 impl<W: Write + Seek> RowWriter<W> {
-    /// A writer of an image of `size` columns and rows into `sink`. The header is written at once.
+    /// Begins an image of `size` columns and rows in `sink`. The header is written at once.
     ///
     /// # Errors
     ///
-    /// [`ImageErrorKind::Empty`] if the image has no pixel, [`ImageErrorKind::TooLarge`] if a side is longer than
-    /// 2^31 - 1 pixels in PNG or 2^30 - 2 in OpenEXR, [`ImageErrorKind::TooManyBytes`] if a row of PNG takes more than
-    /// 2^30 bytes,
-    /// [`ImageErrorKind::Unsupported`] if OpenEXR has no room for as many tiles, [`ImageErrorKind::Channels`] if raw
-    /// heights are to hold something else, [`ImageErrorKind::Io`] if the sink refuses.
+    /// [`ImageErrorKind::Empty`] if the image has no pixel, [`ImageErrorKind::TooLarge`] if a side is longer than 2^31
+    /// - 1 pixels in PNG or 2^30 - 2 in OpenEXR, [`ImageErrorKind::TooManyBytes`] if a row of PNG takes more than 2^30
+    /// bytes, [`ImageErrorKind::Unsupported`] if there are too many tiles for OpenEXR, [`ImageErrorKind::Channels`] if
+    /// the content of raw heights is not gray, [`ImageErrorKind::Io`] if the sink fails.
     pub fn new(
         sink: W,
         size: [u32; 2],
@@ -101,8 +99,8 @@ impl<W: Write + Seek> RowWriter<W> {
     /// # Errors
     ///
     /// [`ImageErrorKind::RowWidth`] if the rows do not have the width of the image, [`ImageErrorKind::TooManyRows`] if
-    /// there are more than the image lacks, [`ImageErrorKind::Channels`] if the image has another content; then nothing
-    /// is written, and one may go on. [`ImageErrorKind::Io`] if the sink refuses, and ever after.
+    /// there are more than are missing, [`ImageErrorKind::Channels`] if the image has another content; then no row is
+    /// written, and writing may continue. [`ImageErrorKind::Io`] if the sink fails, and on each later call.
     pub fn write_gray(&mut self, rows: RasterView<'_, f32>) -> Result<(), ImageError> {
         self.write(rows)
     }
@@ -111,7 +109,7 @@ impl<W: Write + Seek> RowWriter<W> {
     ///
     /// # Errors
     ///
-    /// As of [`write_gray`](Self::write_gray).
+    /// Those of [`write_gray`](Self::write_gray).
     pub fn write_color(&mut self, rows: RasterView<'_, LinearRgb>) -> Result<(), ImageError> {
         self.write(rows)
     }
@@ -120,7 +118,7 @@ impl<W: Write + Seek> RowWriter<W> {
     ///
     /// # Errors
     ///
-    /// As of [`write_gray`](Self::write_gray).
+    /// Those of [`write_gray`](Self::write_gray).
     pub fn write_color_alpha(
         &mut self,
         rows: RasterView<'_, LinearRgba>,
@@ -132,7 +130,7 @@ impl<W: Write + Seek> RowWriter<W> {
     ///
     /// # Errors
     ///
-    /// As of [`write_gray`](Self::write_gray).
+    /// Those of [`write_gray`](Self::write_gray).
     pub fn write_normals(&mut self, rows: RasterView<'_, Normal>) -> Result<(), ImageError> {
         self.write(rows)
     }
@@ -141,7 +139,7 @@ impl<W: Write + Seek> RowWriter<W> {
     ///
     /// # Errors
     ///
-    /// As of [`write_gray`](Self::write_gray).
+    /// Those of [`write_gray`](Self::write_gray).
     pub fn write_packed(&mut self, rows: RasterView<'_, [f32; 3]>) -> Result<(), ImageError> {
         self.write(rows)
     }
@@ -150,16 +148,16 @@ impl<W: Write + Seek> RowWriter<W> {
     ///
     /// # Errors
     ///
-    /// As of [`write_gray`](Self::write_gray).
+    /// Those of [`write_gray`](Self::write_gray).
     pub fn write_packed_four(&mut self, rows: RasterView<'_, [f32; 4]>) -> Result<(), ImageError> {
         self.write(rows)
     }
 
-    /// Ends the file and gives the sink back.
+    /// Ends the file and returns the sink.
     ///
     /// # Errors
     ///
-    /// [`ImageErrorKind::MissingRows`] if rows are missing, [`ImageErrorKind::Io`] if the sink refuses or did before.
+    /// [`ImageErrorKind::MissingRows`] if rows are missing, [`ImageErrorKind::Io`] if the sink fails or failed before.
     pub fn finish(self) -> Result<W, ImageError> {
         self.check_whole()?;
         let [rows, needed] = [self.rows, self.size[1]];
@@ -182,7 +180,7 @@ impl<W: Write + Seek> RowWriter<W> {
         self.check_whole()?;
         let [_, height] = rows.size();
         self.check_rows::<T>(rows.size())?;
-        // Whoever returns early leaves it broken.
+        // Remains true after an early return.
         self.is_broken = true;
         match &mut self.file {
             #[cfg(feature = "png")]
@@ -256,7 +254,7 @@ impl<W: Write + Seek> File<W> {
 
 impl<W: Write + Seek> fmt::Debug for RowWriter<W> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        // The codecs cannot be shown.
+        // The codecs do not implement `Debug`.
         f.debug_struct("RowWriter")
             .field("content", &self.content)
             .field("size", &self.size)

@@ -1,4 +1,4 @@
-//! The whole way: values to a file and back.
+//! Round trips: values to a file and back.
 
 use crate::{
     Content, Depth, Encoding, Image, ImageError, ImageErrorKind, Limits, PngImage, PngPixels,
@@ -11,7 +11,7 @@ use dapple_raster::Raster;
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
-/// A file name of its own for a test, removed at the end.
+/// A unique file name for a test; the file is removed at the end.
 struct Scratch(PathBuf);
 
 impl Scratch {

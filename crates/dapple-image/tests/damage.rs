@@ -11,17 +11,17 @@ use proptest::prelude::*;
 use proptest::test_runner::TestRunner;
 use std::io::Cursor;
 
-/// What a damaged file may ask for.
+/// The limits for reading a damaged file.
 const LIMITS: Limits = Limits {
     pixels: 1 << 16,
     bytes: 1 << 20,
 };
 
-/// The most memory in bytes that reading may take beyond what is there before: the codecs' tables and copies come on top
-/// of the limit, but not by orders of magnitude.
+/// The largest additional memory in bytes that reading may take: the codecs' tables and copies come on top of the
+/// limit, but not by orders of magnitude.
 const MEMORY: u64 = 48 << 20;
 
-/// Whole files, small enough that a change hits something.
+/// Complete files, small enough that a change hits something.
 fn files() -> Vec<Vec<u8>> {
     let size = [21, 18];
     let gray = Raster::from_fn(size, |x, y| (x * 5 + y * 7) as f32 / 255.0).unwrap();
@@ -64,7 +64,7 @@ fn files() -> Vec<Vec<u8>> {
     files
 }
 
-/// A change of a file, at a part of its length.
+/// A change of a file, at a fraction of its length.
 #[derive(Clone, Debug)]
 enum Change {
     Set(f64, u8),

@@ -1,20 +1,21 @@
-//! Rows go to a file in little memory, however many there are. A binary of its own, since it looks at its peak.
+//! Rows are written to a file in little memory, however many there are. A binary of its own, since it measures its peak
+//! memory.
 
 use dapple_image::{Content, Depth, Encoding, RowWriter};
 use dapple_raster::Raster;
 use std::io::{self, Seek, SeekFrom, Write};
 
-/// Columns and rows. As one raster of `f32` the image takes 256 MiB.
+/// The numbers of columns and rows. As one raster of `f32` the image takes 256 MiB.
 const SIZE: [u32; 2] = [16384, 4096];
 
-/// How many rows are written at a time.
+/// The number of rows that are written at a time.
 const BAND: u32 = 100;
 
 /// The most memory in bytes: a band of rows and the band of tiles take 11 MB, and what the program has anyway comes on
 /// top.
 const LIMIT: u64 = 64 << 20;
 
-/// A file of which only the length is kept.
+/// A sink that only keeps the length of its file.
 #[derive(Debug, Default)]
 struct Length {
     position: u64,

@@ -1,15 +1,15 @@
-//! Colors of vertices as formats other than glTF have them: coded as sRGB.
+//! Vertex colors of the formats other than glTF: coded as sRGB.
 
 use dapple_color::{Code, LinearRgb, LinearRgba};
 
-/// How a number stands for a part of a color. Numbers outside of the range are clamped to it, and NaN is 0.
+/// The coding of a component of a color as a number. Numbers out of range are clamped, and NaN is 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Coding {
-    /// 0 to 255.
+    /// Whole numbers from 0 to 255.
     Byte,
-    /// 0 to 65535.
+    /// Whole numbers from 0 to 65535.
     Short,
-    /// 0 to 1, of which 16 bits are kept.
+    /// Fractions from 0 to 1, rounded to 16 bits.
     Unit,
 }
 

@@ -1,20 +1,20 @@
-//! Why a mesh file was refused.
+//! Errors of mesh files.
 
 use dapple_mesh::MeshError;
 
 dapple_raster::error! {
-    /// Why a mesh file could not be read or written.
+    /// An error of reading or writing a mesh file.
     MeshIoError,
-    /// The limit that was broken.
+    /// The cause of a [`MeshIoError`], with the limit and the value.
     MeshIoErrorKind {
         /// A file does not follow its format.
         File {
-            /// The format.
+            /// The name of the format.
             format: &'static str,
-            /// The reason, and where in the file it is.
+            /// The reason, and the place in the file.
             why: String,
         } => "this is not a valid {format} file: {why}";
-        /// A file is valid, but uses a feature that is not read.
+        /// A file is valid, but uses a feature that is not supported.
         Unsupported {
             /// The name of the feature.
             feature: String,
@@ -26,28 +26,28 @@ dapple_raster::error! {
             /// The error of the operating system, as text.
             why: String,
         } => "{path}: {why}";
-        /// No reader, or no writer, has this name.
+        /// No format with this name can be read, or none can be written.
         Format {
-            /// The name, as the ending of a path has it.
+            /// The name, as in the ending of a path.
             name: String,
-            /// The endings that are known, as text.
+            /// The known endings, as text.
             known: String,
         } => "no mesh format is named `{name}`; there are {known}";
-        /// Files that name each other cannot be named after this.
+        /// Files that refer to each other by name cannot have this name.
         Name {
             /// The name of the files without their endings.
             name: String,
         } => "files of an OBJ model cannot be named `{name}`: white space, slashes and `#` do not work in them";
         /// A file would be larger than its format can hold.
         Size {
-            /// The format.
+            /// The name of the format.
             format: &'static str,
-            /// How many bytes it would have.
+            /// The number of bytes of the file.
             bytes: usize,
         } => "the {format} file would have {bytes} bytes, but must have less than 2^32";
     }
     from {
-        /// The mesh or the model was refused.
+        /// An error of the mesh or the model.
         Mesh(MeshError),
     }
 }

@@ -1,4 +1,4 @@
-//! Reading and writing models at paths: the only place that touches files.
+//! Reading and writing models at paths: the only module that touches files.
 
 #![expect(
     clippy::disallowed_methods,
@@ -12,19 +12,19 @@ use std::fs::File;
 use std::io::{self, Read, Write as _};
 use std::path::{Component, Path};
 
-/// The most bytes that are read of a file, and of all files beside it. A device or a pipe has no length to trust, and a
-/// small file may name a large one many times.
+/// The largest number of bytes that are read of a file, and of all files beside it. The length of a device or a pipe is
+/// unknown, and a small file may name a large one many times.
 const BYTES_MAX: u64 = 1 << 32;
 
-/// Reads a mesh file, in the format of [`FORMATS`](crate::FORMATS) that has the ending of its path.
+/// Reads a mesh file, in the format of [`FORMATS`](crate::FORMATS) with the ending of its path.
 ///
-/// Materials, buffers and textures are looked for in the same folder and those in it, never outside of it, and
-/// until there are 4 GiB of them.
+/// Materials, buffers and textures are read from the same folder and the folders in it, never from outside of it, and
+/// up to 4 GiB in total.
 ///
 /// # Errors
 ///
 /// [`MeshIoErrorKind::Io`] if the file cannot be read or has more than 4 GiB; [`MeshIoErrorKind::Format`] if no format
-/// has its ending; and what the reader of the format refuses.
+/// has its ending; and the errors of the reader of the format.
 pub fn read_model(path: impl AsRef<Path>) -> Result<Model, MeshIoError> {
     let path = path.as_ref();
     let Some(format) = MeshFormat::of_path(path) else {
@@ -39,13 +39,13 @@ pub fn read_model(path: impl AsRef<Path>) -> Result<Model, MeshIoError> {
 
 /// Writes a mesh file, in the format of [`FORMATS`](crate::FORMATS) that is written with the ending of its path.
 ///
-/// A file is written under a temporary name and then renamed, so that no program ever sees half of it. Files that it
-/// names, such as materials and textures, are written beside it before it, under the same stem.
+/// A file is written under a temporary name and then renamed, so that no program ever sees half of it. Files to which
+/// it refers, such as materials and textures, are written beside it first, under the same stem.
 ///
 /// # Errors
 ///
-/// [`MeshIoErrorKind::Io`] if a file cannot be written; [`MeshIoErrorKind::Format`] if nothing is written with this
-/// ending; and what the writer of the format refuses.
+/// [`MeshIoErrorKind::Io`] if a file cannot be written; [`MeshIoErrorKind::Format`] if no format is written with this
+/// ending; and the errors of the writer of the format.
 pub fn write_model(path: impl AsRef<Path>, model: &Model) -> Result<(), MeshIoError> {
     let path = path.as_ref();
     let ending = ending(path);
@@ -62,14 +62,14 @@ pub fn write_model(path: impl AsRef<Path>, model: &Model) -> Result<(), MeshIoEr
     main.map_or(Ok(()), |main| replace(path, &main.bytes))
 }
 
-/// The error of an ending that nothing is written with.
+/// The error of an ending with which no format is written.
 pub(crate) fn unwritable(name: String) -> MeshIoError {
     let known = writable_endings().collect::<Vec<_>>().join(", ");
     let known = format!("{known} to write");
     MeshIoError::new(MeshIoErrorKind::Format { name, known })
 }
 
-/// The content of another file by its name in a file, if it is in the folder of that or deeper.
+/// The content of a file, by its name in another file, if it is in the folder of that file or deeper.
 fn beside(path: &Path, name: &str, left: &mut u64) -> Option<Vec<u8>> {
     let inside = |part: Component<'_>| matches!(part, Component::Normal(_) | Component::CurDir);
     let name = Path::new(name);
@@ -98,13 +98,13 @@ fn failed(path: &Path, error: &io::Error) -> MeshIoError {
     MeshIoError::new(MeshIoErrorKind::Io { path, why })
 }
 
-/// Makes `bytes` the content of the file at `path`, which is new or the old one until all of it is written.
+/// Replaces the content of the file at `path` with `bytes`: it changes from the old to the new content at once.
 ///
-/// A file that is there keeps its permissions, and one that a link leads to, the link.
+/// An existing file keeps its permissions; if `path` is a link, the file that it leads to is replaced.
 fn replace(path: &Path, bytes: &[u8]) -> Result<(), MeshIoError> {
     let replaced = || {
         let path = std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
-        // Made here, so that its permissions are those of any new file.
+        // Created here, so that its permissions are those of any new file.
         let create = |path: &Path| File::options().write(true).create_new(true).open(path);
         let mut builder = tempfile::Builder::new();
         let folder = path.parent().unwrap_or(Path::new(""));

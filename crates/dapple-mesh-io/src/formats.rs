@@ -1,4 +1,4 @@
-//! The table of formats: one line for each, from which reading and writing by path, errors and help texts are made.
+//! The table of formats, one line for each: source of reading and writing by path, errors and help texts.
 //!
 //! A format is a file of this folder with a [`MeshFormat`]; adding one takes that file and two lines here.
 
@@ -25,40 +25,41 @@ pub static FORMATS: &[MeshFormat] = &[
 #[derive(Clone, Copy, Debug)]
 pub struct MeshFormat {
     name: &'static str,
-    /// Without the dot, in lower case.
+    /// The endings without the dot, in lower case.
     endings: &'static [&'static str],
     read: fn(&[u8], &mut Beside<'_>) -> Result<Model, MeshIoError>,
     writer: Option<Writer>,
 }
 
-/// How a format is written.
+/// The writer of a format.
 #[derive(Clone, Copy, Debug)]
 struct Writer {
-    /// One of the endings of the format.
+    /// The ending of written files, one of the endings of the format.
     ending: &'static str,
     material: MaterialPlace,
-    /// Makes the files, the main one last.
+    /// Encodes the files, the main one last.
     files: fn(&Model, &str) -> Result<Vec<NamedFile>, MeshIoError>,
 }
 
-/// Where a writer puts the material of a model, with its textures.
+/// The place where a writer puts the material of a model, with its textures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MaterialPlace {
-    /// It is left out; colors of vertices are written.
+    /// The material is left out; colors of vertices are written.
     Nowhere,
-    /// In the file of the mesh.
+    /// The material is in the file of the mesh.
     Inside,
-    /// In files of their own beside the mesh.
+    /// The material is in separate files beside the mesh.
     Beside,
 }
 
-/// A lookup of the content of another file by the name that a file has for it; `None` if there is no such file.
+/// A function that returns the content of another file by the name that a file has for it; `None` if there is no such
+/// file.
 ///
-/// Readers of formats that are spread over several files take one. A name is as in the file, with slashes and without
-/// percent codes; it may try to lead anywhere, so a caller that opens files has to check it first.
+/// It is an argument of readers of formats with several files. A name is as in the file, with slashes and without
+/// percent codes. It may be a path to anywhere, so a caller that opens files has to check it first.
 pub type Beside<'a> = dyn FnMut(&str) -> Option<Vec<u8>> + 'a;
 
-/// The name and the content of a file that is not written yet.
+/// The name and the content of a file that is to be written.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NamedFile {
     /// The name, without a folder.
@@ -68,7 +69,7 @@ pub struct NamedFile {
 }
 
 impl MeshFormat {
-    /// The format that has the ending of a path, in lower or upper case.
+    /// The format with the ending of a path, in lower or upper case.
     #[must_use]
     pub fn of_path(path: impl AsRef<Path>) -> Option<&'static Self> {
         let ending = ending(path.as_ref());
@@ -94,28 +95,29 @@ impl MeshFormat {
         self.writer.map(|writer| writer.ending)
     }
 
-    /// Where the material goes, with its textures, when a model is written.
+    /// The place of the material, with its textures, in a written model.
     #[must_use]
     pub fn material_place(&self) -> MaterialPlace {
         self.writer
             .map_or(MaterialPlace::Nowhere, |writer| writer.material)
     }
 
-    /// Reads a file from its bytes, and files that it names through `beside`.
+    /// Reads a file from its bytes, and files to which it refers through `beside`.
     ///
     /// # Errors
     ///
-    /// What the function `read` of the module of the format refuses.
+    /// The errors of the function `read` of the module of the format.
     pub fn read(&self, bytes: &[u8], beside: &mut Beside<'_>) -> Result<Model, MeshIoError> {
         (self.read)(bytes, beside)
     }
 
-    /// The files of a model, named after `stem`: the one to open is the last, and those that it names come before it.
+    /// Encodes the files of a model, named after `stem`. The main one is the last; files to which it refers come before
+    /// it.
     ///
     /// # Errors
     ///
-    /// [`MeshIoErrorKind::Format`](crate::MeshIoErrorKind::Format) if the format is only read; and what the function
-    /// `write` of the module of the format refuses.
+    /// [`MeshIoErrorKind::Format`](crate::MeshIoErrorKind::Format) if the format is only read; and the errors of the
+    /// function `write` of the module of the format.
     pub fn write(&self, model: &Model, stem: &str) -> Result<Vec<NamedFile>, MeshIoError> {
         let Some(writer) = self.writer else {
             return Err(crate::files::unwritable(self.endings[0].to_owned()));
@@ -134,13 +136,13 @@ pub fn writable_endings() -> impl Iterator<Item = &'static str> {
     FORMATS.iter().filter_map(MeshFormat::written_ending)
 }
 
-/// The ending of a path in lower case, without the dot; empty where there is none.
+/// The ending of a path in lower case, without the dot; empty if there is none.
 pub(crate) fn ending(path: &Path) -> String {
     let ending = path.extension().unwrap_or_default().to_string_lossy();
     ending.to_ascii_lowercase()
 }
 
-/// The only file of a format that needs no other.
+/// The only file of a format that needs no other files.
 fn alone(stem: &str, ending: &str, bytes: Vec<u8>) -> Vec<NamedFile> {
     let name = format!("{stem}.{ending}");
     vec![NamedFile { name, bytes }]

@@ -1,8 +1,8 @@
 //! Files of triangle meshes: OBJ with MTL, PLY, glTF and GLB, OFF.
 //!
-//! [`read_model`] and [`write_model`] take a path, whose ending says the format. Everything else works on bytes: each format
-//! is a module with functions of its own, and a line of [`FORMATS`], from which paths, errors and help texts take the names
-//! and endings of all formats.
+//! [`read_model`] and [`write_model`] take a path, whose ending determines the format. All other functions work on
+//! bytes: each format is a module with its functions, and an entry of [`FORMATS`], from which paths, errors and help
+//! texts take the names and endings of all formats.
 //!
 //! ```
 //! use dapple_mesh::{Mesh, Model, glam::DVec3};
@@ -24,7 +24,8 @@
 //! * No file makes a reader panic. A reader takes at most 256 bytes of memory for each byte of the file, and of what
 //!   it is given beside it, and 1 GiB more, whatever the file says about its counts.
 //!
-//! The feature `gltf`, on by default, needs `serde` and `serde_json`; the other formats need nothing and are always there.
+//! The feature `gltf`, on by default, needs `serde` and `serde_json`; the other formats have no dependencies and are
+//! always available.
 
 #![forbid(unsafe_code)]
 

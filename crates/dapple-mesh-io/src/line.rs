@@ -1,21 +1,21 @@
-//! Lines of text, for formats in which a line says one thing.
+//! Lines of text, for line-based formats.
 
 use super::text::{in_range, parse, words};
 use crate::MeshIoError;
 use glam::DVec3;
 
-/// A line that has something to say.
+/// A line that is not empty, with its words.
 pub(crate) struct Line<'a> {
     format: &'static str,
-    /// The number of the line, from 1; of several lines that go together, the last.
+    /// The number of the line, from 1; of several joined lines, the last.
     number: usize,
-    /// All of it.
+    /// The whole line.
     text: &'a [u8],
     /// The words before a comment; at least one.
     pub(crate) words: Vec<&'a [u8]>,
 }
 
-/// The lines of a text without comments, which begin with `#`, and without those where nothing else is.
+/// The lines of a text without comments, which begin with `#`, and without empty lines.
 pub(crate) fn lines<'a>(format: &'static str, bytes: &'a [u8]) -> impl Iterator<Item = Line<'a>> {
     let lines = bytes.split(|&byte| byte == b'\n').zip(1..);
     lines.filter_map(move |(text, number)| {
@@ -30,25 +30,25 @@ pub(crate) fn lines<'a>(format: &'static str, bytes: &'a [u8]) -> impl Iterator<
 }
 
 impl Line<'_> {
-    /// The number at a place.
+    /// Parses the word at an index as a number.
     pub(crate) fn number(&self, at: usize) -> Result<f64, MeshIoError> {
         let word = self.words.get(at).copied();
         word.and_then(parse)
             .ok_or_else(|| self.error(format!("a number is needed in place {}", at + 1)))
     }
 
-    /// The part of a position, a normal or a texture coordinate at a place.
+    /// Parses the word at an index as a component of a position, a normal or a texture coordinate.
     pub(crate) fn part(&self, at: usize) -> Result<f64, MeshIoError> {
         in_range(self.number(at)?).map_err(|why| self.error(why))
     }
 
-    /// The position or normal in the three numbers from a place on.
+    /// Parses three words from an index on as a position or normal.
     pub(crate) fn position(&self, at: usize) -> Result<DVec3, MeshIoError> {
         let [x, y, z] = [at, at + 1, at + 2].map(|at| self.part(at));
         Ok(DVec3::new(x?, y?, z?))
     }
 
-    /// The three numbers from a place on, whatever they are.
+    /// Parses three words from an index on as numbers of any size.
     pub(crate) fn vector(&self, at: usize) -> Result<DVec3, MeshIoError> {
         Ok(DVec3::new(
             self.number(at)?,
@@ -57,18 +57,18 @@ impl Line<'_> {
         ))
     }
 
-    /// All words behind the first, also those in what may be a comment: a name may have `#`.
+    /// All words after the first, including those after `#`: a name may contain it.
     pub(crate) fn name_words(&self) -> Vec<&[u8]> {
         words(self.text).skip(1).collect()
     }
 
-    /// Puts the words of a line that goes on with this one behind its own.
+    /// Appends the words of the next line, which continues this one.
     pub(crate) fn extend(&mut self, next: Self) {
         self.number = next.number;
         self.words.extend(next.words);
     }
 
-    /// Says what is wrong with the line.
+    /// An error in the line, with its number.
     pub(crate) fn error(&self, why: impl core::fmt::Display) -> MeshIoError {
         MeshIoError::file(self.format, format!("line {}: {why}", self.number))
     }

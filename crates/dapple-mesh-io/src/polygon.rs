@@ -1,4 +1,4 @@
-//! Polygons and strips as triangles.
+//! Triangulation of polygons and strips.
 
 /// The triangles around the first corner of a polygon.
 pub(crate) fn fan<T: Copy>(corners: &[T]) -> impl Iterator<Item = [T; 3]> {
@@ -6,7 +6,7 @@ pub(crate) fn fan<T: Copy>(corners: &[T]) -> impl Iterator<Item = [T; 3]> {
     pairs.map(|(&b, &c)| [corners[0], b, c])
 }
 
-/// The triangles of a strip: each corner makes one with the two before it, and every second goes the other way around.
+/// The triangles of a strip: each corner makes one with the two before it, and every second has the opposite direction.
 pub(crate) fn strip<T: Copy>(corners: &[T]) -> impl Iterator<Item = [T; 3]> {
     let triangles = corners.windows(3).enumerate();
     triangles.map(|(i, w)| {

@@ -1,17 +1,17 @@
-//! Models for formats that have normals only for vertices.
+//! Splitting of vertices, for formats that have normals only for vertices.
 
 use dapple_mesh::{Mesh, MeshError, Model, VertexIdx};
 use glam::DVec3;
 use std::borrow::Cow;
 
-/// The model with normals of vertices in place of those of corners.
+/// The model with vertex normals in place of corner normals.
 ///
 /// A vertex becomes several where its corners have different normals. Vertices keep their numbers, and further ones
 /// follow.
 ///
 /// # Errors
 ///
-/// What [`Mesh::new`] refuses, which is too many vertices.
+/// The errors of [`Mesh::new`]: too many vertices.
 pub(crate) fn with_vertex_normals(model: &Model) -> Result<Cow<'_, Model>, MeshError> {
     let Some(corner_normals) = &model.corner_normals else {
         return Ok(Cow::Borrowed(model));
@@ -40,11 +40,11 @@ pub(crate) fn with_vertex_normals(model: &Model) -> Result<Cow<'_, Model>, MeshE
 }
 
 struct Split {
-    /// The vertex of the mesh that each is; the first are those of the mesh.
+    /// The vertex of the mesh for each new vertex; the first are those of the mesh.
     vertex: Vec<usize>,
-    /// The normal of each that a corner has.
+    /// The normal of each new vertex, once a corner has one.
     normals: Vec<Option<DVec3>>,
-    /// The next vertex that is the same one of the mesh.
+    /// For each new vertex, the next one of the same vertex of the mesh.
     next: Vec<Option<usize>>,
 }
 
@@ -58,7 +58,7 @@ impl Split {
         }
     }
 
-    /// The one of a vertex that has this normal, which is new if there is none.
+    /// The copy of a vertex with this normal; it is added if there is none.
     fn vertex_with(&mut self, vertex: VertexIdx, normal: DVec3) -> VertexIdx {
         let mut at = vertex.index();
         while *self.normals[at].get_or_insert(normal) != normal {
@@ -70,7 +70,7 @@ impl Split {
                 self.next.push(None);
             }
         }
-        // It fits for up to 2^30 faces, whose normals alone are 72 GiB.
+        // The number fits for up to 2^30 faces, whose normals alone are 72 GiB.
         VertexIdx(at as u32)
     }
 }

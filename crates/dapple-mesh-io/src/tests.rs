@@ -1,4 +1,4 @@
-//! Bytes that are no file: every reader gives a model or an error, and never panics.
+//! Invalid bytes: every reader returns a model or an error, and never panics.
 
 use super::*;
 use crate::test_meshes::cube;
@@ -75,9 +75,9 @@ fn files() -> Vec<Vec<u8>> {
     files
 }
 
-/// Reads the bytes in every format, and what can be read again after it was written.
+/// Reads the bytes in every format; models are written and read again.
 fn read_all(bytes: &[u8]) {
-    // Every file is its own library, buffer and texture.
+    // The same bytes serve as library, buffer and texture.
     if let Ok(model) = obj::read_with(bytes, &mut |_| Some(bytes.to_vec())) {
         assert!(
             obj::read(&obj::write(&model).expect("it was checked")).is_ok(),
@@ -149,7 +149,7 @@ proptest! {
             let at = at.index(bytes.len());
             bytes[at] = byte;
         }
-        // Some of it appears a second time elsewhere.
+        // A part of the bytes appears a second time elsewhere.
         let from = cut.index(bytes.len());
         let part = bytes[from..(from + length).min(bytes.len())].to_vec();
         let to = paste.index(bytes.len());

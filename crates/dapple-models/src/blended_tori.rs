@@ -5,12 +5,12 @@ use crate::{ModelError, polygonize_n};
 use dapple_mesh::Mesh;
 use glam::DVec3;
 
-/// From the origin to the middle of the tubes; they meet at this distance on the axes.
+/// The distance from the origin to the middle of the tubes; they meet at this distance on the axes.
 pub const RING: f64 = 0.78;
 /// The radius of the tubes.
 pub const TUBE: f64 = 0.2;
 
-/// A side at which no part is missed.
+/// A side of the lattice that is small enough for all parts.
 const SIDE: f64 = 0.1;
 
 /// Three tori around the axes x, y and z, melted together: four tubes meet on each axis at +[`RING`] and -[`RING`].

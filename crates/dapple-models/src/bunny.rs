@@ -13,7 +13,7 @@ pub const LEFT_EAR: DVec3 = DVec3::new(0.25, 1.05, -0.05);
 /// The end of the tail.
 pub const TAIL: DVec3 = DVec3::new(0.0, -0.68, -0.67);
 
-/// A side at which no part is missed.
+/// A side of the lattice that is small enough for all parts.
 const SIDE: f64 = 0.08;
 
 /// The animal: it sits upright and looks toward +z.

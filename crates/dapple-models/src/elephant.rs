@@ -13,7 +13,7 @@ pub const FOREHEAD: DVec3 = DVec3::new(0.0, 0.6, 0.75);
 /// The middle of the back.
 pub const BACK: DVec3 = DVec3::new(0.0, 0.62, -0.25);
 
-/// A side at which no part is missed.
+/// A side of the lattice that is small enough for all parts.
 const SIDE: f64 = 0.045;
 
 /// The animal: it stands on four thick legs with its ears spread, and looks toward +z.

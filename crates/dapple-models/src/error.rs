@@ -1,22 +1,22 @@
-//! Why no mesh was made.
+//! Errors of polygonization.
 
 use dapple_mesh::MeshError;
 
 dapple_raster::error! {
-    /// Why no mesh of a solid was made.
+    /// An error of making a mesh of a solid.
     ModelError,
-    /// The limit that was broken.
+    /// The cause of a [`ModelError`], with the limit and the value.
     ModelErrorKind with Range {
-        /// Edges of the surface that was found have no second face.
+        /// The surface is not closed: some edges have only one face.
         Open {
-            /// How many edges.
+            /// The number of edges with one face.
             edges: usize,
         } => "the surface has {edges} edges with one face, but it must be closed; the distance changes too fast";
-        /// No surface was found.
+        /// No surface was found in the bounds.
         NoSurface => "no surface was found in the bounds of the solid";
     }
     from {
-        /// The mesh was refused.
+        /// An error of the mesh.
         Mesh(MeshError),
     }
 }

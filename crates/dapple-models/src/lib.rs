@@ -1,8 +1,8 @@
-//! Models to try textures on, made of blended shapes: our own stand-ins for those of Turk's figure 5.
+//! Test models for textures, made of blended shapes: our own stand-ins for those of Turk's figure 5.
 //!
 //! Each is one smooth closed surface about two units large around the origin. Animals look toward +z with y up, so that
-//! their left is +x; their modules name places on the surface to start directions from. The functions take the number of
-//! triangles that is wanted, from 16 to 2^24: 10,000 to 20,000 show all there is.
+//! their left is +x; their modules name places on the surface to start directions from. The functions take the number
+//! of triangles, from 16 to 2^24: 10,000 to 20,000 show all detail.
 //!
 //! The gallery, the benchmarks, tests and examples use them; the crate is not published. [`solid`] has shapes given by
 //! distance functions, and [`polygonize()`] makes meshes of them.

@@ -9,7 +9,7 @@ use glam::DVec3;
 /// The top of the head.
 pub const CROWN: DVec3 = DVec3::new(0.0, 0.96, -0.16);
 
-/// A side at which no part is missed.
+/// A side of the lattice that is small enough for all parts.
 const SIDE: f64 = 0.05;
 
 /// The directions of the arms in the plane, at odd multiples of an eighth of half a turn: cosine and sine.
@@ -28,7 +28,7 @@ const DIRECTIONS: [[f64; 2]; 8] = {
     ]
 };
 
-/// An arm, from its root: outward, up, to its left, and the radius.
+/// The points of an arm, from its root: distance outward, height, distance to its left, and radius.
 const ARMS: [[[f64; 4]; 7]; 2] = [
     [
         [0.06, 0.02, 0.0, 0.16],
@@ -73,7 +73,7 @@ fn solid() -> Blend {
     body
 }
 
-/// An arm that leaves in a direction of the plane.
+/// An arm in a direction of the plane.
 fn arm(points: &[[f64; 4]; 7], [x, z]: [f64; 2]) -> Tube {
     let placed =
         points.map(|[out, up, left, radius]| [out * x - left * z, up, out * z + left * x, radius]);

@@ -1,4 +1,4 @@
-//! Short ways to write the shapes that the models are made of.
+//! Shorthand constructors of the shapes of the models.
 
 use crate::solid::{Ball, Ellipsoid, Placed, RoundCone};
 use dapple_mesh::rotation;

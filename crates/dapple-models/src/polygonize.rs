@@ -4,10 +4,11 @@
 //! Cells", IEICE Transactions E74 (1991), for marching tetrahedra; Mario Botsch and Leif Kobbelt, "A Remeshing Approach to
 //! Multiresolution Modeling", SGP 2004, doi 10.1145/1057432.1057457, for evening the triangles out.
 //!
-//! The tetrahedra are those of a body-centered cubic lattice, all alike. Every tetrahedron that the surface passes through
-//! gets one or two triangles with corners on its edges, so two triangles meet at every edge whatever the solid is: marching
-//! cubes and surface nets cannot promise that. Then the shortest edges are collapsed where that keeps the topology, edges
-//! are flipped, and vertices slide along the surface. Every vertex lies on the surface to [`TOLERANCE`] throughout.
+//! The tetrahedra are those of a body-centered cubic lattice, all alike. Every tetrahedron that the surface passes
+//! through gets one or two triangles with corners on its edges, so two triangles meet at every edge whatever the solid
+//! is, which marching cubes and surface nets do not guarantee. Then the shortest edges are collapsed where that keeps
+//! the topology, edges are flipped, and vertices slide along the surface. Every vertex always lies on the surface
+//! within [`TOLERANCE`].
 
 mod sheet;
 mod tetrahedra;
@@ -18,14 +19,14 @@ use dapple_mesh::Mesh;
 use glam::DVec3;
 use sheet::Sheet;
 
-/// How far from the surface a vertex may be by the solid's own measure, in sides of the lattice's cells.
+/// The largest distance of a vertex from the surface by the solid's own measure, in sides of the lattice's cells.
 pub const TOLERANCE: f64 = 1e-6;
 
-/// The part of the triangles of the lattice that is kept, so that the short edges are gone.
+/// The fraction of the triangles of the lattice that is kept, so that short edges vanish.
 const KEPT: f64 = 0.5;
-/// The most cells along an axis.
+/// The largest number of cells along an axis.
 const CELLS_MAX: f64 = 4096.0;
-/// The most triangles that can be asked for.
+/// The largest number of triangles of a mesh.
 const TRIANGLES_MAX: usize = 1 << 24;
 
 /// The mesh of a solid on a lattice of cubes with the given side.
@@ -47,8 +48,9 @@ pub fn polygonize(solid: &dyn Solid, side: f64) -> Result<Mesh, ModelError> {
 
 /// The mesh of a solid with a wanted number of triangles, on a lattice of cubes with the given side or smaller ones.
 ///
-/// The side decides which parts and holes are found, and the number how finely they are drawn. It is met exactly (one less
-/// if it is odd) unless it is too small for the shape: a mesh with a few hundred triangles may have some more.
+/// The side determines which parts and holes are found, and the number how finely they are meshed. It is met exactly
+/// (one less if it is odd) unless it is too small for the shape: a mesh with a few hundred triangles may have some
+/// more.
 ///
 /// # Errors
 ///
@@ -65,11 +67,11 @@ pub fn polygonize_n(solid: &dyn Solid, side: f64, n_triangles: usize) -> Result<
         cut = Cut::new(solid, cut.side * finer)?;
         sheet = cut.sheet()?;
     }
-    // A closed mesh has an even number.
+    // A closed mesh has an even number of triangles.
     evened(&cut, sheet, n_triangles / 2 * 2)
 }
 
-/// A solid that ends at its bounds, and the lattice.
+/// A solid that is cut off at its bounds, with the lattice.
 struct Cut<'a> {
     solid: &'a dyn Solid,
     bounds: [DVec3; 2],
@@ -119,9 +121,9 @@ impl<'a> Cut<'a> {
 
 /// Evens out the triangles of a sheet until about `count` are left.
 fn evened(cut: &Cut, mut sheet: Sheet, count: usize) -> Result<Mesh, ModelError> {
-    /// Enough for the largest numbers: each takes a few percent of the faces at least, until it finds none.
+    /// Enough for the largest numbers: each round removes a few percent of the faces at least, until it finds none.
     const ROUNDS: u32 = 60;
-    /// After that the angles hardly get better.
+    /// The number of further rounds, after which the angles hardly improve.
     const LAST_ROUNDS: u32 = 3;
     for _ in 0..ROUNDS {
         let before = sheet.n_faces();

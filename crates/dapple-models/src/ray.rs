@@ -13,7 +13,7 @@ pub const LEFT_WING: DVec3 = DVec3::new(1.0, 0.16, 0.0);
 /// The end of the tail.
 pub const TAIL: DVec3 = DVec3::new(0.04, 0.0, -1.42);
 
-/// A side at which no part is missed.
+/// A side of the lattice that is small enough for all parts.
 const SIDE: f64 = 0.04;
 
 /// The stingray: it swims toward +z with its wings lifted, and its tail trails behind it.

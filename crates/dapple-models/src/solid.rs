@@ -1,9 +1,10 @@
-//! Solids made of a few shapes that melt into each other, given by their distance functions.
+//! Solids of a few shapes that blend into each other, defined by their distance functions.
 //!
-//! A [`Solid`] tells how far a position is from its surface. Shapes are a [`Ball`], an [`Ellipsoid`], a [`RoundCone`], a
-//! [`Tube`] along a curve, a [`Torus`] and a [`RoundBox`]. [`Blend`] joins any of them with rounded seams; [`Placed`],
-//! [`Mirrored`], [`Scaled`], [`Grown`] and [`Bent`] change where and how a solid is; [`rotation`](dapple_mesh::rotation) makes the turn of a [`Placed`] one.
-//! [`polygonize`](crate::polygonize()) makes a mesh.
+//! A [`Solid`] is defined by the distance of a position from its surface. Shapes are a [`Ball`], an [`Ellipsoid`], a
+//! [`RoundCone`], a [`Tube`] along a curve, a [`Torus`] and a [`RoundBox`]. [`Blend`] joins any of them with rounded
+//! seams; [`Placed`], [`Mirrored`], [`Scaled`], [`Grown`] and [`Bent`] transform a solid;
+//! [`rotation`](dapple_mesh::rotation) makes the rotation of a [`Placed`] one. [`polygonize`](crate::polygonize())
+//! makes a mesh.
 //!
 //! Reference: John C. Hart, "Sphere Tracing: A Geometric Method for the Antialiased Ray Tracing of Implicit Surfaces",
 //! The Visual Computer 12 (1996), doi 10.1007/s003710050084, for distance bounds and how they compose; the formulas of
@@ -38,15 +39,15 @@ use glam::DVec3;
 
 /// A part of space with an inside and an outside.
 ///
-/// Sizes that make no sense (negative, not finite) make a solid that is empty or odd, never a panic.
+/// Invalid sizes (negative, not finite) make a solid that is empty or odd, never a panic.
 pub trait Solid: Sync {
     /// The distance to the surface, below zero inside.
     ///
-    /// It may be off, but must change by at most a fifth more than the position moves: otherwise parts of the surface are
-    /// not found.
+    /// It may be inexact, but must change by at most a fifth more than the position moves: otherwise parts of the
+    /// surface may be missed.
     fn distance(&self, at: DVec3) -> f64;
 
-    /// The low and the high corner of a box around the solid. Nothing is known outside of it.
+    /// The low and the high corner of a box around the solid. The distance is only used inside of it.
     fn bounds(&self) -> [DVec3; 2];
 }
 

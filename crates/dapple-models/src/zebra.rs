@@ -11,7 +11,7 @@ pub const MUZZLE: DVec3 = DVec3::new(0.0, 0.54, 1.13);
 /// The middle of the back.
 pub const BACK: DVec3 = DVec3::new(0.0, 0.39, -0.1);
 
-/// A side at which no part is missed.
+/// A side of the lattice that is small enough for all parts.
 const SIDE: f64 = 0.04;
 
 /// The animal: it stands on four legs with its head up, and looks toward +z.

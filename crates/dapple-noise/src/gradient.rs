@@ -1,11 +1,11 @@
-//! Gradient noise at any position.
+//! Perlin's gradient noise, at any position.
 //!
 //! Ken Perlin, "An Image Synthesizer", SIGGRAPH 1985, <https://doi.org/10.1145/325334.325247>, with the quintic blend and
 //! the gradients of "Improving Noise", SIGGRAPH 2002, <https://doi.org/10.1145/566570.566636>.
 //!
-//! This departs from the latter in three points. Corners of cells are hashed with a seed, not looked up in a table of 256
-//! numbers, so that nothing repeats unless it is asked to. All gradients are equally likely. Axes are blended from the last to the first,
-//! so that a row of pixels needs two numbers for each column of corners.
+//! This departs from the latter in three points. Corners of cells are hashed with a seed, not looked up in a table of
+//! 256 numbers, so that the noise repeats only if it has a period. All gradients are equally likely. Axes are blended
+//! from the last to the first, so that a row of pixels needs two numbers for each column of corners.
 //!
 //! Positions are in cells; a cell is the distance of two corners.
 
@@ -20,11 +20,11 @@ use glam::DVec2;
 /// How many corners are hashed at once.
 const LANES: usize = 32;
 
-/// The most corners of a cell that differ in other axes than the first.
+/// The largest number of corners of a cell that share their first coordinate.
 pub(crate) const MOST_CORNERS: usize = 8;
 
-/// Perlin's improved noise: at every corner of a lattice of unit cells a gradient, and values that are 0 there, with that
-/// slope, and smooth in between.
+/// Perlin's improved noise: every corner of a lattice of unit cells has a random gradient, and the noise is 0 there
+/// with that slope, and smooth in between.
 ///
 /// Most of the power lies between ½ and 1½ cycles per cell. The value and its first and second derivatives are
 /// continuous. Over all positions and seeds the mean is 0 and the variance `VARIANCE` (0.0931 in the plane, 0.0729 in space
@@ -47,19 +47,19 @@ pub(crate) const MOST_CORNERS: usize = 8;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct GradientNoise<const N: usize> {
     seed: Seed,
-    /// The seed, hashed.
+    /// The hash state after the seed.
     root: CellHash,
-    /// Cells after which the noise repeats along each axis; 0 where it does not.
+    /// The number of cells after which the noise repeats along each axis; 0 along an axis where it does not.
     period: [u32; N],
 }
 
-/// Gradient noise of the plane.
+/// Gradient noise in two dimensions.
 pub type GradientNoise2 = GradientNoise<2>;
 
-/// Gradient noise of space.
+/// Gradient noise in three dimensions.
 pub type GradientNoise3 = GradientNoise<3>;
 
-/// Gradient noise of space and time.
+/// Gradient noise in four dimensions, such as space and time.
 pub type GradientNoise4 = GradientNoise<4>;
 
 impl GradientNoise<2> {
@@ -69,7 +69,7 @@ impl GradientNoise<2> {
         Self::of(seed)
     }
 
-    /// No value is further from zero than this, which some in the middle of cells attain.
+    /// The largest absolute value, which some noises attain in the middle of cells.
     pub const BOUND: f32 = 1.0;
 
     /// The variance over all positions and seeds.
@@ -83,7 +83,7 @@ impl GradientNoise<3> {
         Self::of(seed)
     }
 
-    /// No value is further from zero than this.
+    /// The bound of the absolute value.
     pub const BOUND: f32 = 1.0364;
 
     /// The variance over all positions and seeds.
@@ -97,7 +97,7 @@ impl GradientNoise<4> {
         Self::of(seed)
     }
 
-    /// No value is further from zero than this.
+    /// The bound of the absolute value.
     pub const BOUND: f32 = 1.5366;
 
     /// The variance over all positions and seeds.
@@ -113,7 +113,8 @@ impl<const N: usize> GradientNoise<N> {
         }
     }
 
-    /// Repeats the noise after so many cells along each axis, exactly; `None` where the axis does not repeat.
+    /// Makes the noise repeat exactly after a number of cells along each axis; `None` along an axis where it does not
+    /// repeat.
     ///
     /// # Errors
     ///
@@ -154,7 +155,7 @@ impl<const N: usize> GradientNoise<N> {
         Column::between(sides, offsets[0], fade(offsets[0]))
     }
 
-    /// The gradients at corners that differ in the first coordinate alone; that of `at` says nothing.
+    /// The gradients at corners that differ in the first coordinate alone. The first coordinate of `at` is ignored.
     pub(crate) fn line(&self, level: Level, at: [i64; N], columns: &[i64]) -> Vec<[f32; N]> {
         let hash = self.hash(at);
         let mut gradients = Vec::with_capacity(columns.len());
@@ -170,7 +171,7 @@ impl<const N: usize> GradientNoise<N> {
         gradients
     }
 
-    /// The hash of a corner but for its first coordinate, which is the fastest.
+    /// The hash state of a corner after all coordinates but the first, which is the fastest.
     fn hash(&self, at: [i64; N]) -> CellHash {
         let mut hash = self.root;
         for axis in (1..N).rev() {
@@ -179,7 +180,7 @@ impl<const N: usize> GradientNoise<N> {
         hash
     }
 
-    /// A coordinate of a corner within the period.
+    /// A coordinate of a corner, brought into the period.
     #[inline]
     fn repeated(&self, coordinate: i64, axis: usize) -> i64 {
         match self.period[axis] {
@@ -277,7 +278,7 @@ impl Place {
     }
 }
 
-/// What a column of corners adds at an offset `t` from it along the first axis: `slope · t + value`.
+/// The contribution of a column of corners at an offset `t` from it along the first axis: `slope · t + value`.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Column {
     slope: f32,
@@ -328,7 +329,7 @@ impl Column {
     }
 }
 
-/// The random bits of the corners of columns, whose low and high halves these are; see [`chosen`].
+/// The random bits of the corners in columns, given by the low and high halves of their numbers; see [`chosen`].
 #[inline(always)]
 fn hash_columns<S: Simd>(simd: S, hash: CellHash, words: &[[u32; LANES]; 2]) -> [u32; LANES] {
     let half = |words: &[u32; LANES], at: usize| u32x16::from_slice(simd, &words[16 * at..][..16]);
@@ -349,8 +350,8 @@ fn chosen<const N: usize>(hash: CellHash, column: i64) -> [f32; N] {
     gradient((hash.axis(column).at(0) >> 32) as u32)
 }
 
-/// One of the corners around a cell that have its first coordinate: bit `k` of the index tells the two along axis `k + 1`
-/// apart.
+/// One of the corners of a cell with its first coordinate: bit `k` of the index selects one of the two along axis `k +
+/// 1`.
 pub(crate) fn corner<const N: usize>(mut cell: [i64; N], index: usize) -> [i64; N] {
     for (axis, coordinate) in cell.iter_mut().enumerate().skip(1) {
         *coordinate = coordinate.wrapping_add((index >> (axis - 1) & 1) as i64);
@@ -358,7 +359,7 @@ pub(crate) fn corner<const N: usize>(mut cell: [i64; N], index: usize) -> [i64; 
     cell
 }
 
-/// How many corners of a cell there are with one first coordinate.
+/// The number of corners of a cell with the same first coordinate.
 pub(crate) const fn corners(axes: usize) -> usize {
     1 << (axes - 1)
 }

@@ -1,7 +1,7 @@
 //! Gradient noise: smooth noise with features of one size, in two to four dimensions.
 //!
-//! [`GradientNoise`] is Perlin's, improved: the noise that most programs mean by "Perlin noise". It repeats exactly where
-//! it is asked to, is the same on every machine, and draws windows at a fraction of a nanosecond per pixel. It is a
+//! [`GradientNoise`] is Perlin's improved noise, which most programs mean by "Perlin noise". It repeats exactly with a
+//! period, is the same on every machine, and draws windows at a fraction of a nanosecond per pixel. It is a
 //! [`Field`](dapple_raster::Field), so that all of [`FieldExt`](dapple_raster::FieldExt) composes it.
 //!
 //! ```

@@ -1,4 +1,4 @@
-//! Windows of noise, row by row.
+//! Renders windows of noise, row by row.
 //!
 //! The pixels of a row share all coordinates but the first, so that a column of corners is blended along the other axes
 //! once for the row; then each pixel lies between two columns. Every corner is hashed once for a band of rows.
@@ -7,17 +7,16 @@ use crate::GradientNoise;
 use crate::gradient::{Column, MOST_CORNERS, Place, corner, corners, fade};
 use dapple_raster::simd::{self, dispatch};
 use dapple_raster::{RasterError, RasterViewMut, Window};
-use fearless_simd::prelude::*;
 use std::mem;
 use std::ops::Range;
 
 /// How many rows of pixels a thread takes at once.
 const ROWS: u32 = 32;
 
-/// The mean length in pixels from which on runs are worth registers of more than four values.
+/// The mean length in pixels from which on runs are long enough for registers of more than four values.
 const LONG: usize = 24;
 
-/// A plane through the noise, with what the columns of a window share.
+/// A plane through the noise, and the data that the rows of a window share.
 pub(crate) struct Lines<'a, const N: usize, const REST: usize> {
     noise: &'a GradientNoise<N>,
     window: &'a Window,
@@ -25,9 +24,9 @@ pub(crate) struct Lines<'a, const N: usize, const REST: usize> {
     rest: [Place; REST],
     /// The first coordinates of the corners.
     columns: Vec<i64>,
-    /// Pixels that lie in the same column of cells, one after the other.
+    /// The runs of pixels in the same column of cells, from left to right.
     runs: Vec<Run>,
-    /// Where each pixel lies in its cell.
+    /// The offset of each pixel in its cell, from 0 to 1.
     offsets: Vec<f32>,
     fades: Vec<f32>,
 }
@@ -43,7 +42,7 @@ struct Run {
 
 /// The corners around a row of cells, and memory for a row of pixels.
 struct Corners<const N: usize> {
-    /// The coordinates of the cells; the first says nothing.
+    /// The coordinates of the cells; the first is unused.
     cell: [i64; N],
     /// The lines of corners, in the order of [`corner`].
     lines: Vec<Line<N>>,
@@ -53,7 +52,7 @@ struct Corners<const N: usize> {
 
 /// The gradients along a line of the lattice.
 struct Line<const N: usize> {
-    /// The coordinates of the corners; the first says nothing.
+    /// The coordinates of the corners; the first is unused.
     at: [i64; N],
     gradients: Vec<[f32; N]>,
 }
@@ -137,7 +136,8 @@ impl<'a, const N: usize, const REST: usize> Lines<'a, N, REST> {
 }
 
 impl Run {
-    /// A run that begins at a pixel; columns of corners that the run before it does not share are added to `columns`.
+    /// A run that begins at a pixel. Columns of corners that the run before it does not share are appended to
+    /// `columns`.
     fn new(place: Place, before: Option<&Self>, columns: &mut Vec<i64>, pixel: usize) -> Self {
         let cell = place.cell;
         let mut add = |column| {
@@ -165,7 +165,7 @@ impl Run {
 }
 
 impl<const N: usize> Corners<N> {
-    /// Has the corners around the cells in the row of `cell`; lines that are there already are kept.
+    /// Moves to the row of cells that holds `cell`; lines of corners that both rows share are reused.
     fn move_to(&mut self, mut cell: [i64; N], columns: &[i64], noise: &GradientNoise<N>) {
         cell[0] = 0;
         if self.cell == cell && !self.lines.is_empty() {
@@ -188,31 +188,30 @@ impl<const N: usize> Corners<N> {
             .collect();
     }
 
-    /// Blends the columns for a row of pixels, whose offsets in the cells these are; the first says nothing.
+    /// Blends the columns for a row of pixels with these offsets in their cells; the first offset is unused.
     fn blend(&mut self, offsets: &[f32; N], count: usize) {
         let mut lines: [&[[f32; N]]; MOST_CORNERS] = [&[]; MOST_CORNERS];
         for (line, known) in lines.iter_mut().zip(&self.lines) {
-            *line = &known.gradients[..count];
+            *line = &known.gradients;
         }
         self.columns.resize(count, Column::default());
         let columns = &mut self.columns[..count];
-        dispatch!(simd::level(), simd => blend(simd, &lines, offsets, columns));
+        dispatch!(simd::level(), _simd => blend(lines, offsets, columns));
     }
 }
 
-/// Blends the gradients along the lines of corners, whose lengths are those of `columns`.
+/// Blends the gradients along the lines of corners, each at least as long as `columns`.
 #[inline(always)]
-fn blend<S: Simd, const N: usize>(
-    _simd: S,
-    lines: &[&[[f32; N]]; MOST_CORNERS],
+fn blend<const N: usize>(
+    mut lines: [&[[f32; N]]; MOST_CORNERS],
     offsets: &[f32; N],
     columns: &mut [Column],
 ) {
-    let mut sliced = *lines;
-    for line in sliced.iter_mut().take(corners(N)) {
+    // Lines of equal length need no further check of their bounds.
+    for line in &mut lines[..corners(N)] {
         *line = &line[..columns.len()];
     }
     for index in 0..columns.len() {
-        columns[index] = Column::blend(|line| sliced[line][index], offsets);
+        columns[index] = Column::blend(|line| lines[line][index], offsets);
     }
 }

@@ -1,4 +1,4 @@
-//! Planes through noise of more dimensions.
+//! Planes through noise of three or four dimensions.
 
 use crate::GradientNoise;
 use crate::lines::Lines;

@@ -3,10 +3,11 @@
 use crate::{PointsError, PointsErrorKind};
 use glam::DVec2;
 
-/// The farthest that a domain reaches along an axis, and its longest side. What lies some periods away is still a number.
+/// The farthest that a domain may reach along an axis, and its longest side: positions some periods away are still
+/// finite.
 const FARTHEST: f64 = 1e300;
 
-/// The rectangle from `origin` with the given `size`, which wraps around along the axes that say so.
+/// The rectangle from `origin` with the given `size`, which wraps around along the axes where `wrap` is true.
 ///
 /// With both axes wrapped it is a torus, with one a cylinder, with none a plain rectangle. Along a wrapped axis the
 /// start belongs to the domain and the end does not: the end is the start again.
@@ -48,7 +49,7 @@ impl Domain {
         Self::torus(DVec2::NEG_ONE, DVec2::splat(2.0))
     }
 
-    /// Returns the domain if it can hold points.
+    /// Checks that the domain can hold points, and returns it.
     ///
     /// # Errors
     ///
@@ -68,7 +69,7 @@ impl Domain {
         }
     }
 
-    /// The domain with a margin around it along the axes that do not wrap.
+    /// The domain, extended by a margin along the axes that do not wrap.
     #[must_use]
     pub fn grown(self, margin: DVec2) -> Self {
         let margin = DVec2::select(self.wrap.into(), DVec2::ZERO, margin);

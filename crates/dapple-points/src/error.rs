@@ -1,12 +1,12 @@
-//! Why points were refused.
+//! Errors of point sets.
 
 use crate::{Domain, PointIdx};
 use glam::DVec2;
 
 dapple_raster::error! {
-    /// Why a point set was refused, or could not be made.
+    /// An error of making or checking a point set.
     PointsError,
-    /// The limit that was broken.
+    /// The cause of a [`PointsError`], with the limit and the value.
     PointsErrorKind {
         /// The origin of the domain is beyond 1e300, or a side is not above zero and at most 1e300, or lost in rounding
         /// beside the origin.
@@ -18,76 +18,76 @@ dapple_raster::error! {
              and 1e300, and near enough that adding a side moves it", domain.origin, domain.size;
         /// A position is not finite, or lies outside of the domain along an axis that does not wrap.
         Outside {
-            /// Which point it is.
+            /// The index of the point.
             point: PointIdx,
-            /// Its position.
+            /// The position of the point.
             position: DVec2,
         } => "point {} at {position} is not in the domain", point.0;
         /// More points would be needed than the limit allows.
         TooMany {
-            /// About how many would be needed.
+            /// The number of points needed, about.
             needed: f64,
-            /// How many are allowed.
+            /// The largest number of points allowed.
             limit: u64,
         } => "about {needed:.0} points would be needed, but the limit is {limit}";
         /// A number that must be above zero and finite is not.
         NotPositive {
-            /// What the number is.
+            /// The name of the number.
             what: &'static str,
             /// The number.
             value: f64,
         } => "{what} is {value}, but it must be above 0 and finite";
         /// A radius that varies in space is not above zero and finite somewhere.
         Radius {
-            /// Where.
+            /// The position where the radius was read.
             position: DVec2,
-            /// The radius there.
+            /// The radius at that position.
             radius: f64,
         } => "the radius at {position} is {radius}, but it must be above 0 and finite";
-        /// A radius that varies in space does so by as much as the distance, or by more.
+        /// A radius that varies in space changes by as much as the distance, or by more.
         TooSteep {
-            /// Where.
+            /// The position where the radius is too steep.
             position: DVec2,
-            /// By how much it changes per distance.
+            /// The change of the radius per distance.
             slope: f64,
         } => "the radius changes by {slope} per distance near {position}, but it must change by less than 1";
         /// A wrapped axis is shorter than two radii, so that a point would meet its own copy.
         PeriodTooShort {
             /// The axis, 0 or 1.
             axis: u32,
-            /// Its length.
+            /// The length of the axis.
             period: f64,
             /// The radius, the largest one if it varies.
             radius: f64,
         } => "axis {axis} wraps around after {period}, but it must reach over two radii of {radius}";
         /// Two given points are closer than they may be.
         TooClose {
-            /// Which points they are.
+            /// The two points.
             points: [PointIdx; 2],
-            /// How far they are apart.
+            /// The distance of the two points.
             distance: f64,
-            /// How far they must be apart at least.
+            /// The smallest distance allowed.
             radius: f64,
         } => "points {} and {} are {distance} apart, but the radius is {radius}", points[0].0, points[1].0;
         /// A radius of a nested set is larger than the one before.
         NotDescending {
-            /// Which radius it is, from 0.
+            /// The index of the radius, from 0.
             level: usize,
             /// The radius.
             radius: f64,
-            /// The one before.
+            /// The radius before it.
             before: f64,
         } => "radius {level} is {radius}, but it must not be larger than the one before, {before}";
         /// A number is outside of its range.
         OutOfRange {
-            /// What the number is.
+            /// The name of the number.
             what: &'static str,
             /// The number.
             value: f64,
-            /// The smallest and the largest allowed.
+            /// The smallest and the largest number allowed.
             range: [f64; 2],
         } => "{what} is {value}, but it must be between {} and {}", range[0], range[1];
-        /// There is no set, or a set without points, where points are needed.
+        /// A point is needed, but there is no set, or a set without points.
         NoPoints => "there is no point, but at least one is needed";
         /// Sets that must share one domain do not.
         DifferentDomains {
@@ -98,9 +98,9 @@ dapple_raster::error! {
         } => "one set is in {other:?}, but the first one is in {first:?}";
         /// A spectrum would have more frequencies, or rings, than the limit allows.
         TooManyFrequencies {
-            /// About how many it would have.
+            /// The number of frequencies or rings, about.
             needed: f64,
-            /// How many are allowed.
+            /// The largest number allowed.
             limit: u64,
         } => "the spectrum would have about {needed:.0} frequencies or rings, but the limit is {limit}";
     }

@@ -16,7 +16,7 @@ impl PointIdx {
     }
 }
 
-/// Points in a domain, in an order that means something to whoever made them and stays.
+/// Points in a domain, in a fixed order. Its meaning depends on the function that made them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PointSet {
     domain: Domain,
@@ -26,7 +26,7 @@ pub struct PointSet {
 impl PointSet {
     /// The points at `positions`; along wrapped axes they are brought into the domain.
     ///
-    /// Any number of points is accepted, none too, and points may coincide.
+    /// Any number of points is accepted, including none, and points may coincide.
     ///
     /// # Errors
     ///
@@ -65,7 +65,7 @@ impl PointSet {
         self.positions.len()
     }
 
-    /// Whether there is no point.
+    /// Whether the set is empty.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.positions.is_empty()

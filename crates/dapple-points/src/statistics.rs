@@ -1,8 +1,8 @@
-//! What people measure on point sets: distances, empty circles, spectra.
+//! Statistics of point sets: distances, empty circles, spectra.
 //!
-//! Everything here is exact, for any domain, and a function of the set alone: sums run in a fixed order. Distances
-//! are the shortest ones, around the wrapped axes where that is shorter. Times are about proportional to the number of
-//! points where they are spread evenly, and grow towards its square where most of them crowd into one spot.
+//! All statistics are exact, for any domain, and depend on the set alone: sums run in a fixed order. Distances are the
+//! shortest ones, around the wrapped axes where that is shorter. Computing times are about proportional to the number
+//! of points where they are spread evenly, and grow towards its square where most of them crowd into one spot.
 
 mod circle;
 mod distance;

@@ -1,7 +1,7 @@
-//! Points without regard to each other: white noise, and a grid with jitter.
+//! Independent points: white noise, and a jittered grid.
 //!
-//! Each point is a hash of its number or its cell, so a set of more points begins with the same ones. Positions are in
-//! the units of the domain.
+//! Each point is a hash of its number or its cell, so that a larger set begins with the points of a smaller one.
+//! Positions are in the units of the domain.
 //!
 //! Reference: our own; both are as old as sampling.
 
@@ -46,8 +46,8 @@ pub fn white_noise(domain: Domain, n_points: u32, seed: Seed) -> Result<PointSet
 
 /// One point in each cell of a grid of `cells[0]` columns and `cells[1]` rows, row by row.
 ///
-/// A `jitter` of 0 puts it at the center of its cell, 1 anywhere in the cell; in between, in a cell that is smaller by
-/// that factor.
+/// With a `jitter` of 0 a point lies at the center of its cell, with 1 anywhere in the cell, and with a number between
+/// in a concentric cell that is smaller by that factor.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/jittered-grid.md"))]
 ///
@@ -96,7 +96,7 @@ pub fn jittered_grid(
     PointSet::new(domain, positions)
 }
 
-/// The domain, if it has area and the number of points is allowed.
+/// Checks that the domain has area and the number of points is allowed, and returns the domain.
 fn checked(domain: Domain, n_points: u64) -> Result<Domain, PointsError> {
     if n_points > MAX_POINTS {
         return Err(PointsError::new(PointsErrorKind::TooMany {

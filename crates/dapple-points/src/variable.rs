@@ -1,15 +1,15 @@
 //! Maximal Poisson disk sets with a radius that varies in space.
 //!
 //! Random sequential placing: darts fall at random places, and stay where they keep their distance from all points
-//! before them, until no dart could. For two points of different radius, [`DiskRule`] says what the distance is;
-//! Reference: the rules go back to Scott A. Mitchell, Alexander Rand, Mohamed S. Ebeida and Chandrajit Bajaj, "Variable Radii
+//! before them, until no dart could. For two points of different radius, [`DiskRule`] defines the distance. Reference:
+//! the rules go back to Scott A. Mitchell, Alexander Rand, Mohamed S. Ebeida and Chandrajit Bajaj, "Variable Radii
 //! Poisson-Disk Sampling", Canadian Conference on Computational Geometry 2012.
 //!
 //! The domain is cut into rectangles of some hundred points in which the radius hardly changes, and each of these
 //! blocks gets a grid of cells in its own size. Darts come in rounds. In each, a part of the open cells of all blocks
-//! gets one dart; blocks that could meet take turns, in an order that changes from round to round, the others
-//! work at the same time. The result depends on the order of these turns only, not on threads. What is open after
-//! the last round is cut into ever smaller quarters until all of it is covered.
+//! gets one dart. Blocks that could meet take turns, in an order that changes from round to round; the others work at
+//! the same time. The result depends on the order of these turns only, not on threads. The area that is still open
+//! after the last round is cut into ever smaller quarters until all of it is covered.
 
 mod block;
 mod density;
@@ -34,8 +34,8 @@ pub use rule::DiskRule;
 /// 0.6967 instead of 0.6988 (30 sets of 2000 points on a torus), the same anisotropy of 1.05, and took a tenth longer.
 const ROUNDS: [f64; 4] = [0.125, 0.25, 0.5, 1.0];
 
-/// The slope with which a radius may rise, unseen, between the places where it is read, before everything is done over
-/// with more room.
+/// The slope with which a radius may rise unnoticed between the places where it is read. Where it rises faster, all is
+/// done again with a larger slope.
 const RISE: f64 = 0.1;
 
 /// Options of Poisson-disk sets with a varying radius.
@@ -123,7 +123,7 @@ pub fn variable_poisson_disk(
     }
 }
 
-/// The points, for a radius that rises no faster between the places where it is read than along them, or than
+/// Places the points for a radius that rises, between the places where it is read, no faster than along them or than
 /// `field.rise`.
 fn place_points(
     field: RadiusField<'_>,
@@ -159,7 +159,7 @@ fn place_points(
     collect(*field.domain, blocks)
 }
 
-/// Refuses domains in which the largest disc meets itself.
+/// Checks that the largest disc fits into the periods of the domain.
 fn check_periods(domain: &Domain, tree: &Tree) -> Result<(), PointsError> {
     let largest = tree.leaves.iter().map(|leaf| leaf.radii.largest);
     let radius = largest.fold(0.0, f64::max);
@@ -196,7 +196,7 @@ fn blocks_of(tree: &Tree, setting: &Setting<'_>) -> Vec<Block> {
     })
 }
 
-/// Where the copies of the domain lie that come close to it.
+/// The shifts to the copies of the domain next to it.
 fn shifts(domain: &Domain) -> impl Iterator<Item = DVec2> {
     let turns = |axis: usize| if domain.wrap[axis] { -1..=1 } else { 0..=0 };
     let (columns, rows, size) = (turns(0), turns(1), domain.size);

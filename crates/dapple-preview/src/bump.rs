@@ -1,12 +1,12 @@
 //! Bump mapping with solid textures.
 //!
-//! Reference: James F. Blinn, "Simulation of Wrinkled Surfaces", SIGGRAPH 1978, doi 10.1145/800248.507101. A surface that
-//! is moved along its unit normal `n` by a small height `h` has the normal `n - (g - (g·n) n)`, with `g` the gradient of
-//! `h` in space: no parametrization of the surface is needed, which is what makes it fit solid textures.
+//! Reference: James F. Blinn, "Simulation of Wrinkled Surfaces", SIGGRAPH 1978, doi 10.1145/800248.507101. A surface
+//! that is moved along its unit normal `n` by a small height `h` has the normal `n - (g - (g·n) n)`, with `g` the
+//! gradient of `h` in space. No parametrization of the surface is needed, so the method fits solid textures.
 //!
-//! A bumped surface lit at a slant turns dark at one stroke where the smooth surface turns away. That is faded as in
+//! A bumped surface lit at a slant turns dark abruptly where the smooth surface turns away. This is faded as in
 //! Alejandro Conty Estevez, Pascal Lecocq and Clifford Stein, "A Microfacet-Based Shadowing Function to Solve the Bump
-//! Terminator Problem", Ray Tracing Gems, chapter 12, 2019: by the chance that bumps of this slope see the light.
+//! Terminator Problem", Ray Tracing Gems, chapter 12, 2019: by the probability that bumps of this slope see the light.
 
 use glam::DVec3;
 
@@ -23,7 +23,7 @@ pub(crate) fn bumped(normal: DVec3, gradient: DVec3, to_eye: DVec3) -> DVec3 {
     facing(bumped, to_eye)
 }
 
-/// The nearest unit vector to a normal that is on the side of the eye.
+/// The nearest unit vector to a normal that faces the eye.
 pub(crate) fn facing(normal: DVec3, to_eye: DVec3) -> DVec3 {
     let cosine = normal.dot(to_eye);
     if cosine >= FACING_MIN {
@@ -33,7 +33,7 @@ pub(crate) fn facing(normal: DVec3, to_eye: DVec3) -> DVec3 {
     lifted.try_normalize().unwrap_or(to_eye)
 }
 
-/// The part of the light, from 0 to 1, that bumps let through to each other.
+/// The fraction of the light, from 0 to 1, that bumps do not block from each other.
 ///
 /// `cosine` is between the smooth normal and the light, `slope` the cosine between the smooth and the bumped normal.
 pub(crate) fn bump_shadow(cosine: f64, slope: f64) -> f64 {

@@ -1,4 +1,4 @@
-//! Where a picture is seen from.
+//! Cameras, and the rays through the samples of a picture.
 
 use crate::ray::Ray;
 use crate::{PreviewError, PreviewErrorKind};
@@ -19,7 +19,7 @@ use glam::{DVec2, DVec3};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
-    /// Where the eye is, in the world.
+    /// The position of the eye, in the world.
     pub eye: DVec3,
     /// The point that the middle of the picture shows, in the world.
     pub target: DVec3,
@@ -48,7 +48,7 @@ impl Camera {
         Self { up, ..self }
     }
 
-    /// Replaces the vertical field of view, in radians.
+    /// Sets the vertical field of view, in radians.
     #[must_use]
     pub fn with_fov(self, vertical_fov: f64) -> Self {
         Self {
@@ -57,7 +57,7 @@ impl Camera {
         }
     }
 
-    /// The camera as a source of rays for a grid of samples.
+    /// Prepares rays from the camera for a grid of samples.
     pub(crate) fn prepare(&self, samples: [f64; 2]) -> Result<View, PreviewError> {
         PreviewError::check_vector("eye of the camera", self.eye)?;
         PreviewError::check_vector("target of the camera", self.target)?;
@@ -72,7 +72,7 @@ impl Camera {
         let forward = PreviewError::direction("view of the camera", self.target - self.eye)?;
         let up = PreviewError::direction("up of the camera", self.up)?;
         let across = forward.cross(up);
-        // Closer to parallel than this, rounding decides what is right.
+        // Closer to parallel than this, rounding would determine the direction of right.
         if across.length_squared() < 1e-24 {
             let what = "up of the camera, seen along its view,";
             return Err(PreviewError::new(PreviewErrorKind::NoDirection { what }));
@@ -90,14 +90,14 @@ impl Camera {
     }
 }
 
-/// A camera for a grid of samples.
+/// A camera, prepared for a grid of samples.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct View {
     eye: DVec3,
     forward: DVec3,
-    /// One sample to the right, at the distance 1.
+    /// The step of one sample to the right, at the distance 1.
     right: DVec3,
-    /// One sample down, at the distance 1.
+    /// The step of one sample down, at the distance 1.
     down: DVec3,
     middle: DVec2,
     /// The width of a sample in the middle of the picture, at the distance 1.

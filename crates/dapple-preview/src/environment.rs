@@ -1,16 +1,16 @@
-//! The environment, seen where no object is: around the scene, and in mirrors.
+//! The environment: the light from far away, visible around the scene and in mirrors.
 
 use crate::PreviewError;
 use core::fmt;
 use dapple_color::LinearRgb;
 use glam::DVec3;
 
-/// The light that comes from far away, by its direction. It fills the background and mirrors; it lights nothing.
+/// The light from far away, by its direction. It fills the background and mirrors, but does not light objects.
 ///
 /// Up is +y.
 #[non_exhaustive]
 pub enum Environment<'a> {
-    /// One color from everywhere.
+    /// The same color in all directions.
     Constant(LinearRgb),
     /// A sky without a sun.
     Sky(Sky),
@@ -22,15 +22,15 @@ pub enum Environment<'a> {
 
 /// A sky that changes with the height above the horizon.
 ///
-/// With `y` the sine of that height, the color above the horizon is a part `y (2 - y)` of the way to the zenith, and
-/// below it the same with `-y`.
+/// With `y` the sine of that height, the color above the horizon is interpolated by `y (2 - y)` from the horizon to the
+/// zenith, and below it by the same factor of `-y` to the nadir.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sky {
-    /// Straight down.
+    /// The color straight down.
     pub nadir: LinearRgb,
-    /// At the horizon.
+    /// The color at the horizon.
     pub horizon: LinearRgb,
-    /// Straight up.
+    /// The color straight up.
     pub zenith: LinearRgb,
 }
 
@@ -39,9 +39,9 @@ pub struct Sky {
 /// Angles are measured as the chord between two unit vectors, which is the angle in radians where that is small.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sun {
-    /// Where the sun is seen; any length but zero.
+    /// The direction to the sun; any length but zero.
     pub toward: DVec3,
-    /// The light of the disk; 10 and more is not too much for a sun.
+    /// The light of the disk; 10 and more are realistic for a sun.
     pub color: LinearRgb,
     /// The radius of the disk, a chord, from 0 to 2. The true sun has 0.0047. The outer fifth fades.
     pub radius: f64,
@@ -58,7 +58,7 @@ impl<'a> Environment<'a> {
         Self::Function(Box::new(light))
     }
 
-    /// The light that comes from where a unit vector points.
+    /// The light from the direction of a unit vector.
     #[must_use]
     pub fn light(&self, direction: DVec3) -> LinearRgb {
         match self {

@@ -1,10 +1,10 @@
-//! Lit previews on the CPU: what a procedural texture looks like on a thing.
+//! Lit previews on the CPU: procedural textures on objects.
 //!
 //! A [`Scene`] holds a [`Camera`], [`Object`]s, [`Light`]s and an [`Environment`], and renders to a raster of linear
-//! colors. An object is a [`Shape`] and a closure: for a [`Surface`], the point where a ray met the shape, it gives a
-//! [`Material`] of a color, the gradient of a bump, highlights and a mirror. The crate knows no texture; a solid texture is
-//! asked at the position in the space of the object, so that it sticks to it and goes through it, as the flat face of a
-//! [`Cut`] shows.
+//! colors. An object is a [`Shape`] and a closure. For a [`Surface`], the point where a ray met the shape, the closure
+//! returns a [`Material`] of a color, the gradient of a bump, highlights and a mirror. The crate knows no textures. A
+//! solid texture is sampled at the position in the space of the object, so that it moves with the object and goes
+//! through it, as the flat face of a [`Cut`] shows.
 //!
 //! ```
 //! use dapple_color::LinearRgb;
@@ -27,21 +27,21 @@
 //! # Ok::<(), dapple_preview::PreviewError>(())
 //! ```
 //!
-//! The world is right-handed with y up; a camera on the positive z axis sees x to the right. Lengths are in the units of
-//! the world, or of the object where that is said, and angles in radians. Row 0 of a picture is the top. Colors are
-//! linear and not tone mapped; what is above 1 is for the caller to clamp.
+//! The world is right-handed with y up; a camera on the positive z axis sees x to the right. Lengths are in units of
+//! the world, or of the object where the text says so, and angles in radians. Row 0 of a picture is the top. Colors are
+//! linear and not tone mapped; the caller may clamp values above 1.
 //!
 //! # How it works
 //!
 //! One ray per sample of a regular grid finds the nearest shape: planes and spheres by a formula, tori by the roots of
-//! their quartic, meshes by a hierarchy of boxes. A texture's gradient tilts the normal (Blinn 1978), lights are looked up
-//! with shadow rays, and mirrors send on a ray that sees the other objects and the environment. There is no light between
-//! surfaces: this is for textures.
+//! their quartic, meshes by a hierarchy of boxes. A texture's gradient tilts the normal (Blinn 1978), shadow rays test
+//! the lights, and a mirror sends a ray that sees the other objects and the environment. Light between surfaces is not
+//! simulated, since the previews are for textures.
 //!
 //! # Reproducibility
 //!
-//! A picture is a function of the scene: the same bits on every number of threads. Value paths use `+ − × ÷ sqrt floor`
-//! and `libm`, so the bits are those of the closures' results on every platform.
+//! A picture is a function of the scene: the same bits on every number of threads. Values are computed with `+ − × ÷
+//! sqrt floor` and `libm` only, so that a picture has the same bits on every platform if the closures do.
 
 #![forbid(unsafe_code)]
 

@@ -1,4 +1,4 @@
-//! Where light comes from, and how it throws shadows.
+//! Lights and their shadows.
 
 use crate::PreviewError;
 use crate::ray::frame;
@@ -6,7 +6,7 @@ use core::f64::consts::PI;
 use dapple_color::LinearRgb;
 use glam::{DVec2, DVec3};
 
-/// A light.
+/// A light, with its color and shadows.
 ///
 /// # Examples
 ///
@@ -21,56 +21,56 @@ use glam::{DVec2, DVec3};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Light {
-    /// Where the light comes from.
+    /// The source of the light.
     pub source: LightSource,
-    /// The color of a white surface that is lit straight, from any distance if the light does not fall off.
+    /// The color of a white surface that is lit perpendicularly, at any distance if the light has no falloff.
     pub color: LinearRgb,
-    /// How the light is blocked. By default hard.
+    /// The shadows of the light. By default hard.
     pub shadows: Shadows,
 }
 
-/// Where light comes from.
+/// The source of a light: a direction or a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum LightSource {
-    /// From far away.
+    /// Parallel light from far away.
     Directional {
         /// The direction *to* the light, in the world; any length but zero.
         toward: DVec3,
     },
-    /// From a point.
+    /// Light from a point.
     Point {
-        /// Where the light is, in the world.
+        /// The position of the light, in the world.
         position: DVec3,
-        /// How the light gets weaker with the distance.
+        /// The falloff with the distance.
         falloff: Falloff,
     },
 }
 
-/// How the light of a point gets weaker with the distance.
+/// The falloff of a point light with the distance.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Falloff {
-    /// Not at all.
+    /// No falloff.
     #[default]
     None,
-    /// With the square of the distance, so that the light has its color at this one, in units of the world.
+    /// Falloff with the square of the distance; the light has its color at this distance, in units of the world.
     InverseSquare(f64),
 }
 
-/// How a light is blocked.
+/// The method by which shadows are computed.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/shadows.md"))]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Shadows {
-    /// Not at all: the light goes through everything.
+    /// No shadows: the light passes through all objects.
     None,
-    /// By one ray.
+    /// Hard shadows, by one ray.
     #[default]
     Hard,
-    /// By rays to a disk of light; the same pattern of rays at every point, so few rays show as steps.
+    /// Soft shadows, by rays to a disk of light; the same pattern of rays at every point, so few rays show as steps.
     Soft {
-        /// The radius of the disk: of a point light in units of the world, of a directional one at the distance 1, so
-        /// that it is the tangent of an angle.
+        /// The radius of the disk: of a point light in units of the world, of a directional one at the distance 1,
+        /// where it is the tangent of an angle.
         radius: f64,
         /// The number of rays, from 1 to 1024; 16 to 64 is usual.
         rays: u32,
@@ -88,7 +88,7 @@ impl Light {
         }
     }
 
-    /// A light at a point that does not get weaker with the distance, with hard shadows.
+    /// A point light without falloff, with hard shadows.
     #[must_use]
     pub fn point(position: DVec3, color: LinearRgb) -> Self {
         let falloff = Falloff::None;
@@ -99,7 +99,7 @@ impl Light {
         }
     }
 
-    /// Replaces the shadows of the light.
+    /// Sets the shadows of the light.
     #[must_use]
     pub fn with_shadows(self, shadows: Shadows) -> Self {
         Self { shadows, ..self }
@@ -127,7 +127,7 @@ impl Light {
 }
 
 impl Shadows {
-    /// Where shadow rays go on a disk of light.
+    /// The targets of shadow rays on a disk of light.
     ///
     /// Reference: Helmut Vogel, "A better way to construct the sunflower head", Mathematical Biosciences 44, 1979.
     fn pattern(self) -> Result<Vec<DVec2>, PreviewError> {
@@ -165,18 +165,18 @@ pub(crate) struct Lamp {
     pattern: Vec<DVec2>,
 }
 
-/// The direction and color of a light at a point, before shadows.
+/// The direction, distance and color of a light at a point, before shadows.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Incoming {
     pub(crate) color: LinearRgb,
     /// The unit vector to the light.
     pub(crate) toward: DVec3,
-    /// How far the light is; infinite for a directional one.
+    /// The distance to the light; infinite for a directional one.
     pub(crate) distance: f64,
 }
 
 impl Lamp {
-    /// The light that comes to a point, or nothing if the point is where the light is.
+    /// The light at a point, or `None` if the point is at the light.
     pub(crate) fn incoming(&self, point: DVec3) -> Option<Incoming> {
         let color = self.color;
         match self.source {
@@ -201,7 +201,7 @@ impl Lamp {
         }
     }
 
-    /// The part of the light, from 0 to 1, that is not blocked: `blocked` says it of a unit vector and a distance.
+    /// The fraction of the light, from 0 to 1, that is not blocked; `blocked` tests a unit vector and a distance.
     pub(crate) fn visible(
         &self,
         incoming: &Incoming,

@@ -2,16 +2,16 @@
 //!
 //! Light is reflected after Lambert and, for highlights, after Blinn, "Models of Light Reflection for Computer
 //! Synthesized Pictures", SIGGRAPH 1977, doi 10.1145/563858.563893: `color · light · (n·l)` and `specular · light ·
-//! (n·h)^shininess`. No factor of π is hidden: white, lit straight by a light of 1, is 1. Mirrors may follow Fresnel's
-//! law in the form of Schlick, "An Inexpensive BRDF Model for Physically-based Rendering", Computer Graphics Forum 13(3),
-//! 1994, doi 10.1111/1467-8659.1330233.
+//! (n·h)^shininess`. There is no factor of π: white, lit perpendicularly by a light of 1, is 1. Mirrors may follow
+//! Fresnel's law in the form of Schlick, "An Inexpensive BRDF Model for Physically-based Rendering", Computer Graphics
+//! Forum 13(3), 1994, doi 10.1111/1467-8659.1330233.
 
 use dapple_color::LinearRgb;
 use glam::DVec3;
 
-/// The look of a surface at a point.
+/// The material of a surface at a point.
 ///
-/// A number that is not finite counts as zero, so that a texture with a hole gives a dark spot and not NaN.
+/// A number that is not finite counts as zero, so that a hole in a texture is a dark spot and not NaN.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/material.md"))]
 ///
@@ -28,37 +28,38 @@ use glam::DVec3;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Material {
-    /// The part of the light that is scattered, per channel, mostly from 0 to 1.
+    /// The fraction of the light that is scattered, per channel, mostly from 0 to 1.
     pub color: LinearRgb,
-    /// Light that the surface gives off by itself. By default none.
+    /// The light that the surface emits. By default none.
     pub emission: LinearRgb,
     /// The gradient of a height over the surface: units of height per unit of length, both in units of the object, as a
-    /// vector in its space. Its part along the normal has no effect. By default zero, which is smooth.
+    /// vector in its space. Its component along the normal has no effect. By default zero, which is smooth.
     pub bump: DVec3,
     /// The strength of highlights, at least 0. By default 0.
     pub specular: f32,
     /// The exponent of highlights, at least 0: 10 is dull, 1000 sharp. By default 1.
     pub shininess: f32,
-    /// How much the surface mirrors. By default not at all.
+    /// The reflectance of the surface as a mirror. By default none.
     pub mirror: Mirror,
 }
 
-/// The part of the light that comes from the mirrored direction; what is mirrored is not scattered.
+/// The fraction of the light that comes from the mirrored direction; the rest is scattered.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/mirror.md"))]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Mirror {
-    /// None.
+    /// No mirror.
     #[default]
     None,
-    /// One part, from 0 to 1, at every angle.
+    /// The same fraction, from 0 to 1, at every angle.
     Constant(f32),
-    /// This part, from 0 to 1, seen straight, and more at a slant, up to 1, after Schlick. Water has 0.02.
+    /// Schlick's approximation: this fraction, from 0 to 1, at perpendicular view, rising to 1 at grazing angles. Water
+    /// has 0.02.
     Fresnel(f32),
 }
 
 impl Material {
-    /// A surface that scatters light and does nothing else.
+    /// A surface that only scatters light.
     #[must_use]
     pub fn matte(color: LinearRgb) -> Self {
         Self {
@@ -71,13 +72,13 @@ impl Material {
         }
     }
 
-    /// Replaces the gradient of the height over the surface.
+    /// Sets the gradient of the height over the surface.
     #[must_use]
     pub fn with_bump(self, bump: DVec3) -> Self {
         Self { bump, ..self }
     }
 
-    /// Adds highlights.
+    /// Sets the strength and the exponent of highlights.
     #[must_use]
     pub fn with_specular(self, specular: f32, shininess: f32) -> Self {
         Self {
@@ -87,19 +88,19 @@ impl Material {
         }
     }
 
-    /// Adds a mirror.
+    /// Sets the mirror.
     #[must_use]
     pub fn with_mirror(self, mirror: Mirror) -> Self {
         Self { mirror, ..self }
     }
 
-    /// Adds light of its own.
+    /// Sets the emitted light.
     #[must_use]
     pub fn with_emission(self, emission: LinearRgb) -> Self {
         Self { emission, ..self }
     }
 
-    /// The material with every number finite.
+    /// The material, with numbers that are not finite replaced by zero.
     pub(crate) fn cleaned(self) -> Self {
         Self {
             color: clean(self.color),
@@ -117,7 +118,7 @@ impl Material {
 }
 
 impl Mirror {
-    /// The part that is mirrored at a cosine between the normal and the direction to the eye.
+    /// The mirrored fraction at a cosine between the normal and the direction to the eye.
     pub(crate) fn part(self, cosine: f64) -> f32 {
         match self {
             Self::None => 0.0,
@@ -136,7 +137,7 @@ fn finite(value: f32) -> f32 {
     if value.is_finite() { value } else { 0.0 }
 }
 
-/// The color with parts that are not finite at zero.
+/// The color, with components that are not finite replaced by zero.
 pub(crate) fn clean(color: LinearRgb) -> LinearRgb {
     color.to_array().map(finite).into()
 }
@@ -149,7 +150,7 @@ mod tests {
     fn fresnel_is_its_number_seen_straight_and_one_at_a_slant() {
         assert_eq!(Mirror::Fresnel(0.02).part(1.0), 0.02, "straight");
         assert_eq!(Mirror::Fresnel(0.02).part(0.0), 1.0, "at a slant");
-        // 0.5^5 = 1/32 is exact, and so is everything else.
+        // 0.5^5 = 1/32 is exact, and so are all other operations.
         assert_eq!(Mirror::Fresnel(0.5).part(0.5), 0.5 + 0.5 / 32.0, "between");
     }
 

@@ -1,4 +1,4 @@
-//! Triangle meshes, ready for rays.
+//! Triangle meshes, prepared for ray tracing.
 
 use crate::PreviewError;
 use crate::shape::Detail;
@@ -9,7 +9,7 @@ use glam::DVec3;
 
 /// Triangles that share vertices, with a hierarchy of boxes around them.
 ///
-/// Triangles are seen from both sides. A triangle without an area is never met, and a mesh may be empty.
+/// Triangles are visible from both sides. A triangle without an area is never hit, and a mesh may be empty.
 ///
 /// # Examples
 ///
@@ -24,25 +24,25 @@ use glam::DVec3;
 pub struct Mesh {
     bvh: Bvh,
     mesh: dapple_mesh::Mesh,
-    /// The unit normals of the vertices, or nothing for a mesh with flat triangles; zero where there is none.
+    /// The unit normals of the vertices, zero for a vertex without one; empty for a mesh with flat triangles.
     normals: Vec<DVec3>,
 }
 
 impl Mesh {
     /// A mesh with a normal at every vertex: the sum of those of its triangles, weighted by their areas.
     ///
-    /// Triangles that go around their outside counterclockwise agree about it; each holds three indices of vertices.
+    /// Triangles are counterclockwise seen from outside; each holds three indices of vertices.
     ///
     /// # Errors
     ///
-    /// [`PreviewErrorKind::Mesh`](crate::PreviewErrorKind::Mesh) if a part of a position is not finite or above 1e30,
-    /// if an index is past the last vertex, or past 2^31 triangles.
+    /// [`PreviewErrorKind::Mesh`](crate::PreviewErrorKind::Mesh) if a component of a position is not finite or above
+    /// 1e30, if an index is past the last vertex, or past 2^31 triangles.
     pub fn smooth(positions: &[DVec3], triangles: &[[u32; 3]]) -> Result<Self, PreviewError> {
         let mesh = dapple_mesh::Mesh::new(positions.to_vec(), triangles)?;
         Ok(Self::from_mesh(mesh))
     }
 
-    /// A mesh of flat triangles, with an edge wherever two meet.
+    /// A mesh of flat triangles, with visible edges between them.
     ///
     /// # Errors
     ///
@@ -72,8 +72,8 @@ impl Mesh {
         self.mesh.faces().len()
     }
 
-    /// The nearest triangle at a distance above zero and at most `limit`; of several at one distance the one with the
-    /// lowest index.
+    /// The nearest triangle at a distance above zero and at most `limit`; among equal distances the one with the lowest
+    /// index.
     pub(crate) fn first_hit(&self, ray: &Ray, limit: f64) -> Option<RayHit> {
         self.bvh.first_hit(ray, limit)
     }
@@ -83,7 +83,7 @@ impl Mesh {
         self.bvh.is_blocked(ray, limit)
     }
 
-    /// The normals of the surface at a hit, and where its shadow rays start.
+    /// The normals of the surface at a hit, and the start of its shadow rays.
     pub(crate) fn detail(&self, position: DVec3, hit: &RayHit) -> Detail {
         let corners = self.mesh.corners(hit.face);
         let [a, b, c] = corners;
@@ -108,8 +108,8 @@ impl Mesh {
             values[0] * hit.weights[0] + values[1] * hit.weights[1] + values[2] * hit.weights[2]
         };
         detail.normal = weighted(normals).normalize_or(geometric_normal);
-        // Johannes Hanika, "Hacking the Shadow Terminator", Ray Tracing Gems II, chapter 4, 2021: shadow rays start from
-        // the mean of the point's projections to the planes that the normals of the corners stand for, where those are
+        // Johannes Hanika, "Hacking the Shadow Terminator", Ray Tracing Gems II, chapter 4, 2021: shadow rays start
+        // from the mean of the point's projections to the tangent planes of the normals at the corners, where those are
         // above the triangle.
         let side = if detail.normal.dot(geometric_normal) < 0.0 {
             -1.0

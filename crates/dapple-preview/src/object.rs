@@ -1,4 +1,4 @@
-//! Things in a scene.
+//! Objects in a scene.
 
 use crate::shape::Body;
 use crate::transform::Placement;
@@ -6,7 +6,7 @@ use crate::{Cut, Material, PreviewError, Shape, Surface, Transform};
 use core::fmt;
 use glam::DVec3;
 
-/// A shape that stands somewhere and looks like something.
+/// A shape with a place and a look.
 ///
 /// # Examples
 ///
@@ -28,13 +28,13 @@ pub struct Object<'a> {
     look: Look<'a>,
 }
 
-/// The look of an object at a point.
+/// The function that returns the material of an object at a point.
 type Look<'a> = Box<dyn Fn(&Surface) -> Material + Send + Sync + 'a>;
 
 impl<'a> Object<'a> {
-    /// A shape at the origin of the world that looks as `look` says.
+    /// A shape at the origin of the world, with the materials that `look` returns.
     ///
-    /// `look` is called from several threads, and has to be a function of the surface alone.
+    /// `look` is called from several threads, and must depend on the surface alone.
     #[must_use]
     pub fn new(shape: Shape, look: impl Fn(&Surface) -> Material + Send + Sync + 'a) -> Self {
         Self {
@@ -45,20 +45,20 @@ impl<'a> Object<'a> {
         }
     }
 
-    /// Puts the origin of the object elsewhere in the world.
+    /// Moves the origin of the object to a position of the world.
     #[must_use]
     pub fn at(mut self, translation: DVec3) -> Self {
         self.transform.translation = translation;
         self
     }
 
-    /// Replaces the way from the space of the object to the world.
+    /// Sets the transform from the space of the object to the world.
     #[must_use]
     pub fn with_transform(self, transform: Transform) -> Self {
         Self { transform, ..self }
     }
 
-    /// Cuts the object open; for spheres and tori.
+    /// Cuts the object open; for spheres and tori only.
     #[must_use]
     pub fn with_cut(self, cut: Cut) -> Self {
         let cut = Some(cut);

@@ -1,4 +1,4 @@
-//! Rays, and the frame around a direction.
+//! Rays, and orthonormal frames.
 
 pub(crate) use dapple_mesh::Ray;
 

@@ -1,6 +1,6 @@
-//! A scene, and its picture: the mean of a regular grid of samples in every pixel.
+//! Scenes and their pictures: every pixel is the mean of a regular grid of samples.
 //!
-//! Reference: our own; `trace` says how a sample is lit, after Whitted 1980.
+//! Reference: our own; `trace` has the lighting of a sample, after Whitted 1980.
 
 use crate::trace::{Path, World};
 use crate::{Camera, Environment, Light, Object, PreviewError};
@@ -8,12 +8,12 @@ use dapple_color::LinearRgb;
 use dapple_raster::Raster;
 use glam::DVec2;
 
-/// The most samples per pixel along an axis.
+/// The largest number of samples per pixel along an axis.
 const SUPERSAMPLING_MAX: u32 = 64;
-/// The most times that a ray may be mirrored.
+/// The largest number of mirror reflections of a ray.
 const BOUNCES_MAX: u32 = 16;
 
-/// Objects, the light on them, and a camera that sees them.
+/// Objects, lights, and a camera.
 ///
 /// # Examples
 ///
@@ -32,18 +32,18 @@ const BOUNCES_MAX: u32 = 16;
 /// ```
 #[derive(Debug)]
 pub struct Scene<'a> {
-    /// Where the picture is seen from.
+    /// The camera of the picture.
     pub camera: Camera,
     /// The objects.
     pub objects: Vec<Object<'a>>,
     /// The lights.
     pub lights: Vec<Light>,
-    /// The light that comes from everywhere to every point and is never blocked. By default none.
+    /// The ambient light: it comes from all directions to every point and is never blocked. By default none.
     pub ambient: LinearRgb,
-    /// The environment, seen where no object is. By default black.
+    /// The environment, visible where there is no object. By default black.
     pub environment: Environment<'a>,
-    /// How many times a ray that is mirrored sees the objects, from 0 to 16; after that it sees the environment only. By
-    /// default 1.
+    /// The number of times that a mirrored ray sees the objects, from 0 to 16; after that it sees the environment only.
+    /// By default 1.
     pub bounces: u32,
 }
 
@@ -52,7 +52,7 @@ pub struct Scene<'a> {
 pub struct Supersampling(pub u32);
 
 impl<'a> Scene<'a> {
-    /// A scene with nothing but a camera.
+    /// A scene with only a camera.
     #[must_use]
     pub fn new(camera: Camera) -> Self {
         Self {
@@ -65,27 +65,27 @@ impl<'a> Scene<'a> {
         }
     }
 
-    /// The scene with one object more.
+    /// Adds an object to the scene.
     #[must_use]
     pub fn with_object(mut self, object: Object<'a>) -> Self {
         self.objects.push(object);
         self
     }
 
-    /// The scene with one light more.
+    /// Adds a light to the scene.
     #[must_use]
     pub fn with_light(mut self, light: Light) -> Self {
         self.lights.push(light);
         self
     }
 
-    /// Replaces the light that comes from everywhere.
+    /// Sets the ambient light.
     #[must_use]
     pub fn with_ambient(self, ambient: LinearRgb) -> Self {
         Self { ambient, ..self }
     }
 
-    /// Replaces the environment.
+    /// Sets the environment.
     #[must_use]
     pub fn with_environment(self, environment: Environment<'a>) -> Self {
         Self {
@@ -94,13 +94,13 @@ impl<'a> Scene<'a> {
         }
     }
 
-    /// Replaces the number of reflections.
+    /// Sets the number of reflections.
     #[must_use]
     pub fn with_bounces(self, bounces: u32) -> Self {
         Self { bounces, ..self }
     }
 
-    /// The picture, `size` columns and rows, the top row first, on all cores where the feature `rayon` is on.
+    /// Renders the picture, `size` columns and rows, the top row first, on all cores where the feature `rayon` is on.
     ///
     /// Colors are linear, finite and not tone mapped: they may be above 1.
     ///

@@ -1,7 +1,7 @@
-//! The shapes that a scene is made of, and how rays meet them.
+//! The shapes of a scene, and their intersection with rays.
 //!
-//! Closed shapes are met as solids: [`solid`] lists the stretches of a ray that are inside, [`cut`] takes some of them
-//! away, and what is left begins and ends at the skin or at the flat face of a cut.
+//! Closed shapes are intersected as solids: [`solid`] lists the stretches of a ray that are inside, [`cut`] removes
+//! some of them, and the rest begins and ends at the skin or at the flat face of a cut.
 
 mod cut;
 mod solid;
@@ -23,9 +23,9 @@ use std::sync::Arc;
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub enum Shape {
-    /// The plane `y = 0`, without an end.
+    /// The infinite plane `y = 0`.
     Plane,
-    /// The part of the plane `y = 0` with x and z at most this far from zero.
+    /// The part of the plane `y = 0` around the origin within half sizes along x and z.
     Rectangle {
         /// Half the sides along x and z, above zero.
         half_size: DVec2,
@@ -42,7 +42,7 @@ pub enum Shape {
         /// The radius of the tube, above zero and at most the major radius.
         minor_radius: f64,
     },
-    /// Triangles.
+    /// A mesh of triangles.
     Mesh(Arc<Mesh>),
 }
 
@@ -53,7 +53,7 @@ impl Shape {
         Self::Sphere { radius }
     }
 
-    /// A ring around the y axis: the radius of its middle circle, and that of its tube.
+    /// A ring around the y axis, from the radius of its middle circle and that of its tube.
     #[must_use]
     pub fn torus(major_radius: f64, minor_radius: f64) -> Self {
         Self::Torus {
@@ -69,7 +69,7 @@ impl Shape {
         Self::Rectangle { half_size }
     }
 
-    /// Triangles; pass an `Arc` to share them between objects.
+    /// A mesh of triangles; pass an `Arc` to share them between objects.
     #[must_use]
     pub fn mesh(mesh: impl Into<Arc<Mesh>>) -> Self {
         Self::Mesh(mesh.into())
@@ -127,10 +127,10 @@ pub(crate) enum Body<'a> {
     Mesh(&'a Mesh),
 }
 
-/// Where a ray meets a body: as little as is needed to compare it with others.
+/// The intersection of a ray and a body: only the data for comparison with others.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Hit {
-    /// How far along the ray, above zero.
+    /// The distance along the ray, above zero.
     pub(crate) distance: f64,
     face: HitFace,
 }
@@ -142,7 +142,7 @@ enum HitFace {
     Triangle(RayHit),
 }
 
-/// Position and normals of a body where a ray meets it, in the space of the object. The normals may point either way.
+/// Position and normals of a body at a hit, in the space of the object. The normals may point either way.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Detail {
     pub(crate) position: DVec3,
@@ -150,7 +150,7 @@ pub(crate) struct Detail {
     pub(crate) normal: DVec3,
     pub(crate) part: Part,
     pub(crate) chart: Chart,
-    /// Where shadow rays start: the position, or the smooth surface that a triangle stands for.
+    /// The start of shadow rays: the position, or a point on the smooth surface that a triangle approximates.
     pub(crate) lit_position: DVec3,
 }
 
@@ -179,7 +179,7 @@ impl Body<'_> {
         }
     }
 
-    /// All that is to be known of a hit of this ray.
+    /// The position, normals and coordinates at a hit of this ray.
     pub(crate) fn detail(&self, ray: &Ray, hit: &Hit) -> Detail {
         let position = ray.at(hit.distance);
         match (self, hit.face) {
@@ -188,7 +188,7 @@ impl Body<'_> {
                 Detail::flat(position, normal, part, chart)
             }
             (Body::Mesh(mesh), HitFace::Triangle(hit)) => mesh.detail(position, &hit),
-            // A body gives no other hit than its own, so what is left is a plane.
+            // A body has only its own kinds of hits, so the rest is a plane.
             _ => {
                 let position = DVec3::new(position.x, 0.0, position.z);
                 Detail::flat(position, DVec3::Y, Part::Skin, Chart::Plane)
@@ -198,7 +198,7 @@ impl Body<'_> {
 }
 
 impl Detail {
-    /// A point where the smooth surface is the true one.
+    /// A point where the smooth surface is the actual one.
     fn flat(position: DVec3, normal: DVec3, part: Part, chart: Chart) -> Self {
         Self {
             position,
@@ -211,7 +211,7 @@ impl Detail {
     }
 }
 
-/// How far a ray is from the plane `y = 0`, where it meets it within the rectangle.
+/// The distance at which a ray meets the plane `y = 0` within the rectangle.
 fn flat_hit(ray: &Ray, half_size: DVec2) -> Option<f64> {
     let distance = -ray.origin.y / ray.direction.y;
     // Also false for NaN, which is a ray within the plane.

@@ -1,30 +1,31 @@
-//! The point of a surface where a ray meets it.
+//! Surface points, where rays meet shapes.
 
 use core::f64::consts::{PI, TAU};
 use glam::{DVec2, DVec3};
 
-/// A point of a surface that is about to be shaded.
+/// A point of a surface that is to be shaded.
 ///
-/// Positions and normals without a word about their space are in the space of the object, so that a solid texture sticks
-/// to the object. Normals are unit vectors and point to the side that is seen.
+/// Positions and normals are in the space of the object unless the text says otherwise, so that a solid texture sticks
+/// to the object. Normals are unit vectors and point to the visible side.
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub struct Surface {
-    /// Where the point is, in the space of the object.
+    /// The position of the point, in the space of the object.
     pub position: DVec3,
-    /// Where the point is, in the world.
+    /// The position of the point, in the world.
     pub world_position: DVec3,
-    /// The normal of the smooth surface: for a mesh, mixed from those of the corners.
+    /// The normal of the smooth surface: for a mesh, interpolated from those of the corners.
     pub normal: DVec3,
-    /// The normal of the true surface: for a mesh, that of the triangle.
+    /// The normal of the actual surface: for a mesh, that of the triangle.
     pub geometric_normal: DVec3,
-    /// Whether this is the skin of the shape or the flat face of a cut.
+    /// Whether the point is on the skin of the shape or on the flat face of a cut.
     pub part: Part,
-    /// The width of a sample of the picture across the ray, in units of the object: what is finer cannot be shown.
+    /// The width of a sample of the picture across the ray, in units of the object: finer detail cannot be shown.
     ///
-    /// Along the slope of a surface that is seen at a slant it is wider: `footprint / incidence`.
+    /// Along the slope of a surface at a grazing angle it is wider: `footprint / incidence`.
     pub footprint: f64,
-    /// The cosine of the angle between the ray and `geometric_normal`: 1 seen straight, toward 0 at a slant.
+    /// The cosine of the angle between the ray and `geometric_normal`: 1 for a perpendicular view, toward 0 at grazing
+    /// angles.
     pub incidence: f64,
     pub(crate) chart: Chart,
 }
@@ -32,7 +33,7 @@ pub struct Surface {
 /// A part of a shape.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Part {
-    /// The surface that the shape has anyway.
+    /// The surface of the uncut shape.
     Skin,
     /// The flat face where a solid was cut.
     Cut,
@@ -43,11 +44,11 @@ pub enum Part {
 pub struct Triangle {
     /// The index of the triangle.
     pub index: u32,
-    /// The weights of its corners, which sum to 1: what mixes anything that the corners have, such as uv.
+    /// The barycentric weights of the corners, which sum to 1, for interpolation of vertex data such as uv.
     pub weights: [f64; 3],
 }
 
-/// How a shape is laid out flat.
+/// The surface coordinates of a shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Chart {
     None,
@@ -58,7 +59,7 @@ pub(crate) enum Chart {
 }
 
 impl Surface {
-    /// Coordinates on the surface, where the shape has them: on the skin of all shapes but meshes.
+    /// Surface coordinates (u, v), on the skin of all shapes except meshes.
     ///
     /// * Plane and rectangle: x and z, in units of the object. Seen from above with -z up, u goes right and v down.
     /// * Sphere: the angle around y from +x toward -z, and the angle from +y, as parts of a turn and of half a turn: both
@@ -84,7 +85,7 @@ impl Surface {
         }
     }
 
-    /// The triangle of a mesh, and where in it; nothing on other shapes.
+    /// The triangle of a mesh with barycentric weights; `None` on other shapes.
     #[must_use]
     pub fn triangle(&self) -> Option<Triangle> {
         match self.chart {

@@ -1,8 +1,8 @@
-//! The light that comes along a ray.
+//! Ray tracing: the light along a ray.
 //!
-//! Reference: Turner Whitted, "An Improved Illumination Model for Shaded Display", Communications of the ACM 23(6), 1980,
-//! doi 10.1145/358876.358882: a ray to every light asks for shadows, and one in the mirrored direction for what a mirror
-//! shows. There is no light between surfaces and no transparency.
+//! Reference: Turner Whitted, "An Improved Illumination Model for Shaded Display", Communications of the ACM 23(6),
+//! 1980, doi 10.1145/358876.358882: a ray to every light tests for shadows, and a ray in the mirrored direction samples
+//! the reflection. There is no light between surfaces and no transparency.
 
 use crate::bump::{bump_shadow, bumped, facing};
 use crate::light::{Incoming, Lamp};
@@ -15,11 +15,11 @@ use crate::{Environment, Material, PreviewError, Scene, Surface};
 use dapple_color::LinearRgb;
 use glam::DVec3;
 
-/// How far rays start from a surface, as a part of the largest of the numbers that the point was computed from: well
-/// above their rounding, which is about 1e-15, and below what can be seen.
+/// The distance of the start of rays from a surface, as a fraction of the largest of the numbers from which the point
+/// was computed: well above their rounding, which is about 1e-15, and too small to see.
 const LIFT: f64 = 1e-9;
 
-/// A ray that light comes along, and its history.
+/// A ray along which light is traced, and its history.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Path {
     ray: Ray,
@@ -50,7 +50,7 @@ pub(crate) struct World<'a> {
     environment: &'a Environment<'a>,
 }
 
-/// A surface in the world, about to be lit.
+/// A surface point in the world, with the data for its lighting.
 struct Lit {
     /// The unit vector to the eye.
     to_eye: DVec3,
@@ -58,9 +58,9 @@ struct Lit {
     smooth: DVec3,
     /// The unit normal with its bumps.
     normal: DVec3,
-    /// Where the light is looked up.
+    /// The position at which the light is evaluated.
     position: DVec3,
-    /// Where shadow rays start.
+    /// The start of shadow rays.
     shadow_origin: DVec3,
 }
 
@@ -81,13 +81,13 @@ impl<'a> World<'a> {
         })
     }
 
-    /// The light that comes along a path, finite.
+    /// The light along a path; always finite.
     pub(crate) fn light(&self, path: &Path) -> LinearRgb {
         let light = match self.nearest(&path.ray) {
             Some((object, hit, distance)) => self.surface_light(path, object, &hit, distance),
             None => self.background(path.ray.direction),
         };
-        // Materials and lights of enormous numbers overflow; what they stand for is very bright.
+        // Very large numbers in materials and lights overflow; they are clamped to very bright.
         let finite = |part: f32| match part {
             part if part.is_nan() => 0.0,
             part => part.clamp(f32::MIN, f32::MAX),
@@ -99,7 +99,7 @@ impl<'a> World<'a> {
         clean(self.environment.light(direction))
     }
 
-    /// The first object that a ray meets; of several at one distance the first of the list.
+    /// The first object that a ray meets; among equal distances the first of the list.
     fn nearest(&self, ray: &Ray) -> Option<(&Placed<'a>, Hit, f64)> {
         let mut best = None;
         let mut limit = f64::INFINITY;
@@ -117,7 +117,7 @@ impl<'a> World<'a> {
         best
     }
 
-    /// Whether something is along a ray before a distance.
+    /// Whether an object blocks a ray before a distance.
     fn blocked(&self, ray: &Ray, distance: f64) -> bool {
         self.objects.iter().any(|object| {
             let own_ray = object.placement.ray_to_object(ray);
@@ -182,7 +182,7 @@ impl<'a> World<'a> {
         light
     }
 
-    /// The light that a surface scatters of the lights and of the ambient light, and its highlights.
+    /// The light that a surface scatters from the lights and the ambient light, and its highlights.
     fn local_light(&self, lit: &Lit, material: &Material) -> [LinearRgb; 2] {
         let mut scattered = times(material.color, self.ambient);
         let mut highlights = LinearRgb::BLACK;
@@ -212,7 +212,7 @@ impl<'a> World<'a> {
     }
 }
 
-/// The detail with its normals on the side of the eye.
+/// The detail with its normals turned to the side of the eye.
 fn seen(mut detail: Detail, to_eye: DVec3) -> Detail {
     if detail.geometric_normal.dot(to_eye) < 0.0 {
         detail.geometric_normal = -detail.geometric_normal;
@@ -234,7 +234,7 @@ fn highlight(lit: &Lit, incoming: &Incoming, material: &Material) -> f32 {
     material.specular * libm::pow(cosine, material.shininess.into()) as f32
 }
 
-/// The direction of a ray after a mirror with bumps; one that would go into the surface is mirrored out of it again.
+/// The direction of a ray after a mirror with bumps; a direction into the surface is mirrored out of it again.
 fn mirrored(direction: DVec3, normal: DVec3, geometric_normal: DVec3) -> DVec3 {
     let away = direction - normal * (2.0 * direction.dot(normal));
     let depth = away.dot(geometric_normal).min(0.0);
@@ -253,7 +253,7 @@ mod tests {
 
     #[test]
     fn mirrored_ray_leaves_the_surface_when_a_bump_turns_it_inward() {
-        // Straight down onto a bump that leans by 53 degrees: the mirrored ray goes 16 degrees below the horizon.
+        // A ray straight down onto a bump that leans by 53 degrees is mirrored 16 degrees below the horizon.
         let bumped = DVec3::new(0.8, 0.6, 0.0);
         let away = mirrored(DVec3::NEG_Y, bumped, DVec3::Y);
         let expected = DVec3::new(0.96, 0.28, 0.0);

@@ -1,10 +1,10 @@
-//! Where an object stands in the world.
+//! The place, rotation and scale of an object in the world.
 
 use crate::PreviewError;
 use crate::ray::Ray;
 use glam::{DMat3, DQuat, DVec3};
 
-/// From an object's own space to the world: a scale, then a rotation, then a translation.
+/// A transform from an object's space to the world: a scale, then a rotation, then a translation.
 ///
 /// # Examples
 ///
@@ -17,11 +17,11 @@ use glam::{DMat3, DQuat, DVec3};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Transform {
-    /// Where the origin of the object is in the world. By default the origin.
+    /// The position of the object's origin in the world. By default the origin.
     pub translation: DVec3,
-    /// How the object is turned. By default not at all; of another length than 1 it is normalized.
+    /// The rotation of the object. By default none; a quaternion of another length than 1 is normalized.
     pub rotation: DQuat,
-    /// How many units of the world one unit of the object is, above zero. By default 1.
+    /// The size of a unit of the object in units of the world, above zero. By default 1.
     pub scale: f64,
 }
 
@@ -32,7 +32,7 @@ impl Default for Transform {
 }
 
 impl Transform {
-    /// A move without rotation and scale.
+    /// A translation without rotation and scale.
     #[must_use]
     pub fn from_translation(translation: DVec3) -> Self {
         Self {
@@ -42,13 +42,13 @@ impl Transform {
         }
     }
 
-    /// Replaces the rotation.
+    /// Sets the rotation.
     #[must_use]
     pub fn with_rotation(self, rotation: DQuat) -> Self {
         Self { rotation, ..self }
     }
 
-    /// Replaces the scale.
+    /// Sets the scale.
     #[must_use]
     pub fn with_scale(self, scale: f64) -> Self {
         Self { scale, ..self }
@@ -80,7 +80,7 @@ pub(crate) struct Placement {
 }
 
 impl Placement {
-    /// A direction of the world in the space of the object, as long as before.
+    /// A direction of the world in the space of the object, of the same length.
     pub(crate) fn direction_to_object(&self, direction: DVec3) -> DVec3 {
         // The transpose of a rotation is its inverse.
         DVec3::new(
@@ -90,7 +90,7 @@ impl Placement {
         )
     }
 
-    /// A direction of the object in the world, as long as before.
+    /// A direction of the object in the world, of the same length.
     pub(crate) fn direction_to_world(&self, direction: DVec3) -> DVec3 {
         self.rotation.x_axis * direction.x
             + self.rotation.y_axis * direction.y

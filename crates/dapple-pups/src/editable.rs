@@ -126,7 +126,8 @@ impl EditablePups {
     /// [`Graph`](PupsErrorKind::Graph) for a position outside of the domain or at another point,
     /// [`ShortAxis`](PupsErrorKind::ShortAxis) for one too close to another, [`Range`](PupsErrorKind::Range) for a value that
     /// is not finite or an orientation without a length, [`Conflict`](PupsErrorKind::Conflict) for an orientation where points
-    /// have none, or none where they have one. Nothing has changed then.
+    /// have none, or none where they have one, and for a point that has not either a value or a label,
+    /// [`Count`](PupsErrorKind::Count) for a label without a value. Nothing has changed then.
     pub fn insert(&mut self, point: ControlPoint) -> Result<Vec<Changed>, PupsError> {
         self.check(&point)?;
         let at = DVec2::new(point.x, point.y);
@@ -175,8 +176,7 @@ impl EditablePups {
         Ok(self.changed(&stars, [at; 2]))
     }
 
-    /// Gives a point another value and orientation. Where the value of the strongest point counts alone, the value is what
-    /// a label stands for.
+    /// Gives a point a value of its own, in place of another or of a label, and an orientation.
     ///
     /// # Errors
     ///
@@ -190,7 +190,8 @@ impl EditablePups {
     ) -> Result<Vec<Changed>, PupsError> {
         let star = self.graph.star(point)?;
         let changed = ControlPoint {
-            value,
+            value: Some(value),
+            label: None,
             orientation,
             ..self.options.points[point.index()]
         };
@@ -250,7 +251,7 @@ impl EditablePups {
             centers.push(star.center);
         }
         let points = PointSet::new(net.domain, centers)?;
-        let values = given.map(|point| point.value).collect();
+        let values = self.options.numbers(given)?;
         self.options
             .cells
             .texture(Pups::of_net(net, points), values)
@@ -258,8 +259,10 @@ impl EditablePups {
 
     /// Refuses what a point cannot hold.
     fn check(&self, point: &ControlPoint) -> Result<(), PupsError> {
-        let (finite, value) = (point.value.is_finite(), f64::from(point.value));
-        PupsError::check(finite, "value of a control point", value, "finite")?;
+        for value in self.options.numbers([point])? {
+            let (finite, value) = (value.is_finite(), f64::from(value));
+            PupsError::check(finite, "value of a control point", value, "finite")?;
+        }
         let first = self.options.points.first();
         if first.is_some_and(|first| first.orientation.is_some() != point.orientation.is_some()) {
             let rule = "all points have an `orientation`, or none has";

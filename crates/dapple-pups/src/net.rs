@@ -51,7 +51,7 @@ impl AxisBlock {
     }
 }
 
-/// What the axial weights of a block are raised to: below 1 for axes that fade, which a block has first or not at all.
+/// Exponents of the axial weights of a block: below 1 for axes that fade, which a block has first or not at all.
 pub(crate) type Exponents = [f32; BLOCK];
 
 /// A control point, or one of its periodic images; one cache line.
@@ -70,7 +70,7 @@ pub(crate) struct Instance {
     n_blocks: u32,
 }
 
-/// What is known of a graph.
+/// The graph that a net is made of.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum GraphKind {
     /// It is the Delaunay graph of the points, so there are no axes that could close a support.

@@ -1,4 +1,4 @@
-//! What a texture is made with, beside its points.
+//! Options of a net of control points.
 
 use crate::{AxialWeight, PupsError, Range, range};
 use glam::DVec3;

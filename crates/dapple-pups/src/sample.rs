@@ -14,7 +14,7 @@ use dapple_raster::simd::dispatch;
 use fearless_simd::{f32x4, f32x8, prelude::*};
 use glam::DVec2;
 
-/// What takes the records and the weights of a group of candidates.
+/// Takes the records and the weights of a group of candidates.
 type TakeGroup<'a> = dyn FnMut(&[u32; GROUP], &[f32; GROUP]) + 'a;
 
 impl Net {

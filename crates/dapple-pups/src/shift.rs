@@ -3,7 +3,7 @@
 use crate::power::powers;
 use fearless_simd::prelude::*;
 
-/// What is added to the square of a distance, so that it is not zero; it changes no distance above 1e-15.
+/// A summand of squared distances that keeps them above zero; it changes no distance above 1e-15.
 const LEAST_SQUARE: f32 = f32::MIN_POSITIVE;
 
 /// `w^(1 − K)` where the position lies on the side of the orientation, `w^(1 / (1 + K))` on the other; `shift` is ε times

@@ -1,15 +1,15 @@
-//! What becomes of the weights of a band, and the memory that they are summed in.
+//! Sums over the weights of a band, and the memory that they are made in.
 
 use crate::splat::LANES;
 use core::marker::PhantomData;
 use fearless_simd::prelude::*;
 
-/// What becomes of the weights of a band.
+/// Takes the weights of a band and sums them up.
 ///
 /// Weights are added to planes of numbers, which begin at zero; when all control points have been taken in, the planes
 /// are resolved into values.
 pub(crate) trait Sink: Sync {
-    /// What a pixel is made of.
+    /// The value of a pixel.
     type Value: Copy + Send;
 
     /// How many planes there are.

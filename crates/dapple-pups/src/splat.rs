@@ -40,7 +40,7 @@ pub(crate) struct Splatter<'a, P, K> {
 pub(crate) struct Member<'a> {
     pub(crate) instance: &'a Instance,
     pub(crate) blocks: &'a [AxisBlock],
-    /// Those of the blocks, where axes fade.
+    /// The exponents of the blocks; empty where no axis fades.
     pub(crate) exponents: &'a [Exponents],
     /// ε times the orientation in the plane, where there are orientations.
     pub(crate) shift: Option<[f32; 2]>,

@@ -1,7 +1,7 @@
-//! NumPy arrays in and out.
+//! Conversion to and from NumPy arrays.
 //!
-//! What the library makes becomes an array without a copy. What it is given is read where it lies if it has the type and
-//! the order of the library, and is copied otherwise.
+//! Results of the library become arrays without a copy. Arguments are read in place if they have the type and the order
+//! of the library, and are copied otherwise.
 
 use crate::error::{Error, Result};
 use crate::threads;
@@ -68,14 +68,14 @@ pub(crate) fn filled<'py>(
     Ok(out.into_any())
 }
 
-/// As many zeros, refused where there is no memory for them.
+/// Allocates zeros; fails if there is not enough memory.
 fn zeros(count: usize) -> Result<Vec<f32>> {
-    // Zeros are pages that the system has not touched yet, and asking for memory does not touch it either.
+    // Zeros are pages that the system has not touched yet, and the reservation does not touch them either.
     reserve(&mut Vec::new(), count)?;
     Ok(vec![0.0; count])
 }
 
-/// Room for as many numbers, refused where there is no memory for them.
+/// Reserves memory for `count` numbers; fails if there is not enough.
 pub(crate) fn reserve(values: &mut Vec<f32>, count: usize) -> Result<()> {
     values.try_reserve_exact(count).map_err(|_| {
         let message = format!("there is no memory for {count} numbers");
@@ -104,14 +104,14 @@ pub(crate) fn channels<'py, const N: usize>(
 
 /// Positions from an array of the shape (…, axes).
 pub(crate) struct Positions {
-    /// Their coordinates, one position after the other.
+    /// The coordinates, one position after the other.
     pub(crate) numbers: Vec<f64>,
     /// The shape of the array without its last axis.
     pub(crate) shape: Vec<usize>,
 }
 
 impl Positions {
-    /// The positions of an array or of nested lists.
+    /// Reads positions from an array or nested lists.
     pub(crate) fn read(positions: &Bound<'_, PyAny>, n_axes: usize) -> Result<Self> {
         let array: PyArrayLikeDyn<'_, f64, AllowTypeChange> = positions.extract()?;
         let array = array.as_array();
@@ -134,7 +134,7 @@ impl Positions {
     }
 }
 
-/// An array of two axes (rows, columns) as a raster. It is copied.
+/// Copies an array of two axes (rows, columns) into a raster.
 pub(crate) fn raster(what: &str, data: &Bound<'_, PyAny>) -> Result<Raster<f32>> {
     let array: PyArrayLike<'_, f32, numpy::Ix2, AllowTypeChange> = data.extract()?;
     let array = array.as_array();
@@ -155,7 +155,7 @@ pub(crate) fn raster_size(what: &str, shape: &[usize]) -> Result<[u32; 2]> {
     Ok([side(shape[1])?, side(shape[0])?])
 }
 
-/// Distances, vectors and ids of feature points as Python's `Features`.
+/// Converts distances, vectors and ids of feature points to Python's `Features`.
 pub(crate) fn features<'py>(
     py: Python<'py>,
     arrays: impl pyo3::call::PyCallArgs<'py>,
@@ -166,7 +166,7 @@ pub(crate) fn features<'py>(
         .call1(arrays)?)
 }
 
-/// Parts as a tuple with names: a class of `dapple_textures._types`.
+/// Makes a named tuple: a class of `dapple_textures._types`.
 pub(crate) fn result<'py>(
     py: Python<'py>,
     class: &str,

@@ -1,4 +1,4 @@
-//! Spline wavelets: rasters halved, doubled and taken apart into bands.
+//! Spline wavelets: halving, doubling and decomposition of rasters.
 
 use crate::arrays;
 use crate::data;
@@ -22,7 +22,7 @@ fn filter(options: Option<&Bound<'_, PyDict>>) -> Result<SplineFilter> {
     )
 }
 
-/// What a step gives for each channel, as an array.
+/// Applies a step to each channel, and returns the results as an array.
 fn each<'py>(
     py: Python<'py>,
     image: &Bound<'py, PyAny>,
@@ -38,14 +38,14 @@ fn each<'py>(
     array_of_planes(py, planes)
 }
 
-/// An image of half the size: the spline of half the resolution that is nearest to it, (rows / 2, columns / 2[, channels]).
+/// An image of half the size, (rows / 2, columns / 2[, channels]): the nearest spline of half the resolution.
 ///
 /// Pixels are coefficients of B-splines; the filter of Cook and DeRose (2005), exact.
 ///
 /// Parameters
 /// ----------
 /// image : (rows, columns) or (rows, columns, channels); sides that repeat must be even.
-/// borders : what lies past the edges: `"periodic"` or `"mirror"`, or one for each axis, x first.
+/// borders : the extension past the edges: `"periodic"` or `"mirror"`, or one for each axis, x first.
 /// options : `degree` (`"constant"`, `"linear"`, `"quadratic"`, `"cubic"`), `phase` (`"centered"`, `"cook_de_rose"`), `fit`
 ///     (`"function"`, `"coefficients"`).
 ///
@@ -72,8 +72,8 @@ pub(crate) fn wavelet_halve<'py>(
 ///
 /// Parameters
 /// ----------
-/// image, borders, options : as for `wavelet_halve`, which gives the image back.
-/// size : (rows, columns) of the result, where a side that is mirrored is odd.
+/// image, borders, options : as for `wavelet_halve`, which restores the image.
+/// size : (rows, columns) of the result; needed if a mirrored side is odd.
 ///
 /// Examples
 /// --------
@@ -99,16 +99,16 @@ pub(crate) fn wavelet_double<'py>(
     })
 }
 
-/// The bands of an image: what is lost each time it is halved, finest first, and the rest.
+/// The bands of an image: the detail that is lost each time it is halved, finest first, and the coarse rest.
 ///
 /// Parameters
 /// ----------
 /// image, borders, options : as for `wavelet_halve`.
-/// levels : how often it is halved; sides that repeat are multiples of 2**levels.
+/// levels : the number of times it is halved; sides that repeat are multiples of 2**levels.
 ///
 /// Returns
 /// -------
-/// `Bands(details, coarse)`, which `wavelet_synthesize` adds up again.
+/// `Bands(details, coarse)`, from which `wavelet_synthesize` reconstructs the image.
 ///
 /// Examples
 /// --------
@@ -154,11 +154,11 @@ pub(crate) fn wavelet_analyze<'py>(
     Ok(bands.call1((details, array_of_planes(py, coarse)?))?)
 }
 
-/// The image of its bands; see `wavelet_analyze`, whose borders and options these are.
+/// Reconstructs an image from its bands; `borders` and options are those of `wavelet_analyze`.
 ///
 /// Parameters
 /// ----------
-/// bands : (details, coarse): a list of images, finest first, and the rest.
+/// bands : (details, coarse): a list of images, finest first, and the coarse rest.
 #[pyfunction]
 #[pyo3(signature = (bands, *, borders = None, **options),
     text_signature = "(bands, *, borders=\"periodic\", **options)")]
@@ -200,8 +200,8 @@ pub(crate) fn wavelet_synthesize<'py>(
 
 /// Wavelet noise as an array that repeats without a seam, (rows, columns), from the weights of its bands.
 ///
-/// Each band is noise of one octave, with nothing of another (Cook and DeRose 2005). The mean is 0, and the variance the sum of the
-/// squares of the weights.
+/// Each band is noise of one octave, independent of the others (Cook and DeRose 2005). The mean is 0, and the variance
+/// the sum of the squares of the weights.
 ///
 /// Parameters
 /// ----------

@@ -1,4 +1,4 @@
-//! Blend maps, and materials that are blended.
+//! Blend maps, and blending of materials.
 
 use crate::arrays;
 use crate::data;
@@ -11,7 +11,8 @@ use dapple::raster::{Raster, Wrap};
 use dapple::tile::{Blend, BlendMap, Layer, Map, TileError};
 use pyo3::prelude::*;
 
-/// A blend tile of a texture, (rows, columns): low in its cracks, high on what stands out (after Du, Wang and Meng).
+/// A blend tile of a texture, (rows, columns): low in its cracks, high on raised or bright parts (after Du, Wang and
+/// Meng).
 ///
 /// `rank_equalize` spreads its values evenly, so that weights are areas in `blend`.
 ///
@@ -19,8 +20,8 @@ use pyo3::prelude::*;
 /// ----------
 /// texture : (rows, columns), or (rows, columns, 3) in linear light.
 /// feature_size : the size of the features, such as the diameter of stones, in pixels, from 1 to 4096.
-/// contrast : how steep the map is around its median, at least 0.
-/// wrap : what lies past the edges: `"repeat"`, `"clamp"` or `"mirror"`, or one for each axis, x first.
+/// contrast : the steepness of the map around its median, at least 0.
+/// wrap : the wrapping past the edges: `"repeat"`, `"clamp"` or `"mirror"`, or one for each axis, x first.
 ///
 /// Examples
 /// --------
@@ -59,12 +60,13 @@ pub(crate) fn blend_map<'py>(
 ///
 /// Parameters
 /// ----------
-/// layers : images of one size, or dictionaries of maps with the same names. Where a layer alone has a weight, it comes back.
+/// layers : images of one size, or dictionaries of maps with the same names. Where only one layer has a weight, the
+///     result is that layer.
 /// weights : for each layer a number or (rows, columns), at least 0; 1 by default.
 /// heights : for each layer (rows, columns) or None.
 /// tile : a blend tile, (rows, columns), from 0 to 1; see `blend_map`.
-/// weighting : `"given"` uses the weights as they are; `{"height": {"depth": 0.1}}` shows the higher layer; `{"mask": {"gain": 8}}` cuts the
-///     tile at thresholds: the first layer lies where it is lowest.
+/// weighting : `"given"` uses the weights unchanged; `{"height": {"depth": 0.1}}` shows the higher layer; `{"mask":
+///     {"gain": 8}}` cuts the tile at thresholds: the first layer lies where it is lowest.
 /// mixing : `"linear"`, `"keep_variance"`, or `{"pyramid": {"levels": 4}}`, which mixes in bands.
 ///
 /// Examples
@@ -129,7 +131,7 @@ pub(crate) fn blend<'py>(
     layout.python(py, maps)
 }
 
-/// What each layer has, None where it has nothing.
+/// The items of all layers; `None` for a layer without one.
 fn column<'py, T>(
     what: &str,
     data: Option<&Bound<'py, PyAny>>,
@@ -157,7 +159,7 @@ fn column<'py, T>(
     Err(Error::new("count", message))
 }
 
-/// Changes colors by their alpha. Colors are mixed with it multiplied in, so that what is transparent lends none.
+/// Changes colors by their alpha. Colors are mixed premultiplied, so that transparent pixels add no color.
 fn multiply(
     layout: &Layout,
     maps: &mut [Map],

@@ -13,18 +13,18 @@ use std::sync::Arc;
 
 /// A function of the plane with several numbers at every position, such as a color (linear RGB).
 ///
-/// Color fields are made by `pups` with values of the shape (n, channels), and by `color_noise`. A color field is its
-/// description: it can be pickled, compared and used as a key.
+/// Color fields are made by `pups` with values of the shape (n, channels), and by `color_noise`. A color field is
+/// defined by its description: it can be pickled, compared and used as a key.
 #[pyclass(frozen, module = "dapple_textures")]
 pub(crate) struct ColorField {
     made: Made,
     vectors: Arc<dyn Vectors>,
 }
 
-/// The positions that a thread takes at a time.
+/// The number of positions that a thread takes at a time.
 const CHUNK: usize = 1024;
 
-/// The field that a description gives: a `ColorField` where it has channels, and else a `Field`.
+/// Makes the field of a description: a `ColorField` if it has channels, else a `Field`.
 pub(crate) fn object(py: Python<'_>, made: Made) -> Result<Py<PyAny>> {
     let vectors = threads::run(py, || made.vectors())??;
     Ok(match vectors {
@@ -41,13 +41,13 @@ impl ColorField {
         2
     }
 
-    /// How many numbers there are at each position.
+    /// The number of values at each position.
     #[getter]
     fn channels(&self) -> usize {
         self.vectors.n_channels()
     }
 
-    /// The distances after which the field repeats, x first: None where it does not.
+    /// The distances after which the field repeats, x first: None for an axis where it does not.
     #[getter]
     fn period(&self) -> Vec<Option<f64>> {
         self.vectors.period().to_vec()
@@ -116,7 +116,7 @@ impl ColorField {
         self.made.reduced(py)
     }
 
-    /// The name by which Dask knows what is computed from the field: the same in all processes.
+    /// The token by which Dask identifies results of the field: the same in all processes.
     fn __dask_tokenize__(&self) -> Result<String> {
         self.made.token()
     }
@@ -127,7 +127,7 @@ impl ColorField {
 }
 
 impl Made {
-    /// The function of several numbers that this describes, or none where it has one number.
+    /// Makes the function of several numbers, or `None` if the description has a single number.
     fn vectors(&self) -> Result<Option<Arc<dyn Vectors>>> {
         let values = match self {
             Self::Pups(made) => made.get()?,

@@ -1,4 +1,4 @@
-//! Options from Python as data: dictionaries, lists, words and numbers, NumPy's too.
+//! Conversion of options from Python to data: dictionaries, lists, strings and numbers, also of NumPy.
 
 use crate::error::{Error, Result};
 use pyo3::exceptions::PyTypeError;
@@ -10,12 +10,12 @@ use serde_json::{Map, Number, Value};
 /// The deepest nesting of data.
 const DEEPEST: usize = 100;
 
-/// Options that are read as a recipe reads them; `what` names them in messages.
+/// Reads options in the form of a recipe; `what` names them in messages.
 pub(crate) fn options<T: DeserializeOwned>(what: &str, data: &Bound<'_, PyAny>) -> Result<T> {
     read(what, value(data)?)
 }
 
-/// Options that are read as a recipe reads them, or their default where there are none.
+/// Reads options in the form of a recipe, or returns their default if there are none.
 pub(crate) fn options_or<T: DeserializeOwned>(
     what: &str,
     data: Option<&Bound<'_, PyAny>>,
@@ -24,12 +24,12 @@ pub(crate) fn options_or<T: DeserializeOwned>(
     data.map_or(Ok(default), |data| options(what, data))
 }
 
-/// What data says.
+/// Converts data to options of a type.
 pub(crate) fn read<T: DeserializeOwned>(what: &str, data: Value) -> Result<T> {
     serde_json::from_value(data).map_err(|error| Error::new("options", format!("{what}: {error}")))
 }
 
-/// Python's data as text in JSON, entry by entry on lines of their own, in the order of the dictionaries.
+/// Converts Python data to JSON text, each entry on a line of its own, in the order of the dictionaries.
 pub(crate) fn text(data: &Bound<'_, PyAny>) -> Result<String> {
     let mut text = String::new();
     write(data, 0, &mut text)?;
@@ -71,7 +71,7 @@ fn write(data: &Bound<'_, PyAny>, depth: usize, text: &mut String) -> Result<()>
 /// The entries of a dictionary.
 type Entries<'py> = Vec<(String, Bound<'py, PyAny>)>;
 
-/// The entries of a dictionary; None of other data.
+/// The entries of a dictionary; `None` for other data.
 fn pairs<'py>(data: &Bound<'py, PyAny>) -> Result<Option<Entries<'py>>> {
     let pairs: Vec<(Bound<'py, PyAny>, _)> = if let Ok(mapping) = data.cast::<PyDict>() {
         mapping.iter().collect()
@@ -95,7 +95,7 @@ fn check_depth(depth: usize) -> Result<()> {
     Ok(())
 }
 
-/// Python's data as that of the crates.
+/// Converts Python data to a JSON value.
 pub(crate) fn value(data: &Bound<'_, PyAny>) -> Result<Value> {
     nested(data, 0)
 }
@@ -128,7 +128,7 @@ fn list(data: &Bound<'_, PyAny>, depth: usize) -> Result<Value> {
     Ok(Value::Array(items.collect::<Result<_>>()?))
 }
 
-/// Numbers of Python and of NumPy, and NumPy's arrays.
+/// Converts numbers of Python and NumPy, and NumPy arrays.
 fn number(data: &Bound<'_, PyAny>, depth: usize) -> Result<Value> {
     if data.hasattr("tolist")? {
         return nested(&data.call_method0("tolist")?, depth + 1);
@@ -154,7 +154,7 @@ fn number(data: &Bound<'_, PyAny>, depth: usize) -> Result<Value> {
     Err(PyTypeError::new_err(message).into())
 }
 
-/// The value of this name of a kind of values with names.
+/// The value with a name, for a kind of values with names.
 pub(crate) fn named<T: dapple::raster::Named>(what: &str, name: &str) -> Result<T> {
     T::from_name(name).ok_or_else(|| {
         let names = T::NAMES.join(", ");

@@ -1,4 +1,4 @@
-//! The one error of the package, and how those of the crates become it.
+//! The exception of the package, and the conversion of errors of the crates to it.
 
 use dapple::{
     color::ColorError, graph::GraphError, image::ImageError, mesh::MeshError, mesh_io::MeshIoError,
@@ -16,15 +16,15 @@ pyo3::create_exception!(
      small letters, `node` the node of a recipe, and `hint` what was perhaps meant; the last two may be None."
 );
 
-/// Why a call failed, before it is an exception.
+/// An error of a call, before it becomes an exception.
 pub(crate) enum Error {
-    /// A limit of the library.
+    /// An error of the library.
     Refused(Refusal),
-    /// An exception of Python's.
+    /// A Python exception.
     Python(PyErr),
 }
 
-/// What a [`DappleError`] says.
+/// The content of a [`DappleError`].
 pub(crate) struct Refusal {
     kind: String,
     message: String,
@@ -32,11 +32,11 @@ pub(crate) struct Refusal {
     hint: Option<String>,
 }
 
-/// What a call gives.
+/// The result of a call.
 pub(crate) type Result<T> = core::result::Result<T, Error>;
 
 impl Error {
-    /// A refusal of the package's own: its kind in small letters, and its message.
+    /// An error of the package itself: its kind in lower case, and its message.
     pub(crate) fn new(kind: &str, message: impl Into<String>) -> Self {
         Self::Refused(Refusal {
             kind: kind.to_owned(),
@@ -46,7 +46,7 @@ impl Error {
         })
     }
 
-    /// This refusal with other words.
+    /// This error with another message.
     pub(crate) fn with_message(self, message: String) -> Self {
         match self {
             Self::Refused(refusal) => Self::Refused(Refusal { message, ..refusal }),
@@ -54,7 +54,7 @@ impl Error {
         }
     }
 
-    /// This refusal with the name that was perhaps meant.
+    /// This error with the nearest valid name as a hint.
     pub(crate) fn with_near(self, near: Option<String>) -> Self {
         match (self, near) {
             (Self::Refused(refusal), Some(near)) => Self::Refused(Refusal {
@@ -66,13 +66,13 @@ impl Error {
         }
     }
 
-    /// A refusal of a crate: its kind is the name of the value of its enum.
+    /// An error of a crate; its kind is the name of the enum variant.
     fn of(kind: &impl core::fmt::Debug, message: &impl ToString) -> Self {
         Self::new(&snake_case(&format!("{kind:?}")), message.to_string())
     }
 }
 
-/// The name that a debug text begins with, in small letters, words joined by `_`.
+/// The identifier at the start of a debug text, in snake case.
 fn snake_case(text: &str) -> String {
     let mut name = String::new();
     for letter in text.chars().take_while(|letter| letter.is_alphanumeric()) {

@@ -15,27 +15,27 @@ use std::sync::Arc;
 
 /// A function with a value at every position: of the plane, of space, or of space and time.
 ///
-/// Fields are made by `worley`, `gradient_noise`, `wavelet_noise`, `pups` and others, and are composed: `a + b`, `a * 0.5`,
-/// `a.warp(x, y, 0.1)`. A field is its description: it can be pickled, compared and used as a key, and the same
-/// description gives the same bits on every machine.
+/// Fields are made by `worley`, `gradient_noise`, `wavelet_noise`, `pups` and others, and can be composed: `a + b`, `a
+/// * 0.5`, `a.warp(x, y, 0.1)`. A field is defined by its description: it can be pickled, compared and used as a key,
+/// and the same description has the same bits on every machine.
 #[pyclass(frozen, subclass, module = "dapple_textures")]
 pub(crate) struct Field {
     made: Shared<Made>,
     function: Function,
 }
 
-/// The positions that a thread takes at a time.
+/// The number of positions that a thread takes at a time.
 const CHUNK: usize = 4096;
 
 impl Field {
-    /// The field that a description gives, made on the threads of the package.
+    /// Makes the field of a description, on the threads of the package.
     pub(crate) fn new(made: Made) -> Result<Self> {
         let made = Shared::new(made);
         let function = Python::attach(|py| threads::run(py, || made.get()))??.function;
         Ok(Self { made, function })
     }
 
-    /// The function of the plane that it is.
+    /// The function, if it is one of the plane.
     pub(crate) fn plane(&self) -> Result<Arc<dyn dapple::raster::Field>> {
         self.made.plane()
     }
@@ -48,7 +48,7 @@ impl Field {
         }
     }
 
-    /// Values at the pixels of a grid, into memory of their number.
+    /// Writes the values at the pixels of a grid into memory of the right length.
     fn fill(&self, grid: &Grid, values: &mut [f32]) -> Result<()> {
         let window = grid.plane();
         match &self.function {
@@ -63,7 +63,7 @@ impl Field {
         Ok(())
     }
 
-    /// This field and another field or number, value by value.
+    /// Combines this field and another field or number, value by value.
     fn with(&self, other: Operand, operation: PairOperation, is_first: bool) -> Result<Self> {
         let (this, other) = (self.made.clone(), other.0);
         let (first, second) = if is_first {
@@ -118,7 +118,7 @@ impl<'py> FromPyObject<'_, 'py> for Operand {
     }
 }
 
-/// The field that is described, as the class that it has.
+/// Makes the field of a description, as an object of its class.
 #[pyfunction]
 pub(crate) fn _field_from_description(py: Python<'_>, description: &str) -> Result<Py<PyAny>> {
     let made = serde_json::from_str(description);
@@ -142,8 +142,8 @@ impl Field {
         self.periods().len()
     }
 
-    /// The distances after which the field repeats, x first: None where it does not, or where that is not known, and 0
-    /// where nothing changes along the axis.
+    /// The distances after which the field repeats, x first: None where it does not or where the period is unknown, and
+    /// 0 for an axis along which the field is constant.
     #[getter]
     fn period(&self) -> Vec<Option<f64>> {
         self.periods()
@@ -154,11 +154,12 @@ impl Field {
     /// Parameters
     /// ----------
     /// size : (rows, columns), or a number for all axes; (z, rows, columns) of three axes, (w, z, rows, columns) of four.
-    /// extent : (x, y), what the array covers, in units of the field; one period by default, and 1 where there is none. (x, y, z)
-    ///     of three axes and (x, y, z, w) of four.
+    /// extent : (x, y), the size of the rectangle of the array, in units of the field; one period by default, and 1
+    ///     where there is none. (x, y, z) for three axes and (x, y, z, w) for four.
     /// origin : (x, y) of the corner of the first pixel, with z and w as for `extent`; 0 by default.
-    /// window : the part to make, as `np.s_[100:150, 33:94]`, a slice for each axis of `size`: bit for bit the crop of the whole.
-    ///     It may lie outside: negative numbers lie before the array, and not at its end as NumPy has it.
+    /// window : the part to compute, such as `np.s_[100:150, 33:94]`, a slice for each axis of `size`: bit for bit the
+    ///     crop of the whole. It may lie outside: negative numbers are before the array, and not at its end as in
+    ///     NumPy.
     /// out : memory for the values, a float32 array in C order; a new array by default.
     #[pyo3(signature = (size, *, extent = None, origin = None, window = None, out = None))]
     fn render<'py>(
@@ -197,7 +198,7 @@ impl Field {
                 match &self.function {
                     Function::Plane(field) => {
                         let places: Vec<_> = places.take(values.len()).map(position).collect();
-                        // The lengths are equal, and there is no other error.
+                        // The lengths are equal, and there are no other errors.
                         let _ = field.sample_many(&places, values);
                     }
                     Function::Space(volume) => {
@@ -211,7 +212,7 @@ impl Field {
         })
     }
 
-    /// The plane of the first two axes at the further coordinates: `slice(z)` of three axes, `slice(z, w)` of four.
+    /// The plane of the first two axes at fixed further coordinates: `slice(z)` for three axes, `slice(z, w)` for four.
     #[pyo3(signature = (*rest))]
     fn slice(&self, rest: Vec<f64>) -> Result<Self> {
         Self::new(Made::Slice {
@@ -238,7 +239,7 @@ impl Field {
         })
     }
 
-    /// This field at positions turned by an angle about the origin, in radians, from x to y.
+    /// This field at positions rotated by an angle about the origin, in radians, from x to y.
     fn rotate(&self, angle: f64) -> Result<Self> {
         Self::new(Made::Rotate {
             field: self.made.clone(),
@@ -256,7 +257,7 @@ impl Field {
         })
     }
 
-    /// This field with the range `old` of its values mapped to the range `new`, and beyond.
+    /// This field with the range `old` of its values mapped linearly to the range `new`, also beyond it.
     #[pyo3(signature = (old, new = [0.0, 1.0]), text_signature = "(self, old, new=(0.0, 1.0))")]
     fn remap(&self, old: [f32; 2], new: [f32; 2]) -> Result<Self> {
         Self::new(Made::Remap {
@@ -285,7 +286,7 @@ impl Field {
         self.with(other, PairOperation::Maximum, true)
     }
 
-    /// From this field, where `by` is 0, to another field or number, where it is 1.
+    /// Interpolates from this field, where `by` is 0, to another field or number, where it is 1.
     fn mix(&self, to: Operand, by: Operand) -> Result<Self> {
         Self::new(Made::Mix {
             from: self.made.clone(),
@@ -300,7 +301,7 @@ impl Field {
         self.fractal(octaves, gain, lacunarity, FractalShape::Sum)
     }
 
-    /// The sum of octaves of `1 - |value|`: ridges where values go through 0.
+    /// The sum of octaves of `1 - |value|`: ridges where values cross 0.
     #[pyo3(signature = (octaves = 6, *, gain = 0.5, lacunarity = 2.0))]
     fn ridged(&self, octaves: u32, gain: f64, lacunarity: f64) -> Result<Self> {
         self.fractal(octaves, gain, lacunarity, FractalShape::Ridged)
@@ -354,7 +355,7 @@ impl Field {
         field
     }
 
-    /// NumPy leaves `array + field` to the field, which refuses it.
+    /// NumPy leaves `array + field` to the field, which raises an error.
     #[classattr]
     fn __array_ufunc__() -> Option<()> {
         None
@@ -378,7 +379,7 @@ impl Field {
         self.made.made().reduced(py)
     }
 
-    /// The name by which Dask knows what is computed from the field: the same in all processes.
+    /// The token by which Dask identifies results of the field: the same in all processes.
     fn __dask_tokenize__(&self) -> Result<String> {
         self.made.made().token()
     }

@@ -1,6 +1,6 @@
-//! What a field is: how it was made, as data, and the function that this gives.
+//! Descriptions of fields as data, and the functions that they define.
 //!
-//! A field is made from its description and nothing else, so that it can be sent to another process as that.
+//! A field is made from its description alone, so that the description can be sent to another process.
 
 use crate::error::{Error, Result};
 use crate::generators::{CellsMade, GradientMade, WaveletMade};
@@ -20,9 +20,9 @@ use std::sync::Arc;
 /// A function of the plane, or of more axes.
 #[derive(Clone)]
 pub(crate) enum Function {
-    /// Of the plane.
+    /// A function of the plane.
     Plane(Arc<dyn Field>),
-    /// Of three or four axes.
+    /// A function of three or four axes.
     Space(Arc<dyn Volume>),
 }
 
@@ -34,7 +34,7 @@ pub(crate) trait Volume: Send + Sync {
     /// The value at a position.
     fn sample(&self, position: &[f64]) -> f32;
 
-    /// The plane along the first two axes at the further coordinates.
+    /// The plane along the first two axes at fixed further coordinates.
     fn slice(&self, rest: &[f64]) -> Arc<dyn Field>;
 
     /// The values at the pixels of several planes, which lie one after the other.
@@ -52,71 +52,71 @@ pub(crate) trait Volume: Send + Sync {
     }
 }
 
-/// How a field was made.
+/// The description of a field.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Made {
-    /// A number everywhere.
+    /// A constant number.
     Constant(f32),
     /// Worley's cells.
     Worley(CellsMade),
     /// Perlin's gradient noise.
     GradientNoise(GradientMade),
-    /// Wavelet noise.
+    /// Wavelet noise, as for the function `wavelet_noise`.
     WaveletNoise(Shared<WaveletMade>),
-    /// Values of control points.
+    /// The field of values at control points.
     Pups(Shared<PupsMade>),
-    /// A texture of control points, by its name.
+    /// A texture of control points, by name.
     Texture(Shared<TextureMade>),
     /// A node of a recipe.
     Node(Shared<NodeMade>),
     /// A plane through a function of more axes.
     Slice { field: Shared<Made>, rest: Vec<f64> },
-    /// At positions times a frequency.
+    /// A field at positions times a frequency.
     Frequency {
         field: Shared<Made>,
         frequency: [f64; 2],
     },
-    /// At positions plus an offset.
+    /// A field at positions plus an offset.
     Offset {
         field: Shared<Made>,
         offset: [f64; 2],
     },
-    /// At positions turned by an angle.
+    /// A field at positions rotated by an angle.
     Rotate { field: Shared<Made>, angle: f64 },
-    /// At positions that two fields move.
+    /// A field at positions that two other fields displace.
     Warp {
         field: Shared<Made>,
         x: Shared<Made>,
         y: Shared<Made>,
         amount: f64,
     },
-    /// With one range of values mapped to another.
+    /// A field with one range of values mapped to another.
     Remap {
         field: Shared<Made>,
         from: [f32; 2],
         to: [f32; 2],
     },
-    /// With two bounds.
+    /// A field clamped between two bounds.
     Clamp {
         field: Shared<Made>,
         bounds: [f32; 2],
     },
-    /// The absolute values.
+    /// The absolute values of a field.
     Absolute(Shared<Made>),
-    /// Two fields, value by value.
+    /// Two fields combined value by value.
     Pair {
         first: Shared<Made>,
         second: Shared<Made>,
         operation: PairOperation,
     },
-    /// Between two fields, by a third.
+    /// The interpolation between two fields by a third.
     Mix {
         from: Shared<Made>,
         to: Shared<Made>,
         by: Shared<Made>,
     },
-    /// Sums at several scales.
+    /// A sum of a field at several scales.
     Fractal {
         field: Shared<Made>,
         octaves: u32,
@@ -126,23 +126,23 @@ pub(crate) enum Made {
     },
 }
 
-/// A function of Python's, and its arguments.
+/// A Python function, and its arguments.
 pub(crate) type Reduced = (Py<PyAny>, (String,));
 
-/// A function, and how much it is composed of.
+/// A function, and the size of its composition.
 #[derive(Clone)]
 pub(crate) struct Built {
     pub(crate) function: Function,
     /// The longest chain of operations in it.
     depth: usize,
-    /// The number of operations and of fields without any, as often as they are evaluated.
+    /// The number of operations and of elementary fields, as often as they are evaluated.
     n_parts: usize,
 }
 
-/// The deepest composition: its description nests two times for each operation, and readers of JSON end at 127.
+/// The deepest composition: its description nests two levels for each operation, and JSON readers stop at 127.
 const DEEPEST: usize = 60;
 
-/// The most parts of a composition.
+/// The largest number of parts of a composition.
 const MOST_PARTS: usize = 1 << 16;
 
 impl Build for Made {
@@ -176,7 +176,7 @@ impl Build for Made {
 }
 
 impl Shared<Made> {
-    /// The function of the plane that this describes.
+    /// Makes the function, if it is one of the plane.
     pub(crate) fn plane(&self) -> Result<Arc<dyn Field>> {
         match self.get()?.function {
             Function::Plane(field) => Ok(field),
@@ -189,7 +189,7 @@ impl Shared<Made> {
 }
 
 impl Made {
-    /// The fields that it is composed of.
+    /// The fields of which it is composed.
     fn parts(&self) -> Vec<&Shared<Self>> {
         match self {
             Self::Constant(_)
@@ -213,7 +213,7 @@ impl Made {
         }
     }
 
-    /// Refuses numbers that are not finite, which descriptions cannot hold.
+    /// Checks that all numbers are finite, since descriptions cannot hold others.
     fn check_numbers(&self) -> Result<()> {
         let numbers = match self {
             Self::Constant(number) => vec![f64::from(*number)],
@@ -241,7 +241,7 @@ impl Made {
         Err(Error::new("not_finite", message))
     }
 
-    /// The function that this describes.
+    /// Makes the function of this description.
     fn function(&self) -> Result<Function> {
         let field: Arc<dyn Field> = match self {
             Self::Constant(number) => Arc::new(*number),
@@ -307,7 +307,7 @@ impl Made {
 
     /// The beginning of the description, for people.
     pub(crate) fn summary(&self) -> Result<String> {
-        /// The most letters that are of use.
+        /// The largest number of useful letters.
         const MOST: usize = 500;
         let description = self.description()?;
         Ok(match description.char_indices().nth(MOST) {
@@ -323,14 +323,14 @@ impl Made {
         Ok(hasher.finish())
     }
 
-    /// How Python makes the field again in another process: a function, and what it is called with.
+    /// The function and the arguments by which Python makes the field again in another process.
     pub(crate) fn reduced(&self, py: Python<'_>) -> Result<Reduced> {
         let module = py.import("dapple_textures._native")?;
         let make = module.getattr("_field_from_description")?;
         Ok((make.unbind(), (self.description()?,)))
     }
 
-    /// What stands for the description: the same in all processes, and another one for each description.
+    /// A token of the description: the same in all processes, and different for different descriptions.
     pub(crate) fn token(&self) -> Result<String> {
         Ok(hex(&Sha256::digest(self.description()?)))
     }
@@ -358,7 +358,7 @@ fn clamped(field: Arc<dyn Field>, [low, high]: [f32; 2]) -> Result<impl Field> {
     }))
 }
 
-/// A position of as many axes, from its numbers.
+/// A position of two axes, from its numbers.
 pub(crate) fn position(numbers: &[f64]) -> DVec2 {
     DVec2::from_slice(numbers)
 }

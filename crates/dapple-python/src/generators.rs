@@ -1,4 +1,4 @@
-//! Fields that draw from a seed: Worley's cells, gradient noise, wavelet noise.
+//! Fields with a seed: Worley's cells, gradient noise, wavelet noise.
 
 mod cells;
 mod gradient;
@@ -12,7 +12,7 @@ use crate::error::{Error, Result};
 use crate::grid::per_axis;
 use pyo3::prelude::*;
 
-/// Periods along axes in cells: one for all, or one for each, None where a field does not repeat.
+/// Periods along axes in cells: one for all, or one for each; None for an axis along which a field does not repeat.
 fn periods(data: Option<&Bound<'_, PyAny>>, n_axes: usize) -> Result<Vec<Option<u32>>> {
     let Some(data) = data else {
         return Ok(vec![None; n_axes]);
@@ -25,7 +25,7 @@ fn periods(data: Option<&Bound<'_, PyAny>>, n_axes: usize) -> Result<Vec<Option<
     })
 }
 
-/// Refuses a number of axes that there is no field of.
+/// The error for an unsupported number of axes.
 fn unknown_axes(dims: usize, known: &str) -> Error {
     Error::new(
         "axes",
@@ -33,7 +33,7 @@ fn unknown_axes(dims: usize, known: &str) -> Error {
     )
 }
 
-/// The numbers as an array of as many.
+/// The numbers as an array of fixed length.
 fn array<T: Copy, const N: usize>(numbers: &[T]) -> Result<[T; N]> {
     numbers.try_into().map_err(|_| {
         Error::new(

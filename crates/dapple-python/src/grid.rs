@@ -1,4 +1,4 @@
-//! Where the pixels of an array lie: its size, the rectangle that it covers, and the part of it that is made.
+//! Pixel grids of arrays: the size, the rectangle, and the part to compute.
 
 use crate::error::{Error, Result};
 use dapple::raster::{Window, glam::DVec2};
@@ -22,8 +22,8 @@ struct Axis {
     size: u32,
 }
 
-/// What a caller says of a grid, as it is said: sizes and windows as NumPy has them (the last axis is x), extents and
-/// origins as positions are written (x first).
+/// The arguments of a grid in the form of the caller: sizes and windows in NumPy's order (the last axis is x), extents
+/// and origins in the order of positions (x first).
 pub(crate) struct GridArguments<'a, 'py> {
     pub(crate) size: &'a Bound<'py, PyAny>,
     pub(crate) extent: Option<&'a Bound<'py, PyAny>>,
@@ -32,7 +32,7 @@ pub(crate) struct GridArguments<'a, 'py> {
 }
 
 impl Grid {
-    /// The grid of as many axes that a caller asks for. `period` is the extent where none is given.
+    /// Makes the grid for the arguments. `period` is the default extent.
     pub(crate) fn new(arguments: &GridArguments<'_, '_>, period: &[Option<f64>]) -> Result<Self> {
         let n_axes = period.len();
         let sizes = sizes(arguments.size, n_axes)?;
@@ -83,11 +83,11 @@ impl Grid {
             .collect()
     }
 
-    /// The number of values, refused where there are too many.
+    /// The number of values; fails if there are too many.
     pub(crate) fn n_values(&self) -> Result<usize> {
         let sizes = self.axes.iter().map(|axis| axis.size as usize);
         let count = sizes.clone().try_fold(1_usize, usize::checked_mul);
-        // A NumPy array has at most 2^63 bytes; memory ends long before.
+        // A NumPy array has at most 2^63 bytes; memory is exhausted long before.
         count.filter(|&count| count <= 1 << 40).ok_or_else(|| {
             let message = format!("an array of shape {:?} has too many values", self.shape());
             Error::new("too_large", message)
@@ -124,14 +124,14 @@ impl Grid {
 }
 
 impl Axis {
-    /// The center of a pixel, as windows of the plane compute it.
+    /// The center of a pixel, computed as windows of the plane compute it.
     fn center(&self, index: u32) -> f64 {
         let pixel = self.extent / f64::from(self.whole);
         self.origin + ((self.first + i64::from(index)) as f64 + 0.5) * pixel
     }
 }
 
-/// One value for all axes, or one for each; none of anything else.
+/// One value for all axes, or one for each; `None` for other data.
 pub(crate) fn per_axis<'py, T>(data: &Bound<'py, PyAny>, n_axes: usize) -> Option<Vec<T>>
 where
     T: Clone + FromPyObjectOwned<'py>,

@@ -16,20 +16,20 @@ use std::fs;
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
-/// How an image is read: what its numbers are, and where its alpha goes.
+/// Options of reading an image: its content, and the handling of its alpha.
 struct Reading {
     content: Option<Content>,
     alpha: Alpha,
 }
 
-/// Where the alpha of an image goes.
+/// The handling of the alpha of an image.
 #[derive(PartialEq)]
 enum Alpha {
-    /// It is kept where a pixel is not opaque.
+    /// Alpha is kept if a pixel is not opaque.
     Needed,
-    /// It is there in any case.
+    /// Alpha is always kept, or added.
     Always,
-    /// There is none.
+    /// Alpha is removed.
     Without(ImageAlpha),
 }
 
@@ -47,7 +47,7 @@ impl Reading {
         })
     }
 
-    /// The maps of an image, and what they are.
+    /// The maps of an image, and their kind.
     fn maps(&self, image: &Image) -> Result<(Kind, Vec<Map>)> {
         let of = |content, maps: Vec<Map>, n_channels| {
             (
@@ -91,7 +91,7 @@ impl Reading {
         };
         let color = match plain {
             ImageAlpha::Drop => pixels.map(|pixel| pixel.color),
-            // As the command does it.
+            // Composited as in the command.
             ImageAlpha::Over(below) => {
                 pixels.map(|pixel| pixel.color * pixel.alpha + below * (1.0 - pixel.alpha))
             }
@@ -137,7 +137,7 @@ fn channels(image: &Image) -> Result<Vec<Raster<f32>>> {
     })
 }
 
-/// The normals that the channels of an image stand for, as the command reads them.
+/// The normals in the channels of an image, read as in the command.
 fn normals(image: &Image) -> Result<Raster<Normal>> {
     fn of<T: Code, const N: usize>(raster: &Raster<[T; N]>) -> Raster<Normal> {
         raster.map(|codes| Normal::from_codes([codes[0], codes[1], codes[2]]))
@@ -163,16 +163,17 @@ fn normals(image: &Image) -> Result<Raster<Normal>> {
 
 /// The array of an image file, float32: PNG, JPEG or OpenEXR, whatever its name ends with.
 ///
-/// Gray images are numbers as they are, (rows, columns); PNG and JPEG from 0 to 1. Colors are linear light, (rows, columns, 3), or
-/// (rows, columns, 4) where a pixel is not opaque; alpha is not multiplied into them.
+/// Gray images are uncoded numbers, (rows, columns); PNG and JPEG from 0 to 1. Colors are linear light, (rows, columns,
+/// 3), or (rows, columns, 4) if a pixel is not opaque; alpha is not multiplied into them.
 ///
 /// Parameters
 /// ----------
 /// path : the file.
-/// content : what the numbers are, where that is not seen: `"gray"`, `"color"` (a gray image, too), `"normal"` (unit vectors of a
-///     normal map), or `"data"` (all channels as they are, such as occlusion, roughness and metallic).
-/// alpha : None keeps it where it is needed; `"keep"` always; `"drop"`; or `"over:#808080"` lays the image over a color.
-/// max_pixels, max_bytes : what is larger is refused before memory is taken for it.
+/// content : the content, if the channels do not show it: `"gray"`, `"color"` (a gray image, too), `"normal"` (unit
+///     vectors of a normal map), or `"data"` (all channels uncoded, such as occlusion, roughness and metallic).
+/// alpha : None keeps it if a pixel is not opaque; `"keep"` always; `"drop"` removes it; `"over:#808080"` composites
+///     the image over a color.
+/// max_pixels, max_bytes : the limits; a larger image is an error before memory is allocated for it.
 ///
 /// Examples
 /// --------
@@ -201,7 +202,7 @@ pub(crate) fn read_image<'py>(
     kind.array(py, maps)
 }
 
-/// The array of the bytes of an image file; see `read_image`.
+/// Decodes the bytes of an image file to an array; see `read_image`.
 ///
 /// Examples
 /// --------
@@ -228,18 +229,18 @@ pub(crate) fn decode_image<'py>(
     kind.array(py, maps)
 }
 
-/// Writes an array as an image file, whose ending says the format: `.png`, `.exr`, `.npy` or `.r16`.
+/// Writes an array as an image file, in the format of its ending: `.png`, `.exr`, `.npy` or `.r16`.
 ///
-/// The file is written beside its place and then renamed: others see the old one, or the whole new one. The bytes are those that
-/// the command `dapple` writes.
+/// The file is written under a temporary name and then renamed, so that other programs see the old one or the whole new
+/// one. The bytes are those of the command `dapple`.
 ///
 /// Parameters
 /// ----------
 /// path : the file.
 /// image : (rows, columns), or (rows, columns, 3 or 4), floating point.
 /// content : `"gray"`, `"color"`, `"normal"` or `"data"`; by default gray for one channel and color for more. Color is
-///     linear here and in EXR and NPY, and sRGB in PNG. Normals are `(part + 1) / 2` in PNG and EXR. Data stays as it is.
-/// depth : 8 or 16 bits of PNG; 8 by default for color, 16 for everything else.
+///     linear here and in EXR and NPY, and sRGB in PNG. Normals are `(part + 1) / 2` in PNG and EXR. Data is unchanged.
+/// depth : 8 or 16 bits of PNG; 8 by default for color, 16 for all other content.
 ///
 /// Examples
 /// --------
@@ -262,18 +263,18 @@ pub(crate) fn write_image(
     Ok(py.detach(|| image::replace(&path, &bytes))?)
 }
 
-/// Writes the maps of a material as image files into a folder, which is made where there is none, and gives their paths.
+/// Writes the maps of a material as image files into a folder, which is created if necessary, and returns their paths.
 ///
-/// Each map is written as what its name says: `normal` as unit vectors, `orm` as data, `albedo` as a color, everything else by its
-/// channels, as `write_image` does.
+/// The name of a map determines how it is written: `normal` as unit vectors, `orm` as data, `albedo` as color, all
+/// others by their channels, as in `write_image`.
 ///
 /// Parameters
 /// ----------
-/// folder : where the files go.
-/// maps : a dictionary of maps, as `Plan.bake` gives it.
-/// name : what the names of the files begin with: `rock` for `rock_normal.png`; the names of the maps alone by default.
+/// folder : the folder for the files.
+/// maps : a dictionary of maps, as `Plan.bake` returns it.
+/// name : the beginning of the file names: `rock` for `rock_normal.png`; by default they are the names of the maps.
 /// format : `"png"`, `"exr"` or `"npy"`.
-/// depth : 8 or 16 bits of PNG; 8 by default for color, 16 for everything else.
+/// depth : 8 or 16 bits of PNG; 8 by default for color, 16 for all other content.
 ///
 /// Examples
 /// --------
@@ -321,7 +322,7 @@ pub(crate) fn write_maps(
     Ok(files)
 }
 
-/// The bytes of an array as an image file; see `write_image`.
+/// Encodes an array as the bytes of an image file; see `write_image`.
 ///
 /// Examples
 /// --------
@@ -356,7 +357,7 @@ fn encoded(
     threads::run(py, || encode(kind, size, &values, encoding))?
 }
 
-/// How a format writes its numbers.
+/// The encoding of numbers in a format.
 fn encoding(format: &str, kind: Kind, depth: Option<u32>) -> Result<Encoding> {
     let default = if kind.content == Content::Color {
         8
@@ -387,7 +388,7 @@ fn encoding(format: &str, kind: Kind, depth: Option<u32>) -> Result<Encoding> {
     }
 }
 
-/// The bytes of an image file of numbers that lie pixel by pixel.
+/// Encodes numbers in pixel order as the bytes of an image file.
 pub(crate) fn encode(
     kind: Kind,
     size: [u32; 2],
@@ -443,5 +444,5 @@ pub(crate) fn encode(
     Ok(rows.finish()?.into_inner())
 }
 
-/// How many rows are turned into colors at a time.
+/// The number of rows that are converted to colors at a time.
 const BAND: usize = 256;

@@ -1,7 +1,7 @@
-//! The native half of the Python package `dapple-textures`: the crates of dapple, with NumPy arrays in and out.
+//! The native part of the Python package `dapple-textures`: the crates of dapple with NumPy arrays.
 //!
-//! A call checks what it is given while it holds the interpreter, and works without it, on threads of its own
-//! ([`threads`]). Fields are descriptions that are made again in other processes ([`function`]).
+//! A call checks its arguments while it holds the interpreter, and works without it, on the threads of the package
+//! ([`threads`]). Fields are descriptions that can be made again in other processes ([`function`]).
 
 mod arrays;
 mod bands;
@@ -30,7 +30,7 @@ mod watch;
 
 use pyo3::prelude::*;
 
-/// What the package is made of.
+/// The native module.
 #[pymodule]
 mod _native {
     #[pymodule_export]
@@ -85,7 +85,7 @@ mod _native {
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
-        // What an error does not say is None.
+        // Attributes that an error does not set are None.
         let error = module.getattr("DappleError")?;
         for attribute in ["kind", "node", "hint"] {
             error.setattr(attribute, module.py().None())?;

@@ -20,7 +20,7 @@ use pyo3::types::{PyDict, PyString};
 use rayon::prelude::*;
 use serde_json::Value;
 
-/// What lies past the edges: a name for both axes, or one for each, x first.
+/// The wrapping past the edges: a name for both axes, or one for each, x first.
 pub(crate) fn per_axis<T: Named>(
     what: &str,
     data: Option<&Bound<'_, PyAny>>,
@@ -36,7 +36,7 @@ pub(crate) fn per_axis<T: Named>(
     Ok([data::named(what, &x)?, data::named(what, &y)?])
 }
 
-/// How heights lie in the plane.
+/// The plane of heights.
 fn plane(
     relief: f64,
     extent: Option<&Bound<'_, PyAny>>,
@@ -57,9 +57,9 @@ fn plane(
 /// Parameters
 /// ----------
 /// height : (rows, columns).
-/// relief : how many units of the plane a height of 1 stands for; negative turns hills into dents.
-/// extent : (x, y), or a number for both: what the array covers of the plane, as in `Field.render`; 1 by default.
-/// wrap : what lies past the edges: `"repeat"`, `"clamp"` or `"mirror"`, or one for each axis, x first.
+/// relief : the height in units of the plane of a value of 1; negative turns hills into dents.
+/// extent : (x, y), or a number for both: the size of the array in the plane, as in `Field.render`; 1 by default.
+/// wrap : the wrapping past the edges: `"repeat"`, `"clamp"` or `"mirror"`, or one for each axis, x first.
 /// y : `"up"` (OpenGL, Blender, glTF) or `"down"` (DirectX).
 ///
 /// Examples
@@ -99,7 +99,7 @@ pub(crate) fn normal_map<'py>(
     kind.array(py, vec![Map::Normal(normals)])
 }
 
-/// Ambient occlusion of heights, (rows, columns): the part of the sky that each place sees, from 0 to 1.
+/// Ambient occlusion of heights, (rows, columns): the visible part of the sky at each place, from 0 to 1.
 ///
 /// Horizons in 16 directions, without random turns (after Bavoil, Sainz and Dimitrov 2008; Jimenez and others 2016). A plane of any slope
 /// sees exactly 1.
@@ -107,8 +107,8 @@ pub(crate) fn normal_map<'py>(
 /// Parameters
 /// ----------
 /// height, relief, extent, wrap : as for `normal_map`.
-/// radius : how far away a height still hides the sky, in units of the plane.
-/// fade : from which part of the radius on that gets less, from 0 to 1.
+/// radius : the distance within which heights occlude the sky, in units of the plane.
+/// fade : the outer part of the radius over which occlusion fades, from 0 to 1.
 ///
 /// Examples
 /// --------
@@ -147,7 +147,7 @@ pub(crate) fn ambient_occlusion<'py>(
 /// Parameters
 /// ----------
 /// height, relief, extent, wrap : as for `normal_map`.
-/// radius : over how far differences are taken, in units of the plane; at least one pixel is.
+/// radius : the radius of the differences, in units of the plane; at least one pixel.
 ///
 /// Examples
 /// --------
@@ -180,11 +180,11 @@ pub(crate) fn curvature<'py>(
 /// Parameters
 /// ----------
 /// values : (rows, columns).
-/// colors : the name of a palette (see `palettes`); or a list of colors, evenly from 0 to 1; or of (position, color). A color is
-///     `"#rrggbb"` in sRGB, or three linear numbers.
-/// space : where colors are mixed: `"oklab"`, `"srgb"` or `"linear"`.
+/// colors : the name of a palette (see `palettes`); or a list of colors, evenly from 0 to 1; or of (position, color). A
+///     color is `"#rrggbb"` in sRGB, or three linear numbers.
+/// space : the space in which colors are mixed: `"oklab"`, `"srgb"` or `"linear"`.
 /// interpolation : `"linear"`, `"smooth"` or `"stepped"`.
-/// outside : what lies before the first and after the last color: `"clamp"` or `"repeat"`.
+/// outside : the colors before the first and after the last position: `"clamp"` or `"repeat"`.
 ///
 /// Examples
 /// --------
@@ -266,7 +266,7 @@ fn color(color: &Value) -> Result<LinearRgb> {
     }
 }
 
-/// The palettes of `ramp`: for each name its colors, (n, 3) in linear light, from that of low values to that of high ones.
+/// The palettes of `ramp`: the colors of each name, (n, 3) in linear light, from low values to high ones.
 ///
 /// Examples
 /// --------
@@ -288,7 +288,7 @@ pub(crate) fn palettes(py: Python<'_>) -> Result<Bound<'_, PyDict>> {
 
 /// The sRGB codes of linear light, of any shape: exactly the nearest code, at every value (IEC 61966-2-1).
 ///
-/// Values below 0 and NaN give 0, those above 1 the largest code. Alpha is no light: leave it out.
+/// Values below 0 and NaN become 0, those above 1 the largest code. Alpha is not coded with this curve: leave it out.
 ///
 /// Parameters
 /// ----------
@@ -319,7 +319,7 @@ pub(crate) fn srgb_from_linear<'py>(
 
 /// The linear light of sRGB codes, of any shape, float32: uint8 from 0 to 255, or uint16 from 0 to 65535 (IEC 61966-2-1).
 ///
-/// `srgb_from_linear` gives every code back. Alpha is no light: divide it by the largest code.
+/// `srgb_from_linear` restores every code. Alpha is not coded with this curve: divide it by the largest code.
 ///
 /// Examples
 /// --------
@@ -341,7 +341,7 @@ pub(crate) fn linear_from_srgb<'py>(
     Err(PyTypeError::new_err(message).into())
 }
 
-/// An array of what each element of another becomes.
+/// Converts each element of an array.
 fn codes<'py, T: Element + Copy + Sync, U: Element + Send>(
     py: Python<'py>,
     array: &numpy::PyReadonlyArrayDyn<'py, T>,

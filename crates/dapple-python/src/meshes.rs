@@ -1,4 +1,4 @@
-//! Meshes from arrays and files, and as arrays.
+//! Conversion of meshes from and to arrays and files.
 
 use crate::arrays;
 use crate::error::{Error, Result};
@@ -12,7 +12,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::path::PathBuf;
 
-/// Vectors of `N` numbers from an array whose last axes have this shape.
+/// Reads vectors of `N` numbers from an array whose last axes have this shape.
 pub(crate) fn vectors<const N: usize>(
     what: &str,
     data: &Bound<'_, PyAny>,
@@ -35,7 +35,7 @@ pub(crate) fn vectors<const N: usize>(
     Ok(numbers.as_chunks().0.to_vec())
 }
 
-/// A mesh of anything with `.vertices` and `.faces`, or of a pair of arrays.
+/// Reads a mesh from an object with `.vertices` and `.faces`, or a pair of arrays.
 pub(crate) fn mesh(data: &Bound<'_, PyAny>) -> Result<Mesh> {
     let (vertices, faces): (Bound<'_, PyAny>, Bound<'_, PyAny>) =
         if data.hasattr("vertices")? && data.hasattr("faces")? {
@@ -103,7 +103,7 @@ pub(crate) fn faces<'py>(py: Python<'py>, mesh: &Mesh) -> Result<Bound<'py, PyAn
     arrays::array(py, numbers, &[mesh.faces().len(), 3])
 }
 
-/// Columns of the corners of faces as an array (n, 3, N).
+/// Attributes of the corners of faces as an array (n, 3, N).
 pub(crate) fn corners<'py, const N: usize>(
     py: Python<'py>,
     corners: impl ExactSizeIterator<Item = [[f64; N]; 3]>,
@@ -113,13 +113,13 @@ pub(crate) fn corners<'py, const N: usize>(
     arrays::array(py, numbers, &[n_faces, 3, N])
 }
 
-/// The mesh of a file: OBJ, PLY, glTF, GLB or OFF, by its ending.
+/// Reads a mesh file: OBJ, PLY, glTF, GLB or OFF, by its ending.
 ///
 /// Returns
 /// -------
-/// `MeshFile(vertices, faces, uv, normals, colors, texture, left_out)`: vertices (n, 3); faces (m, 3); of the corners of faces uv
-/// (m, 3, 2), v down, and normals (m, 3, 3); of vertices linear colors (n, 4); the image of the base color. What a file does not have
-/// is None; `left_out` names what it has and was not read.
+/// `MeshFile(vertices, faces, uv, normals, colors, texture, left_out)`: vertices (n, 3); faces (m, 3); for the corners
+/// of faces, uv (m, 3, 2), v down, and normals (m, 3, 3); for vertices, linear colors (n, 4); the image of the base
+/// color. Attributes that the file lacks are None; `left_out` lists content that was not read.
 ///
 /// Examples
 /// --------
@@ -167,7 +167,7 @@ pub(crate) fn read_model(py: Python<'_>, path: PathBuf) -> Result<Bound<'_, PyAn
     Ok(file.call1(fields)?)
 }
 
-/// The faults of a mesh and its elements, counted: a dictionary.
+/// The counts of the elements and faults of a mesh: a dictionary.
 ///
 /// Parameters
 /// ----------

@@ -1,4 +1,4 @@
-//! Textures that are grown over meshes.
+//! Textures that are synthesized on meshes.
 
 use crate::data;
 use crate::error::{Error, Result};
@@ -24,9 +24,11 @@ use pyo3::types::PyDict;
 use std::path::PathBuf;
 
 dapple::raster::named! {
-    /// How a mesh is laid out in a texture.
+    /// The layout of a mesh in a texture.
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     enum AtlasKind {
+        /// Large pieces of the surface, each flattened as a whole.
+        Charts = "charts",
         /// Right triangles whose sizes follow the areas of the faces.
         Area = "area",
         /// Right triangles of one size, as in the paper.
@@ -36,7 +38,7 @@ dapple::raster::named! {
     }
 }
 
-/// A mesh with a texture that was grown over it, and the maps that follow it. Made by `synthesize_on`.
+/// A mesh with a synthesized texture, and the maps that follow it. Made by `synthesize_on`.
 #[pyclass(frozen, module = "dapple_textures")]
 pub(crate) struct Model {
     synthesizer: Synthesizer,
@@ -50,7 +52,8 @@ pub(crate) struct Model {
     colors: Vec<LinearRgba>,
 }
 
-/// Covers a mesh with a texture that looks like an example, after Turk (2001): points on the surface take pixels of the example.
+/// Covers a mesh with a texture that looks like an example, after Turk (2001): points on the surface take pixels of the
+/// example.
 ///
 /// Faults of the mesh are repaired first.
 ///
@@ -60,13 +63,14 @@ pub(crate) struct Model {
 /// exemplar : (rows, columns), or (rows, columns, 3) in linear light; or a dictionary of maps, of which the first is matched and
 ///     the others follow it: `normal` and `orm` go into the material of the files, too.
 /// texels : the side of the square texture in pixels, up to 16384.
-/// sites : how many points of the surface get a color, 1 to 2**28.
-/// directions : (positions, vectors), each (n, 3): which way the down of the example runs there; in between they are interpolated.
-/// down : the direction of pieces of the surface without any.
-/// atlas : how faces are laid out: `"area"` (by their areas), `"uniform"`, or `"uv"` (`mesh.uv`, (m, 3, 2), v down).
-/// padding : pixels around each piece of the texture that continue it.
+/// sites : the number of points of the surface that get a color, 1 to 2**28.
+/// directions : (positions, vectors), each (n, 3): the direction of the example's down at these positions; in between
+///     they are interpolated.
+/// down : the direction for pieces of the surface without any.
+/// atlas : the layout of faces: `"charts"` (large pieces), `"area"` (triangles by their areas), `"uniform"`, or `"uv"` (`mesh.uv`, (m, 3, 2), v down).
+/// padding : the number of pixels around each piece of the texture that continue it.
 /// crease : the angle of an edge in degrees above which it is shaded as a crease.
-/// axes : which way neighborhoods go on over the surface: `"followed"` or `"carried"`.
+/// axes : how neighborhoods continue over the surface: `"followed"` or `"carried"`.
 /// seed, edges, levels, coherence, evenness, paper, progress : as for `synthesize`.
 ///
 /// Examples
@@ -79,9 +83,9 @@ pub(crate) struct Model {
 /// ((64, 64), (2, 3, 2))
 #[pyfunction]
 #[pyo3(signature = (mesh, exemplar, *, texels = 1024, sites = 65536, directions = None, down = [0.0, -1.0, 0.0],
-    atlas = "area", padding = None, crease = None, axes = None, seed = SeedArgument::default(), edges = "cut", levels = 3,
+    atlas = "charts", padding = None, crease = None, axes = None, seed = SeedArgument::default(), edges = "cut", levels = 3,
     coherence = None, evenness = None, paper = false, progress = None),
-    text_signature = "(mesh, exemplar, *, texels=1024, sites=65536, directions=None, down=(0.0, -1.0, 0.0), atlas=\"area\", \
+    text_signature = "(mesh, exemplar, *, texels=1024, sites=65536, directions=None, down=(0.0, -1.0, 0.0), atlas=\"charts\", \
     padding=None, crease=30.0, axes=None, seed=0, edges=\"cut\", levels=3, coherence=None, evenness=None, paper=False, \
     progress=None)")]
 pub(crate) fn synthesize_on<'py>(
@@ -144,6 +148,8 @@ pub(crate) fn synthesize_on<'py>(
         let (repaired, repair) = mesh.repair();
         let surface = Surface::new(repaired)?;
         let atlas = match (atlas, padding) {
+            (AtlasKind::Charts, None) => Atlas::charts(&surface, texels)?,
+            (AtlasKind::Charts, Some(padding)) => Atlas::charts_padded(&surface, texels, padding)?,
             (AtlasKind::Area, None) => Atlas::by_area(&surface, texels)?,
             (AtlasKind::Area, Some(padding)) => Atlas::by_area_padded(&surface, texels, padding)?,
             (AtlasKind::Uniform, None) => Atlas::uniform(&surface, texels)?,
@@ -179,7 +185,7 @@ pub(crate) fn synthesize_on<'py>(
     watch::run(py, progress, cover)?
 }
 
-/// The directions of a texture at positions.
+/// Reads the directions of a texture at positions.
 fn directions(directions: Option<(Bound<'_, PyAny>, Bound<'_, PyAny>)>) -> Result<Vec<Direction>> {
     let Some((positions, at_each)) = directions else {
         return Ok(Vec::new());
@@ -202,7 +208,7 @@ fn directions(directions: Option<(Bound<'_, PyAny>, Bound<'_, PyAny>)>) -> Resul
     Ok(pairs.map(direction).collect())
 }
 
-/// The mesh's own texture coordinates, for the faces that repair has left.
+/// The mesh's own texture coordinates, for the faces that remain after repair.
 fn own_uvs(
     surface: &Surface,
     before: &Mesh,
@@ -217,7 +223,7 @@ fn own_uvs(
     let mesh = surface.mesh();
     let faces = mesh.faces().iter().zip(&repair.face_before);
     let whole = faces.map(|(face, &at)| {
-        // Repair may have turned the face, or joined its vertices with others at the same places.
+        // Repair may have turned the face, or merged its vertices with others at the same places.
         let corners = before.corners(at);
         let own = face.map(|vertex| {
             let here = mesh.positions()[vertex.index()];
@@ -239,21 +245,20 @@ fn bake(
     map: &Map,
 ) -> core::result::Result<Map, SynthError> {
     Ok(match map {
-        Map::Value(raster) => {
-            Map::Value(bake_values(synthesizer, &texture.transfer(raster)?, atlas)?)
-        }
-        Map::Color(raster) => {
-            Map::Color(bake_colors(synthesizer, &texture.transfer(raster)?, atlas)?)
-        }
-        Map::Normal(raster) => {
-            let normals = texture.transfer(raster)?;
-            let y = NormalY::OpenGl;
-            Map::Normal(bake_normals(synthesizer, &normals, y, atlas, shading)?)
-        }
+        Map::Value(raster) => Map::Value(bake_values(synthesizer, texture, raster, atlas)?),
+        Map::Color(raster) => Map::Color(bake_colors(synthesizer, texture, raster, atlas)?),
+        Map::Normal(raster) => Map::Normal(bake_normals(
+            synthesizer,
+            texture,
+            raster,
+            NormalY::OpenGl,
+            atlas,
+            shading,
+        )?),
     })
 }
 
-/// The color of a gray value as it is displayed: its sRGB code is the value, as in a gray PNG file.
+/// The color that a gray value is displayed as: its sRGB code is the value, as in a gray PNG file.
 fn color_of(value: f32) -> LinearRgb {
     LinearRgb::from_srgb([u16::from_unit(value); 3])
 }
@@ -301,14 +306,14 @@ impl Model {
         corners(py, normals.map(|face| face.map(|normal| normal.to_array())))
     }
 
-    /// The texture: what the first map of the example became, (texels, texels[, 3]).
+    /// The texture: the first map of the example on the mesh, (texels, texels[, 3]).
     #[getter]
     fn texture<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyAny>> {
         let maps = self.picture(0);
         self.layout.kinds[0].array(py, maps)
     }
 
-    /// All maps by name; that of an example without names is `texture`.
+    /// All maps by name; the map of an example without names is `texture`.
     #[getter]
     fn maps<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyDict>> {
         let maps = PyDict::new(py);
@@ -318,16 +323,16 @@ impl Model {
         Ok(maps)
     }
 
-    /// Whether the mesh has faces that are seen from both sides.
+    /// Whether the mesh has faces that are visible from both sides.
     #[getter]
     fn double_sided(&self) -> bool {
         self.is_double_sided
     }
 
-    /// Writes the mesh with its texture: `.glb` in one file, `.obj` with files beside it; `.ply` has the points of the surface as a mesh,
-    /// with a color for each. Every file is the old one or the whole new one.
+    /// Writes the mesh with its texture: `.glb` in one file, `.obj` with files beside it; `.ply` has the points of the
+    /// surface as a mesh, with a color for each. Every file is replaced as a whole.
     ///
-    /// The maps `normal` (y up) and `orm` go into the material.
+    /// The maps `normal` (y up) and `orm` are written to the material.
     fn export(&self, py: Python<'_>, path: PathBuf) -> Result<()> {
         threads::run(py, || -> Result<()> {
             let format =
@@ -342,7 +347,7 @@ impl Model {
         })?
     }
 
-    /// A `trimesh.Trimesh` with the texture as its material. Corners of faces are vertices of their own.
+    /// A `trimesh.Trimesh` with the texture as its material. Corners of faces are separate vertices.
     fn to_trimesh<'py>(model: &Bound<'py, Self>) -> Result<Bound<'py, PyAny>> {
         let helper = model.py().import("dapple_textures._meshes")?;
         Ok(helper.call_method1("to_trimesh", (model,))?)

@@ -1,7 +1,8 @@
-//! Pictures of one to four numbers a pixel, alone or several by name, as the maps of the library and back.
+//! Conversion of pictures of one to four numbers per pixel, alone or in dictionaries, to maps of the library and back.
 //!
 //! An array (rows, columns) is numbers, (rows, columns, 3) a color in linear light, and (rows, columns, 4) a color with
-//! alpha, which travels as one more map. In a dictionary, `normal` is unit vectors and `orm` three numbers for themselves.
+//! alpha, which is stored as one more map. In a dictionary, `normal` is unit vectors and `orm` three independent
+//! numbers.
 
 use crate::arrays;
 use crate::error::{Error, Result};
@@ -16,37 +17,37 @@ use pyo3::types::{PyDict, PyMapping};
 use std::borrow::Cow;
 
 dapple::raster::named! {
-    /// What the numbers of a picture are.
+    /// The content of a picture.
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     pub(crate) enum Content {
-        /// Heights, masks and the like.
+        /// Heights, masks and similar numbers.
         Gray = "gray",
         /// Color in linear light, with or without alpha.
         Color = "color",
         /// Unit vectors.
         Normal = "normal",
-        /// Numbers for themselves.
+        /// Independent numbers.
         Data = "data",
     }
 }
 
-/// What a picture is, without its pixels.
+/// The kind of a picture: its content and number of channels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Kind {
     pub(crate) content: Content,
     pub(crate) n_channels: usize,
 }
 
-/// Whether a picture stands alone or among others with names, and what they are.
+/// Whether a picture is alone or in a dictionary, with the names and kinds.
 #[derive(Clone)]
 pub(crate) struct Layout {
-    /// None for a picture that stands alone.
+    /// The names in the dictionary; `None` for a single picture.
     pub(crate) names: Option<Vec<String>>,
     pub(crate) kinds: Vec<Kind>,
 }
 
 impl Kind {
-    /// What a picture with so many channels holds, unless its caller says it.
+    /// The kind of a picture with a number of channels; the content is guessed if it is not given.
     pub(crate) fn new(what: &str, content: Option<Content>, n_channels: usize) -> Result<Self> {
         let content = content.unwrap_or(match n_channels {
             1 => Content::Gray,
@@ -71,7 +72,7 @@ impl Kind {
         Err(Error::new("channels", message))
     }
 
-    /// How many maps it takes.
+    /// The number of maps of a picture.
     pub(crate) fn n_maps(self) -> usize {
         match self.content {
             Content::Gray | Content::Normal => 1,
@@ -80,7 +81,7 @@ impl Kind {
         }
     }
 
-    /// The maps of a picture's numbers, which lie pixel by pixel.
+    /// Makes the maps from a picture's numbers, in pixel order.
     fn maps(self, size: [u32; 2], values: Cow<'_, [f32]>) -> Result<Vec<Map>> {
         let n = self.n_channels;
         let channel = |channel| -> Result<Map> {
@@ -112,7 +113,7 @@ impl Kind {
         })
     }
 
-    /// The array of its maps.
+    /// Makes an array from the maps.
     pub(crate) fn array<'py>(self, py: Python<'py>, maps: Vec<Map>) -> Result<Bound<'py, PyAny>> {
         let Some(size) = maps.first().map(Map::size) else {
             return Err(Error::new("count", "a picture has at least one map"));
@@ -144,7 +145,7 @@ fn flattened<T>(raster: Raster<T>, numbers: fn(T) -> [f32; 3]) -> Vec<f32> {
     pixels.into_flattened()
 }
 
-/// Puts the channels of a map at the front of every pixel of `n` numbers, and says how many they are.
+/// Writes the channels of a map to the front of every pixel of `n` numbers, and returns their number.
 fn interleave(map: &Map, values: &mut [f32], n: usize) -> usize {
     match map {
         Map::Value(raster) => {
@@ -168,16 +169,16 @@ fn interleave(map: &Map, values: &mut [f32], n: usize) -> usize {
     }
 }
 
-/// An array of a picture while it is read.
+/// The array of a picture that is being read.
 pub(crate) struct Pixels<'py> {
     array: PyArrayLikeDyn<'py, f32, AllowTypeChange>,
-    /// Columns and rows.
+    /// The numbers of columns and rows.
     pub(crate) size: [u32; 2],
     pub(crate) n_channels: usize,
 }
 
 impl<'py> Pixels<'py> {
-    /// Refuses what is no picture, and whole numbers, which are codes and not yet linear light.
+    /// Fails for data that is not a picture, and for whole numbers, which are codes and not linear light.
     pub(crate) fn read(what: &str, data: &Bound<'py, PyAny>) -> Result<Self> {
         if let Ok(array) = data.cast::<PyUntypedArray>() {
             let dtype = array.dtype();
@@ -210,7 +211,7 @@ impl<'py> Pixels<'py> {
         })
     }
 
-    /// The numbers, pixel by pixel: where they lie if that is in order, else copied.
+    /// The numbers in pixel order: in place if possible, else copied.
     pub(crate) fn values(&self) -> Cow<'_, [f32]> {
         let view: ArrayViewD<'_, f32> = self.array.as_array();
         match view.to_slice() {
@@ -230,7 +231,7 @@ impl<'py> Pixels<'py> {
     }
 }
 
-/// Channels as an array: (rows, columns) of one, and (rows, columns, channels) of several.
+/// Makes an array of channels: (rows, columns) for one, and (rows, columns, channels) for several.
 pub(crate) fn array_of_planes(
     py: Python<'_>,
     planes: Vec<Raster<f32>>,
@@ -242,7 +243,7 @@ pub(crate) fn array_of_planes(
     kind.array(py, planes.into_iter().map(Map::Value).collect())
 }
 
-/// The maps of a picture, or of several in a dictionary, one after the other.
+/// Reads the maps of a picture, or of several in a dictionary, one after the other.
 pub(crate) fn read(what: &str, data: &Bound<'_, PyAny>) -> Result<(Layout, Vec<Map>)> {
     let (mut maps, mut kinds) = (Vec::new(), Vec::new());
     let mut add = |what: &str, data: &Bound<'_, PyAny>, content| -> Result<()> {
@@ -274,7 +275,7 @@ pub(crate) fn read(what: &str, data: &Bound<'_, PyAny>) -> Result<(Layout, Vec<M
     Ok((Layout { names, kinds }, maps))
 }
 
-/// The maps of a list of pictures or of dictionaries, which must all be alike.
+/// Reads the maps of a list of pictures or of dictionaries, which must all be alike.
 pub(crate) fn read_all(what: &str, data: &Bound<'_, PyAny>) -> Result<(Layout, Vec<Vec<Map>>)> {
     let mut all = Vec::new();
     let mut first: Option<Layout> = None;
@@ -305,7 +306,7 @@ pub(crate) fn numbers(what: &str, data: &Bound<'_, PyAny>) -> Result<Raster<f32>
 }
 
 impl Layout {
-    /// The name of each picture; one for a picture that stands alone.
+    /// The name of each picture; `alone` for a single picture.
     pub(crate) fn names_or<'a>(&'a self, alone: &'a str) -> Vec<&'a str> {
         match &self.names {
             None => vec![alone],
@@ -313,7 +314,7 @@ impl Layout {
         }
     }
 
-    /// The maps of each picture, from those of all.
+    /// Splits the list of all maps into those of each picture.
     pub(crate) fn split<T>(&self, maps: impl IntoIterator<Item = T>) -> Vec<Vec<T>> {
         let mut maps = maps.into_iter();
         let kinds = self.kinds.iter();
@@ -322,7 +323,7 @@ impl Layout {
             .collect()
     }
 
-    /// What was read: a picture, or a dictionary of them.
+    /// Converts the maps to the form of the input: a picture, or a dictionary of them.
     pub(crate) fn python<'py>(&self, py: Python<'py>, maps: Vec<Map>) -> Result<Bound<'py, PyAny>> {
         let pictures = self.split(maps).into_iter().zip(&self.kinds);
         let mut arrays = pictures.map(|(maps, kind)| kind.array(py, maps));

@@ -1,4 +1,4 @@
-//! Points in domains that may wrap: where they lie, how they are placed, what is measured on them, and their graphs.
+//! Points in domains that may wrap: domains, placement, statistics, and graphs.
 
 mod domain;
 mod graphs;

@@ -23,9 +23,9 @@ use pyo3::types::PyDict;
 use sha2::{Digest, Sha256};
 use std::sync::Arc;
 
-/// A material as data: named nodes, and the maps that are made of them.
+/// A material as data: named nodes, and the maps that use them.
 ///
-/// It is made from a dictionary, or read from a text. `plan` makes it ready to be baked. The nodes and their options are
+/// It is made from a dictionary, or read from a text. `plan` prepares it for baking. The nodes and their options are
 /// those of the command, in `docs/reference.md`.
 ///
 /// Examples
@@ -49,18 +49,18 @@ pub(crate) struct Recipe {
 fn sha256(parts: &[&[u8]]) -> String {
     let mut hash = Sha256::new();
     for part in parts {
-        // With the lengths, so that no two lists of parts are alike.
+        // The lengths are included, so that no two lists of parts are alike.
         hash.update((part.len() as u64).to_le_bytes());
         hash.update(part);
     }
     hex(&hash.finalize())
 }
 
-/// The recipe that data holds. Errors name the entry, and not a place in a text that nobody wrote.
+/// Reads a recipe from data. Errors name the entry, and no place in a text, since there is none.
 fn from_data(data: &Bound<'_, PyAny>) -> Result<RustRecipe> {
     let text = data::text(data)?;
     RustRecipe::from_json(&text).map_err(|error| {
-        // A value that nobody closes yet is refused at the line after it.
+        // For a value without its closing bracket, the error is at the line after it.
         let before = error.place().map_or(0, |place| place.line);
         let mut lines = text
             .lines()
@@ -95,7 +95,7 @@ impl Recipe {
         })
     }
 
-    /// The recipe that a text in TOML holds.
+    /// Reads a recipe from a text in TOML.
     #[staticmethod]
     fn from_toml(text: &str) -> Result<Self> {
         Ok(Self {
@@ -103,7 +103,7 @@ impl Recipe {
         })
     }
 
-    /// The recipe that a text in JSON holds.
+    /// Reads a recipe from a text in JSON.
     #[staticmethod]
     fn from_json(text: &str) -> Result<Self> {
         Ok(Self {
@@ -111,7 +111,7 @@ impl Recipe {
         })
     }
 
-    /// The built-in recipe of this name.
+    /// The built-in recipe with a name.
     #[staticmethod]
     fn builtin(name: &str) -> Result<Self> {
         Ok(Self {
@@ -151,13 +151,13 @@ impl Recipe {
         Self { recipe }
     }
 
-    /// The name, which files get.
+    /// The name, which the baked files have.
     #[getter]
     fn name(&self) -> &str {
         &self.recipe.name
     }
 
-    /// Where all of its chance comes from.
+    /// The seed of all random numbers.
     #[getter]
     fn seed(&self) -> u64 {
         self.recipe.seed.0
@@ -169,7 +169,7 @@ impl Recipe {
         self.recipe.extent.into()
     }
 
-    /// The names of the images that it asks for.
+    /// The names of the images of the recipe.
     #[getter]
     fn image_files(&self) -> Vec<String> {
         self.recipe
@@ -179,7 +179,7 @@ impl Recipe {
             .collect()
     }
 
-    /// What its nodes say of the alpha of an image, as `read_image` takes it; None where they say nothing.
+    /// The handling of the alpha of an image in its nodes, in the form of `read_image`; None if no node sets it.
     fn _image_alpha(&self, file: &str) -> Result<Option<String>> {
         let alpha = self.recipe.image_alpha(file)?.map(serde_json::to_value);
         let alpha = alpha.transpose();
@@ -193,13 +193,13 @@ impl Recipe {
         Ok(sha256(&[self.recipe.to_json()?.as_bytes()]))
     }
 
-    /// Makes everything that the recipe names.
+    /// Makes all nodes of the recipe.
     ///
     /// Parameters
     /// ----------
-    /// images : the images that it names (see `image_files`): arrays (rows, columns) of numbers or (rows, columns, 3) of linear
-    ///     colors, floating point.
-    /// time : the part of a loop that has passed, for what moves: 0 and 1 are the same.
+    /// images : the images by name (see `image_files`): arrays (rows, columns) of numbers or (rows, columns, 3) of
+    ///     linear colors, floating point.
+    /// time : the elapsed part of a loop, for nodes that move: 0 and 1 are the same.
     #[pyo3(signature = (*, images = None, time = 0.0))]
     fn plan(&self, py: Python<'_>, images: Option<&Bound<'_, PyDict>>, time: f64) -> Result<Plan> {
         let mut pictures = Images::new();
@@ -244,7 +244,7 @@ impl Recipe {
 }
 
 impl Recipe {
-    /// Refuses an image that the recipe does not name.
+    /// Checks that the recipe has an image with a name.
     fn check_image(&self, py: Python<'_>, name: &str) -> Result<()> {
         let names = self.recipe.image_files();
         if names.contains(&name) {
@@ -265,7 +265,7 @@ impl Recipe {
     }
 }
 
-/// An image of a recipe from an array.
+/// Reads an image of a recipe from an array.
 fn picture(what: &str, image: &Bound<'_, PyAny>) -> Result<Picture> {
     let pixels = Pixels::read(what, image)?;
     let values = pixels.values();

@@ -1,23 +1,23 @@
-//! Descriptions that share what is made from them.
+//! Descriptions that share the objects made from them.
 
 use crate::error::Result;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::sync::{Arc, OnceLock};
 
-/// A description of something that takes time to make.
+/// A description of an object that takes time to make.
 pub(crate) trait Build {
-    /// What is made, cheap to clone.
+    /// The object, cheap to clone.
     type Built: Clone;
 
-    /// Makes it.
+    /// Makes the object.
     fn build(&self) -> Result<Self::Built>;
 }
 
-/// A description and what is made from it, once, for all clones. As data and in comparisons it is the description.
+/// A description and the object made from it, once, for all clones. As data and in comparisons it is the description.
 pub(crate) struct Shared<T: Build>(Arc<(T, OnceLock<T::Built>)>);
 
 impl<T: Build> Shared<T> {
-    /// A description from which nothing is made yet.
+    /// A description without its object yet.
     pub(crate) fn new(made: T) -> Self {
         Self(Arc::new((made, OnceLock::new())))
     }
@@ -27,7 +27,7 @@ impl<T: Build> Shared<T> {
         &self.0.0
     }
 
-    /// What the description gives.
+    /// The object of the description, made on first use.
     pub(crate) fn get(&self) -> Result<T::Built> {
         let (made, built) = &*self.0;
         if let Some(built) = built.get() {

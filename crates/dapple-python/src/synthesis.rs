@@ -14,7 +14,7 @@ use dapple::synth::{
 use dapple::tile::Map;
 use pyo3::prelude::*;
 
-/// How pixels of the example are found, as callers say it.
+/// The argument `coherence`.
 #[derive(FromPyObject)]
 pub(crate) enum Coherence {
     /// A factor.
@@ -23,7 +23,7 @@ pub(crate) enum Coherence {
     Word(String),
 }
 
-/// The options that the plane and meshes share.
+/// The options that synthesis in the plane and on meshes share.
 pub(crate) struct Matching {
     pub(crate) seed: SeedArgument,
     pub(crate) levels: usize,
@@ -34,7 +34,7 @@ pub(crate) struct Matching {
 }
 
 impl Matching {
-    /// The options of the library, as the command reads them.
+    /// The options in the form of the library, read like those of the command.
     pub(crate) fn options(self) -> Result<Options> {
         let default = match self.paper {
             true => Options::paper(),
@@ -56,6 +56,7 @@ impl Matching {
             evenness: self.evenness.unwrap_or(default.evenness),
             axes: self.axes.unwrap_or(default.axes),
             center: default.center,
+            sources: default.sources,
         })
     }
 }
@@ -75,23 +76,25 @@ pub(crate) fn exemplar(maps: &[Map], edges: &str) -> Result<Exemplar> {
 
 /// A texture of any size that looks like an example, after Turk (2001).
 ///
-/// Every pixel is one of the example's, around which it looks most like what is around it here.
+/// Every pixel is one of the example's, chosen so that its surroundings in the example match those in the texture.
 ///
 /// Parameters
 /// ----------
-/// exemplar : (rows, columns), or (rows, columns, 3 or 4) in linear light, best 64 to 256 pixels wide; or a dictionary of maps, of which
-///     the first is matched (color in sRGB, numbers as they are) and the others follow it.
+/// exemplar : (rows, columns), or (rows, columns, 3 or 4) in linear light, best 64 to 256 pixels wide; or a dictionary
+///     of maps, of which the first is matched (color in sRGB, numbers unchanged) and the others follow it.
 /// size : (rows, columns), or a number for both; at most 2**26 pixels.
 /// seed : int, from 0 to 2**64 - 1.
-/// wrap : along which axes the texture repeats, x first; one for both. These sides are multiples of 2**(levels - 1).
-/// edges : what lies past the edges of the example: `"cut"`, or `"wrap"` where it repeats.
+/// wrap : the axes along which the texture repeats, x first; one for both. These sides are multiples of 2**(levels -
+///     1).
+/// edges : the treatment of the edges of the example: `"cut"`, or `"wrap"` if it repeats.
 /// levels : 1 to 16, each with half the resolution: more for larger features.
-/// coherence : how much worse a match may be that continues what lies beside it: `"auto"` or a number of at least 0; higher copies larger
-///     pieces.
+/// coherence : the tolerance for a worse match that continues the pixels beside it: `"auto"` or a number of at least 0;
+///     higher copies larger pieces.
 /// evenness : how evenly the example is used, 0 to 1000; 1 by default.
-/// paper : match as in the paper: the least difference wins.
-/// sources : give (texture, sources), too: for every pixel the (column, row) of the example that it is from, (rows, columns, 2).
-/// progress : called with the part that is done, from 0 to 1. Ctrl-C stops the call.
+/// paper : match as in the paper: the smallest difference wins.
+/// sources : return (texture, sources): for every pixel the (column, row) of its source in the example, (rows, columns,
+///     2).
+/// progress : called with the part of the work done, from 0 to 1. Ctrl-C stops the call.
 ///
 /// Examples
 /// --------
@@ -148,7 +151,7 @@ pub(crate) fn synthesize<'py>(
     Ok((picture, places).into_pyobject(py)?.into_any())
 }
 
-/// Refuses maps of different sizes.
+/// Checks that maps have the same size.
 pub(crate) fn check_sizes(maps: &[Map]) -> Result<()> {
     for map in maps {
         if map.size() != maps[0].size() {
@@ -163,7 +166,7 @@ pub(crate) fn check_sizes(maps: &[Map]) -> Result<()> {
     Ok(())
 }
 
-/// A map of the example at the pixels that the texture took.
+/// A map of the example, transferred to the texture.
 fn transfer(texture: &PlaneTexture, map: &Map) -> core::result::Result<Map, SynthError> {
     Ok(match map {
         Map::Value(raster) => Map::Value(texture.transfer(raster)?),

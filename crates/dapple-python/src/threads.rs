@@ -1,29 +1,30 @@
-//! The threads that the package works on: a pool of its own, which a forked process makes anew.
+//! The threads of the package: a pool of its own, which a forked process makes anew.
 
 use crate::error::{Error, Result};
 use pyo3::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// The pool, the process that made it, and how many threads it is to have (0: one for each core).
+/// The pool, the process that made it, and the requested number of threads (0: one for each core).
 struct Threads {
     wanted: Option<usize>,
     pool: Option<(u32, Arc<ThreadPool>)>,
 }
 
-/// It is locked with the interpreter held, and let go before that is: so no fork finds it locked.
+/// It is locked with the interpreter held, and unlocked before the interpreter is released, so that it is never locked
+/// in a fork.
 static THREADS: Mutex<Threads> = Mutex::new(Threads {
     wanted: None,
     pool: None,
 });
 
-/// The environment variable that says how many threads there are.
+/// The environment variable with the number of threads.
 const VARIABLE: &str = "DAPPLE_THREADS";
 
-/// The most threads that may be asked for.
+/// The largest number of threads.
 const MOST: usize = 1024;
 
-/// What `work` gives, on the threads of the package and without the interpreter.
+/// Runs `work` on the threads of the package and without the interpreter, and returns its result.
 pub(crate) fn run<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> Result<T> {
     let pool = pool(py)?;
     Ok(py.detach(|| pool.install(work)))
@@ -38,7 +39,7 @@ pub(crate) fn pool(_py: Python<'_>) -> Result<Arc<ThreadPool>> {
             threads.pool = Some((maker, Arc::clone(&pool)));
             return Ok(pool);
         }
-        // The threads of a pool do not survive a fork, and what waits for them would wait forever.
+        // The threads of a pool do not survive a fork, and waiting for them would never end.
         Some((_, pool)) => core::mem::forget(pool),
         None => {}
     }
@@ -56,7 +57,7 @@ pub(crate) fn pool(_py: Python<'_>) -> Result<Arc<ThreadPool>> {
     Ok(pool)
 }
 
-/// The number of threads that the environment asks for; 0 where it asks for none.
+/// The number of threads in the environment; 0 if it is not set.
 fn from_environment() -> Result<usize> {
     let Ok(text) = std::env::var(VARIABLE) else {
         return Ok(0);

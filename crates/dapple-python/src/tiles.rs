@@ -1,4 +1,4 @@
-//! Images made to repeat, their seam reports, and maps that are covered with tiles.
+//! Making images repeat, seam reports, and maps covered with tiles.
 
 use crate::arrays;
 use crate::data;
@@ -15,7 +15,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList, PyString};
 use serde_json::{Map as Object, Value, json};
 
-/// A yes or no for both axes, or one for each, x first.
+/// A bool for both axes, or one for each, x first.
 pub(crate) fn flags(data: Option<&Bound<'_, PyAny>>, default: bool) -> Result<[bool; 2]> {
     let Some(data) = data else {
         return Ok([default; 2]);
@@ -26,12 +26,12 @@ pub(crate) fn flags(data: Option<&Bound<'_, PyAny>>, default: bool) -> Result<[b
     }
 }
 
-/// The pixel of the plane where a map begins, x first.
+/// The first pixel of a map in the plane, x first.
 fn first(data: Option<&Bound<'_, PyAny>>) -> Result<[i64; 2]> {
     Ok(data.map_or(Ok([0; 2]), |first| first.extract())?)
 }
 
-/// A method of making images repeat, by its name and its options.
+/// A method of making images repeat, by its name and options.
 fn method(
     name: &Bound<'_, PyAny>,
     options: Option<&Bound<'_, PyDict>>,
@@ -60,7 +60,7 @@ fn method(
     data::read(&format!("method {name}"), data)
 }
 
-/// The options of a soft cut, whose margin is at most a quarter of the shorter side where none is given, as the command has it.
+/// The options of a soft cut; the default margin is at most a quarter of the shorter side, as in the command.
 fn soft_cut(mut options: Object<String, Value>, size: [u32; 2]) -> Object<String, Value> {
     let default = SoftCut::default();
     let room = (size[0].min(size[1]) / 4).max(1);
@@ -74,20 +74,20 @@ fn soft_cut(mut options: Object<String, Value>, size: [u32; 2]) -> Object<String
     options
 }
 
-/// An image made to repeat, or all maps of a material along the same cut.
+/// Makes an image repeat, or all maps of a material along the same cut.
 ///
 /// Parameters
 /// ----------
 /// image : (rows, columns), or (rows, columns, 3 or 4) in linear light; or a dictionary of such maps, of which `normal` is unit
 ///     vectors and `orm` three numbers.
-/// method : how, with its own options by keyword, or a dictionary as in a recipe.
+/// method : the method, with its options as keywords, or a dictionary as in a recipe.
 ///
 ///     * `"soft_cut"` cuts along the line of least difference, and is smaller by the margin: `margin`, `half_width`, `crossfade`.
 ///     * `"periodic"` keeps all detail and the size (Moisan 2011); `"poisson"` likewise, with `wrap_gradient`.
 ///     * `"spline_project"` is the tile of Du, Wang and Meng, which smooths, and `"periodic_then_project"`: `levels`, `phase`, `basis`,
 ///       `pixels`.
 ///     * `"feather"` is a crossfade: `margin`, `crossfade`. `"mirror"` is the image beside its mirror image.
-/// axes : along which axes it is to repeat, x first; one for both.
+/// axes : the axes along which the result repeats, x first; one for both.
 ///
 /// Examples
 /// --------
@@ -118,17 +118,17 @@ pub(crate) fn make_tile<'py>(
     layout.python(py, tile)
 }
 
-/// How well an image repeats, and what it has kept of the image that it was made of.
+/// Measures how well an image repeats, and how much it has kept of the image from which it was made.
 ///
-/// Steps across the wrap are compared with those inside at four scales; beside a source, lost detail, lost contrast, and what is unlike
-/// anything in it. Colors are judged as they are displayed, in sRGB.
+/// Steps across the wrap are compared with those inside at four scales; with a source, lost detail, lost contrast, and
+/// parts unlike the source are measured. Colors are judged as they are displayed, in sRGB.
 ///
 /// Parameters
 /// ----------
 /// tile : an image, or a dictionary of maps.
-/// source : what it was made of, of the same kind; None where there is none.
-/// axes : along which axes it repeats, x first; one for both.
-/// lattice : how many pixels apart the boundaries are that are like the wrap, such as 2**levels for `"spline_project"`.
+/// source : the original, of the same kind; None if there is none.
+/// axes : the axes along which it repeats, x first; one for both.
+/// lattice : the distance in pixels of boundaries that are like the wrap, such as 2**levels for `"spline_project"`.
 ///
 /// Returns
 /// -------
@@ -226,7 +226,7 @@ fn report<'py>(py: Python<'py>, reports: &[SeamReports], kind: Kind) -> Result<B
     Ok(report.call1((passes, faults, badness, channels, texts.join("\n")))?)
 }
 
-/// Copies of a tile side by side, cut off at a size.
+/// Copies of a tile side by side, cropped to a size.
 ///
 /// Parameters
 /// ----------
@@ -269,8 +269,8 @@ pub(crate) fn repeat<'py>(
 /// size : (rows, columns), or a number for both.
 /// seed : int, from 0 to 2**64 - 1.
 /// first : (x, y) of the first pixel in the plane, in which copy (0, 0) begins in pixel (0, 0).
-/// frozen : how many pixels along the borders stay.
-/// margin : over how many pixels next to these a copy goes over into what is shifted.
+/// frozen : the number of unchanged pixels along the borders.
+/// margin : the number of pixels next to these in which a copy changes to the shifted one.
 ///
 /// Examples
 /// --------
@@ -302,13 +302,14 @@ pub(crate) fn disturb<'py>(
     layout.python(py, maps)
 }
 
-/// Tiles with one border, that of the first, so that they fit beside each other in any order.
+/// Tiles with the border of the first one, so that they fit beside each other in any order.
 ///
 /// Parameters
 /// ----------
 /// tiles : images of one size, or dictionaries of maps.
-/// width : over how many pixels along the borders they go over into it.
-/// source : `"border"` takes that of the first tile, which repeats; `"middle"` what it has along its middle, where it need not.
+/// width : the number of pixels along the borders in which tiles change.
+/// source : `"border"` uses the border of the first tile, which must repeat; `"middle"` the strip along its middle, for
+///     a tile that does not.
 ///
 /// Examples
 /// --------
@@ -332,7 +333,7 @@ pub(crate) fn match_borders<'py>(
     list(py, &layout, matched)
 }
 
-/// A map that is laid with tiles in random order, whose borders are matched first; of whole tiles, it repeats.
+/// A map that is covered with tiles in random order, whose borders are matched first; maps of whole tiles repeat.
 ///
 /// Parameters
 /// ----------
@@ -373,7 +374,7 @@ fn borders(width: Option<u32>, source: Option<&str>) -> Result<MatchBorders> {
     })
 }
 
-/// A list of pictures.
+/// Makes a list of pictures.
 fn list<'py>(py: Python<'py>, layout: &Layout, all: Vec<Vec<Map>>) -> Result<Bound<'py, PyList>> {
     let pictures = all.into_iter().map(|maps| layout.python(py, maps));
     Ok(PyList::new(py, pictures.collect::<Result<Vec<_>>>()?)?)
@@ -381,14 +382,14 @@ fn list<'py>(py: Python<'py>, layout: &Layout, all: Vec<Vec<Map>>) -> Result<Bou
 
 /// Tiles that fit beside each other where their corners have the same color, after Lagae and Dutré (2006).
 ///
-/// Every tile is made of 2 to 4 sources, one for each color: at a corner it shows the source of that color, and sources meet along the
-/// lines of least difference. All C**4 tiles of C colors cover a plane without repeating.
+/// Every tile is made from 2 to 4 sources, one for each color: at a corner it shows the source of that color, and
+/// sources meet along the lines of least difference. All C**4 tiles of C colors cover a plane without repeating.
 ///
 /// Parameters
 /// ----------
 /// sources : 2 to 4 images of one size, or dictionaries of maps.
 /// width : the share of the shorter side that cuts may take, above 0 and at most 1.
-/// period : after how many tiles the corners repeat: a number, or (x, y); None where they do not.
+/// period : the number of tiles after which the corners repeat: a number, or (x, y); None if they do not.
 ///
 /// Examples
 /// --------
@@ -435,13 +436,14 @@ impl CornerTiles {
         self.layout.python(py, maps)
     }
 
-    /// All C**4 tiles: that with the corners a, b, c, d is at the index a + b C + c C**2 + d C**3.
+    /// All C**4 tiles; the one with the corners a, b, c, d is at the index a + b C + c C**2 + d C**3.
     fn all<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyList>> {
         let tiles = threads::run(py, || self.tiles.all())??;
         list(py, &self.layout, tiles)
     }
 
-    /// A map with random corners: `size` is (rows, columns), `first` (x, y) of its first pixel. A window is the crop of the whole.
+    /// A map with random corners: `size` is (rows, columns), `first` (x, y) of its first pixel. A window is the crop of
+    /// the whole.
     #[pyo3(signature = (size, *, seed = SeedArgument::default(), first = None),
         text_signature = "($self, size, *, seed=0, first=(0, 0))")]
     fn render<'py>(
@@ -457,9 +459,9 @@ impl CornerTiles {
     }
 }
 
-/// The ranks of numbers, from 0 to 1: what is below `x` covers the part `x` of the area.
+/// The ranks of numbers, from 0 to 1: values below `x` cover the fraction `x` of the area.
 ///
-/// As the tile of `blend` it lets weights be areas.
+/// As the tile of `blend`, ranks make weights equal to areas.
 ///
 /// Examples
 /// --------

@@ -1,7 +1,7 @@
 //! Long calls that show their progress and stop at Ctrl-C.
 //!
-//! The work is done on the threads of the package. The thread that called waits for it, and now and then takes the interpreter to run the
-//! handlers of signals, which only the main thread may, and what the caller gave to hear of the progress.
+//! The work is done on the threads of the package. The calling thread waits for it, and periodically takes the
+//! interpreter to run the handlers of signals, which only the main thread may do, and the callback for the progress.
 
 use crate::error::{Error, Result};
 use crate::threads;
@@ -13,14 +13,14 @@ use pyo3::prelude::*;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::time::Instant;
 
-/// How long no signal is looked for.
+/// The time between checks for signals.
 const PERIOD: Duration = Duration::from_millis(50);
 
-/// Hears of the progress of a synthesis and can stop it.
+/// A callback for the progress of a synthesis, which can stop it.
 pub(crate) type Heard<'a> = &'a mut dyn FnMut(Progress) -> ControlFlow<()>;
 
-/// What `work` gives, on the threads of the package and without the interpreter, unless a signal or `progress` raises an
-/// exception. `progress` is called with the part that is done, from 0 to 1.
+/// Runs `work` on the threads of the package and without the interpreter, and returns its result, unless a signal or
+/// `progress` raises an exception. `progress` is called with the part of the work done, from 0 to 1.
 pub(crate) fn run<T: Send>(
     py: Python<'_>,
     progress: Option<&Bound<'_, PyAny>>,
@@ -36,7 +36,7 @@ pub(crate) fn run<T: Send>(
         pool.in_place_scope(|scope| {
             scope.spawn(move |_| {
                 let mut tell = |steps: Progress| {
-                    // Nobody listens after the first exception.
+                    // After the first exception nobody receives the progress.
                     let _ = sender.send(part(steps));
                     match stop.load(Ordering::Relaxed) {
                         true => ControlFlow::Break(()),
@@ -53,7 +53,7 @@ pub(crate) fn run<T: Send>(
     made.ok_or_else(|| Error::new("threads", "the work was not done"))
 }
 
-/// The part of a synthesis that is done: each pass is as much as another.
+/// The part of a synthesis that is done; all passes count the same.
 fn part(steps: Progress) -> f64 {
     let part = steps.done as f64 / steps.n_sites.max(1) as f64;
     (steps.pass as f64 + part) / steps.n_passes.max(1) as f64

@@ -42,8 +42,8 @@ def test_options_and_defaults_are_those_of_recipes(kind: str) -> None:
     options.pop("domain", None)
     if kind == "points":
         options.pop("points")
-    # What is left out where it is the default.
-    expected = options | options.pop("net") | {"fade": 0.0}
+    # Options that recipes leave out where they are the default.
+    expected = options | options.pop("net") | {"fade": 0.0} | ({"values": ()} if kind == "points" else {})
     parameters = inspect.signature(function(kind)).parameters.values()
     given = {p.name: p.default for p in parameters if p.kind is p.KEYWORD_ONLY}
     assert given.pop("seed") == 0
@@ -143,6 +143,17 @@ def test_control_points_are_those_of_pups() -> None:
     texture = dp.control_points(given, dp.Domain(1), axis_scale=1.5, weight="quintic")
     same = dp.pups(points, values, axis_scale=1.5, weight="quintic")
     assert np.array_equal(texture.render(64), same.render(64))
+
+
+def test_control_points_share_the_values_of_labels() -> None:
+    places = [{"x": 0.2, "y": 0.5}, {"x": 0.5, "y": 0.2}, {"x": 0.8, "y": 0.7}]
+    labels, values = [0, 1, 0], [0.25, 0.75]
+    shared = [{**place, "label": label} for place, label in zip(places, labels, strict=True)]
+    own = [{**place, "value": values[label]} for place, label in zip(places, labels, strict=True)]
+    texture = dp.control_points(shared, dp.Domain(1), values=values)
+    assert np.array_equal(texture.render(32), dp.control_points(own, dp.Domain(1)).render(32))
+    with pytest.raises(dp.DappleError, match="label"):
+        dp.control_points(shared, dp.Domain(1), values=[0.25])
 
 
 def test_bad_options_are_refused() -> None:

@@ -1,50 +1,50 @@
-//! Why a raster or a window was refused.
+//! Errors of rasters, windows and fields.
 
 crate::error! {
-    /// Why an operation on rasters was refused.
+    /// An error of an operation on rasters, windows or fields.
     RasterError,
-    /// The limit that was broken.
+    /// The cause of a [`RasterError`], with the limit and the value.
     RasterErrorKind with Range {
         /// A width or a height is zero.
         Empty {
-            /// The size that was asked for, in pixels.
+            /// The size, in pixels.
             size: [u32; 2],
         } => "a raster of {} × {} pixels is empty", size[0], size[1];
         /// The pixels are more than the address space, or the limit of 2^31, allows.
         TooLarge {
-            /// The size that was asked for, in pixels.
+            /// The size, in pixels.
             size: [u32; 2],
         } => "a raster of {} × {} pixels is larger than the limit of 2^31 pixels", size[0], size[1];
         /// The number of values is not that of the pixels.
         Length {
-            /// How many values there are.
+            /// The number of values.
             length: usize,
-            /// How many were needed.
+            /// The number of values needed.
             needed: usize,
         } => "there are {length} values, but {needed} are needed";
         /// Two sizes that must be equal are not.
         SizeMismatch {
-            /// The size of what was passed, in pixels.
+            /// The size that was passed, in pixels.
             size: [u32; 2],
-            /// The size that was needed.
+            /// The size that was needed, in pixels.
             needed: [u32; 2],
         } => "the raster has {} × {} pixels, but {} × {} are needed", size[0], size[1], needed[0], needed[1];
         /// A rectangle reaches past the raster.
         OutOfBounds {
             /// The first column and row of the rectangle.
             first: [u32; 2],
-            /// Its size in pixels.
+            /// The size of the rectangle, in pixels.
             size: [u32; 2],
-            /// The size of the raster.
+            /// The size of the raster, in pixels.
             bounds: [u32; 2],
         } =>
             "the rectangle of {} × {} pixels at ({}, {}) leaves the raster of {} × {}",
             size[0], size[1], first[0], first[1], bounds[0], bounds[1];
-        /// One period was asked for of a field that does not repeat along both axes.
+        /// The tile of a field was requested, but the field does not repeat along both axes.
         NoPeriod => "the field does not repeat along both axes, so that there is no tile of it";
-        /// A number that has to be finite (and, for the size of a pixel, not zero) is not.
+        /// A number is not finite, or the size of a pixel is zero.
         NotFinite {
-            /// What the number is.
+            /// The name of the number.
             what: &'static str,
             /// The number.
             value: f64,
@@ -53,7 +53,8 @@ crate::error! {
 }
 
 impl RasterError {
-    /// Refuses memory for another number of values than are needed; for those who write a [`Field`](crate::Field).
+    /// Checks that memory for `length` values has exactly the `needed` length. For implementations of
+    /// [`Field`](crate::Field).
     ///
     /// # Errors
     ///
@@ -65,11 +66,11 @@ impl RasterError {
         Err(Self::new(RasterErrorKind::Length { length, needed }))
     }
 
-    /// Refuses a number out of its range; for those who write a [`Field`](crate::Field).
+    /// Checks that a number lies in its range, which is so if `holds`. For implementations of [`Field`](crate::Field).
     ///
     /// # Errors
     ///
-    /// [`Range`](RasterErrorKind::Range) unless it `holds`.
+    /// [`Range`](RasterErrorKind::Range) if `holds` is false.
     pub fn check_range(
         holds: bool,
         what: &'static str,

@@ -1,6 +1,6 @@
-//! The one shape of the errors of all crates.
+//! The macro that defines the error types of all crates.
 
-/// Makes an error of dapple: an opaque struct, its kinds with their texts, and what they come from.
+/// Defines an error of dapple: an opaque struct, its kinds with their messages, and the errors it converts from.
 ///
 /// A kind is its documentation, a name, fields with their documentation, and a text with the fields by name (or the arguments
 /// of a format string). `with Range` adds the kind `Range` of a number out of its range, and the function `check` that
@@ -62,7 +62,7 @@ macro_rules! error {
                 Err(Self::new($kind::Range { what, value, range }))
             })?
 
-            /// The limit that was broken.
+            /// The cause of the error, with the limit and the value.
             #[must_use]
             pub fn kind(&self) -> &$kind {
                 &self.kind
@@ -97,7 +97,7 @@ macro_rules! error {
     };
 }
 
-/// Makes the kinds of an error that is a struct of its own: see [`error!`](crate::error).
+/// Defines the kinds of an error whose struct is written by hand: see [`error!`](crate::error).
 #[doc(hidden)]
 #[macro_export]
 macro_rules! error_kind {
@@ -117,7 +117,7 @@ macro_rules! error_kind {
         pub enum $kind {
             $(#[doc = concat!("A number is outside of its ", stringify!($range), ".")]
             Range {
-                /// What the number is.
+                /// The name of the number.
                 what: &'static str,
                 /// The number.
                 value: f64,

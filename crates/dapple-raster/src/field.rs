@@ -1,4 +1,4 @@
-//! The door that everything with a value at every position shares.
+//! The trait [`Field`]: anything that has a value at every position of the plane.
 
 mod combinators;
 mod fractal;
@@ -22,7 +22,7 @@ use std::sync::Arc;
 /// References, boxes and `Arc`s of fields are fields, and so are numbers (`f32`, the same everywhere) and closures in
 /// [`field_fn`]. Fields are composed with the methods of [`FieldExt`].
 ///
-/// The two doors give the same bits: `render` and `sample_many` equal `sample` at every position. An implementation
+/// All methods give the same bits: `render` and `sample_many` equal `sample` at every position. An implementation
 /// overrides them when it is faster on many positions at once. At a position that is not finite the value is NaN.
 ///
 /// # Examples
@@ -76,14 +76,14 @@ pub trait Field: Send + Sync {
         Ok(())
     }
 
-    /// The distances after which the field repeats along x and y; `None` where it does not, or where that is not known,
-    /// and 0 where nothing changes along the axis.
+    /// The distances after which the field repeats along x and y: `None` along an axis where it does not repeat or the
+    /// period is unknown, 0 along an axis where the field is constant.
     fn period(&self) -> [Option<f64>; 2] {
         [None; 2]
     }
 
-    /// One period of the field from the origin, as a raster of `size` pixels that tiles exactly: 1 along an axis where
-    /// nothing changes.
+    /// One period of the field from the origin, as a raster of `size` pixels that tiles exactly. Along an axis where
+    /// the field is constant, the raster covers a length of 1.
     ///
     /// # Errors
     ///
@@ -134,7 +134,7 @@ macro_rules! forward_field {
 
 forward_field!(&F, Box<F>, Arc<F>);
 
-/// The number, everywhere.
+/// The constant field of this value.
 impl Field for f32 {
     fn sample(&self, _position: DVec2) -> f32 {
         *self

@@ -1,12 +1,12 @@
 //! Work on all cores where the feature `rayon` is on, and one piece after the other where it is not.
 //!
-//! Every piece is made on its own and put where it belongs, so that the bits do not depend on the number of threads. This is
-//! the only place that uses `rayon`. Its code is large and made anew for every closure that it is given, so it is given
-//! only one, which calls through a reference what is to be done.
+//! Every piece is computed on its own and put where it belongs, so that the bits do not depend on the number of
+//! threads. This is the only place that uses `rayon`. Its code is large and compiled anew for every closure, so there
+//! is only one closure, which calls the work through a reference.
 
 use std::sync::{Mutex, PoisonError};
 
-/// How many pieces there are for each thread at most: enough that no thread waits long for another.
+/// The largest number of pieces for each thread: enough that no thread waits long for another.
 const PIECES: usize = 64;
 
 /// The number of threads that can work at once: 1 where the feature `rayon` is off.
@@ -29,12 +29,12 @@ pub fn for_each(count: usize, work: &(dyn Fn(usize) + Sync)) {
     (0..count).for_each(work);
 }
 
-/// What `make` gives for each number below `count`, in their order; each is worth a task of its own.
+/// The results of `make` for the numbers below `count`, in their order; each call is worth a task of its own.
 pub fn map<T: Send>(count: usize, make: impl Fn(usize) -> T + Sync) -> Vec<T> {
     map_at_least(1, count, make)
 }
 
-/// What `make` gives for each number below `count`, in their order; `least` of them together are worth a task.
+/// The results of `make` for the numbers below `count`, in their order; `least` calls together are worth a task.
 pub fn map_at_least<T: Send>(
     least: usize,
     count: usize,
@@ -64,7 +64,7 @@ pub fn for_each_mut<T: Send>(items: &mut [T], work: impl Fn(usize, &mut T) + Syn
     for_each_mut_at_least(1, items, work);
 }
 
-/// Calls `work` as [`for_each_mut`] does; `least` items together are worth a task.
+/// Calls `work` once with each of some items and its number, in any order; `least` items together are worth a task.
 pub fn for_each_mut_at_least<T: Send>(
     least: usize,
     items: &mut [T],
@@ -78,7 +78,7 @@ pub fn for_each_mut_at_least<T: Send>(
     });
 }
 
-/// What `change` gives for each of some items and its number, in their order; `least` items together are worth a task.
+/// The results of `change` for some items and their numbers, in their order; `least` items together are worth a task.
 pub fn map_mut_at_least<T: Send, U: Send>(
     least: usize,
     items: &mut [T],
@@ -104,7 +104,8 @@ pub fn for_each_chunk<T: Send>(
     for_each_chunk_with(values, size, || (), |(), chunk, values| work(chunk, values));
 }
 
-/// Calls `work` as [`for_each_chunk`] does, with scratch memory that a thread uses for one chunk after the other.
+/// Calls `work` once with each chunk of `size` values (the last one may be shorter), its number, and scratch memory
+/// that a thread keeps from one chunk to the next.
 ///
 /// # Panics
 ///
@@ -126,7 +127,8 @@ pub fn consume<T: Send>(items: Vec<T>, work: impl Fn(usize, T) + Sync) {
     consume_with(items, || (), |(), index, item| work(index, item));
 }
 
-/// Calls `work` as [`consume`] does, with scratch memory that a thread uses for one item after the other.
+/// Calls `work` once with each of some items, its number, and scratch memory that a thread keeps from one item to the
+/// next.
 pub fn consume_with<T: Send, S: Send>(
     items: Vec<T>,
     scratch: impl Fn() -> S + Sync,
@@ -182,12 +184,12 @@ pub fn sort(numbers: &mut [u128]) {
     numbers.sort_unstable();
 }
 
-/// How many of `count` things are a piece of work, of which `least` are worth one.
+/// How many of `count` items make one task; never fewer than `least`.
 fn piece(count: usize, least: usize) -> usize {
     count.div_ceil(PIECES * n_threads()).max(least).max(1)
 }
 
-/// What a lock holds, whether or not a thread panicked with it: rayon passes the panic on.
+/// Locks a mutex, whether or not a thread panicked while it held the lock: rayon passes the panic on.
 fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }

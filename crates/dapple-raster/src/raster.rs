@@ -1,4 +1,4 @@
-//! Pixels that own their memory.
+//! The raster: pixels that own their memory.
 
 use crate::parallel;
 use crate::window::check_size;
@@ -190,7 +190,7 @@ impl<T: Copy> Raster<T> {
         Ok(Self::from_view(self.view().crop(first, size)?))
     }
 
-    /// `count[0] × count[1]` copies of the raster side by side: what shows a seam.
+    /// `count[0] × count[1]` copies of the raster side by side, which makes seams visible.
     ///
     /// # Errors
     ///
@@ -210,7 +210,7 @@ impl<T: Copy> Raster<T> {
 }
 
 impl<T: Sync> Raster<T> {
-    /// Maps every pixel as [`map`](Self::map) does, on all cores where the feature `rayon` is on.
+    /// A raster of the same size with every value changed by `change`, on all cores where the feature `rayon` is on.
     #[must_use]
     pub fn par_map<U: Send>(&self, change: impl Fn(&T) -> U + Sync) -> Raster<U> {
         #[cfg(feature = "rayon")]
@@ -225,7 +225,7 @@ impl<T: Sync> Raster<T> {
     }
 }
 
-/// The pixels of rows that are made at a time, unless one row has more.
+/// The number of pixels in the rows that are made at a time, unless one row has more.
 const BAND_PIXELS: u32 = 4096;
 
 impl<T: Send> Raster<T> {

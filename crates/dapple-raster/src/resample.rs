@@ -1,10 +1,10 @@
-//! Reading a raster between its pixels.
+//! Bilinear interpolation of rasters.
 
 use crate::{Raster, Wrap};
 use core::ops::{Add, Mul, Sub};
 use glam::DVec2;
 
-/// What can be interpolated: `f32`, and vectors of it.
+/// A value that can be interpolated: `f32`, or a vector of `f32`.
 pub trait Texel: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<f32, Output = Self> {}
 
 impl<T: Copy + Add<Output = T> + Sub<Output = T> + Mul<f32, Output = T>> Texel for T {}
@@ -34,7 +34,7 @@ fn cell_and_fraction(coordinate: f64) -> (i64, f32) {
     (floor as i64, if fraction < 1.0 { fraction } else { 0.0 })
 }
 
-/// Equal to `a` at 0, so that a raster is reproduced exactly at its pixel centers.
+/// Interpolates linearly; equal to `a` at 0, so that a raster is reproduced exactly at its pixel centers.
 fn lerp<T: Texel>(a: T, b: T, t: f32) -> T {
     a + (b - a) * t
 }

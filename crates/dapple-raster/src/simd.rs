@@ -1,4 +1,4 @@
-//! Which SIMD level is used, and how tests go through all of them.
+//! The choice of the SIMD level, and tests of all levels.
 //!
 //! For crates that fill rasters with the registers of `fearless_simd`: every level gives the same bits.
 
@@ -11,7 +11,7 @@ use std::sync::{Mutex, OnceLock, PoisonError};
 #[doc(inline)]
 pub use crate::{simd_baseline as baseline, simd_dispatch as dispatch};
 
-/// Runs an operation with the registers of a level, as `fearless_simd::dispatch!` does, compiled for fewer levels.
+/// Runs an operation at a SIMD level, as `fearless_simd::dispatch!` does, compiled for fewer levels.
 ///
 /// On x86-64 these are SSE2, AVX2 and AVX-512. Nearly all processors with SSE4.2 have AVX2, and to compile everything a
 /// fourth time for the others would take a quarter of the time that it takes to compile.
@@ -38,7 +38,7 @@ macro_rules! simd_dispatch {
     }};
 }
 
-/// Runs an operation with the registers of a level, as `fearless_simd::dispatch!` does.
+/// Runs an operation at a SIMD level, as `fearless_simd::dispatch!` does.
 #[doc(hidden)]
 #[cfg(not(target_arch = "x86_64"))]
 #[macro_export]
@@ -48,7 +48,7 @@ macro_rules! simd_dispatch {
     };
 }
 
-/// Runs an operation with the registers that every processor has: for what gains little from larger ones.
+/// Runs an operation at the SIMD level that every processor has: for code that gains little from wider registers.
 #[doc(hidden)]
 #[cfg(target_arch = "x86_64")]
 #[macro_export]
@@ -64,7 +64,7 @@ macro_rules! simd_baseline {
     }};
 }
 
-/// Runs an operation with the registers that every processor has: for what gains little from larger ones.
+/// Runs an operation at the SIMD level that every processor has: for code that gains little from wider registers.
 #[doc(hidden)]
 #[cfg(not(target_arch = "x86_64"))]
 #[macro_export]
@@ -75,13 +75,13 @@ macro_rules! simd_baseline {
     }};
 }
 
-/// The index of the level that [`for_every_level`] asks for, or [`BEST`].
+/// The index of the level that [`for_every_level`] forces, or [`BEST`].
 static CHOSEN: AtomicUsize = AtomicUsize::new(BEST);
 
-/// No level is asked for.
+/// The value of [`CHOSEN`] while no level is forced.
 const BEST: usize = usize::MAX;
 
-/// The SIMD level to use: the best of this machine, looked up once, unless [`for_every_level`] asks for another.
+/// The SIMD level to use: the best of this machine, looked up once, unless [`for_every_level`] forces another.
 #[inline]
 #[must_use]
 pub fn level() -> Level {
@@ -109,10 +109,11 @@ fn levels() -> &'static [Level] {
     })
 }
 
-/// Calls `check` for every level that this machine has, from the least to the best: what tests of equal bits do.
+/// Calls `check` for every level that this machine has, from the least to the best, for tests that all give the same
+/// bits.
 ///
-/// Meanwhile [`level`] gives that level in all threads, so that what has no level as an argument is checked as well.
-/// Calls from several threads wait for each other; `check` must not call this function.
+/// Meanwhile [`level`] returns that level in all threads, so that code without a level as an argument is checked as
+/// well. Calls from several threads wait for each other; `check` must not call this function.
 pub fn for_every_level(mut check: impl FnMut(Level)) {
     static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
     // After a check that failed, the next one begins anew.

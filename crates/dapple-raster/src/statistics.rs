@@ -1,4 +1,4 @@
-//! What a raster of numbers holds.
+//! Range, mean, standard deviation and histogram of a raster of numbers.
 
 use crate::Raster;
 

@@ -1,4 +1,4 @@
-//! What varies in space, as plain data.
+//! Numbers that vary in space, as plain data.
 
 #[cfg(feature = "serde")]
 mod data;
@@ -25,7 +25,7 @@ pub enum Varying {
     Constant(f64),
     /// A linear ramp.
     Ramp(Ramp),
-    /// A ramp that multiplies: as [`Ramp`], but with equal ratios over equal distances. Both ends are above zero.
+    /// A ramp with equal ratios over equal distances, instead of equal differences. Both ends are above zero.
     GeometricRamp(Ramp),
     /// The values of a raster that covers a rectangle of the plane, bilinear in between. It is not written as data.
     Raster {
@@ -35,7 +35,7 @@ pub enum Varying {
         origin: DVec2,
         /// Its width and height.
         extent: DVec2,
-        /// What lies past its edges.
+        /// The wrapping past the edges of the raster, along x and y.
         wrap: [Wrap; 2],
     },
     /// Any function of the position. It is not written as data.

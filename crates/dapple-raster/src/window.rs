@@ -1,4 +1,4 @@
-//! Where pixels lie in the plane.
+//! Windows: grids of pixels in the plane.
 
 use crate::raster::check_same_size;
 use crate::{RasterError, RasterErrorKind};
@@ -19,8 +19,8 @@ pub struct Window {
     pub first: [i64; 2],
     /// Columns and rows.
     pub size: [u32; 2],
-    /// What positions are multiplied by last, such as the frequency of a texture: 1, but for [`scaled`](Self::scaled)
-    /// windows.
+    /// The factor by which positions are multiplied last, such as the frequency of a texture: 1, except in
+    /// [`scaled`](Self::scaled) windows.
     #[cfg_attr(feature = "serde", serde(default = "one"))]
     pub scale: DVec2,
 }
@@ -82,7 +82,7 @@ impl Window {
     }
 
     /// The window whose positions are those of this one times `factor`, to the last bit: the way to render a field at
-    /// another frequency. None if that takes two products that are rounded, since `scale` is one of them already.
+    /// another frequency. `None` if the two factors cannot be joined without rounding.
     ///
     /// # Examples
     ///
@@ -123,11 +123,11 @@ impl Window {
         DVec2::new(self.column_x(column), self.row_y(row))
     }
 
-    /// Refuses memory that has not the size of this window.
+    /// Checks that memory has the size of this window.
     ///
     /// # Errors
     ///
-    /// [`RasterErrorKind::SizeMismatch`] if `size` is another.
+    /// [`RasterErrorKind::SizeMismatch`] if `size` is not that of the window.
     pub fn check_size(&self, size: [u32; 2]) -> Result<(), RasterError> {
         check_same_size(size, self.size)
     }
@@ -139,24 +139,25 @@ impl Window {
     }
 }
 
-/// The whole-number part is exact as long as it stays below 2^52; one product and one sum are rounded.
+/// The coordinate of a pixel center. The whole-number part is exact as long as it stays below 2^52; one product and one
+/// sum are rounded.
 #[inline]
 fn center(origin: f64, pixel: f64, first: i64, index: u32) -> f64 {
     origin + (first.saturating_add(i64::from(index)) as f64 + 0.5) * pixel
 }
 
-/// Whether products with a number are exact.
+/// Whether a number is a power of two, so that products with it are exact.
 fn is_power_of_two(number: f64) -> bool {
     number.is_normal() && number.to_bits() << 12 == 0
 }
 
-/// The scale of windows that were written without one.
+/// The default scale of windows that were written without one.
 #[cfg(feature = "serde")]
 fn one() -> DVec2 {
     DVec2::ONE
 }
 
-/// Refuses sizes without pixels and sizes past the limit.
+/// Checks that a size has pixels, and no more than the limit.
 pub(crate) fn check_size(size: [u32; 2]) -> Result<(), RasterError> {
     let pixels = u64::from(size[0]) * u64::from(size[1]);
     if pixels == 0 {

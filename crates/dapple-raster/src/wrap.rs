@@ -1,4 +1,4 @@
-//! What lies past the edge.
+//! Wrapping: which pixel stands for an index past the edge.
 
 crate::named! {
     /// How an index past the end of an axis is brought back, for each axis on its own.

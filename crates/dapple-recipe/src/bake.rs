@@ -1,9 +1,9 @@
 //! Baking: the maps of a material, band by band.
 //!
-//! A band is some rows of all maps. Maps that look around a pixel (normals, occlusion, curvature) are made from the height
-//! of the band and of a margin about it, which is rendered like everything else, so that bands, regions and the whole
-//! picture have the same bits. What sees the whole tile is made beforehand; without it, the memory of a bake depends on its
-//! width alone.
+//! A band is some rows of all maps. Maps that depend on the surroundings of a pixel (normals, occlusion, curvature) are
+//! computed from the height of the band and of a margin around it, so that bands, regions and the whole picture have
+//! the same bits. Nodes that depend on the whole tile are evaluated beforehand; without them, the memory of a bake
+//! depends on its width alone.
 //!
 //! Reference: our own; occlusion, curvature and normals have theirs in `dapple-color`.
 
@@ -18,38 +18,39 @@ use crate::{Plan, RecipeError, Whole};
 use dapple_raster::Window;
 use heights::Heights;
 
-/// The maps to bake, and their size.
+/// The maps to bake, their size, and limits of memory.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BakeOptions {
-    /// Columns and rows of the whole tile; 1024 × 1024 by default. There may be more pixels than a raster has.
+    /// The numbers of columns and rows of the whole tile; 1024 × 1024 by default. There may be more pixels than in a
+    /// raster.
     pub size: [u32; 2],
-    /// The part of the tile that is made; all of it by default.
+    /// The part of the tile to bake; all of it by default.
     pub region: Option<Region>,
-    /// The maps; the height by default.
+    /// The maps to bake; the height by default.
     pub maps: Vec<MapKind>,
-    /// How much may lie in memory at once.
+    /// The limit of memory.
     pub memory: BakeMemory,
-    /// The pixels of a band, about; 2^20 by default: enough for all cores, and few enough that several values of each are no
-    /// burden. The bits do not depend on it.
+    /// The approximate number of pixels of a band; 2^20 by default: enough for all cores, and few enough that several
+    /// values of each fit in memory. The bits do not depend on it.
     pub band_pixels: u32,
 }
 
 /// A part of a picture, in pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Region {
-    /// Its first column and row.
+    /// The first column and row of the region.
     pub first: [u32; 2],
-    /// Its columns and rows.
+    /// The numbers of columns and rows of the region.
     pub size: [u32; 2],
 }
 
-/// How much may lie in memory at once.
+/// The limit of memory of a bake.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum BakeMemory {
-    /// Nodes that see the whole tile are made for all of it.
+    /// Nodes that depend on the whole tile are evaluated for all of it.
     #[default]
     Whole,
-    /// Some rows at a time; nodes that see the whole tile are refused.
+    /// Only some rows at a time are in memory; nodes that depend on the whole tile are errors.
     Banded,
 }
 
@@ -65,12 +66,12 @@ impl Default for BakeOptions {
     }
 }
 
-/// Some rows of all maps that were asked for.
+/// Some rows of all baked maps.
 #[derive(Clone, Debug)]
 pub struct Band {
     /// The first row, counted within the region.
     pub first_row: u32,
-    /// The maps in the order in which they were asked for.
+    /// The maps, in the order of [`BakeOptions::maps`].
     pub maps: Vec<(MapKind, MapRows)>,
 }
 
@@ -95,7 +96,7 @@ pub struct Bake<'a> {
     maps: Vec<MapKind>,
     /// The size of the whole tile.
     tile: [u32; 2],
-    /// The pixels that are made.
+    /// The pixels to bake.
     window: Window,
     band_pixels: u32,
     next_row: u32,
@@ -103,13 +104,13 @@ pub struct Bake<'a> {
 }
 
 impl<'a> Bake<'a> {
-    /// Prepares a bake; the work is done when bands are asked for.
+    /// Prepares a bake; the work is done when the bands are taken.
     ///
     /// # Errors
     ///
     /// [`Range`](crate::RecipeErrorKind::Range) for a size of zero, a region past the tile, or a radius out of range,
-    /// [`Global`](crate::RecipeErrorKind::Global) for a node that sees the whole tile under [`BakeMemory::Banded`], and
-    /// what such nodes refuse.
+    /// [`Global`](crate::RecipeErrorKind::Global) for a node that depends on the whole tile under
+    /// [`BakeMemory::Banded`], and the errors of such nodes.
     pub fn new(plan: &'a Plan, options: &BakeOptions) -> Result<Self, RecipeError> {
         let whole_window = plan.window(options.size)?;
         let window = match options.region {
@@ -132,13 +133,13 @@ impl<'a> Bake<'a> {
         })
     }
 
-    /// Columns and rows of what is made.
+    /// The numbers of columns and rows of the baked part.
     #[must_use]
     pub fn size(&self) -> [u32; 2] {
         self.window.size
     }
 
-    /// The maps that are left, each in one piece, in the order in which they were asked for.
+    /// The remaining rows of all maps, each map in one piece, in the order of [`BakeOptions::maps`].
     ///
     /// # Errors
     ///

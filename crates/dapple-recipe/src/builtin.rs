@@ -1,4 +1,4 @@
-//! The recipes that come with the crate: what the papers name.
+//! The recipes that come with the crate, for the textures in the papers.
 
 use crate::{Recipe, RecipeError, RecipeErrorKind};
 
@@ -36,7 +36,7 @@ const BUILTIN: [(&str, &str); 20] = [
 ];
 
 impl Recipe {
-    /// The built-in recipe of this name.
+    /// The built-in recipe with a name.
     ///
     /// # Errors
     ///
@@ -45,7 +45,7 @@ impl Recipe {
         Self::from_toml(Self::builtin_text(name)?)
     }
 
-    /// The text of the built-in recipe of this name.
+    /// The text of the built-in recipe with a name.
     ///
     /// # Errors
     ///

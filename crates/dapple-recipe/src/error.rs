@@ -1,4 +1,4 @@
-//! Why a recipe was refused.
+//! Errors of recipes.
 
 use crate::words::similar_words;
 use core::fmt;
@@ -9,12 +9,12 @@ use dapple_tile::TileError;
 use dapple_wavelet::WaveletError;
 use dapple_worley::WorleyError;
 
-/// Why a recipe was refused, where in its text, and what was perhaps meant.
+/// An error of a recipe, with its place in the text, and the nearest valid word.
 ///
 /// Match on [`kind`](Self::kind); the text is for people.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RecipeError {
-    /// In a box, so that results are small where all is well.
+    /// The content in a box, so that results are small in the usual case.
     content: Box<Content>,
 }
 
@@ -26,7 +26,7 @@ struct Content {
     nearest: Option<String>,
 }
 
-/// A place in the text of a recipe, both counted from 1.
+/// A place in the text of a recipe; both numbers count from 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Place {
     /// The line.
@@ -35,11 +35,11 @@ pub struct Place {
     pub column: usize,
 }
 
-/// The reason why a recipe was refused.
+/// The cause of a [`RecipeError`].
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum RecipeErrorKind {
-    /// The text is no TOML or JSON, or says something that a recipe does not have.
+    /// The text is no TOML or JSON, or has a key or value that recipes do not have.
     Text {
         /// The message of the reader.
         message: String,
@@ -59,28 +59,28 @@ pub enum RecipeErrorKind {
         /// The name.
         name: String,
     },
-    /// A name of a node is not made of letters, digits, `_` and `-`.
+    /// A name of a node has other characters than letters, digits, `_` and `-`.
     Name {
         /// The name.
         name: String,
     },
-    /// A node is, in the end, made of itself.
+    /// A node depends on itself, possibly through others.
     Cycle {
-        /// The names on the way round.
+        /// The names of the nodes on the cycle.
         names: Vec<String>,
     },
-    /// There are more nodes than the limit, or more of something else.
+    /// The number of nodes or other items is out of range.
     Count {
-        /// The things that were counted.
+        /// The name of the items.
         what: &'static str,
-        /// How many there are.
+        /// The number of items.
         count: usize,
-        /// How many there may be.
+        /// The allowed number, as text.
         needed: &'static str,
     },
     /// A color is where a number is needed.
     NotANumber {
-        /// The input, as it is written.
+        /// The input as in the text.
         input: String,
     },
     /// A number is outside of its range.
@@ -92,41 +92,41 @@ pub enum RecipeErrorKind {
         /// The range it must lie in, as text.
         range: &'static str,
     },
-    /// The recipe, up to this node, asks for more work than the limits allow: see [`PlanLimits`](crate::PlanLimits).
+    /// The recipe, up to this node, needs more work than the limits allow: see [`PlanLimits`](crate::PlanLimits).
     TooMuch {
-        /// The things of which there would be too many.
+        /// The name of the items of which there are too many.
         what: &'static str,
-        /// About how much there would be.
+        /// The number of items, about.
         value: f64,
-        /// How much there may be.
+        /// The largest allowed number.
         limit: u64,
     },
-    /// Two things that exclude each other, or one that needs another.
+    /// Two options exclude each other, or one needs another.
     Conflict {
         /// The rule, as a sentence without a full stop.
         rule: &'static str,
     },
-    /// An image was not given to the recipe.
+    /// An image was not passed with the recipe.
     NoImage {
-        /// Its name.
+        /// The name of the file.
         file: String,
     },
-    /// A node sees the whole tile, where only a part of it is at hand.
+    /// A node depends on the whole tile, but only a part of it is available.
     Global {
         /// The circumstance, as the end of a sentence.
         during: &'static str,
     },
-    /// The basis of cells was refused.
+    /// An error of the cellular basis.
     Worley(WorleyError),
-    /// A partition of unity was refused.
+    /// An error of a partition of unity.
     Pups(PupsError),
-    /// Wavelet noise was refused.
+    /// An error of wavelet noise.
     Wavelet(WaveletError),
-    /// A method that makes images repeat, or blends them, refused.
+    /// An error of a method for tiles or blends.
     Tile(TileError),
-    /// A ramp or a map was refused.
+    /// An error of a ramp or a map.
     Color(ColorError),
-    /// A raster or a window was refused.
+    /// An error of a raster or a window.
     Raster(RasterError),
 }
 
@@ -143,7 +143,7 @@ impl RecipeError {
         }
     }
 
-    /// Refuses a number outside of its range.
+    /// Fails for a number outside of its range.
     pub(crate) fn check(
         holds: bool,
         what: &'static str,
@@ -157,24 +157,24 @@ impl RecipeError {
         }
     }
 
-    /// Refuses a number outside of a range.
+    /// Fails for a number outside of a range.
     pub(crate) fn check_in(range: Range, what: &'static str, value: f64) -> Result<(), Self> {
         Self::check(range.holds(value), what, value, range.text)
     }
 
-    /// This error, at a place of the text.
+    /// Sets the place in the text.
     pub(crate) fn at(mut self, place: Option<Place>) -> Self {
         self.content.place = place;
         self
     }
 
-    /// This error, in a node.
+    /// Sets the node, unless it is set.
     pub(crate) fn within(mut self, node: &str) -> Self {
         self.content.node.get_or_insert_with(|| node.to_owned());
         self
     }
 
-    /// This error, with the valid word that is nearest to the written one, if one is near.
+    /// Adds the valid word that is nearest to the written one, if one is near.
     pub(crate) fn meant<'a>(
         mut self,
         written: &str,
@@ -185,25 +185,25 @@ impl RecipeError {
         self
     }
 
-    /// The reason.
+    /// The cause of the error.
     #[must_use]
     pub fn kind(&self) -> &RecipeErrorKind {
         &self.content.kind
     }
 
-    /// Where in the text, if that is known.
+    /// The place in the text, if it is known.
     #[must_use]
     pub fn place(&self) -> Option<Place> {
         self.content.place
     }
 
-    /// In which node, if it is in one.
+    /// The name of the node, if the error is in one.
     #[must_use]
     pub fn node(&self) -> Option<&str> {
         self.content.node.as_deref()
     }
 
-    /// The valid word that is nearest to what was written, if one is near.
+    /// The valid word that is nearest to the written one, if one is near.
     #[must_use]
     pub fn nearest(&self) -> Option<&str> {
         self.content.nearest.as_deref()
@@ -255,7 +255,7 @@ impl fmt::Display for RecipeErrorKind {
             Self::Range { what, value, range } => {
                 write!(f, "the {what} is {value}, but it must be {range}")
             }
-            // Past that, a number would be nothing but digits.
+            // Larger numbers would be long rows of digits.
             Self::TooMuch { what, value, limit } if *value >= 1e15 => {
                 write!(
                     f,
@@ -297,7 +297,7 @@ impl core::error::Error for RecipeError {
     }
 }
 
-/// Makes the errors of other crates into recipe errors.
+/// Implements the conversion of errors of other crates.
 macro_rules! from {
     ($($error:ident => $kind:ident),*) => {
         $(impl From<$error> for RecipeError {

@@ -1,4 +1,4 @@
-//! What a node is given: a number, a color, or the name of another node.
+//! The input of a node: a number, a color, or the name of another node.
 
 use core::fmt;
 use dapple_color::LinearRgb;
@@ -14,7 +14,7 @@ pub enum Input {
     Number(f64),
     /// A constant color.
     Color(LinearRgb),
-    /// The values of the node of this name.
+    /// The values of the node with this name.
     Node(String),
 }
 
@@ -31,7 +31,7 @@ impl From<&str> for Input {
 }
 
 impl Input {
-    /// The name of the node, where it is one.
+    /// The name of the node, if the input is one.
     pub(crate) fn node(&self) -> Option<&str> {
         match self {
             Self::Node(name) => Some(name),

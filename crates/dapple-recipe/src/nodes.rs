@@ -1,4 +1,5 @@
-//! The kinds of nodes: each is a file with its name in recipes, its options, and how it becomes a step of a plan.
+//! The kinds of nodes. Each is a file with its name in recipes, its options, and the construction of its step in a
+//! plan.
 //!
 //! To add a kind, write a file that implements [`NodeKind`] for its options, and a line in the table below.
 
@@ -61,31 +62,31 @@ use serde::{Deserialize, Serialize};
 ///
 /// A node is a number at every position, or a color if [`build`](Self::build) makes a step of colors.
 pub(crate) trait NodeKind {
-    /// The inputs, in a fixed order.
+    /// The inputs of the node, in a fixed order.
     fn inputs(&self) -> Vec<&Input> {
         Vec::new()
     }
 
-    /// The image file that the node reads, with how its alpha is used where the node says so.
+    /// The image file that the node reads, and the use of its alpha if the node sets it.
     fn image(&self) -> Option<(&str, Option<ImageAlpha>)> {
         None
     }
 
-    /// The texture of control points that the node is, if it is one.
+    /// The texture of control points of a `pups` node.
     fn pups(&self) -> Option<&dyn pups::Texture> {
         None
     }
 
-    /// About how much work it is to make the node's step, rather too much than too little.
+    /// The work of building the node's step, an estimate that is too high rather than too low.
     fn work(&self, _plan: &Builder<'_>) -> Result<Work, RecipeError> {
         Ok(Work::default())
     }
 
-    /// The step of the node, whose inputs have steps in the plan.
+    /// Builds the step of the node; its inputs have steps in the plan already.
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError>;
 }
 
-/// Makes the enum of all kinds, their names in recipes, and the way from a node to its kind.
+/// Defines the enum of all kinds, their names in recipes, and the conversion from a node to its kind.
 macro_rules! nodes {
     ($($(#[$doc:meta])* $name:literal $variant:ident($options:ident),)*) => {
         /// A node of a recipe: a table with one entry, whose name is the kind.
@@ -101,7 +102,7 @@ macro_rules! nodes {
             $($(#[$doc])* #[serde(rename = $name)] $variant($options),)*
         }
 
-        /// The names of the kinds, as they are in files.
+        /// The names of the kinds in files.
         pub const KINDS: [&str; [$($name),*].len()] = [$($name),*];
 
         impl Node {
@@ -123,9 +124,9 @@ nodes! {
     "wavelet" Wavelet(WaveletNode),
     /// Octaves of noise from 0 to 1, of PUPs, gradients or wavelets.
     "noise" Noise(Fractal),
-    /// How far along a direction a position is.
+    /// The coordinate of a position along a direction.
     "coordinate" Coordinate(Coordinate),
-    /// How far from a center a position is.
+    /// The distance of a position from a center.
     "distance" Distance(Distance),
     /// An image file, laid over the tile.
     "image" Image(ImageNode),
@@ -133,19 +134,19 @@ nodes! {
     "color" Color(ColorOf),
     /// The sum of all inputs.
     "add" Add(Add),
-    /// The first input less the second.
+    /// The first input minus the second.
     "subtract" Subtract(Subtract),
     /// The product of all inputs.
     "multiply" Multiply(Multiply),
-    /// The first input over the second; 0 where that is 0.
+    /// The first input divided by the second; 0 where the second is 0.
     "divide" Divide(Divide),
     /// The smallest of all inputs.
     "minimum" Minimum(Minimum),
     /// The largest of all inputs.
     "maximum" Maximum(Maximum),
-    /// A number without its sign.
+    /// The absolute value of a number.
     "absolute" Absolute(Absolute),
-    /// A number to a power.
+    /// A number raised to a power.
     "power" Power(Power),
     /// A wave of a number.
     "wave" Wave(Wave),
@@ -153,34 +154,34 @@ nodes! {
     "levels" Levels(Levels),
     /// The cross-section of a bump, such as spots or channels.
     "profile" Profile(ProfileOf),
-    /// A part of the way from one input to another.
+    /// The interpolation from one input to another.
     "mix" Mix(Mix),
-    /// Another node at positions that are shifted.
+    /// Another node at displaced positions.
     "warp" Warp(Warp),
-    /// Colors for numbers.
+    /// A color for each number, by a color ramp.
     "ramp" Ramp(Ramped),
     /// A texture made to repeat.
     "tile" Tile(Tiled),
     /// Copies of a texture that differ inside.
     "disturb" Disturb(Disturbed),
-    /// A texture with the borders of another.
+    /// A texture with the borders of another one.
     "match_borders" MatchBorders(Framed),
     /// Pieces of several textures, in random order.
     "corner_tiles" CornerTiles(CornerTilesOf),
-    /// A map that says where another texture shows first.
+    /// A map of the places where another texture shows first.
     "blend_map" BlendMap(BlendMapOf),
     /// Layers blended by weights.
     "blend" Blend(Blended),
 }
 
 impl Node {
-    /// The image file that the node names, if it names one.
+    /// The image file in the options of the node, if there is one.
     #[must_use]
     pub fn image_file(&self) -> Option<&str> {
         Some(self.kind().image()?.0)
     }
 
-    /// How the alpha of that file is used, where the node says so.
+    /// The use of the alpha of that file, if the node sets it.
     #[must_use]
     pub fn image_alpha(&self) -> Option<ImageAlpha> {
         self.kind().image()?.1

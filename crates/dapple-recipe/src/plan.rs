@@ -1,8 +1,8 @@
-//! A recipe that is ready to be evaluated: every name found, every seed given, every field made.
+//! Plans: recipes ready for evaluation, with all names resolved, and all seeds and fields made.
 //!
 //! The nodes become steps in an order in which the inputs of each come before it. A window, or a list of positions, is
-//! evaluated step by step, each step once. What every pixel gets depends on its position alone, except after the steps
-//! that see the whole tile, which are evaluated beforehand for a whole picture: see [`Plan::whole`].
+//! evaluated step by step, each step once. The value of a pixel depends on its position alone, except after the steps
+//! that depend on the whole tile, which are evaluated beforehand for a whole picture: see [`Plan::whole`].
 
 mod builder;
 mod evaluate;
@@ -35,19 +35,19 @@ use std::sync::Arc;
 use step::ancestors;
 use work::check_steps;
 
-/// An image that a recipe may name.
+/// An image in a recipe.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Picture {
-    /// Numbers, as they are.
+    /// Numbers, uncoded.
     Numbers(Arc<Raster<f32>>),
     /// Colors, linear.
     Colors(Arc<Raster<LinearRgb>>),
 }
 
-/// The images that a recipe names, by those names.
+/// The images of a recipe, by the names in the recipe.
 pub type Images = std::collections::BTreeMap<String, Picture>;
 
-/// A recipe, ready to be evaluated.
+/// A recipe, ready for evaluation.
 ///
 /// # Examples
 ///
@@ -72,11 +72,11 @@ pub struct Plan {
     material: Material,
     limits: PlanLimits,
     memory: Option<Memory>,
-    /// For each step the number by which the memory knows it.
+    /// The number of each step in the memory.
     ids: Arc<[StepId]>,
 }
 
-/// The steps that the maps of the material are made of.
+/// The steps that the maps of the material use.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Channels {
     pub(crate) height: usize,
@@ -86,14 +86,14 @@ pub(crate) struct Channels {
 }
 
 impl Channels {
-    /// All of them.
+    /// The four steps, in a fixed order.
     pub(crate) fn steps(&self) -> [usize; 4] {
         [self.height, self.albedo, self.roughness, self.metallic]
     }
 }
 
 impl Recipe {
-    /// The images that the recipe names, each once, in the order of its nodes.
+    /// The names of the images of the recipe, each once, in the order of its nodes.
     #[must_use]
     pub fn image_files(&self) -> Vec<&str> {
         let mut files = Vec::new();
@@ -107,11 +107,11 @@ impl Recipe {
         files
     }
 
-    /// How the alpha of an image that the recipe names is used, where a node says so.
+    /// The use of the alpha of an image, if a node sets it.
     ///
     /// # Errors
     ///
-    /// [`Conflict`](RecipeErrorKind::Conflict), if two nodes say different things of one file.
+    /// [`Conflict`](RecipeErrorKind::Conflict), if two nodes set different uses for one file.
     pub fn image_alpha(&self, file: &str) -> Result<Option<ImageAlpha>, RecipeError> {
         let of_file = |(_, node): &(&String, &Node)| node.image_file() == Some(file);
         let alphas = self.nodes.iter().filter(of_file);
@@ -126,18 +126,18 @@ impl Recipe {
 }
 
 impl Plan {
-    /// Makes everything that the recipe names. `time` is the part of a loop that has passed, for what moves.
+    /// Makes all nodes of the recipe. `time` is the elapsed part of a loop, from 0 to 1, for nodes that move.
     ///
     /// # Errors
     ///
-    /// Mistakes of the recipe, with the node in which they are: names that do not exist, circles, colors where numbers
-    /// are needed, numbers out of range, and what the crates of the nodes refuse; [`TooMuch`](RecipeErrorKind::TooMuch)
-    /// past the default [`PlanLimits`].
+    /// Mistakes of the recipe, with their node: unknown names, cycles, colors where numbers are needed, numbers out of
+    /// range, and the errors of the crates of the nodes; [`TooMuch`](RecipeErrorKind::TooMuch) past the default
+    /// [`PlanLimits`].
     pub fn new(recipe: &Recipe, images: &Images, time: f64) -> Result<Self, RecipeError> {
         Self::new_within(recipe, images, time, &PlanLimits::default())
     }
 
-    /// Makes everything that the recipe names, if that is no more work than the limits allow.
+    /// Makes all nodes of the recipe, if this is no more work than the limits allow.
     ///
     /// # Errors
     ///
@@ -151,8 +151,8 @@ impl Plan {
         Self::make(recipe, images, time, limits, None)
     }
 
-    /// Makes everything that the recipe names, and takes from the memory what an earlier plan has made already: what a
-    /// program needs that draws a recipe while it is changed. Bakes and pictures of nodes use it, too.
+    /// Makes all nodes of the recipe, and reuses from the memory parts of earlier plans, for programs that redraw a
+    /// recipe as it changes. Bakes and pictures of nodes use the memory, too.
     ///
     /// # Errors
     ///
@@ -224,7 +224,7 @@ impl Plan {
         self.extent
     }
 
-    /// The window that covers the tile with `size` pixels. It may have more than a raster can.
+    /// The window that covers the tile with `size` pixels. It may have more pixels than a raster.
     ///
     /// # Errors
     ///
@@ -251,19 +251,19 @@ impl Plan {
     ///
     /// # Errors
     ///
-    /// [`Global`](RecipeErrorKind::Global) if a node that it is made of sees the whole tile, so that it has no value at a
-    /// single position.
+    /// [`Global`](RecipeErrorKind::Global) if it depends on a node that needs the whole tile, so that it has no value
+    /// at a single position.
     pub fn height(&self) -> Result<NodeField, RecipeError> {
         self.local(self.channels.height)?;
         Ok(NodeField::new(self.steps.clone(), self.channels.height))
     }
 
-    /// The number that a node makes at every position.
+    /// The number of a node at every position.
     ///
     /// # Errors
     ///
     /// [`UnknownNode`](RecipeErrorKind::UnknownNode) if there is no such node,
-    /// [`NotANumber`](RecipeErrorKind::NotANumber) if it makes a color, and as [`height`](Self::height).
+    /// [`NotANumber`](RecipeErrorKind::NotANumber) if it makes a color, and those of [`height`](Self::height).
     pub fn field(&self, node: &str) -> Result<NodeField, RecipeError> {
         let step = self.find(node)?;
         if self.steps[step].is_color() {
@@ -272,21 +272,21 @@ impl Plan {
         Ok(NodeField::new(self.steps.clone(), step))
     }
 
-    /// The color that a node makes at every position; of a number, a gray.
+    /// The color of a node at every position; a number becomes a gray.
     ///
     /// # Errors
     ///
-    /// [`UnknownNode`](RecipeErrorKind::UnknownNode) if there is no such node, and as [`height`](Self::height).
+    /// [`UnknownNode`](RecipeErrorKind::UnknownNode) if there is no such node, and those of [`height`](Self::height).
     pub fn colors(&self, node: &str) -> Result<NodeColors, RecipeError> {
         Ok(NodeColors::new(self.steps.clone(), self.find(node)?))
     }
 
-    /// The names of the nodes, each after all that it is made of.
+    /// The names of the nodes, each after its inputs.
     pub fn node_names(&self) -> impl Iterator<Item = &str> {
         self.names.keys().map(String::as_str)
     }
 
-    /// Whether a node makes a color at every position, not a number. A node that does not exist makes none.
+    /// Whether a node makes colors, not numbers; false for a node that does not exist.
     #[must_use]
     pub fn is_color(&self, node: &str) -> bool {
         self.names
@@ -294,7 +294,7 @@ impl Plan {
             .is_some_and(|&step| self.steps[step].is_color())
     }
 
-    /// Whether a node itself sees the whole tile.
+    /// Whether a node itself depends on the whole tile.
     #[must_use]
     pub fn is_global(&self, node: &str) -> bool {
         let step = self.names.get(node).map(|&step| &self.steps[step]);
@@ -317,7 +317,7 @@ impl Plan {
         })
     }
 
-    /// Refuses a step that is made of what sees the whole tile.
+    /// Fails for a step that depends on the whole tile.
     fn local(&self, step: usize) -> Result<(), RecipeError> {
         let is_global = |&index: &usize| matches!(self.steps[index], Step::Global(_));
         let Some(global) = ancestors(&self.steps, &[step]).into_iter().find(is_global) else {
@@ -327,8 +327,8 @@ impl Plan {
         Err(self.within(global, RecipeError::new(RecipeErrorKind::Global { during })))
     }
 
-    /// The values of steps at the pixels of a window, in the order of the steps, on all cores where the feature `rayon` is
-    /// on. Some steps may be known there.
+    /// The values of steps at the pixels of a window, in the order of the steps, on all cores where the feature `rayon`
+    /// is on. Values of some steps may be passed in `known`.
     pub(crate) fn values(
         &self,
         whole: &Whole,
@@ -342,7 +342,7 @@ impl Plan {
         }
     }
 
-    /// The values of steps, as far as they are not in a memory, where they are then.
+    /// The values of steps, from the memory as far as it has them; others are added to it.
     fn values_with(
         &self,
         memory: &Memory,
@@ -385,8 +385,7 @@ impl Plan {
         Ok(values)
     }
 
-    /// The steps on the way to `wanted` that the height is made of, too. Who knows them needs nothing of what they have in
-    /// common any more.
+    /// The steps that `wanted` and the height have in common. With their values, no step below them is needed.
     pub(crate) fn shared_with_height(&self, wanted: &[usize]) -> Vec<usize> {
         step::shared(&self.steps, self.channels.height, wanted)
     }
@@ -406,10 +405,10 @@ impl Plan {
 
 pub(crate) const TIME: Range = range!(finite);
 pub(crate) const EXTENT: Range = range!(above 0 to 1e6);
-/// Far more than any texture needs, so that slopes and their squares are finite.
+/// The range of the relief: far more than any texture needs, while slopes and their squares stay finite.
 pub(crate) const RELIEF: Range = range!(from -1e6 to 1e6);
 
-/// The steps of the material, which are made after all nodes.
+/// The steps of the material, which come after all nodes.
 fn channels(recipe: &Recipe, builder: &mut Builder<'_>) -> Result<Channels, RecipeError> {
     let material = &recipe.material;
     RecipeError::check_in(RELIEF, "relief", material.relief)?;
@@ -427,7 +426,7 @@ fn channels(recipe: &Recipe, builder: &mut Builder<'_>) -> Result<Channels, Reci
 }
 
 impl Input {
-    /// The input as it is written, for messages.
+    /// The input as in the text, for messages.
     pub(crate) fn written(&self) -> String {
         match self {
             Self::Number(number) => number.to_string(),
@@ -437,7 +436,7 @@ impl Input {
     }
 }
 
-/// The refusal of a color where a number is needed.
+/// The error of a color where a number is needed.
 pub(crate) fn not_a_number(input: &Input) -> RecipeError {
     RecipeError::new(RecipeErrorKind::NotANumber {
         input: input.written(),

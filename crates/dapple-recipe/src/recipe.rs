@@ -47,13 +47,13 @@ pub struct Recipe {
     /// The version of the schema: [`SCHEMA`].
     #[cfg_attr(feature = "schema", schemars(extend("const" = SCHEMA)))]
     pub dapple: u32,
-    /// The name, which the files that are baked from it get.
+    /// The name, which the baked files have.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub name: String,
-    /// A sentence about it.
+    /// A sentence about the recipe.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub about: String,
-    /// Where all of its chance comes from; 0 by default.
+    /// The seed of all random numbers; 0 by default.
     #[serde(default)]
     #[cfg_attr(feature = "schema", schemars(with = "u64"))]
     pub seed: Seed,
@@ -61,10 +61,10 @@ pub struct Recipe {
     #[serde(default = "default_extent")]
     #[cfg_attr(feature = "schema", schemars(transform = { crate::plan::EXTENT }))]
     pub extent: [f64; 2],
-    /// Along which axes it repeats, x first; both by default.
+    /// The axes along which the tile repeats, x first; both by default.
     #[serde(default = "default_wrap")]
     pub wrap: [bool; 2],
-    /// The nodes by their names.
+    /// The nodes by name.
     #[serde(default)]
     #[cfg_attr(
         feature = "schema",
@@ -88,27 +88,27 @@ fn default_wrap() -> [bool; 2] {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct Material {
-    /// The height, from 0 to 1; ½ by default. Files with whole numbers cut off what lies outside.
+    /// The height, from 0 to 1; ½ by default. Files with whole numbers clamp it to this range.
     pub height: Input,
-    /// How many units of the plane a height of 1 stands for, from -1e6 to 1e6; 0.1 by default.
+    /// The relief: the height in units of the plane of a value of 1, from -1e6 to 1e6; 0.1 by default.
     #[cfg_attr(feature = "schema", schemars(transform = { crate::plan::RELIEF }))]
     pub relief: f64,
     /// The color; the height as a gray by default.
     #[serde(alias = "basecolor", alias = "base_color")]
     pub albedo: Option<Input>,
-    /// From 0, a mirror, to 1, chalk; 0.8 by default.
+    /// The roughness, from 0, a mirror, to 1, chalk; 0.8 by default.
     pub roughness: Input,
-    /// From 0, no metal, to 1, all metal; 0 by default.
+    /// The metalness, from 0, no metal, to 1, all metal; 0 by default.
     pub metallic: Input,
-    /// Where the green of normals points; up, as in OpenGL, by default.
+    /// The direction of the green channel of normals; up, as in OpenGL, by default.
     #[cfg_attr(
         feature = "schema",
         schemars(schema_with = "crate::schema::traced::<NormalY>")
     )]
     pub normal_y: NormalY,
-    /// How far ambient occlusion looks, in units of the plane; a twentieth of the tile's shorter side by default.
+    /// The radius of ambient occlusion, in units of the plane; a twentieth of the tile's shorter side by default.
     pub occlusion_radius: Option<f64>,
-    /// The size of what curvature sees, in units of the plane; a hundredth of the tile's shorter side by default.
+    /// The radius of curvature maps, in units of the plane; a hundredth of the tile's shorter side by default.
     pub curvature_radius: Option<f64>,
 }
 
@@ -128,7 +128,7 @@ impl Default for Material {
 }
 
 impl Recipe {
-    /// A recipe with one node, which is the height: what the commands that draw a single field bake.
+    /// A recipe with one node as the height, for the commands that draw a single field.
     #[must_use]
     pub fn of_node(name: &str, node: Node, seed: Seed) -> Self {
         Self {

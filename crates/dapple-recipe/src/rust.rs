@@ -1,9 +1,9 @@
-//! Recipes as Rust programs, which hold the recipe as text and bake it.
+//! Rust programs that contain a recipe as text and bake it.
 
 use crate::{Recipe, RecipeError};
 
 impl Recipe {
-    /// A Rust program that holds this recipe and writes its height, normals and albedo as PNG files, with the crate
+    /// A Rust program that contains this recipe and writes its height, normals and albedo as PNG files, with the crate
     /// `dapple` alone.
     ///
     /// # Errors

@@ -1,5 +1,6 @@
-//! The JSON Schema of recipes, for completion in editors, made of the types that recipes are read into: names and kinds of
-//! options, ranges and defaults are those of the reader, and descriptions are the documentation of the types.
+//! The JSON Schema of recipes, for completion in editors, generated from the types that recipes are read into. Names
+//! and kinds of options, ranges and defaults are those of the reader, and descriptions are the documentation of the
+//! types.
 
 mod reference;
 mod traced;
@@ -39,14 +40,14 @@ impl Recipe {
     }
 }
 
-/// Other words that the reader takes for an option.
+/// Other names that the reader accepts for an option.
 const ALIASES: [(&str, &str); 3] = [
     ("gain", "persistence"),
     ("albedo", "basecolor"),
     ("albedo", "base_color"),
 ];
 
-/// Takes the marks of Rust's documentation out of descriptions, and adds the other words for options.
+/// Removes the markup of Rust's documentation from descriptions, and adds the other names of options.
 fn plain(schema: &mut Schema) {
     if let Some(Value::String(text)) = schema.get_mut("description") {
         *text = without_links(text);
@@ -74,7 +75,7 @@ fn deprecated(mut option: Value, name: &str) -> Value {
     option
 }
 
-/// A description in one paragraph, with plain words in place of links.
+/// The first paragraph of a description, with plain words in place of links.
 fn without_links(text: &str) -> String {
     let paragraph = text.split("\n\n").next().unwrap_or(text).replace('\n', " ");
     let mut plain = String::new();
@@ -95,7 +96,7 @@ fn without_links(text: &str) -> String {
     plain + rest
 }
 
-/// Makes the schema of a type with more than one form.
+/// Implements the schema of types with more than one form.
 macro_rules! schemas {
     ($($type:ident => $schema:expr;)*) => {
         $(impl JsonSchema for $type {
@@ -110,7 +111,7 @@ macro_rules! schemas {
     };
 }
 
-/// Colors as sRGB in hexadecimal.
+/// The pattern of colors as sRGB in hexadecimal.
 const HEX: &str = "^#([0-9a-fA-F]{3}|[0-9a-fA-F]{6})$";
 
 schemas! {

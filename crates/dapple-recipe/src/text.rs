@@ -1,4 +1,4 @@
-//! Recipes as text: TOML and JSON, with errors that name the line and the nearest valid word.
+//! Reading and writing of recipes as text: TOML and JSON, with errors that name the line and the nearest valid word.
 
 use crate::{Place, PupsNode, Recipe, RecipeError, RecipeErrorKind, SCHEMA};
 use content::Content;
@@ -8,19 +8,19 @@ use serde_json::Value;
 mod content;
 mod refusal;
 
-/// The most bytes of a recipe. More than this is no recipe.
+/// The largest number of bytes of a recipe.
 pub const MAX_TEXT: usize = 1 << 22;
 
 impl Recipe {
-    /// The recipe that a text in TOML holds.
+    /// Reads a recipe from a text in TOML.
     ///
-    /// Its names and inputs are not checked here, but when it is made into a plan.
+    /// Its names and inputs are checked only when it is made into a plan.
     ///
     /// # Errors
     ///
-    /// [`Text`](RecipeErrorKind::Text) for what is no TOML, or says what a recipe does not have, with the line and the
-    /// nearest valid word; [`Schema`](RecipeErrorKind::Schema) for another version; [`Count`](RecipeErrorKind::Count)
-    /// past [`MAX_TEXT`] bytes.
+    /// [`Text`](RecipeErrorKind::Text) for text that is no TOML, or has a key or value that recipes do not have, with
+    /// the line and the nearest valid word; [`Schema`](RecipeErrorKind::Schema) for another version;
+    /// [`Count`](RecipeErrorKind::Count) past [`MAX_TEXT`] bytes.
     pub fn from_toml(text: &str) -> Result<Self, RecipeError> {
         check_length(text)?;
         let content: Content = toml::from_str(text).map_err(|error| {
@@ -34,7 +34,7 @@ impl Recipe {
         })
     }
 
-    /// The recipe that a text in JSON holds.
+    /// Reads a recipe from a text in JSON.
     ///
     /// # Errors
     ///
@@ -44,7 +44,7 @@ impl Recipe {
         let content: Content = serde_json::from_str(text).map_err(|error| {
             let (line, column) = (error.line(), error.column());
             let full = error.to_string();
-            // The reader's own words for the place are cut off, since the error tells it in ours.
+            // The reader's text of the place is removed, since the error names it.
             let message = full.split(" at line ").next().unwrap_or(&full);
             text_error(message).at((line > 0).then_some(Place { line, column }))
         })?;
@@ -53,20 +53,20 @@ impl Recipe {
             .map_err(|refusal| text_error(&refusal.message).at(refusal.place_in_json(text)))
     }
 
-    /// The recipe as TOML.
+    /// Writes the recipe as TOML.
     ///
     /// # Errors
     ///
-    /// [`Text`](RecipeErrorKind::Text) if it holds what cannot be written as data, such as a function.
+    /// [`Text`](RecipeErrorKind::Text) if it contains a value that cannot be written as data, such as a function.
     pub fn to_toml(&self) -> Result<String, RecipeError> {
         toml::to_string_pretty(self).map_err(|error| text_error(&error.to_string()))
     }
 
-    /// The recipe as JSON.
+    /// Writes the recipe as JSON.
     ///
     /// # Errors
     ///
-    /// [`Text`](RecipeErrorKind::Text) if it holds what cannot be written as data, such as a function.
+    /// [`Text`](RecipeErrorKind::Text) if it contains a value that cannot be written as data, such as a function.
     pub fn to_json(&self) -> Result<String, RecipeError> {
         serde_json::to_string_pretty(self).map_err(|error| text_error(&error.to_string()))
     }
@@ -84,20 +84,20 @@ fn check_length(text: &str) -> Result<(), RecipeError> {
 }
 
 impl PupsNode {
-    /// The texture as a value of JSON.
+    /// Converts the texture to a value of JSON.
     ///
     /// # Errors
     ///
-    /// [`Text`](RecipeErrorKind::Text) if it holds what cannot be written as data, such as a function.
+    /// [`Text`](RecipeErrorKind::Text) if it contains a value that cannot be written as data, such as a function.
     pub fn to_json(&self) -> Result<Value, RecipeError> {
         serde_json::to_value(self).map_err(|error| text_error(&error.to_string()))
     }
 
-    /// The texture of a value of JSON.
+    /// Converts a value of JSON to a texture.
     ///
     /// # Errors
     ///
-    /// [`Text`](RecipeErrorKind::Text) for what no texture has.
+    /// [`Text`](RecipeErrorKind::Text) for keys and values that no texture has.
     pub fn from_json(value: &Value) -> Result<Self, RecipeError> {
         let content =
             Content::deserialize(value).map_err(|error| text_error(&error.to_string()))?;
@@ -105,7 +105,7 @@ impl PupsNode {
     }
 }
 
-/// Refuses a recipe of another version, whatever else is wrong with it.
+/// Fails for a recipe of another version, before all other errors.
 fn check_version(content: &Content) -> Result<(), RecipeError> {
     let version = match content.get("dapple") {
         Some(Content::Signed(version)) => u32::try_from(*version),
@@ -120,7 +120,7 @@ fn check_version(content: &Content) -> Result<(), RecipeError> {
     }
 }
 
-/// The error of a reader, with the nearest of the words that it says it expected.
+/// Converts the error of a reader, with the nearest of the words that it expected.
 fn text_error(message: &str) -> RecipeError {
     let message = plain(&message.lines().collect::<Vec<_>>().join(" "));
     let error = RecipeError::new(RecipeErrorKind::Text {
@@ -134,7 +134,7 @@ fn text_error(message: &str) -> RecipeError {
     }
 }
 
-/// The message with the names of Rust types, if it ends in one, as what is to be written.
+/// The message with names of Rust types at its end replaced by the expected form of text.
 fn plain(message: &str) -> String {
     let Some((found, expected)) = message.rsplit_once(", expected ") else {
         return message.to_owned();

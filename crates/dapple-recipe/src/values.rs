@@ -32,7 +32,7 @@ impl Values {
         self.len() == 0
     }
 
-    /// The numbers; none of colors, which a plan has kept from where numbers are needed.
+    /// The numbers; empty for colors, which a plan excludes where numbers are needed.
     pub(crate) fn numbers(&self) -> &[f32] {
         match self {
             Self::Numbers(numbers) => numbers,
@@ -40,7 +40,7 @@ impl Values {
         }
     }
 
-    /// The numbers; of colors, the luminance.
+    /// The numbers, or the luminance of colors.
     pub(crate) fn into_grays(self) -> Vec<f32> {
         match self {
             Self::Numbers(numbers) => numbers,
@@ -48,7 +48,7 @@ impl Values {
         }
     }
 
-    /// The colors; of numbers, grays.
+    /// The colors, or grays for numbers.
     pub(crate) fn into_colors(self) -> Vec<LinearRgb> {
         match self {
             Self::Numbers(numbers) => numbers.into_iter().map(LinearRgb::gray).collect(),
@@ -56,7 +56,7 @@ impl Values {
         }
     }
 
-    /// The colors; of numbers, grays.
+    /// The colors, or grays for numbers.
     pub(crate) fn colors(&self) -> Cow<'_, [LinearRgb]> {
         match self {
             Self::Numbers(_) => Cow::Owned(self.clone().into_colors()),
@@ -72,7 +72,7 @@ impl Values {
         }
     }
 
-    /// Adds the values of more positions, which are numbers or colors as these are.
+    /// Appends the values of more positions, which are of the same kind.
     pub(crate) fn append(&mut self, more: &Self) {
         match self {
             Self::Numbers(numbers) => numbers.extend_from_slice(more.numbers()),
@@ -110,12 +110,12 @@ impl Values {
         inputs.iter().any(|input| matches!(input, Self::Colors(_)))
     }
 
-    /// The values as a raster of this size: numbers as they are, and the luminance of colors.
+    /// The values as a raster of this size: numbers, or the luminance of colors.
     pub(crate) fn raster(&self, size: [u32; 2]) -> Result<Raster<f32>, RasterError> {
         Raster::from_vec(size, self.clone().into_grays())
     }
 
-    /// The inputs as maps of this size: all of colors, if one of them has colors.
+    /// The inputs as maps of this size: all in color, if any input is.
     pub(crate) fn maps(inputs: &[&Self], size: [u32; 2]) -> Result<Vec<Map>, RasterError> {
         let as_colors = Self::has_colors(inputs);
         let map = |values: &&Self| {

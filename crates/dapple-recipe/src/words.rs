@@ -1,9 +1,9 @@
-//! Which words are slips of which.
+//! Search for misspelled words.
 
-/// How alike two words are, from 0 to 1, for one to be a slip of the other: at least this.
+/// The smallest similarity of two words, from 0 to 1, at which one may be a misspelling of the other.
 const ALIKE: f64 = 0.6;
 
-/// The words of which what was written is perhaps a slip, the most alike first.
+/// The valid words of which the written one may be a misspelling, the most similar first.
 ///
 /// Insertions, omissions, changes and swaps of neighboring letters are counted (the distance of Damerau and Levenshtein), and
 /// related to the length of the longer word; case does not matter.

@@ -10,7 +10,7 @@ pub struct Change {
     pub from: usize,
     /// Where it ends.
     pub to: usize,
-    /// What is there instead.
+    /// The text that replaces it.
     pub insert: String,
 }
 

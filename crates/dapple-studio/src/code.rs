@@ -4,7 +4,7 @@ use crate::message::CodeKind;
 use crate::{Document, StudioError};
 use dapple::recipe::Recipe;
 
-/// What is to be written.
+/// A program or a text that is asked for.
 pub(crate) struct Code<'a> {
     pub(crate) kind: CodeKind,
     pub(crate) size: Option<[u32; 2]>,
@@ -14,7 +14,7 @@ pub(crate) struct Code<'a> {
 }
 
 impl Code<'_> {
-    /// The text.
+    /// The program or the text, in its language.
     pub(crate) fn text(&self, document: &Document, recipe: &Recipe) -> Result<String, StudioError> {
         Ok(match self.kind {
             CodeKind::Toml => document.text().to_owned(),

@@ -22,7 +22,8 @@ pub(crate) fn json_of_table(table: &Table) -> Json {
     Json::Object(entries.collect())
 }
 
-fn json_of_value(value: &Value) -> Json {
+/// A value of TOML as JSON.
+pub(crate) fn json_of_value(value: &Value) -> Json {
     match value {
         Value::String(text) => text.value().as_str().into(),
         Value::Integer(number) => (*number.value()).into(),

@@ -1,4 +1,4 @@
-//! What is wrong with a recipe, and where in its text.
+//! Mistakes of a recipe, with their places in its text.
 
 use crate::Document;
 use core::ops::Range;
@@ -6,24 +6,24 @@ use dapple::recipe::{Place, RecipeError, RecipeErrorKind};
 use serde::Serialize;
 use toml_edit::{Item, TableLike, Value};
 
-/// Something that is wrong with a recipe, where it is written. Positions are UTF-16 code units.
+/// A mistake of a recipe, with its place in the text. Positions are UTF-16 code units.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Diagnostic {
-    /// Where it begins.
+    /// The first position of the mistake.
     pub from: usize,
-    /// Where it ends.
+    /// The position after its last.
     pub to: usize,
     /// The node, if it is in one.
     pub node: Option<String>,
-    /// What is wrong.
+    /// A sentence that names the mistake.
     pub message: String,
     /// The valid word that is nearest to what is written, if one is near.
     pub nearest: Option<String>,
-    /// What to do about it, if that is known.
+    /// A way to mend it, if one is known.
     pub hint: Option<String>,
 }
 
-/// What is wrong with a text that is no recipe.
+/// The mistake of a text that is no recipe.
 pub(crate) fn of_text(document: &Document, error: &RecipeError) -> Diagnostic {
     let text = document.text();
     let bytes = match error.place() {
@@ -45,7 +45,7 @@ pub(crate) fn of_text(document: &Document, error: &RecipeError) -> Diagnostic {
     diagnostic(document, bytes, node.map(str::to_owned), error)
 }
 
-/// What is wrong with a recipe that was read.
+/// The mistake of a recipe that was read, but is refused by a plan or a bake.
 pub(crate) fn of_error(document: &Document, error: &RecipeError) -> Diagnostic {
     if error.place().is_some() {
         return of_text(document, error);

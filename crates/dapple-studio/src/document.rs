@@ -8,7 +8,7 @@ use dapple::recipe::{Recipe, RecipeError};
 use serde_json::Value as Json;
 use toml_edit::{Item, Table};
 
-/// A recipe as text, with what is read in it or what is wrong with it.
+/// A recipe as text, with the recipe that is read in it or the error of reading it.
 #[derive(Clone, Debug)]
 pub struct Document {
     text: String,
@@ -44,7 +44,7 @@ impl Document {
     ///
     /// # Errors
     ///
-    /// What the reader of recipes refuses.
+    /// The refusal of the reader of recipes.
     pub fn recipe(&self) -> Result<&Recipe, &RecipeError> {
         self.recipe.as_ref()
     }
@@ -55,7 +55,7 @@ impl Document {
         self.table().map(json_of_table)
     }
 
-    /// What is wrong with the text; nothing where it is a recipe.
+    /// The mistakes of the text; none where it is a recipe.
     #[must_use]
     pub fn diagnostics(&self) -> Vec<Diagnostic> {
         self.recipe()
@@ -65,7 +65,7 @@ impl Document {
             .collect()
     }
 
-    /// What is wrong in the text according to an error of a plan or a bake.
+    /// The mistake that an error of a plan or a bake speaks of, with its place in the text.
     #[must_use]
     pub fn diagnostic(&self, error: &RecipeError) -> Diagnostic {
         of_error(self, error)

@@ -1,9 +1,9 @@
-//! Why something that a page asked for was refused.
+//! Refusals of what a page asked for.
 
 use core::fmt;
 use dapple::recipe::RecipeError;
 
-/// Why something that a page asked for was refused, as a sentence for people.
+/// A refusal of what a page asked for, as a sentence for people.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct StudioError {
     message: String,
@@ -41,7 +41,7 @@ impl StudioError {
         self.reason
     }
 
-    /// What to do about it, if that is known.
+    /// A way around it, if one is known.
     #[must_use]
     pub fn hint(&self) -> Option<&str> {
         self.hint.as_deref()

@@ -18,7 +18,6 @@
 #![forbid(unsafe_code)]
 
 mod change;
-#[cfg(feature = "server")]
 mod code;
 mod data;
 mod diagnose;
@@ -32,12 +31,12 @@ mod points;
 mod render;
 mod sample;
 mod schema;
-#[cfg(feature = "server")]
 mod seams;
 #[cfg(feature = "server")]
 mod server;
 mod session;
 mod strip;
+mod task;
 mod utf16;
 
 pub use change::Change;
@@ -51,9 +50,10 @@ pub use message::{
 };
 pub use patch::{Op, Part, apply};
 pub use picture::{Picture, Shown, rgba};
-pub use render::{Job, MAX_SIDE, Renderer, World};
-
+pub use render::{Job, Lit, MAX_SIDE, Renderer, World};
+pub use sample::sample;
 #[cfg(feature = "server")]
 pub use server::{ExportedFile, Host, ServeOptions, has_page, serve};
 pub use session::{ImagesOf, Session};
 pub use strip::Variant;
+pub use task::{ExportOf, Task};

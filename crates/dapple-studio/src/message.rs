@@ -1,4 +1,4 @@
-//! What a page and the studio say to each other. Messages are JSON objects with a `type`; pictures are bytes.
+//! Messages between a page and the studio. They are JSON objects with a `type`; pictures are bytes.
 
 use crate::render::{MAX_SIDE, MAX_TILE};
 use crate::schema::Kind;
@@ -7,7 +7,7 @@ use dapple::recipe::MapKind;
 use serde::{Deserialize, Serialize};
 use serde_json::Value as Json;
 
-/// What a page asks for.
+/// A message of a page.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(tag = "type", rename_all = "snake_case", deny_unknown_fields)]
 pub enum Request {
@@ -37,7 +37,7 @@ pub enum Request {
         #[serde(default)]
         drag: bool,
     },
-    /// What is to be seen.
+    /// The pictures that the page shows.
     View(View),
     /// A picture has been drawn, so that the next one of the map may come.
     Ack {
@@ -46,7 +46,7 @@ pub enum Request {
         /// The number of the map.
         map: u16,
     },
-    /// How well the maps repeat.
+    /// Asks for seam reports of the maps.
     Seams {
         /// Columns and rows of the tile.
         size: [u32; 2],
@@ -95,7 +95,7 @@ pub enum Request {
     },
 }
 
-/// What is to be seen.
+/// The pictures that a page shows.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct View {
@@ -199,11 +199,11 @@ pub struct Export {
     pub frame: Option<[u32; 2]>,
 }
 
-/// What the studio says.
+/// A message of the studio.
 #[derive(Clone, Debug, Serialize)]
 #[serde(tag = "type", rename_all = "snake_case")]
 pub enum Reply {
-    /// The first message: what there is.
+    /// The first message: the recipes, nodes and maps that this program has.
     Hello(Box<Hello>),
     /// A recipe that was opened.
     Document {
@@ -232,11 +232,11 @@ pub enum Reply {
         /// The state of the text here.
         rev: u64,
     },
-    /// What is wrong with the recipe; nothing if all is well.
+    /// The mistakes of the recipe; none if all is well.
     Diagnostics {
         /// The state of the text.
         rev: u64,
-        /// What is wrong.
+        /// The mistakes.
         items: Vec<Diagnostic>,
     },
     /// The nodes of a recipe.
@@ -273,14 +273,14 @@ pub enum Reply {
         generation: u32,
         /// The state of the text.
         rev: u64,
-        /// How long it took, in milliseconds.
+        /// The time that drawing took, in milliseconds.
         ms: f64,
         /// Whether larger pictures follow.
         draft: bool,
         /// The nodes with how long the thumbnail of each took, if there are any.
         nodes: Option<Vec<NodeTime>>,
     },
-    /// How well maps repeat.
+    /// Seam reports of the maps.
     Seams {
         /// The reports.
         maps: Vec<MapSeams>,
@@ -321,9 +321,9 @@ pub enum Reply {
     Refused {
         /// The type of the request.
         what: String,
-        /// Why.
+        /// The reason, as a sentence.
         message: String,
-        /// What to do about it.
+        /// A way around it.
         hint: Option<String>,
         /// A word by which a program knows it: `changed_on_disk`.
         reason: Option<&'static str>,
@@ -343,11 +343,12 @@ impl Reply {
     }
 }
 
-/// What there is.
+/// The recipes, kinds of nodes, maps and presets that a program has.
 #[derive(Clone, Debug, Serialize)]
 pub struct Hello {
     version: &'static str,
-    pub(crate) mode: Mode,
+    /// What the page may do.
+    pub mode: Mode,
     builtins: Vec<Named>,
     /// Recipes in the folder.
     pub(crate) files: Vec<String>,
@@ -359,7 +360,7 @@ pub struct Hello {
     pub(crate) open: Option<String>,
 }
 
-/// What a page may do.
+/// The rights of a page.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Mode {
@@ -381,7 +382,7 @@ pub struct Named {
     pub about: String,
 }
 
-/// How much may be asked for.
+/// Limits of what a page may ask for.
 #[derive(Clone, Debug, Serialize)]
 struct Limits {
     /// The longest side of a picture.
@@ -391,7 +392,7 @@ struct Limits {
 }
 
 impl Hello {
-    /// What this program has.
+    /// The greeting of this program.
     #[must_use]
     pub fn new() -> Self {
         let builtin = |name: &'static str| Named {
@@ -445,7 +446,7 @@ fn about(kind: MapKind) -> &'static str {
     }
 }
 
-/// How long a node took.
+/// The time that the thumbnail of a node took.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct NodeTime {
     /// The node.
@@ -456,7 +457,7 @@ pub struct NodeTime {
     pub range: Option<[f32; 2]>,
 }
 
-/// How well a map repeats.
+/// The seam report of a map.
 #[derive(Clone, Debug, Serialize)]
 pub struct MapSeams {
     /// The map.
@@ -473,11 +474,14 @@ pub struct Points {
     pub(crate) editable: bool,
     /// Whether the op `make_points` can put them there.
     pub(crate) can_be_editable: bool,
-    /// How many nets of points the texture has; those of the coarsest are told.
+    /// The number of nets of points that the texture has; the points are those of the coarsest.
     pub(crate) layers: usize,
     pub(crate) extent: [f64; 2],
     pub(crate) wrap: [bool; 2],
+    /// The points, each with its value, and with its label if it has one.
     pub(crate) points: Vec<dapple::recipe::ControlPoint>,
+    /// The values of labels; none where points have no labels.
+    pub(crate) values: Vec<f32>,
     /// The indices of two points, and the way from the first to the second, each edge once.
     pub(crate) edges: Vec<(u32, u32, f64, f64)>,
 }
@@ -491,7 +495,7 @@ pub struct FileSize {
     pub bytes: usize,
 }
 
-/// What comes out of the studio.
+/// A message or a picture for a page.
 #[derive(Clone, Debug)]
 pub enum Output {
     /// A message.

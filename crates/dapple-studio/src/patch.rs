@@ -2,12 +2,14 @@
 
 mod nodes;
 mod place;
+mod splice;
 
 use crate::StudioError;
 use crate::data::json_of_table;
 use place::Place;
 use serde::{Deserialize, Serialize};
 use serde_json::Value as Json;
+pub(crate) use splice::spliced;
 use toml_edit::DocumentMut;
 
 /// A part of a path: a key of a table, or an index of a list.
@@ -38,14 +40,14 @@ impl From<usize> for Part {
 pub enum Op {
     /// Gives a value to what the path leads to. Tables on the way that are not there are made.
     Set {
-        /// Where.
+        /// The way to it from the root.
         path: Vec<Part>,
         /// The value.
         value: Json,
     },
     /// Takes an entry or an element away.
     Remove {
-        /// Where.
+        /// The way to it from the root.
         path: Vec<Part>,
     },
     /// Puts an element into a list, which is made if it is not there.

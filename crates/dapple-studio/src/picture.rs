@@ -4,7 +4,7 @@ use dapple::color::{Code as _, LinearRgb, Normal};
 use dapple::raster::{Raster, parallel};
 use dapple::recipe::{self, MapKind, MapRows};
 
-/// What a picture shows.
+/// The content of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Shown {
     /// A map of the material.
@@ -24,7 +24,7 @@ pub enum Shown {
 }
 
 impl Shown {
-    /// The number of it in messages.
+    /// The number that stands for this content in messages.
     #[must_use]
     pub fn code(self) -> u16 {
         match self {
@@ -48,7 +48,7 @@ impl Shown {
 pub struct Picture {
     /// Counts the states of the recipe and the view that were drawn.
     pub generation: u32,
-    /// What it shows.
+    /// The content of the picture.
     pub shown: Shown,
     /// The first column and row of the part.
     pub first: [u32; 2],

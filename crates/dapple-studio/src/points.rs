@@ -1,21 +1,16 @@
 //! The control points of textures, to be looked at and to be edited.
 
 use crate::StudioError;
-#[cfg(feature = "server")]
 use crate::message::Points;
 use crate::render::LIMITS;
-#[cfg(feature = "server")]
 use dapple::pups::ControlNet;
-#[cfg(feature = "server")]
-use dapple::recipe::{ControlPoint, Node};
-use dapple::recipe::{ControlPoints, Images, PupsNode, Recipe};
+use dapple::recipe::{ControlPoint, ControlPoints, Images, Node, PupsNode, Recipe};
 use serde_json::Value as Json;
 
 /// The most points that are shown.
 const MOST_POINTS: usize = 20_000;
 
 /// The control points of a node, and the edges of their graph.
-#[cfg(feature = "server")]
 pub(crate) fn report(
     recipe: &Recipe,
     images: &Images,
@@ -36,29 +31,40 @@ pub(crate) fn report(
     let edge = |(from, axis): (dapple::points::PointIdx, dapple::graph::Axis)| {
         (from.0, axis.to.0, axis.vector.x, axis.vector.y)
     };
+    let written = match recipe.nodes.get(node) {
+        Some(Node::Pups(PupsNode::Points(written))) => Some(written),
+        _ => None,
+    };
     Ok(Points {
         node: node.to_owned(),
-        editable: matches!(
-            recipe.nodes.get(node),
-            Some(Node::Pups(PupsNode::Points(_)))
-        ),
+        editable: written.is_some(),
         can_be_editable: nets.points.is_some(),
         layers: nets.nets.len(),
         extent: recipe.extent,
         wrap: recipe.wrap,
-        points: points(net),
+        points: points(net, written),
+        values: match (written, net.shared_labels()) {
+            (Some(written), _) => written.values.clone(),
+            (None, Some((_, values))) => values.to_vec(),
+            (None, None) => Vec::new(),
+        },
         edges: graph.edges().map(edge).collect(),
     })
 }
 
-#[cfg(feature = "server")]
-fn points(net: &ControlNet) -> Vec<ControlPoint> {
+/// The points of a net, with the labels that they have in the text where they are written one by one.
+fn points(net: &ControlNet, written: Option<&ControlPoints>) -> Vec<ControlPoint> {
+    let label = |index: usize| match written {
+        Some(written) => written.points[index].label,
+        None => net.shared_labels().map(|(labels, _)| labels[index]),
+    };
     let (numbers, orientations) = (net.numbers(), net.orientations());
     let positions = net.pups.points().positions().iter().enumerate();
     let point = |(index, position): (usize, &dapple::raster::glam::DVec2)| ControlPoint {
         x: position.x,
         y: position.y,
-        value: numbers.as_ref().map_or(0.5, |numbers| numbers[index]),
+        value: Some(numbers.as_ref().map_or(0.5, |numbers| numbers[index])),
+        label: label(index),
         orientation: orientations
             .as_ref()
             .map(|orientations| orientations[index]),

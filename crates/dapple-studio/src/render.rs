@@ -28,7 +28,7 @@ const BAND_PIXELS: u32 = 1 << 15;
 /// The pixels that are sent at a time.
 const SENT_PIXELS: usize = 1 << 18;
 
-/// How much work a recipe may ask for in the studio.
+/// The limits of work of a recipe in the studio.
 pub(crate) const LIMITS: PlanLimits = PlanLimits {
     control_points: 1 << 18,
     wavelet_cells: 1 << 22,
@@ -46,11 +46,24 @@ pub struct Job {
     pub rev: u64,
     /// The recipe.
     pub document: Arc<Document>,
-    /// What is to be seen of it.
+    /// The pictures of it that the page shows.
     pub view: View,
 }
 
-/// What drawing needs of the world.
+/// A material in light, which the command draws.
+#[derive(Clone, Copy, Debug)]
+pub struct Lit<'a> {
+    /// The recipe of the material.
+    pub recipe: &'a Recipe,
+    /// The images that the recipe names.
+    pub images: &'a Images,
+    /// The part of a loop that has passed, from 0 to 1.
+    pub time: f64,
+    /// The shape that the material is on.
+    pub shape: Shape,
+}
+
+/// The surroundings of a renderer: images, a clock, and a receiver of what is drawn.
 pub trait World {
     /// The images that a recipe names.
     ///
@@ -59,18 +72,15 @@ pub trait World {
     /// If one of them cannot be had.
     fn images(&self, recipe: &Recipe) -> Result<Images, StudioError>;
 
-    /// A lit picture of a recipe on a thing.
+    /// The picture of a lit material; by default there is none.
     ///
     /// # Errors
     ///
     /// If there is no such picture here, or the recipe is refused.
-    fn preview(
-        &self,
-        recipe: &Recipe,
-        images: &Images,
-        time: f64,
-        shape: Shape,
-    ) -> Result<Raster<LinearRgb>, StudioError>;
+    fn preview(&self, lit: &Lit<'_>) -> Result<Raster<LinearRgb>, StudioError> {
+        let _ = lit;
+        Err(StudioError::new("lit previews cannot be drawn here"))
+    }
 
     /// Milliseconds since some moment.
     fn now(&self) -> f64;
@@ -78,7 +88,7 @@ pub trait World {
     /// Whether a job of this generation is still wanted.
     fn is_wanted(&self, generation: u32) -> bool;
 
-    /// Takes what was made.
+    /// Takes a picture or a message.
     fn put(&self, output: Output);
 }
 
@@ -89,7 +99,7 @@ pub struct Renderer {
     planned: Option<Planned>,
     /// The longest side of the next draft, in pixels.
     draft_side: u32,
-    /// The document of which it was said last that nothing is wrong with it.
+    /// The last document that was reported to be without mistakes.
     told: Option<Arc<Document>>,
 }
 
@@ -132,7 +142,7 @@ struct Planned {
     images: Images,
 }
 
-/// Why nothing more is drawn.
+/// The reason why drawing ends early.
 enum Stop {
     /// Something newer is wanted.
     Outdated,
@@ -280,7 +290,7 @@ struct Pass<'a> {
     draft_side: u32,
 }
 
-/// The scale of a picture, and what of it is made.
+/// A region of a tile at a scale.
 #[derive(Clone, Copy)]
 struct Frame {
     size: [u32; 2],
@@ -490,14 +500,19 @@ impl Pass<'_> {
         Ok(())
     }
 
-    /// A lit picture, made exactly.
+    /// Draws the material in light, with the exact renderer.
     fn preview(&self, recipe: &Recipe, images: &Images) -> Result<(), Stop> {
         let view = &self.job.view;
         let Some(exact) = view.exact.as_ref().filter(|_| !view.paused) else {
             return Ok(());
         };
         self.check_wanted()?;
-        let picture = self.world.preview(recipe, images, view.time, exact.shape)?;
+        let picture = self.world.preview(&Lit {
+            recipe,
+            images,
+            time: view.time,
+            shape: exact.shape,
+        })?;
         self.world.put(Output::Picture(Picture {
             generation: self.job.generation,
             shown: Shown::Preview,

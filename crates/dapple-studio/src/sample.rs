@@ -1,15 +1,42 @@
 //! A small picture of a recipe, to know it by: its color in light from the upper left.
 
-use crate::StudioError;
 use crate::picture::of_colors;
 use crate::render::{planned, size_of};
+use crate::{Picture, Shown, StudioError};
 use dapple::color::{Normal, NormalY};
 use dapple::recipe::{Bake, BakeOptions, Images, MapKind, MapRows, Recipe};
 
-/// Where the light comes from: a unit vector to the right, up, and towards the eye.
+/// The direction to the light: a unit vector to the right, up, and towards the eye.
 const LIGHT: [f32; 3] = [-0.48, 0.6, 0.64];
 /// The light from everywhere, and that from one side.
 const LIGHTS: [f32; 2] = [0.35, 1.0];
+
+/// The longest side of a picture, in pixels.
+const MOST: u32 = 256;
+
+/// A small picture of a recipe in light, to know it by. Its longer side has `side` pixels, at most 256.
+///
+/// # Errors
+///
+/// What the recipe refuses.
+pub fn sample(
+    shown: Shown,
+    recipe: &Recipe,
+    images: &Images,
+    side: u32,
+) -> Result<Picture, StudioError> {
+    let (size, pixels) = lit(recipe, images, side.clamp(1, MOST))?;
+    Ok(Picture {
+        generation: 0,
+        shown,
+        first: [0; 2],
+        size,
+        scale: 1,
+        is_draft: false,
+        is_last: true,
+        pixels,
+    })
+}
 
 /// The size and the pixels of a picture whose longer side has so many pixels.
 pub(crate) fn lit(
@@ -40,7 +67,7 @@ pub(crate) fn lit(
     Ok((size, of_colors(&lit)))
 }
 
-/// How bright a place with this normal is.
+/// The brightness of a place with this normal, from 0 to 1.
 fn light(normal: &Normal) -> f32 {
     let parts = normal.to_array().into_iter().zip(LIGHT);
     let facing: f32 = parts.map(|(a, b)| a * b).sum();

@@ -28,9 +28,9 @@ pub(crate) struct Found<'a> {
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct Kind {
     name: &'static str,
-    /// What it is for, such as `color`.
+    /// Its use, such as `color`.
     group: &'static str,
-    /// What a new node of this kind begins with.
+    /// The options that a new node of this kind begins with.
     value: Json,
 }
 
@@ -40,7 +40,7 @@ pub(crate) fn schema() -> &'static Json {
     SCHEMA.get_or_init(Recipe::schema)
 }
 
-/// Where a recipe has inputs and seeds, written or not.
+/// The places of inputs and seeds in a recipe, written or not.
 pub(crate) fn roles(recipe: &Json) -> Vec<Found<'_>> {
     let mut walk = Walk::default();
     walk.value(schema(), recipe);
@@ -162,7 +162,7 @@ fn requirements(schema: &Json) -> impl Iterator<Item = &str> {
     all.into_iter().flatten().filter_map(Json::as_str)
 }
 
-/// What kinds of nodes are for, and what a new node begins with. An input called `?` is to be chosen.
+/// The use of each kind of node, and the options of a new one. An input called `?` is to be chosen.
 const GROUPS: [(&str, &str, &str); 28] = [
     ("worley", "cells and noise", "{}"),
     ("pups", "cells and noise", r#"{"cells":{}}"#),

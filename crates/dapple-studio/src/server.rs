@@ -13,8 +13,8 @@ mod page;
 mod socket;
 mod worker;
 
-use crate::message::{Export, Mode, Named, Shape};
-use crate::{Renderer, StudioError};
+use crate::message::{Export, Mode, Named};
+use crate::{Lit, Renderer, StudioError};
 use axum::Router;
 use axum::extract::{Request, State};
 use axum::http::{Method, StatusCode};
@@ -36,7 +36,7 @@ use std::time::Duration;
 use tokio::net::TcpListener;
 use tokio::sync::Notify;
 
-/// What the program around the server does: it reads images and makes files, so that they are those of its other commands.
+/// The program around the server. It reads images and makes files, so that they are those of its other commands.
 pub trait Host: Send + Sync {
     /// The images that a recipe names, from its folder. The names have been checked.
     ///
@@ -49,7 +49,7 @@ pub trait Host: Send + Sync {
     ///
     /// # Errors
     ///
-    /// What the bake refuses.
+    /// The refusal of the bake.
     fn export(
         &self,
         recipe: &Recipe,
@@ -57,18 +57,12 @@ pub trait Host: Send + Sync {
         export: &Export,
     ) -> Result<Vec<ExportedFile>, StudioError>;
 
-    /// A lit picture of a recipe on a thing.
+    /// The picture of a lit material.
     ///
     /// # Errors
     ///
-    /// What the bake refuses.
-    fn preview(
-        &self,
-        recipe: &Recipe,
-        images: &Images,
-        time: f64,
-        shape: Shape,
-    ) -> Result<Raster<LinearRgb>, StudioError>;
+    /// The refusal of the bake.
+    fn preview(&self, lit: &Lit<'_>) -> Result<Raster<LinearRgb>, StudioError>;
 
     /// The programs that files can be made for.
     fn presets(&self) -> Vec<Named>;
@@ -79,11 +73,11 @@ pub trait Host: Send + Sync {
 pub struct ExportedFile {
     /// Its name, without a folder.
     pub name: String,
-    /// What is in it.
+    /// The content of the file.
     pub bytes: Vec<u8>,
 }
 
-/// How the server is run.
+/// Options of the server.
 #[derive(Clone, Debug, Default)]
 pub struct ServeOptions {
     /// The port; any free one for 0, which is the default.
@@ -92,7 +86,7 @@ pub struct ServeOptions {
     pub no_open: bool,
     /// Whether the server ends when the last page is closed.
     pub once: bool,
-    /// What pages may do.
+    /// The rights of pages.
     pub mode: Mode,
     /// The recipe that a page begins with: a built-in one, or a file in the folder.
     pub recipe: Option<String>,
@@ -102,14 +96,14 @@ pub struct ServeOptions {
     pub dist: Option<PathBuf>,
 }
 
-/// What all pages share.
+/// The state that all pages share.
 struct Shared {
     options: ServeOptions,
     host: Arc<dyn Host>,
     guard: Guard,
     folder: Folder,
     exports: Exports,
-    /// What was drawn for any page.
+    /// Values of nodes that were drawn for any page.
     memory: Memory,
     /// Small pictures of recipes, by their texts and sides.
     gallery: Gallery,

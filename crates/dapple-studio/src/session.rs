@@ -2,7 +2,7 @@
 
 use crate::change::changes;
 use crate::message::{Reply, Request, View};
-use crate::patch::{Op, apply};
+use crate::patch::{Op, apply, spliced};
 use crate::render::Job;
 use crate::{Document, StudioError, Variant, points, strip};
 use dapple::recipe::{Images, Recipe};
@@ -47,7 +47,7 @@ impl Session {
         &self.document
     }
 
-    /// What is to be seen.
+    /// The pictures that the page shows.
     #[must_use]
     pub fn view(&self) -> &View {
         &self.view
@@ -102,8 +102,13 @@ impl Session {
             return vec![Reply::Stale { rev: self.rev }];
         }
         let old = self.document.text();
-        let ops = self.with_points(ops, images);
-        let new = match ops.and_then(|ops| apply(old, &ops)) {
+        let new = match spliced(&self.document, ops) {
+            Some(new) => Ok(new),
+            None => self
+                .with_points(ops, images)
+                .and_then(|ops| apply(old, &ops)),
+        };
+        let new = match new {
             Ok(new) if new.len() > dapple::recipe::MAX_TEXT => {
                 let error = StudioError::new("the text would be longer than 4 MiB");
                 return vec![Reply::refused("patch", &error)];
@@ -176,7 +181,7 @@ impl Session {
         (0..).zip(changes).take(strip::MOST).map(variant).collect()
     }
 
-    /// What is to be drawn, if that is something else than before.
+    /// The job of drawing the text and the view as they are, if they have changed since the last one.
     pub fn job(&mut self) -> Option<Job> {
         core::mem::take(&mut self.is_new).then(|| Job {
             generation: self.generation,

@@ -1,5 +1,7 @@
 // The build: one page into ../dist, six files or so without hashes in their names, which the command embeds; those that
 // are large beside them once more, compressed, which is what it embeds then.
+// `vite build --mode static` makes the page without a server, which `cargo xtask web` completes: the same but for its entry,
+// the worker, and a content security policy in the page, since its host is anybody's.
 // The development server hands the socket and the files on to a running `dapple studio`, whose address is
 // DAPPLE_STUDIO (http://127.0.0.1:7878 by default).
 import { svelte } from '@sveltejs/vite-plugin-svelte';
@@ -29,8 +31,35 @@ function compressed(): Plugin {
   };
 }
 
-export default defineConfig({
-  plugins: [svelte(), compressed()],
+/** What the page without a server may load and run. */
+const POLICY = [
+  "default-src 'self'",
+  "script-src 'self' 'wasm-unsafe-eval'",
+  "img-src 'self' blob: data:",
+  "object-src 'none'",
+  "base-uri 'none'",
+  "form-action 'none'",
+].join('; ');
+
+/** The page with another entry and its policy. */
+function withoutServer(): Plugin {
+  return {
+    name: 'without-server',
+    transformIndexHtml: {
+      order: 'pre',
+      handler: (html) => ({
+        html: html.replace('/src/main.ts', '/src/static.ts'),
+        tags: [{ tag: 'meta', attrs: { 'http-equiv': 'content-security-policy', content: POLICY }, injectTo: 'head-prepend' }],
+      }),
+    },
+  };
+}
+
+export default defineConfig(({ mode }) => ({
+  plugins: [svelte(), mode === 'static' ? withoutServer() : compressed()],
+  // The page without a server may lie in any folder.
+  base: './',
+  worker: { format: 'es', rollupOptions: { output: { entryFileNames: 'assets/worker.js' } } },
   build: {
     outDir: '../dist',
     emptyOutDir: true,
@@ -48,4 +77,4 @@ export default defineConfig({
     },
   },
   server: { proxy: { '/ws': { ...behind, ws: true }, '/export': behind, '/image': behind } },
-});
+}));

@@ -2,15 +2,19 @@
 //!
 //! Reference: Marc Soucy, Guy Godin and Marc Rioux, "A texture-mapping approach for the compression of colored 3D
 //! triangulations", The Visual Computer 12(10), 1996: every face is mapped to a right triangle of its own, two of which
-//! share a square tile. Here tiles are all of one size, or of sizes that follow the areas of the faces; or the map is the
-//! caller's. No tile is mirrored: what is counterclockwise from outside is so in the picture.
+//! share a square tile. Here tiles are all of one size, or of sizes that follow the areas of the faces; or the map is one
+//! of [charts](Atlas::charts), large pieces of the surface, or the caller's. No piece that is made here is mirrored: what
+//! is counterclockwise from outside is so in the picture.
 //!
 //! Texel (x, y) has its center at `(x + 0.5, y + 0.5)`; row 0 is the top, and uv go from 0 to 1, v down.
 
+mod charts;
 mod own_uvs;
+mod report;
 mod tangents;
 mod tiles;
 
+pub use report::AtlasReport;
 pub(crate) use tangents::{Tangents, mixed};
 
 use crate::{SynthError, SynthErrorKind};
@@ -28,13 +32,52 @@ pub struct Atlas {
     mipmaps: bool,
 }
 
-/// The most padding of tiles.
+/// The most padding of pieces.
 const PADDING_MAX: u32 = 1 << 10;
 
 /// No face.
 const NONE: u32 = u32::MAX;
 
 impl Atlas {
+    /// Charts: pieces of the surface that are flattened as a whole, with borders along creases where there are some, and
+    /// packed by their shapes into a square map. `side` is that of the map in texels.
+    ///
+    /// Texels are of about one size on the surface ([`AtlasReport::stretch`]). The padding is 1 texel below a side of 512,
+    /// then 2, and from 4096 on a 1024th of the side: pieces are twice as far apart. All texels between them continue
+    /// them, so that every level of a mipmap can be shown.
+    ///
+    /// # Errors
+    ///
+    /// [`SynthErrorKind::Range`] if the pieces with their padding have no room, or if the map is larger than 2^14.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use dapple_synth::mesh::{Mesh, Surface, glam::DVec3};
+    /// use dapple_synth::Atlas;
+    ///
+    /// let roof = Mesh::new(vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::ONE], &[[0, 1, 2], [2, 1, 3]])?;
+    /// let surface = Surface::new(roof)?;
+    /// let report = Atlas::charts(&surface, 64)?.report(&surface);
+    /// assert_eq!(report.pieces, 1);
+    /// assert!(report.stretch < 1.001);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn charts(surface: &Surface, side: u32) -> Result<Self, SynthError> {
+        charts::charts(surface, side, charts::padding(side))
+    }
+
+    /// Charts with a padding of the caller's, from 1 to 1024 texels.
+    ///
+    /// With `3 * 2^k` texels, bilinear reading of a mipmap's first `k + 2` levels mixes in no other piece.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`charts`](Self::charts), and [`SynthErrorKind::Range`] for another padding.
+    pub fn charts_padded(surface: &Surface, side: u32, padding: u32) -> Result<Self, SynthError> {
+        charts::charts(surface, side, padding)
+    }
+
     /// Right triangles of one size, two in a square tile, as in the paper. `side` is that of the square map in texels.
     ///
     /// Texels around a triangle continue it, so that reading between texels mixes in no other face. This padding is the
@@ -125,6 +168,19 @@ impl Atlas {
         covered.count() as f64 / self.faces.pixels().len() as f64
     }
 
+    /// How good the layout is for the surface that it was made for.
+    #[must_use]
+    pub fn report(&self, surface: &Surface) -> AtlasReport {
+        AtlasReport::new(self, surface)
+    }
+
+    /// The L2 stretch of every face of the surface that the layout was made for, as [`AtlasReport::stretch`] sums it up:
+    /// above 1 where texels are larger than elsewhere. NaN for a face without a place.
+    #[must_use]
+    pub fn stretches(&self, surface: &Surface) -> Vec<f64> {
+        report::stretches(self, surface)
+    }
+
     /// The face of a texel.
     ///
     /// # Panics
@@ -167,6 +223,12 @@ fn weights([a, b, c]: [DVec2; 3], at: DVec2) -> [f64; 3] {
     let of_b = (at - a).perp_dot(c - a) / area;
     let of_c = (b - a).perp_dot(at - a) / area;
     [1.0 - of_b - of_c, of_b, of_c]
+}
+
+/// Refuses padding that pieces cannot have.
+fn check_padding(padding: u32) -> Result<(), SynthError> {
+    let holds = (1..=PADDING_MAX).contains(&padding);
+    SynthError::check(holds, "padding", padding.into(), "from 1 to 1024")
 }
 
 /// Refuses sides that a map cannot have.

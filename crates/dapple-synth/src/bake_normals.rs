@@ -12,58 +12,66 @@
 //! Reference: Morten S. Mikkelsen, "Simulation of Wrinkled Surfaces Revisited", master's thesis, University of Copenhagen, 2008.
 
 use crate::atlas::{self, Tangents};
+use crate::detail::Detail;
 use crate::display::check_shading;
+use crate::magnify::magnify;
 use crate::maps::{check_column, check_finite};
-use crate::{Atlas, SynthError, Synthesizer, bake};
+use crate::{Atlas, SurfaceTexture, SynthError, Synthesizer, bake};
 use dapple_color::{Normal, NormalY};
 use dapple_raster::Raster;
 use glam::DVec3;
 
-/// Bakes a normal for each finest site, as [`SurfaceTexture::transfer`](crate::SurfaceTexture::transfer) copies them from
-/// a normal map of the exemplar.
+/// Bakes a normal map of the exemplar, or of a version that is a whole number of times as large.
 ///
 /// `y` is where green points, in the exemplar and in the result. `shading` has the normals of the corners of all faces by
 /// which the model is shaded, as [`textured_model`](crate::textured_model) takes them. Texels without a face are flat.
 ///
 /// # Errors
 ///
-/// [`SynthErrorKind::Count`](crate::SynthErrorKind::Count) unless there is a normal for each site and for each corner,
-/// [`SynthErrorKind::Range`](crate::SynthErrorKind::Range) if a part of one is not finite.
+/// Those of [`bake_colors`](crate::bake_colors), and [`SynthErrorKind::Count`](crate::SynthErrorKind::Count) unless there
+/// is a normal for each corner.
 ///
 /// # Examples
 ///
 /// ```
 /// use dapple_color::{Normal, NormalY};
-/// use dapple_synth::mesh::{CREASE, Mesh, Surface, glam::DVec3};
-/// use dapple_synth::{Atlas, HierarchyOptions, Synthesizer, bake_normals};
+/// use dapple_raster::Raster;
+/// use dapple_synth::mesh::{CREASE, Mesh, glam::DVec3};
+/// use dapple_synth::{Atlas, Edges, Exemplar, HierarchyOptions, Options, bake_normals, synthesize};
 ///
+/// let height = Raster::from_fn([16, 16], |x, y| f32::from((x / 4 + y / 4) % 2 == 0))?;
+/// let exemplar = Exemplar::from_planes(&[(&height, 1.0)], Edges::Wrap)?;
 /// let sites = HierarchyOptions { n_sites: 500, ..Default::default() };
 /// // A tetrahedron; `dapple_mesh_io::read_model` reads yours.
 /// let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
 /// let mesh = Mesh::new(corners, &[[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])?;
-/// let covered = Synthesizer::new(Surface::new(mesh)?, &[], &sites)?;
+/// let (covered, texture) = synthesize(mesh, &exemplar, &[], &sites, &Options::default())?;
 /// let atlas = Atlas::uniform(covered.surface(), 128)?;
 /// let shading = covered.surface().mesh().corner_normals(CREASE);
-/// let map = bake_normals(&covered, &[Normal::FLAT; 500], NormalY::OpenGl, &atlas, &shading)?;
+/// let normals = Raster::filled([16, 16], Normal::FLAT)?;
+/// let map = bake_normals(&covered, &texture, &normals, NormalY::OpenGl, &atlas, &shading)?;
 /// assert!(map.pixels().iter().all(|&normal| normal == Normal::FLAT));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn bake_normals(
     synthesizer: &Synthesizer,
-    normals: &[Normal],
+    texture: &SurfaceTexture,
+    map: &Raster<Normal>,
     y: NormalY,
     atlas: &Atlas,
     shading: &[[DVec3; 3]],
 ) -> Result<Raster<Normal>, SynthError> {
-    check_shading(synthesizer.surface(), shading)?;
-    check_column(synthesizer, "normals", normals.len())?;
-    for part in normals.iter().flat_map(|normal| normal.to_array()) {
+    let surface = synthesizer.surface();
+    check_shading(surface, shading)?;
+    check_column(synthesizer, "sites of the texture", texture.n_sites())?;
+    for part in map.pixels().iter().flat_map(|normal| normal.to_array()) {
         check_finite("part of a normal", part)?;
     }
-    let column = in_space(synthesizer, normals, y);
-    let surface = synthesizer.surface();
-    let flat = [0.0, 0.0, 0.0, 1.0];
-    let values = bake::<4>(surface, synthesizer.hierarchy(), &column, atlas, flat)?;
+    let map = match y {
+        NormalY::OpenGl => map.par_map(|normal| normal.to_array()),
+        NormalY::DirectX => map.par_map(|&normal| turned_over(normal).to_array()),
+    };
+    let values = in_space(synthesizer, texture, map, atlas)?;
     let tangents = Tangents::new(surface, atlas, shading);
     let map = Raster::from_rows(atlas.size(), |row| {
         let (values, tangents) = (&values, &tangents);
@@ -90,21 +98,36 @@ pub fn bake_normals(
     })
 }
 
-/// For each site the part of its normal along the surface, in space, and the part out of it.
-fn in_space(synthesizer: &Synthesizer, normals: &[Normal], y: NormalY) -> Vec<f32> {
-    let outs = synthesizer.hierarchy().sites().normals();
-    let downs = synthesizer.orientation().vectors();
-    let site = |((normal, &out), &down): ((&Normal, &DVec3), &DVec3)| {
-        let normal = match y {
-            NormalY::OpenGl => *normal,
-            NormalY::DirectX => turned_over(*normal),
-        };
-        let right = out.cross(down);
-        let along = right * f64::from(normal.x) - down * f64::from(normal.y);
-        let [x, y, z] = along.as_vec3().to_array();
-        [x, y, z, normal.z]
+/// For each texel the part of its normal along the surface, in space, and the part out of it.
+fn in_space(
+    synthesizer: &Synthesizer,
+    texture: &SurfaceTexture,
+    map: Raster<[f32; 3]>,
+    atlas: &Atlas,
+) -> Result<Raster<[f32; 4]>, SynthError> {
+    let flat = [0.0, 0.0, 0.0, 1.0];
+    let turn = |[x, y, z]: [f32; 3], right: DVec3, down: DVec3| {
+        let along = right * f64::from(x) - down * f64::from(y);
+        [along.x as f32, along.y as f32, along.z as f32, z]
     };
-    normals.iter().zip(outs).zip(downs).flat_map(site).collect()
+    if let Some(places) = &texture.places {
+        let detail = Detail::new(map, places.size, places.edges)?;
+        return magnify(synthesizer, places, atlas, flat, |spot| {
+            let normal = detail.sample(spot.place, spot.footprint);
+            turn(normal, spot.right.as_dvec3(), spot.down.as_dvec3())
+        });
+    }
+    let (surface, hierarchy) = (synthesizer.surface(), synthesizer.hierarchy());
+    let (outs, downs) = (
+        hierarchy.sites().normals(),
+        synthesizer.orientation().vectors(),
+    );
+    let normals = texture.transfer(&map)?;
+    let sites = normals.into_iter().zip(outs).zip(downs);
+    let column: Vec<f32> = sites
+        .flat_map(|((normal, out), &down)| turn(normal, out.cross(down), down))
+        .collect();
+    bake::<4>(surface, hierarchy, &column, atlas, flat)
 }
 
 /// A vector turned as the shortest way turns one unit vector to another.

@@ -62,7 +62,7 @@ pub fn point_model(
 /// Every corner of every face has a texture coordinate of its own, and the normal of `shading`: those of its file, or of
 /// [`Mesh::corner_normals`]. More maps go into the model's [`material`](Model::material). Faces that have no place in the
 /// map show its first corner. Textures are shown without mipmaps in layouts of tiles, whose coarse levels mix faces that
-/// are far apart, and with them in the caller's own.
+/// are far apart, and with them in charts and the caller's own.
 ///
 /// # Errors
 ///
@@ -74,16 +74,19 @@ pub fn point_model(
 /// use dapple_color::LinearRgb;
 /// use dapple_image::{Transfer, encode_png};
 /// use dapple_mesh_io::gltf;
-/// use dapple_synth::mesh::{CREASE, EncodedImage, Mesh, Surface, glam::DVec3};
-/// use dapple_synth::{Atlas, HierarchyOptions, Synthesizer, bake_colors, textured_model};
+/// use dapple_synth::mesh::{CREASE, EncodedImage, Mesh, glam::DVec3};
+/// use dapple_raster::Raster;
+/// use dapple_synth::{Atlas, Edges, Exemplar, HierarchyOptions, Options, bake_colors, synthesize, textured_model};
 ///
+/// let image = Raster::filled([16, 16], LinearRgb::gray(0.2))?;
+/// let exemplar = Exemplar::new(&image, Edges::Wrap)?;
 /// let sites = HierarchyOptions { n_sites: 500, ..Default::default() };
 /// // A tetrahedron; `dapple_mesh_io::read_model` reads yours.
 /// let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
 /// let mesh = Mesh::new(corners, &[[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])?;
-/// let covered = Synthesizer::new(Surface::new(mesh)?, &[], &sites)?;
+/// let (covered, texture) = synthesize(mesh, &exemplar, &[], &sites, &Options::default())?;
 /// let atlas = Atlas::uniform(covered.surface(), 128)?;
-/// let map = bake_colors(&covered, &[LinearRgb::gray(0.2); 500], &atlas)?;
+/// let map = bake_colors(&covered, &texture, &image, &atlas)?;
 /// let png = encode_png(map.map(|color| color.to_srgb::<u8>()).view(), Transfer::Srgb)?;
 /// let shading = covered.surface().mesh().corner_normals(CREASE);
 /// let model = textured_model(covered.surface(), &atlas, shading, EncodedImage::new(png)?)?;

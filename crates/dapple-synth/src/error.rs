@@ -27,6 +27,14 @@ dapple_raster::error! {
             /// The side of the neighborhood.
             side: u32,
         } => "level {level} of the exemplar has {} x {} pixels, too few for a neighborhood of side {side}", size[0], size[1];
+        /// A map is no whole number of times as large as the exemplar.
+        Detail {
+            /// The size of the map in pixels.
+            map: [u32; 2],
+            /// That of the exemplar.
+            exemplar: [u32; 2],
+        } => "a map has {} x {} pixels, which is not the {} x {} of the exemplar times a whole number",
+            map[0], map[1], exemplar[0], exemplar[1];
         /// A pass reads a coarser level that has no colors yet.
         Unfilled {
             /// Which pass.

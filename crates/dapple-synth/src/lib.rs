@@ -24,7 +24,7 @@
 //! let (covered, texture) = synthesize(mesh, &exemplar, &[down], &sites, &Options::default())?;
 //!
 //! let atlas = Atlas::uniform(covered.surface(), 256)?;
-//! let map = bake_colors(&covered, &texture.transfer(&checker)?, &atlas)?;
+//! let map = bake_colors(&covered, &texture, &checker, &atlas)?;
 //! assert_eq!(map.size(), [256, 256]);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -60,7 +60,7 @@
 //! | 5.2 | several levels; figure 4 | [`Schedule::paper`], [`Part`], [`Shape`] |
 //! | 5 | the pixel whose neighborhood matches best | [`Candidates`], [`Matcher`] |
 //! | 6 | the finest points with colors, as a mesh | [`site_model`], [`point_model`] |
-//! | 6 | a texture map of right triangles | [`Atlas`], [`bake()`], [`textured_model`] |
+//! | 6 | a texture map of right triangles, or of charts | [`Atlas`], [`bake()`], [`textured_model`] |
 //!
 //! # What the paper leaves open
 //!
@@ -103,6 +103,7 @@ mod bake_normals;
 mod candidates;
 mod cells;
 mod columns;
+mod detail;
 mod directions;
 mod displaced;
 mod display;
@@ -114,6 +115,7 @@ mod ground;
 mod kept;
 mod likeness;
 mod links;
+mod magnify;
 mod maps;
 mod matcher;
 mod mesh_ground;
@@ -121,6 +123,7 @@ mod neighborhood;
 mod options;
 mod orientation;
 mod parents;
+mod places;
 mod plane;
 mod regularity;
 #[cfg(test)]
@@ -134,7 +137,7 @@ mod turns;
 mod usage;
 mod visit;
 
-pub use atlas::Atlas;
+pub use atlas::{Atlas, AtlasReport};
 pub use bake::bake;
 pub use bake_normals::bake_normals;
 pub use candidates::{Candidates, CoarserCenter};
@@ -148,7 +151,7 @@ pub use likeness::Likeness;
 pub use maps::{bake_colors, bake_values};
 pub use matcher::{Match, Matcher, MatcherMemory, distance_sq};
 pub use neighborhood::{Part, Pass, Reads, Schedule, Shape};
-pub use options::{Axes, Coherence, Options};
+pub use options::{Axes, Coherence, Options, Sources};
 pub use orientation::{Direction, Orientation};
 pub use plane::{PlaneTexture, synthesize_plane, synthesize_plane_with};
 pub use sites::{

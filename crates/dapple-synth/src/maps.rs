@@ -1,50 +1,48 @@
-//! Maps of colors and of plain values, baked from columns of the finest sites.
+//! Maps of colors and of plain values, baked from the sources of the finest sites.
 //!
-//! [`SurfaceTexture::transfer`](crate::SurfaceTexture::transfer) makes the columns: any map of the exemplar's size follows
-//! what was matched. All maps that are baked with one [`Atlas`] fit together texel by texel.
+//! Any map of the exemplar follows what was matched, and so does a larger version of one, which is sharper: all maps that
+//! are baked with one [`Atlas`] fit together texel by texel.
 //!
-//! Reference: our own; [`bake()`] has that of baking.
+//! Texels without a face, which only coarse levels of a mipmap can show, have the mean of the map.
 //!
-//! Texels without a face, which only coarse levels of a mipmap can show, have the mean of all sites.
-//!
-//! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, doi 10.1145/383259.383297, section 6; the tangent
-//! frame is that of glTF 2.0.
+//! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, doi 10.1145/383259.383297, section 6.
 
-use crate::{Atlas, SynthError, SynthErrorKind, Synthesizer, bake};
+use crate::detail::Detail;
+use crate::magnify::magnify;
+use crate::{Atlas, SurfaceTexture, SynthError, SynthErrorKind, Synthesizer, bake};
 use dapple_color::{Code, LinearRgb};
 use dapple_raster::Raster;
 
-/// Bakes a color for each finest site.
+/// Bakes colors: the exemplar, a map of it, or a version that is a whole number of times as large.
 ///
-/// Colors are mixed between sites in their sRGB codes, as [`Exemplar::new`](crate::Exemplar::new) compares them, with 16
-/// bits; what is outside of 0 to 1 is clamped.
+/// Colors are mixed in their sRGB codes, as [`Exemplar::new`](crate::Exemplar::new) compares them, with 16 bits; what is
+/// outside of 0 to 1 is clamped.
 ///
 /// # Errors
 ///
-/// [`SynthErrorKind::Count`] unless there is a color for each site, [`SynthErrorKind::Range`] if one is not finite.
+/// [`SynthErrorKind::Count`] for a texture of other sites, [`SynthErrorKind::Detail`] for a map of another size,
+/// [`SynthErrorKind::Raster`] for one that is larger where [sources](crate::Options::sources) are pixels, and
+/// [`SynthErrorKind::Range`] if a color is not finite.
 pub fn bake_colors(
     synthesizer: &Synthesizer,
-    colors: &[LinearRgb],
+    texture: &SurfaceTexture,
+    map: &Raster<LinearRgb>,
     atlas: &Atlas,
 ) -> Result<Raster<LinearRgb>, SynthError> {
-    check_column(synthesizer, "colors", colors.len())?;
-    for part in colors.iter().flat_map(|color| color.to_array()) {
+    for part in map.pixels().iter().flat_map(|color| color.to_array()) {
         check_finite("part of a color", part)?;
     }
     let code = |code: u16| f32::from(code) / f32::from(u16::MAX);
-    let codes = |color: &LinearRgb| color.to_srgb::<u16>().map(code);
-    let column: Vec<f32> = colors.iter().flat_map(codes).collect();
-    let background = mean::<3>(&column);
-    let (surface, hierarchy) = (synthesizer.surface(), synthesizer.hierarchy());
-    let map = bake(surface, hierarchy, &column, atlas, background)?;
+    let codes = map.par_map(|color| color.to_srgb::<u16>().map(code));
+    let map = bake_map(synthesizer, texture, codes, atlas)?;
     Ok(map.par_map(|codes| LinearRgb::from_srgb(codes.map(u16::from_unit))))
 }
 
-/// Bakes a value for each finest site, such as a height or a roughness: values are mixed as they are.
+/// Bakes values, such as heights or roughness, which are mixed as they are.
 ///
 /// # Errors
 ///
-/// [`SynthErrorKind::Count`] unless there is a value for each site, [`SynthErrorKind::Range`] if one is not finite.
+/// Those of [`bake_colors`].
 ///
 /// # Examples
 ///
@@ -71,7 +69,7 @@ pub fn bake_colors(
 /// let atlas = Atlas::uniform(tetrahedron.surface(), 128)?;
 /// let maps: Result<Vec<Raster<f32>>, _> = [&bright, &height, &roughness]
 ///     .into_iter()
-///     .map(|map| bake_values(&tetrahedron, &texture.transfer(map)?, &atlas))
+///     .map(|map| bake_values(&tetrahedron, &texture, map, &atlas))
 ///     .collect();
 /// let maps = maps?;
 /// // The three still belong together.
@@ -81,17 +79,36 @@ pub fn bake_colors(
 /// ```
 pub fn bake_values(
     synthesizer: &Synthesizer,
-    values: &[f32],
+    texture: &SurfaceTexture,
+    map: &Raster<f32>,
     atlas: &Atlas,
 ) -> Result<Raster<f32>, SynthError> {
-    check_column(synthesizer, "values", values.len())?;
-    for &value in values {
-        check_finite("value at a site", value)?;
+    for &value in map.pixels() {
+        check_finite("value of a map", value)?;
     }
-    let background = mean::<1>(values);
-    let (surface, hierarchy) = (synthesizer.surface(), synthesizer.hierarchy());
-    let map = bake(surface, hierarchy, values, atlas, background)?;
+    let map = map.map(|&value| [value]);
+    let map = bake_map(synthesizer, texture, map, atlas)?;
     Ok(map.par_map(|&[value]| value))
+}
+
+/// Bakes a map with the sources that the texture has.
+fn bake_map<const N: usize>(
+    synthesizer: &Synthesizer,
+    texture: &SurfaceTexture,
+    map: Raster<[f32; N]>,
+    atlas: &Atlas,
+) -> Result<Raster<[f32; N]>, SynthError> {
+    check_column(synthesizer, "sites of the texture", texture.n_sites())?;
+    let background = mean(map.pixels());
+    let Some(places) = &texture.places else {
+        let column = texture.transfer(&map)?;
+        let (surface, hierarchy) = (synthesizer.surface(), synthesizer.hierarchy());
+        return bake(surface, hierarchy, column.as_flattened(), atlas, background);
+    };
+    let detail = Detail::new(map, places.size, places.edges)?;
+    magnify(synthesizer, places, atlas, background, |spot| {
+        detail.sample(spot.place, spot.footprint)
+    })
 }
 
 /// Refuses a column that has not just one value for each finest site.
@@ -115,16 +132,15 @@ pub(crate) fn check_finite(what: &'static str, value: f32) -> Result<(), SynthEr
     SynthError::check(value.is_finite(), what, value.into(), "finite")
 }
 
-/// The mean of all sites.
-fn mean<const N: usize>(column: &[f32]) -> [f32; N] {
+/// The mean of all pixels.
+fn mean<const N: usize>(pixels: &[[f32; N]]) -> [f32; N] {
     let mut sums = [0.0_f64; N];
-    for values in column.chunks_exact(N) {
-        for (sum, &value) in sums.iter_mut().zip(values) {
+    for pixel in pixels {
+        for (sum, &value) in sums.iter_mut().zip(pixel) {
             *sum += f64::from(value);
         }
     }
-    let n_sites = (column.len() / N).max(1) as f64;
-    sums.map(|sum| (sum / n_sites) as f32)
+    sums.map(|sum| (sum / pixels.len().max(1) as f64) as f32)
 }
 
 #[cfg(test)]

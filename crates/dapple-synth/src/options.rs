@@ -30,6 +30,8 @@ pub struct Options {
     pub center: CoarserCenter,
     /// Which way neighborhoods on surfaces go on away from their site; by default as the field does.
     pub axes: Axes,
+    /// Which sources the finest sites on surfaces have; by default between pixels.
+    pub sources: Sources,
     /// How much worse a match may be that continues the source of a neighboring site; by default as the exemplar asks
     /// for.
     pub coherence: Coherence,
@@ -106,6 +108,19 @@ impl FromStr for Coherence {
 }
 
 dapple_raster::named! {
+    /// What the finest sites on a surface have of the exemplar, and what texture maps show between them.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+    pub enum Sources {
+        /// Places between pixels, moved to where the neighbors that go on with the same piece of the exemplar predict
+        /// them. Texture maps read the exemplar there, as sharp as it is, or a larger version of it.
+        #[default]
+        SubPixel = "sub-pixel",
+        /// Pixels, whose values are mixed between sites, as in the paper.
+        Pixel = "pixel",
+    }
+}
+
+dapple_raster::named! {
     /// Which way the rows and columns of a neighborhood on a surface go.
     #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
     pub enum Axes {
@@ -125,6 +140,7 @@ impl Default for Options {
             schedule: None,
             center: CoarserCenter::Exact,
             axes: Axes::Followed,
+            sources: Sources::SubPixel,
             coherence: Coherence::default(),
             evenness: 1.0,
         }
@@ -133,7 +149,7 @@ impl Default for Options {
 
 impl Options {
     /// The paper at its word: neighborhoods on the coarser level are centered at rounded coordinates and laid out
-    /// straight on, and the least difference always wins.
+    /// straight on, the least difference always wins, and texture maps mix the colors of sites.
     ///
     /// Differences from its text remain, on every surface and with any options:
     ///
@@ -154,6 +170,7 @@ impl Options {
         Self {
             center: CoarserCenter::Floor,
             axes: Axes::Carried,
+            sources: Sources::Pixel,
             coherence: Coherence::Factor(0.0),
             evenness: 0.0,
             ..Self::default()

@@ -11,7 +11,10 @@
 //! all around the torus; there the finer levels, where every pixel has a color before the sweep begins to refine it, go
 //! in slanted lines instead, which change the texture no more than another seed and can be visited on all cores.
 
+mod enlarge;
+
 use crate::candidates::halves;
+use crate::detail;
 use crate::engine::{self, Progress};
 use crate::grid::{self, Grid};
 use crate::ground::{Colors, Ground, Samples, Square};
@@ -31,7 +34,9 @@ const SLANT: u32 = 4;
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlaneTexture {
     sources: Raster<[u32; 2]>,
+    wrap: [Wrap; 2],
     exemplar_size: [u32; 2],
+    exemplar_edges: Edges,
 }
 
 /// Makes a texture of `size` pixels, at most 2^26 of them, that looks like an exemplar.
@@ -95,7 +100,9 @@ pub fn synthesize_plane_with(
         .collect();
     Ok(PlaneTexture {
         sources: Raster::from_vec(size, sources)?,
+        wrap: ground.wrap,
         exemplar_size: exemplar.size,
+        exemplar_edges: exemplar.edges,
     })
 }
 
@@ -106,17 +113,40 @@ impl PlaneTexture {
         &self.sources
     }
 
-    /// The values of a map of the exemplar's size at the sources: the texture's colors, from the image of the exemplar,
-    /// and heights, normals and roughness that follow them.
+    /// The values of a map at the sources: the texture's colors, from the image of the exemplar, and heights, normals and
+    /// roughness that follow them.
+    ///
+    /// A map that is a whole number of times as large as the exemplar, such as the photograph that it was made from, gives
+    /// a texture that is as much larger, with all detail of the map and no synthesis. Each of its pixels is one of the
+    /// map's: where neighbors go on with the same piece of the exemplar it is copied as a whole, and the border of two
+    /// pieces is smooth.
     ///
     /// # Errors
     ///
-    /// [`SynthErrorKind::Raster`](crate::SynthErrorKind::Raster) for a map of another size.
-    pub fn transfer<T: Copy>(&self, map: &Raster<T>) -> Result<Raster<T>, SynthError> {
-        map.check_same_size(self.exemplar_size)?;
-        Ok(self
-            .sources
-            .map(|&[column, row]| map.row(row)[column as usize]))
+    /// [`SynthErrorKind::Detail`](crate::SynthErrorKind::Detail) for a map of another size,
+    /// [`SynthErrorKind::Raster`](crate::SynthErrorKind::Raster) if the texture would be too large.
+    pub fn transfer<T: Copy + Send + Sync>(
+        &self,
+        map: &Raster<T>,
+    ) -> Result<Raster<T>, SynthError> {
+        let factor = detail::factor(map.size(), self.exemplar_size)?;
+        if factor == 1 {
+            let pixel = |&[column, row]: &[u32; 2]| map.row(row)[column as usize];
+            return Ok(self.sources.map(pixel));
+        }
+        let size = self.sources.size().map(|side| side.saturating_mul(factor));
+        let magnified = enlarge::Enlarged {
+            sources: &self.sources,
+            wrap: self.wrap,
+            size: self.exemplar_size.map(i64::from),
+            edges: self.exemplar_edges,
+            factor: i64::from(factor),
+        };
+        Ok(Raster::from_rows(size, |row| {
+            let source = move |column| magnified.source([column, row]);
+            let sources = (0..size[0]).map(source);
+            sources.map(|[column, row]| map.row(row)[column as usize])
+        })?)
     }
 }
 

@@ -1,8 +1,12 @@
 //! Meshes and sites for tests.
 
-use crate::{Hierarchy, HierarchyOptions, Orientation, Sites, Synthesizer, hexagonal_spacing};
+use crate::{
+    Edges, Exemplar, Hierarchy, HierarchyOptions, Orientation, Sites, SurfaceTexture, Synthesizer,
+    hexagonal_spacing,
+};
 use dapple_hash::{Seed, hash1, unit_f64};
 use dapple_mesh::{FaceIdx, Mesh, Surface, SurfacePoint};
+use dapple_raster::Raster;
 use glam::DVec3;
 use std::collections::BTreeMap;
 
@@ -297,4 +301,17 @@ pub(crate) fn on_threads<T: Send>(work: impl Fn() -> T + Sync) -> [T; 3] {
             .build();
         pool.unwrap().install(&work)
     })
+}
+
+/// A texture whose sites have the pixels of a map with one row, one after the other, so that maps are any columns.
+pub(crate) fn pixel_per_site(n_sites: usize) -> SurfaceTexture {
+    let row = Raster::filled([n_sites as u32, 1], 0.0).unwrap();
+    let exemplar = Exemplar::from_planes(&[(&row, 1.0)], Edges::Cut).unwrap();
+    let sources = vec![(0..n_sites as u32).collect()];
+    SurfaceTexture::new(&exemplar.pyramid(1).unwrap(), sources, None)
+}
+
+/// A map with one row, for [`pixel_per_site`].
+pub(crate) fn row<T: Clone>(column: &[T]) -> Raster<T> {
+    Raster::from_vec([column.len() as u32, 1], column.to_vec()).unwrap()
 }

@@ -1,6 +1,7 @@
 //! The result of a synthesis on a surface.
 
 use crate::ground::Colors as _;
+use crate::places::Places;
 use crate::{Pyramid, SynthError, SynthErrorKind};
 use dapple_raster::Raster;
 
@@ -9,6 +10,8 @@ use dapple_raster::Raster;
 pub struct SurfaceTexture {
     levels: Vec<Level>,
     n_channels: usize,
+    /// The sources of the finest sites, if they are places between pixels.
+    pub(crate) places: Option<Places>,
 }
 
 /// Colors and sources of every site of a level; empty if no pass visited it.
@@ -23,7 +26,7 @@ struct Level {
 
 impl SurfaceTexture {
     /// The texture whose sites are from these pixels of the levels of a pyramid.
-    pub(crate) fn new(pyramid: &Pyramid, sources: Vec<Vec<u32>>) -> Self {
+    pub(crate) fn new(pyramid: &Pyramid, sources: Vec<Vec<u32>>, places: Option<Places>) -> Self {
         let exemplars = pyramid.levels();
         let levels = exemplars.iter().zip(sources).map(|(exemplar, sources)| {
             let colors = exemplar.plain();
@@ -37,7 +40,13 @@ impl SurfaceTexture {
         Self {
             levels: levels.collect(),
             n_channels: exemplars.first().map_or(0, |exemplar| exemplar.n_channels),
+            places,
         }
+    }
+
+    /// The number of finest sites.
+    pub(crate) fn n_sites(&self) -> usize {
+        self.levels.first().map_or(0, |level| level.sources.len())
     }
 
     /// The number of values at a site, that of the exemplar's channels.

@@ -2,8 +2,9 @@
 
 use crate::engine::{self, Progress};
 use crate::mesh_ground::MeshGround;
+use crate::places::Places;
 use crate::{
-    Axes, Direction, Exemplar, Hierarchy, HierarchyOptions, Options, Orientation, SiteIdx,
+    Axes, Direction, Exemplar, Hierarchy, HierarchyOptions, Options, Orientation, SiteIdx, Sources,
     SurfaceTexture, Sweep, SynthError, SynthErrorKind,
 };
 use core::ops::ControlFlow;
@@ -115,7 +116,14 @@ impl Synthesizer {
         let pyramid = exemplar.pyramid(options.n_levels)?;
         let ground = self.ground(options.axes);
         let sources = engine::run(&ground, &pyramid, options, &mut callback)?;
-        Ok(SurfaceTexture::new(&pyramid, sources))
+        let places = match options.sources {
+            Sources::Pixel => None,
+            Sources::SubPixel => sources.first().map(|sources| {
+                let exemplar = &pyramid.levels()[0];
+                Places::new(&self.hierarchy, &self.orientation, exemplar, sources)
+            }),
+        };
+        Ok(SurfaceTexture::new(&pyramid, sources, places))
     }
 
     /// The surface, its sites and their orientation, on which the texture grows.

@@ -1,20 +1,20 @@
-//! Work along one axis after the other.
+//! Processing of planes along one axis after the other.
 //!
-//! What is written for rows serves columns too: the planes are transposed before and after.
+//! A function for rows serves columns too: the planes are transposed before and after.
 
 use crate::TileError;
 use dapple_raster::Raster;
 
-/// The axes in the order in which they are worked on.
+/// The axes, in the order in which they are processed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Axis {
     X,
     Y,
 }
 
-/// Changes the rows of all planes if x repeats, then the columns of what results if y repeats.
+/// Changes the rows of all planes if x repeats, then the columns of the result if y repeats.
 ///
-/// `along_rows` sees planes whose rows run along the axis that it is told.
+/// `along_rows` gets planes whose rows run along the axis in its argument.
 pub(crate) fn each_axis(
     planes: &[Raster<f32>],
     axes: [bool; 2],
@@ -35,10 +35,10 @@ fn transpose_all(planes: &[Raster<f32>]) -> Result<Vec<Raster<f32>>, TileError> 
     planes.iter().map(transpose).collect()
 }
 
-/// How many columns and rows are read at a time, so that what is read and what is written stay in the cache.
+/// The number of columns and rows that are transposed at a time: source and target of a block stay in the cache.
 const BLOCK: usize = 32;
 
-/// The raster with columns for rows.
+/// The raster with rows and columns exchanged.
 pub(crate) fn transpose(raster: &Raster<f32>) -> Result<Raster<f32>, TileError> {
     let [width, height] = raster.size().map(|side| side as usize);
     let from = raster.pixels();

@@ -1,9 +1,9 @@
-//! Blending textures: all maps of several materials, by weights.
+//! Blending of textures: all maps of several materials, by weights.
 //!
-//! Blending has two parts, and each kind of the one goes with each of the other. The [`Weighting`] says which layer has
-//! what share of a pixel: its weight as it is, more for the higher layer, or what a blend tile says, which is what Du, Wang
-//! and Meng make their tiles for ("Wavelet and Blend maps for texture synthesis", section V). The [`Mixing`] says how the
-//! values `x` of the layers are mixed by these shares `w`:
+//! Blending has two parts, which can be combined freely. The [`Weighting`] determines the share of each layer in a
+//! pixel: its weight as it is, more for the higher layer, or the share from a blend tile, which is the purpose of the
+//! tiles of Du, Wang and Meng ("Wavelet and Blend maps for texture synthesis", section V). The [`Mixing`] determines
+//! how the values `x` of the layers are mixed by these shares `w`:
 //!
 //! * linear: `Σ w x`, the splatting of Charles Bloom (2000);
 //! * keeping the variance: `Σ w μ + Σ w (x - μ) / sqrt(Σ w²)`, with `μ` the mean of a layer's map over the raster, after
@@ -13,8 +13,8 @@
 //!   values are taken as they are;
 //! * in bands: see [`Pyramid`].
 //!
-//! How much of the fine contrast of two unlike noises of equal contrast is left in the middle of a ramp 128 pixels wide, as
-//! the tests measure it:
+//! The tests measure how much of the fine contrast of two unlike noises of equal contrast is left in the middle of a
+//! ramp 128 pixels wide:
 //!
 //! | weighting | linear | keeping the variance | pyramid |
 //! |---|---|---|---|
@@ -24,25 +24,25 @@
 //! | mask, gain 4 | 0.97 | | 0.99 |
 //! | mask, hard | 1.05 | | |
 //!
-//! All maps of a material have the same shares. Normals are mixed as slopes and come back as long as 1. Where they shall
-//! belong to the blended height, make them of it by [`normal_map`](dapple_color::normal_map).
+//! All maps of a material have the same shares. Normals are mixed as slopes, and the results are unit vectors. For
+//! normals that match the blended height, compute them from it by [`normal_map`](dapple_color::normal_map).
 
 use crate::map::check_planes;
 use crate::{Map, Pyramid, TileError, TileErrorKind, Weighting};
 use dapple_raster::Raster;
 
-/// A material, and where it lies.
+/// A material, and the weight of its layer at each pixel.
 #[derive(Clone, Copy, Debug)]
 pub struct Layer<'a> {
     /// Its maps. All layers have the same kinds in the same order, and all are of one size.
     pub maps: &'a [Map],
-    /// How much of it there is, at least 0, in any unit: weights count beside those of the other layers.
+    /// The weight of the layer at each pixel, at least 0, relative to the weights of the other layers.
     pub weight: &'a Raster<f32>,
     /// Its height for [`Weighting::Height`], by custom from 0 to 1. Only differences between layers count.
     pub height: Option<&'a Raster<f32>>,
 }
 
-/// How layers are blended.
+/// Options of a blend of layers.
 ///
 /// # Examples
 ///
@@ -62,9 +62,9 @@ pub struct Layer<'a> {
     serde(default, deny_unknown_fields)
 )]
 pub struct Blend {
-    /// How weights become shares. By default as given.
+    /// The rule that turns weights into shares; [`Weighting::Given`] by default.
     pub weighting: Weighting,
-    /// How layers are mixed by their shares. By default linear.
+    /// The rule by which layers are mixed with their shares; linear by default.
     pub mixing: Mixing,
 }
 
@@ -81,7 +81,7 @@ pub enum Mixing {
     /// The weighted mean: it stays in the range of the layers.
     #[default]
     Linear,
-    /// The contrast is kept where layers have nothing in common; values may leave the range of the layers.
+    /// The contrast is kept where layers are uncorrelated; values may leave the range of the layers.
     KeepVariance,
     /// The weighted mean in bands, with sharper transitions where details are finer.
     Pyramid(Pyramid),
@@ -95,11 +95,11 @@ impl Blend {
     }
 }
 
-/// The maps of a blend of layers.
+/// Blends the maps of layers.
 ///
-/// Where a single layer has a weight, its maps come back: to the last bit with [`Mixing::Linear`], to a rounding with
-/// [`Mixing::KeepVariance`], and to a rounding per level with [`Mixing::Pyramid`] where no other has a weight nearby.
-/// Normals come back to the roundings of their slopes.
+/// Where only one layer has a weight, the result is its maps: to the last bit with [`Mixing::Linear`], to a rounding
+/// with [`Mixing::KeepVariance`], and to a rounding per level with [`Mixing::Pyramid`] where no other layer has a
+/// weight nearby. Normals are exact up to the rounding of their slopes.
 ///
 /// # Errors
 ///
@@ -128,8 +128,8 @@ pub fn blend(layers: &[Layer<'_>], how: &Blend) -> Result<Vec<Map>, TileError> {
     blend_layers(layers, None, how)
 }
 
-/// The maps of a blend of layers along the features of a blend tile, which has their size: a mask for [`Weighting::Mask`], and the height of layers that have
-/// none for [`Weighting::Height`]. Others do not look at it.
+/// Blends the maps of layers along the features of a blend tile, which has their size. The tile is the mask for
+/// [`Weighting::Mask`], and the height of layers without one for [`Weighting::Height`]; other weightings ignore it.
 ///
 /// # Errors
 ///
@@ -172,7 +172,7 @@ fn blend_layers(
 ) -> Result<Vec<Map>, TileError> {
     check_layers(layers)?;
     let shares = how.weighting.shares(layers, tile)?;
-    // For each band its shares, finest first.
+    // The shares for each band, finest first.
     let bands = match &how.mixing {
         Mixing::Pyramid(pyramid) => pyramid.shares(shares)?,
         Mixing::Linear | Mixing::KeepVariance => vec![shares],
@@ -182,7 +182,7 @@ fn blend_layers(
         .collect()
 }
 
-/// Refuses layers whose maps do not belong together.
+/// Checks that the maps of all layers match in number, kind and size.
 fn check_layers(layers: &[Layer<'_>]) -> Result<(), TileError> {
     let count = |what, count, needed| {
         TileError::new(TileErrorKind::Count {
@@ -211,7 +211,7 @@ fn check_layers(layers: &[Layer<'_>]) -> Result<(), TileError> {
     Ok(())
 }
 
-/// The blend of one map of all layers.
+/// Blends one map of all layers.
 fn mix_map(
     layers: &[Layer<'_>],
     map: usize,
@@ -224,7 +224,7 @@ fn mix_map(
         .collect();
     let mut blended = Vec::new();
     loop {
-        // The next plane of each layer; all have equally many.
+        // The next plane of each layer; all have equally many planes.
         let planes: Vec<_> = of_layers.iter_mut().filter_map(Iterator::next).collect();
         if planes.is_empty() {
             return layers[0].maps[map].with_planes(blended);
@@ -238,7 +238,7 @@ fn mix_map(
     }
 }
 
-/// `Σ w x`, in the range of the values that have a share.
+/// The linear mix `Σ w x`, clamped to the range of the values that have a share.
 pub(crate) fn linear(
     planes: &[Raster<f32>],
     shares: &[Raster<f32>],
@@ -262,7 +262,7 @@ pub(crate) fn linear(
     })?)
 }
 
-/// `Σ w μ + Σ w (x - μ) / sqrt(Σ w²)`.
+/// The mix `Σ w μ + Σ w (x - μ) / sqrt(Σ w²)`, which keeps the variance.
 fn keep_variance(planes: &[Raster<f32>], shares: &[Raster<f32>]) -> Result<Raster<f32>, TileError> {
     let size = planes[0].size();
     let means: Vec<f64> = planes.iter().map(|plane| plane.statistics().mean).collect();

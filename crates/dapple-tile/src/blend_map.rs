@@ -1,15 +1,15 @@
 //! Blend maps from a texture's own features.
 //!
-//! A blend map says of every pixel how much it matters: where another texture is laid over, it comes first where the map
-//! is low. Grass grows from the cracks between stones, and not on the stones.
+//! A blend map assigns an importance to every pixel: a texture that is laid over appears first where the map is low.
+//! Grass grows from the cracks between stones, and not on the stones.
 //!
 //! The idea is that of Alexandre Hardy and Duncan Andrew Keith Mc Roberts, "Blend Maps: Enhanced Terrain Texturing",
-//! SAICSIT 2006: find what is important in a texture by its features. Du, Wang and Meng ("Wavelet and Blend maps for
-//! texture synthesis") found that "there are too many coefficients need to be define in this method". The formula here is
-//! our own and has two knobs, a size and a contrast.
+//! SAICSIT 2006: find the important parts of a texture by its features. Du, Wang and Meng ("Wavelet and Blend maps for
+//! texture synthesis") found that "there are too many coefficients need to be define in this method". The formula here
+//! is our own and has two parameters, a size and a contrast.
 //!
-//! Let `L` be the luminance (or the height), taken to the range from -1 to 1, `G(s)` the blur by a Gaussian of standard
-//! deviation `s`, and `s = feature_size / 16`, but at least half a pixel:
+//! Let `L` be the luminance (or the height), mapped to the range from -1 to 1, `G(s)` the blur by a Gaussian of
+//! standard deviation `s`, and `s = feature_size / 16`, but at least half a pixel:
 //!
 //! * `B = G(s) L - G(4s) L` is what stands out from its surroundings: positive on stones, negative in cracks;
 //! * `D = s · G(s) |∇ G(s) L|` is the change over the distance `s`, nearby;
@@ -37,7 +37,7 @@ use crate::map::check_finite;
 use dapple_color::LinearRgb;
 use dapple_raster::{Raster, Wrap};
 
-/// How a texture becomes a blend map.
+/// Options of a blend map, and the functions that compute it.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/blend-map.md"))]
 ///
@@ -65,10 +65,10 @@ pub struct BlendMap {
     /// With half of their size the cracks are found as well, but the middles of large stones fall to ½; with twice as much
     /// thin cracks are lost.
     pub feature_size: f64,
-    /// How steep the map is around its median, at least 0. At 0 it is ½ everywhere, at 1 it grows by ½ per standard
+    /// The steepness of the map around its median, at least 0. At 0 it is ½ everywhere, at 1 it grows by ½ per standard
     /// deviation of the surroundings, and at 100 it is almost black and white. By default 1.
     pub contrast: f64,
-    /// What lies past the edges, per axis. By default the texture repeats, and so does its map.
+    /// The wrapping past the edges, along x and y. By default the texture repeats, and so does its map.
     pub wrap: [Wrap; 2],
 }
 
@@ -78,15 +78,15 @@ impl Default for BlendMap {
     }
 }
 
-/// Standard deviations of the finer blur in a feature.
+/// The feature size divided by the standard deviation of the finer blur.
 const FINE: f64 = 16.0;
-/// The least standard deviation of the finer blur, in pixels: a smaller bell has no weight beside its middle.
+/// The smallest standard deviation of the finer blur, in pixels: a smaller Gaussian has no weight beside its middle.
 const LEAST_SIGMA: f64 = 0.5;
-/// The coarser blur over the finer.
+/// The standard deviation of the coarser blur divided by that of the finer.
 const COARSE: f64 = 4.0;
-/// The share of the whole raster in how much things stand out.
+/// The weight of the whole raster in the local contrast `E`.
 const WHOLE: f32 = 0.05;
-/// The square of what still counts as standing out, in a range of 2: `f32` blurs are good to some 1e-7.
+/// The square of the smallest contrast that counts, in a range of 2: `f32` blurs are good to some 1e-7.
 const FLAT: f32 = 1e-10;
 
 impl BlendMap {
@@ -106,7 +106,7 @@ impl BlendMap {
         Self { contrast, ..self }
     }
 
-    /// Sets what lies past the edges, x first.
+    /// Sets the wrapping past the edges, along x and y.
     #[must_use]
     pub fn with_wrap(self, wrap: [Wrap; 2]) -> Self {
         Self { wrap, ..self }
@@ -121,8 +121,8 @@ impl BlendMap {
         self.apply(&texture.map(|color| color.luminance()))
     }
 
-    /// The blend map of a gray texture or of a height: between 0 and 1, low in dark or deep cracks, high on what stands
-    /// out, and ½ everywhere for a constant.
+    /// The blend map of a gray texture or of a height: between 0 and 1, low in dark or deep cracks, high on raised or
+    /// bright parts, and ½ everywhere for a constant.
     ///
     /// Where both axes repeat, a texture that is shifted around gives the shifted map, bit for bit.
     ///
@@ -142,7 +142,7 @@ impl BlendMap {
         Ok(importance.par_map(|&value| squash(contrast * f64::from(value - median))))
     }
 
-    /// `I`, of a texture in the range from -1 to 1.
+    /// The importance `I` of a texture in the range from -1 to 1.
     fn importance(&self, texture: &Raster<f32>) -> Result<Raster<f32>, TileError> {
         let sigma = (self.feature_size / FINE).max(LEAST_SIGMA);
         let smooth = blur(texture, sigma, self.wrap)?;
@@ -157,7 +157,7 @@ impl BlendMap {
     }
 }
 
-/// The raster with its range taken to -1 to 1; zero if all is the same.
+/// Maps the range of the raster to -1 to 1; zero for a constant raster.
 ///
 /// Unlike a mean, smallest and largest values do not depend on the order of pixels.
 fn to_unit_range(raster: &Raster<f32>) -> Raster<f32> {
@@ -198,14 +198,14 @@ fn mean(raster: &Raster<f32>) -> f32 {
     (sum as f64 / STEPS / pixels.len() as f64) as f32
 }
 
-/// The value in the middle; of an even number of pixels the upper one.
+/// The median; of an even number of pixels the upper one.
 fn median(raster: &Raster<f32>) -> f32 {
     let mut values = raster.pixels().to_vec();
     let middle = values.len() / 2;
     *values.select_nth_unstable_by(middle, f32::total_cmp).1
 }
 
-/// From all numbers to those between 0 and 1, along a curve of slope ½ in the middle.
+/// Maps all numbers to those between 0 and 1, along a curve of slope ½ in the middle.
 fn squash(x: f64) -> f32 {
     // Beyond a billion the result is 0 or 1 to all bits, and the square does not overflow.
     let x = x.clamp(-1e9, 1e9);

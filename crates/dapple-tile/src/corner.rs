@@ -1,12 +1,12 @@
-//! Corner tiles: sets that fit in any order.
+//! Corner tiles: sets of tiles that fit in any order.
 //!
 //! Ares Lagae and Philip Dutré, "An Alternative for Wang Tiles: Colored Edges versus Colored Corners", ACM Transactions on
 //! Graphics 25(4), 2006, <https://doi.org/10.1145/1183287.1183296>: a square tile has a color at each of its corners,
 //! and tiles fit where the colors of the corners that meet agree, along edges as well as across corners. With C colors
 //! there are C⁴ tiles, and a plane of randomly colored corners has exactly one tile for every place.
 //!
-//! Each color is a source, a material that repeats by itself, and near a corner its source is seen. As with the authors,
-//! pieces meet along cuts where they are most alike, and everything else is copied.
+//! Each color is a source, a material that repeats by itself, and near a corner its source is visible. As in the paper,
+//! pieces meet along cuts where they are most alike, and all other pixels are copies.
 //!
 //! Departure: instead of one cut through a graph there are three through rows or columns (see `cut.rs`). Sources a and b
 //! beside each other are cut from top to bottom, by a cut that closes and is the same in all tiles that have them there.
@@ -20,10 +20,10 @@ use crate::{Map, TileError, TileErrorKind};
 use dapple_hash::{CellHash, Seed};
 use dapple_raster::{Raster, Wrap};
 
-/// The most sources, hence colors.
+/// The largest number of sources, hence of colors.
 const MOST_SOURCES: usize = 4;
 
-/// The share of a side that cuts may take, if no other is given.
+/// The default share of a side that cuts may take.
 const WIDTH: f64 = 0.5;
 
 /// A set of corner tiles, made from 2 to 4 materials that repeat by themselves.
@@ -45,33 +45,33 @@ const WIDTH: f64 = 0.5;
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct CornerTiles {
-    /// For each source the planes of its maps.
+    /// The planes of the maps of each source.
     sources: Vec<Vec<Raster<f32>>>,
-    /// A pixel of each map of the first source, for its kind.
+    /// A pixel of each map of the first source, which records the kind of the map.
     kinds: Vec<Map>,
     period: [Option<u32>; 2],
     cuts: Cuts,
 }
 
-/// The cuts of a set of C colors.
+/// The cuts for a set of C colors.
 #[derive(Clone, Debug, PartialEq)]
 struct Cuts {
-    /// Between color a on the left and b on the right, at index a + b C.
+    /// The cut between color a on the left and b on the right, at index a + b C.
     beside: Vec<Cut>,
-    /// Between the upper and the lower pair, at the index of the tile; from left to right.
+    /// The cut between the upper and the lower pair, from left to right, at the index of the tile.
     across: Vec<Cut>,
 }
 
 impl CornerTiles {
     /// The tiles of 2 to 4 sources, each the maps of a material, of one size. Cuts may take half of a side.
     ///
-    /// While the cuts are looked for, C² copies of a source are in memory.
+    /// During the search for cuts, C² copies of a source are in memory.
     ///
     /// # Errors
     ///
-    /// [`TileErrorKind::Count`] for fewer or more sources, for sources without maps, or more or fewer than the first has,
-    /// [`TileErrorKind::KindMismatch`] if their maps are of other kinds, [`TileErrorKind::Raster`] if they differ in size,
-    /// [`TileErrorKind::NotFinite`] for a pixel that is NaN or infinite.
+    /// [`TileErrorKind::Count`] for fewer or more sources, for sources without maps or with another number of maps than
+    /// the first, [`TileErrorKind::KindMismatch`] if their maps are of other kinds, [`TileErrorKind::Raster`] if they
+    /// differ in size, [`TileErrorKind::NotFinite`] for a pixel that is NaN or infinite.
     pub fn new(sources: &[Vec<Map>]) -> Result<Self, TileError> {
         let count = sources.len();
         if !(2..=MOST_SOURCES).contains(&count) {
@@ -97,8 +97,8 @@ impl CornerTiles {
         })
     }
 
-    /// Sets the share of the shorter side that cuts may take, above 0 and at most 1. The larger it is, the less the pieces
-    /// are squares.
+    /// Sets the share of the shorter side that cuts may take, above 0 and at most 1. The larger the share, the less the
+    /// pieces look like squares.
     ///
     /// # Errors
     ///
@@ -110,8 +110,8 @@ impl CornerTiles {
         Ok(Self { cuts, ..self })
     }
 
-    /// Sets after how many tiles the corners repeat along each axis, x first: a map of whole periods repeats. By default they
-    /// do not repeat.
+    /// Sets the number of tiles after which the corners repeat along x and y: a map of whole periods repeats. By
+    /// default they do not repeat.
     ///
     /// # Errors
     ///
@@ -156,7 +156,7 @@ impl CornerTiles {
     ///
     /// # Errors
     ///
-    /// None that [`new`](Self::new) lets pass.
+    /// None for sources that [`new`](Self::new) accepted.
     pub fn all(&self) -> Result<Vec<Vec<Map>>, TileError> {
         let n_colors = self.sources.len();
         let tiles = (0..n_colors.pow(4)).map(|index| self.tile(colors_of(index, n_colors)));
@@ -216,7 +216,7 @@ impl CornerTiles {
         (((bits >> 32) * self.sources.len() as u64) >> 32) as u8
     }
 
-    /// Some columns of a row of a plane of a tile.
+    /// Joins some columns of a row of a plane of a tile.
     fn join_row(
         &self,
         colors: [u8; 4],
@@ -258,7 +258,7 @@ fn colors_of(index: usize, n_colors: usize) -> [u8; 4] {
 }
 
 impl Cuts {
-    /// The cheapest cuts that may take a share of the shorter side.
+    /// The cheapest cuts within a share of the shorter side.
     fn new(sources: &[Vec<Raster<f32>>], width: f64) -> Result<Self, TileError> {
         let size = check_planes(&sources.concat())?;
         let [along_x, along_y] = size.map(|side| band(side, size, width));
@@ -296,8 +296,9 @@ impl Cuts {
     }
 }
 
-/// The band of the cuts in the middle of a side: a share of the shorter side, so that a cut that moves one pixel to the side in
-/// each row gets from any pixel of the band to any other. A pixel at both ends of the side stays free, if there are three.
+/// The band of the cuts in the middle of a side. It takes a share of the shorter side, so that a cut that moves one
+/// pixel to the side in each row gets from any pixel of the band to any other. One pixel at each end of the side stays
+/// free, if there are three or more.
 fn band(side: u32, size: [u32; 2], width: f64) -> Band {
     let shorter = size[0].min(size[1]);
     let share = (f64::from(shorter) * width).round() as u32;

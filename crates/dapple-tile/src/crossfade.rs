@@ -1,8 +1,8 @@
-//! Two images mixed by weights, with or without their variance kept.
+//! Crossfade: two images mixed by weights, with or without their variance kept.
 //!
-//! A mean of two images that have nothing to do with each other has less contrast than either. Divided by the length of
-//! the vector of weights instead of by their sum, what differs from the mean keeps its variance: Eric Heitz and Fabrice
-//! Neyret, "High-Performance By-Example Noise using a Histogram-Preserving Blending Operator", Proceedings of the ACM on
+//! The mean of two uncorrelated images has less contrast than either. If it is divided by the length of the vector of
+//! weights instead of by their sum, the deviation from the mean keeps its variance: Eric Heitz and Fabrice Neyret,
+//! "High-Performance By-Example Noise using a Histogram-Preserving Blending Operator", Proceedings of the ACM on
 //! Computer Graphics and Interactive Techniques 1(2), 2018, <https://doi.org/10.1145/3233304>; here without their
 //! change of histogram.
 //!
@@ -29,7 +29,7 @@ dapple_raster::named! {
     }
 }
 
-/// Two images of one size, and what their values vary around.
+/// Two images of one size, and the means of their planes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Pair<'a> {
     pub(crate) images: [&'a Raster<f32>; 2],
@@ -37,7 +37,7 @@ pub(crate) struct Pair<'a> {
 }
 
 impl Crossfade {
-    /// The images mixed, by the weights of the second, from 0 to 1. A pixel of weight 0 or 1 is copied.
+    /// Mixes the images by the weights of the second, from 0 to 1. A pixel of weight 0 or 1 is copied.
     pub(crate) fn mix(
         self,
         pair: Pair<'_>,
@@ -60,21 +60,21 @@ impl Crossfade {
     }
 }
 
-/// The factors of the two deviations, for the weight of the second and the correlation of the two.
+/// The factors of the two deviations, for a weight of the second and a correlation.
 fn shares(weight: f64, correlation: f64) -> [f64; 2] {
     let [v, w] = [1.0 - weight, weight];
     let length = (v * v + w * w + 2.0 * correlation * v * w).sqrt();
     [v / length, w / length]
 }
 
-/// The mean of the means, and the shares of both deviations.
+/// Mixes two values: the weighted mean of the means, plus the shares of both deviations.
 fn mix_two(values: [f32; 2], means: [f64; 2], shares: [f64; 2], weight: f64) -> f32 {
     let [a, b] = [0, 1].map(|side| (f64::from(values[side]) - means[side]) * shares[side]);
     (means[0] + weight * (means[1] - means[0]) + (a + b)) as f32
 }
 
 impl<'a> Pair<'a> {
-    /// The values of both, and the weight of the second.
+    /// The values of both images at a pixel, and the weight of the second.
     fn pixels(
         self,
         weights: &'a Raster<f64>,
@@ -87,7 +87,7 @@ impl<'a> Pair<'a> {
         Ok(pixels.map(|((a, b), weight)| ([*a, *b], *weight)))
     }
 
-    /// The correlation of the two over all pixels that are mixed, from 0 to 1; 0 if one of them does not vary there.
+    /// The correlation of the two over all mixed pixels, from 0 to 1; 0 if one of them is constant there.
     fn correlation(self, weights: &Raster<f64>) -> Result<f64, TileError> {
         let [mut aa, mut bb, mut ab] = [0.0; 3];
         for ([a, b], weight) in self.pixels(weights)? {
@@ -98,7 +98,7 @@ impl<'a> Pair<'a> {
                 ab += a * b;
             }
         }
-        // Each root on its own, so that the product of huge sums stays finite.
+        // The roots are taken one by one, so that the product of huge sums stays finite.
         let both: f64 = aa.sqrt() * bb.sqrt();
         Ok(if both > 0.0 {
             (ab / both).clamp(0.0, 1.0)

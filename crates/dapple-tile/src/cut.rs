@@ -1,13 +1,15 @@
 //! A cut between two images along the line where they are most alike.
 //!
-//! On the left of the cut the first image is seen, on the right the second. In each row the cut passes one pixel, and it
-//! moves at most one column from row to row: the cut of Alexei A. Efros and William T. Freeman, "Image Quilting for Texture
-//! Synthesis and Transfer", SIGGRAPH 2001, <https://doi.org/10.1145/383259.383296>, the cheapest of all such lines.
+//! Left of the cut the first image is visible, right of it the second. In each row the cut passes one pixel, and it
+//! moves at most one column from row to row: the cut of Alexei A. Efros and William T. Freeman, "Image Quilting for
+//! Texture Synthesis and Transfer", SIGGRAPH 2001, <https://doi.org/10.1145/383259.383296>, the cheapest of all such
+//! lines.
 //!
-//! Two images differ in a pixel by the sum over all planes of their squared differences, each plane divided by its variance:
-//! a height in meters counts as much as a color. Across the cut the two are mixed along a short smooth ramp, where they are
-//! alike and a mean of both does no harm. All other pixels are copies. In each row a cut costs what the pixels of the ramp
-//! differ by, each times w (1 - w) for its weight w: the variance that the mean loses.
+//! The difference of two images in a pixel is the sum over all planes of their squared differences, each plane divided
+//! by its variance, so that a height in meters counts as much as a color. Across the cut the two are mixed along a
+//! short smooth ramp, where they are alike and a mean does no harm. All other pixels are copies. In each row the cost
+//! of a cut is the sum over the pixels of the ramp of the difference times w (1 - w), for the weight w: the variance
+//! that the mean loses.
 
 use crate::TileError;
 use crate::cut_path::{closed_path, open_path, path_between};
@@ -23,18 +25,18 @@ pub(crate) struct Band {
     pub(crate) count: u32,
 }
 
-/// Where a cut begins and ends.
+/// The constraint on the first and the last column of a cut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Ends {
-    /// In any columns.
+    /// A cut may begin and end in any columns.
     Free,
     /// The last pixel is below the first one or beside it, as in rows that repeat.
     Closed,
-    /// In these columns.
+    /// The cut begins and ends in the given columns.
     At([u32; 2]),
 }
 
-/// A cut: for each row, the column of the pixel that is half of either image.
+/// A cut: for each row, the column of the pixel that is half of each image.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Cut {
     columns: Vec<u32>,
@@ -42,7 +44,7 @@ pub(crate) struct Cut {
 }
 
 impl Cut {
-    /// The cheapest cut in a band. The scales are those of the planes, as [`scales`] gives them.
+    /// The cheapest cut in a band. `scales` are those of the planes, see [`scales`].
     pub(crate) fn cheapest(
         images: [&[Raster<f32>]; 2],
         scales: &[f64],
@@ -50,7 +52,7 @@ impl Cut {
         ends: Ends,
     ) -> Result<Self, TileError> {
         let half_width = half_width(band);
-        // A band of no column still has a first one on the right of it.
+        // A band without columns still has a first one to its right.
         let size = [
             band.count.max(1),
             images[0].first().map_or(1, Raster::height),
@@ -81,18 +83,18 @@ impl Cut {
         }
     }
 
-    /// The columns of its first and its last pixel.
+    /// The columns of the cut's first and last pixel.
     pub(crate) fn ends(&self) -> [u32; 2] {
         [self.columns[0], self.columns[self.columns.len() - 1]]
     }
 
-    /// The weight of the second image.
+    /// The weight of the second image at a pixel.
     pub(crate) fn weight(&self, column: u32, row: u32) -> f64 {
         let cut = self.columns[row as usize];
         weight(f64::from(column) - f64::from(cut), self.half_width)
     }
 
-    /// The two images joined.
+    /// Joins the two images along the cut.
     pub(crate) fn join(&self, [a, b]: [&Raster<f32>; 2]) -> Result<Raster<f32>, TileError> {
         a.check_same_size(b.size())?;
         Ok(Raster::from_rows(a.size(), |row| {
@@ -102,12 +104,12 @@ impl Cut {
     }
 }
 
-/// Half of the width over which a cut in a band is softened, so that the ramp fits into it.
+/// Half of the width over which a cut in a band is softened, limited so that the ramp fits into the band.
 fn half_width(band: Band) -> f64 {
     HALF_WIDTH.min(f64::from(band.count) / 2.0)
 }
 
-/// The cost of a cut through each of the pixels that leave room for its ramp.
+/// The cost of a cut through each pixel that leaves room for its ramp.
 fn costs(differences: &Raster<f64>, half_width: f64) -> Result<Raster<f64>, TileError> {
     let inset = inset(half_width);
     let factors: Vec<f64> = (0..=2 * inset)
@@ -124,7 +126,7 @@ fn costs(differences: &Raster<f64>, half_width: f64) -> Result<Raster<f64>, Tile
     })?)
 }
 
-/// A part of the way from one value to another; a copy at both ends.
+/// Interpolates linearly between two values; exact at both ends.
 pub(crate) fn mix(a: f32, b: f32, weight: f64) -> f32 {
     match weight {
         0.0 => a,
@@ -142,7 +144,7 @@ pub(crate) fn weight(from_cut: f64, half_width: f64) -> f64 {
     }
 }
 
-/// How many columns at both ends of a band the cut keeps away from, so that its ramp stays inside.
+/// The number of columns at each end of a band that the cut avoids, so that its ramp stays inside.
 pub(crate) fn inset(half_width: f64) -> u32 {
     (half_width.ceil() as u32).saturating_sub(1)
 }
@@ -163,7 +165,7 @@ pub(crate) fn add_differences(
     }
 }
 
-/// For each plane, one over the root of its mean variance in all materials, or 0 if it has one value in each.
+/// For each plane, one over the root of its mean variance in all materials, or 0 if it is constant in each.
 pub(crate) fn scales(materials: &[&[Raster<f32>]]) -> Vec<f64> {
     let n_planes = materials.first().map_or(0, |planes| planes.len());
     let scale = |plane: usize| {
@@ -198,7 +200,7 @@ mod tests {
         Raster::from_fn(size, |x, y| value(x, y) as f32).unwrap()
     }
 
-    /// Σ w (1 - w) d² over all pixels.
+    /// The cost of a cut, Σ w (1 - w) d² over all pixels.
     fn price(cut: &Cut, images: [&Raster<f32>; 2]) -> f64 {
         let [width, height] = images[0].size();
         let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));

@@ -13,7 +13,7 @@
 
 use dapple_raster::Raster;
 
-/// The column of the cheapest path in every row; of equally cheap ones, with the smaller columns from the end on.
+/// The columns of the cheapest path, row by row; of equally cheap ones, with the smaller columns from the end on.
 ///
 /// Costs are finite.
 pub(crate) fn open_path(costs: &Raster<f64>) -> Vec<u32> {
@@ -33,7 +33,7 @@ pub(crate) fn closed_path(costs: &Raster<f64>) -> Vec<u32> {
 
 /// The columns of the cheapest path from a column of the first row to one of the last, row by row.
 ///
-/// The two are less than a row apart for each row of the grid.
+/// The two columns differ by less than the number of rows.
 pub(crate) fn path_between(costs: &Raster<f64>, [begin, end]: [u32; 2]) -> Vec<u32> {
     let [left, right] = whole_band(costs);
     let mut search = Search::new(costs);
@@ -53,23 +53,23 @@ impl Path {
     }
 }
 
-/// The smallest and the largest column of each row, when all may be used.
+/// The smallest and the largest column of each row, for a search in the whole grid.
 fn whole_band(costs: &Raster<f64>) -> [Vec<u32>; 2] {
     [0, costs.width() - 1].map(|column| vec![column; costs.height() as usize])
 }
 
-/// The grid, and memory for one search after another.
+/// A grid of costs, and memory that is reused from search to search.
 struct Search<'a> {
     costs: &'a Raster<f64>,
     /// The prices of the cheapest paths to the cells of this row and of the one above, which begin [`PAD`] cells
     /// before the first column.
     prices: [Vec<f64>; 2],
-    /// How a cell is reached best: from the column before (0), the same (1) or the one after (2).
+    /// The best way to reach each cell: from the column before (0), the same (1) or the one after (2).
     steps: Vec<u8>,
 }
 
-/// How many cells around a band cost infinitely much: a step goes one cell to the side, and the band of the next row may
-/// begin and end one cell further out.
+/// The number of cells of infinite cost around a band: a step goes one cell to the side, and the band of the next row
+/// may begin and end one cell further out.
 const PAD: usize = 2;
 
 impl<'a> Search<'a> {
@@ -82,7 +82,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Looks for closed paths that begin in `first[0]..first[1]` and stay in the band.
+    /// Searches closed paths that begin in `first[0]..first[1]` and stay in the band.
     fn halve(&mut self, first: [u32; 2], left: &[u32], right: &[u32], best: &mut Path) {
         if first[0] >= first[1] {
             return;
@@ -96,7 +96,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// The cheapest path between `left` and `right`, both included; closed, if it has to begin in a given column.
+    /// The cheapest path between `left` and `right`, both included; closed, if `begin` is the column to begin in.
     fn cheapest(&mut self, left: &[u32], right: &[u32], begin: Option<u32>) -> Path {
         let last = left.len() - 1;
         let begins = begin.map_or([left[0], right[0]], |column| [column; 2]);
@@ -109,7 +109,7 @@ impl<'a> Search<'a> {
         self.trace(last, [from, to])
     }
 
-    /// The prices of all cells of the band, for paths that begin in one of the cells `begins[0]..=begins[1]`.
+    /// Computes the prices of all cells of the band, for paths that begin in one of the cells `begins[0]..=begins[1]`.
     fn spread(&mut self, left: &[u32], right: &[u32], begins: [u32; 2]) {
         self.begin([left[0], right[0]], begins);
         for row in 1..left.len() {
@@ -117,7 +117,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// The prices of the first row: only cells `from..=to` can be the first.
+    /// Computes the prices of the first row, in which paths begin in the cells `from..=to`.
     fn begin(&mut self, band: [u32; 2], [from, to]: [u32; 2]) {
         let [low, high] = band.map(|column| column as usize + PAD);
         let prices = &mut self.prices[0];
@@ -127,7 +127,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// The prices of the next row, whose band begins and ends at most one cell beside that of the last.
+    /// Computes the prices of the next row, whose band begins and ends at most one cell beside that of the last.
     fn advance(&mut self, row: usize, band: [u32; 2]) {
         let [low, high] = band.map(|column| column as usize);
         let width = self.costs.width() as usize;

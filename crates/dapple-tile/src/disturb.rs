@@ -2,14 +2,14 @@
 //!
 //! A tile that repeats shows its repetition. Jin-Lian Du, Song Wang and Xianhai Meng, "Wavelet and Blend maps for
 //! texture synthesis", propose "using stochastic function to disturb the signal inner each tile but keep the boundary
-//! not change", and leave the function open. Here the middle of each copy of the tile in the plane is a piece of the same
-//! tile, shifted by a random number of whole pixels, and the two meet along a cut where they are most alike (see `cut.rs`).
-//! So nothing comes in that the tile has not. A shift is at least a quarter of the tile along each axis, whichever way round
-//! (a side of a single pixel cannot be shifted).
+//! not change", and leave the function open. Here the middle of each copy of the tile in the plane is a piece of the
+//! same tile, shifted by a random number of whole pixels, and the two meet along a cut where they are most alike (see
+//! `cut.rs`). So copies contain no content that the tile lacks. A shift is at least a quarter of the tile along each
+//! axis, in either direction (a side of a single pixel cannot be shifted).
 //!
 //! The `frozen` pixels next to the borders are the tile's in all copies, bit for bit, and the cut lies in the `margin`
-//! next to them. Which copy is shifted by how much is a hash of its column and row: a window is the crop of the whole, and a
-//! map of whole copies repeats.
+//! next to them. The shift of a copy is a hash of its column and row: a window is the crop of the whole, and a map of
+//! whole copies repeats.
 //!
 //! Reference: Du Jin-Lian, Wang Song and Meng Xianhai, "Wavelet and Blend maps for texture synthesis", section 4 C; the
 //! shifts and the cut are our own.
@@ -21,7 +21,7 @@ use crate::{Map, TileError, TileErrorKind};
 use dapple_hash::{CellHash, Seed};
 use dapple_raster::Raster;
 
-/// A map of copies of a tile that differ inside.
+/// A map of copies of a tile that differ inside and share their borders.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/disturbance.md"))]
 ///
@@ -43,11 +43,12 @@ use dapple_raster::Raster;
     serde(default, deny_unknown_fields)
 )]
 pub struct Disturbance {
-    /// How many pixels along each border stay as they are. By default 4.
+    /// The number of unchanged pixels along each border. By default 4.
     pub frozen: u32,
-    /// How many more pixels the cut may take, for which tile and shifted tile lie over each other. Together with the frozen ones at most half of a side. By default 24.
+    /// The number of pixels next to the frozen ones in which the cut may lie, where tile and shifted tile overlap.
+    /// Together with the frozen pixels it is at most half of a side. By default 24.
     pub margin: u32,
-    /// Where the shifts come from. By default `Seed(0)`.
+    /// The seed of the shifts. By default `Seed(0)`.
     pub seed: Seed,
 }
 
@@ -58,7 +59,7 @@ impl Default for Disturbance {
 }
 
 impl Disturbance {
-    /// The disturbance of a seed, for tiles of at least 56 pixels: 4 frozen and a margin of 24.
+    /// The disturbance with a seed, for tiles of at least 56 pixels: 4 frozen and a margin of 24.
     #[must_use]
     pub fn new(seed: Seed) -> Self {
         Self {
@@ -68,7 +69,7 @@ impl Disturbance {
         }
     }
 
-    /// A map of `size` pixels that is covered with disturbed copies of a tile which repeats, from pixel `first` of the
+    /// A map of `size` pixels that is covered with disturbed copies of a periodic tile, from pixel `first` of the
     /// plane; on all cores where the feature `rayon` is on.
     ///
     /// Copy `[0, 0]` of the tile begins in pixel `[0, 0]` of the plane. Past the largest `i64` the plane goes on with the
@@ -89,9 +90,9 @@ impl Disturbance {
         Ok(maps.swap_remove(0))
     }
 
-    /// Covers maps with copies of the tiles of a material. All maps are shifted and cut alike.
+    /// Maps that are covered with disturbed copies of the tiles of a material. All maps are shifted and cut alike.
     ///
-    /// Normals are mixed as slopes, so that those of the frozen border come back within rounding.
+    /// Normals are mixed as slopes, so that those of the frozen border are unchanged only up to rounding.
     ///
     /// # Errors
     ///
@@ -143,7 +144,7 @@ impl Disturbance {
         framed(&shifted.collect::<Result<Vec<_>, _>>()?, tile, width)
     }
 
-    /// Refuses a frame that leaves nothing of a side.
+    /// Checks that the frozen pixels and the margin fit into half of a side.
     fn check_width(&self, size: [u32; 2]) -> Result<(), TileError> {
         for length in size {
             let (margin, most) = (self.frozen.saturating_add(self.margin), length / 2);
@@ -159,7 +160,7 @@ impl Disturbance {
     }
 }
 
-/// The tile, which repeats, from another pixel on.
+/// A periodic tile, rolled so that it begins at another pixel.
 pub(crate) fn rolled(plane: &Raster<f32>, [x, y]: [u32; 2]) -> Result<Raster<f32>, TileError> {
     Ok(Raster::from_rows(plane.size(), |row| {
         let row = (u64::from(row) + u64::from(y)) % u64::from(plane.height());
@@ -171,7 +172,7 @@ pub(crate) fn rolled(plane: &Raster<f32>, [x, y]: [u32; 2]) -> Result<Raster<f32
 /// A random number of pixels from a quarter to three quarters of a side, both included; 0 for a side of one pixel.
 fn shift(bits: u64, side: u32) -> u32 {
     let least = side.div_ceil(4);
-    // Three quarters are what a quarter leaves. For a side of one pixel nothing is left to choose from.
+    // The largest shift is a quarter less than the side. A side of one pixel has no choice.
     let choices = u64::from((side - least + 1).saturating_sub(least));
     // The upper half of the product of a number below 1 and the choices.
     let chosen = (((bits >> 32) * choices) >> 32) as u32;

@@ -1,37 +1,37 @@
-//! Why an image, a method or a blend was refused.
+//! Errors of tiles, reports and blends.
 
 use dapple_color::ColorError;
 use dapple_raster::RasterError;
 use dapple_wavelet::WaveletError;
 
 dapple_raster::error! {
-    /// Why a tile could not be made.
+    /// An error of making a tile, a report or a blend.
     TileError,
-    /// The limit that was broken.
+    /// The cause of a [`TileError`], with the limit and the value.
     TileErrorKind with Range {
-        /// A side is too short for what was asked.
+        /// A side is too short for the operation.
         TooSmall {
             /// The length of the side, in pixels.
             length: u32,
-            /// The shortest that is allowed.
+            /// The shortest allowed length.
             least: u32,
         } => "a side of {length} pixels is too short; it must have at least {least}";
-        /// A margin, or the width of what changes along the borders, leaves too little of the image.
+        /// A margin, or the width of the changed borders, leaves too little of the image.
         Margin {
-            /// The margin or the width that was asked for, in pixels.
+            /// The margin or the width, in pixels.
             margin: u32,
             /// The length of the side, in pixels.
             length: u32,
-            /// The largest margin that is allowed.
+            /// The largest allowed margin.
             most: u32,
         } => "a margin of {margin} pixels is too wide for a side of {length}; at most {most} are possible";
-        /// There is nothing to work on, or there are more or fewer things than needed.
+        /// The number of items is zero, or not the number needed.
         Count {
-            /// The name of what is counted.
+            /// The name of the items.
             what: &'static str,
-            /// How many there are.
+            /// The number of items.
             count: usize,
-            /// How many were needed, as text.
+            /// The number needed, as text.
             needed: &'static str,
         } => "there are {count} {what}, but {needed} are needed";
         /// Maps that belong together are of different kinds.
@@ -41,20 +41,20 @@ dapple_raster::error! {
         } => "map {map} is of another kind than the one it belongs to";
         /// A pixel is NaN or infinite.
         NotFinite {
-            /// Its column.
+            /// The column of the pixel.
             column: u32,
-            /// Its row.
+            /// The row of the pixel.
             row: u32,
-            /// Its value.
+            /// The value of the pixel.
             value: f32,
         } => "the pixel in column {column} and row {row} is {value}, but all must be finite";
     }
     from {
-        /// The wavelet filter refused the size: odd, or not divisible by 2^levels.
+        /// An error of the wavelet filter: an odd size, or one not divisible by 2^levels.
         Wavelet(WaveletError),
-        /// The raster was refused, or two sizes differ.
+        /// An error of the raster, or two sizes differ.
         Raster(RasterError),
-        /// The color crate refused its input.
+        /// An error of the color crate.
         Color(ColorError),
     }
 }

@@ -31,17 +31,17 @@ pub(crate) struct Fourier {
     route: Route,
 }
 
-/// How a length is transformed.
+/// The algorithm for a length.
 #[derive(Debug)]
 enum Route {
-    /// In passes, one for each small factor of the length.
+    /// Passes, one for each small factor of the length.
     Passes(Vec<Pass>),
-    /// By a convolution.
+    /// A convolution with a chirp.
     Chirp(Box<Chirp>),
 }
 
 impl Fourier {
-    /// Prepares a transform; a length of 0 is taken as 1.
+    /// Prepares a transform; a length of 0 counts as 1.
     pub(crate) fn new(length: usize) -> Self {
         let length = length.max(1);
         let route = match passes::plan(length) {
@@ -56,7 +56,7 @@ impl Fourier {
         self.length
     }
 
-    /// From values to frequencies. There must be as many elements as the length.
+    /// Transforms values to frequencies. The number of elements must be the length.
     pub(crate) fn forward(&self, lines: &mut Vec<Element>) {
         match &self.route {
             Route::Passes(passes) => passes::run(passes, lines),
@@ -64,7 +64,7 @@ impl Fourier {
         }
     }
 
-    /// From frequencies to values that are `length` times as large.
+    /// Transforms frequencies to values that are `length` times as large.
     pub(crate) fn backward(&self, lines: &mut Vec<Element>) {
         exchange_parts(lines);
         self.forward(lines);
@@ -72,14 +72,14 @@ impl Fourier {
     }
 }
 
-/// Conjugates every number and multiplies it by i. Done before and after, it makes a transform turn the other way.
+/// Conjugates every number and multiplies it by i. Done before and after a transform, it reverses its direction.
 fn exchange_parts(lines: &mut [Element]) {
     lines
         .iter_mut()
         .for_each(|element| element.rotate_left(LANES));
 }
 
-/// `exp(−2πi step/n)` as cosine and sine.
+/// The root of unity `exp(−2πi step/n)`, as cosine and sine.
 fn turn(step: u64, n: u64) -> [f64; 2] {
     let (sin, cos) = libm::sincos(TAU * ((step % n) as f64 / n as f64));
     [cos, -sin]

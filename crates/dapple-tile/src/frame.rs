@@ -1,4 +1,4 @@
-//! An image in the frame of another: the borders of the one, the middle of the other, and a cut between them all around.
+//! An image in the frame of another: the borders of one and the middle of the other, with a cut all around.
 //!
 //! Along each axis there is a cut at either end: first those on the left and on the right, from the top to the bottom;
 //! then, on the result, those above and below. Where both sides of a cut are the frame it costs nothing, so that the four
@@ -9,16 +9,16 @@ use crate::axis::{Axis, each_axis, transpose};
 use crate::cut::{Band, Cut, Ends, scales};
 use dapple_raster::Raster;
 
-/// How wide a frame is.
+/// The width of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Frame {
-    /// How many pixels along each border are the frame's.
+    /// The number of pixels along each border that belong to the frame.
     pub(crate) whole: u32,
-    /// How many more pixels the cut and its ramp may take. Both together are at most half of a side.
+    /// The number of further pixels that the cut and its ramp may take. Both together are at most half of a side.
     pub(crate) band: u32,
 }
 
-/// The planes in a frame: all are cut along the same line.
+/// Puts planes into a frame: all are cut along the same line.
 pub(crate) fn framed(
     planes: &[Raster<f32>],
     frame: &[Raster<f32>],
@@ -30,7 +30,7 @@ pub(crate) fn framed(
     })
 }
 
-/// The planes in a frame that is made for each axis from what there is by then, its rows along that axis.
+/// Puts planes into a frame that is computed for each axis from the current planes, whose rows run along that axis.
 pub(crate) fn framed_along(
     planes: &[Raster<f32>],
     width: Frame,
@@ -49,7 +49,7 @@ pub(crate) fn framed_along(
             Axis::X => Ends::Free,
             Axis::Y => Ends::Closed,
         };
-        // The end on the left, and after mirroring that on the right, which is mirrored back.
+        // The cut on the left, and then, on mirrored planes, that on the right.
         for _ in 0..2 {
             let cut = Cut::cheapest([&frame, &planes], &scales, band, ends)?;
             let pairs = frame.iter().zip(&planes);
@@ -61,7 +61,7 @@ pub(crate) fn framed_along(
     })
 }
 
-/// The raster with its columns in reverse.
+/// The raster with its columns in reverse order.
 fn mirrored(plane: &Raster<f32>) -> Result<Raster<f32>, TileError> {
     Ok(Raster::from_rows(plane.size(), |row| {
         plane.row(row).iter().rev().copied()
@@ -104,7 +104,7 @@ mod tests {
 
     #[test]
     fn framed_shows_no_cut_where_there_is_a_way_of_no_difference() {
-        // The two differ but for a ring of equal pixels whose distance from the border varies.
+        // The two differ everywhere except in a ring of equal pixels whose distance from the border varies.
         let ring = |x: u32, y: u32| {
             let from_border = x.min(39 - x).min(y.min(39 - y));
             let wave = 7 + (x / 5 + y / 7) % 3;

@@ -1,19 +1,19 @@
 //! Gaussian blur, row by row and column by column.
 //!
-//! The weights are `exp(-k² / 2σ²)` up to 3.5 standard deviations, where less than 0.05 % of the bell is left, made to sum
-//! to 1. Each pixel is summed in `f32` from the middle outward, in the same order at every place, so that a raster that is
-//! shifted around the torus gives the shifted blur to the last bit.
+//! The weights are `exp(-k² / 2σ²)` up to 3.5 standard deviations, beyond which lies less than 0.05 % of the curve,
+//! normalized to a sum of 1. Each pixel is summed in `f32` from the middle outward, in the same order at every place,
+//! so that a raster that is shifted around the torus has the shifted blur to the last bit.
 
 use crate::TileError;
 use dapple_raster::{Raster, Wrap, parallel};
 
-/// Where the bell is cut off, in standard deviations.
+/// The radius of the blur, in standard deviations.
 const REACH: f64 = 3.5;
 
-/// As many columns as are summed at a time: 4 kB of sums stay in the nearest cache.
+/// The number of columns that are summed at a time: 4 kB of sums stay in the nearest cache.
 const BLOCK: usize = 1024;
 
-/// The raster blurred by a bell of `sigma` pixels. Sigma is finite and at least 0.
+/// The raster blurred by a Gaussian of `sigma` pixels. Sigma is finite and at least 0.
 pub(crate) fn blur(
     raster: &Raster<f32>,
     sigma: f64,
@@ -63,7 +63,7 @@ fn blur_row(row: &[f32], weights: &[f32], wrap: Wrap, blurred: &mut [f32]) {
     sum_up(at, weights, blurred);
 }
 
-/// Writes the weighted sum of lines to `sums`. `at` gives a line by its distance from the middle one, in steps.
+/// Writes the weighted sum of lines to `sums`. `at` returns a line by its distance from the middle one, in steps.
 fn sum_up<'a>(at: impl Fn(i64) -> &'a [f32], weights: &[f32], sums: &mut [f32]) {
     for (block, sums) in sums.chunks_mut(BLOCK).enumerate() {
         let range = block * BLOCK..block * BLOCK + sums.len();
@@ -85,7 +85,7 @@ fn sum_up<'a>(at: impl Fn(i64) -> &'a [f32], weights: &[f32], sums: &mut [f32]) 
     }
 }
 
-/// Adds four pairs as [`add_pair`] does one after another, with a quarter of the traffic of the sums.
+/// Adds four pairs like four calls of [`add_pair`], with a quarter of the memory traffic for the sums.
 fn add_four(sums: &mut [f32], pairs: [[&[f32]; 2]; 4], weights: [f32; 4]) {
     let n = sums.len();
     let [[a0, b0], [a1, b1], [a2, b2], [a3, b3]] = pairs.map(|pair| pair.map(|row| &row[..n]));

@@ -1,8 +1,8 @@
-//! Making images repeat, honest reports of their seams, and blending textures with tiles.
+//! Seamless tiles from images, measurement of their seams, and blending of textures.
 //!
-//! Du Jin-Lian, Wang Song and Meng Xianhai, "Wavelet and Blend maps for texture synthesis", make a small tile that repeats,
-//! fill large blend maps with it and blend textures by them. This crate has the paper's tile, what does better, and the
-//! numbers that tell which.
+//! Du Jin-Lian, Wang Song and Meng Xianhai, "Wavelet and Blend maps for texture synthesis", make a small tile that
+//! repeats, fill large blend maps with it and blend textures by them. This crate has the paper's tile, better methods,
+//! and the measurements that compare them.
 //!
 //! * **A tile of an image**: [`Seamless`] applies a [`Method`] to one raster, a color picture, or all maps of a material
 //!   along the same cut. [`Periodic`](Method::Periodic) keeps all fine detail and needs no margin;
@@ -29,10 +29,10 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! An image that a generator of this workspace makes is best made periodic there: every one of them takes a period, and
-//! repeats exactly without losing anything. The methods here are for images whose source is not at hand.
+//! If a generator of this workspace makes the image, make it periodic there: every generator has a period, and repeats
+//! exactly without any loss. The methods here are for images whose source is not at hand.
 //!
-//! Rasters are `f32`, and what is solved is solved in `f64`. All results have the same bits on every platform and on any
+//! Rasters are `f32`, and equations are solved in `f64`. All results have the same bits on every platform and on any
 //! number of threads. The crate knows no file format and touches no file.
 
 #![forbid(unsafe_code)]

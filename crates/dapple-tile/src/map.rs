@@ -1,4 +1,4 @@
-//! The maps of a material, and the planes of numbers that they are made of.
+//! The maps of a material, and their decomposition into planes of numbers.
 
 use crate::{TileError, TileErrorKind};
 use core::mem::discriminant;
@@ -12,11 +12,11 @@ pub enum Map {
     Value(Raster<f32>),
     /// Linear color.
     Color(Raster<LinearRgb>),
-    /// Normals. They are added up as slopes (x/z, y/z), and come back as long as 1.
+    /// Normals. They are processed as slopes (x/z, y/z), and results are unit vectors.
     Normal(Raster<Normal>),
 }
 
-/// The smallest z that a normal is given before it becomes a slope: the slopes of unit vectors are at most 1000.
+/// The smallest z of a normal before it becomes a slope: the slopes of unit vectors are at most 1000.
 const LEAST_Z: f32 = 1e-3;
 
 impl Map {
@@ -30,7 +30,7 @@ impl Map {
         }
     }
 
-    /// How many planes the map is made of.
+    /// The number of planes of the map: 1, 3, or 2 for slopes.
     pub(crate) fn n_planes(&self) -> usize {
         match self {
             Self::Value(_) => 1,
@@ -39,7 +39,7 @@ impl Map {
         }
     }
 
-    /// The numbers of the map, a raster for each channel: 1, 3, or 2 for slopes.
+    /// The planes of the map, a raster for each channel: 1, 3, or 2 for slopes.
     pub(crate) fn planes(&self) -> Vec<Raster<f32>> {
         match self {
             Self::Value(raster) => vec![raster.clone()],
@@ -51,10 +51,10 @@ impl Map {
         }
     }
 
-    /// The planes of the maps of each of several materials.
+    /// The planes of the maps of several materials.
     ///
-    /// Refuses materials without maps, with more or fewer maps than the first, of other kinds or sizes, and pixels that are
-    /// not finite.
+    /// Fails for materials without maps, with another number of maps than the first, with maps of other kinds or sizes,
+    /// and for pixels that are not finite.
     pub(crate) fn planes_of_all(
         materials: &[Vec<Self>],
     ) -> Result<Vec<Vec<Raster<f32>>>, TileError> {
@@ -80,7 +80,7 @@ impl Map {
         Ok(all)
     }
 
-    /// Maps of the kinds of some, from all their planes.
+    /// Maps of the same kinds as `maps`, from all their planes.
     pub(crate) fn all_with_planes(
         maps: &[Self],
         planes: Vec<Raster<f32>>,
@@ -107,7 +107,7 @@ impl Map {
     }
 }
 
-/// Red, green and blue of a color raster.
+/// The planes red, green and blue of a color raster.
 pub(crate) fn color_planes(image: &Raster<LinearRgb>) -> [Raster<f32>; 3] {
     [
         image.map(|color| color.r),
@@ -116,14 +116,14 @@ pub(crate) fn color_planes(image: &Raster<LinearRgb>) -> [Raster<f32>; 3] {
     ]
 }
 
-/// The color raster of the planes red, green and blue.
+/// The color raster with the planes red, green and blue.
 pub(crate) fn color_from_planes(planes: Vec<Raster<f32>>) -> Result<Raster<LinearRgb>, TileError> {
     let [r, g, b] = exactly(planes)?;
     let rg = r.zip_map(&g, |&r, &g| [r, g])?;
     Ok(rg.zip_map(&b, |&[r, g], &b| LinearRgb::new(r, g, b))?)
 }
 
-/// The planes one by one, if there are `N`.
+/// The planes as an array, if there are `N`.
 fn exactly<const N: usize>(planes: Vec<Raster<f32>>) -> Result<[Raster<f32>; N], TileError> {
     planes.try_into().map_err(|planes: Vec<_>| {
         TileError::new(TileErrorKind::Count {
@@ -134,7 +134,7 @@ fn exactly<const N: usize>(planes: Vec<Raster<f32>>) -> Result<[Raster<f32>; N],
     })
 }
 
-/// A part of a normal as a slope; NaN if `z` is not finite.
+/// A component of a normal as a slope; NaN if `z` is not finite.
 fn slope(part: f32, z: f32) -> f32 {
     if z.is_finite() {
         part / z.max(LEAST_Z)
@@ -143,7 +143,7 @@ fn slope(part: f32, z: f32) -> f32 {
     }
 }
 
-/// The unit vector along (x, y, 1), in `f64`, where the squares of all slopes have room.
+/// The unit vector along (x, y, 1), computed in `f64`, in which the squares of all slopes fit.
 fn from_slopes(x: f32, y: f32) -> Normal {
     let [x, y] = [x, y].map(f64::from);
     let length = (x * x + y * y + 1.0).sqrt();
@@ -151,7 +151,7 @@ fn from_slopes(x: f32, y: f32) -> Normal {
     Normal { x, y, z }
 }
 
-/// Refuses planes that differ in size, that have none, and pixels that are not finite.
+/// Checks that planes are of one size, that there are any, and that all pixels are finite.
 pub(crate) fn check_planes(planes: &[Raster<f32>]) -> Result<[u32; 2], TileError> {
     let first = planes.first().ok_or(TileError::new(TileErrorKind::Count {
         what: "maps",
@@ -165,7 +165,7 @@ pub(crate) fn check_planes(planes: &[Raster<f32>]) -> Result<[u32; 2], TileError
     Ok(first.size())
 }
 
-/// Refuses a raster with a pixel that is not finite, and names the first.
+/// Fails with the first pixel of a raster that is not finite.
 pub(crate) fn check_finite(raster: &Raster<f32>) -> Result<(), TileError> {
     let bad = raster.pixels().iter().position(|value| !value.is_finite());
     bad.map_or(Ok(()), |index| {

@@ -1,18 +1,18 @@
 //! Unlike tiles that fit beside each other.
 //!
-//! Jin-Lian Du, Song Wang and Xianhai Meng, "Wavelet and Blend maps for texture synthesis", name an optional step of their
-//! method: to "adjust the tile borders to accommodate tile meshing (if using different tiles)". How is left open. Here all
-//! tiles get the same borders: each is put in the frame of the first one, along a cut where the two are most alike (see
-//! `cut.rs`). So every tile fits beside, above and below every other, itself included, and what meets at a border is a
-//! piece of one texture.
+//! Jin-Lian Du, Song Wang and Xianhai Meng, "Wavelet and Blend maps for texture synthesis", name an optional step of
+//! their method: to "adjust the tile borders to accommodate tile meshing (if using different tiles)". The method is
+//! left open. Here all tiles get the same borders: each is put in the frame of the first one, along a cut where the two
+//! are most alike (see `cut.rs`). So every tile fits beside, above and below every other, itself included, and the
+//! pixels on both sides of a border are a piece of one texture.
 //!
-//! What is seen there is either the border of the first tile, if that repeats by itself, or else its middle, which is
-//! continuous where its borders are not: then the first tile is put in the frame of itself, rolled by half, along one axis
-//! after the other, before the others are.
+//! The borders are either those of the first tile, if it repeats by itself, or else its middle, which is continuous
+//! where its borders are not: then the first tile is put in the frame of itself, rolled by half, along one axis after
+//! the other, before the others are.
 //!
-//! What it does to detail: nothing is smoothed, shifted in level, or stretched, as it would be if a correction were added
-//! to the rows. The quarter of the width next to the border is that of the first tile; in the rest of it lies the cut; past
-//! the width nothing changes. All maps of a material are cut along the same line.
+//! Detail is not smoothed, shifted in level, or stretched, as a correction added to the rows would do. The quarter of
+//! the width next to the border is that of the first tile; the cut lies in the rest of the width; past the width
+//! nothing changes. All maps of a material are cut along the same line.
 //!
 //! Reference: Du Jin-Lian, Wang Song and Meng Xianhai, "Wavelet and Blend maps for texture synthesis", section 5; the
 //! method is our own.
@@ -32,13 +32,13 @@ dapple_raster::named! {
         /// Its border. The first tile has to repeat by itself, and stays as it is.
         #[default]
         Border = "border",
-        /// The row and the column through its middle, whether it repeats or not. The first tile changes as all others do. The
-        /// width is less than half of a side, so that nothing is seen of where the borders of the first tile meet.
+        /// The row and the column through its middle, whether it repeats or not. The first tile changes as all others
+        /// do. The width is less than half of a side, so that the seam of the first tile stays out of view.
         Middle = "middle",
     }
 }
 
-/// Gives unlike tiles the same borders.
+/// Gives different tiles the same borders.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/match-borders.md"))]
 ///
@@ -60,10 +60,10 @@ dapple_raster::named! {
     serde(default, deny_unknown_fields)
 )]
 pub struct MatchBorders {
-    /// How far from a border a tile changes, in pixels, from 1 to half of a side, rounded down, and to one pixel less
-    /// for [`BorderSource::Middle`]. By default 16.
+    /// The distance from a border within which a tile changes, in pixels: from 1 to half of a side, rounded down, and
+    /// one pixel less for [`BorderSource::Middle`]. By default 16.
     pub width: u32,
-    /// The pixels that all borders become. By default the border of the first tile.
+    /// The source of the pixels of all borders. By default the border of the first tile.
     pub source: BorderSource,
 }
 
@@ -77,13 +77,13 @@ impl Default for MatchBorders {
 }
 
 impl MatchBorders {
-    /// Tiles that fit beside each other in any order, as many as there are.
+    /// The tiles with equal borders, which fit beside each other in any order.
     ///
     /// # Errors
     ///
-    /// [`TileErrorKind::Count`] if there is no tile, [`TileErrorKind::Margin`] or [`TileErrorKind::Range`] for a width that
-    /// is too large or nothing, [`TileErrorKind::Raster`] if the tiles differ in size,
-    /// [`TileErrorKind::NotFinite`] for a pixel that is NaN or infinite.
+    /// [`TileErrorKind::Count`] if there is no tile, [`TileErrorKind::Margin`] or [`TileErrorKind::Range`] for a width
+    /// that is too large or zero, [`TileErrorKind::Raster`] if the tiles differ in size, [`TileErrorKind::NotFinite`]
+    /// for a pixel that is NaN or infinite.
     pub fn apply(&self, tiles: &[Raster<f32>]) -> Result<Vec<Raster<f32>>, TileError> {
         let materials: Vec<_> = tiles
             .iter()
@@ -107,7 +107,7 @@ impl MatchBorders {
             .collect()
     }
 
-    /// Maps of `size` pixels from pixel `first` of the plane, which is laid with the tiles in random order.
+    /// Maps of `size` pixels from pixel `first` of the plane, which is covered with the tiles in random order.
     ///
     /// A window is the crop of the whole, and a map of whole tiles repeats. Tile `[0, 0]` begins in pixel `[0, 0]` of the
     /// plane. Past the largest `i64` the plane goes on with the smallest, in the middle of a tile.
@@ -157,7 +157,8 @@ impl MatchBorders {
         Ok([donor].into_iter().chain(others).collect())
     }
 
-    /// Refuses a width of nothing, and one at which the two borders, or the seam of the rolled tile, come too near.
+    /// Checks that the width is not zero, and that the two borders, or the seam of the rolled tile, keep their
+    /// distance.
     fn check_width(&self, size: [u32; 2]) -> Result<(), TileError> {
         for length in size {
             let most = match self.source {
@@ -176,7 +177,7 @@ impl MatchBorders {
         TileError::check(self.width >= 1, "width", self.width.into(), "at least 1")
     }
 
-    /// The tile with what it has along its middle at its borders, where that is continuous.
+    /// The tile with the strip along its middle at its borders, where it is continuous.
     fn with_middle_at_borders(&self, tile: &[Raster<f32>]) -> Result<Vec<Raster<f32>>, TileError> {
         framed_along(tile, self.frame(), |planes, _: Axis| {
             let half = planes[0].width() / 2;
@@ -187,7 +188,7 @@ impl MatchBorders {
         })
     }
 
-    /// A quarter of the width is the first tile's, and at least a pixel.
+    /// The frame: a quarter of the width, and at least a pixel, is the first tile's.
     fn frame(&self) -> Frame {
         let whole = self.width.div_ceil(4);
         Frame {

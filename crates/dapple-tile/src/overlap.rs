@@ -1,10 +1,10 @@
-//! The two ends of rows laid over each other.
+//! The overlap of the two ends of rows.
 
 use crate::crossfade::Pair;
 use crate::{Crossfade, TileError, TileErrorKind};
 use dapple_raster::Raster;
 
-/// Refuses a margin of no pixel, and one of more than half of a side along which the planes shall repeat.
+/// Checks that a margin has a pixel, and at most half of a side along which the planes are to repeat.
 pub(crate) fn check_margin(
     planes: &[Raster<f32>],
     margin: u32,
@@ -33,9 +33,9 @@ pub(crate) fn ends(plane: &Raster<f32>, margin: u32) -> Result<[Raster<f32>; 2],
     Ok([plane.crop([0, 0], size)?, last])
 }
 
-/// The planes without their last columns, which are mixed into the first.
+/// Mixes the last columns of the planes into the first, and drops the last.
 ///
-/// The weights, from 0 to 1, are those of the first columns; there are as many columns of them as of the margin.
+/// The weights, from 0 to 1, are those of the first columns; their width is the margin.
 pub(crate) fn overlap(
     planes: &[Raster<f32>],
     weights: &Raster<f64>,
@@ -56,7 +56,7 @@ pub(crate) fn overlap(
         .collect()
 }
 
-/// The mixed columns, and then those that belong to one end only.
+/// Joins the mixed columns and those that do not overlap.
 fn join(mixed: &Raster<f32>, plane: &Raster<f32>) -> Result<Raster<f32>, TileError> {
     let margin = mixed.width();
     let rest = margin as usize..(plane.width() - margin) as usize;

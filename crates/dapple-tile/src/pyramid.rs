@@ -1,7 +1,8 @@
 //! Blending in bands, with shares that are sharper where details are finer.
 //!
-//! A transition that is wide enough for the large features of two textures makes a ghost of their fine details, and one
-//! that is narrow enough for the details cuts the large features. Taken apart into bands, each band can have its own.
+//! A transition that is wide enough for the large features of two textures blurs their fine details into each other,
+//! and one that is narrow enough for the details cuts the large features. Decomposed into bands, the textures can have
+//! a transition of its own width for each.
 //!
 //! Bartlomiej Wronski, "GPU-Friendly Laplacian Texture Blending", Journal of Computer Graphics Techniques 14(1), 2025
 //! (arXiv:2502.13945), blends the levels of a Laplacian pyramid by masks that sharpen toward the fine ones. Here the
@@ -23,13 +24,13 @@ use dapple_wavelet::{Bands, Border, SplineFilter};
     serde(default, deny_unknown_fields)
 )]
 pub struct Pyramid {
-    /// How many bands are taken apart, at most 30. By default 4; 0 is the plain mean.
+    /// The number of bands, at most 30. By default 4; 0 is the plain mean.
     pub levels: u32,
-    /// How much sharper than given the transition of the finest band is, at least 0: its shares are taken to the power of
-    /// `1 + sharpness`. At 0 the result is nearly the plain mean. By default 8.
+    /// The sharpness of the transition of the finest band, at least 0: its shares are taken to the power of `1 +
+    /// sharpness`. At 0 the result is nearly the plain mean. By default 8.
     pub sharpness: f64,
-    /// What lies past the edges, per axis. By default mirrored, for any side longer than 2^(levels - 1) pixels; periodic for
-    /// tiles whose weights repeat too, with sides that are multiples of 2^levels.
+    /// The extension past the edges, along x and y. By default mirrored, for any side longer than 2^(levels - 1)
+    /// pixels; use periodic for tiles whose weights repeat too, with sides that are multiples of 2^levels.
     pub borders: [Border; 2],
 }
 
@@ -44,7 +45,7 @@ impl Default for Pyramid {
 }
 
 impl Pyramid {
-    /// The shares of each band, finest first and the rest last, from those of the pixels.
+    /// The shares of each band, finest first and the coarse rest last, from those of the pixels.
     pub(crate) fn shares(
         &self,
         finest: Vec<Raster<f32>>,
@@ -78,7 +79,7 @@ impl Pyramid {
         shares: &[Vec<Raster<f32>>],
     ) -> Result<Raster<f32>, TileError> {
         let filter = SplineFilter::default();
-        // For each layer its bands, turned around: for each band its layers.
+        // The bands of each layer, rearranged as the layers of each band.
         let mut bands = vec![Vec::new(); shares.len()];
         for plane in planes {
             let Bands { details, coarse } = filter.analyze(plane, self.levels, self.borders)?;
@@ -96,13 +97,13 @@ impl Pyramid {
     }
 }
 
-/// Shares to a power, over their sum. Filters may have left some a little below 0; they count as 0.
+/// Shares to a power, normalized to a sum of 1. Filters may have left some a little below 0; they count as 0.
 fn sharpen(shares: &[Raster<f32>], power: f64) -> Result<Vec<Raster<f32>>, TileError> {
     let mut most = shares[0].clone();
     for shares in &shares[1..] {
         most = zip(&most, shares, |most, share| share.max(*most))?;
     }
-    // Over the largest, so that no power is too small to be told from zero for all of them.
+    // Relative to the largest, so that the powers of at least one of them do not underflow.
     let power_of = |share: &f32, most: &f32| {
         let part = f64::from(share.max(0.0)) / f64::from(*most);
         libm::pow(part, power) as f32

@@ -1,11 +1,11 @@
 //! Values replaced by their ranks, so that a threshold covers its share of the area.
 //!
-//! A mask that was stretched from its smallest to its largest value covers hardly anything at a low threshold and almost
+//! A mask that is stretched from its smallest to its largest value covers hardly anything at a low threshold and almost
 //! everything at a high one, since its values crowd in the middle. Ranks are spread evenly by construction: this is
-//! histogram equalization without bins. Values only pass through a growing function, so that a raster that repeats
-//! without a seam still does.
+//! histogram equalization without bins. Values only pass through a growing function, so that a seamless raster stays
+//! seamless.
 //!
-//! Equal values are told apart by a hash of their place. They scatter over the places where they occur, and the share
+//! Equal values are ordered by a hash of their place. They scatter over the places where they occur, and the share
 //! stays exact even for a raster of a few gray levels.
 //!
 //! Reference: our own.
@@ -20,7 +20,7 @@ use dapple_raster::{Raster, parallel};
 /// The values lie between 0 and 1, and the part of all pixels that lie below a threshold `t` is `t`: exactly where
 /// `t · n` is whole and `n` is at most 2^23, and else to one pixel or 2^-24, whichever is more.
 ///
-/// Any raster can be made a blend mask by this: a [`BlendMap`](crate::BlendMap), a height, or noise of any kind.
+/// This turns any raster into a blend mask: a [`BlendMap`](crate::BlendMap), a height, or noise of any kind.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/rank-equalize.md"))]
 ///
@@ -107,7 +107,7 @@ mod tests {
                 assert_eq!(below(&ranks, threshold), part as usize, "{part} of {n}");
             }
         }
-        // What it is good for: the same noise, only stretched to its range, covers a quarter of what was asked for.
+        // For comparison: the same noise, only stretched to its range, covers a quarter of the share.
         let noise = bell([128, 128], 1);
         let range = noise.statistics();
         let stretched = noise.map(|value| (value - range.min) / (range.max - range.min));

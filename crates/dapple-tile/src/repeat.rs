@@ -1,7 +1,7 @@
-//! Tiling a map to any size.
+//! Repetition of a tile over a map of any size.
 //!
-//! Every row is the first period, copied over and over in pieces that double: the speed is that of copying memory. A
-//! window of the large map can be had without the rest of it, and is its crop.
+//! Every row is the first period, copied over and over in pieces that double, at the speed of copying memory. A window
+//! of a large map can be filled without the rest of it, and equals its crop.
 
 use crate::TileError;
 use dapple_raster::{Raster, RasterViewMut, Wrap};
@@ -26,8 +26,8 @@ pub fn repeat<T: Copy + Send + Sync>(
     tile: &Raster<T>,
     size: [u32; 2],
 ) -> Result<Raster<T>, TileError> {
-    // The first rows, as many as the tile has, are whole periods of what follows. A size that a raster cannot have is
-    // refused before any memory is taken.
+    // The first rows, as many as the tile has, are whole periods of the following ones. The size is checked before any
+    // memory is allocated.
     let n_rows = size[1].min(tile.height());
     Raster::<()>::filled(size, ())?;
     let mut first = Raster::filled([size[0], n_rows], tile.pixels()[0])?;
@@ -60,10 +60,10 @@ pub fn repeat_into<T: Copy + Send + Sync>(
     });
 }
 
-/// How many rows a thread fills at a time.
+/// The number of rows that a thread fills at a time.
 const BAND_ROWS: u32 = 64;
 
-/// Fills a row with periods of the tile's row, which begins in its middle.
+/// Fills a row with periods of the tile's row, which begins at pixel `first`.
 fn repeat_row<T: Copy>(from: &[T], first: usize, to: &mut [T]) {
     let end = (from.len() - first).min(to.len());
     to[..end].copy_from_slice(&from[first..first + end]);

@@ -1,18 +1,18 @@
-//! How well a tile repeats, in numbers.
+//! Seam reports: how well a tile repeats, in numbers.
 //!
-//! Questions, each with a number that an eye may check. Does the wrap show? [`Seam`] compares the step across it
-//! with the steps inside of the tile. Has the method paid for that with detail? [`DetailKept`] compares the tile with its
-//! source, octave by octave, and in contrast. Has it done so in one place, where a band of the tile has gone soft?
-//! [`lowest_local_detail`](SeamReport::lowest_local_detail) looks for the softest. Is there something at the seam that is
-//! nowhere in the source? [`DetailKept::strangeness`] looks for it. [`SeamReport::faults`] is the verdict over all of them,
-//! and [`SeamReports`] that over all channels of an image.
+//! A report answers questions, each with a number that an eye may check. Is the wrap visible? [`Seam`] compares the
+//! step across it with the steps inside of the tile. Has the method lost detail? [`DetailKept`] compares the tile with
+//! its source, octave by octave, and in contrast. Has it lost detail in one place, where a band of the tile has gone
+//! soft? [`lowest_local_detail`](SeamReport::lowest_local_detail) measures the softest. Is there content at the seam
+//! that the source lacks? [`DetailKept::strangeness`] measures it. [`SeamReport::faults`] is the verdict over all of
+//! them, and [`SeamReports`] that over all channels of an image.
 //!
-//! The measures are ours, and each is defined where its field is. One of them is a trap: a spline tile changes more
+//! The measures are ours, and each is defined where its field is. One of them needs care: a spline tile changes more
 //! across some pixel boundaries than across others, and a wrap that cannot be told from the boundaries of its own kind
-//! scores 1.19 beside all of them. [`SeamOptions::lattice`] says which are of its kind.
+//! scores 1.19 beside all of them. [`SeamOptions::lattice`] selects the boundaries of its kind.
 //!
-//! Sums are in `f64` and in a fixed order, so that a report is the same everywhere. No number of it is NaN or infinite:
-//! a quotient is 1 where both of its parts are zero, and at most [`MOST`](SeamReport::MOST).
+//! Sums are in `f64` and in a fixed order, so that a report is the same on every machine. No number of it is NaN or
+//! infinite: a quotient is 1 where both of its parts are zero, and at most [`MOST`](SeamReport::MOST).
 
 mod channels;
 mod local;
@@ -32,7 +32,7 @@ use crate::map::check_finite;
 use crate::{TileError, TileErrorKind};
 use dapple_raster::{Raster, Wrap};
 
-/// Which seams are measured, and which boundaries they are compared with.
+/// Options of a report: the measured seams, and the boundaries they are compared with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(
     feature = "serde",
@@ -40,9 +40,9 @@ use dapple_raster::{Raster, Wrap};
     serde(default, deny_unknown_fields)
 )]
 pub struct SeamOptions {
-    /// Along which axes the tile repeats, x first. By default both. The others are not measured.
+    /// The axes along which the tile repeats, x first; only these are measured. By default both.
     pub axes: [bool; 2],
-    /// How many pixels apart the boundaries are that are like the wrap, along each axis: divisors of the sides. By
+    /// The distance in pixels, along each axis, of the boundaries that are like the wrap: divisors of the sides. By
     /// default 1, which is every boundary.
     ///
     /// A tile that is made on a lattice differs more across some boundaries than across others. Give `2^levels` for a tile of
@@ -59,7 +59,7 @@ impl Default for SeamOptions {
     }
 }
 
-/// How well a tile repeats.
+/// Measurements of how well a tile repeats.
 ///
 /// `Display` writes it as a table of at most 80 columns.
 ///
@@ -80,20 +80,20 @@ impl Default for SeamOptions {
 pub struct SeamReport {
     /// Columns and rows of the tile.
     pub size: [u32; 2],
-    /// The measurements.
+    /// The options of the measurement.
     pub options: SeamOptions,
     /// The steps across the wrap, for means of 1, 2, 4 and 8 pixels.
     pub seams: [Seam; 4],
     /// The detail of the softest band of the tile as a fraction of that of the whole tile, from 0 to 1.
     ///
-    /// Detail is what the mean of 3 × 3 pixels, with weights 1 2 1 along each axis, takes away. A band is 8 columns or 8
-    /// rows wide (all of them, if there are fewer) and reaches from side to side; along axes that repeat it may lie
-    /// across the wrap. The number is the root mean square of the detail in the band that has the least, divided by that
-    /// of the whole tile. It is about 0.7 for photographs, less where they vary, and 0 if a band is flat
-    /// and another is not. It is 1 for a tile that is flat everywhere and, within rounding, for one of at most 8 columns
-    /// and 8 rows, which is a single band.
+    /// Detail is the difference of the image from the mean of 3 × 3 pixels, with weights 1 2 1 along each axis. A band
+    /// is 8 columns or 8 rows wide (all of them, if there are fewer) and reaches from side to side; along axes that
+    /// repeat it may lie across the wrap. The number is the root mean square of the detail in the band that has the
+    /// least, divided by that of the whole tile. It is about 0.7 for photographs, less where they vary, and 0 if a band
+    /// is flat and another is not. It is 1 for a tile that is flat everywhere and, within rounding, for one of at most
+    /// 8 columns and 8 rows, which is a single band.
     pub lowest_local_detail: f64,
-    /// The tile beside its source, if there was one.
+    /// The comparison of the tile with its source, if one was passed.
     pub kept: Option<DetailKept>,
 }
 
@@ -105,34 +105,35 @@ pub struct DetailKept {
     pub source_size: [u32; 2],
     /// The power of the tile in each octave as a multiple of that of the source, finest first.
     ///
-    /// The first octave holds the frequencies above ¼ up to ½ cycles per pixel along x or y, whichever is higher: what an
-    /// image of half the size cannot show. The next holds those above ⅛ up to ¼, and so on for as long as an octave
-    /// begins at 4 cycles per side or more, in the smaller of the two images; below 16 pixels there is none. Powers are
-    /// per pixel, under a Hann window, so that neither wrap plays a part.
+    /// The first octave holds the frequencies above ¼ up to ½ cycles per pixel along x or y, whichever is higher: the
+    /// detail that an image of half the size cannot show. The next holds those above ⅛ up to ¼, and so on for as long
+    /// as an octave begins at 4 cycles per side or more, in the smaller of the two images; below 16 pixels there is
+    /// none. Powers are per pixel, under a Hann window, so that the wrap of neither image matters.
     pub octaves: Vec<f64>,
     /// The standard deviation of the tile as a multiple of that of the source.
     pub contrast: f64,
     /// [`SeamReport::lowest_local_detail`] of the source, whose borders are mirrored.
     pub source_lowest_local_detail: f64,
-    /// How unlike the source the tile is near its seams.
+    /// The strangeness: how unlike the source the tile is near its seams.
     ///
     /// The mean distance of squares of 8 × 8 pixels, across and beside the wrap, from the nearest in the source, as a
-    /// multiple of the mean distance of squares of the source from the nearest elsewhere in it; the largest of all zones. It
-    /// is about 1 where a seam was moved and not mended, more for stains and double exposures of pictures with clear shapes, and less for what
-    /// was copied. `None` for images of less than 24 pixels along a side, and for a flat source.
+    /// multiple of the mean distance of squares of the source from the nearest elsewhere in it; the largest of all
+    /// zones. It is about 1 where a seam was moved and not mended, more for stains and double exposures of pictures
+    /// with clear shapes, and less for copied parts. `None` for images of less than 24 pixels along a side, and for a
+    /// flat source.
     pub strangeness: Option<f64>,
-    /// The share of samples at or past 0 or 1, less that of the source, at least 0; 0 for a source that goes past 0 or 1
-    /// itself. Such a tile is cut off there before its seams are measured, as an image file does.
+    /// The share of samples at or past 0 or 1, less that of the source, at least 0; 0 for a source that exceeds 0 or 1
+    /// itself. Such a tile is clipped there before its seams are measured, as in an image file.
     pub clipped: f64,
     /// Whether both sides of the wrap are mirror images along an axis that repeats, and those of the source are not.
     pub is_mirrored: bool,
 }
 
 impl SeamReport {
-    /// The largest ratio in a report: larger and infinite ratios are cut off to it.
+    /// The largest ratio in a report: larger and infinite ratios are replaced by it.
     pub const MOST: f64 = 1e9;
 
-    /// How well a tile repeats.
+    /// Measures how well a tile repeats.
     ///
     /// # Errors
     ///
@@ -150,7 +151,7 @@ impl SeamReport {
         })
     }
 
-    /// How well a tile repeats, and what it has kept of the image that it was made of.
+    /// Measures how well a tile repeats, and how much it has kept of the image from which it was made.
     ///
     /// # Errors
     ///
@@ -186,7 +187,7 @@ impl SeamReport {
     ///
     /// # Errors
     ///
-    /// None that a report could cause; what `serde_json` says.
+    /// None for any report; the type is that of `serde_json`.
     #[cfg(feature = "json")]
     pub fn to_json(&self) -> Result<String, serde_json::Error> {
         serde_json::to_string_pretty(self)
@@ -214,14 +215,14 @@ impl SeamOptions {
         Ok(())
     }
 
-    /// What lies past the borders of the tile: itself along axes that repeat, its mirror image along others.
+    /// The wrapping past the borders of the tile: periodic along axes that repeat, mirrored along others.
     fn wrap(&self) -> [Wrap; 2] {
         self.axes
             .map(|repeats| if repeats { Wrap::Repeat } else { Wrap::Mirror })
     }
 }
 
-/// The share of samples that are clipped, and the tile with them cut off, for a source from 0 to 1.
+/// The share of clipped samples, and the clipped tile, for a source from 0 to 1.
 fn clip(source: &Raster<f32>, tile: &Raster<f32>) -> (f64, Option<Raster<f32>>) {
     let range = source.statistics();
     if range.min < 0.0 || range.max > 1.0 {
@@ -239,7 +240,8 @@ fn clip(source: &Raster<f32>, tile: &Raster<f32>) -> (f64, Option<Raster<f32>>) 
     (clipped, Some(tile.map(|value| value.clamp(0.0, 1.0))))
 }
 
-/// `part / whole` of two numbers that are not negative: 1 if both are zero, and at most [`SeamReport::MOST`].
+/// The quotient `part / whole` of two numbers that are not negative: 1 if both are zero, and at most
+/// [`SeamReport::MOST`].
 fn quotient(part: f64, whole: f64) -> f64 {
     if part == whole {
         1.0

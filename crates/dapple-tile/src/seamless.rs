@@ -1,4 +1,4 @@
-//! The front door: an image in, a tile out, by one of several methods.
+//! The entry point: makes a tile from an image, by one of several methods.
 
 mod feather;
 mod mirror;
@@ -16,7 +16,7 @@ pub use poisson::WrapGradient;
 pub use soft_cut::SoftCut;
 pub use spline_project::{Basis, Pixels, SplineProject};
 
-/// How an image is made to repeat.
+/// The method by which an image is made to repeat.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -30,11 +30,11 @@ pub enum Method {
     #[cfg_attr(doc, doc = include_str!("../docs/method-periodic.md"))]
     #[default]
     Periodic,
-    /// The image whose gradients are nearest to the given ones, once around the torus.
+    /// The periodic image whose gradients are nearest to the given ones.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/method-poisson.md"))]
     Poisson(WrapGradient),
-    /// A margin is laid over the opposite side and cut along the line of least difference.
+    /// A cut along the line of least difference, where a margin overlaps the opposite side.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/method-soft-cut.md"))]
     SoftCut(SoftCut),
@@ -46,11 +46,11 @@ pub enum Method {
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/method-periodic-then-project.md"))]
     PeriodicThenProject(SplineProject),
-    /// The usual baseline: a crossfade.
+    /// A crossfade: the usual baseline.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/method-feather.md"))]
     Feather(Feather),
-    /// The other usual baseline: the image beside its mirror image, twice as large along each axis.
+    /// The image beside its mirror image, twice as large along each axis: the other usual baseline.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/method-mirror.md"))]
     Mirror,
@@ -79,7 +79,7 @@ pub enum Method {
 pub struct Seamless {
     /// The method. By default [`Method::Periodic`].
     pub method: Method,
-    /// Along which axes, x first. By default both.
+    /// The axes along which the tile repeats, x first. By default both.
     pub axes: [bool; 2],
 }
 
@@ -90,7 +90,7 @@ impl Default for Seamless {
 }
 
 impl Seamless {
-    /// Repeats along both axes by a method.
+    /// Makes images repeat along both axes with a method.
     #[must_use]
     pub fn new(method: Method) -> Self {
         Self {
@@ -99,7 +99,7 @@ impl Seamless {
         }
     }
 
-    /// Repeats only along these axes, x first.
+    /// Sets the axes along which the tile repeats, x first.
     #[must_use]
     pub fn with_axes(self, axes: [bool; 2]) -> Self {
         Self { axes, ..self }
@@ -129,9 +129,10 @@ impl Seamless {
     /// # Errors
     ///
     /// [`Count`](TileErrorKind::Count) without maps, [`Raster`](TileErrorKind::Raster) for maps of different sizes,
-    /// [`NotFinite`](TileErrorKind::NotFinite) for pixels that are NaN or infinite, [`TooSmall`](TileErrorKind::TooSmall) for a
-    /// side of a single pixel along an axis that shall repeat; and [`Wavelet`](TileErrorKind::Wavelet),
-    /// [`Margin`](TileErrorKind::Margin) or [`Range`](TileErrorKind::Range) for sizes and options that the method cannot have.
+    /// [`NotFinite`](TileErrorKind::NotFinite) for pixels that are NaN or infinite,
+    /// [`TooSmall`](TileErrorKind::TooSmall) for a side of a single pixel along an axis that is to repeat; and
+    /// [`Wavelet`](TileErrorKind::Wavelet), [`Margin`](TileErrorKind::Margin) or [`Range`](TileErrorKind::Range) for
+    /// sizes and options that the method does not allow.
     pub fn apply_maps(&self, maps: &[Map]) -> Result<Vec<Map>, TileError> {
         let planes: Vec<_> = maps.iter().flat_map(Map::planes).collect();
         Map::all_with_planes(maps, self.planes(&planes)?)

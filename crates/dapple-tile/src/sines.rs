@@ -1,10 +1,10 @@
 //! The periodic Fourier projector: a plane halved and doubled again with sines and cosines.
 //!
-//! Du, Wang and Meng name sines as other functions a tile may be made of, and leave open how sines are refined. Here a
-//! coarse line of `m` samples stands for the function with these samples that is made of the sines and cosines below
-//! the frequency `m/2` and, for an even `m`, of the cosine at `m/2` that has its crests and troughs on the samples. To
-//! halve a line is to take the nearest such function, by least squares over the pixels, and to sample it; to double it
-//! is to read that function at the pixels. A doubled line that is halved again is the same, and so is the function.
+//! Du, Wang and Meng name sines as other functions for a tile, and leave open how sines are refined. Here a coarse line
+//! of `m` samples stands for the function with these samples that consists of the sines and cosines below the frequency
+//! `m/2` and, for an even `m`, of the cosine at `m/2` that has its crests and troughs on the samples. A line is halved
+//! by finding the nearest such function, by least squares over the pixels, and sampling it. It is doubled by evaluating
+//! that function at the pixels. A doubled line that is halved again is the same, and so is the function.
 //!
 //! A line that does not repeat is continued by its mirror image, with its end pixels twice; its functions are the
 //! cosines of the discrete cosine transform. Coarse samples then lie in the middles of the parts that they stand for,
@@ -16,7 +16,7 @@ use core::f64::consts::TAU;
 use dapple_raster::Raster;
 use dapple_wavelet::Phase;
 
-/// How many samples a line has, and where the coarse ones lie.
+/// The lengths of a line before and after, and the position of the coarse samples.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Axis {
     /// The number of pixels.
@@ -25,8 +25,8 @@ pub(crate) struct Axis {
     pub(crate) coarse: u32,
     /// Whether the line repeats, or is mirrored.
     pub(crate) repeats: bool,
-    /// Where the first coarse sample lies, if the line repeats: in the middle of the pixels that become one, or with
-    /// each halving one fine pixel earlier.
+    /// The place of the first coarse sample, if the line repeats: in the middle of the pixels that become one, or one
+    /// fine pixel earlier for each halving.
     pub(crate) phase: Phase,
 }
 
@@ -38,7 +38,7 @@ pub(crate) fn coarse(plane: &Raster<f32>, axes: [Axis; 2]) -> Result<Raster<f32>
     })
 }
 
-/// The functions of the columns and rows of a coarse plane, at the pixels.
+/// Evaluates the functions of the columns and rows of a coarse plane at the pixels.
 pub(crate) fn refine(plane: &Raster<f32>, axes: [Axis; 2]) -> Result<Raster<f32>, TileError> {
     change(plane, axes.map(|axis| axis.fine), |axis| {
         let sampling = Sampling::new(&axes[axis]);
@@ -63,9 +63,9 @@ fn change<C: Fn(Vec<Element>) -> Vec<Element> + Sync>(
 struct Sampling {
     fine: Fourier,
     coarse: Fourier,
-    /// The lines are mirrored, and the transforms twice as long.
+    /// Whether the lines are mirrored, so that the transforms are twice as long.
     mirrored: bool,
-    /// By frequency up to the coarse line's last: its turn from the first pixel to the first coarse sample.
+    /// For each frequency up to the coarse line's last: its turn from the first pixel to the first coarse sample.
     turns: Vec<[f64; 2]>,
 }
 
@@ -113,7 +113,7 @@ impl Sampling {
         self.halve_mirrored(spectrum)
     }
 
-    /// Reads the functions at the pixels.
+    /// Evaluates the functions at the pixels.
     fn refine(&self, mut line: Vec<Element>) -> Vec<Element> {
         let [n_fine, n_coarse] = [self.fine.length(), self.coarse.length()];
         self.mirror(&mut line);
@@ -141,7 +141,7 @@ impl Sampling {
         }
     }
 
-    /// Takes the mirror image away again.
+    /// Removes the mirror image again.
     fn halve_mirrored(&self, mut line: Vec<Element>) -> Vec<Element> {
         if self.mirrored {
             line.truncate(line.len() / 2);

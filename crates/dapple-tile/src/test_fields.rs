@@ -1,12 +1,12 @@
-//! Textures for tests, and what is measured on them.
+//! Textures for tests, and measurements on them.
 
 use crate::axis::transpose;
 use dapple_hash::{CellHash, Seed, unit_f64};
 use dapple_raster::Raster;
 use dapple_raster::glam::DVec2;
 
-/// Five octaves of gradient noise. The first has 5 cells per side, if it shall repeat, or else cells of 25 pixels that
-/// begin anywhere.
+/// Five octaves of gradient noise. The first has 5 cells per side if it repeats, or else cells of 25 pixels at any
+/// offset.
 pub(crate) fn fbm(seed: u64, size: [u32; 2], repeats: bool) -> Raster<f32> {
     let octave = |octave: u32| {
         let seed = Seed(seed).child("octave", octave.into());
@@ -32,9 +32,9 @@ struct Lattice {
     seed: Seed,
     /// The width and height of a cell, in pixels.
     cell: DVec2,
-    /// Where the first pixel lies, in cells.
+    /// The place of the first pixel, in cells.
     offset: DVec2,
-    /// After how many cells the numbers repeat.
+    /// The number of cells after which the numbers repeat.
     period: i64,
 }
 
@@ -104,7 +104,7 @@ impl Lattice {
     }
 }
 
-/// The raster with columns for rows.
+/// The raster with rows and columns exchanged.
 pub(crate) fn turned(raster: &Raster<f32>) -> Raster<f32> {
     transpose(raster).unwrap()
 }

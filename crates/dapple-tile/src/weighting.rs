@@ -1,7 +1,7 @@
-//! Who lies where: the shares of layers at every pixel.
+//! Weighting: the shares of layers at every pixel.
 //!
-//! Weights as they are given make slow transitions in which both textures are half transparent. A height lets the higher
-//! stones of one layer reach into the other, and a blend tile cuts the transition along its own features.
+//! Plain weights make slow transitions in which both textures are half transparent. Heights let the higher stones of
+//! one layer reach into the other, and a blend tile cuts the transition along its own features.
 //!
 //! * [`Weighting::Height`]: with weights `α` that sum to 1 and heights `h`, a layer has the level
 //!   `l = h + α - max(1 / 4α - 1, 0)`, and `w = α · max(l - (top - depth), 0)`, where `top` is the largest level, then
@@ -19,7 +19,7 @@ use crate::map::check_finite;
 use crate::{Layer, TileError, TileErrorKind};
 use dapple_raster::Raster;
 
-/// How the weights of layers become their shares. The shares of a pixel sum to 1.
+/// The rule that turns the weights of layers into their shares. The shares of a pixel sum to 1.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/weighting.md"))]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -29,20 +29,21 @@ use dapple_raster::Raster;
     serde(rename_all = "snake_case", deny_unknown_fields)
 )]
 pub enum Weighting {
-    /// Each weight over the sum of all.
+    /// Each weight divided by the sum of all.
     #[default]
     Given,
-    /// By height: the higher layer shows. A layer without a height has that of the blend tile.
+    /// By height: the higher layer is visible. A layer without a height has that of the blend tile.
     Height {
         /// The difference of heights over which layers mix, above 0, for heights from 0 to 1: 0.1 is crisp, 0.3 soft.
-        /// With such heights and up to four layers, one that has less than 1/16 of the weights is out, for depths up to 1.
+        /// With such heights and up to four layers, a layer with less than 1/16 of the weights is invisible, for depths
+        /// up to 1.
         depth: f64,
     },
     /// The blend tile is cut at thresholds. The first layer lies where the tile is lowest: in the cracks of a
     /// [`BlendMap`](crate::BlendMap).
     Mask {
         /// One over the width of the transition, in values of the tile, above 0 and at most 1e9: 1 is soft, 4 and more
-        /// show the features of the tile, and 1e9 gives hard edges, without any transition.
+        /// show the features of the tile, and 1e9 makes hard edges, without any transition.
         gain: f64,
     },
 }
@@ -83,7 +84,7 @@ impl Weighting {
     }
 }
 
-/// Weights over their sum, which must not be zero anywhere.
+/// Weights divided by their sum, which must not be zero anywhere.
 pub(crate) fn normalize(weights: &[&Raster<f32>]) -> Result<Vec<Raster<f32>>, TileError> {
     let sums = sums(weights)?;
     let share = |&weight: &f32, sum: &f64| (f64::from(weight) / sum) as f32;
@@ -150,13 +151,14 @@ fn by_height(
     normalize(&shares.iter().collect::<Vec<_>>())
 }
 
-/// Shares by height: the higher layer shows, and a layer without weight is lower than any.
+/// The level of a layer for the shares by height: the highest is visible, and a layer without weight is below all
+/// others.
 fn level(&weight: &f32, &height: &f32) -> f64 {
     let weight = f64::from(weight);
     f64::from(height) + weight - (0.25 / weight - 1.0).max(0.0)
 }
 
-/// The blend tile, whose values lie from 0 to 1.
+/// Checks that there is a blend tile with values from 0 to 1, and returns it.
 fn checked_mask(tile: Option<&Raster<f32>>) -> Result<&Raster<f32>, TileError> {
     let tile = tile.ok_or(TileError::new(TileErrorKind::Count {
         what: "blend tiles",
@@ -188,7 +190,7 @@ fn by_mask(
     let mut shares = Vec::with_capacity(weights.len());
     for weights in weights {
         part = zip(&part, weights, |part, &weight| part + f64::from(weight))?;
-        // These sums are made as those of all are, so that the last threshold is 1 to the last bit.
+        // These sums are computed like the sums of all, so that the last threshold is 1 to the last bit.
         let thresholds = zip(&part, &sums, |part, sum| part / sum)?;
         let up_to = zip(&thresholds, mask, |&threshold, &mask| {
             step(threshold, mask, half_width)
@@ -201,7 +203,7 @@ fn by_mask(
     Ok(shares)
 }
 
-/// From 1 where the mask is below the threshold to 0 where it is above.
+/// A ramp from 1 where the mask is below the threshold to 0 where it is above.
 fn step(threshold: f64, mask: f32, half_width: f64) -> f64 {
     let half_width = half_width.min(threshold).min(1.0 - threshold);
     let above = f64::from(mask) - threshold;

@@ -1,4 +1,4 @@
-//! A raster taken apart into bands of detail, and put together again.
+//! Decomposition of a raster into bands of detail, and its reconstruction.
 
 use crate::line::check_finite;
 use crate::{Border, SplineFilter, WaveletError};
@@ -7,14 +7,14 @@ use dapple_raster::Raster;
 /// The bands of a raster: a detail for each level, finest first, and the coarse rest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bands {
-    /// `(I − P)` of each level: what is lost when it is halved. The first has the size of the raster.
+    /// `(I − P)` of each level: the detail that halving loses. The first has the size of the raster.
     pub details: Vec<Raster<f32>>,
     /// The raster of the last level.
     pub coarse: Raster<f32>,
 }
 
 impl SplineFilter {
-    /// Takes a raster apart into `levels` details and a coarse rest; with zero levels that is the raster itself.
+    /// Decomposes a raster into `levels` details and a coarse rest; with zero levels the rest is the raster itself.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/analyze.md"))]
     ///
@@ -40,11 +40,11 @@ impl SplineFilter {
         Ok(Bands { details, coarse })
     }
 
-    /// The raster that the bands are of, up to a rounding to `f32` per level.
+    /// Reconstructs the raster of the bands, up to a rounding to `f32` per level.
     ///
     /// # Errors
     ///
-    /// Those of [`up`](Self::up): `Length` if a detail has not the size that its level needs.
+    /// Those of [`up`](Self::up): `Length` if a detail has another size than its level needs.
     pub fn synthesize(
         &self,
         bands: &Bands,

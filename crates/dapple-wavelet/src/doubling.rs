@@ -14,23 +14,23 @@ use fearless_simd::{Level, Simd};
 pub(crate) struct Doubling {
     pub(crate) fine: Line,
     pub(crate) coarse: Line,
-    /// For even and for odd fine indices; both have as many weights.
+    /// The weights for even and for odd fine indices; both have equally many.
     parts: [Part; 2],
 }
 
-/// The coarse coefficients that fine coefficient `2 i`, or `2 i + 1`, is made of.
+/// The coarse coefficients whose weighted sum is the fine coefficient `2 i`, or `2 i + 1`.
 #[derive(Clone, Debug)]
 struct Part {
-    /// The first of them, from `i`.
+    /// The index of the first coefficient, relative to `i`.
     first: i64,
     weights: Vec<f64>,
 }
 
-/// How many coarse values are continued past each end of a line: as far as any part reaches.
+/// The number of coarse values by which a line is extended past each end: the reach of any part.
 const PAD: usize = 4;
 
 impl Doubling {
-    /// The filter to lines of `fine_len` from those that [`Halving`] makes of them.
+    /// The filter to lines of `fine_len` from the coarse lines that [`Halving`] makes of them.
     ///
     /// # Errors
     ///
@@ -65,7 +65,7 @@ impl Doubling {
         fine
     }
 
-    /// Doubles columns, rounds to `f32`, and doubles rows by `along_rows`.
+    /// Doubles columns, rounds to `f32`, and doubles rows with `along_rows`.
     pub(crate) fn plane(&self, level: Level, along_rows: &Self, coarse: &[f32], fine: &mut [f32]) {
         let width = along_rows.coarse.len;
         let scratch = || vec![0.0; width + 2 * PAD];
@@ -74,7 +74,7 @@ impl Doubling {
         });
     }
 
-    /// A fine row, compiled for the level of `_simd`.
+    /// Computes a fine row, compiled for the level of `_simd`.
     #[inline(always)]
     fn row<S: Simd>(
         &self,
@@ -90,7 +90,7 @@ impl Doubling {
         along_rows.spread(padded, fine, |value| value as f32);
     }
 
-    /// Fine row `row` of the coarse rows, which are as wide as `sums`; rounded to `f32`.
+    /// Computes fine row `row` from the coarse rows, which are as wide as `sums`; rounded to `f32`.
     #[inline(always)]
     pub(crate) fn blend(&self, row: usize, coarse: &[f32], sums: &mut [f64]) {
         let part = &self.parts[row % 2];
@@ -110,7 +110,7 @@ impl Doubling {
         }
     }
 
-    /// Continues a coarse line that has `PAD` values too many at both ends.
+    /// Extends a coarse line, which has `PAD` values of room at both ends.
     #[inline(always)]
     fn go_on(&self, padded: &mut [f64]) {
         let len = self.coarse.len;
@@ -119,7 +119,7 @@ impl Doubling {
         }
     }
 
-    /// The fine values of a continued coarse line.
+    /// Computes the fine values from an extended coarse line.
     #[inline(always)]
     fn spread<T>(&self, padded: &[f64], fine: &mut [T], round: impl Fn(f64) -> T) {
         let [even, odd] = &self.parts;
@@ -168,7 +168,7 @@ fn blend<const T: usize>(weights: [f64; T], rows: [&[f32]; T], sums: &mut [f64])
     }
 }
 
-/// Even and odd values of a line, each a weighted sum of values from its own place in the coarse line on.
+/// Computes the even and odd values of a line, each a weighted sum of coarse values from its own place on.
 #[inline(always)]
 fn spread<const T: usize, O>(
     weights: [[f64; T]; 2],
@@ -188,7 +188,7 @@ fn spread<const T: usize, O>(
     }
 }
 
-/// The sum of weighted terms, in their order.
+/// The weighted sum of the terms, in their order.
 #[inline(always)]
 fn weigh<const T: usize>(weights: [f64; T], term: impl Fn(usize) -> f64) -> f64 {
     let mut sum = weights[0] * term(0);

@@ -1,21 +1,21 @@
-//! How a line goes on past its ends, and where the coarse line of a fine one ends.
+//! The extension of a line past its ends, and the length of the coarse line of a fine one.
 
 use crate::{Border, Phase, SplineFilter, WaveletError, WaveletErrorKind};
 
-/// A line of finite length that goes on for ever.
+/// A line of finite length that is extended infinitely.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Line {
-    /// How many values are kept.
+    /// The number of values stored.
     pub(crate) len: usize,
     ends: Ends,
 }
 
-/// The values after the last one, and before the first.
+/// The extension of the line at its ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Ends {
-    /// Those of the other end of the line, which repeats.
+    /// The line repeats.
     Repeat,
-    /// The mirror image, at the start and at the end: with the end value twice, or once.
+    /// The line is mirrored: at the start and at the end, with the end value twice or once.
     Mirror { twice: [bool; 2] },
 }
 
@@ -24,11 +24,11 @@ enum Ends {
 pub(crate) struct Halving {
     pub(crate) fine: Line,
     pub(crate) coarse: Line,
-    /// The number, in the sense of [`Phase`](crate::Phase), of the first coarse coefficient that is kept: 0 or 1.
+    /// The number of the first stored coarse coefficient, in the sense of [`Phase`](crate::Phase): 0 or 1.
     pub(crate) offset: i64,
 }
 
-/// No memory holds a longer line, and below it no index overflows.
+/// The largest length: no memory holds a longer line, and no index overflows.
 const LONGEST: u64 = 1 << 40;
 
 impl Line {
@@ -63,7 +63,7 @@ impl Line {
         Ok(Self { len, ends })
     }
 
-    /// The index of the value that is at `index`, which may lie outside.
+    /// The index of the stored value for `index`, which may lie outside.
     pub(crate) fn index(&self, index: i64) -> usize {
         let len = self.len as i64;
         let inside = match self.ends {
@@ -72,7 +72,7 @@ impl Line {
                 // Mirrors at `low / 2` and `high / 2` map an index to `low - index` and `high - index`.
                 let low = -i64::from(twice[0]);
                 let high = 2 * (len - 1) + i64::from(twice[1]);
-                // A single value that is not doubled has a period of 0; it is everywhere.
+                // A single value that is mirrored once has a period of 0; all indices map to it.
                 let index = index.rem_euclid((high - low).max(1));
                 if index < len { index } else { high - index }
             }
@@ -122,7 +122,7 @@ impl Halving {
         let first_and_last = 2 * filter.first_tap() + filter.degree.order() + 1;
         let low = (-i64::from(twice[0]) - first_and_last).div_euclid(2);
         let high = (2 * (len as i64 - 1) + i64::from(twice[1]) - first_and_last).div_euclid(2);
-        // What is kept lies between the two mirrors.
+        // The stored coefficients lie between the two mirrors.
         let [first, last] = [low.div_euclid(2) + low.rem_euclid(2), high.div_euclid(2)];
         let ends = Ends::Mirror {
             twice: [low.rem_euclid(2) == 1, high.rem_euclid(2) == 1],
@@ -141,8 +141,8 @@ impl Halving {
 
 /// The shortest line that becomes shorter when it is halved.
 ///
-/// A mirrored line of 2 keeps its length where its coarse coefficients lie on both mirrors. Halved again and again, what is
-/// not constant in it would grow for ever.
+/// A mirrored line of 2 keeps its length where its coarse coefficients lie on both mirrors. Halved again and again, its
+/// varying part would grow without bound.
 pub(crate) fn shortest(filter: SplineFilter, border: Border) -> usize {
     let is_even = filter.degree.order() % 2 == 0;
     if border == Border::Mirror && filter.phase == Phase::CookDeRose && is_even {
@@ -185,7 +185,7 @@ pub(crate) fn lengths(
     Ok(lengths)
 }
 
-/// More levels than any raster has, whose sides are below 2^32.
+/// The largest number of levels: more than any raster can have, whose sides are below 2^32.
 const MOST_LEVELS: u32 = 32;
 
 #[cfg(test)]

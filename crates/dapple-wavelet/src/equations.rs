@@ -1,7 +1,7 @@
 //! The equations of Du, Wang and Meng, one test for each, written out as in the paper.
 //!
-//! The paper counts φ from its left end, and so do its shifts: there coefficient `i` is at `i`, here its spline is centered on
-//! it. `h` and `a` begin where [`Phase`](crate::Phase) says.
+//! The paper measures φ and its shifts from its left end: there coefficient `i` is at `i`, while here its spline is
+//! centered on it. `h` and `a` begin where [`Phase`](crate::Phase) says.
 
 use crate::oracle::{DEGREES, all_filters, binomials, coarse_center, distance, noise, spread};
 use crate::{Border, Degree, SplineFilter};
@@ -9,7 +9,7 @@ use dapple_raster::Raster;
 
 const PERIODIC: Border = Border::Periodic;
 
-/// Positions without any order, none of them where a step jumps.
+/// Scattered positions, none of them where a step jumps.
 fn positions() -> impl Iterator<Item = f64> {
     noise(60).into_iter().map(|value| 9.0 * value)
 }
@@ -46,7 +46,7 @@ fn noise_raster(side: u32) -> Raster<f32> {
     Raster::from_vec([side, side], pixels).expect("a good size")
 }
 
-/// The halving filter `a`, from its answers to impulses in a periodic line of 64: tap `k`, for `k` from -32 to 31.
+/// The halving filter `a`, from its responses to impulses in a periodic line of 64: tap `k`, for `k` from -32 to 31.
 fn halving_taps(filter: SplineFilter) -> impl Fn(i64) -> f64 {
     let taps: Vec<f64> = (0..64)
         .map(|k| {

@@ -1,31 +1,31 @@
-//! Why a line, a raster or a tile was refused.
+//! Errors of spline filters and wavelet noise.
 
 use dapple_raster::RasterError;
 
 dapple_raster::error! {
-    /// Why a filter refused its input.
+    /// An error of a filter or of a noise.
     WaveletError,
-    /// The limit that was broken.
+    /// The cause of a [`WaveletError`], with the limit and the value.
     WaveletErrorKind with Range {
-        /// A periodic side that cannot be halved so often.
+        /// The length of a periodic side is not divisible by 2 as often as it is to be halved.
         NotDivisible {
             /// The length of the side.
             length: usize,
-            /// How often it was to be halved.
+            /// The number of times it was to be halved.
             levels: u32,
         } => "a periodic side of {length} cannot be halved {levels} times; its length must be a multiple of 2^{levels}";
         /// A side is too short.
         TooShort {
             /// The length of the side.
             length: usize,
-            /// The shortest that is allowed.
+            /// The shortest allowed length.
             least: usize,
         } => "a side of {length} is too short; it must have at least {least}";
         /// The number of values is not the one needed.
         Length {
-            /// How many values there are.
+            /// The number of values.
             length: usize,
-            /// How many were needed.
+            /// The number of values needed.
             needed: usize,
         } => "there are {length} values, but {needed} are needed";
         /// A value is NaN or infinite.
@@ -37,7 +37,7 @@ dapple_raster::error! {
         } => "value {index} is {value}, but all must be finite";
     }
     from {
-        /// The raster was refused.
+        /// An error of the raster.
         Raster(RasterError),
     }
 }

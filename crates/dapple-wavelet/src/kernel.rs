@@ -1,4 +1,4 @@
-//! The numbers of the filters: taps and poles.
+//! Filter kernels: taps and poles.
 //!
 //! Halving is least squares. With `h` the two-scale coefficients and `b` the inner products of the spline with its own shifts
 //! (a B-spline of degree `2d + 1` at whole numbers), the coarse coefficients `c` of the fine `g` solve `b * c = ↓2(q ⋆ g)`,
@@ -14,9 +14,9 @@ use crate::{Degree, Fit, SplineFilter};
 /// The filter of a line: a short sum for each value, and recursions over the results.
 #[derive(Clone, Debug)]
 pub(crate) struct Kernel {
-    /// Where the first tap lies, from the place of the value.
+    /// The offset of the first tap from the place of the value.
     pub(crate) first: i64,
-    /// The weights of the sum, symmetric, with the gain of the recursions.
+    /// The weights of the sum, symmetric; they include the gain of the recursions.
     pub(crate) taps: Vec<f64>,
     /// The poles of the recursions, each run forward and backward.
     pub(crate) poles: &'static [f64],
@@ -37,17 +37,17 @@ impl Kernel {
         }
     }
 
-    /// The filter that makes the values of a spline at its coefficients' places.
+    /// The filter that evaluates a spline at the places of its coefficients.
     pub(crate) fn samples(degree: Degree) -> Self {
         Self::new(-(degree.order() / 2), samples(degree).to_vec(), &[])
     }
 
-    /// The filter that makes the coefficients of the spline with given values.
+    /// The filter that computes the coefficients of the spline with given values.
     pub(crate) fn coefficients(degree: Degree) -> Self {
         Self::new(0, vec![1.0], sample_poles(degree))
     }
 
-    /// A kernel that keeps constants: the taps are divided by their sum.
+    /// A kernel that preserves constants: the taps are divided by their sum.
     fn new(first: i64, taps: Vec<f64>, poles: &'static [f64]) -> Self {
         let sum: f64 = taps.iter().sum();
         let gain = poles
@@ -60,7 +60,8 @@ impl Kernel {
         }
     }
 
-    /// After how many steps a recursion has forgotten how it began: what is left is below 2^-58, less than a rounding.
+    /// The number of steps after which the start of a recursion no longer matters: its influence is below 2^-58, less
+    /// than a rounding.
     pub(crate) fn reach(&self) -> usize {
         let slowest = self
             .poles
@@ -75,7 +76,7 @@ impl Kernel {
     }
 }
 
-/// 2^-58.
+/// The influence of its start that a recursion may have left: 2^-58.
 const FORGOTTEN: f64 = 1.0 / (1_u64 << 58) as f64;
 
 /// The two-scale coefficients `2^-d C(d + 1, k)` of equation 4.
@@ -88,7 +89,7 @@ pub(crate) fn two_scale(degree: Degree) -> Vec<f64> {
     }
 }
 
-/// Inner products of the spline with its shifts by `-d ..= d`, all times the least whole number that makes them whole.
+/// Inner products of the spline with its shifts by `-d ..= d`, all scaled by the smallest number that makes them whole.
 pub(crate) fn gram(degree: Degree) -> &'static [f64] {
     match degree {
         Degree::Constant => &[1.0],
@@ -98,7 +99,7 @@ pub(crate) fn gram(degree: Degree) -> &'static [f64] {
     }
 }
 
-/// Values of the spline at whole numbers, all times the least whole number that makes them whole.
+/// Values of the spline at whole numbers, all scaled by the smallest number that makes them whole.
 fn samples(degree: Degree) -> &'static [f64] {
     match degree {
         Degree::Constant | Degree::Linear => &[1.0],

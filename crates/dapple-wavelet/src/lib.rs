@@ -1,13 +1,13 @@
 //! Spline wavelets on rasters: exact down- and upsampling, periodic or mirrored, and wavelet noise.
 //!
-//! Du Jin-Lian, Wang Song and Meng Xianhai, "Wavelet and Blend maps for texture synthesis", make a tile that repeats better by
-//! halving it and doubling it again. The filters are those of Robert L. Cook and Tony DeRose, "Wavelet Noise", ACM
-//! Transactions on Graphics 24(3) (SIGGRAPH 2005), <https://doi.org/10.1145/1073204.1073264>.
+//! Du Jin-Lian, Wang Song and Meng Xianhai, "Wavelet and Blend maps for texture synthesis", turn a tile into one that
+//! repeats better by halving it and doubling it again. The filters are those of Robert L. Cook and Tony DeRose,
+//! "Wavelet Noise", ACM Transactions on Graphics 24(3) (SIGGRAPH 2005), <https://doi.org/10.1145/1073204.1073264>.
 //!
 //! A [`SplineFilter`] reads pixels as the coefficients of a B-spline. It finds the nearest spline with half as many
-//! coefficients ([`down`](SplineFilter::down)), and writes a spline exactly with twice as many ([`up`](SplineFilter::up)).
-//! Both in turn are a projection ([`project`](SplineFilter::project)): what a half-size picture can show stays, and what it
-//! cannot show is gone.
+//! coefficients ([`down`](SplineFilter::down)), and writes a spline exactly with twice as many
+//! ([`up`](SplineFilter::up)). Both in turn are a projection ([`project`](SplineFilter::project)), which keeps the
+//! detail that a half-size picture can show, and removes all other detail.
 //!
 //! ```
 //! use dapple_wavelet::{Border, SplineFilter, raster::Raster};
@@ -45,7 +45,8 @@
 //! | 10, 11 | a raster and its half-size raster as functions | 1 along both axes |
 //! | 12 and 13 | the blend tile | [`SplineFilter::project`] |
 //!
-//! The same in space are [`SplineFilter::down_volume`], [`SplineFilter::up_volume`] and [`SplineFilter::project_volume`].
+//! The versions for volumes are [`SplineFilter::down_volume`], [`SplineFilter::up_volume`] and
+//! [`SplineFilter::project_volume`].
 //!
 //! # What the paper leaves open
 //!
@@ -59,9 +60,9 @@
 //!
 //! # Wavelet noise
 //!
-//! What halving loses of white noise is noise of one octave. [`WaveletNoise2`] and [`WaveletNoise3`] are that noise at any
-//! position, in one band or several, with its gradient and with a period. [`wavelet_tile`] sums bands of it, each made at its
-//! own size, to a raster that repeats without a seam.
+//! The detail that white noise loses by halving is noise of one octave. [`WaveletNoise2`] and [`WaveletNoise3`]
+//! evaluate this noise at any position, in one band or several, with its gradient and with a period. [`wavelet_tile`]
+//! sums bands of it, each made at its own size, to a raster that repeats without a seam.
 //!
 //! ```
 //! use dapple_wavelet::{WaveletNoise2, hash::Seed, raster::Field, raster::Window, raster::glam::DVec2};

@@ -1,4 +1,4 @@
-//! Lines in `f64`: halving by recursion, doubling, and both at once.
+//! Filters of lines in `f64`: halving by recursion, doubling, and both as a projection.
 //!
 //! Reference: Robert L. Cook and Tony DeRose, "Wavelet Noise", ACM Transactions on Graphics 24(3) (SIGGRAPH 2005),
 //! <https://doi.org/10.1145/1073204.1073264>, for the filter pair, which equations 6 and 7 of Du, Wang and Meng are.
@@ -12,8 +12,8 @@ use crate::{Border, SplineFilter, WaveletError, WaveletErrorKind};
 use core::ops::Mul;
 
 impl SplineFilter {
-    /// How many coefficients a line of `length` has once halved: half as many where it is periodic, and for mirrored lines as
-    /// [`Border::Mirror`] says.
+    /// The number of coefficients of a line of `length` after it is halved: half as many for a periodic line; for a
+    /// mirrored line see [`Border::Mirror`].
     ///
     /// # Errors
     ///
@@ -25,8 +25,8 @@ impl SplineFilter {
 
     /// Equation 7: the nearest line with half as many coefficients.
     ///
-    /// No value is further from zero than 3.82 times the furthest of `fine`, or 2.33 times for degrees below the cubic. Values
-    /// are finite up to `f64::MAX / 4`; beyond it some may be infinite or NaN.
+    /// No absolute value exceeds 3.82 times the largest absolute value of `fine`, or 2.33 times for degrees below the
+    /// cubic. Values are finite up to `f64::MAX / 4`; beyond it some may be infinite or NaN.
     ///
     /// # Errors
     ///
@@ -52,7 +52,8 @@ impl SplineFilter {
     ///
     /// # Errors
     ///
-    /// `Length` if `coarse` has not the length that `fine_len` has once halved; as [`down_line`](Self::down_line).
+    /// `Length` if the length of `coarse` is not half of `fine_len`, as [`coarse_len`](Self::coarse_len) says, and the
+    /// errors of [`down_line`](Self::down_line).
     pub fn up_line(
         &self,
         coarse: &[f64],
@@ -64,10 +65,10 @@ impl SplineFilter {
         Ok(doubling.line(coarse))
     }
 
-    /// Halves a line `levels` times and doubles it again; zero levels give the line itself.
+    /// Halves a line `levels` times and doubles it as often; zero levels return the line itself.
     ///
-    /// Each level mirrors its own line afresh, which several levels of the mirrored line need not do: see [`Border::Mirror`].
-    /// Values are finite up to `f64::MAX / 4^levels`; beyond it some may be infinite or NaN.
+    /// Each level mirrors its own line anew, which is not always the same as mirroring the fine line: see
+    /// [`Border::Mirror`]. Values are finite up to `f64::MAX / 4^levels`; beyond it some may be infinite or NaN.
     ///
     /// # Errors
     ///
@@ -98,12 +99,13 @@ pub(crate) fn filter_line(filter: &LineFilter, line: &[f64]) -> Vec<f64> {
     filter.run(&mut lanes, load).as_flattened().to_vec()
 }
 
-/// Refuses values that are not finite, and names the first.
+/// Fails with the first value that is not finite.
 pub(crate) fn check_finite<T>(values: &[T]) -> Result<(), WaveletError>
 where
     T: Copy + Default + PartialEq + Mul<Output = T> + Into<f64>,
 {
-    // What is not finite does not give zero when it is multiplied by zero. There is no early end, which would be slower.
+    // A value that is not finite does not become zero when it is multiplied by zero. There is no early exit, which
+    // would be slower.
     let is_finite = |value: T| value * T::default() == T::default();
     if values
         .iter()

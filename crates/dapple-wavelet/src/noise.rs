@@ -1,14 +1,15 @@
 //! Wavelet noise at any position, in two and three dimensions.
 //!
 //! Robert L. Cook and Tony DeRose, "Wavelet Noise", ACM Transactions on Graphics 24(3) (SIGGRAPH 2005),
-//! <https://doi.org/10.1145/1073204.1073264>: white noise without what half as many coefficients could say as well. What
-//! is left are the coefficients of a quadratic B-spline with nearly all of its power in one octave, so that the pixels of
-//! a picture either resolve it or see nothing of it.
+//! <https://doi.org/10.1145/1073204.1073264>: white noise minus the part that half as many coefficients can represent.
+//! The rest are the coefficients of a quadratic B-spline with nearly all of its power in one octave, so that the pixels
+//! of a picture either resolve it or see nothing of it.
 //!
-//! This departs from the paper in a few points. Halving is the exact recursion of [`SplineFilter`](crate::SplineFilter),
-//! not 32 rounded taps. Coefficient `k` lies at `k + ½`, the center of its cell. Bands are shifted by whole cells, so that
-//! they are no copies of each other at the origin. The variance of a band is exact for tiles of any size, and nothing is
-//! divided by the weights. The projection of solid noise onto surfaces (the paper's section 3.3) is not here.
+//! This departs from the paper in a few points. Halving is the exact recursion of
+//! [`SplineFilter`](crate::SplineFilter), not 32 rounded taps. Coefficient `k` lies at `k + ½`, the center of its cell.
+//! Bands are shifted by whole cells, so that they are not copies of each other at the origin. The variance of a band is
+//! exact for tiles of any size, and values are not divided by the weights. The projection of solid noise onto surfaces
+//! (the paper's section 3.3) is not implemented.
 //!
 //! Positions are in cells; a cell is the distance of two coefficients.
 
@@ -33,18 +34,18 @@ pub(crate) use white::white_raster;
 
 /// Noise without low frequencies: a tile of B-spline coefficients, evaluated at any position, in one band or several.
 ///
-/// A band has 85 % of its power between ¼ and ½ cycles per cell, counted along the axis where the frequency is highest. Of
-/// the rest about one half is above and one half below, and less than a ten-thousandth of all is below ⅛.
+/// A band has 85 % of its power between ¼ and ½ cycles per cell, counted along the axis where the frequency is highest.
+/// About half of the rest is above and half below, and less than a ten-thousandth of all is below ⅛.
 ///
 /// Values are nearly normal. Over all positions and seeds their mean is 0 and their variance 1. At one position the
 /// variance depends on where it lies between the coefficients: in the plane it is 0.31 at every other corner of cells
-/// along each axis and up to 1.38 within cells. No value is further from zero than [`bound`](Self::bound). There is no
-/// other normalization.
+/// along each axis and up to 1.38 within cells. No absolute value exceeds [`bound`](Self::bound). There is no other
+/// normalization.
 ///
 /// The noise repeats after as many cells along each axis as [`size`](Self::size) says, to the last bit where both positions
 /// are exact in `f64`. It is continuous, and so is its gradient. At a position that is not finite it is NaN.
 ///
-/// At first there is one band, of weight 1; [`with_weights`](Self::with_weights) gives more.
+/// A new noise has one band, of weight 1; [`with_weights`](Self::with_weights) sets the weights of several.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/wavelet-noise.md"))]
 ///
@@ -67,16 +68,16 @@ pub struct WaveletNoise<const N: usize> {
     bands: Vec<Band<N>>,
 }
 
-/// Wavelet noise of the plane.
+/// Wavelet noise in two dimensions.
 pub type WaveletNoise2 = WaveletNoise<2>;
 
-/// Wavelet noise of space.
+/// Wavelet noise in three dimensions.
 pub type WaveletNoise3 = WaveletNoise<3>;
 
 /// The largest number of bands.
 const MOST_BANDS: usize = 16;
 
-/// The largest weight. No sum of weighted values overflows.
+/// The largest weight, so that no sum of weighted values overflows.
 const LARGEST_WEIGHT: f32 = 1e30;
 
 impl<const N: usize> WaveletNoise<N> {
@@ -84,7 +85,7 @@ impl<const N: usize> WaveletNoise<N> {
     ///
     /// Band `b` is the tile at `2^b` times the position, shifted by whole numbers of cells: it has its power between
     /// `2^b / 4` and `2^b / 2` cycles per cell and repeats `2^b` times in a period. Bands hardly correlate, so the
-    /// variance of the noise is about the sum of the squares of the weights. Nothing is divided by them.
+    /// variance of the noise is about the sum of the squares of the weights. Values are not divided by the weights.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/with-weights.md"))]
     ///
@@ -98,15 +99,15 @@ impl<const N: usize> WaveletNoise<N> {
         Ok(self)
     }
 
-    /// Cells along each axis of the tile, which are the periods.
+    /// The number of cells along each axis of the tile, which are the periods.
     #[must_use]
     pub fn size(&self) -> [u32; N] {
         self.size
     }
 
-    /// No value is further from zero than this: the largest coefficient times the sum of the weights, all without sign.
+    /// The bound of the absolute value: the largest absolute coefficient times the sum of the absolute weights.
     ///
-    /// With several bands values hardly ever come near to it.
+    /// With several bands values rarely come near to it.
     #[must_use]
     pub fn bound(&self) -> f32 {
         let weights = self.bands.iter().map(|band| f64::from(band.weight.abs()));
@@ -126,7 +127,7 @@ impl<const N: usize> fmt::Debug for WaveletNoise<N> {
     }
 }
 
-/// Refuses weights that are too few, too many, too large or not finite.
+/// Checks the number, the size and the finiteness of weights.
 pub(crate) fn check_weights(weights: &[f32]) -> Result<(), WaveletError> {
     if weights.is_empty() || weights.len() > MOST_BANDS {
         return Err(WaveletError::new(WaveletErrorKind::Range {

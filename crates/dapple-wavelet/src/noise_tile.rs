@@ -1,10 +1,10 @@
 //! Seamless rasters of wavelet noise, weighted band by band.
 //!
-//! A raster is read as the coefficients of a periodic quadratic B-spline. A band of Cook and DeRose's wavelet noise (see
-//! [`WaveletNoise`](crate::WaveletNoise)) is made at its own size, where nothing else has its frequencies, and doubled
-//! until it has the size of the raster, which changes nothing but the number of coefficients. So there is no seam, no
-//! band has anything of another, and each can be found again by halving. It is what one should make where a picture of
-//! noise would be made to repeat afterwards.
+//! A raster is read as the coefficients of a periodic quadratic B-spline. A band of Cook and DeRose's wavelet noise
+//! (see [`WaveletNoise`](crate::WaveletNoise)) is made at its own size, where no other band has its frequencies, and
+//! doubled until it has the size of the raster, which only changes the number of coefficients. So there is no seam,
+//! bands do not overlap, and each can be recovered by halving. Prefer it to making a picture of noise repeat
+//! afterwards.
 //!
 //! Every band has white noise of its own, and repeats only where the raster does.
 //!
@@ -20,12 +20,11 @@ const PERIODIC: [Border; 2] = [Border::Periodic; 2];
 
 /// A raster of wavelet noise that repeats without a seam, from the weights of its bands, finest first.
 ///
-/// The pixels are the coefficients of a periodic quadratic spline. Band `b` has its power between `2^-b / 4` and `2^-b / 2`
-/// cycles per pixel, nearly. Its mean is 0, and the mean of its squares over all pixels and seeds is the square of its
-/// weight. Bands do not depend on each other, so these squares add up. Nothing else is done to the values, which are
-/// nearly normal.
+/// The pixels are the coefficients of a periodic quadratic spline. Band `b` has its power between `2^-b / 4` and `2^-b
+/// / 2` cycles per pixel, nearly. Its mean is 0, and the mean of its squares over all pixels and seeds is the square of
+/// its weight. Bands are independent, so these squares add up. The values are nearly normal, and not processed further.
 ///
-/// [`SplineFilter::analyze`] takes the raster apart into these bands again. Runs on all cores where the feature `rayon`
+/// [`SplineFilter::analyze`] decomposes the raster into these bands again. Runs on all cores where the feature `rayon`
 /// is on.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/wavelet-tile.md"))]
@@ -60,7 +59,7 @@ pub fn wavelet_tile(
         if size != tile.size() {
             tile = SplineFilter::default().up(&tile, size, PERIODIC)?;
         }
-        // A band without weight is not made.
+        // A band with the weight zero is skipped.
         let weight = weights[level as usize];
         if weight != 0.0 {
             tile = add_band(&tile, weight, level, seed)?;
@@ -69,9 +68,9 @@ pub fn wavelet_tile(
     Ok(tile)
 }
 
-/// Refuses sides that cannot be halved so often.
+/// Checks that all sides can be halved `levels` times.
 fn check_size(size: [u32; 2], levels: u32) -> Result<(), WaveletError> {
-    // A raster without pixels or with too many says so.
+    // This call checks the number of pixels.
     Raster::filled(size, ())?;
     match size.into_iter().find(|side| side % (1 << levels) != 0) {
         None => Ok(()),
@@ -82,7 +81,7 @@ fn check_size(size: [u32; 2], levels: u32) -> Result<(), WaveletError> {
     }
 }
 
-/// The sum of a raster and of a band of its size, which is still to be doubled `level` times.
+/// Adds a band to a raster of its size, which is to be doubled `level` more times.
 fn add_band(
     raster: &Raster<f32>,
     weight: f32,

@@ -1,4 +1,4 @@
-//! What the filters must agree with, written without regard to speed: dense least squares over literally extended lines.
+//! Reference implementations of the filters, written for clarity: dense least squares over literally extended lines.
 
 use crate::{Border, Degree, Fit, Phase, SplineFilter};
 
@@ -55,7 +55,7 @@ pub(crate) fn spread(filter: SplineFilter) -> (i64, i64) {
     (first - earlier, last - earlier)
 }
 
-/// The period of the repeating line that a line with this border is a part of.
+/// One period of the repeating line that this line with its border is a part of.
 fn extended(filter: SplineFilter, line: &[f64], border: Border) -> Vec<f64> {
     let even = matches!(filter.degree, Degree::Constant | Degree::Quadratic);
     let mut line = line.to_vec();
@@ -68,7 +68,7 @@ fn extended(filter: SplineFilter, line: &[f64], border: Border) -> Vec<f64> {
     line
 }
 
-/// The first coarse coefficient that is kept, and how many: those whose centers lie between the mirrors.
+/// The stored coarse coefficients: those whose centers lie between the mirrors.
 fn kept(filter: SplineFilter, len: usize, border: Border) -> Vec<i64> {
     let (first, last) = spread(filter);
     if border == Border::Periodic {
@@ -128,7 +128,7 @@ pub(crate) fn up(
     let period = extended(filter, &vec![0.0; fine_len], border).len();
     let (first, last) = spread(filter);
     let kept = kept(filter, fine_len, border);
-    // All coarse coefficients of one period: those kept, and their mirror images.
+    // All coarse coefficients of one period: the stored ones, and their mirror images.
     let value = |j: i64| {
         let coarse_period = period as i64 / 2;
         let mirror = match filter.degree {
@@ -171,7 +171,7 @@ pub(crate) fn binomials(degree: Degree) -> Vec<f64> {
     row.iter().map(|c| c / f64::from(1 << d)).collect()
 }
 
-/// The weight of coarse coefficient `j` in fine coefficient `i` of a line that repeats.
+/// The weight of coarse coefficient `j` in fine coefficient `i` of a periodic line.
 fn tap(filter: SplineFilter, period: usize, i: usize, j: usize) -> f64 {
     let (first, last) = spread(filter);
     let h = binomials(filter.degree);
@@ -209,7 +209,7 @@ fn mixed_product(filter: SplineFilter, period: usize, j: usize, i: usize) -> f64
     (-8..=8).map(copy).sum()
 }
 
-/// Where coarse spline `j` is centered, in fine units.
+/// The center of coarse spline `j`, in fine units.
 pub(crate) fn coarse_center(filter: SplineFilter, j: usize) -> f64 {
     let (first, last) = spread(filter);
     2.0 * j as f64 + (first + last) as f64 / 2.0

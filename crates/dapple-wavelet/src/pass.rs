@@ -1,21 +1,23 @@
-//! Filtering all lines of an array, several side by side, on all cores.
+//! Filtering of all lines of an array, several side by side, on all cores.
 //!
-//! The lines of an array are contiguous, and the result has the axes exchanged: what was along the lines lies across them.
-//! Two passes so filter a raster along both axes, three a volume along its three, and leave the axes in their order. No
-//! pass reads or writes single values with the stride of a row, which would cost more than the filter.
+//! The lines of an array are contiguous, and the result has the axes exchanged: the direction along the lines becomes
+//! the direction across them. Two passes filter a raster along both axes, three a volume along its three, and restore
+//! the order of the axes. No pass reads or writes single values with the stride of a row, which would cost more than
+//! the filter.
 
 use crate::recursion::{Lanes, LineFilter};
 use dapple_raster::simd::dispatch;
 use dapple_raster::{parallel, simd};
 use fearless_simd::{Level, f32x8, prelude::*};
 
-/// How many lines are filtered side by side.
+/// The number of lines that are filtered side by side.
 const LANES: usize = 8;
 
-/// How many groups of lines are filtered before they are written to the result: they stay in the cache until then.
+/// The number of groups of lines that are filtered before they are written to the result: they stay in the cache until
+/// then.
 const BATCH: usize = 32;
 
-/// How many rows of the result are written at a time: what they are made of is read in whole cache lines.
+/// The number of rows of the result that are written at a time, so that their sources are read in whole cache lines.
 const ROWS: usize = 8;
 
 /// Filters the lines of an array, and rounds to `f32`. Value `i` of line `l` is at `i * lines + l` of the result.
@@ -25,7 +27,7 @@ pub(crate) fn filter_lines(filter: &LineFilter, values: &[f32]) -> Vec<f32> {
     result
 }
 
-/// Filters lines, as [`filter_lines`] does, at a SIMD level, into memory for the result. What `batch` holds does not matter.
+/// Filters lines, as [`filter_lines`] does, at a SIMD level, into memory for the result. `batch` is scratch memory.
 pub(crate) fn filter_lines_into(
     level: Level,
     filter: &LineFilter,
@@ -74,12 +76,12 @@ fn filter_group<S: Simd>(
     }
 }
 
-/// Writes up to `LANES` lines side by side: squares of values at once, and what is left over one by one.
+/// Interleaves up to `LANES` lines: in squares of values, and the rest one by one.
 #[inline(always)]
 fn interleave<S: Simd>(simd: S, lines: &[f32], target: &mut [[f64; LANES]]) {
     let len = target.len();
     let n_lines = lines.len() / len;
-    // A group that is not full is the last one.
+    // Only the last group can be partial.
     let n_squares = if n_lines == LANES { len / LANES } else { 0 };
     let (squares, rest) = target.split_at_mut(n_squares * LANES);
     for (square, target) in squares.chunks_exact_mut(LANES).enumerate() {
@@ -92,7 +94,7 @@ fn interleave<S: Simd>(simd: S, lines: &[f32], target: &mut [[f64; LANES]]) {
     }
 }
 
-/// The first `LANES` values of as many lines, which begin `len` apart, side by side.
+/// Interleaves the first `LANES` values of as many lines, which begin `len` apart.
 ///
 /// A perfect shuffle of all 64 values turns the six bits of their places by one; three of them exchange the three bits
 /// of the line and of the place in it.
@@ -122,7 +124,7 @@ fn write_columns(values: &[f32], rows: &mut [f32], width: usize, column: usize) 
     let (parts, _) = values.as_chunks::<LANES>();
     for (row, part) in rows.chunks_exact_mut(width).zip(parts) {
         let row = &mut row[column..];
-        // A group that is not full is the last one.
+        // Only the last group can be partial.
         match row.first_chunk_mut::<LANES>() {
             Some(row) => *row = *part,
             None => row.copy_from_slice(&part[..row.len()]),

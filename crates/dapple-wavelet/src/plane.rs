@@ -1,4 +1,4 @@
-//! Rasters: the filters along rows and columns.
+//! Filters of rasters along rows and columns.
 //!
 //! Halving goes along rows and then along columns, doubling along columns and then along rows; in between values are rounded
 //! to `f32`. All arithmetic is `f64`.
@@ -15,8 +15,8 @@ use crate::{Border, SplineFilter, WaveletError};
 use dapple_raster::{Raster, simd};
 use fearless_simd::Level;
 
-/// Scratch memory of [`SplineFilter::down_into`], used again from raster to raster: 2 bytes for each fine pixel of the
-/// largest, and some more.
+/// Scratch memory of [`SplineFilter::down_into`], which is reused from raster to raster: about 2 bytes for each fine
+/// pixel of the largest raster.
 #[derive(Clone, Debug, Default)]
 pub struct FilterMemory {
     columns: Vec<f32>,
@@ -26,8 +26,8 @@ pub struct FilterMemory {
 impl SplineFilter {
     /// Equations 9 and 12: the nearest raster of half the size.
     ///
-    /// No pixel is further from zero than 14.6 times the furthest of `fine`, or 5.4 times for degrees below the cubic. Pixels
-    /// are finite up to `f32::MAX / 15`; beyond it some may be infinite or NaN.
+    /// No absolute value of a pixel exceeds 14.6 times the largest of `fine`, or 5.4 times for degrees below the cubic.
+    /// Pixels are finite up to `f32::MAX / 15`; beyond it some may be infinite or NaN.
     ///
     /// # Errors
     ///
@@ -43,8 +43,8 @@ impl SplineFilter {
         Ok(coarse)
     }
 
-    /// Halves a raster, as [`down`](Self::down) does, into one of half the size, with memory that was used before: for one raster after
-    /// another, and for large ones, where new memory costs more time than the filter.
+    /// Halves a raster, as [`down`](Self::down) does, into one of half the size, with reusable scratch memory: for many
+    /// rasters, and for large ones, where new memory costs more time than the filter.
     ///
     /// # Errors
     ///
@@ -87,14 +87,14 @@ impl SplineFilter {
             self.doubling(coarse.size()[axis], fine_size[axis], borders[axis])
                 .map(drop)
         };
-        // Refuses a size that does not fit before there is memory for it.
+        // This checks the size before its memory is allocated.
         doubled(0).and(doubled(1))?;
         let mut fine = Raster::filled(fine_size, 0.0)?;
         self.up_into(coarse, borders, &mut fine)?;
         Ok(fine)
     }
 
-    /// Doubles a raster, as [`up`](Self::up) does, into one of the size that is wanted.
+    /// Doubles a raster, as [`up`](Self::up) does, into an existing raster of the fine size.
     ///
     /// # Errors
     ///
@@ -122,14 +122,14 @@ impl SplineFilter {
         Doubling::new(*self, coarse as usize, fine as usize, border)
     }
 
-    /// Halves a raster `levels` times along each axis and doubles it again; zero levels give the raster itself.
+    /// Halves a raster `levels` times along each axis and doubles it as often; zero levels return the raster itself.
     ///
-    /// Each level mirrors its own lines afresh: see [`Border::Mirror`].
+    /// Each level mirrors its own lines anew: see [`Border::Mirror`].
     ///
     /// # Errors
     ///
-    /// Those of [`down`](Self::down), for each level: `NotFinite` also if a level has made infinite pixels of finite ones, which
-    /// none does up to `f32::MAX / 15^levels`. `Range` for more than 32 levels.
+    /// Those of [`down`](Self::down), for each level: `NotFinite` also if a level has made infinite pixels from finite
+    /// ones, which cannot happen up to `f32::MAX / 15^levels`. `Range` for more than 32 levels.
     pub fn project(
         &self,
         fine: &Raster<f32>,
@@ -195,7 +195,7 @@ impl FilterMemory {
         let Self { columns, batch } = self;
         let n_values = along_rows.target.len * raster.height() as usize;
         if columns.len() < n_values {
-            // New memory is zero already where the system gives it; clearing would touch it once more.
+            // New memory comes zeroed from the system; clearing would touch it once more.
             *columns = vec![0.0; n_values];
         }
         let columns = &mut columns[..n_values];

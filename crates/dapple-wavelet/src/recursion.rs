@@ -1,9 +1,9 @@
 //! The filter that halves a line, and the prefilters: a short sum, then recursions, over several lines side by side.
 //!
-//! A recursion needs what came before the first value. The lines are therefore continued past their ends, by as many values as
-//! the recursion needs to forget that it began with zero: what is left is less than the last bit of a result. One rule so
-//! serves lines that repeat and lines that are mirrored, of any length; to a rounding, it gives a periodic line the start
-//! `s / (1 − pⁿ)` that is usual, of one whole turn `s`.
+//! A recursion depends on the values before the first. The lines are therefore extended past their ends, by as many
+//! values as the recursion needs until its start with zero has no more influence than the last bit of a result. This
+//! one rule serves periodic and mirrored lines of any length. For a periodic line it equals, up to rounding, the usual
+//! start `s / (1 − pⁿ)` from one whole turn `s`.
 //!
 //! All arithmetic is `f64`, with the same operations in the same order for every lane, so that a line has the same bits
 //! whatever lies beside it.
@@ -18,11 +18,11 @@ pub(crate) struct LineFilter {
     kernel: Kernel,
     pub(crate) source: Line,
     pub(crate) target: Line,
-    /// How many source values there are to a target value: 1 or 2.
+    /// The number of source values per target value: 1 or 2.
     step: usize,
-    /// Where the first tap of the first target value lies in the source.
+    /// The index in the source of the first tap of the first target value.
     start: i64,
-    /// How many target values are continued past each end.
+    /// The number of values by which the target is extended past each end.
     reach: usize,
 }
 
@@ -34,7 +34,7 @@ pub(crate) struct Lanes<const L: usize> {
 }
 
 impl LineFilter {
-    /// Equation 7, for lines of `len`.
+    /// The filter of equation 7, for lines of `len`.
     pub(crate) fn halving(
         filter: SplineFilter,
         len: usize,
@@ -64,7 +64,7 @@ impl LineFilter {
         }
     }
 
-    /// Filters the lines that `load` writes into the slice it is given, as long as the source.
+    /// Filters the lines that `load` writes into a slice of the length of the source.
     #[inline(always)]
     pub(crate) fn run<'lanes, const L: usize>(
         &self,
@@ -103,7 +103,7 @@ impl LineFilter {
     }
 }
 
-/// Continues the line that begins at `before` to both ends of the slice.
+/// Extends the line that begins at `before` to both ends of the slice.
 #[inline(always)]
 fn go_on<const L: usize>(line: &Line, values: &mut [[f64; L]], before: usize) {
     let after = before + line.len..values.len();
@@ -112,7 +112,7 @@ fn go_on<const L: usize>(line: &Line, values: &mut [[f64; L]], before: usize) {
     }
 }
 
-/// Each target is the sum of `taps`, which are symmetric, times the values from its place on.
+/// Computes each target value as the sum of `taps`, which are symmetric, times the source values from its place on.
 #[inline(always)]
 fn weigh<const L: usize>(taps: &[f64], source: &[[f64; L]], step: usize, target: &mut [[f64; L]]) {
     // The paper's filter has eight taps, which then stay in registers.
@@ -154,7 +154,7 @@ fn recur<const L: usize, const P: usize>(poles: [f64; P], lines: &mut [[f64; L]]
     sweep(poles, lines.iter_mut().rev());
 }
 
-/// Adds to each value the one before, times a pole; for one pole after the other.
+/// Adds to each value the previous one times the pole, for each pole in turn.
 #[inline(always)]
 fn sweep<'lines, const L: usize, const P: usize>(
     poles: [f64; P],

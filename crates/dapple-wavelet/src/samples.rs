@@ -1,8 +1,8 @@
-//! Splines that go through given values, and the values of splines.
+//! Interpolating splines through given values, and the values of splines.
 //!
-//! The filters read pixels as coefficients. Where pixels are samples of a picture, [`SplineFilter::coefficients`] first finds
-//! the coefficients of the spline that has them as its values at pixel centers, by recursion, and
-//! [`SplineFilter::samples`] goes back in the end. For steps and tents the two are the same.
+//! The filters read pixels as coefficients. Where pixels are samples of a picture, [`SplineFilter::coefficients`] first
+//! finds, by recursion, the spline that has them as its values at pixel centers, and [`SplineFilter::samples`] converts
+//! back in the end. For steps and tents, coefficients and samples are equal.
 //!
 //! Reference: Michael Unser, "Splines: A Perfect Fit for Signal and Image Processing", IEEE Signal Processing Magazine 16(6),
 //! 1999, <https://doi.org/10.1109/79.799930>.
@@ -16,7 +16,7 @@ use crate::{Border, SplineFilter, WaveletError, WaveletErrorKind};
 use dapple_raster::Raster;
 
 impl SplineFilter {
-    /// Equation 1: the value at `x` of the spline with these coefficients, of which number `i` is centered on `i`.
+    /// Equation 1: the value at `x` of the spline with these coefficients; coefficient `i` is centered on `i`.
     ///
     /// # Errors
     ///
@@ -59,7 +59,7 @@ impl SplineFilter {
         Ok(sum)
     }
 
-    /// The coefficients of the spline that has these values at whole numbers.
+    /// The coefficients of the spline with these values at whole numbers.
     ///
     /// # Errors
     ///
@@ -85,7 +85,7 @@ impl SplineFilter {
         self.filter_samples(Kernel::samples(self.degree), coefficients, border)
     }
 
-    /// The coefficients of the spline that has these values at pixel centers.
+    /// The coefficients of the spline with these values at pixel centers.
     ///
     /// # Errors
     ///

@@ -1,4 +1,4 @@
-//! B-splines that refine themselves: what a filter is made of.
+//! B-splines and the options of a filter.
 //!
 //! The spline of degree `d` is the step of width 1, smoothed `d` times with itself. It is `d + 1` wide, and the sum of
 //! `d + 2` splines of half the width, weighted by binomial coefficients (equation 4 of the paper). Positions are in units of
@@ -55,7 +55,7 @@ impl Degree {
         }
     }
 
-    /// The slope of [`value`](Self::value) at `x`; where a tent bends, the slope to the right, and 0 for steps.
+    /// The slope of [`value`](Self::value) at `x`. Where a tent bends it is the slope to the right, and for steps 0.
     #[must_use]
     pub fn derivative(self, x: f64) -> f64 {
         let distance = x.abs();
@@ -126,10 +126,11 @@ dapple_raster::named! {
         /// Coefficient `j` of the result is coefficient `j` of the table of [`Phase`], but `j + 1` for an odd degree in the phase
         /// of Cook and DeRose.
         ///
-        /// Each level mirrors its own line afresh, by the rule above. One level is exactly that of the fine line mirrored for ever.
-        /// Several levels are so too where the phase is centered and every line that is halved, but the last, has an even
-        /// length for an even degree, or an odd one for an odd degree. Otherwise the mirrors of the fine line lie elsewhere
-        /// in a coarse one than this rule has them, and near the ends the result is another; but for steps, not always.
+        /// Each level mirrors its own line anew, by the rule above. One level equals that of the infinitely mirrored
+        /// fine line. So do several levels if the phase is centered and every line that is halved, except the last, has
+        /// an even length for an even degree, or an odd one for an odd degree. Otherwise the mirrors of the fine line
+        /// lie elsewhere in a coarse line than this rule assumes, and near the ends the result differs; for steps, not
+        /// always.
         Mirror = "mirror",
     }
 }
@@ -155,11 +156,11 @@ dapple_raster::named! {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct SplineFilter {
-    /// The degree of the spline. By default quadratic.
+    /// The degree of the spline; quadratic by default.
     pub degree: Degree,
-    /// Where coarse coefficients lie. By default centered.
+    /// The position of the coarse coefficients; centered by default.
     pub phase: Phase,
-    /// The distance that is least. By default that of the functions.
+    /// The distance that is minimized; that of the functions by default.
     pub fit: Fit,
 }
 

@@ -1,4 +1,4 @@
-//! Volumes: the filters along three axes.
+//! Filters of volumes along three axes.
 //!
 //! A volume is a slice of values, x fastest, then y, then z. Halving goes along x, y and z, doubling along z, y and x; in
 //! between values are rounded to `f32`. All arithmetic is `f64`.
@@ -18,7 +18,7 @@ impl SplineFilter {
     ///
     /// # Errors
     ///
-    /// `Length` if there are not as many values as `size` says; as [`down_line`](Self::down_line).
+    /// `Length` if the number of values is not that of `size`, and the errors of [`down_line`](Self::down_line).
     pub fn down_volume(
         &self,
         volume: &[f32],
@@ -28,7 +28,7 @@ impl SplineFilter {
         let halving = |axis: usize| LineFilter::halving(*self, size[axis] as usize, borders[axis]);
         let [x, y, z] = [halving(0)?, halving(1)?, halving(2)?];
         check_volume(volume, size)?;
-        // Each pass brings the next axis to the front, so that three give back the order.
+        // Each pass brings the next axis to the front, so that three restore the order.
         let along_x = filter_lines(&x, volume);
         let along_y = filter_lines(&y, &along_x);
         Ok(filter_lines(&z, &along_y))
@@ -38,7 +38,8 @@ impl SplineFilter {
     ///
     /// # Errors
     ///
-    /// `Length` if there are not as many values as the halves of `fine_size` say; as [`up_line`](Self::up_line).
+    /// `Length` if the number of values is not that of the halved `fine_size`, and the errors of
+    /// [`up_line`](Self::up_line).
     pub fn up_volume(
         &self,
         coarse: &[f32],
@@ -70,12 +71,12 @@ impl SplineFilter {
         Ok(fine)
     }
 
-    /// Halves a volume `levels` times along each axis and doubles it again; zero levels give the volume itself.
+    /// Halves a volume `levels` times along each axis and doubles it as often; zero levels return the volume itself.
     ///
     /// # Errors
     ///
-    /// Those of [`down_volume`](Self::down_volume), for each level: `NotFinite` also if a level has made infinite values of finite
-    /// ones, which none does up to `f32::MAX / 56^levels`. `Range` for more than 32 levels.
+    /// Those of [`down_volume`](Self::down_volume), for each level: `NotFinite` also if a level has made infinite
+    /// values from finite ones, which cannot happen up to `f32::MAX / 56^levels`. `Range` for more than 32 levels.
     pub fn project_volume(
         &self,
         volume: &[f32],
@@ -98,7 +99,7 @@ impl SplineFilter {
     }
 }
 
-/// Refuses a volume that has another size, or a value that is not finite.
+/// Checks that a volume has the given size, and only finite values.
 fn check_volume(volume: &[f32], size: [u32; 3]) -> Result<(), WaveletError> {
     let needed = size.iter().fold(1_usize, |product, &side| {
         product.saturating_mul(side as usize)

@@ -22,7 +22,7 @@ pub struct CellValues {
 }
 
 impl Worley2 {
-    /// The texture whose value is the random number of the cell.
+    /// The texture whose value is the random number of the Voronoi cell, in `[0, 1)`.
     #[must_use]
     pub fn cell_values(&self) -> CellValues {
         CellValues {
@@ -69,7 +69,7 @@ impl Field for CellValues {
     }
 }
 
-/// The number of a point; of a position without a place it is NaN.
+/// The random number of a feature point, or NaN for a position without a place.
 fn value(distance: f32, id: u64) -> f32 {
     if distance.is_nan() {
         return f32::NAN;

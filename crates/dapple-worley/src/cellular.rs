@@ -1,4 +1,4 @@
-//! Scalar textures of the basis: a combination at every position.
+//! Scalar textures of the basis: a combination of F1 to F4 at every position.
 
 use crate::fixed::Place;
 use crate::ranges::range;
@@ -46,7 +46,7 @@ impl<const N: usize> Cellular<N>
 where
     Axes: Space<N>,
 {
-    /// The basis that it combines.
+    /// The basis that the texture combines.
     #[must_use]
     pub fn worley(&self) -> &Worley<N> {
         &self.worley
@@ -59,14 +59,14 @@ where
         place.map_or(f32::NAN, |place| self.tone.at(&self.worley, &place))
     }
 
-    /// The values at as many positions.
+    /// The values at many positions.
     pub(crate) fn values(&self, positions: &[Vector<N>], values: &mut [f32]) {
         self.worley.tones(&self.tone, positions, values);
     }
 
-    /// The gradient of the value at a position, per cell: the sum of the gradients of the distances.
+    /// The gradient of the value at a position, per cell: the combination of the gradients of the distances.
     ///
-    /// On the borders between cells it jumps. All NaN if the position has no place.
+    /// It jumps on the borders between cells. All components are NaN if the position has no place.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/gradient.md"))]
     #[must_use]
@@ -92,13 +92,13 @@ where
         self.render_slices(window, vec![(*plane, out)])
     }
 
-    /// Fills several planes, such as the slices of a volume. Those next to one another share their feature points, so
-    /// that they are filled faster together than one by one, most of all if they are near one another.
+    /// Fills several planes, such as the slices of a volume. Neighboring slices share their feature points, which is
+    /// faster than filling them one by one, most of all if they are close together.
     ///
     /// # Errors
     ///
-    /// [`SizeMismatch`](dapple_raster::RasterErrorKind::SizeMismatch) if a view has another size than the window; no
-    /// view has been changed then.
+    /// [`SizeMismatch`](dapple_raster::RasterErrorKind::SizeMismatch) if a view has another size than the window; all
+    /// views are unchanged then.
     ///
     /// # Examples
     ///
@@ -145,7 +145,7 @@ where
         bands.map(|rows| Output::Values(values, rows)).collect()
     }
 
-    /// The range of the values, but for one in a thousand at either end: measured at `n` random positions.
+    /// The range of the values without the lowest and the highest thousandth, measured at `n` random positions.
     ///
     /// # Errors
     ///
@@ -156,16 +156,16 @@ where
         })
     }
 
-    /// This texture with values mapped so that about 0 to 1 is their range: from a table of measured ranges,
-    /// for [the combinations that have a name](Combination::NAMED), the default density, and every metric but
-    /// Minkowski's. One value in a thousand lies below 0, and one above 1.
+    /// This texture with values mapped so that about 0 to 1 is their range. The ranges come from a table of
+    /// measurements for [the combinations that have a name](Combination::NAMED), the default density, and every metric
+    /// but Minkowski's. One value in a thousand lies below 0, and one above 1.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/normalized.md"))]
     ///
     /// # Errors
     ///
-    /// [`NoRange`](crate::WorleyErrorKind::NoRange) for any other, and where a range was set before; use
-    /// [`measure_range`](Self::measure_range) and [`with_range`](Self::with_range) there.
+    /// [`NoRange`](crate::WorleyErrorKind::NoRange) for all other textures, and for one that has a range already; use
+    /// [`measure_range`](Self::measure_range) and [`with_range`](Self::with_range) for these.
     pub fn normalized(self) -> Result<Self, WorleyError> {
         let Worley {
             metric, scatter, ..
@@ -211,13 +211,14 @@ impl Field for Cellular<2> {
     }
 }
 
-/// The range of some values, but for one in a thousand at either end.
+/// The range of some values without the lowest and the highest thousandth.
 pub(crate) fn measure_range<const N: usize>(
     seed: Seed,
     n: u32,
     value: impl Fn([f64; N]) -> f32,
 ) -> Result<[f32; 2], WorleyError> {
-    /// Positions lie within so many cells: many, and where `f64` is still finer than a step.
+    /// Random positions lie within this many cells of the origin: many cells, and `f64` is still finer than a step
+    /// there.
     const EXTENT: f64 = (1 << 20) as f64;
     WorleyError::check(
         n >= 1000,

@@ -1,9 +1,9 @@
 //! Linear combinations of F1 to F4.
 //!
-//! Worley finds that differences of two or more of them have more character than F1 to F4 alone ("A Cellular Texture
-//! Basis Function", SIGGRAPH 1996, <https://doi.org/10.1145/237170.237267>).
+//! Worley finds that differences of two or more of the distances have more character than F1 to F4 alone ("A Cellular
+//! Texture Basis Function", SIGGRAPH 1996, <https://doi.org/10.1145/237170.237267>).
 
-/// `C1·F1 + C2·F2 + C3·F3 + C4·F4`.
+/// A linear combination of the distances: `C1·F1 + C2·F2 + C3·F3 + C4·F4`.
 ///
 /// # Examples
 ///
@@ -39,7 +39,7 @@ impl Combination {
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/combination-f4.md"))]
     pub const F4: Self = Self::new([0.0, 0.0, 0.0, 1.0]);
-    /// Zero on the borders of the Voronoi cells: cracks, veins, flagstones.
+    /// `F2 − F1`, which is zero on the borders of the Voronoi cells: cracks, veins, flagstones.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/combination-f2-minus-f1.md"))]
     pub const F2_MINUS_F1: Self = Self::new([-1.0, 1.0, 0.0, 0.0]);
@@ -63,12 +63,12 @@ impl Combination {
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/combination-f4-minus-f3.md"))]
     pub const F4_MINUS_F3: Self = Self::new([0.0, 0.0, -1.0, 1.0]);
-    /// `2·F3 − F2 − F1`, which the paper names.
+    /// `2·F3 − F2 − F1`, a combination that the paper names.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/combination-two-f3-minus-f2-minus-f1.md"))]
     pub const TWO_F3_MINUS_F2_MINUS_F1: Self = Self::new([-1.0, -1.0, 2.0, 0.0]);
 
-    /// The combinations that have a name, which are those whose range is known: see
+    /// The combinations that have a name. Their ranges are known: see
     /// [`Cellular::normalized`](crate::Cellular::normalized).
     pub const NAMED: [(&'static str, Self); 11] = [
         ("F1", Self::F1),
@@ -84,7 +84,7 @@ impl Combination {
         ("2 F3 - F2 - F1", Self::TWO_F3_MINUS_F2_MINUS_F1),
     ];
 
-    /// The combination with these coefficients, of F1 to F4 in their order.
+    /// The combination with the given coefficients of F1 to F4.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/combination-new.md"))]
     #[must_use]
@@ -98,7 +98,7 @@ impl Combination {
         self.coefficients
     }
 
-    /// The greatest n whose `F_n` takes part; 1 for a combination of nothing.
+    /// The greatest n for which `F_n` has a coefficient that is not zero; 1 if all are zero.
     #[must_use]
     pub fn depth(&self) -> usize {
         let last = self.coefficients.iter().rposition(|&part| part != 0.0);
@@ -107,7 +107,7 @@ impl Combination {
 
     /// The combination of the first distances, at least [`depth`](Self::depth) of them.
     ///
-    /// What has the coefficient zero takes no part. The sum goes from F1 up.
+    /// Distances with the coefficient zero are skipped. The sum goes from F1 up.
     #[must_use]
     #[inline]
     pub fn of(&self, distances: &[f32]) -> f32 {

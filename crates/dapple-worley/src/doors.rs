@@ -1,7 +1,9 @@
-//! Where the code for two, three and four axes is compiled: here, and in no crate that uses it.
+//! Entry points without generic parameters, so that the code for two, three and four axes is compiled in this crate
+//! only.
 //!
-//! A function with the number of axes as a parameter is compiled again in every crate that calls it. So the public ones
-//! are thin, and what takes long goes through these functions, which have no parameter.
+//! A function with the number of axes as a parameter is compiled again in every crate that calls it. The public
+//! functions are therefore thin, and all heavy code is called through the functions of this module, which have no
+//! parameter.
 
 use crate::fixed::Place;
 use crate::lattice::Lattice;
@@ -12,9 +14,9 @@ use crate::search::{Hit, within};
 use crate::{Axes, Metric, Worley};
 use fearless_simd::Level;
 
-/// What is compiled for a number of axes. [`Axes`] has it for 2, 3 and 4.
+/// The functions that are compiled for a number of axes; [`Axes`] has them for 2, 3 and 4.
 pub trait Doors<const N: usize>: Sized {
-    /// The basis as pictures see it.
+    /// The basis in the form that rendering uses.
     fn basis(worley: &Worley<N>) -> &dyn Basis;
 
     /// The nearest points of a place, nearest first; at most four.
@@ -26,11 +28,12 @@ pub trait Doors<const N: usize>: Sized {
         hits: &mut [Hit<N>],
     );
 
-    /// All points of a place with keys of at most that of `distance`, in no particular order.
+    /// All points of a place whose keys are at most that of `distance`, in no particular order.
     fn within(metric: Metric, lattice: &Lattice<N>, place: &Place<N>, distance: f32)
     -> Vec<Hit<N>>;
 
-    /// Finds the nearest points of the positions of a group, and tells for which of them they hold, as bits.
+    /// Finds the nearest points of the positions of a group; returns a bit for each position for which they are
+    /// certain.
     fn search_group(worley: &Worley<N>, level: Level, group: &mut Group<N>) -> u64;
 }
 

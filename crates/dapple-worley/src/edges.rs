@@ -21,7 +21,7 @@ use dapple_raster::{Field, RasterError, RasterViewMut, Window};
 /// ```
 #[derive(Clone, Debug)]
 pub struct EdgeDistances<const N: usize> {
-    /// With the Euclidean metric.
+    /// The basis, with the Euclidean metric.
     pub(crate) worley: Worley<N>,
 }
 

@@ -1,30 +1,30 @@
-//! Why a basis was refused.
+//! Errors of cellular bases.
 
 use dapple_raster::RasterError;
 
 dapple_raster::error! {
-    /// Why a cellular basis was refused, or a picture of it.
+    /// An error of a cellular basis or of rendering it.
     WorleyError,
-    /// The limit that was broken.
+    /// The cause of a [`WorleyError`], with the limit and the value.
     WorleyErrorKind with Range {
-        /// The number of values is not that of the positions.
+        /// The number of values is not the number of positions.
         Length {
-            /// How many values there are.
+            /// The number of values.
             length: usize,
-            /// How many were needed.
+            /// The number of values needed.
             needed: usize,
         } => "there is room for {length} values, but {needed} are needed";
         /// The table of ranges has no entry for this combination.
         NoRange => "the table of ranges has the named combinations at the default density only; measure the range";
     }
     from {
-        /// The raster or the window was refused.
+        /// An error of the raster or the window.
         Raster(RasterError),
     }
 }
 
 impl WorleyError {
-    /// Refuses memory of another length.
+    /// Checks that memory for `length` values has exactly the `needed` length.
     pub(crate) fn check_length(length: usize, needed: usize) -> Result<(), Self> {
         if length == needed {
             Ok(())

@@ -1,4 +1,4 @@
-//! Pictures of the nearest feature points: distances, vectors, ids; and of gradients.
+//! Rendering of the nearest feature points (distances, vectors, ids) and of gradients.
 
 use crate::doors::Doors as _;
 use crate::render::{Output, Picture};
@@ -7,7 +7,7 @@ use crate::sink::Tone;
 use crate::{Axes, Cellular, LIMIT, Plane, Space, Worley};
 use dapple_raster::{RasterError, RasterViewMut, Window};
 
-/// Where to put what a picture shows of one of the nearest feature points; what is `None` is not made.
+/// Output views for one of the nearest feature points; a view that is `None` is not computed.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/feature.md"))]
 ///
@@ -28,14 +28,14 @@ use dapple_raster::{RasterError, RasterViewMut, Window};
 pub struct FeatureView<'a, const N: usize> {
     /// Distances, in cells.
     pub distance: Option<RasterViewMut<'a, f32>>,
-    /// The ways from the feature points to the pixels, in cells.
+    /// The vectors from the feature points to the pixels, in cells.
     pub vector: Option<RasterViewMut<'a, [f32; N]>>,
-    /// What the feature points are known by.
+    /// The ids of the feature points.
     pub id: Option<RasterViewMut<'a, u64>>,
 }
 
 impl<const N: usize> Default for FeatureView<'_, N> {
-    /// Nothing is made.
+    /// A view without any output.
     fn default() -> Self {
         Self {
             distance: None,
@@ -45,11 +45,11 @@ impl<const N: usize> Default for FeatureView<'_, N> {
     }
 }
 
-/// The rows of a band, for one of the nearest points; empty where nothing is wanted.
+/// The rows of a band, for one of the nearest points; empty for outputs that are not computed.
 #[derive(Debug, Default)]
 pub(crate) struct FeatureRows<'a> {
     pub(crate) distance: Vec<&'a mut [f32]>,
-    /// The parts of the vectors one after the other.
+    /// The components of the vectors, one after the other.
     pub(crate) vector: Vec<&'a mut [f32]>,
     pub(crate) id: Vec<&'a mut [u64]>,
 }
@@ -58,8 +58,8 @@ impl<const N: usize> Worley<N>
 where
     Axes: Space<N>,
 {
-    /// The `K` nearest feature points at the pixel centers of a window of a plane, into memory of its size: what
-    /// [`sample`](Self::sample) gives there, bit for bit. `K` is from 1 to 4, and the nearest comes first.
+    /// Renders the `K` nearest feature points at the pixel centers of a window of a plane, into memory of its size.
+    /// Equals [`sample`](Self::sample) there, bit for bit. `K` is from 1 to 4, and the nearest point comes first.
     ///
     /// # Errors
     ///
@@ -119,8 +119,8 @@ impl<const N: usize> Cellular<N>
 where
     Axes: Space<N>,
 {
-    /// The gradients at the pixel centers of a window of a plane, into memory of its size: what
-    /// [`gradient`](Self::gradient) gives there, bit for bit.
+    /// Renders the gradients at the pixel centers of a window of a plane, into memory of its size. Equals
+    /// [`gradient`](Self::gradient) there, bit for bit.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/gradient.md"))]
     ///
@@ -142,13 +142,13 @@ where
     }
 }
 
-/// Rows of vectors as rows of their parts.
+/// Rows of vectors as rows of their components.
 pub(crate) fn flattened<const N: usize>(rows: Vec<&mut [[f32; N]]>) -> Vec<&mut [f32]> {
     rows.into_iter().map(|row| row.as_flattened_mut()).collect()
 }
 
 impl Tone {
-    /// The gradient, from the ways from the nearest points.
+    /// The gradient, from the vectors from the nearest points.
     #[inline]
     pub(crate) fn gradient<const N: usize>(
         &self,

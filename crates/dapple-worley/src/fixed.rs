@@ -1,6 +1,6 @@
-//! Positions as a cell and a whole number of steps within it.
+//! Fixed-point positions: a cell and a whole number of steps within it.
 //!
-//! This is the frame rule of the crate. A coordinate is rounded down to a multiple of 2^-21 of a cell, and so are the
+//! All methods use these coordinates. A coordinate is rounded down to a multiple of 2^-21 of a cell, and so are the
 //! coordinates of feature points. Their differences are then exact whole numbers, wherever they are and from whichever
 //! corner they are counted, and only the difference is rounded, once, to `f32` (below 8 cells not even that). So the
 //! single position, the many positions and the window agree to the last bit, and a picture at 1e9 is as sharp as at 0.
@@ -14,7 +14,7 @@ pub(crate) const STEPS: i32 = 1 << STEP_BITS;
 /// The size of a step, in cells.
 pub(crate) const STEP: f32 = 1.0 / STEPS as f32;
 
-/// Coordinates past this have no cell: neighbors of a cell must be whole numbers too.
+/// The farthest coordinate that has a cell: the neighbors of a cell must be whole numbers too.
 pub(crate) const FARTHEST: f64 = (1_u64 << 62) as f64;
 
 /// A position: the cell that it is in, and the steps from the cell's lower corner, `0..STEPS`.
@@ -24,14 +24,14 @@ pub struct Place<const N: usize> {
     pub(crate) steps: [i32; N],
 }
 
-/// A place in a space with any number of axes; those that it does not have are zero.
+/// A place in a space with any number of axes; the coordinates of missing axes are zero.
 pub(crate) type FlatPlace = Place<MOST_AXES>;
 
 /// The most axes of a space.
 pub(crate) const MOST_AXES: usize = 4;
 
 impl<const N: usize> Place<N> {
-    /// The place of a position in cells, or nothing if a coordinate is not finite or further out than 2^62.
+    /// The place of a position in cells, or `None` if a coordinate is not finite or further out than 2^62.
     #[inline]
     pub(crate) fn new(position: [f64; N]) -> Option<Self> {
         let mut place = Self {
@@ -48,7 +48,7 @@ impl<const N: usize> Place<N> {
 /// The cell of a coordinate and the steps from its lower edge.
 #[inline]
 pub(crate) fn split(coordinate: f64) -> Option<(i64, i32)> {
-    // Not a number is no smaller than anything.
+    // This comparison is false for NaN.
     let has_cell = coordinate.abs() <= FARTHEST;
     if !has_cell {
         return None;

@@ -2,8 +2,8 @@
 //!
 //! Worley sums `G_n(x) = Σ 2^-i F_n(2^i x)` for `i` from 0 to 5, of `F_n` and of their combinations ("A Cellular
 //! Texture Basis Function", SIGGRAPH 1996, <https://doi.org/10.1145/237170.237267>). His octaves are literally one
-//! field, which shows where they agree: at the origin all have the same center. So we give each octave a seed of its
-//! own, unless one asks for the paper's sum: [`Octaves::paper`].
+//! field, which shows where they agree: at the origin all have the same center. Here each octave has a seed of its own
+//! by default; [`Octaves::paper`] is the paper's sum.
 //!
 //! With a period, octave `i` repeats after `lacunarity^i` times as many of its own cells, so that the sum repeats with
 //! the period of the first octave and no octave more often.
@@ -18,7 +18,7 @@ use dapple_hash::Seed;
 use dapple_raster::{Field, RasterError, RasterViewMut, Window};
 use glam::DVec2;
 
-/// How many octaves a fractal sum has, and how they differ.
+/// Options of a fractal sum: the number of octaves and how they differ.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -26,15 +26,15 @@ use glam::DVec2;
     serde(default, deny_unknown_fields)
 )]
 pub struct Octaves {
-    /// How many: from 1 to 32; 6 by default.
+    /// The number of octaves: from 1 to 32; 6 by default.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/octaves-count.md"))]
     pub count: u32,
-    /// How much finer each is than the one before: from 1 to 16; 2 by default.
+    /// The ratio of the frequencies of an octave and the one before: from 1 to 16; 2 by default.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/octaves-lacunarity.md"))]
     pub lacunarity: f64,
-    /// How much lower each is than the one before: from -1 to 1; ½ by default.
+    /// The ratio of the heights of an octave and the one before: from -1 to 1; ½ by default.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/octaves-gain.md"))]
     #[cfg_attr(feature = "serde", serde(alias = "persistence"))]
@@ -45,7 +45,7 @@ pub struct Octaves {
     pub seeds: OctaveSeeds,
 }
 
-/// Whether the octaves of a fractal sum are one field.
+/// Whether the octaves of a fractal sum are one field or have feature points of their own.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/octave-seeds.md"))]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -55,7 +55,7 @@ pub struct Octaves {
     serde(rename_all = "snake_case")
 )]
 pub enum OctaveSeeds {
-    /// All octaves are literally the same field, as in the paper. They all have the same center at the origin.
+    /// All octaves are the same field, as in the paper. They all have the same center at the origin.
     Same,
     /// Every octave has feature points of its own.
     #[default]
@@ -103,7 +103,7 @@ impl Octaves {
 #[derive(Clone, Debug)]
 pub struct Fractal<const N: usize> {
     octaves: Vec<Octave<N>>,
-    /// Of the first octave and of the others alike; the sum is mapped last.
+    /// The combination of the first octave and the one of the others; the sum is mapped to the range last.
     tone: Tone,
     range: Tone,
 }
@@ -206,7 +206,7 @@ where
         self.value_of(sum)
     }
 
-    /// The values at as many positions.
+    /// The values at many positions.
     pub(crate) fn values(&self, positions: &[Vector<N>], values: &mut [f32]) {
         let mut tones = vec![0.0; values.len()];
         values.fill(0.0);
@@ -226,7 +226,7 @@ where
         }
     }
 
-    /// The value of a sum of octaves. What is not a number has the same bits everywhere.
+    /// The value of a sum of octaves. All NaNs have the same bits.
     fn value_of(&self, sum: f32) -> f32 {
         if sum.is_nan() {
             return f32::NAN;
@@ -234,7 +234,8 @@ where
         self.range.of(&[sum])
     }
 
-    /// The gradient of the value at a position, per cell of the first octave. All NaN where the value is.
+    /// The gradient of the value at a position, per cell of the first octave. All components are NaN where the value
+    /// is.
     #[must_use]
     pub fn gradient(&self, position: impl Into<Vector<N>>) -> Vector<N> {
         let position: [f64; N] = position.into().into();
@@ -271,8 +272,8 @@ where
     ///
     /// # Errors
     ///
-    /// [`SizeMismatch`](dapple_raster::RasterErrorKind::SizeMismatch) if a view has another size than the window; no
-    /// view has been changed then.
+    /// [`SizeMismatch`](dapple_raster::RasterErrorKind::SizeMismatch) if a view has another size than the window; all
+    /// views are unchanged then.
     pub fn render_slices(
         &self,
         window: &Window,
@@ -309,7 +310,7 @@ where
         Ok(())
     }
 
-    /// The range of the values, but for one in a thousand at either end: measured at `n` random positions.
+    /// The range of the values without the lowest and the highest thousandth, measured at `n` random positions.
     ///
     /// # Errors
     ///
@@ -337,7 +338,8 @@ impl<const N: usize> Fractal<N>
 where
     Axes: Space<N>,
 {
-    /// The cells of the first octave after which the first two axes repeat, as the others do by then.
+    /// The number of cells of the first octave after which the first two axes repeat; the other octaves repeat by then
+    /// too.
     pub(crate) fn plane_period(&self) -> [Option<f64>; 2] {
         let first = self.octaves.first();
         first.map_or([None; 2], |octave| octave.worley.plane_period())

@@ -1,4 +1,4 @@
-//! The feature points of each cell, made from one hash of the cell; nothing is stored.
+//! The feature points of each cell, generated from a hash of the cell, without any storage.
 //!
 //! Counter 0 of a cell's hash gives two words. The first draws how many points there are; from both, the position of
 //! each point is drawn by adding a constant for every point and mixing. Counter `2^31 + i` gives the id of point `i`.
@@ -13,7 +13,7 @@ use dapple_hash::{CellHash, CellHashes, PoissonCounts, Seed, mix32, mix32_pairs,
 use fearless_simd::{prelude::*, u32x16};
 use std::sync::Arc;
 
-/// What is added to the two words of a cell for each of its points: odd, so that no sum comes twice.
+/// The constants that are added to the two words of a cell for each of its points: odd, so that no sum comes twice.
 pub(crate) const STRIDES: [u32; 2] = [0x9E37_79B9, 0xC2B2_AE3D];
 
 /// The counter of the id of point 0.
@@ -22,14 +22,14 @@ pub(crate) const IDS: u32 = 1 << 31;
 /// Feature points in unit cells, by seed.
 #[derive(Clone, Debug)]
 pub struct Lattice<const N: usize> {
-    /// The hash that every cell's begins with.
+    /// The hash state after the seed, with which the hash of every cell begins.
     pub(crate) root: CellHash,
     pub(crate) counts: PoissonCounts,
-    /// In place of `counts`, where the density varies.
+    /// The density if it varies, which replaces `counts`.
     pub(crate) density: Option<Density<N>>,
-    /// In parts of [`JITTER_PARTS`].
+    /// The jitter, in parts of [`JITTER_PARTS`].
     pub(crate) jitter: u32,
-    /// The cells after which an axis repeats; 0 if it does not.
+    /// The number of cells after which an axis repeats; 0 if it does not.
     pub(crate) period: [u32; N],
 }
 
@@ -44,7 +44,7 @@ impl<const N: usize> Lattice<N> {
         }
     }
 
-    /// The hash that every cell's begins with.
+    /// The hash state after the seed, with which the hash of every cell begins.
     pub(crate) fn root(seed: Seed) -> CellHash {
         CellHash::new(seed.child("feature points", 0), [])
     }
@@ -72,12 +72,12 @@ impl<const N: usize> Lattice<N> {
         })
     }
 
-    /// Where in its cell a point lies, from the hash of the cell.
+    /// The place of a point in its cell, in steps, from the hash of the cell.
     pub(crate) fn point(&self, hash: CellHash, index: u32) -> [i32; N] {
         self.steps(words(hash), index)
     }
 
-    /// Where in its cell a point lies, from the words of the cell.
+    /// The place of a point in its cell, in steps, from the words of the cell.
     #[inline]
     fn steps(&self, words: [u32; 2], index: u32) -> [i32; N] {
         let word = |which: usize| {
@@ -87,7 +87,7 @@ impl<const N: usize> Lattice<N> {
         steps([word(0), word(1)], self.jitter).map(u32::cast_signed)
     }
 
-    /// Calls `each` with the steps from the cell's lower corner and the name of every point of a cell.
+    /// Calls `each` with every point of a cell: its steps from the cell's lower corner, and its name.
     #[inline]
     pub(crate) fn visit(&self, cell: [i64; N], mut each: impl FnMut([i32; N], Name)) {
         let hash = self.hash(cell);
@@ -97,7 +97,7 @@ impl<const N: usize> Lattice<N> {
         }
     }
 
-    /// How many points a cell has, from its first word.
+    /// The number of points of a cell, from its first word.
     #[inline]
     pub(crate) fn count(&self, cell: [i64; N], word: u32) -> u32 {
         match &self.density {
@@ -106,7 +106,7 @@ impl<const N: usize> Lattice<N> {
         }
     }
 
-    /// The density in the middle of a cell, or of the one that it repeats.
+    /// The density in the middle of a cell, or of the cell that it repeats.
     pub(crate) fn density_at(&self, density: &Density<N>, cell: [i64; N]) -> f64 {
         let middle = core::array::from_fn(|axis| self.wrap(axis, cell[axis]) as f64 + 0.5);
         let density = (density.of)(middle);
@@ -137,12 +137,12 @@ fn words(hash: CellHash) -> [u32; 2] {
     [(bits >> 32) as u32, bits as u32]
 }
 
-/// Sixteen cells side by side.
+/// The hashes of sixteen cells, one in each lane.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SixteenCells<S: Simd> {
-    /// The two words of each.
+    /// The two words of each cell.
     pub(crate) words: [u32x16<S>; 2],
-    /// How many points each has, with one density.
+    /// The number of points of each cell, with one density.
     pub(crate) counts: u32x16<S>,
 }
 
@@ -157,7 +157,7 @@ impl<S: Simd> SixteenCells<S> {
         cells
     }
 
-    /// What [`new`](Self::new) makes, for several registers in step.
+    /// Several registers of cells at once, as [`new`](Self::new) makes one: their operations run in step.
     #[inline(always)]
     pub(crate) fn new_each<const N: usize, const C: usize>(
         simd: S,
@@ -183,7 +183,7 @@ impl<S: Simd> SixteenCells<S> {
         cells
     }
 
-    /// The largest of the counts.
+    /// The largest number of points of the cells.
     #[inline(always)]
     pub(crate) fn most<const N: usize>(&self, lattice: &Lattice<N>) -> u32 {
         if lattice.counts.thresholds().is_empty() {
@@ -199,7 +199,8 @@ impl<S: Simd> SixteenCells<S> {
         point
     }
 
-    /// What [`steps`](Self::steps) makes, for several registers in step.
+    /// The points of several registers of cells at once, as [`steps`](Self::steps) makes those of one: their operations
+    /// run in step.
     #[inline(always)]
     pub(crate) fn steps_each<const N: usize, const C: usize>(
         cells: [Self; C],
@@ -221,7 +222,7 @@ impl<S: Simd> SixteenCells<S> {
     }
 }
 
-/// What 32 random bits, or sixteen times as many, are computed with.
+/// The operations on 32 random bits, in one number or in sixteen lanes.
 pub(crate) trait Word:
     Copy
     + Shr<u32, Output = Self>
@@ -244,7 +245,7 @@ impl<W> Word for W where
 {
 }
 
-/// The steps from the lower corner of the cell along each axis, from 64 random bits.
+/// The steps along each axis from the lower corner of the cell, from 64 random bits.
 ///
 /// With two and three axes all steps are equally likely; with four, every 32nd.
 #[inline(always)]

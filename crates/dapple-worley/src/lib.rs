@@ -21,15 +21,15 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! There are three doors, and they give the same bits: one position ([`Worley::sample`], [`Cellular::value`]), many
-//! scattered positions ([`Worley::sample_many`]), and a window of a [`Plane`] ([`Cellular::render_plane`],
+//! There are three ways to sample, and they give the same bits: one position ([`Worley::sample`], [`Cellular::value`]),
+//! many scattered positions ([`Worley::sample_many`]), and a window of a [`Plane`] ([`Cellular::render_plane`],
 //! [`Worley::render_features`], [`Cellular::render_gradient`]), which is by far the fastest. A volume is filled slice
 //! by slice ([`Cellular::render_slices`]).
 //!
 //! On top of F1 to F4 are [`Combination`]s, [`Fractal`] sums, [`Profile`]s for bumps, [`Radial`] cells for spheres, and
-//! what the Voronoi cells give: [`Worley::edge_distance`] and, as a texture, [`EdgeDistances`], [`Worley::smooth_f1`],
-//! [`Worley::sphere_radius`], [`Feature::cell_value`]. A [`FeatureSet`] is the same basis over points that you have
-//! placed.
+//! the geometry of the Voronoi cells: [`Worley::edge_distance`] and, as a texture, [`EdgeDistances`],
+//! [`Worley::smooth_f1`], [`Worley::sphere_radius`], [`Feature::cell_value`]. A [`FeatureSet`] is the same basis over
+//! points that you have placed.
 //!
 //! Positions are `f64` and in cells, distances are `f32` and in cells. A position is rounded down to [`RESOLUTION`].
 

@@ -1,12 +1,12 @@
-//! Many scattered positions: sixteen side by side, one in each lane.
+//! Search for many scattered positions: sixteen at a time, one in each lane.
 //!
-//! Every lane visits its own cell and the neighbors of that. The nearer neighbors matter to most lanes, and are visited
-//! by all of them together. The farther ones matter to few: which of them are left to visit, and for which position, is
-//! put on a list for a whole group of positions, and then the list fills the lanes.
+//! Every lane visits the cell of its position and the neighbors. The nearer neighbors matter to most lanes, and all
+//! lanes visit them together. The farther ones matter to few: those left to visit are collected in a list for a whole
+//! group of positions, and then the list fills the lanes.
 //!
-//! While searching, the low bits of a key hold which point it belongs to, so that one minimum and one maximum sort both
-//! at once. The order of two points whose keys agree in the other bits is not known then. A position that has such
-//! points, or for which neighbors are not enough, does not hold, and is searched again on its own.
+//! During the search, the low bits of a key hold the code of its point, so that one minimum and one maximum sort both
+//! at once. The order of two points whose keys agree in the other bits is then unknown. A position with such points, or
+//! one that needs more than the neighbors, is searched again on its own.
 
 use crate::fixed::{STEP, STEPS};
 use crate::lattice::{IDS, Lattice, SixteenCells};
@@ -17,32 +17,32 @@ use dapple_hash::CellHashes;
 use dapple_raster::simd::dispatch;
 use fearless_simd::{Level, f32x16, i32x16, mask32x16, prelude::*, u32x16, u64x8};
 
-/// The positions of a group.
+/// The number of positions of a group.
 pub(crate) const GROUP: usize = 4 * LANES;
 
 /// The key of no point: the largest number. (Infinity with a code in its low bits would not be a number.)
 pub(crate) const NOTHING: u32 = f32::MAX.to_bits();
 
-/// Where to search, and how the low bits of a key are used.
+/// The parameters of a search, and the use of the low bits of a key.
 #[derive(Clone, Copy)]
 struct Search<'a, const N: usize> {
     lattice: &'a Lattice<N>,
     exact: Exact,
-    /// How many bits hold the index of a point in its cell; above are the two bits of each axis.
+    /// The number of bits for the index of a point in its cell; above are the two bits of each axis.
     index_bits: u32,
-    /// All of these bits.
+    /// The mask of all bits of the code.
     code_mask: u32,
 }
 
-/// A group of positions, and the memory to search for their nearest points.
+/// A group of positions, and the memory for the search for their nearest points.
 #[derive(Debug)]
 pub struct Group<const N: usize> {
-    /// How many of the nearest points are looked for: 1, 2 or 4.
+    /// The number of nearest points to find: 1, 2 or 4.
     depth: usize,
-    /// The positions, and how many there are.
+    /// The positions, of which only the first `len` are in use.
     pub(crate) positions: [[f64; GROUP]; N],
     pub(crate) len: usize,
-    /// Which positions have a place, as bits.
+    /// A bit for each position that has a place.
     has_place: u64,
     cells: [[[u32; GROUP]; 2]; N],
     steps: [[i32; GROUP]; N],
@@ -50,46 +50,46 @@ pub struct Group<const N: usize> {
     visits: Visits,
     /// The keys of the nearest points so far.
     best: [[u32; GROUP]; LIMIT],
-    /// The smallest key of all others.
+    /// The smallest key of all other points.
     next: [u32; GROUP],
     points: [Points<N>; LIMIT],
 }
 
-/// The own cells of a register, or the neighbors that are on the nearer sides.
+/// The own cells of a register of places, or one of the neighbors on the nearer sides.
 #[derive(Clone, Copy, Debug)]
 struct Near {
     words: [[u32; LANES]; 2],
     counts: [u32; LANES],
-    /// The largest of the counts.
+    /// The largest number of points of the cells.
     most: u32,
 }
 
-/// How many of these there are in four dimensions.
+/// The number of own cells and nearer neighbors in four dimensions.
 const MOST_NEAR: usize = 1 << 4;
 
 /// The farther neighbors that are still to be visited.
 #[derive(Debug)]
 struct Visits {
-    /// Each is a neighbor and, from [`PLACE_SHIFT`] on, a place of the group.
+    /// The visits: the low bits hold a neighbor and the bits from [`PLACE_SHIFT`] on a place of the group.
     list: [u32; FULL + (MOST_FAR + 1) * LANES],
     len: usize,
 }
 
-/// Where the place begins in [`Visits::list`].
+/// The lowest bit of the place in [`Visits::list`].
 const PLACE_SHIFT: u32 = 8;
 
-/// The list is worked off when it is longer than this: 2-D and 3-D groups hardly ever come to it.
+/// The length above which the list is worked off early; 2-D and 3-D groups hardly ever exceed it.
 const FULL: usize = 512;
 
-/// The farther neighbors in four dimensions.
+/// The number of farther neighbors in four dimensions.
 const MOST_FAR: usize = 81 - MOST_NEAR;
 
-/// One of the nearest points of each place of a group.
+/// The `k`-th nearest points of all places of a group.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Points<const N: usize> {
-    /// In cells.
+    /// The distances, in cells.
     pub(crate) distances: [f32; GROUP],
-    /// The ways from the points to the places, in cells.
+    /// The vectors from the points to the places, in cells.
     pub(crate) vectors: [[f64; GROUP]; N],
     pub(crate) ids: [u64; GROUP],
 }
@@ -140,9 +140,9 @@ impl<const N: usize> Group<N> {
         &self.points[..self.depth]
     }
 
-    /// Finds the nearest points of the positions, and tells for which of them they hold, as bits.
+    /// Finds the nearest points of the positions; returns a bit for each position for which they are certain.
     pub(crate) fn search(&mut self, worley: &Worley<N>, level: Level) -> u64 {
-        // These are searched one at a time in any case.
+        // Positions with this metric are searched one at a time in any case.
         let is_scalar = matches!(worley.metric, Metric::Minkowski(_));
         if is_scalar || worley.lattice.density.is_some() {
             return 0;
@@ -159,17 +159,17 @@ impl<const N: usize> Group<N> {
 
     #[inline(always)]
     fn search_with<S: Simd, const K: usize>(&mut self, simd: S, search: Search<'_, N>) -> u64 {
-        // Where sixteen lanes are several registers of the processor, these are in step already.
+        // Where sixteen lanes need several registers of the processor, these are in step already.
         if const { <S::u32s as SimdBase<S>>::LEN < LANES } {
             return self.search_in_step::<S, K, 1>(simd, search);
         }
         self.search_in_step::<S, K, 4>(simd, search)
     }
 
-    /// Looks up the nearest points that were found.
+    /// Looks up the ids, distances and vectors of the nearest points.
     #[inline(always)]
     fn finish_with<S: Simd>(&mut self, simd: S, search: Search<'_, N>) {
-        // The memory has registers past the last one, too; what is in them does not matter.
+        // The memory has registers past the last position, too; their contents do not matter.
         let registers = 0..self.len.div_ceil(LANES) * self.depth;
         if const { <S::u32s as SimdBase<S>>::LEN < LANES } {
             for first in registers {
@@ -258,7 +258,8 @@ impl<const N: usize> Group<N> {
         store(found.next, &mut self.next, register);
     }
 
-    /// Makes the hashes of the nearer neighbors: early, so that the processor knows in time how many points to expect.
+    /// Computes the hashes of the nearer neighbors early, so that the processor knows in time how many points to
+    /// expect.
     #[inline(always)]
     fn hash_near<S: Simd, const C: usize>(
         &mut self,
@@ -340,7 +341,7 @@ impl<const N: usize> Group<N> {
         }
     }
 
-    /// Sorts the key of a point in.
+    /// Inserts the key of a point in its order.
     #[inline(always)]
     fn insert<const K: usize>(&mut self, place: usize, mut coded: u32) {
         for best in &mut self.best[..K] {
@@ -351,7 +352,7 @@ impl<const N: usize> Group<N> {
         self.next[place] = self.next[place].min(coded);
     }
 
-    /// The lanes of a register whose nearest points are known for certain, as bits.
+    /// A bit for each lane of a register whose nearest points are certain.
     #[inline(always)]
     fn holds<S: Simd, const K: usize>(
         &self,
@@ -376,8 +377,8 @@ impl<const N: usize> Group<N> {
         holds.to_bitmask()
     }
 
-    /// Looks up `C` registers of the nearest points, from one on: first all ranks of the first register, then of the
-    /// second, and so on.
+    /// Looks up `C` registers of the nearest points, starting with register `first`: first all ranks of the first
+    /// register, then of the second, and so on.
     #[inline(always)]
     fn finish<S: Simd, const C: usize>(&mut self, simd: S, search: Search<'_, N>, first: usize) {
         let lattice = search.lattice;
@@ -411,7 +412,7 @@ impl<const N: usize> Group<N> {
 }
 
 impl<const N: usize> Points<N> {
-    /// Puts a register of points: their vectors in steps, and the high and low words of their ids.
+    /// Stores a register of points: their vectors in steps, and the high and low words of their ids.
     #[inline(always)]
     fn put<S: Simd>(
         &mut self,
@@ -439,7 +440,7 @@ impl<const N: usize> Points<N> {
 }
 
 impl Visits {
-    /// Puts some of sixteen visits on the list.
+    /// Appends the selected ones of sixteen visits to the list.
     #[inline(always)]
     fn push<S: Simd>(&mut self, visits: u32x16<S>, which: mask32x16<S>) {
         let visits = visits.compress(which);
@@ -447,7 +448,7 @@ impl Visits {
         self.len += which.to_bitmask().count_ones() as usize;
     }
 
-    /// Takes up to sixteen visits from the list, and tells how many they are; what follows them are old ones.
+    /// Removes up to sixteen visits from the list, and returns them with their number; further elements are stale.
     #[inline(always)]
     fn take(&mut self) -> ([u32; LANES], usize) {
         let n_visits = self.len.min(LANES);
@@ -461,14 +462,14 @@ impl Visits {
 /// The place of a visit.
 #[inline(always)]
 fn place(visit: u32) -> usize {
-    // There are no others; this tells the compiler.
+    // All places are below this; the operation tells the compiler so.
     (visit >> PLACE_SHIFT) as usize % GROUP
 }
 
 /// The nearest points of sixteen places.
 struct Found<S: Simd, const K: usize> {
     best: [u32x16<S>; K],
-    /// The smallest key of all others.
+    /// The smallest key of all other points.
     next: u32x16<S>,
 }
 
@@ -482,8 +483,8 @@ impl<S: Simd, const K: usize> Found<S, K> {
         }
     }
 
-    /// Looks at the points of a cell in each lane, where the places are seen from it, and their codes without index; no
-    /// cell has more points than `most`.
+    /// Compares the points of a cell in each lane. The places are given relative to the cells, `codes` are the codes
+    /// without index, and no cell has more points than `most`.
     #[inline(always)]
     fn look<const N: usize>(
         &mut self,
@@ -511,7 +512,7 @@ impl<S: Simd, const K: usize> Found<S, K> {
     }
 }
 
-/// The way from a point to the place, in steps, where both are seen from the lower corner of the point's cell.
+/// The vector from a point to the place, in steps, where both are relative to the lower corner of the point's cell.
 #[inline(always)]
 fn vector<S: Simd, const N: usize>(
     origins: &[i32x16<S>; N],
@@ -524,7 +525,7 @@ fn vector<S: Simd, const N: usize>(
     vector
 }
 
-/// For each axis, the terms of the distances to the own cell, the nearer and the other neighbor, in steps.
+/// For each axis, the terms of the distances to the own cell, to the nearer and to the other neighbor, in steps.
 #[inline(always)]
 fn gaps<S: Simd, const N: usize>(
     simd: S,
@@ -541,7 +542,7 @@ fn gaps<S: Simd, const N: usize>(
     gaps
 }
 
-/// Beyond the neighbors, keys are no smaller than this, in steps.
+/// A lower bound of the keys of all points beyond the neighbors, in steps.
 #[inline(always)]
 fn border<S: Simd, const N: usize>(simd: S, exact: Exact, places: &Places<S, N>) -> f32x16<S> {
     let mut nearest = i32x16::splat(simd, STEPS);
@@ -555,7 +556,7 @@ fn border<S: Simd, const N: usize>(simd: S, exact: Exact, places: &Places<S, N>)
 /// The bits of the neighbors that are not on the nearer side, along any axis.
 const FARTHER: u32 = 0b1010_1010;
 
-/// Where a neighbor that is on the nearer sides lies in [`Group::near`]: one bit for each axis, the first lowest.
+/// The index in [`Group::near`] of a neighbor on the nearer sides: one bit for each axis, the first lowest.
 #[inline(always)]
 fn near_index<const N: usize>(neighbor: u32) -> usize {
     (0..N).fold(0, |index, axis| index | digit(neighbor, axis) << axis)

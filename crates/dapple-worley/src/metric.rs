@@ -1,4 +1,4 @@
-//! What distance means: Euclidean, Manhattan, Chebyshev and Minkowski.
+//! Metrics: Euclidean, Manhattan, Chebyshev and Minkowski.
 //!
 //! Worley proposes the Manhattan metric for rigid rectangular regions ("A Cellular Texture Basis Function", SIGGRAPH
 //! 1996, <https://doi.org/10.1145/237170.237267>). All four accumulate one term for each axis, so that a picture
@@ -10,7 +10,7 @@
 use crate::{WorleyError, WorleyErrorKind};
 use fearless_simd::{f32x16, prelude::*};
 
-/// How the distance between two positions is measured.
+/// The metric: how the distance between two positions is measured.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/metric.md"))]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -21,12 +21,12 @@ use fearless_simd::{f32x16, prelude::*};
 )]
 #[non_exhaustive]
 pub enum Metric {
-    /// The straight line: `sqrt(dx² + dy² + …)`.
+    /// The Euclidean distance: `sqrt(dx² + dy² + …)`.
     #[default]
     Euclidean,
-    /// Along the axes: `|dx| + |dy| + …`. Regions are rigidly rectangular.
+    /// The sum along the axes: `|dx| + |dy| + …`. Regions are rigidly rectangular.
     Manhattan,
-    /// The longest of `|dx|`, `|dy|`, ….
+    /// The largest of `|dx|`, `|dy|`, ….
     Chebyshev,
     /// `(|dx|^p + |dy|^p + …)^(1/p)` with `p` from 1, which is Manhattan, over 2, which is Euclidean, up to 10.
     Minkowski(f32),
@@ -36,7 +36,7 @@ pub enum Metric {
 const LARGEST_EXPONENT: f32 = 10.0;
 
 impl Metric {
-    /// The names of the metrics without an exponent, as recipes and the command have them.
+    /// The names of the metrics without an exponent, as recipes and the command use them.
     pub const NAMES: [&'static str; 3] = ["euclidean", "manhattan", "chebyshev"];
 
     pub(crate) fn check(self) -> Result<Self, WorleyError> {
@@ -59,7 +59,7 @@ impl Metric {
         self.distance(self.key(vector))
     }
 
-    /// The gradient of the length at a vector; zero where the vector is.
+    /// The gradient of the length at a vector; zero at the zero vector.
     ///
     /// Its parts lie in `[-1, 1]`. For [`Metric::Chebyshev`] it points along the longest axis, the first of several.
     #[inline]
@@ -101,7 +101,7 @@ fn sign(part: f32) -> f32 {
 // place of the distance: the squared distance, for the Euclidean metric. Keys are never below zero, and they do not
 // shrink when a difference grows; `looseness` says how far rounding may break that.
 impl Metric {
-    /// What a key is multiplied by before it serves as a bound.
+    /// The factor that turns a key into a bound that holds despite rounding.
     #[inline]
     pub(crate) fn looseness(self) -> f32 {
         match self {
@@ -143,7 +143,7 @@ impl Metric {
         key
     }
 
-    /// The distance that has a key.
+    /// The distance for a key.
     #[inline(always)]
     pub(crate) fn distance(self, key: f32) -> f32 {
         match self {
@@ -153,28 +153,28 @@ impl Metric {
         }
     }
 
-    /// A bound that holds for exact keys, made to hold for rounded ones.
+    /// A bound for exact keys, tightened so that it holds for rounded ones.
     #[inline]
     pub(crate) fn tightened(self, bound: f32) -> f32 {
         bound / self.looseness()
     }
 }
 
-/// The loops that draw with a metric.
+/// The inner loops that render with a metric.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Kernel {
-    /// Those of [`Squares`].
+    /// The loops with [`Squares`].
     Squares,
-    /// Those of [`Additive`].
+    /// The loops with [`Additive`].
     Sum,
-    /// Those of [`Longest`].
+    /// The loops with [`Longest`].
     Longest,
-    /// Those of [`Powers`], which take so long that they are compiled for the least processor only.
+    /// The loops with [`Powers`], which are so slow that they are compiled for the lowest SIMD level only.
     Powers(f32),
 }
 
 impl Metric {
-    /// The loops that draw with this metric.
+    /// The inner loops that render with this metric.
     #[inline]
     pub(crate) fn kernel(self) -> Kernel {
         match self {
@@ -186,7 +186,7 @@ impl Metric {
     }
 }
 
-/// A metric as loops over registers have it.
+/// A metric on registers, for the inner loops.
 pub(crate) trait Measure: Copy {
     /// The terms of the differences in several registers.
     fn terms<S: Simd, V: SimdFloat<S, Element = f32>, const C: usize>(
@@ -194,10 +194,10 @@ pub(crate) trait Measure: Copy {
         differences: [V; C],
     ) -> [V; C];
 
-    /// Takes one more term into the keys of a register.
+    /// Accumulates one more term into the keys of a register.
     fn accumulate<S: Simd, V: SimdFloat<S, Element = f32>>(self, terms: V, keys: V) -> V;
 
-    /// The distances that have these keys.
+    /// The distances for these keys.
     fn distances<S: Simd>(self, keys: f32x16<S>) -> f32x16<S>;
 
     /// The keys of sixteen vectors.
@@ -212,7 +212,7 @@ pub(crate) trait Measure: Copy {
     }
 }
 
-/// A metric that is not Minkowski's: what calls a function for its terms leaves no registers to a loop.
+/// A metric other than Minkowski's. (A function call for its terms would leave a loop no registers.)
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Exact(pub(crate) Metric);
 
@@ -253,7 +253,7 @@ impl Measure for Exact {
     }
 }
 
-/// The Euclidean or the Manhattan metric: terms are added up.
+/// The Euclidean or the Manhattan metric, whose terms are added up.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Additive(pub(crate) Metric);
 
@@ -277,7 +277,7 @@ impl Measure for Additive {
     }
 }
 
-/// The Euclidean metric, where a loop is so short that asking for it takes time.
+/// The Euclidean metric known at compile time, for loops so short that a test for the metric takes time.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Squares;
 
@@ -301,7 +301,7 @@ impl Measure for Squares {
     }
 }
 
-/// The Chebyshev metric: the largest term counts.
+/// The Chebyshev metric, whose key is the largest term.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Longest;
 
@@ -352,8 +352,8 @@ impl Measure for Powers {
     }
 }
 
-/// Differences are scaled by this before their power, so that a step and 16 cells are about as far from the ends of
-/// the range of `f32`.
+/// The factor by which differences are scaled before their power, so that a step and 16 cells are about as far from the
+/// ends of the range of `f32`.
 const MINKOWSKI_SCALE: f32 = 256.0;
 
 /// The term of the Minkowski metric.
@@ -380,7 +380,7 @@ fn root_each(keys: &mut [f32], p: f32) {
     }
 }
 
-/// Changes a register by way of memory.
+/// Changes the lanes of a register one by one, through memory.
 #[inline(always)]
 fn each_lane<S: Simd, V: SimdFloat<S, Element = f32>>(
     lanes: V,

@@ -1,7 +1,7 @@
-//! One position: its cell and the neighbors of that side by side, one in each lane.
+//! Search for one position: its cell and the neighbors side by side, one in each lane.
 //!
-//! Keys hold the code of their point in the low bits, as in [`many`](crate::many). Where the order of two of the
-//! nearest cannot be told from the other bits, or the neighbors are not enough, the search by rings decides.
+//! Keys hold the code of their point in the low bits, as in [`many`](crate::many). If the other bits do not tell the
+//! order of two of the nearest points, or the neighbors are not enough, the search by rings decides.
 
 use crate::fixed::{Place, STEPS, cells};
 use crate::lattice::{Lattice, SixteenCells};
@@ -23,7 +23,7 @@ pub(crate) fn nearest<const N: usize>(
     place: &Place<N>,
     hits: &mut [Hit<N>],
 ) {
-    // Powers take so long that nothing is gained side by side, and counts of a density are drawn one by one.
+    // Powers are so slow that lanes gain nothing, and the counts of a varying density are drawn one by one.
     let is_scalar = matches!(metric, Metric::Minkowski(_)) || lattice.density.is_some();
     let is_known = !is_scalar
         && match hits.len() {
@@ -42,8 +42,8 @@ pub(crate) fn nearest<const N: usize>(
     }
 }
 
-/// Finds the nearest points of a place, nearest first: as many as there are `hits`, and at most `K`. Tells whether the
-/// neighbors are enough for that.
+/// Finds the nearest points of a place, nearest first: as many as there are `hits`, and at most `K`. Returns whether
+/// the neighbors are enough for that.
 #[inline(always)]
 fn nearest_of_neighbors<S: Simd, const N: usize, const K: usize>(
     simd: S,
@@ -119,13 +119,13 @@ fn nearest_of_neighbors<S: Simd, const N: usize, const K: usize>(
     hits[n_hits - 1].key < metric.term(cells(border(place, 1)))
 }
 
-/// The bits of a number below 81, the cells of four dimensions.
+/// The number of bits of a number below 81, the number of cells in four dimensions.
 const LANE_BITS: u32 = 7;
 
-/// The own cell of a place, and the neighbors of that.
+/// The own cell of a place, and its neighbors.
 struct Around<const N: usize> {
     steps: [i32; N],
-    /// For each axis, which neighbor is nearer: -1 or 1.
+    /// For each axis, the direction of the nearer neighbor: -1 or 1.
     nearer: [i32; N],
     /// For each axis, the own cell, the nearer and the other neighbor.
     cells: [[i64; 3]; N],
@@ -150,7 +150,7 @@ impl<const N: usize> Around<N> {
         }
     }
 
-    /// How many cells a neighbor is away.
+    /// The offset of a neighbor, in cells.
     fn shift(&self, neighbor: u32) -> [i64; N] {
         let mut shift = [0; N];
         for axis in 0..N {

@@ -1,14 +1,14 @@
 //! Sixteen places side by side, one in each lane, and the neighbors of their cells.
 //!
-//! Neighbors are told apart by two bits for each axis: 0 for the own cell, 1 for the neighbor on the nearer side, 2 for
-//! the other.
+//! Neighbors are coded by two bits for each axis: 0 for the own cell, 1 for the neighbor on the nearer side, 2 for the
+//! other one.
 
 use crate::fixed::{STEPS, split};
 use crate::lattice::Lattice;
 use dapple_hash::CellHashes;
 use fearless_simd::{f64x8, i32x16, prelude::*, u32x16, u64x8};
 
-/// The places of a register.
+/// The number of places in a register.
 pub(crate) const LANES: usize = 16;
 
 /// The low and the high word of sixteen whole numbers.
@@ -31,11 +31,11 @@ pub(crate) struct Cells<S: Simd, const N: usize> {
     pub(crate) origins: [i32x16<S>; N],
 }
 
-/// `f64` has whole numbers only between this and twice this, and their difference from this is in the low bits.
+/// All numbers of `f64` between this and twice this are whole, and their low bits hold the difference from this number.
 const WHOLE: f64 = (3_u64 << 51) as f64;
 
 impl<S: Simd, const N: usize> Places<S, N> {
-    /// The places of a register of positions, and which lanes have one, as bits; the others get any.
+    /// The places of a register of positions, and a bit for each lane that has one; other lanes hold arbitrary places.
     #[inline(always)]
     pub(crate) fn new<const LEN: usize>(
         simd: S,
@@ -56,7 +56,7 @@ impl<S: Simd, const N: usize> Places<S, N> {
         (places, has_place)
     }
 
-    /// The places of a register of the memory.
+    /// Loads the places of a register from memory.
     #[inline(always)]
     pub(crate) fn load<const LEN: usize>(
         simd: S,
@@ -93,14 +93,14 @@ impl<S: Simd, const N: usize> Places<S, N> {
         }
     }
 
-    /// Where the neighbor on the nearer side is, along an axis: -1 or 1.
+    /// The direction of the neighbor on the nearer side, along an axis: -1 or 1.
     #[inline(always)]
     pub(crate) fn nearer(&self, simd: S, axis: usize) -> i32x16<S> {
         let [one, minus_one] = [i32x16::splat(simd, 1), i32x16::splat(simd, -1)];
         self.steps[axis].simd_lt(STEPS / 2).select(minus_one, one)
     }
 
-    /// The coordinates of the cells this far away along an axis, or of the cells that those repeat.
+    /// The coordinates of the cells shifted along an axis, or of the cells that these repeat.
     #[inline(always)]
     pub(crate) fn shifted(&self, lattice: &Lattice<N>, axis: usize, shift: i32x16<S>) -> Words<S> {
         let [low, high] = self.cells[axis];
@@ -115,7 +115,7 @@ impl<S: Simd, const N: usize> Places<S, N> {
         words
     }
 
-    /// For several registers in step, a neighbor of each place, or its own cell.
+    /// A neighbor of each place, or its own cell, for several registers in step.
     #[inline(always)]
     pub(crate) fn neighbors_each<const C: usize>(
         simd: S,
@@ -149,7 +149,7 @@ impl<S: Simd, const N: usize> Places<S, N> {
     }
 }
 
-/// A register of the memory.
+/// Loads a register from memory.
 #[inline(always)]
 pub(crate) fn load<S: Simd>(simd: S, words: &[u32], register: usize) -> u32x16<S> {
     u32x16::from_slice(simd, &words[register * LANES..][..LANES])
@@ -160,7 +160,8 @@ pub(crate) fn store<S: Simd>(lanes: u32x16<S>, words: &mut [u32], register: usiz
     lanes.store_slice(&mut words[register * LANES..][..LANES]);
 }
 
-/// The cells of sixteen coordinates, the steps from their lower edges, and which have these, as bits: as [`split`].
+/// The cells of sixteen coordinates, the steps from their lower edges, and a bit for each that has a place; see
+/// [`split`].
 #[inline(always)]
 fn split_lanes<S: Simd>(simd: S, coordinates: &[f64; LANES]) -> (Words<S>, i32x16<S>, u64) {
     let halves = [&coordinates[..8], &coordinates[8..]].map(|half| f64x8::from_slice(simd, half));
@@ -212,7 +213,7 @@ fn split_each<S: Simd>(simd: S, coordinates: &[f64; LANES]) -> (Words<S>, i32x16
     (words, i32x16::from_slice(simd, &steps), has_place)
 }
 
-/// The next cells.
+/// The cells after the given ones.
 #[inline(always)]
 fn next<S: Simd>([low, high]: Words<S>) -> Words<S> {
     let next = low + 1;
@@ -220,7 +221,7 @@ fn next<S: Simd>([low, high]: Words<S>) -> Words<S> {
     [next, carries.select(high + 1, high)]
 }
 
-/// The cells that cells repeat.
+/// The cells that the given cells repeat.
 #[inline(never)]
 fn wrap<S: Simd, const N: usize>(
     lattice: &Lattice<N>,
@@ -235,13 +236,13 @@ fn wrap<S: Simd, const N: usize>(
     [low, high]
 }
 
-/// Which neighbor it is along an axis.
+/// The code of a neighbor along one axis.
 #[inline(always)]
 pub(crate) fn digit(cell: u32, axis: usize) -> usize {
     (cell >> (2 * axis) & 3) as usize
 }
 
-/// The own cell and its neighbors, those that are nearer on average first.
+/// The own cell and its neighbors, sorted by their mean distance.
 pub(crate) fn cells_by_distance<const N: usize>() -> &'static [u8] {
     const TWO: [u8; 9] = sorted_cells(2);
     const THREE: [u8; 27] = sorted_cells(3);
@@ -253,7 +254,7 @@ pub(crate) fn cells_by_distance<const N: usize>() -> &'static [u8] {
     }
 }
 
-/// All cells with these axes, in the order of the mean of their squared distance.
+/// All cells with `n_axes` axes, in the order of the mean of their squared distance.
 const fn sorted_cells<const LEN: usize>(n_axes: u32) -> [u8; LEN] {
     let mut cells = [0; LEN];
     let mut len = 0;

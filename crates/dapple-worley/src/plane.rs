@@ -1,10 +1,10 @@
-//! Planes through spaces of two, three and four axes.
+//! Planes through spaces of two, three and four dimensions.
 
 use crate::fixed::MOST_AXES;
 use crate::{Axes, Space, Vector};
 use glam::DVec2;
 
-/// A plane through space: where the picture lies. Its position `[x, y]` is `origin + x·u + y·v`.
+/// A plane through space, in which pictures lie. Its position `[x, y]` is `origin + x·u + y·v`.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/plane.md"))]
 ///
@@ -23,9 +23,9 @@ where
 {
     /// The position of `[0, 0]`.
     pub origin: Vector<N>,
-    /// The way from `[0, 0]` to `[1, 0]`. Pictures are fastest where it goes along the first axis, and `v` does not.
+    /// The vector from `[0, 0]` to `[1, 0]`. Rendering is fastest if it goes along the first axis, and `v` does not.
     pub u: Vector<N>,
-    /// The way from `[0, 0]` to `[0, 1]`.
+    /// The vector from `[0, 0]` to `[0, 1]`.
     pub v: Vector<N>,
 }
 
@@ -48,7 +48,7 @@ where
         }
     }
 
-    /// Where in space a position of the plane is.
+    /// The position in space of a position of the plane.
     #[must_use]
     pub fn position(&self, position: DVec2) -> Vector<N> {
         let section = self.section();
@@ -57,7 +57,7 @@ where
         }))
     }
 
-    /// This plane as pictures have it, whatever the number of axes.
+    /// This plane in the form that rendering uses, for any number of axes.
     pub(crate) fn section(&self) -> Section {
         let flat = |part: Vector<N>| {
             let mut parts = [0.0; MOST_AXES];
@@ -73,7 +73,7 @@ where
     }
 }
 
-/// A [`Plane`] of any number of axes; what it has none of is zero.
+/// A [`Plane`] with any number of axes; the components of missing axes are zero.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Section {
     pub(crate) n_axes: usize,
@@ -95,14 +95,14 @@ impl Section {
         parts(self) == parts(other)
     }
 
-    /// The only axis that goes with the rows, if there is only one, and it is not the first.
+    /// The only axis along which rows differ, if there is exactly one, and it is not the first.
     pub(crate) fn row_axis(&self) -> Option<usize> {
         let mut axes = (0..self.n_axes).filter(|&axis| self.v[axis] != 0.0);
         axes.next()
             .filter(|&axis| axis > 0 && axes.next().is_none())
     }
 
-    /// Whether the first axis, and no other, goes with the columns.
+    /// Whether columns differ along the first axis only, and rows do not differ along it.
     pub(crate) fn is_upright(&self) -> bool {
         self.v[0] == 0.0 && self.u[1..].iter().all(|&part| part == 0.0)
     }

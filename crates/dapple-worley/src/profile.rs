@@ -8,7 +8,7 @@
 
 use crate::{WorleyError, WorleyErrorKind};
 
-/// A cross-section: how high a bump is where a texture has a value.
+/// A cross-section of bumps: the height as a function of the value of a texture.
 ///
 /// # Examples
 ///
@@ -32,16 +32,16 @@ use crate::{WorleyError, WorleyErrorKind};
 )]
 #[non_exhaustive]
 pub enum Profile {
-    /// A dome, 1 high where the value is 0, and 0 from `radius` on: `(1 − (value / radius)²)²`. Of F1, a raised spot
-    /// about every feature point.
+    /// A dome with height 1 where the value is 0, and height 0 from `radius` on: `(1 − (value / radius)²)²`. With F1, a
+    /// raised spot about every feature point.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/profile-spots.md"))]
     Spots {
         /// Half of the width of a spot, in the units of the value: above 0.
         radius: f32,
     },
-    /// A channel, 0 high where the value is 0, and 1 from `width` on: `3 t² − 2 t³` with `t = value / width`. Of
-    /// F2 − F1, channels between raised stones; of F1, round pits.
+    /// A channel with height 0 where the value is 0, and height 1 from `width` on: `3 t² − 2 t³` with `t = value /
+    /// width`. With F2 − F1, channels between raised stones; with F1, round pits.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/profile-channels.md"))]
     Channels {
@@ -71,7 +71,7 @@ impl Profile {
         Ok(Self::Channels { width })
     }
 
-    /// Refuses a profile that was made, or read, without a constructor and could not have been made with one.
+    /// Checks the numbers of a profile that was read, or made without a constructor.
     ///
     /// # Errors
     ///
@@ -83,7 +83,7 @@ impl Profile {
         }
     }
 
-    /// The height where the texture has a value: from 0 to 1.
+    /// The height for a value of the texture: from 0 to 1.
     #[must_use]
     pub fn height(self, value: f32) -> f32 {
         match self {
@@ -98,7 +98,7 @@ impl Profile {
         }
     }
 
-    /// How fast the height changes with the value.
+    /// The derivative of the height by the value.
     #[must_use]
     pub fn slope(self, value: f32) -> f32 {
         match self {

@@ -12,14 +12,14 @@
 //! is `2πr/n` by `πr/m` by `1/k` large; toward the poles cells get narrower, and at a pole all azimuths meet, so that
 //! the texture is not continuous there (as a map of the Earth is not). On the axis the azimuth is taken as 0.
 //!
-//! The gradient is carried back to `[x, y, z]` by the derivatives of the three coordinates. The azimuth's grows without
-//! bound toward the axis; on the axis itself, and at the center, the parts that have no value are left out.
+//! The gradient is transformed back to `[x, y, z]` by the derivatives of the three coordinates. That of the azimuth
+//! grows without bound toward the axis; on the axis itself, and at the center, the undefined parts are left out.
 
 use crate::{Cellular, Worley3, WorleyError};
 use core::f64::consts::{PI, TAU};
 use glam::DVec3;
 
-/// How many cells a radial texture has.
+/// The number of cells of a radial texture along each axis.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/radial-cells.md"))]
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -91,7 +91,7 @@ impl Radial {
         self.texture.worley()
     }
 
-    /// Where in the cells a position is: along azimuth, polar angle and radius.
+    /// The position in cells along azimuth, polar angle and radius.
     #[must_use]
     pub fn cell_position(&self, position: impl Into<DVec3>) -> DVec3 {
         let at = position.into();

@@ -9,7 +9,7 @@ use crate::{Combination, Metric, Scatter};
 /// The metrics with a table, in its order.
 const METRICS: [Metric; 3] = [Metric::Euclidean, Metric::Manhattan, Metric::Chebyshev];
 
-/// For each metric, for 2, 3 and 4 axes, for each of [`Combination::NAMED`]: the low and the high end.
+/// The low and the high end for each metric, for 2, 3 and 4 axes, for each of [`Combination::NAMED`].
 #[rustfmt::skip]
 const RANGES: [[[[f32; 2]; Combination::NAMED.len()]; 3]; METRICS.len()] = [
     [
@@ -29,7 +29,7 @@ const RANGES: [[[[f32; 2]; Combination::NAMED.len()]; 3]; METRICS.len()] = [
     ],
 ];
 
-/// The range of a combination, if it is known.
+/// The range of a combination, if it is in the table.
 pub(crate) fn range(
     n_axes: usize,
     metric: Metric,

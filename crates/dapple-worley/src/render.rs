@@ -1,17 +1,17 @@
-//! Many positions at once: a window of a plane.
+//! Rendering of windows of a plane.
 //!
-//! The window is cut into bands of rows, which threads share out, and blocks of columns. The feature points of a block
-//! and its neighborhood are made once ([`table`]). Only they know how many axes there are ([`basis`]). For each square
-//! of up to 64 × 64 pixels, and then for each of its tiles ([`square`]), those that may be among the nearest are picked
-//! out: the candidates ([`cull`], [`flat`], then [`candidates`]). Only these are compared at the pixels of the tile,
-//! sixteen side by side ([`kernel`]; [`track`], where it matters which points they are). Slices of a volume that lie
-//! near one another share their candidates. Where a tile needs points further away than its neighborhood reaches, the
-//! neighborhood grows; where that would not be exact, single positions are searched. Where cells have few pixels,
-//! points are sorted by the pixels near to them ([`bins`]), and compared at all of these ([`splat`]). Where the
-//! distance to the edge of the Voronoi cell is asked for, the cells are drawn one by one ([`edge`]).
+//! The window is cut into bands of rows, which are distributed over threads, and blocks of columns. The feature points
+//! of a block and its neighborhood are generated once ([`table`]). Only these tables depend on the number of axes
+//! ([`basis`]). For each square of up to 64 × 64 pixels, and then for each of its tiles ([`square`]), the points that
+//! may be among the nearest are selected: the candidates ([`cull`], [`flat`], then [`candidates`]). Only these are
+//! compared at the pixels of the tile, sixteen side by side ([`kernel`]; [`track`] also finds which points they are).
+//! Slices of a volume that lie near one another share their candidates. Where a tile needs points further away than its
+//! neighborhood reaches, the neighborhood grows; where that would not be exact, single positions are searched. Where
+//! cells have few pixels, points are sorted by the pixels near to them ([`bins`]), and compared at all of these
+//! ([`splat`]). For the distance to the edge of the Voronoi cell, the cells are drawn one by one ([`edge`]).
 //!
-//! What runs in registers are stages with nothing but memory between them, so that each is compiled only for what it
-//! depends on.
+//! The parts that run in registers are stages with only memory between them, so that each is compiled only for the
+//! parameters it depends on.
 
 mod area;
 mod basis;
@@ -40,16 +40,16 @@ use std::sync::Arc;
 
 pub(crate) use basis::Basis;
 
-/// The pixels of a register.
+/// The number of pixels in a register.
 pub(crate) const LANES: usize = 16;
 
-/// The numbers of a register of `f64`.
+/// The number of `f64` in a register.
 const F64_LANES: usize = LANES / 2;
 
-/// The most rows of a band.
+/// The largest number of rows of a band.
 const BAND_ROWS: usize = 64;
 
-/// The most columns of a block.
+/// The largest number of columns of a block.
 const BLOCK_COLUMNS: usize = 128;
 
 /// A window of a plane through the basis.
@@ -58,24 +58,24 @@ pub(crate) struct Picture<'a> {
     pub(crate) basis: &'a dyn Basis,
     pub(crate) section: Section,
     pub(crate) window: &'a Window,
-    /// What positions are multiplied by.
+    /// The factor by which positions are multiplied.
     pub(crate) frequency: f64,
 }
 
-/// The rows of a band, and what is to be put into them.
+/// The rows of a band, by the kind of their contents.
 pub(crate) enum Output<'a> {
-    /// Values of a texture.
+    /// The values of a texture.
     Values(Values, Vec<&'a mut [f32]>),
-    /// The nearest points, as many as there are members.
+    /// The nearest points; the number of elements is the number of points.
     Features(Vec<FeatureRows<'a>>),
-    /// Gradients of a texture, their parts one after the other.
+    /// The gradients of a texture, their components one after the other.
     Gradients(Tone, Vec<&'a mut [f32]>),
-    /// Distances to the edges of Voronoi cells.
+    /// The distances to the edges of Voronoi cells.
     Edges(Vec<&'a mut [f32]>),
 }
 
 impl Output<'_> {
-    /// The greatest n of `F_n` that is needed.
+    /// The greatest n for which `F_n` is needed.
     fn depth(&self) -> usize {
         match self {
             Self::Values(Values { tone, .. }, _) | Self::Gradients(tone, _) => tone.depth(),
@@ -84,7 +84,7 @@ impl Output<'_> {
         }
     }
 
-    /// The most columns of a block.
+    /// The largest number of columns of a block for this output.
     fn block_columns(&self) -> usize {
         match self {
             Self::Edges(_) => edge::COLUMNS,
@@ -102,12 +102,12 @@ impl Output<'_> {
 }
 
 impl Picture<'_> {
-    /// How many bands the window has.
+    /// The number of bands of the window.
     pub(crate) fn n_bands(&self) -> usize {
         self.window.size[1].div_ceil(BAND_ROWS as u32) as usize
     }
 
-    /// The rows of each band of a view; no bands, if there is no view.
+    /// The rows of each band of a view; no bands without a view.
     pub(crate) fn bands<'v, T>(
         &self,
         view: Option<RasterViewMut<'v, T>>,
@@ -123,7 +123,7 @@ impl Picture<'_> {
         render_stack(vec![(*self, bands)]);
     }
 
-    /// The coordinates of the columns; those of the picture before, if they are the same.
+    /// The coordinates of the columns; shared with the picture before, if they are the same.
     fn columns(&self, before: Option<(&Self, &Arc<Line>)>) -> Arc<Line> {
         match before {
             Some((before, columns)) if before.section.is_same_along(0, &self.section) => {
@@ -135,14 +135,14 @@ impl Picture<'_> {
         }
     }
 
-    /// The coordinates of `n` rows from `first` on along an axis; those of the picture before, if they are the same.
+    /// The coordinates of `n` rows from `first` on along an axis; shared with the picture before, if they are the same.
     fn rows(&self, axis: usize, first: usize, n: usize, before: Option<&Band<'_>>) -> Arc<Line> {
         match before {
             Some(before) if before.picture.section.is_same_along(axis, &self.section) => {
                 before.rows[axis].clone()
             }
             _ => {
-                // Where all rows are at the same place, the first one does for all. (Zero times infinity is no place.)
+                // Where all rows are at the same place, one row is enough. (Zero times infinity is no place.)
                 let last = self.window.row_y((first + n) as u32 - 1);
                 let is_level = self.section.v[axis] == 0.0 && last.is_finite();
                 let mut line = self.line(axis, if is_level { 1 } else { n as u32 }, |row| {
@@ -154,8 +154,8 @@ impl Picture<'_> {
         }
     }
 
-    /// The coordinates of columns or rows along one axis. They are those of [`place`](Self::place) if the plane is
-    /// upright, for then the other part of the position adds zero.
+    /// The coordinates of columns or rows along one axis. They equal those of [`place`](Self::place) if the plane is
+    /// upright, since the other part of the position then adds zero.
     fn line(&self, axis: usize, len: u32, position: impl Fn(u32) -> DVec2) -> Line {
         let coordinate = |index| self.section.coordinate(axis, position(index)) * self.frequency;
         let mut places: Vec<_> = (0..len)
@@ -181,10 +181,10 @@ impl Picture<'_> {
     }
 }
 
-/// So many pictures of a stack are filled by one thread, so that they can share what they look at.
+/// The number of pictures of a stack that one thread fills, so that they share tables and candidates.
 const STACK: usize = 16;
 
-/// Fills the bands of pictures of the same basis, frequency and window, on all cores where the feature `rayon` is on.
+/// Renders several pictures of the same basis, frequency and window, on all cores where the feature `rayon` is on.
 pub(crate) fn render_stack<'a>(stack: Vec<(Picture<'a>, Vec<Output<'a>>)>) {
     let mut pictures: Vec<(Picture<'a>, Arc<Line>, Vec<Output<'a>>)> = Vec::new();
     for (picture, bands) in stack {
@@ -211,7 +211,7 @@ pub(crate) fn render_stack<'a>(stack: Vec<(Picture<'a>, Vec<Output<'a>>)>) {
     });
 }
 
-/// Fills the same band of several pictures. Those next to one another that are slices of a volume are filled together.
+/// Fills the same band of several pictures. Neighbors that are slices of a volume are filled together.
 fn render_bands(
     level: Level,
     mut bands: &[Band<'_>],
@@ -241,19 +241,19 @@ fn render_bands(
     }
 }
 
-/// A band of rows of a picture, where they and the columns lie.
+/// A band of rows of a picture, with the coordinates of its rows and columns.
 struct Band<'a> {
     picture: Picture<'a>,
-    /// The first row, in the window.
+    /// The first row of the band, in the window.
     first: usize,
     n_rows: usize,
     columns: Arc<Line>,
-    /// Along every axis.
+    /// The coordinates of the rows along every axis.
     rows: Vec<Arc<Line>>,
 }
 
 impl<'a> Band<'a> {
-    /// The band with this index; `before` is that of another picture.
+    /// The band with this index; `before` is the band of another picture, with which coordinates are shared.
     fn new(picture: Picture<'a>, index: usize, columns: Arc<Line>, before: Option<&Self>) -> Self {
         let first = index * BAND_ROWS;
         let n_rows = BAND_ROWS.min(picture.window.size[1] as usize - first);
@@ -268,7 +268,7 @@ impl<'a> Band<'a> {
         }
     }
 
-    /// Whether another band is a slice along the first two axes with the same columns and rows, and so is this one.
+    /// Whether this band and another one are slices along the first two axes with the same columns and rows.
     fn is_slice(&self, other: &Self) -> bool {
         let is_flat = |band: &Self| band.picture.section.row_axis() == Some(1);
         is_flat(self)
@@ -278,15 +278,15 @@ impl<'a> Band<'a> {
     }
 }
 
-/// The coordinates of columns or rows along one axis: cell, and steps within it.
+/// The coordinates of columns or rows along one axis: the cell, and the steps within it.
 struct Line {
     places: Vec<(i64, i32)>,
-    /// Whether all of them have a place.
+    /// Whether all coordinates have a place.
     is_finite: bool,
 }
 
 impl Line {
-    /// The first and the last cell of some of them.
+    /// The first and the last cell of a range of coordinates.
     fn cells(&self, range: core::ops::Range<usize>) -> [i64; 2] {
         let [a, b] = [self.places[range.start].0, self.places[range.end - 1].0];
         [a.min(b), a.max(b)]

@@ -1,10 +1,10 @@
-//! How feature points are spread over the cells.
+//! Scatter: the distribution of feature points over the cells.
 
 use crate::{WorleyError, WorleyErrorKind};
 use core::ops::RangeInclusive;
 use dapple_hash::PoissonCounts;
 
-/// How many feature points a cell has, and where in it they lie.
+/// The number of feature points in a cell, and their distribution in it.
 ///
 /// # Examples
 ///
@@ -23,28 +23,28 @@ use dapple_hash::PoissonCounts;
 )]
 #[non_exhaustive]
 pub enum Scatter {
-    /// Worley's: a Poisson-distributed number of points with a uniform position each. The number is clamped to
-    /// 1 to 9, as in the paper, which moves its mean; see [`Scatter::mean`].
+    /// Worley's scatter: a Poisson-distributed number of points, each at a uniform position. The number is clamped to 1
+    /// to 9, as in the paper, which moves its mean; see [`Scatter::mean`].
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/scatter-poisson.md"))]
     Poisson {
         /// Feature points per cell on average, before clamping: from 1/64 to 64.
         density: f64,
     },
-    /// Poisson-distributed points without a least or a largest number: a cell may be empty, and the points have no trace
-    /// of the grid.
+    /// Poisson-distributed points without a least or a largest number: a cell may be empty, and the points have no
+    /// trace of the grid.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/scatter-unclamped.md"))]
     Unclamped {
         /// Feature points per cell on average: from 1/64 to 64.
         density: f64,
     },
-    /// One point in each cell, as most other libraries have it. The grid can be seen.
+    /// One point in each cell, as in most other libraries. The grid is visible.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/scatter-jittered.md"))]
     Jittered {
-        /// How far the point leaves the middle: from 0, a regular grid, to 1, anywhere in its cell. It is rounded to
-        /// a multiple of 1/1024.
+        /// The distance of the point from the middle: from 0, a regular grid, to 1, anywhere in its cell. It is rounded
+        /// to a multiple of 1/1024.
         jitter: f64,
     },
 }
@@ -55,7 +55,7 @@ const CLAMPED: RangeInclusive<u32> = 1..=9;
 /// The least and the largest density.
 pub(crate) const DENSITIES: RangeInclusive<f64> = 1.0 / 64.0..=64.0;
 
-/// The parts of a cell that a jitter is rounded to.
+/// The number of steps from 0 to 1 to which a jitter is rounded.
 pub(crate) const JITTER_PARTS: u32 = 1024;
 
 impl Default for Scatter {
@@ -68,13 +68,12 @@ impl Default for Scatter {
 }
 
 impl Scatter {
-    /// The default density. Worley found his program fastest at about 3, and so is this one: with as many feature
-    /// points in a picture of F2 − F1, in 2-D and 3-D, 1 takes 1.4 to 2 times as long, 2 up to 1.3 times, and 4 to 8
-    /// between
-    /// 0.9 and 1.4 times.
+    /// The default density. Worley found his program fastest at about 3, and so is this one: for the same number of
+    /// feature points in a picture of F2 − F1, in 2-D and 3-D, 1 takes 1.4 to 2 times as long, 2 up to 1.3 times, and 4
+    /// to 8 between 0.9 and 1.4 times.
     pub const DENSITY: f64 = 3.0;
 
-    /// The feature points of a cell, on average over all cells: the density after clamping.
+    /// The mean number of feature points of a cell: the density after clamping.
     ///
     /// # Errors
     ///
@@ -83,13 +82,13 @@ impl Scatter {
         Ok(self.counts()?.mean())
     }
 
-    /// The table of counts of the default.
+    /// The table of counts of the default scatter.
     pub(crate) fn default_counts() -> PoissonCounts {
         let counts = PoissonCounts::new(Self::DENSITY, CLAMPED);
         counts.unwrap_or_else(|_| unreachable!("the default density is in its range"))
     }
 
-    /// The table of counts.
+    /// The table of counts of this scatter.
     pub(crate) fn counts(self) -> Result<PoissonCounts, WorleyError> {
         let (density, range) = match self {
             Self::Poisson { density } => (density, CLAMPED),

@@ -1,4 +1,4 @@
-//! The door for many scattered positions, such as the shading points of a renderer.
+//! Sampling at many scattered positions, such as the shading points of a renderer.
 
 use crate::doors::Doors as _;
 use crate::fixed::Place;
@@ -12,12 +12,12 @@ impl<const N: usize> Worley<N>
 where
     Axes: Space<N>,
 {
-    /// The `K` nearest feature points of each of many positions: what [`sample`](Self::sample) gives for each, bit for
-    /// bit, several times as fast. Positions may lie anywhere and come in any order.
+    /// The `K` nearest feature points of each of many positions. Equals [`sample`](Self::sample) for each, bit for bit,
+    /// and is several times as fast. Positions may lie anywhere and come in any order.
     ///
     /// # Errors
     ///
-    /// [`Length`](crate::WorleyErrorKind::Length) if there are not as many `features` as `positions`.
+    /// [`Length`](crate::WorleyErrorKind::Length) if the numbers of `features` and `positions` differ.
     ///
     /// # Examples
     ///
@@ -38,7 +38,7 @@ where
     ) -> Result<(), WorleyError> {
         const { assert!(K >= 1 && K <= LIMIT, "F1 to F4 are there to be asked for") };
         WorleyError::check_length(features.len(), positions.len())?;
-        // Hardly faster for three than for four, but as much to compile.
+        // Three are hardly faster than four, but take as long to compile.
         let depth = if K == 3 { LIMIT } else { K };
         self.each_group(depth, positions, |range, holds, points| {
             let positions = &positions[range.clone()];
@@ -94,7 +94,7 @@ where
         });
     }
 
-    /// Calls `found` with each group of positions, those of them for which the nearest points hold, as bits, and these
+    /// Calls `found` with each group of positions, a bit for each position whose nearest points are certain, and these
     /// points: 1, 2 or 4 of them.
     fn each_group(
         &self,
@@ -118,7 +118,7 @@ where
     }
 }
 
-/// Writes what was found, place by place.
+/// Writes the features of the nearest points, place by place.
 fn put<const N: usize, const K: usize>(
     points: &[Points<N>],
     features: &mut [[Feature<Vector<N>>; K]],

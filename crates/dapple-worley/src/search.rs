@@ -1,9 +1,9 @@
-//! The nearest feature points of one position, exactly.
+//! The exact search for the nearest feature points of one position.
 //!
-//! Cells are visited in rings of growing size about the position's own, those of a ring that lie too far away are
-//! left out, and the search ends when no cell outside can hold a nearer point. Worley visits the 26 neighbors and
-//! stops ("A Cellular Texture Basis Function", SIGGRAPH 1996, <https://doi.org/10.1145/237170.237267>); that misses
-//! points now and then, and more often the higher n is.
+//! Cells are visited in rings of growing size around the position's own; cells of a ring that lie too far away are
+//! skipped, and the search ends when no cell outside can hold a nearer point. Worley visits the 26 neighbors and stops
+//! ("A Cellular Texture Basis Function", SIGGRAPH 1996, <https://doi.org/10.1145/237170.237267>); that misses points
+//! now and then, and more often the higher n is.
 //!
 //! Bounds are computed from the same exact differences, terms and joins as the keys themselves. Rounding does not
 //! turn a smaller sum into a larger one, so a bound never excludes a point wrongly, and needs no margin.
@@ -17,7 +17,7 @@ use crate::{LIMIT, Metric};
 use core::cmp::Ordering;
 use dapple_hash::CellHash;
 
-/// What a lattice knows a point by.
+/// The identity of a point in a lattice: the hash of its cell and its index there.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Name {
     pub(crate) hash: CellHash,
@@ -32,25 +32,25 @@ impl Name {
     }
 }
 
-/// A point that was found.
+/// A point that a search has found.
 #[derive(Clone, Copy, Debug)]
 pub struct Hit<const N: usize> {
     pub(crate) key: f32,
-    /// From the feature point to the position, in cells.
+    /// The vector from the feature point to the position, in cells.
     pub(crate) vector: [f32; N],
-    /// Of what was not found there is none.
+    /// The identity of the point; `None` if no point was found.
     pub(crate) name: Option<Name>,
 }
 
 impl<const N: usize> Hit<N> {
-    /// What a position without a place sees.
+    /// The result for a position without a place.
     pub(crate) const NOWHERE: Self = Self {
         key: f32::NAN,
         vector: [f32::NAN; N],
         name: None,
     };
 
-    /// Nothing, infinitely far away.
+    /// The absence of a point: infinitely far away.
     pub(crate) const NONE: Self = Self {
         key: f32::INFINITY,
         vector: [f32::INFINITY; N],
@@ -58,7 +58,7 @@ impl<const N: usize> Hit<N> {
     };
 }
 
-/// What a place sees of a point in the cell that is `shift` cells from its own.
+/// The hit of a point in the cell that is `shift` cells from the place's own.
 #[inline(always)]
 pub(crate) fn hit<const N: usize>(
     metric: Metric,
@@ -79,8 +79,8 @@ pub(crate) fn hit<const N: usize>(
     }
 }
 
-/// No search goes further than this many cells. The least density makes a void of that size less likely than 2^-200
-/// even in two dimensions.
+/// The largest number of cells that a search goes away. The least density makes a void of that size less likely than
+/// 2^-200 even in two dimensions.
 const LAST_RING: i64 = 96;
 
 /// The nearest points of a place, nearest first; at most four.
@@ -111,7 +111,7 @@ pub(crate) fn nearest<const N: usize>(
     hits.copy_from_slice(ranking.hits());
 }
 
-/// All points of a place with keys of at most that of `distance`, in no particular order.
+/// All points of a place whose keys are at most that of `distance`, in no particular order.
 pub(crate) fn within<const N: usize>(
     lattice: &Lattice<N>,
     metric: Metric,
@@ -145,7 +145,7 @@ pub(crate) fn within<const N: usize>(
 /// The nearest points so far, nearest first.
 pub(crate) struct Ranking<const N: usize> {
     hits: [Hit<N>; LIMIT],
-    /// How many are wanted.
+    /// The number of points to find.
     len: usize,
 }
 
@@ -161,13 +161,13 @@ impl<const N: usize> Ranking<N> {
         &self.hits[..self.len]
     }
 
-    /// Keys from here on do not matter any more.
+    /// The key from which on further points do not matter.
     #[inline]
     pub(crate) fn reach(&self) -> f32 {
         self.hits[self.len - 1].key
     }
 
-    /// Takes in a point.
+    /// Inserts a point in its order.
     #[inline(always)]
     pub(crate) fn add(&mut self, hit: Hit<N>, id: impl Fn(Name) -> u64) {
         if hit.key <= self.reach() {
@@ -187,7 +187,7 @@ impl<const N: usize> Ranking<N> {
     }
 }
 
-/// By key, then by id; repeats of one point, by where they lie.
+/// The order of hits: by key, then by id; repeats of one point, by their vectors.
 pub(crate) fn order<const N: usize>(a: &Hit<N>, b: &Hit<N>, id: impl Fn(Name) -> u64) -> Ordering {
     a.key.total_cmp(&b.key).then_with(|| {
         let [a_id, b_id] = [a, b].map(|hit| hit.name.map(&id));
@@ -212,7 +212,7 @@ impl<const N: usize> Search<'_, N> {
             if shift.iter().any(|part| part.abs() == ring) {
                 each(shift);
             }
-            // The next cell, the first axis fastest; inside of the ring, straight to its other side.
+            // Advances to the next cell, the first axis fastest; inside of the ring, straight to its other side.
             let inside = shift[1..].iter().all(|part| part.abs() < ring);
             shift[0] += if inside && shift[0] == -ring {
                 2 * ring.max(1)
@@ -240,7 +240,7 @@ impl<const N: usize> Search<'_, N> {
         });
     }
 
-    /// No point of a cell has a smaller key.
+    /// A lower bound of the keys of all points of a cell.
     #[inline]
     fn gap(&self, shift: [i64; N]) -> f32 {
         let mut gap = [0.0; N];
@@ -256,13 +256,13 @@ impl<const N: usize> Search<'_, N> {
         self.metric.key(gap)
     }
 
-    /// No point beyond the rings visited has a smaller key.
+    /// A lower bound of the keys of all points beyond the visited rings.
     fn border(&self, ring: i64) -> f32 {
         self.metric.term(cells(border(self.place, ring)))
     }
 }
 
-/// The steps from a place to what lies beyond the `ring` rings about its cell.
+/// The number of steps from a place to the cells beyond the `ring` rings around its cell.
 #[inline(always)]
 pub(crate) fn border<const N: usize>(place: &Place<N>, ring: i64) -> i64 {
     let sides = place.steps.map(|steps| steps.min(STEPS - steps));

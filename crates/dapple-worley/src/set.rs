@@ -1,4 +1,4 @@
-//! A caller's own feature points.
+//! Feature points placed by the caller.
 //!
 //! Worley suggests that "object geometry might be used to disperse pre-computed feature spots" ("A Cellular Texture
 //! Basis Function", SIGGRAPH 1996, <https://doi.org/10.1145/237170.237267>), as Turk does. Here F1 to F4 are found over
@@ -10,7 +10,7 @@ use crate::search::{Hit, Name, Ranking};
 use crate::{Axes, Feature, LIMIT, Metric, Space, Vector, WorleyError};
 use dapple_hash::{CellHash, Seed};
 
-/// The points of a bin, on average.
+/// The mean number of points of a bin.
 const POINTS_PER_BIN: f64 = 2.0;
 
 /// Feature points that the caller has placed.
@@ -29,15 +29,15 @@ const POINTS_PER_BIN: f64 = 2.0;
 /// ```
 #[derive(Clone, Debug)]
 pub struct FeatureSet<const N: usize> {
-    /// Bin by bin, and within a bin by index.
+    /// The points, bin by bin, and within a bin by index.
     points: Vec<([f64; N], u32)>,
-    /// Where the points of each bin begin, and where those of the last end; the first axis is fastest.
+    /// The index of the first point of each bin, and at the end the number of points; the first axis is fastest.
     starts: Vec<u32>,
     bins: Bins<N>,
     metric: Metric,
 }
 
-/// A grid over the points, or over a period.
+/// A grid of bins over the points, or over a period.
 #[derive(Clone, Copy, Debug)]
 struct Bins<const N: usize> {
     origin: [f64; N],
@@ -124,7 +124,7 @@ where
         })
     }
 
-    /// Measures distances in another way.
+    /// This set with another metric.
     ///
     /// # Errors
     ///
@@ -165,7 +165,8 @@ where
         })
     }
 
-    /// Bins are visited in growing boxes about the position's own, until no bin outside can hold a nearer point.
+    /// Finds the `n` nearest points. Bins are visited in growing boxes around the position's own, until no bin outside
+    /// can hold a nearer point.
     fn nearest(&self, n: usize, mut position: [f64; N]) -> Ranking<N> {
         let bins = &self.bins;
         for axis in 0..N {
@@ -200,7 +201,7 @@ where
         ranking
     }
 
-    /// Takes in the points of a bin.
+    /// Inserts the points of a bin into a ranking.
     fn visit(&self, position: [f64; N], bin: [i64; N], ranking: &mut Ranking<N>) {
         let bins = &self.bins;
         let turns: [i64; N] =
@@ -281,7 +282,7 @@ impl<const N: usize> Bins<N> {
     /// The bin of a coordinate, or the nearest one.
     fn bin(&self, axis: usize, coordinate: f64) -> u32 {
         let bin = (coordinate - self.origin[axis]) / self.size[axis];
-        // What is below the first bin, or not a number since the extent is zero, goes to the first.
+        // Coordinates below the first bin, and NaN from an extent of zero, go to the first.
         (bin as u32).min(self.count[axis] - 1)
     }
 
@@ -306,7 +307,7 @@ impl<const N: usize> Bins<N> {
         reach
     }
 
-    /// How far it is from a position to what lies beyond these bins; infinitely far, if nothing does.
+    /// The distance from a position to the region beyond these bins; infinite, if there is none.
     fn border(&self, position: [f64; N], [first, last]: [[i64; N]; 2]) -> f32 {
         let mut border = f64::INFINITY;
         for axis in 0..N {
@@ -331,7 +332,7 @@ impl<const N: usize> Bins<N> {
     }
 }
 
-/// The coordinate in `[0, period)` that repeats as `coordinate`.
+/// The coordinate in `[0, period)` that is equivalent to `coordinate`.
 fn wrap(coordinate: f64, period: f64) -> f64 {
     let wrapped = coordinate - (coordinate / period).floor() * period;
     // Rounding can leave it just outside.

@@ -1,4 +1,4 @@
-//! What becomes of the keys of sixteen pixels.
+//! From keys to values: combinations of distances, and their output for sixteen pixels at a time.
 
 use crate::fixed::{FlatPlace, Place};
 use crate::metric::Measure;
@@ -7,16 +7,16 @@ use crate::search::Hit;
 use crate::{Axes, Combination, LIMIT, Space, Worley, WorleyError};
 use fearless_simd::{f32x16, prelude::*};
 
-/// A combination, mapped to a range: `shift + W1·F1 + W2·F2 + …`.
+/// A combination of distances, mapped to a range: `shift + W1·F1 + W2·F2 + …`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Tone {
-    /// The coefficients times what maps to the range.
+    /// The coefficients, scaled to the range.
     pub(crate) weights: Combination,
     pub(crate) shift: f32,
 }
 
 impl Tone {
-    /// The combination as it is.
+    /// The combination without a range.
     pub(crate) fn plain(combination: Combination) -> Self {
         Self {
             weights: combination,
@@ -36,22 +36,22 @@ impl Tone {
         let weights = self.weights.coefficients().map(|weight| weight / extent);
         Ok(Self {
             weights: Combination::new(weights),
-            // Not -0: adding nothing to that would make a difference.
+            // Adding zero avoids -0, to which adding zero later would make a difference.
             shift: (self.shift - low) / extent + 0.0,
         })
     }
 
-    /// The greatest n of `F_n` that is needed.
+    /// The greatest n for which `F_n` is needed.
     pub(crate) fn depth(&self) -> usize {
         self.weights.depth()
     }
 
-    /// How many of the nearest points a single position is searched for.
+    /// The number of nearest points to search for a single position.
     pub(crate) fn n_hits(&self) -> usize {
         if self.depth() <= 2 { 2 } else { LIMIT }
     }
 
-    /// At a place.
+    /// The value at a place.
     pub(crate) fn at<const N: usize>(&self, worley: &Worley<N>, place: &Place<N>) -> f32
     where
         Axes: Space<N>,
@@ -63,7 +63,7 @@ impl Tone {
         }
     }
 
-    /// From distances, at least [`Tone::depth`] of them.
+    /// The value for distances, at least [`Tone::depth`] of them.
     pub(crate) fn of(&self, distances: &[f32]) -> f32 {
         let mut sum = self.shift;
         for (&weight, &distance) in self.weights.coefficients().iter().zip(distances) {
@@ -75,16 +75,16 @@ impl Tone {
     }
 }
 
-/// Puts tones into rows of values: in place of what is there, or, times a weight, on top of it.
+/// Writes a combination into rows of values: it replaces them or, times a weight, is added to them.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Values {
     pub(crate) tone: Tone,
-    /// How much is added to what is there; nothing, if the values go in its place.
+    /// The weight with which values are added to those in memory; `None` replaces them.
     pub(crate) weight: Option<f32>,
 }
 
 impl Values {
-    /// The value at a place; NaN where there is none.
+    /// Writes the value at a place; NaN where there is no place.
     pub(crate) fn put_one(&self, basis: &dyn Basis, place: Option<FlatPlace>, out: &mut f32) {
         let value = place.map_or(f32::NAN, |place| {
             let mut hits = [Hit::NONE; LIMIT];
@@ -103,7 +103,7 @@ impl Values {
         };
     }
 
-    /// What puts the values of sixteen pixels at once.
+    /// The weights in the form for sixteen pixels at a time.
     #[inline(always)]
     pub(crate) fn lanes<S: Simd, const K: usize>(&self, simd: S) -> ValueLanes<S, K> {
         let coefficients = self.tone.weights.coefficients();
@@ -127,20 +127,20 @@ impl Values {
 pub(crate) struct ValueLanes<S: Simd, const K: usize> {
     shift: f32x16<S>,
     weights: [f32x16<S>; K],
-    /// Which weights are not zero.
+    /// For each weight, whether it is not zero.
     counts: [bool; K],
-    /// Whether values are added to what is there.
+    /// Whether values are added to those in memory.
     pub(crate) is_added: bool,
     weight: f32x16<S>,
 }
 
 impl<S: Simd, const K: usize> ValueLanes<S, K> {
-    /// Takes in the keys of sixteen pixels.
+    /// Writes the values for the keys of sixteen pixels.
     #[inline(always)]
     pub(crate) fn put<M: Measure>(&self, measure: M, keys: [f32x16<S>; K], out: &mut [f32]) {
         let mut values = self.shift;
         for rank in 0..K {
-            // The last one of one or two is zero in a combination of nothing only, where it adds zero.
+            // The last of one or two weights is zero only in a combination without any, where it adds zero.
             if (rank + 1 == K && K <= 2) || self.counts[rank] {
                 values += measure.distances(keys[rank]) * self.weights[rank];
             }
@@ -151,7 +151,7 @@ impl<S: Simd, const K: usize> ValueLanes<S, K> {
         values.store_slice(out);
     }
 
-    /// Takes in the keys of fewer than sixteen pixels.
+    /// Writes the values for the keys of fewer than sixteen pixels.
     #[inline(always)]
     pub(crate) fn put_part<M: Measure>(&self, measure: M, keys: [f32x16<S>; K], out: &mut [f32]) {
         let mut lanes = [0.0; 16];

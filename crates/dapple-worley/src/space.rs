@@ -1,20 +1,20 @@
-//! The spaces of two, three and four axes, and their vectors.
+//! Spaces of two, three and four dimensions, and their vectors.
 
 use crate::doors::Doors;
 use core::fmt;
 use glam::{DVec2, DVec3, DVec4};
 
-/// Where the number of axes is known, [`Space`] names the vector that has as many.
+/// A marker on which [`Space`] names the vector type for a known number of axes.
 #[derive(Debug)]
 pub struct Axes;
 
-/// A space with `N` axes; [`Axes`] implements it for 2, 3 and 4, and nothing else can.
+/// A space with `N` axes; [`Axes`] implements it for 2, 3 and 4, and other implementations are not possible.
 pub trait Space<const N: usize>: Doors<N> {
-    /// Its vectors: `DVec2`, `DVec3` or `DVec4`.
+    /// The vector type: `DVec2`, `DVec3` or `DVec4`.
     type Vector: Copy + fmt::Debug + PartialEq + From<[f64; N]> + Into<[f64; N]> + Send + Sync;
 }
 
-/// The vectors of the space with `N` axes.
+/// The vector type of the space with `N` axes.
 pub type Vector<const N: usize> = <Axes as Space<N>>::Vector;
 
 impl Space<2> for Axes {

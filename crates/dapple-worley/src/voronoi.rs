@@ -1,7 +1,7 @@
-//! What the Voronoi cells of the feature points give beside F1 to F4.
+//! Measures of the Voronoi cells of the feature points: distance to the edge, inscribed sphere, smooth F1.
 //!
-//! The distance to the edge and the radius of the sphere are those that Blender's Voronoi texture has made known; here
-//! they are exact. The smooth F1 is our own definition, since the usual ones depend on the order of the points.
+//! The distance to the edge and the radius of the sphere are those known from Blender's Voronoi texture; here they are
+//! exact. The smooth F1 is our own definition, since the usual ones depend on the order of the points.
 
 use crate::doors::Doors as _;
 use crate::fixed::{Place, STEP, STEPS};
@@ -16,8 +16,8 @@ where
     /// The distance from a position to the nearest edge of its Voronoi cell, in cells: zero or more.
     ///
     /// It is Euclidean, whatever the metric of the basis: the smallest distance to a plane halfway between the nearest
-    /// feature point and another. Unlike F2 − F1, it measures the same on wide and on narrow cells. NaN where
-    /// [`sample`](Self::sample) is.
+    /// feature point and another. Unlike F2 − F1, it measures the same on wide and on narrow cells. It is NaN for a
+    /// position without a place, see [`sample`](Self::sample).
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/edge-distance.md"))]
     #[must_use]
@@ -49,7 +49,7 @@ where
     /// The radius of the largest sphere about the feature point nearest to a position that stays in its Voronoi cell,
     /// in cells: half of the distance from that point to its own nearest neighbor, in the metric of the basis.
     ///
-    /// NaN where [`sample`](Self::sample) is.
+    /// NaN for a position without a place, see [`sample`](Self::sample).
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/sphere-radius.md"))]
     #[must_use]
@@ -71,12 +71,13 @@ where
         0.5 * neighbor
     }
 
-    /// F1 without creases, in cells: `radius` says how far the cells run into each other.
+    /// F1 without creases, in cells; within the distance `radius`, neighboring cells blend into each other.
     ///
     /// It is the value `s` that solves `Σ max(0, 1 + (s − d) / radius)³ = 1` over the distances `d` of all feature
-    /// points. So it lies between F1 − `radius` and F1, is F1 where no second point is within `radius` of it, and has
-    /// two continuous derivatives wherever the distances have. Only points nearer than F1 + `radius` count, and they
-    /// are summed in the order of their distances and ids. NaN where [`sample`](Self::sample) is.
+    /// points. So it lies between F1 − `radius` and F1, equals F1 where no second point is within `radius` of it, and
+    /// has two continuous derivatives wherever the distances have. Only points nearer than F1 + `radius` count, and
+    /// they are summed in the order of their distances and ids. NaN for a position without a place, see
+    /// [`sample`](Self::sample).
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/smooth-f1.md"))]
     ///
@@ -126,7 +127,7 @@ fn smooth_minimum(distances: &[f64], radius: f64) -> f64 {
             slope += 3.0 * part * part / radius;
         }
         let next = s - (sum - 1.0) / slope;
-        // Not a number is no smaller, and ends it too.
+        // NaN is not smaller, and ends the loop as well.
         if next < s {
             s = next;
         } else {
@@ -136,12 +137,12 @@ fn smooth_minimum(distances: &[f64], radius: f64) -> f64 {
     s
 }
 
-/// How far the position is from the plane halfway between two points, given the ways from the points to it.
+/// The distance of a position from the plane halfway between two points, from the vectors from the points to it.
 fn to_plane<const N: usize>(first: [f64; N], other: [f64; N]) -> f64 {
     let between: [f64; N] = core::array::from_fn(|axis| first[axis] - other[axis]);
     let [near, far] = [first, other].map(|way| dot(way, way));
     let apart = length(between);
-    // Two points in one place have an edge between them everywhere.
+    // Two coinciding points have an edge between them everywhere.
     if apart > 0.0 {
         (far - near) / (2.0 * apart)
     } else {

@@ -1,4 +1,4 @@
-//! The basis: distances to the nearest feature points.
+//! Worley's basis: distances to the nearest feature points.
 
 use crate::doors::Doors as _;
 use crate::fixed::{Place, STEP, STEPS};
@@ -9,16 +9,16 @@ use dapple_hash::{Seed, unit_f32};
 use dapple_raster::simd;
 use std::sync::Arc;
 
-/// The greatest n of `F_n`.
+/// The greatest n for which the basis has `F_n`.
 pub const LIMIT: usize = 4;
 
-/// Worley's basis in the plane.
+/// Worley's basis in two dimensions.
 pub type Worley2 = Worley<2>;
 
-/// Worley's basis in space.
+/// Worley's basis in three dimensions.
 pub type Worley3 = Worley<3>;
 
-/// Worley's basis in four dimensions, for what moves: a loop is a period along the fourth axis.
+/// Worley's basis in four dimensions, for textures that move: a period along the fourth axis makes a loop.
 pub type Worley4 = Worley<4>;
 
 /// Worley's cellular basis: feature points scattered over unit cells, and the distances to the nearest of them.
@@ -48,17 +48,17 @@ pub struct Worley<const N: usize> {
     pub(crate) metric: Metric,
 }
 
-/// A feature point as it is seen from a position.
+/// A feature point, relative to a position.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/feature.md"))]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Feature<V> {
-    /// How far away it is, in cells: zero or more. NaN if the position has no place, see [`Worley::sample`].
+    /// The distance in cells: zero or more. NaN if the position has no place, see [`Worley::sample`].
     pub distance: f32,
-    /// The way from the feature point to the position, in cells. For the Euclidean metric, this over the distance is
-    /// the gradient of the distance; see [`Metric::gradient`].
+    /// The vector from the feature point to the position, in cells. For the Euclidean metric, this vector over the
+    /// distance is the gradient of the distance; see [`Metric::gradient`].
     pub vector: V,
-    /// What the point is known by: 64 random bits, the same wherever it is seen from.
+    /// The id of the point: 64 random bits, the same from every position.
     pub id: u64,
 }
 
@@ -75,9 +75,9 @@ impl<V> Feature<V> {
 /// A feature point of a cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CellPoint<V> {
-    /// Where it lies, from the lower corner of the cell: each part in `[0, 1)`.
+    /// The position relative to the lower corner of the cell: each component in `[0, 1)`.
     pub offset: V,
-    /// What it is known by.
+    /// The id of the point: 64 random bits, as in [`Feature::id`].
     pub id: u64,
 }
 
@@ -113,7 +113,7 @@ where
         }
     }
 
-    /// Spreads the feature points in another way, with one density everywhere.
+    /// This basis with another scatter, and one density everywhere.
     ///
     /// # Errors
     ///
@@ -131,7 +131,7 @@ where
         })
     }
 
-    /// Scatters `density` feature points per cell on average, clamped to 1 to 9: [`Scatter::Poisson`].
+    /// This basis with `density` feature points per cell on average, clamped to 1 to 9: [`Scatter::Poisson`].
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/scatter-poisson.md"))]
     ///
@@ -142,11 +142,11 @@ where
         self.with_scatter(Scatter::Poisson { density })
     }
 
-    /// Lets the density vary in space: small, dense cells here, large ones there.
+    /// This basis with a density that varies in space: small, dense cells here, large ones there.
     ///
-    /// `density` is asked at the middle of each cell, and gives the feature points per cell on average; what it gives
-    /// is clamped to 1/64 to 64, and a number that is not one counts as 1/64. The numbers of points are not clamped,
-    /// so the mean is the density itself. The search goes as far as it must; it is slower than with one density.
+    /// `density` is called with the middle of each cell, and returns the mean number of feature points per cell. The
+    /// result is clamped to 1/64 to 64, and NaN counts as 1/64. The numbers of points are not clamped, so the mean is
+    /// the density itself. The search goes as far as necessary; it is slower than with one density.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/with-varying-density.md"))]
     ///
@@ -175,7 +175,7 @@ where
         }
     }
 
-    /// Measures distances in another way.
+    /// This basis with another metric.
     ///
     /// # Errors
     ///
@@ -187,7 +187,7 @@ where
         })
     }
 
-    /// The cells after which the first two axes repeat.
+    /// The number of cells after which the first two axes repeat.
     pub(crate) fn plane_period(&self) -> [Option<f64>; 2] {
         [0, 1].map(|axis| match self.lattice.period[axis] {
             0 => None,
@@ -195,10 +195,11 @@ where
         })
     }
 
-    /// Repeats the feature points after so many cells along each axis; `None` where the axis does not repeat.
+    /// Makes the feature points repeat after a number of cells along each axis; `None` along an axis that does not
+    /// repeat.
     ///
-    /// The repeat is exact, and nothing is blended. Repeats of a point are points of their own with one id, so with a
-    /// period of 1 F1 and F2 may belong to the same id.
+    /// The repeat is exact, without blending. Repeats of a point are separate points with one id, so with a period of
+    /// 1, F1 and F2 may belong to the same id.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/with-period.md"))]
     ///
@@ -218,13 +219,13 @@ where
         })
     }
 
-    /// How distances are measured.
+    /// The metric in which distances are measured.
     #[must_use]
     pub fn metric(&self) -> Metric {
         self.metric
     }
 
-    /// How the feature points are spread.
+    /// The scatter of the feature points.
     #[must_use]
     pub fn scatter(&self) -> Scatter {
         self.scatter
@@ -253,7 +254,7 @@ where
         }
     }
 
-    /// The feature points of a cell, in no particular order: what everything else is computed from.
+    /// The feature points of a cell, in no particular order. All other results follow from them.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/cell-points.md"))]
     #[must_use]

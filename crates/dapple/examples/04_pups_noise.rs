@@ -25,7 +25,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let noise = octaves(&options, Seed(7))?.normalized();
     let height = noise.to_raster(&window)?;
 
-    // The middle of the range is where most values are, so that is what the colors are for.
+    // Most values are in the middle of the range, so the colors are spread over it.
     let land = height.map(|&height| 0.5 + 2.0 * (height - 0.5));
     let path = out::path("04_pups_noise.png")?;
     write_color_png(&path, &Palette::Terrain.ramp().apply(&land), Depth::Eight)?;

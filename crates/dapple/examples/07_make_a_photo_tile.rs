@@ -1,7 +1,7 @@
-//! A picture that does not repeat, made to repeat, with a report of what that did to it.
+//! A picture that does not repeat is made into a tile, with a report of the changes.
 //!
-//! The stand-in for a photograph is a part of a paving, in a light that fades to the right. For one of your own, take
-//! `dapple::image::read_image("photo.png", &Default::default())?.color()?`.
+//! In place of a photograph, the example uses a part of a paving, in a light that fades to the right. For one of your
+//! own, use `dapple::image::read_image("photo.png", &Default::default())?.color()?`.
 //!
 //! ```sh
 //! cargo run -p dapple --example 07_make_a_photo_tile
@@ -19,8 +19,8 @@ use dapple::tile::{Method, SeamOptions, SeamReport, Seamless, SoftCut};
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let photo = photo()?;
 
-    // The periodic part first, which evens out the light; then a margin of 48 pixels is laid over the other side and cut
-    // where it is seen least.
+    // The periodic part first, which evens out the light; then a margin of 48 pixels is laid over the other side and
+    // cut where it is least visible.
     let even = Seamless::new(Method::Periodic).apply_color(&photo)?;
     let cut = SoftCut {
         margin: 48,
@@ -34,7 +34,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("before:\n{}\n", SeamReport::of(&before, &options)?);
     println!("after:\n{}", SeamReport::beside(&before, &after, &options)?);
 
-    // Twice in each direction, so that the seams can be looked for.
+    // Twice in each direction, which makes seams visible.
     for (name, picture) in [("before", &photo), ("after", &tile)] {
         let path = out::path(&format!("07_make_a_photo_tile_{name}.png"))?;
         write_color_png(&path, &picture.tile([2, 2])?, Depth::Eight)?;

@@ -1,7 +1,7 @@
 //! A material as a text, baked to maps: cobbles in sand, 512 × 512, with height, normals, occlusion,
 //! color and roughness.
 //!
-//! `Recipe::builtin("flagstone")` has one that is ready, and `Recipe::builtin_names()` says which others there are.
+//! `Recipe::builtin("flagstone")` is a ready-made recipe, and `Recipe::builtin_names()` lists all of them.
 //!
 //! ```sh
 //! cargo run -p dapple --example 09_recipe_bake
@@ -12,7 +12,7 @@ mod out;
 use dapple::image::{Depth, write_color_png, write_gray_png, write_normal_png};
 use dapple::recipe::{Bake, BakeOptions, Images, MapKind, MapRows, Plan, Recipe};
 
-/// The nodes by their names, and the material that is made of them. The format is in the README of `dapple-recipe`.
+/// The nodes by name, and the material that they make. The format is in the README of `dapple-recipe`.
 const COBBLES: &str = include_str!("09_recipe_bake.toml");
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {

@@ -1,7 +1,8 @@
-//! A raster as a graphics API takes it: the bytes of all mip levels, rows padded to 256 bytes, and what to ask for.
+//! A raster in the form of a graphics API: the bytes of all mip levels, rows padded to 256 bytes, and the texture
+//! format.
 //!
-//! No engine is needed for this. `upload/mod.rs` makes the bytes; `tests/gpu/main.rs` of this repository gives them to a
-//! real GPU by `wgpu` and reads them back.
+//! No engine is needed for this. `upload/mod.rs` makes the bytes; `tests/gpu/main.rs` of this repository uploads them
+//! to a real GPU with `wgpu` and reads them back.
 //!
 //! ```sh
 //! cargo run -p dapple --example 10_gpu_texture

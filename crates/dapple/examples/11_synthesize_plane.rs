@@ -1,4 +1,4 @@
-//! More of the same: a tile of 192 × 192 pixels that looks like an example of 56 × 56.
+//! A tile of 192 × 192 pixels, synthesized from an example of 56 × 56.
 //!
 //! The example is drawn here; any small picture will do.
 //!
@@ -20,7 +20,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let exemplar = Exemplar::new(&example, Edges::Cut)?;
     let texture = synthesize_plane(&exemplar, [192, 192], [Edges::Wrap; 2], &Options::default())?;
 
-    // A texture says for each pixel which one of the example it is, so other maps of the example can follow the same way.
+    // A texture maps each pixel to one of the example, so other maps of the example can be transferred in the same way.
     let tile = texture.transfer(&example)?;
 
     for (name, picture) in [("example", &example), ("tile", &tile)] {

@@ -1,7 +1,7 @@
 //! A texture grown over a mesh from a small example, baked to a texture map and written as a model: a GLB file that
 //! viewers and engines open.
 //!
-//! The mesh is a ring that is made here; `dapple::mesh_io::read_model` reads yours.
+//! The mesh is a ring made by the example; `dapple::mesh_io::read_model` reads your own.
 //!
 //! ```sh
 //! cargo run -p dapple --example 12_baked_model
@@ -63,9 +63,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     };
     let (ring, texture) = synthesize(ring()?, &exemplar, &down, &sites, &Options::default())?;
 
-    // The texture map: the triangles of the mesh, packed into a square with room for mip levels.
-    let atlas = Atlas::by_area(ring.surface(), 1024)?;
-    let map = bake_colors(&ring, &texture.transfer(&stripes)?, &atlas)?;
+    // The texture map: a few pieces of the mesh, flattened and packed into a square with room for mip levels.
+    let atlas = Atlas::charts(ring.surface(), 1024)?;
+    let map = bake_colors(&ring, &texture, &stripes, &atlas)?;
     let png = encode_png(
         map.map(|color| color.to_srgb::<u8>()).view(),
         Transfer::Srgb,
@@ -76,7 +76,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     write_model(&path, &model)?;
     out::wrote(&path);
 
-    // A picture of it: a ray meets a triangle, whose corners have texture coordinates.
+    // A rendered picture: a ray meets a triangle, whose corners have texture coordinates.
     let uvs = atlas.uvs();
     let look = |surface: &Surface| {
         let color = surface.triangle().map_or(LinearRgb::BLACK, |hit| {

@@ -1,8 +1,8 @@
 //! Procedural textures: cells, noise, animal coats, scattered points, images made to repeat, materials as text, and textures
 //! grown over meshes.
 //!
-//! This crate is all library crates of dapple under one name, one module for each, and has no code of its own. Give it a
-//! seed, and take a raster; save that, or hand it to a GPU:
+//! This crate re-exports all library crates of dapple, one module for each, and has no code of its own. Pass a seed to
+//! get a raster; save it, or upload it to a GPU:
 //!
 //! ```
 //! use dapple::color::Palette;
@@ -44,8 +44,8 @@
 //! | mesh files: OBJ, PLY, glTF, OFF | [`mesh_io`] | [`read_model`](mesh_io::read_model), [`write_model`](mesh_io::write_model) |
 //! | a lit picture of a texture on a thing | [`preview`] | [`Scene`](preview::Scene) |
 //!
-//! All of them speak of [`raster`] (pixels, and where they lie) and [`hash`] (seeds). Vectors are those of `glam`, which is
-//! [`raster::glam`].
+//! All of them use the types of [`raster`] (pixels, and their positions) and [`hash`] (seeds). Vectors are those of
+//! `glam`, which is [`raster::glam`].
 //!
 //! # If you look for …
 //!
@@ -71,8 +71,8 @@
 //!
 //! # Examples
 //!
-//! The folder `examples/` of this crate goes from one line to a baked model; each has a command in its first lines and draws
-//! into `target/examples-out/`, or into the folder that it is given:
+//! The folder `examples/` of this crate goes from one line to a baked model; each has a command in its first lines and
+//! draws into `target/examples-out/`, or into the folder in its argument:
 //!
 //! | example | shows |
 //! |---|---|
@@ -91,9 +91,9 @@
 //!
 //! # Features
 //!
-//! Each module is a feature of the same name and brings the modules whose types it speaks of; all are on by default. A
-//! program that needs cells alone says `default-features = false, features = ["worley"]`, or depends on `dapple-worley`,
-//! which is the same code: take one of the crates for one thing, and this one for several.
+//! Each module is a feature of the same name and includes the modules whose types it uses; all are on by default. A
+//! program that needs cells alone uses `default-features = false, features = ["worley"]`, or depends on
+//! `dapple-worley`, which is the same code: use one of the crates for one purpose, and this one for several.
 //!
 //! | feature | what it adds |
 //! |---|---|
@@ -102,11 +102,11 @@
 
 #![forbid(unsafe_code)]
 
-/// Seeds and what is drawn from them.
+/// Seeds, and random numbers from them.
 #[cfg(feature = "hash")]
 pub use dapple_hash as hash;
 
-/// Pixels in memory, where they lie in the plane, and fields of values.
+/// Pixels in memory, their positions in the plane, and fields of values.
 #[cfg(feature = "raster")]
 pub use dapple_raster as raster;
 
@@ -158,7 +158,7 @@ pub use dapple_mesh_io as mesh_io;
 #[cfg(feature = "synth")]
 pub use dapple_synth as synth;
 
-/// Lit pictures of textures on things.
+/// Lit pictures of textures on objects.
 #[cfg(feature = "preview")]
 pub use dapple_preview as preview;
 

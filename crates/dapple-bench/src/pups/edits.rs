@@ -51,8 +51,8 @@ impl Edited {
         let of_point = |(at, value): (&DVec2, f32)| ControlPoint {
             x: at.x,
             y: at.y,
-            value,
-            orientation: None,
+            value: Some(value),
+            ..ControlPoint::default()
         };
         let options = ControlPoints {
             domain: *points.domain(),
@@ -96,8 +96,8 @@ impl Edited {
             1 => self.pups.insert(ControlPoint {
                 x: anywhere.x,
                 y: anywhere.y,
-                value: random(2) as f32,
-                orientation: None,
+                value: Some(random(2) as f32),
+                ..ControlPoint::default()
             }),
             _ => self.pups.remove(PointIdx(n_points as u32 - 1)),
         }

@@ -5,23 +5,23 @@ use dapple::recipe::ImageAlpha;
 use serde::Serialize;
 use std::str::FromStr;
 
-/// The option of subcommands that make images of images.
+/// The option of subcommands that make images from images.
 #[derive(clap::Args, Clone, Copy, Debug, Serialize)]
 pub(crate) struct AlphaArgs {
     /// How transparency is handled: `keep` treats it like another channel, `drop` shows the colors without it, and
-    /// `over:COLOR` lays the image over a color, such as `over:#888`.
+    /// `over:COLOR` composites the image over a color, such as `over:#888`.
     #[arg(long, value_name = "keep|drop|over:COLOR", default_value = "keep")]
     pub(crate) alpha: Alpha,
 }
 
-/// How alpha is handled.
+/// The handling of alpha.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "lowercase", untagged)]
 pub(crate) enum Alpha {
-    /// It is processed like the colors.
+    /// Alpha is processed like the colors.
     #[serde(serialize_with = "keep")]
     Keep,
-    /// The result is opaque.
+    /// Alpha is removed, and the result is opaque.
     Without(ImageAlpha),
 }
 
@@ -50,11 +50,11 @@ impl FromStr for Alpha {
     }
 }
 
-/// Reads how the alpha of an image is handled that is used without it.
+/// Parses the handling of alpha for an image that is used without it.
 ///
 /// # Errors
 ///
-/// If the text is something else.
+/// If the text has no valid form.
 pub(crate) fn image_alpha(text: &str) -> Result<ImageAlpha, String> {
     match text.parse() {
         Ok(Alpha::Without(alpha)) => Ok(alpha),

@@ -1,36 +1,36 @@
-//! A picture of a loop on the command line: `3/24`, the third of 24.
+//! A frame of a loop on the command line: `3/24`, the third of 24.
 
 use serde::{Serialize, Serializer};
 use std::fmt;
 use std::str::FromStr;
 
-/// A picture of a loop in time.
+/// A frame of a loop in time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Frame {
-    /// Its number, from 1.
+    /// The number of the frame, from 1.
     number: u32,
-    /// How many pictures the loop has.
+    /// The number of frames in the loop.
     count: u32,
 }
 
 impl Frame {
-    /// All pictures of a loop; nothing but `None` where there is no loop.
+    /// All frames of a loop; a single `None` without a loop.
     pub(crate) fn all(count: Option<u32>) -> impl Iterator<Item = Option<Self>> {
         let pictures = 1..=count.unwrap_or(1);
         pictures.map(move |number| count.map(|count| Self { number, count }))
     }
 
-    /// The part of the loop that has passed before this picture.
+    /// The elapsed part of the loop before this frame, from 0 to below 1.
     pub(crate) fn time(self) -> f64 {
         f64::from(self.number - 1) / f64::from(self.count)
     }
 
-    /// How many pictures the loop has.
+    /// The number of frames in the loop.
     pub(crate) fn count(self) -> u32 {
         self.count
     }
 
-    /// Its number as a part of names: `001`, with as many digits as the last picture has.
+    /// The number of the frame as a part of file names: `001`, with as many digits as the last frame has.
     pub(crate) fn label(self) -> String {
         let digits = self.count.to_string().len().max(3);
         format!("{:0digits$}", self.number)

@@ -5,13 +5,13 @@ use dapple::raster::Named;
 use serde::{Serialize, Serializer};
 use std::str::FromStr;
 
-/// A ramp, and how the user wrote it.
+/// A color ramp, with its text on the command line.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct RampArg {
     text: String,
     /// The colors, from low to high: at least one.
     pub(crate) colors: Vec<LinearRgb>,
-    /// A ramp through them, which is mixed in Oklab.
+    /// A ramp through the colors, mixed in Oklab.
     pub(crate) ramp: ColorRamp,
 }
 
@@ -43,7 +43,7 @@ impl Serialize for RampArg {
     }
 }
 
-/// A color in hexadecimal, or black or white.
+/// Parses a color in hexadecimal, or `black` or `white`.
 pub(super) fn color(text: &str) -> Option<LinearRgb> {
     match text.trim() {
         "black" => Some(LinearRgb::BLACK),

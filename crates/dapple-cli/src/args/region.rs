@@ -1,4 +1,4 @@
-//! A part of an image on the command line: `x,y,w,h`, in pixels from the top left corner.
+//! A region of an image on the command line: `x,y,w,h`, in pixels from the top left corner.
 
 use super::Numbers;
 use serde::Serialize;

@@ -8,17 +8,17 @@ use serde::{Serialize, Serializer};
 use std::fmt;
 use std::str::FromStr;
 
-/// A shard, and the size of all shards but the last ones.
+/// A shard: its place, and the size of all shards except the last ones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Shard {
-    /// Its column and row among the shards, from 0.
+    /// The column and row of the shard, from 0.
     pub(crate) place: [u32; 2],
     /// Columns and rows of a shard, in pixels.
     pub(crate) size: Size,
 }
 
 impl Shard {
-    /// Its pixels in a picture of this size, cut off at the border.
+    /// The pixels of the shard in a picture of this size, cropped at the border.
     ///
     /// # Errors
     ///

@@ -58,7 +58,7 @@ impl fmt::Display for Size {
     }
 }
 
-/// Two sides, or one for both.
+/// Parses two sides, or one for both.
 fn pair<T: Copy>(text: &str, side: impl Fn(&str) -> Result<T, String>) -> Result<[T; 2], String> {
     match text.split_once(['x', 'X', '×']) {
         Some((width, height)) => Ok([side(width)?, side(height)?]),

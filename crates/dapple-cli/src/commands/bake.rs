@@ -22,7 +22,9 @@ use crate::words::Word;
 use anyhow::Result;
 use batch::Batch;
 use claim::claim;
-use dapple::recipe::{Bake, BakeMemory, BakeOptions, MapKind, Plan, Recipe};
+use dapple::recipe::{
+    Bake, BakeMemory, BakeOptions, Images, MapKind, Memory, Plan, PlanLimits, Recipe,
+};
 use dapple::tile::Map;
 pub(super) use material::MaterialArgs;
 use presets::Preset;
@@ -45,6 +47,7 @@ Examples:
   dapple bake marble -o marble.mtlx
   dapple bake mountains --maps height --size 2017 -o island.r16
   dapple bake rock --size 8192 --shard 3,1,512 -o parts/
+  dapple bake sea-water --frames 24 --size 128 --maps normal,albedo -o sea/
 
 `dapple recipe --list` names the built-in recipes, and `dapple recipe rock` prints one, to
 begin your own with.
@@ -83,6 +86,11 @@ pub(crate) struct Args {
     /// The picture of a loop that is made: its number, from 1, and how many there are. By default the first.
     #[arg(long, value_name = "K/N")]
     frame: Option<Frame>,
+
+    /// Make all pictures of a loop, N of them: the files that `--frame 1/N` to `--frame N/N` make in a folder, whose names end
+    /// in 001 and so on. What does not move is made once.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000), conflicts_with_all = ["frame", "shard"])]
+    frames: Option<u32>,
 
     /// Keep only a band of rows in memory, for large tiles. Refused where a node sees the whole tile, and needed past
     /// 32768 × 32768 pixels.
@@ -132,7 +140,9 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     for name in &names {
         // All recipes are read and all files claimed before the work begins.
         let work = Work::read(name, args).and_then(|work| {
-            claim(args, &files, &work, &mut Job::new(context, "bake", &files))?;
+            for args in args.pictures() {
+                claim(&args, &files, &work, &mut Job::new(context, "bake", &files))?;
+            }
             Ok((name, work))
         });
         works.extend(batch.checked(name, work)?);
@@ -147,10 +157,10 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
             return Err(usage(message).hint("give each a `name`"));
         }
     }
-    let rows = u64::from(args.n_rows()?);
+    let rows = u64::from(args.n_rows()?) * u64::from(args.frames.unwrap_or(1));
     let progress = Progress::bar("baking", rows * works.len() as u64, context);
     for (index, (name, work)) in (0..).zip(&works) {
-        let baked = work.bake(args, &files, Job::new(context, "bake", &files), &progress);
+        let baked = work.bake(args, &files, context, &progress);
         batch.checked(name, baked)?;
         progress.set(rows * (index + 1));
     }
@@ -187,7 +197,7 @@ pub(super) fn bake_with(
     };
     let files = args.files_for(1)?;
     let progress = Progress::bar("baking", args.n_rows()?.into(), context);
-    work.bake(&args, &files, Job::new(context, "bake", &files), &progress)
+    work.bake(&args, &files, context, &progress)
 }
 
 /// The presets with a sentence each.
@@ -197,6 +207,16 @@ pub(super) fn presets() -> impl Iterator<Item = (&'static str, &'static str)> {
         .iter()
         .map(|preset| (preset.name, preset.about()))
 }
+
+/// The images of a recipe, and what its pictures have in common.
+struct Made {
+    images: Option<Images>,
+    /// None for a single picture.
+    memory: Option<Memory>,
+}
+
+/// The most bytes of values that are kept from one picture of a loop to the next.
+const MEMORY: usize = 1 << 28;
 
 impl Work {
     fn read(name: &str, args: &Args) -> Result<Self> {
@@ -216,25 +236,52 @@ impl Work {
         })
     }
 
+    /// Bakes all pictures of a loop, or the only one. What does not change between them is made once.
     fn bake(
         &self,
         args: &Args,
         files: &OutputArgs,
+        context: &Context,
+        progress: &Progress,
+    ) -> Result<()> {
+        let mut made = Made {
+            images: None,
+            memory: args.frames.map(|_| Memory::new(MEMORY)),
+        };
+        for args in args.pictures() {
+            let job = Job::new(context, "bake", files);
+            self.bake_picture(&args, job, &mut made, progress)?;
+        }
+        Ok(())
+    }
+
+    fn bake_picture(
+        &self,
+        args: &Args,
         mut job: Job<'_>,
+        made: &mut Made,
         progress: &Progress,
     ) -> Result<()> {
         let recipe = &self.recipe;
-        let claimed = claim(args, files, self, &mut job)?;
+        let claimed = claim(args, job.args(), self, &mut job)?;
         for target in &claimed.finished {
             job.note_work(&format!("{target} is there already"));
         }
         if claimed.images.is_empty() {
             return Ok(());
         }
-        let images = read_images(recipe, &self.folder)?;
         let time = args.frame.map_or(0.0, Frame::time);
-        let blame = |error| args.material.blame(error);
-        let plan = Plan::new(recipe, &images, time).map_err(blame)?;
+        let images = match &mut made.images {
+            Some(images) => images,
+            images => images.insert(read_images(recipe, &self.folder)?),
+        };
+        let plan = match &made.memory {
+            Some(memory) => {
+                Plan::new_with_memory(recipe, images, time, &PlanLimits::default(), memory)
+            }
+            None => Plan::new(recipe, images, time),
+        };
+        let plan = plan.map_err(|error| args.material.blame(error))?;
         let options = args.options(claimed.map_kinds())?;
         foresee(&plan, &options, &claimed.images, &job)?;
         let refused = match args.shard {
@@ -247,7 +294,7 @@ impl Work {
             claimed.sync(&job)?;
         }
         if let (Some((output, format)), Some(thing)) = (claimed.preview, args.preview) {
-            let picture = preview::picture(recipe, &images, time, thing)?;
+            let picture = preview::picture(recipe, images, time, thing)?;
             job.write_map(output, &Map::Color(picture), format)?;
         }
         job.finish(&Told { args, recipe }, report(recipe))
@@ -308,12 +355,31 @@ impl Args {
         args
     }
 
+    /// These options for each picture of a loop; for the only picture where there is no loop.
+    fn pictures(&self) -> impl Iterator<Item = Self> {
+        Frame::all(self.frames).map(move |frame| {
+            let frame = frame.or(self.frame);
+            Self {
+                frame,
+                ..self.clone()
+            }
+        })
+    }
+
     /// The outputs of a number of recipes, which need a folder if there are several.
     fn files_for(&self, n_recipes: usize) -> Result<OutputArgs> {
         let mut files = self.files.clone();
         // Another run may finish a shard first, with the same bytes.
         files.force |= self.shard.is_some();
+        if self.frames.is_some() && matches!(files.json, Some(Some(_))) {
+            let error = usage("--json=FILE is for one picture, and a loop has several");
+            return Err(error.hint("with --json each has its own, called after it"));
+        }
         if n_recipes == 1 || files.output.is_none() {
+            let of_loop = self.frames.and_then(|count| files.folder(count as usize));
+            if let Some(folder) = of_loop.map(|folder| folder.join("")) {
+                files.output = Some(folder);
+            }
             return Ok(files);
         }
         if files.name.is_some() || matches!(files.json, Some(Some(_))) {

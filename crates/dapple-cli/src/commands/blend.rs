@@ -1,4 +1,4 @@
-//! `dapple blend`: materials laid over each other by weights.
+//! `dapple blend`: blends materials by weights.
 
 pub(super) mod alpha;
 pub(super) mod layer;
@@ -51,15 +51,15 @@ How the weights are used, unless --weighting says it:
 #[derive(clap::Args, Debug, Serialize)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Args {
-    /// The layers, the ground first: an image, and what belongs to it.
+    /// The layers, bottom first: an image, with its other maps and options.
     #[arg(value_name = "IMAGE[,KEY=VALUE...]", required = true)]
     layers: Vec<LayerArg>,
 
-    /// A blend tile, as of `dapple blend-map`; any gray image will do.
+    /// A blend tile, such as one from `dapple blend-map`; any gray image works.
     #[arg(long, value_name = "IMAGE")]
     tile: Option<PathBuf>,
 
-    /// Use the values of the tile as they are, from 0 to 1. Else they are spread evenly, so that weights are areas.
+    /// Use the values of the tile unchanged, from 0 to 1. By default they are spread evenly, so that weights are areas.
     #[arg(long, requires = "tile")]
     plain_tile: bool,
 
@@ -70,8 +70,8 @@ pub(crate) struct Args {
     #[command(flatten)]
     mixing: MixingArgs,
 
-    /// How large the blend is, in pixels. Images that are smaller are repeated, larger ones cut. By default all images have
-    /// one size.
+    /// The size of the blend, in pixels. Images that are smaller are repeated, larger ones cropped. By default all
+    /// images must have the same size.
     #[arg(long, value_name = "WxH")]
     size: Option<Size>,
 
@@ -84,7 +84,7 @@ pub(crate) struct Args {
 ///
 /// # Errors
 ///
-/// Options, images and files that are refused.
+/// Errors of options, images and files.
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let mut job = Job::new(context, "blend", &args.image.files);
     let outputs = claim(args, &mut job)?;
@@ -94,7 +94,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let mut materials = read.collect::<Result<Vec<_>>>()?;
     reader.agree(&args.layers, &mut materials)?;
     if outputs.len() > materials[0].maps.len() {
-        // The heights are written, too.
+        // The heights are written as a map, too.
         for material in &mut materials {
             let height = material.height.clone().map(Map::Value);
             material.maps.extend(height);
@@ -104,7 +104,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let tile = tile(args, &mut reader)?;
     let weights = layer::weights(&materials, materials[0].maps[0].size())?;
     let mut layers = Vec::new();
-    // The first layer of the library lies where the tile is lowest, and what is laid over the ground begins there.
+    // The first layer of the library lies where the tile is lowest, which is where the upper layers begin.
     for (material, weight) in materials.iter().zip(&weights).rev() {
         layers.push(Layer {
             maps: &material.maps,
@@ -128,7 +128,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     drop(progress);
     let is_deep = materials.iter().any(|material| material.is_deep);
     for (map, output) in maps.into_iter().zip(outputs) {
-        // Alpha is that of the first map.
+        // The alpha is that of the first map.
         job.write_with_alpha(output, map, alpha.take().as_ref(), is_deep, &args.image)?;
     }
     job.finish(args, Value::Null)?;
@@ -160,7 +160,7 @@ fn claim(args: &Args, job: &mut Job<'_>) -> Result<Vec<OutputIdx>> {
     job.claim_images(&targets, args.image.format)
 }
 
-/// The blend tile, in the size of the blend.
+/// Reads the blend tile, in the size of the blend.
 fn tile(args: &Args, reader: &mut Reader) -> Result<Option<Raster<f32>>> {
     let Some(path) = &args.tile else {
         return Ok(None);

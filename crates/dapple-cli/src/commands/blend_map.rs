@@ -24,7 +24,7 @@ The map is low in cracks and high on what stands out. As the --tile of `dapple b
 it lets what is blended in begin in the cracks. Without --plain its values are spread
 evenly, so that a weight of 0.3 covers 0.3 of the area.";
 
-/// Make a blend tile from a texture: low in its cracks, high on what stands out.
+/// Make a blend tile from a texture: low in its cracks, high on raised or bright parts.
 #[derive(clap::Args, Debug, Serialize)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Args {
@@ -36,8 +36,8 @@ pub(crate) struct Args {
     #[arg(long, value_name = "X,Y,W,H")]
     region: Option<Region>,
 
-    /// How transparency is handled, which is refused by default: `drop` shows the colors without it, and `over:COLOR` lays the
-    /// image over a color, such as `over:#888`.
+    /// How transparency is handled, which is an error by default: `drop` shows the colors without it, and `over:COLOR`
+    /// composites the image over a color, such as `over:#888`.
     #[arg(long, value_name = "drop|over:COLOR", value_parser = image_alpha)]
     alpha: Option<ImageAlpha>,
 
@@ -45,15 +45,15 @@ pub(crate) struct Args {
     #[arg(long, value_name = "PX", default_value_t = 32.0)]
     feature_size: f64,
 
-    /// How steep the map is around its median, at least 0; at 100 it is almost black and white.
+    /// The steepness of the map around its median, at least 0; at 100 it is almost black and white.
     #[arg(long, value_name = "N", default_value_t = 1.0)]
     contrast: f64,
 
-    /// Along which axes the texture repeats, and its map with it. Along others it is mirrored at its edges.
+    /// The axes along which the texture and its map repeat. Along others the texture is mirrored at its edges.
     #[arg(long, value_parser = Word::<Axes>::all(), default_value_t = Axes::Both)]
     wrap: Axes,
 
-    /// Leave the values as they are; else each becomes its rank, from 0 to 1.
+    /// Keep the values; by default each becomes its rank, from 0 to 1.
     #[arg(long)]
     plain: bool,
 
@@ -62,11 +62,11 @@ pub(crate) struct Args {
     output: ImageArgs,
 }
 
-/// Makes the blend tile.
+/// Runs the subcommand.
 ///
 /// # Errors
 ///
-/// Options, images and files that are refused.
+/// Errors of options, images and files.
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let mut job = Job::new(context, "blend-map", &args.output.files);
     let (files, ending) = (&args.output.files, args.output.ending());

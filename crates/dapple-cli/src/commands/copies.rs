@@ -1,4 +1,4 @@
-//! `dapple copies`: maps of copies of tiles that are not all alike.
+//! `dapple copies`: maps of varied copies of tiles.
 
 mod method;
 
@@ -37,15 +37,15 @@ Tiles repeat by themselves, as those of `dapple tile` do. A map of whole tiles r
 A tile is an image, and behind commas what belongs to it, as a layer of `dapple blend`:
 height=FILE, normal=FILE, NAME=FILE. All its maps are cut along the same line.";
 
-/// Cover a map with copies of a tile that are not all alike, or with several tiles in random order.
+/// Cover a map with varied copies of a tile, or with several tiles in random order.
 #[derive(clap::Args, Debug, Serialize)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Args {
-    /// The tiles: an image each, and what belongs to it.
+    /// The tiles: an image each, with its other maps.
     #[arg(value_name = "IMAGE[,KEY=FILE...]", required = true)]
     images: Vec<LayerArg>,
 
-    /// How large the map is, in pixels.
+    /// The size of the map, in pixels.
     #[arg(
         long,
         value_name = "WxH",
@@ -54,7 +54,7 @@ pub(crate) struct Args {
     )]
     size: Option<Size>,
 
-    /// Where the randomness comes from: any whole number from 0 to 2^64 - 1.
+    /// The seed of all random choices: any whole number from 0 to 2^64 - 1.
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = seed, conflicts_with = "tiles")]
     seed: u64,
 
@@ -65,8 +65,9 @@ pub(crate) struct Args {
     #[command(flatten)]
     method: MethodArgs,
 
-    /// Write the tiles themselves, for a program that lays them out: those of borders by their number from 1 on, as
-    /// `NAME_1`; those of corners by the tiles at their corners (top left and right, bottom left and right), as `NAME_1221`.
+    /// Write the tiles themselves, for a program that lays them out: those of borders with their number from 1 on, as
+    /// `NAME_1`; those of corners with the tiles at their corners (top left and right, bottom left and right), as
+    /// `NAME_1221`.
     #[arg(long, help_heading = "Output")]
     tiles: bool,
 
@@ -75,11 +76,11 @@ pub(crate) struct Args {
     image: ImageArgs,
 }
 
-/// Covers a map with copies.
+/// Runs the subcommand.
 ///
 /// # Errors
 ///
-/// Options, images and files that are refused.
+/// Errors of options, images and files.
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let method = args.method.method(args.images.len(), args.tiles)?;
     let names = names(args)?;
@@ -108,7 +109,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
             false => None,
         };
         for (map, output) in maps.into_iter().zip(&mut outputs) {
-            // Alpha is that of the first map.
+            // The alpha is that of the first map.
             job.write_with_alpha(output, map, alpha.take().as_ref(), is_deep, &args.image)?;
         }
     }
@@ -116,7 +117,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     Ok(Exit::Done)
 }
 
-/// The names of the maps that all tiles have; the height is the last.
+/// The names of the maps, which all tiles must have; the height is the last.
 fn names(args: &Args) -> Result<Vec<&str>> {
     let of = |tile: &LayerArg| -> Vec<String> {
         let height = tile.has_height().then_some(HEIGHT);
@@ -171,10 +172,14 @@ fn claim(
     job.claim_images(&targets, args.image.format)
 }
 
-/// The maps of all tiles, the height and then alpha the last of them; whether there is alpha, and whether an image has more than
-/// 8 bits.
+/// The maps of all tiles, with the height and then alpha last; whether there is alpha, and whether an image has more
+/// than 8 bits.
 fn read(args: &Args) -> Result<(Vec<Vec<Map>>, bool, bool)> {
-    let mut reader = Reader::new(None, args.alpha.alpha, "tiles and their maps have one size");
+    let mut reader = Reader::new(
+        None,
+        args.alpha.alpha,
+        "tiles and their maps must have the same size",
+    );
     let read = args.images.iter().map(|tile| tile.read(&mut reader));
     let mut materials = read.collect::<Result<Vec<Material>>>()?;
     reader.agree(&args.images, &mut materials)?;

@@ -1,4 +1,4 @@
-//! `dapple info`: images and meshes in numbers.
+//! `dapple info`: describes images and meshes.
 
 mod channels;
 mod mesh;
@@ -39,11 +39,11 @@ pub(crate) struct Args {
     ))]
     files: Vec<PathBuf>,
 
-    /// Look only at this part of images, in pixels.
+    /// Describe only this part of images, in pixels.
     #[arg(long, value_name = "X,Y,W,H")]
     region: Option<Region>,
 
-    /// Along which axes images are to repeat; `none` leaves out the seam report.
+    /// The axes along which images should repeat; `none` leaves out the seam report.
     #[arg(long, value_name = "AXES", value_parser = Word::<Axes>::all(), default_value_t = Axes::Both)]
     wrap: Axes,
 
@@ -68,24 +68,24 @@ dapple::raster::named! {
     /// The format of findings.
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     enum Format {
-        /// For people.
+        /// Text for people.
         Text = "text",
-        /// For programs.
+        /// JSON for programs.
         Json = "json",
     }
 }
 
 /// The findings about a file.
 pub(super) struct Findings {
-    /// For people.
+    /// The findings as text.
     text: String,
-    /// For programs.
+    /// The findings as JSON.
     json: Value,
     /// Whether `--check` passes.
     is_good: bool,
 }
 
-/// Describes the files.
+/// Runs the subcommand.
 ///
 /// # Errors
 ///
@@ -138,7 +138,7 @@ impl Args {
     }
 }
 
-/// Seam reports for programs, with their verdict.
+/// Seam reports as JSON, with their verdict.
 pub(super) fn seams_json(reports: &SeamReports) -> Value {
     let of_channel = |of: &ChannelReport| {
         let faults = of.report.faults().into_iter();

@@ -1,4 +1,4 @@
-//! `dapple join`: shards put together into whole images.
+//! `dapple join`: joins shards to whole images.
 
 use crate::args::{Frame, OutputArgs, Targets};
 use crate::encode::Format;
@@ -31,16 +31,16 @@ Examples:
 The files are those that `dapple bake` writes of the whole picture, byte for byte. In memory is a row of shards of one map:
 of a picture that is 200000 pixels wide, shards of 2048 x 256 take an eighth of what those of 2048 x 2048 do.";
 
-/// How many rows of an image are put together at once.
+/// The number of rows of an image that are joined at once.
 const BAND: u32 = 64;
-/// How many missing files are named.
+/// The largest number of missing files in a message.
 const NAMED: usize = 5;
 
-/// Put the shards of a picture together into one file for each map.
+/// Join the shards of a picture to one file for each map.
 #[derive(clap::Args, Debug, Serialize)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Args {
-    /// The folder that `dapple shards` has listed shards for, with all of them in it.
+    /// The folder in the list of `dapple shards`, with all shards in it.
     #[arg(value_name = "DIR")]
     folder: PathBuf,
 
@@ -53,18 +53,18 @@ pub(crate) struct Args {
     files: OutputArgs,
 }
 
-/// A map on its way into a file.
+/// A map that is being written to a file.
 struct Joined {
     kind: MapKind,
     format: Format,
     output: OutputIdx,
 }
 
-/// Joins the shards of a folder.
+/// Runs the subcommand.
 ///
 /// # Errors
 ///
-/// A folder without a list, shards that are missing or damaged, and files that cannot be written.
+/// Errors of the list, of missing or damaged shards, and of writing.
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let folder = &args.folder;
     let list = List::read(folder)?.ok_or_else(|| {
@@ -74,8 +74,8 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let kinds = list.map_kinds()?;
     check_whole(folder, &list, &kinds)?;
     if list.frames.is_some() && matches!(args.files.json, Some(Some(_))) {
-        let error = usage("--json=FILE is for one picture, and this is a loop");
-        return Err(error.hint("with --json each picture has one of its own"));
+        let error = usage("--json=FILE is for a single picture, but this is a loop");
+        return Err(error.hint("use --json, which writes one file for each picture"));
     }
     for frame in Frame::all(list.frames) {
         // All files are claimed before the work begins.
@@ -98,7 +98,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     Ok(Exit::Done)
 }
 
-/// Refuses a folder in which files are missing.
+/// Checks that no file in the folder is missing.
 fn check_whole(folder: &Path, list: &List, kinds: &[MapKind]) -> Result<()> {
     let mut named = Vec::new();
     let [mut n_missing, mut n_files] = [0_u64; 2];
@@ -125,7 +125,7 @@ fn check_whole(folder: &Path, list: &List, kinds: &[MapKind]) -> Result<()> {
     };
     let named = named.join(", ");
     let error = anyhow!("{n_missing} of {n_files} files are missing: {named}{more}");
-    Err(error.hint("run the commands that `dapple shards` lists again; they make only what is missing, and files of a recipe that has changed since do not count"))
+    Err(error.hint("run the commands from `dapple shards` again; they only make missing files, and files of an older recipe do not count"))
 }
 
 impl Args {
@@ -141,7 +141,7 @@ impl Args {
         let part = |kind: &MapKind| format!("{}{number}", kind.name());
         let mut parts: Vec<_> = kinds.iter().map(part).collect();
         if frame.is_some() {
-            // A loop has several files, also of one map.
+            // A loop has several files, also for one map.
             parts.push(String::new());
         }
         let ending = self.format.map_or("exr", Format::ending);
@@ -160,7 +160,7 @@ impl Args {
         Ok(all)
     }
 
-    /// The format of a map, if that can be made of shards.
+    /// The format of a map, if it can be made from shards.
     fn format_of(&self, kind: MapKind, target: &Target) -> Result<Format> {
         let asked = match target {
             Target::Stdout => self.format.or(Some(Format::Exr)),
@@ -214,7 +214,7 @@ impl Joined {
         Ok(())
     }
 
-    /// The map of a shard.
+    /// Reads the map of a shard.
     fn read(&self, folder: &Path, list: &List, task: &Task) -> Result<ExrImage> {
         let path = folder.join(list.file(task.frame, task.shard.place, self.kind));
         let Region { size, .. } = task.region;
@@ -228,7 +228,7 @@ impl Joined {
         Ok(image)
     }
 
-    /// Some rows of the picture, from shards side by side.
+    /// Joins some rows of the picture, from shards side by side.
     fn band(&self, shards: &[ExrImage], width: u32, rows: Range<u32>) -> Result<MapRows> {
         let size = [width, rows.end - rows.start];
         let plane = |name: &str| -> Result<Vec<f32>> {
@@ -261,7 +261,7 @@ fn finish(writer: RowWriter<BufWriter<File>>) -> Result<()> {
     Ok(writer.finish()?.flush()?)
 }
 
-/// What an image of a map holds. Normals are numbers from 0 to 1 in shards, from which the same codes are made.
+/// The content of an image of a map. Normals are numbers from 0 to 1 in shards, which are coded to the same codes.
 fn content(kind: MapKind) -> Content {
     match Layers::Map(kind).content() {
         Content::Normal => Content::Packed,

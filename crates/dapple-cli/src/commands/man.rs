@@ -29,7 +29,7 @@ pub(crate) struct Args {
     force: bool,
 }
 
-/// Prints or writes the pages.
+/// Runs the subcommand.
 ///
 /// # Errors
 ///
@@ -52,7 +52,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let mut commands = vec![(String::from("dapple"), command.clone())];
     for subcommand in subcommands {
         let name = format!("dapple-{}", subcommand.get_name());
-        // The page is named with a dash; a manual page has to be found by one word.
+        // The name has a dash, since a manual page is found by one word.
         let subcommand = subcommand
             .clone()
             .name(name.clone())

@@ -22,8 +22,8 @@ basis `gradient`; domain warps and ridges are made of it there.";
 #[derive(clap::Args, Debug, Serialize)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Args {
-    /// Cells across the shorter side of the picture, in the coarsest octave. Along each axis on which it repeats there must
-    /// be a whole number.
+    /// The number of cells across the shorter side of the picture, in the coarsest octave. It must be a whole number
+    /// along each axis on which the picture repeats.
     #[arg(
         long,
         value_name = "N",
@@ -54,11 +54,11 @@ pub(crate) struct Args {
     image: ImageArgs,
 }
 
-/// Draws the noise.
+/// Runs the subcommand.
 ///
 /// # Errors
 ///
-/// Options that exclude each other or are out of range, or a file that cannot be written.
+/// Errors of options that conflict or are out of range, and of writing.
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let node = Fractal {
         basis: FractalBasis::Gradient,

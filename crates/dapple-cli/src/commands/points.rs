@@ -1,4 +1,4 @@
-//! `dapple points`: scattered points.
+//! `dapple points`: scatters points.
 
 mod picture;
 mod report;
@@ -54,7 +54,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FORMAT", value_parser = Word::<Format>::all(), help_heading = "Output")]
     format: Option<Format>,
 
-    /// How large the picture is, in pixels: one number is its longer side.
+    /// The size of the picture, in pixels: a single number is its longer side.
     #[arg(
         long,
         value_name = "WxH",
@@ -63,7 +63,7 @@ pub(crate) struct Args {
     )]
     size: Size,
 
-    /// How large the dots of the picture are: their radius in pixels; by default a quarter of the mean distance.
+    /// The radius of the dots of the picture, in pixels; by default a quarter of the mean distance.
     #[arg(long, value_name = "PX", help_heading = "Output")]
     dot: Option<f64>,
 
@@ -87,11 +87,11 @@ dapple::raster::named! {
     }
 }
 
-/// Scatters the points.
+/// Runs the subcommand.
 ///
 /// # Errors
 ///
-/// Options, images and files that are refused.
+/// Errors of options, images and files.
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let target = match &args.output.output {
         Some(_) => (args.output).target("points", args.format.map_or("csv", Format::name))?,
@@ -129,7 +129,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     Ok(Exit::Done)
 }
 
-/// The format that was asked for, or that of the ending.
+/// The format in the options, or that of the ending.
 fn format(args: &Args, target: &Target) -> Result<Format> {
     let by_ending = match target.ending().as_str() {
         "csv" | "txt" => Some(Format::Csv),
@@ -152,7 +152,7 @@ fn format(args: &Args, target: &Target) -> Result<Format> {
     }
 }
 
-/// A header, and a line for each point.
+/// The points as CSV: a header, and a line for each point.
 fn csv(scattered: &Scattered) -> String {
     let is_nested = scattered.lengths.len() > 1;
     let mut text = String::from(if is_nested { "x,y,level\n" } else { "x,y\n" });
@@ -167,7 +167,7 @@ fn csv(scattered: &Scattered) -> String {
     text
 }
 
-/// The domain, the points, and how many belong to each level.
+/// The points as JSON: the domain, the points, and the number of points in each level.
 fn json_text(args: &Args, scattered: &Scattered) -> Result<String> {
     let set: &PointSet = &scattered.points;
     let domain = set.domain();

@@ -15,7 +15,7 @@ use clap::builder::PossibleValue;
 use dapple::pups::{AxialWeight, Orientations};
 use dapple::recipe::{ImageAlpha, Images, Node, PupsNode};
 use serde::{Serialize, Serializer};
-use serde_json::Value;
+use serde_json::{Value, json};
 use std::path::PathBuf;
 use std::slice;
 
@@ -29,6 +29,7 @@ Examples:
   dapple pups noise --orientations random --strength 0.8 -o twisted.png
   dapple pups ramp --wrap y -o ramp.png
   dapple pups reference --reference photo.png --spacing 0.03 -o cells.png
+  dapple pups noise --frames 24 --size 256 -o waves/
   dapple pups control --points control.csv --size 256 -o own.png
 
 The picture is 2 units along its shorter side, as the paper's torus, unless --extent says
@@ -113,6 +114,15 @@ pub(crate) struct Args {
     #[arg(long, value_name = "PART", help_heading = "Weights")]
     strength: Option<f64>,
 
+    /// The number of pictures of a loop, in which the control points move on circles.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000), help_heading = "Loop")]
+    frames: Option<u32>,
+
+    /// The radius of the largest circles, as a part of the mean distance of a point to its neighbors, above 0 and at most 1.
+    /// By default 0.25 with --frames; without either, the points do not move.
+    #[arg(long, value_name = "PART", help_heading = "Loop")]
+    motion: Option<f64>,
+
     #[command(flatten)]
     field: FieldArgs,
 
@@ -196,10 +206,13 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
             .extent
             .map_or_else(|| extent_of(args.field.size, SIDE), |extent| extent.0),
         range: [0.0, 1.0],
-        frames: None,
+        frames: args.frames,
     };
     draw(&field, &args.field, &args.image, args, context)
 }
+
+/// The radius of the circles of a loop beside mean distances: points of a Poisson-disk set stay apart.
+const MOTION: f64 = 0.25;
 
 /// The shorter side of a picture, in units of the plane: that of the paper's torus.
 const SIDE: f64 = 2.0;
@@ -224,6 +237,14 @@ impl Args {
             if let Some(option) = data.pointer_mut(&path) {
                 *option = given.value;
             }
+        }
+        let radius = self.motion.or(self.frames.map(|_| MOTION));
+        let motion = given("--motion", &["net"], radius)?;
+        if let Some(motion) = motion
+            && let Some(path) = path(&data, kind, motion.names)
+            && let Some(net) = data.pointer_mut(&path)
+        {
+            net["motion"] = json!({ "radius": motion.value });
         }
         if let Some(alpha) = self.alpha {
             data[kind.in_recipes()]["alpha"] = serde_json::to_value(alpha)?;

@@ -1,4 +1,4 @@
-//! `dapple recipe`: recipes listed, checked and printed.
+//! `dapple recipe`: lists, checks and prints recipes.
 
 use crate::args::{OutputArgs, seed};
 use crate::baking::{advise, is_json, read_images, read_recipe};
@@ -51,11 +51,11 @@ pub(crate) struct Args {
     #[arg(long = "as", value_enum, value_name = "FORMAT")]
     to: Option<Text>,
 
-    /// Another seed than that of the recipe.
+    /// A seed in place of that of the recipe.
     #[arg(long, value_name = "N", value_parser = seed)]
     seed: Option<u64>,
 
-    /// Only say whether the recipe can be baked.
+    /// Only check whether the recipe can be baked.
     #[arg(long, conflicts_with_all = ["rust", "to", "output"])]
     check: bool,
 
@@ -74,11 +74,11 @@ enum Text {
     Json,
 }
 
-/// Runs it.
+/// Runs the subcommand.
 ///
 /// # Errors
 ///
-/// Whatever went wrong.
+/// Errors of the recipe, of conflicting options, and of writing.
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let Some(name) = args.recipe.as_deref() else {
         return match (args.schema, args.reference) {
@@ -124,7 +124,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
 }
 
 impl Args {
-    /// The format that was asked for, by its name or by the ending of the output.
+    /// The format in the options, or that of the ending of the output.
     fn format(&self) -> Option<Text> {
         let is_json = self.files.output.as_deref().is_some_and(is_json);
         self.to

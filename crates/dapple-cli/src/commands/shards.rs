@@ -1,4 +1,4 @@
-//! `dapple shards`: the list of commands that bake a picture in shards.
+//! `dapple shards`: lists the commands that bake a picture in shards.
 
 mod openjd;
 
@@ -40,10 +40,10 @@ On a render farm with Open Job Description, from a template in this folder:
   openjd run job.json";
 
 dapple::raster::named! {
-    /// The forms of a list of shards.
+    /// The formats of a list of shards.
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     enum ListFormat {
-        /// A line of a shell for each shard.
+        /// A shell command for each shard, one per line.
         Lines = "lines",
         /// A document in JSON.
         Json = "json",
@@ -63,35 +63,35 @@ pub(crate) struct Args {
     #[command(flatten)]
     material: MaterialArgs,
 
-    /// Columns and rows of a shard, in pixels; those at the right and at the bottom may have fewer.
+    /// The columns and rows of a shard, in pixels; those at the right and at the bottom may have fewer.
     #[arg(long, value_name = "WxH")]
     shard: Size,
 
-    /// A loop of this many pictures, each of them in shards.
+    /// The number of frames of a loop, each of them in shards.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     frames: Option<u32>,
 
-    /// The form of the list, which is printed.
+    /// The format of the printed list.
     #[arg(long, value_name = "FORM", value_parser = Word::<ListFormat>::all(), default_value_t = ListFormat::Lines)]
     format: ListFormat,
 
-    /// The folder of the shards, which gets a file `shards.json` that says what they are.
+    /// The folder of the shards, in which a file `shards.json` describes them.
     #[arg(short, long, value_name = "DIR", default_value = "shards")]
     output: PathBuf,
 
-    /// Replace the `shards.json` of other shards. Their files stay, and are not mistaken for these.
+    /// Replace the `shards.json` of other shards. Their files stay, and are not confused with these.
     #[arg(long)]
     force: bool,
 }
 
-/// Prints the list.
+/// Runs the subcommand.
 ///
 /// # Errors
 ///
-/// A recipe that cannot be baked in shards, and a folder that has others.
+/// Errors of a recipe that cannot be baked in shards, and of a folder with other shards.
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     if args.recipe == "-" {
-        let error = usage("a recipe that is baked in shards is read again for each of them");
+        let error = usage("shards need a recipe file, since every one of them reads it again");
         return Err(error.hint("put it into a file"));
     }
     let (mut recipe, folder) = read_recipe(&args.recipe)?;
@@ -134,7 +134,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     Ok(Exit::Done)
 }
 
-/// Refuses what the bake of a shard refuses.
+/// Fails where the bake of a shard would fail.
 fn check(plan: &Plan, args: &Args, region: Option<Region>) -> Result<()> {
     let options = BakeOptions {
         size: args.material.size.0,
@@ -148,7 +148,7 @@ fn check(plan: &Plan, args: &Args, region: Option<Region>) -> Result<()> {
     Ok(())
 }
 
-/// Writes a line of a shell for each shard, with the options of the bakes.
+/// Writes a shell command for each shard, with the options of the bakes.
 fn lines(args: &Args, options: &[String], list: &List, out: &mut impl Write) -> Result<()> {
     let output = text_of_path(&args.output)?;
     for Task { frame, shard, .. } in list.tasks()? {
@@ -180,7 +180,7 @@ struct Document<'a> {
     shards: Entries<'a>,
 }
 
-/// The shards of a list, each of which is made when it is written.
+/// The shards of a list, each of which is created when it is written.
 struct Entries<'a> {
     list: &'a List,
     maps: &'a [MapKind],
@@ -215,7 +215,7 @@ impl Serialize for Entries<'_> {
     }
 }
 
-/// A path as a text.
+/// A path as text, if it is valid UTF-8.
 fn text_of_path(path: &Path) -> Result<&str> {
     path.to_str().ok_or_else(|| {
         usage(format!(
@@ -225,7 +225,7 @@ fn text_of_path(path: &Path) -> Result<&str> {
     })
 }
 
-/// A word as shells take it.
+/// A word quoted for shells.
 fn quoted(word: &str) -> String {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "_-./,:=+@%".contains(c);
     if !word.is_empty() && word.chars().all(is_plain) {

@@ -11,7 +11,7 @@ use dapple::color::LinearRgb;
 use dapple::raster::Raster;
 use dapple::recipe::{Images, Recipe};
 use dapple_studio::{
-    Export, ExportedFile, Host, Mode, Named, ServeOptions, Shape, StudioError, has_page, serve,
+    Export, ExportedFile, Host, Lit, Mode, Named, ServeOptions, Shape, StudioError, has_page, serve,
 };
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -28,7 +28,7 @@ The page shows the maps of a recipe while it is changed, as text, by sliders or 
 served to this machine alone, under the address that is printed, and ends with Ctrl-C. Files are
 read from the recipe's folder, and written only when they are saved.";
 
-/// What is said where the page was not built.
+/// The warning of a program that was built without the page.
 const NO_PAGE: &str = "warning: this program was built without the page: `cargo xtask studio` in the repository of dapple builds \
     both, with Node";
 
@@ -163,19 +163,13 @@ impl Host for Bakes {
         self.files(recipe, folder, export).map_err(told)
     }
 
-    fn preview(
-        &self,
-        recipe: &Recipe,
-        images: &Images,
-        time: f64,
-        shape: Shape,
-    ) -> Result<Raster<LinearRgb>, StudioError> {
-        let thing = match shape {
+    fn preview(&self, lit: &Lit<'_>) -> Result<Raster<LinearRgb>, StudioError> {
+        let thing = match lit.shape {
             Shape::Plane => Thing::Plane,
             Shape::Sphere => Thing::Sphere,
             Shape::Torus => Thing::Torus,
         };
-        preview::picture(recipe, images, time, thing).map_err(told)
+        preview::picture(lit.recipe, lit.images, lit.time, thing).map_err(told)
     }
 
     fn presets(&self) -> Vec<Named> {

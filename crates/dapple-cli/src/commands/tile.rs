@@ -1,4 +1,4 @@
-//! `dapple tile`: images made to repeat.
+//! `dapple tile`: makes images repeat.
 
 mod method;
 
@@ -48,11 +48,11 @@ To make a tile of another size or from an example, see `dapple synth`.";
 #[derive(clap::Args, Debug, Serialize)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Args {
-    /// The images. Gray ones are values as they are; color is worked on in linear light. `-` is standard input.
+    /// The images. Gray images are plain values; color is processed in linear light. `-` is standard input.
     #[arg(value_name = "IMAGE")]
     images: Vec<PathBuf>,
 
-    /// A normal map that belongs to them; may be given several times.
+    /// A normal map of the same material; may be given several times.
     #[arg(long, value_name = "IMAGE")]
     normal: Vec<PathBuf>,
 
@@ -67,16 +67,16 @@ pub(crate) struct Args {
     #[command(flatten)]
     method: MethodArgs,
 
-    /// Which sides fit together.
+    /// The axes along which the images repeat.
     #[arg(long, value_name = "AXES", default_value = "both", value_parser = Axes::some())]
     wrap: Axes,
 
-    /// Print how well source and tile repeat, and what of the source was kept.
+    /// Print a report: how well source and tile repeat, and how much of the source was kept.
     #[arg(long, help_heading = "Quality")]
     report: bool,
 
-    /// Exit with 3 if a tile does not pass, in any of its channels: if the seam shows, a band has gone soft, contrast was lost,
-    /// the seam is unlike anything in the source, copies mirror each other, or samples are clipped.
+    /// Exit with 3 if a tile does not pass, in any of its channels: if the seam is visible, a band has gone soft,
+    /// contrast was lost, the seam is unlike the source, copies mirror each other, or samples are clipped.
     #[arg(long, help_heading = "Quality")]
     check: bool,
 
@@ -84,7 +84,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "N[xN]", help_heading = "Quality")]
     lattice: Option<Size>,
 
-    /// Write 2 x 2 copies of each tile, too, as `NAME_2x2`.
+    /// Also write 2 x 2 copies of each tile, as `NAME_2x2`.
     #[arg(long, help_heading = "Output")]
     sheet: bool,
 
@@ -93,25 +93,25 @@ pub(crate) struct Args {
     image: ImageArgs,
 }
 
-/// An image, its name, and where its tile goes.
+/// An image, its name, and the output of its tile.
 struct Source {
     name: String,
     loaded: Loaded,
     outputs: Option<[Option<OutputIdx>; 2]>,
 }
 
-/// Makes the images repeat.
+/// Runs the subcommand.
 ///
 /// # Errors
 ///
-/// Options, images and files that are refused.
+/// Errors of options, images and files.
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     args.method.check_used()?;
     let mut job = Job::new(context, "tile", &args.image.files);
     let sources = sources(args, &mut job)?;
     let progress = Progress::spinner("making it repeat", context);
     let maps = sources.iter().map(|source| source.loaded.map.clone());
-    // Alpha is one more map of the same cut.
+    // Alpha is one more map with the same cut.
     let alphas = sources
         .iter()
         .filter_map(|source| source.loaded.alpha.clone());
@@ -169,7 +169,7 @@ fn sources(args: &Args, job: &mut Job<'_>) -> Result<Vec<Source>> {
         let size = loaded.map.size();
         let first = sources.first().map(|source| source.loaded.map.size());
         input::check_size(path, size, paths[0], first.unwrap_or(size))
-            .hint("maps that are cut together have one size")?;
+            .hint("maps that are cut together must have the same size")?;
         sources.push(Source {
             name: input::name(path),
             outputs,
@@ -179,7 +179,7 @@ fn sources(args: &Args, job: &mut Job<'_>) -> Result<Vec<Source>> {
     Ok(sources)
 }
 
-/// Claims the tiles of images, and their sheets; none where only a report is wanted.
+/// Claims the tiles of images, and their sheets; no files for a report only.
 fn claim(paths: &[&Path], args: &Args, job: &mut Job<'_>) -> Result<Vec<[Option<OutputIdx>; 2]>> {
     let files = &args.image.files;
     if files.output.is_none() && (args.report || args.check) {
@@ -202,7 +202,7 @@ fn claim(paths: &[&Path], args: &Args, job: &mut Job<'_>) -> Result<Vec<[Option<
             }
             _ => target,
         };
-        // A name that no format has is refused before the work, whatever the map will be.
+        // An invalid ending fails before the work, whatever the map will be.
         Format::choose(args.image.format, &target, Format::Png16)?;
         let output = job.claim(&target)?;
         let sheet = match args.sheet {
@@ -223,20 +223,20 @@ fn stem(path: &Path) -> String {
     }
 }
 
-/// The map that an image is of, by its name: `normal` for `rock_normal`.
+/// The map of an image, by its name: `normal` for `rock_normal`.
 fn map_of(stem: &str) -> &str {
     stem.rsplit_once('_').map_or(stem, |(_, map)| map)
 }
 
-/// The tiles of all maps by a method.
+/// The tiles of all maps, made by a method.
 struct Made {
     candidate: Candidate,
     tiles: Vec<Map>,
-    /// The report of each, where they were made to choose the method.
+    /// The reports of all maps, if they were made to choose the method.
     reports: Vec<SeamReports>,
 }
 
-/// The tiles by the only method, or by the one whose reports are the best of those that can be used.
+/// Makes the tiles by the only method, or by the one with the best reports among those that can be used.
 fn best(args: &Args, maps: &[Map], mut candidates: Vec<Candidate>) -> Result<Made> {
     let make = |candidate: Candidate| -> Result<Made, TileError> {
         let seamless = Seamless {
@@ -277,7 +277,7 @@ fn best(args: &Args, maps: &[Map], mut candidates: Vec<Candidate>) -> Result<Mad
     }
 }
 
-/// How bad the tiles are: the badness of the worst channel, and the part of the finest octave that it has lost.
+/// The cost of the tiles: the badness of the worst channel, and the part of the finest octave that it has lost.
 fn cost(reports: &[SeamReports]) -> f64 {
     let mut worst: f64 = 0.0;
     for reports in reports {
@@ -301,7 +301,7 @@ fn options(args: &Args, candidate: &Candidate) -> SeamOptions {
     }
 }
 
-/// Prints the reports that were asked for, and makes those that there are not yet; gives them as JSON, and whether all tiles pass.
+/// Prints the requested reports, and makes missing ones; returns them as JSON, and whether all tiles pass.
 fn reports(
     args: &Args,
     sources: &[Source],
@@ -342,18 +342,18 @@ fn reports(
     Ok((Value::Array(all), passes))
 }
 
-/// Two copies of a map beside and below each other.
+/// A map twice beside and twice below itself.
 fn doubled(map: &Map) -> Result<Map> {
     Ok(map_raster!(map, raster => twice(raster)?))
 }
 
-/// Two copies of a raster beside and below each other.
+/// A raster twice beside and twice below itself.
 fn twice<T: Copy + Send + Sync>(raster: &Raster<T>) -> Result<Raster<T>> {
     let size = raster.size().map(|side| side.saturating_mul(2));
     Ok(repeat(raster, size)?)
 }
 
-/// Adds what to do about sizes that a method does not take.
+/// Adds a hint to errors of sizes that a method does not allow.
 fn advise(error: TileError) -> Error {
     let hint = match error.kind() {
         TileErrorKind::Margin { .. } => "take a smaller --margin",

@@ -1,4 +1,4 @@
-//! `dapple watch`: a recipe baked at every save.
+//! `dapple watch`: bakes a recipe at every save.
 
 use super::bake;
 use crate::baking::read_recipe;
@@ -23,7 +23,7 @@ With -o each save is baked small first, so that something can be seen at once, a
 
 /// The longer side of the first bake after a save, in pixels.
 const SMALL: u32 = 256;
-/// How long files are quiet before they are read: programs write in several steps.
+/// The time without changes after which files are read: programs write in several steps.
 const QUIET: Duration = Duration::from_millis(60);
 
 /// Bake a recipe again at every save of it or of its images, small first.
@@ -39,11 +39,11 @@ pub(crate) struct Args {
     page: super::studio::PageArgs,
 }
 
-/// Runs it until it is interrupted.
+/// Runs the subcommand until it is interrupted.
 ///
 /// # Errors
 ///
-/// If there is nothing to watch, or the first files may not be written.
+/// If there is no file to watch, or the first files cannot be written.
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let recipe = args.bake.only_file()?;
     #[cfg(feature = "studio")]
@@ -55,7 +55,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     }
     let (sender, changes) = channel();
     let watcher = notify::recommended_watcher(move |event| {
-        // Where nobody waits for it, the process is about to end.
+        // If the receiver is gone, the process is about to end.
         let _ = sender.send(event);
     });
     let mut watcher = watcher.context("changes of files cannot be watched")?;
@@ -89,10 +89,10 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     }
 }
 
-/// Watches the folders of a recipe and its images, and gives the names of these files.
+/// Watches the folders of a recipe and its images, and returns the names of these files.
 fn watch(watcher: &mut RecommendedWatcher, recipe: &Path) -> Result<Vec<OsString>> {
     let mut files = vec![recipe.to_owned()];
-    // A recipe that cannot be read yet has no images yet.
+    // The images of a recipe that cannot be read are not known yet.
     if let Ok((content, folder)) = read_recipe(&recipe.to_string_lossy()) {
         let images = content.image_files();
         files.extend(images.into_iter().map(|file| folder.join(file)));
@@ -103,7 +103,7 @@ fn watch(watcher: &mut RecommendedWatcher, recipe: &Path) -> Result<Vec<OsString
             Some(folder) if !folder.as_os_str().is_empty() => folder,
             _ => Path::new("."),
         };
-        // Programs replace files by new ones, so it is the folder that is watched.
+        // Programs replace files by new ones, so the folder is watched.
         let watched = watcher.watch(folder, RecursiveMode::NonRecursive);
         watched.with_context(|| format!("{} cannot be watched", folder.display()))?;
         names.extend(file.file_name().map(OsString::from));
@@ -120,7 +120,7 @@ fn wait(changes: &Receiver<notify::Result<Event>>, names: &[OsString]) -> Result
     }
 }
 
-/// Whether a change is of the content of one of the files.
+/// Whether a change is to the content of one of the files.
 fn is_of(event: &notify::Result<Event>, names: &[OsString]) -> bool {
     let Ok(event) = event else { return false };
     let is_named = |path: &PathBuf| {

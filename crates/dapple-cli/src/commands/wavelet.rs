@@ -23,8 +23,8 @@ white in PNG; several bands have the range that goes with the sum of their varia
 #[derive(clap::Args, Debug, Serialize)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Args {
-    /// Cells across the shorter side of the picture, in the coarsest band. Along each axis on which it repeats there must be
-    /// an even number, from 4 on.
+    /// The number of cells across the shorter side of the picture, in the coarsest band. It must be an even number,
+    /// from 4 on, along each axis on which the picture repeats.
     #[arg(
         long,
         value_name = "N",
@@ -33,11 +33,11 @@ pub(crate) struct Args {
     )]
     cells: f64,
 
-    /// How many bands, each twice as fine as the one before, from 1 to 16.
+    /// The number of bands, each twice as fine as the one before, from 1 to 16.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=16), help_heading = "Texture")]
     octaves: u32,
 
-    /// How high a band is beside the one before.
+    /// The amplitude of a band relative to the one before.
     #[arg(
         long,
         alias = "persistence",
@@ -47,7 +47,7 @@ pub(crate) struct Args {
     )]
     gain: f64,
 
-    /// The weight of each band, coarsest first; takes the place of --octaves and --gain.
+    /// The weight of each band, coarsest first; replaces --octaves and --gain.
     #[arg(long, value_name = "W,W,…", value_delimiter = ',', allow_hyphen_values = true, conflicts_with_all = ["octaves", "gain"], help_heading = "Texture")]
     weights: Vec<f32>,
 
@@ -59,11 +59,11 @@ pub(crate) struct Args {
     image: ImageArgs,
 }
 
-/// Draws the noise.
+/// Runs the subcommand.
 ///
 /// # Errors
 ///
-/// Options out of range, and files that cannot be written.
+/// Errors of options out of range, and of writing.
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let weights = args.weights();
     let variance: f64 = weights
@@ -94,10 +94,10 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     draw(&field, &args.field, &args.image, args, context)
 }
 
-/// The fewest cells along an axis on which noise repeats.
+/// The smallest number of cells along an axis on which noise repeats.
 const FEWEST_CELLS: f64 = 4.0;
 
-/// Refuses numbers of cells along the sides that cannot repeat, and says which can.
+/// Checks that the numbers of cells along the sides can repeat; the hint lists numbers that can.
 fn check_cells(cells: [f64; 2], repeats: [bool; 2], size: Size) -> Result<()> {
     let holds =
         |axis: usize| !repeats[axis] || (cells[axis] >= FEWEST_CELLS && cells[axis] % 2.0 == 0.0);

@@ -34,7 +34,7 @@ The value that is drawn: f1, f2, f3, f4, f2_minus_f1, f1_plus_f2, f3_minus_f1, f
 #[derive(clap::Args, Debug, Serialize)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Args {
-    // Written out, since documentation would need marks about the names.
+    // Written as a constant, since a doc comment would need markup around the names.
     #[arg(long, value_name = "VALUE", default_value = "f1",
         help = VALUE, value_parser = value, help_heading = "Texture")]
     value: WorleyValue,
@@ -49,7 +49,7 @@ pub(crate) struct Args {
     )]
     coefficients: Option<Numbers<f32, 4>>,
 
-    /// Cells across the shorter side of the picture.
+    /// The number of cells across the shorter side of the picture.
     #[arg(
         long,
         value_name = "N",
@@ -59,15 +59,15 @@ pub(crate) struct Args {
     )]
     cells: f64,
 
-    /// Cells across the picture, after which it repeats, such as 8 or 12x6; instead of --cells.
+    /// The number of cells across the picture, after which it repeats, such as 8 or 12x6; replaces --cells.
     #[arg(long, value_name = "N[xM]", help_heading = "Texture")]
     period: Option<Extent>,
 
-    /// How distances are measured: by the straight line, along the axes, or by the longer of the two.
+    /// The metric: the straight line, along the axes, or the longer of the two.
     #[arg(long, value_name = "METRIC", default_value = "euclidean", value_parser = Word::<Metric>::of(&Metric::NAMES), help_heading = "Texture")]
     metric: Metric,
 
-    /// The exponent of the Minkowski metric, from 1 to 10; takes the place of --metric.
+    /// The exponent of the Minkowski metric, from 1 to 10; replaces --metric.
     #[arg(
         long,
         value_name = "P",
@@ -80,7 +80,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "N", default_value_t = Scatter::DENSITY, help_heading = "Texture")]
     density: f64,
 
-    /// One point in each cell, this far from its middle: 0, a grid, to 1, anywhere. Takes the place of --density.
+    /// One point in each cell, at this distance from its middle: 0, a grid, to 1, anywhere. Replaces --density.
     #[arg(
         long,
         value_name = "PART",
@@ -93,7 +93,8 @@ pub(crate) struct Args {
     #[arg(long, value_name = "N", help_heading = "Texture")]
     octaves: Option<u32>,
 
-    /// How much finer an octave is than the one before, from 1 to 16; a whole number where the picture repeats.
+    /// The ratio of the frequencies of an octave and the one before, from 1 to 16; a whole number if the picture
+    /// repeats.
     #[arg(
         long,
         value_name = "N",
@@ -142,11 +143,11 @@ pub(crate) struct Args {
     image: ImageArgs,
 }
 
-/// Draws the cells.
+/// Runs the subcommand.
 ///
 /// # Errors
 ///
-/// Options out of range, and files that cannot be written.
+/// Errors of options out of range, and of writing.
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let node = args.node()?;
     let extent = match args.period {
@@ -199,9 +200,9 @@ impl Args {
         })
     }
 
-    /// The range that becomes black to white: of a texture like this one over very many cells.
+    /// The range that becomes black to white, measured on a texture with the same options over very many cells.
     fn range(&self, node: &WorleyNode) -> Result<[f32; 2]> {
-        /// Positions at which values are measured.
+        /// The number of positions at which values are measured.
         const N: u32 = 20_000;
         let WorleyValue::Combination(combination) = node.value else {
             return Ok([0.0, 1.0]);

@@ -19,9 +19,9 @@ static PATHS: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 /// The locked registry.
 pub(super) type Held = MutexGuard<'static, Vec<PathBuf>>;
 
-/// Waits for the registry.
+/// Locks the registry.
 pub(super) fn hold() -> Held {
-    // A list of paths is whole whatever happened to the thread that had it.
+    // A list of paths is consistent even if a thread panicked with the lock.
     PATHS.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
@@ -33,16 +33,16 @@ pub(super) fn make_folder(folder: &Path) -> io::Result<()> {
     Ok(())
 }
 
-/// Takes a path off the list.
+/// Removes a path from the list.
 pub(super) fn forget(held: &mut Held, path: &Path) {
     held.retain(|other| other != path);
 }
 
-/// Removes everything on the list, and ends the process.
+/// Removes all files and folders on the list, and ends the process.
 pub(crate) fn exit_without_rubbish(exit: Exit) -> ! {
     let held = hold();
     for path in held.iter().rev() {
-        // A folder that somebody put a file into stays, and there is nobody left to tell of an error.
+        // A folder that is not empty stays, and an error cannot be reported any more.
         let _ = if path.is_dir() {
             fs::remove_dir(path)
         } else {

@@ -1,8 +1,8 @@
-//! A file under a temporary name, in the folder of the one that it is to become.
+//! A file under a temporary name, in the folder of its final name.
 //!
-//! It is named `.dapple-` and six letters and `.part`. As long as its process lives, that holds a lock on it, which the
-//! operating system gives up however the process ends. So a file that nobody has a lock on was left behind, as by
-//! `kill -9`, and the next run that writes into the same folder takes it away.
+//! Its name is `.dapple-`, six letters and `.part`. Its process holds a lock on it, which the operating system releases
+//! however the process ends. So a file without a lock was left behind, for example by `kill -9`, and the next run that
+//! writes into the same folder removes it.
 
 #![expect(
     clippy::disallowed_methods,
@@ -15,9 +15,9 @@ use std::io;
 use std::path::Path;
 use tempfile::{Builder, NamedTempFile};
 
-/// How the temporary names begin.
+/// The beginning of the temporary names.
 const PREFIX: &str = ".dapple-";
-/// How they end.
+/// The end of the temporary names.
 const SUFFIX: &str = ".part";
 
 /// An open temporary file with a lock on it.
@@ -40,7 +40,7 @@ impl Temporary {
         self.0.as_file()
     }
 
-    /// Makes it the file at `path`, and replaces one that is there only if it may; that one leaves its permissions.
+    /// Renames it to `path`; an existing file is replaced only with `force`, and keeps its permissions.
     pub(super) fn put(self, held: &mut Held, path: &Path, force: bool) -> io::Result<()> {
         registry::forget(held, self.0.path());
         if force {
@@ -63,7 +63,7 @@ impl Temporary {
         Ok(())
     }
 
-    /// Removes it.
+    /// Removes the file.
     pub(super) fn remove(self, held: &mut Held) {
         registry::forget(held, self.0.path());
     }
@@ -71,7 +71,7 @@ impl Temporary {
 
 /// Removes the temporary files that ended processes have left in the folder of `path`.
 pub(super) fn remove_left_behind(path: &Path) {
-    // A folder that cannot be read is reported where the file is written.
+    // A folder that cannot be read is reported when the file is written.
     let Ok(entries) = fs::read_dir(folder(path)) else {
         return;
     };
@@ -81,9 +81,9 @@ pub(super) fn remove_left_behind(path: &Path) {
         if !name.starts_with(PREFIX.as_bytes()) || !name.ends_with(SUFFIX.as_bytes()) {
             continue;
         }
-        // Opened for writing, since some file systems lock nothing else.
+        // Opened for writing, since some file systems only lock files open for writing.
         let file = File::options().write(true).open(entry.path());
-        // The lock is kept while the file goes, or else its maker could get it in between.
+        // The lock is held during the removal, or else another process could lock the file in between.
         if let Ok(file) = file
             && file.try_lock().is_ok()
         {
@@ -92,7 +92,7 @@ pub(super) fn remove_left_behind(path: &Path) {
     }
 }
 
-/// The folder that a file lies in.
+/// The folder of a file.
 fn folder(path: &Path) -> &Path {
     match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
@@ -100,14 +100,14 @@ fn folder(path: &Path) -> &Path {
     }
 }
 
-/// Makes a file and locks it. Its permissions are those of any new file.
+/// Creates a file and locks it. Its permissions are those of any new file.
 fn create_locked(path: &Path) -> io::Result<File> {
     let mut options = File::options();
     let file = options.read(true).write(true).create_new(true).open(path)?;
     match file.try_lock() {
-        // Where there are no locks, nobody takes a file for one that was left behind.
+        // Without locks, no process takes a file for one that was left behind.
         Ok(()) | Err(TryLockError::Error(_)) if path.exists() => Ok(file),
-        // Another process took it for one, so that another name is tried.
+        // Another process has removed it as left behind, so that another name is tried.
         _ => Err(io::ErrorKind::AlreadyExists.into()),
     }
 }

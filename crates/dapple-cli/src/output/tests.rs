@@ -1,11 +1,11 @@
-//! Files appear whole, all together, and never in place of others unasked.
+//! Files appear whole, all together, and never replace others without `--force`.
 
 use super::{OutputIdx, Outputs, Target};
 use std::fs;
 use std::io::{Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-/// An empty folder of its own for a test.
+/// Creates an empty folder for a test.
 fn folder(name: &str) -> PathBuf {
     let folder = std::env::temp_dir().join(format!("dapple-cli-{}-{name}", std::process::id()));
     let _ = fs::remove_dir_all(&folder);
@@ -127,7 +127,7 @@ fn what_a_dead_process_left_is_taken_away_and_nothing_else_is() {
         !kept.contains(&".dapple-a1b2c3.part".to_owned()),
         "{kept:?}"
     );
-    // No temporary files of ours; that of a run that still goes on; and the new one.
+    // No temporary files of ours, but that of a run that is still active, and the new one.
     assert_eq!(kept.len(), 4, "{kept:?}");
     drop(living);
     assert_eq!(names(&folder).len(), 3, "it took its own away");

@@ -1,4 +1,4 @@
-//! What becomes of images that are partly transparent.
+//! The handling of partly transparent images.
 
 use crate::support::{Folder, assert_done, assert_refused, stdout};
 use dapple::color::{LinearRgb, LinearRgba};
@@ -14,7 +14,7 @@ fn write(folder: &Folder, name: &str, pixel: impl Fn(f32) -> LinearRgba) {
     write_color_alpha_png(folder.path(name), &pixels.unwrap(), Depth::Sixteen).unwrap();
 }
 
-/// A folder with an image whose alpha is its gray.
+/// Creates a folder with an image whose alpha is its gray.
 fn folder(name: &str) -> Folder {
     let folder = Folder::with_inputs(name);
     write(&folder, "leaf.png", |value| LinearRgba {

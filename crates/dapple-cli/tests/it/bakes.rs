@@ -195,6 +195,71 @@ fn the_pictures_of_a_loop_differ_and_are_numbered() {
     assert_ne!(bytes("sea_001.png"), bytes("sea_002.png"));
 }
 
+/// A recipe of which a part moves, in a file.
+const LOOP: &str = "dapple = 1\nname = \"tide\"\nextent = [2.0, 2.0]
+[nodes.waves.pups.noise]\nspacing = 0.4\nnet = { motion = { radius = 0.25 } }
+[nodes.sand.pups.cells]\nspacing = 0.3
+[nodes.rock.image]\nfile = \"rock.png\"
+[nodes.all]\nadd = [\"waves\", \"sand\"]
+[material]\nheight = \"all\"\nalbedo = \"rock\"\nroughness = \"sand\"\n";
+
+#[test]
+fn all_pictures_of_a_loop_are_those_baked_one_by_one() {
+    let folder = Folder::with_inputs("all-frames");
+    fs::write(folder.path("tide.toml"), LOOP).unwrap();
+    let run = |line: &str| {
+        let words: Vec<_> = line.split(' ').collect();
+        assert_done(&folder.run(&words), line);
+    };
+    let bake =
+        "bake tide.toml --size 40x24 --preview --sheet --maps height,normal,albedo,roughness";
+    run(&format!("{bake} --frames 3 -o all/ --json"));
+    let files = |name: &str| fs::read_dir(folder.path(name)).unwrap().count();
+    assert_eq!(files("all"), 3 * (4 + 4 + 1 + 1));
+    for number in 1..=3 {
+        run(&format!("{bake} --frame {number}/3 -o one/"));
+    }
+    assert_eq!(files("one"), 27);
+    for entry in fs::read_dir(folder.path("one")).unwrap() {
+        let name = entry.unwrap().file_name();
+        let bytes = |of: &str| fs::read(folder.path(of).join(&name)).unwrap();
+        assert!(bytes("one") == bytes("all"), "{name:?}");
+    }
+    let bytes = |name: &str| fs::read(folder.path(name)).unwrap();
+    assert_ne!(
+        bytes("all/tide_height_001.png"),
+        bytes("all/tide_height_002.png")
+    );
+    assert_eq!(
+        bytes("all/tide_roughness_001.png"),
+        bytes("all/tide_roughness_002.png")
+    );
+    run("bake tide.toml --size 40x24 --frames 2 --maps height -o h.png");
+    assert!(folder.path("h_001.png").is_file() && folder.path("h_002.png").is_file());
+    assert!(
+        bytes("h_001.png") == bytes("one/tide_height_001.png"),
+        "a loop begins at the same time"
+    );
+}
+
+#[test]
+fn control_points_move_in_the_loop_that_their_recipe_bakes() {
+    let folder = Folder::with_inputs("points-loop");
+    for line in [
+        "pups reference --reference rock.png --frames 3 --size 32 -o a/",
+        "pups cow --motion 0.1 --frames 3 --size 32 -o b/",
+        "pups cow --motion 0.1 --size 32 --recipe -o cow.toml",
+        "bake cow.toml --frames 3 --size 32 --maps height -o c/",
+    ] {
+        let words: Vec<_> = line.split(' ').collect();
+        assert_done(&folder.run(&words), line);
+    }
+    let bytes = |name: &str| fs::read(folder.path(name)).unwrap();
+    assert_ne!(bytes("a/pups_001.png"), bytes("a/pups_003.png"));
+    assert_ne!(bytes("b/pups_001.png"), bytes("b/pups_002.png"));
+    assert!(bytes("b/pups_003.png") == bytes("c/pups_height_003.png"));
+}
+
 #[cfg(unix)]
 #[test]
 fn a_bake_that_is_killed_at_any_moment_leaves_old_files_or_whole_new_ones() {
@@ -229,7 +294,7 @@ fn a_bake_that_is_killed_at_any_moment_leaves_old_files_or_whole_new_ones() {
         "the old files"
     );
     let old = bytes();
-    // From before the first byte to after the last, at moments that spread evenly, as the golden ratio does.
+    // Kills the process at evenly spread moments from before the first byte to after the last, by the golden ratio.
     for round in 0..16 {
         let part = (f64::from(round) * 0.618_033_988_75).fract();
         let mut child = bake("2")
@@ -240,7 +305,7 @@ fn a_bake_that_is_killed_at_any_moment_leaves_old_files_or_whole_new_ones() {
         std::thread::sleep(Duration::from_secs_f64(
             whole_run.as_secs_f64() * 1.2 * part,
         ));
-        // A child that has ended cannot be killed, and is fine.
+        // A child that has ended cannot be killed, which is fine.
         let _ = child.kill();
         child.wait().unwrap();
         for ((found, old), new) in bytes().iter().zip(&old).zip(&new) {

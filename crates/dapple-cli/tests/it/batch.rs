@@ -1,4 +1,4 @@
-//! Many recipes at once, sheets, previews, progress, and recipes that are watched.
+//! Many recipes at once, sheets, previews, progress, and watched recipes.
 
 use crate::support::{Folder, assert_done, assert_refused, stderr, stdout};
 use dapple::image::{Image, Limits, read_image};
@@ -20,7 +20,7 @@ fn names(folder: &Folder, inside: &str) -> Vec<String> {
     names
 }
 
-/// A folder with the recipes `a-cow.toml` and `a-rock.toml`.
+/// Creates a folder with the recipes `a-cow.toml` and `a-rock.toml`.
 fn with_recipes(name: &str) -> Folder {
     let folder = Folder::new(name);
     for name in ["cow", "rock"] {

@@ -1,4 +1,4 @@
-//! The examples of the help work as they stand.
+//! The examples of the help run unchanged.
 
 #![cfg(unix)]
 
@@ -27,7 +27,7 @@ const SUBCOMMANDS: [&str; 19] = [
     "man",
 ];
 
-/// The lines of a help that are commands; one that ends with a backslash goes on.
+/// The lines of a help that are commands; a line that ends with a backslash continues.
 fn examples(help: &str) -> Vec<String> {
     let help = help.replace("\\\n", " ");
     let lines = help.lines().map(str::trim);
@@ -53,7 +53,7 @@ fn run_examples(subcommand: &[&str]) {
     assert!(!examples.is_empty(), "{name} has examples");
     for (index, example) in examples.iter().enumerate() {
         let folder = Folder::with_inputs(&format!("example-{name}-{index}"));
-        // What an example makes may be what another reads.
+        // The output of one example may be the input of another.
         let output = example.split_once(" -o ").map_or("", |(_, rest)| rest);
         let output = output.split_whitespace().next().unwrap_or("none");
         let _ = fs::remove_file(folder.path(output));
@@ -125,7 +125,7 @@ fn every_subcommand_is_in_the_help_and_has_a_page() {
     let text = help(&folder, &[]);
     let listed = text.lines().skip_while(|line| *line != "Commands:").skip(1);
     let listed = listed.take_while(|line| !line.is_empty());
-    // Lines that go on are set further to the right.
+    // Continued lines are indented further.
     let listed = listed.filter(|line| line.starts_with("  ") && !line.starts_with("   "));
     let names = listed.filter_map(|line| line.split_whitespace().next());
     let names: Vec<_> = names.filter(|name| *name != "help").collect();

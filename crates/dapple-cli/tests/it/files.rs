@@ -1,4 +1,4 @@
-//! What is written, and what is never overwritten.
+//! Written files, and protection against overwriting.
 
 use crate::support::{Folder, assert_done, assert_refused, stdout};
 use dapple::image::{Image, Limits, decode_image, read_image};

@@ -1,4 +1,4 @@
-//! Ctrl-C, and worse: what is left behind.
+//! Files after Ctrl-C and after kills.
 
 #![cfg(unix)]
 
@@ -7,7 +7,7 @@ use std::fs;
 use std::process::{Child, Command};
 use std::time::Duration;
 
-/// A synthesis that goes on for much longer than a test has patience.
+/// A synthesis that takes much longer than a test waits.
 const LONG: [&str; 9] = [
     "synth",
     "photo.png",
@@ -19,10 +19,10 @@ const LONG: [&str; 9] = [
     "-o",
     "out.png",
 ];
-/// How long a test waits for what has to happen at once, in steps of 10 milliseconds.
+/// The number of steps of 10 milliseconds that a test waits for an event that should come at once.
 const PATIENCE: usize = 3000;
 
-/// Starts it, and waits until its temporary file is there.
+/// Starts the synthesis, and waits until its temporary file exists.
 fn start(folder: &Folder) -> Child {
     let mut child = folder.command(&LONG).spawn().unwrap();
     let is_there = (0..PATIENCE).any(|_| {

@@ -1,4 +1,4 @@
-//! The command as its users meet it: run as a program, in folders of their own.
+//! Tests of the command as a program, in temporary folders.
 
 #![expect(
     clippy::disallowed_methods,

@@ -1,4 +1,4 @@
-//! What covered meshes look like: hard edges, and sheets that are seen from both sides.
+//! Covered meshes: hard edges, and surfaces that are visible from both sides.
 
 use crate::support::{Folder, assert_done, stdout};
 use dapple::mesh::{CREASE, FaceIdx, Mesh, Model};
@@ -26,7 +26,7 @@ fn cube() -> Mesh {
     Mesh::new((0..8).map(corner).collect(), &faces).unwrap()
 }
 
-/// Covers `hard.obj` of a folder.
+/// Covers `hard.obj` in a folder.
 fn cover(folder: &Folder, extra: &[&str], output: &str) -> Model {
     let arguments = [
         "synth",
@@ -42,7 +42,7 @@ fn cover(folder: &Folder, extra: &[&str], output: &str) -> Model {
     read_model(folder.path(output)).unwrap()
 }
 
-/// How far normals of corners are from those of their faces, at most.
+/// The largest difference of corner normals from those of their faces.
 fn most_off(model: &Model) -> f64 {
     let normals = model.normals_of_corners().unwrap();
     let faces = (0..).map(FaceIdx).zip(&normals);
@@ -66,7 +66,7 @@ fn hard_edges_of_a_mesh_stay_hard() {
     let smooth = most_off(&cover(&folder, &["--crease", "100"], "smooth.glb"));
     assert!(smooth > 0.5, "off by {smooth}");
 
-    // Its own normals go before creases: here the upper side is bent up at its rim.
+    // Its own normals take precedence over creases: here the upper side is bent up at its rim.
     let mut bent = Model::from(cube());
     let mut normals = bent.mesh.corner_normals(CREASE);
     let middle = DVec3::new(0.5, 0.5, 0.0);
@@ -117,4 +117,38 @@ fn both_sides_of_a_sheet_get_one_texture_and_are_seen() {
 
     write_model(folder.path("hard.obj"), &cube.into()).unwrap();
     assert!(!cover(&folder, &[], "closed.glb").material.double_sided);
+}
+
+#[test]
+fn charts_are_the_default_and_share_vertices_and_the_report_tells_their_stretch() {
+    let folder = Folder::with_inputs("charts");
+    write_model(folder.path("hard.obj"), &cube().into()).unwrap();
+    let report = |name: &str| {
+        let text = std::fs::read_to_string(folder.path(name)).unwrap();
+        let report: serde_json::Value = serde_json::from_str(&text).unwrap();
+        report["report"]["atlas"].clone()
+    };
+    for output in ["out.glb", "out.obj"] {
+        let model = cover(&folder, &["--json"], output);
+        assert!(model.material.mipmaps, "{output} is shown with mipmaps");
+        let uvs = model.uvs.unwrap();
+        let mut places: Vec<_> = uvs
+            .iter()
+            .flatten()
+            .map(|uv| uv.to_array().map(f64::to_bits))
+            .collect();
+        places.sort_unstable();
+        places.dedup();
+        assert_eq!(places.len(), 24, "{output}: the corners of six squares");
+        let report = report("out.json");
+        assert_eq!(report["pieces"], 6, "{report}");
+        assert!(
+            (report["stretch"].as_f64().unwrap() - 1.0).abs() < 1e-6,
+            "{report}"
+        );
+        assert!(report["texels_used"].as_f64().unwrap() > 0.5, "{report}");
+        std::fs::remove_file(folder.path("out.json")).unwrap();
+    }
+    cover(&folder, &["--json", "--atlas", "uniform"], "tiles.glb");
+    assert_eq!(report("tiles.json")["pieces"], 12, "loose triangles");
 }

@@ -1,4 +1,4 @@
-//! What other programs take: presets, documents, arrays and raw heights.
+//! Formats for other programs: presets, documents, arrays and raw heights.
 
 use crate::support::{Folder, assert_done, assert_refused, stdout};
 use dapple::image::{Limits, PngPixels, decode_png, read_image};
@@ -53,7 +53,8 @@ fn folder(name: &str) -> Folder {
     folder
 }
 
-/// The channels of a PNG as 16 bits, one after the other; those of 8 bits 257-fold, and gray as one.
+/// The channels of a PNG as 16 bits, one after the other; those of 8 bits are multiplied by 257, and gray counts as one
+/// channel.
 fn channels(folder: &Folder, name: &str) -> Vec<Vec<u16>> {
     fn split<const N: usize>(raster: &Raster<[u16; N]>) -> Vec<Vec<u16>> {
         let channel = |at: usize| raster.pixels().iter().map(|pixel| pixel[at]).collect();
@@ -97,8 +98,8 @@ fn map(folder: &Folder, name: &str, normal_y: &str, format: &str) -> Vec<Vec<u16
 /// A file without its ending, its format, and its channels.
 type File = (&'static str, &'static str, &'static str);
 
-/// What presets write, as their engines document it: the file, the bits, and for each channel its map and which of its
-/// channels. `!` before a map is one less it, and `1` is white.
+/// The expected files of presets, as their engines document them: the file, the bits, and for each channel its map and
+/// which of its channels. `!` before a map inverts it, and `1` is white.
 const EXPECTED: [(&str, &str, &[File]); 5] = [
     (
         "unity",
@@ -205,7 +206,7 @@ fn presets_write_the_files_and_channels_of_their_programs() {
     }
 }
 
-/// Fails unless a channel holds what it should.
+/// Fails unless a channel has the expected content.
 fn check_channel(folder: &Folder, found: &[u16], expected: &str, normal_y: &str, format: &str) {
     if expected == "1" {
         assert!(found.iter().all(|&code| code == u16::MAX), "white");

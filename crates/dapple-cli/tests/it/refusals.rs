@@ -1,9 +1,9 @@
-//! Inputs that are missing, empty, folders, unreadable or of another kind; and outputs that cannot be.
+//! Errors: inputs that are missing, empty, folders, unreadable or of another kind; and invalid outputs.
 
 use crate::support::{Folder, assert_refused, stderr, stdout};
 use std::fs;
 
-/// Each subcommand that reads something, with `INPUT` for the file that is tried. Every other input is there.
+/// Each subcommand that reads a file, with `INPUT` for the file under test. All other inputs exist.
 const READERS: [&str; 19] = [
     "bake INPUT -o out/ --size 8",
     "pups control --points INPUT --size 8 -o out.png",
@@ -26,9 +26,20 @@ const READERS: [&str; 19] = [
     "info INPUT",
 ];
 
-/// Command lines that clap cannot tell to be wrong.
+<<<<<<< HEAD
+/// Invalid command lines that clap does not detect.
 const WRONG: [&str; 33] = [
+=======
+/// Command lines that clap cannot tell to be wrong.
+const WRONG: [&str; 39] = [
+>>>>>>> P
     "bake flagstone -o out.png --name rock",
+    "bake flagstone --frames 2 -o rock.glb",
+    "bake flagstone --frames 2 --maps height -o -",
+    "bake flagstone --frames 2 --json=all.json -o out/",
+    "bake flagstone --frames 2 --frame 1/2 -o out/",
+    "pups cow --motion nan -o out.png",
+    "pups cow --motion 2 -o out.png",
     "bake flagstone",
     "bake flagstone --maps height,height -o out/",
     "worley --size 100x64 -o out.png",
@@ -63,7 +74,7 @@ const WRONG: [&str; 33] = [
     "points --count 5 -o out.svg",
 ];
 
-/// Command lines with a value that a library refuses, and what the answer holds.
+/// Command lines with a value that a library rejects, and a part of the message.
 const LIMITS: [(&str, &str); 21] = [
     ("bake flagston -o out/", "flagstone"),
     (
@@ -115,7 +126,7 @@ const LIMITS: [(&str, &str); 21] = [
     ("points nested --radii 0.1,0.2", "radius"),
 ];
 
-/// Command lines whose files do not go together, and what the answer holds.
+/// Command lines whose files do not match, and a part of the message.
 const UNLIKE: [(&str, &str); 7] = [
     ("tile photo.png checker.png -o out/", CHECKER),
     ("blend photo.png checker.png -o out.png", CHECKER),
@@ -135,10 +146,10 @@ const UNLIKE: [(&str, &str); 7] = [
     ),
 ];
 
-/// Both names and sizes.
+/// The message with both names and sizes.
 const CHECKER: &str = "checker.png has 32 × 32 pixels, but photo.png has 64 × 64";
 
-/// Command lines that clap refuses, and what the answer holds.
+/// Command lines that clap rejects, and a part of the message.
 const SLIPS: [(&str, &str); 10] = [
     ("worley --frequency 8 -o out.png", "--cells"),
     ("worley --scale=8 -o out.png", "--cells"),
@@ -166,7 +177,7 @@ fn words(line: &str) -> Vec<&str> {
     line.split(' ').collect()
 }
 
-/// Tries an input with every subcommand that reads one, and looks at what is said and at what is left.
+/// Tries an input with every subcommand that reads one, and checks the messages and the remaining files.
 fn try_all(name: &str, input: &str, part: &str) {
     let folder = Folder::with_inputs(name);
     fs::write(folder.path("empty.png"), b"").unwrap();
@@ -257,7 +268,7 @@ fn values_that_a_library_refuses_are_wrong_usage_and_named_as_typed() {
     for (line, part) in LIMITS {
         let output = folder.run(&words(line));
         assert_refused(&output, 2, part, line);
-        // Who typed no recipe knows of no node.
+        // Users who typed no recipe know no nodes.
         assert!(
             line.starts_with("bake") || !stderr(&output).contains("in the node"),
             "{line}: {}",

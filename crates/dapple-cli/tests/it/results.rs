@@ -1,4 +1,4 @@
-//! What comes out is what the libraries make.
+//! Results of the command, compared with those of the libraries.
 
 use crate::support::{Folder, assert_done, stderr, stdout};
 use dapple::hash::Seed;
@@ -64,9 +64,9 @@ fn blend_writes_the_blended_height_beside_the_other_maps() {
             "{value} {expected}"
         );
     }
-    // A single file has room for the first map alone.
+    // A single file is enough for the first map only.
     assert_done(&run("height", "out.png"), "blend");
-    // A height that some layers lack is none of the blend.
+    // A height that some layers lack is not part of the blend.
     let some = [
         "blend",
         layers[0],

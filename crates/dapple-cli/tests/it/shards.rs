@@ -16,7 +16,7 @@ fn list(folder: &Folder, arguments: &str) -> Vec<String> {
     stdout(&run).lines().map(str::to_owned).collect()
 }
 
-/// Runs all lines, and gives what they write to standard error.
+/// Runs all lines, and returns their standard error.
 fn run_all(folder: &Folder, lines: &[String]) -> String {
     let mut said = String::new();
     for line in lines {
@@ -32,7 +32,7 @@ fn bytes(folder: &Folder, name: &str) -> Vec<u8> {
     fs::read(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
-/// How many files there are in a folder and those in it.
+/// The number of files in a folder and those in it.
 fn n_files(folder: &Path) -> usize {
     let entries = fs::read_dir(folder)
         .unwrap()
@@ -48,7 +48,7 @@ fn shards_of_runs_that_died_are_resumed_and_joined_to_the_bytes_of_the_whole() {
     let of = "my-rock.toml --size 250x200 --maps height,normal,albedo,orm";
     let lines = list(&folder, &format!("shards {of} --shard 64 -o parts/"));
     assert_eq!(lines.len(), 16);
-    // Two are never begun, two are killed at once and in the middle, and of one a single map is lost.
+    // Two are never begun, two are killed, at once and in the middle, and one loses a single map.
     run_all(&folder, &lines[4..]);
     for (line, wait) in lines[2..4].iter().zip([0, 25]) {
         let words: Vec<_> = line.split(' ').skip(1).collect();

@@ -1,4 +1,4 @@
-//! The studio as the command runs it.
+//! The studio, run by the command.
 
 use crate::support::{Folder, assert_done, assert_refused};
 use dapple::recipe::Recipe;
@@ -10,7 +10,7 @@ use std::process::{Child, Command, Stdio};
 use std::time::Duration;
 use tungstenite::{Message, WebSocket};
 
-/// A studio that runs; it ends with this.
+/// A running studio; it is stopped on drop.
 struct Studio {
     child: Child,
     port: u16,
@@ -60,7 +60,7 @@ impl Studio {
         tungstenite::client(request, self.stream()).unwrap().0
     }
 
-    /// The content of a file that was exported.
+    /// The content of an exported file.
     fn get(&self, path: &str) -> Vec<u8> {
         let (port, token) = (self.port, &self.token);
         let mut stream = self.stream();
@@ -78,7 +78,7 @@ impl Studio {
     }
 }
 
-/// The next message of a type.
+/// Waits for the next message of a type.
 fn until(page: &mut WebSocket<TcpStream>, name: &str) -> Value {
     loop {
         if let Message::Text(text) = page.read().unwrap() {
@@ -91,7 +91,7 @@ fn until(page: &mut WebSocket<TcpStream>, name: &str) -> Value {
     }
 }
 
-/// The next refusal.
+/// Waits for the next error message.
 fn refusal(page: &mut WebSocket<TcpStream>) -> Value {
     loop {
         if let Message::Text(text) = page.read().unwrap() {

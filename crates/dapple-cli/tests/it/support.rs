@@ -1,4 +1,4 @@
-//! Folders with inputs, and running the command in them.
+//! Test folders with inputs, and running the command in them.
 
 use dapple::color::{LinearRgb, Normal};
 use dapple::image::{Depth, write_color_png, write_gray_exr, write_gray_png, write_normal_png};
@@ -32,11 +32,11 @@ height = "cells"
 albedo = "lichen"
 "#;
 
-/// A folder of its own for a test, which goes with it.
+/// A folder for a test; it is removed on drop.
 pub(crate) struct Folder(PathBuf);
 
 impl Folder {
-    /// An empty one.
+    /// Creates an empty folder.
     pub(crate) fn new(name: &str) -> Self {
         // Tests run at the same time, and two may choose one name.
         static COUNT: AtomicU32 = AtomicU32::new(0);
@@ -48,7 +48,7 @@ impl Folder {
         Self(folder)
     }
 
-    /// One with every input that the examples of the help name.
+    /// Creates a folder with every input in the examples of the help.
     pub(crate) fn with_inputs(name: &str) -> Self {
         let folder = Self::new(name);
         for name in ["photo", "albedo", "rock", "grass", "sand", "stones"] {
@@ -62,7 +62,7 @@ impl Folder {
             write_normal_png(folder.path(&format!("{name}.png")), &flat, Depth::Eight).unwrap();
         }
         write_gray_exr(folder.path("height.exr"), &gray()).unwrap();
-        // Noise without any structure repeats without a seam.
+        // Noise without any structure repeats without a visible seam.
         write_gray_png(folder.path("grain.png"), &noise(), Depth::Eight).unwrap();
         let checker = checker();
         write_color_png(folder.path("checker.png"), &checker, Depth::Eight).unwrap();
@@ -80,7 +80,7 @@ impl Folder {
         self.0.join(name)
     }
 
-    /// The names of everything in it, sorted.
+    /// The names of all files in the folder, sorted.
     pub(crate) fn names(&self) -> Vec<String> {
         let entries = fs::read_dir(&self.0).unwrap();
         let name = |entry: std::io::Result<fs::DirEntry>| entry.unwrap().file_name();
@@ -102,12 +102,12 @@ impl Folder {
         command
     }
 
-    /// Runs it to its end.
+    /// Runs the command to its end.
     pub(crate) fn run<S: AsRef<OsStr>>(&self, arguments: &[S]) -> Output {
         self.command(arguments).output().unwrap()
     }
 
-    /// Runs a line of a shell, in which `dapple` is the command.
+    /// Runs a shell command, in which `dapple` is the command.
     #[cfg(unix)]
     pub(crate) fn shell(&self, line: &str) -> Output {
         let program = Path::new(env!("CARGO_BIN_EXE_dapple"));
@@ -131,22 +131,22 @@ impl Drop for Folder {
     }
 }
 
-/// What a run has written to standard error.
+/// The standard error of a run.
 pub(crate) fn stderr(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
-/// What a run has written to standard output.
+/// The standard output of a run.
 pub(crate) fn stdout(output: &Output) -> String {
     String::from_utf8_lossy(&output.stdout).into_owned()
 }
 
-/// Fails unless the run is done.
+/// Fails unless the run succeeded.
 pub(crate) fn assert_done(output: &Output, what: &str) {
     assert_eq!(output.status.code(), Some(0), "{what}: {}", stderr(output));
 }
 
-/// Fails unless the run was refused with a message that holds `part`, and without a panic.
+/// Fails unless the run failed with a message that contains `part`, and without a panic.
 pub(crate) fn assert_refused(output: &Output, code: i32, part: &str, what: &str) {
     let message = stderr(output);
     assert_eq!(output.status.code(), Some(code), "{what}: {message}");
@@ -155,7 +155,7 @@ pub(crate) fn assert_refused(output: &Output, code: i32, part: &str, what: &str)
     assert!(!message.contains("panicked"), "{what}: {message}");
 }
 
-/// A small model; it takes a while to make, so it is made once.
+/// A small model, which is made once, since it takes a while.
 fn model() -> &'static Model {
     static MODEL: OnceLock<Model> = OnceLock::new();
     MODEL.get_or_init(|| dapple_models::ray(300).unwrap().into())

@@ -7,15 +7,15 @@ use std::path::Path;
 use std::process::{Child, Stdio};
 use std::time::{Duration, Instant};
 
-/// How long a bake of a save may take. It takes some tenths of a second, and more where other tests run.
+/// The deadline for the bake of a save. It takes some tenths of a second, and more if other tests run.
 const DEADLINE: Duration = Duration::from_secs(60);
 
-/// A recipe whose height is the same everywhere.
+/// A recipe with a constant height.
 fn flat(height: &str) -> String {
     format!("dapple = 1\n\n[material]\nheight = {height}\n")
 }
 
-/// The command while it watches; it ends with this.
+/// The running command; it is stopped on drop.
 struct Watching(Child);
 
 impl Drop for Watching {
@@ -77,7 +77,7 @@ fn every_save_is_baked_and_a_mistake_leaves_the_files() {
     fs::write(&recipe, flat("0.5")).unwrap();
     wait_for(&mut watching, &height, 0.5, "a save");
 
-    // A program that writes aside and renames.
+    // A program that writes to another file and renames it.
     fs::write(&recipe, "height = what").unwrap();
     fs::write(folder.path("aside"), flat("0.75")).unwrap();
     fs::rename(folder.path("aside"), &recipe).unwrap();

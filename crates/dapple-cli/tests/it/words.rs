@@ -3,7 +3,7 @@
 use crate::support::{Folder, assert_done, stderr};
 use std::fs;
 
-/// Two ways to type the same.
+/// Two ways to type the same command.
 const SAME: [[&str; 2]; 9] = [
     ["worley --value f2_minus_f1", "worley --Value F2-Minus-F1"],
     ["worley --metric manhattan", "worley --metric Manhattan"],
@@ -32,14 +32,19 @@ const SAME: [[&str; 2]; 9] = [
 ];
 
 /// Runs of every subcommand with a file or a folder, and the files that they write to a folder.
-const NAMED: [(&str, &[&str]); 14] = [
+const NAMED: [(&str, &[&str]); 16] = [
     ("worley", &["worley.png"]),
     ("worley --frames 2", &["worley_001.png", "worley_002.png"]),
     ("pups cow --format exr", &["pups.exr"]),
+    ("pups cow --frames 2", &["pups_001.png", "pups_002.png"]),
     ("noise --octaves 3 --json", &["noise.json", "noise.png"]),
     ("wavelet --cells 8 --recipe", &["wavelet.toml"]),
     ("recipe flagstone --rust", &["flagstone.rs"]),
     ("bake flagstone --maps ao", &["flagstone_ao.png"]),
+    (
+        "bake flagstone --maps ao --frames 2",
+        &["flagstone_ao_001.png", "flagstone_ao_002.png"],
+    ),
     ("points --count 20 --format json", &["points.json"]),
     ("tile photo.png --sheet", &["photo.png", "photo_2x2.png"]),
     ("copies stones.png --size 16", &["copies.png"]),

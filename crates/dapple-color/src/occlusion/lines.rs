@@ -1,6 +1,6 @@
-//! The heights that a row of pixels is compared with: for each sample of each ray one or two lines of them.
+//! The heights with which a row of pixels is compared: one or two lines of them for each sample of each ray.
 //!
-//! Samples lie at whole pixels, so that what registers of neighboring pixels look at is contiguous.
+//! Samples lie at whole pixels, so that the heights for a register of neighboring pixels are contiguous.
 
 use super::OcclusionOptions;
 use super::rays::{Ray, Sample, reach};
@@ -8,26 +8,27 @@ use super::sky::COLUMNS;
 use crate::{ColorError, plane};
 use dapple_raster::{Raster, Wrap};
 
-/// Heights with columns at both sides, as the wrap says, so that whole registers can be read beside every pixel.
+/// Heights, extended by columns at both sides according to the wrap, so that whole registers can be read beside every
+/// pixel.
 pub(super) struct Heights {
     padded: Raster<f32>,
     wrap_y: Wrap,
-    /// How many columns there are to the left of the first one whose pixels are made.
+    /// The number of columns to the left of the first one whose pixels are computed.
     left: i32,
-    /// The columns whose pixels are made, up to whole registers.
+    /// The number of columns whose pixels are computed, in whole registers.
     span: usize,
-    /// Slope per difference of two neighbors, for columns and rows.
+    /// The slope per difference of two neighbors, along columns and rows.
     scale: [f32; 2],
 }
 
-/// The heights that a row of pixels is compared with.
+/// The heights with which a row of pixels is compared.
 pub(super) struct Lines<'a> {
     pub(super) here: &'a [f32],
-    /// Left, right, above and below.
+    /// The neighbors on the left, on the right, above and below.
     pub(super) around: [&'a [f32]; 4],
-    /// Slope per difference of `around`, for columns and rows.
+    /// The slope per difference of `around`, along columns and rows.
     pub(super) scale: [f32; 2],
-    /// Each is followed by the opposite one.
+    /// The rays, each followed by the opposite one.
     pub(super) views: Vec<View<'a>>,
 }
 
@@ -42,14 +43,15 @@ pub(super) struct Line<'a> {
     pub(super) near: &'a [f32],
     pub(super) far: &'a [f32],
     pub(super) part: f32,
-    /// Slope per difference in height.
+    /// The slope per difference in height.
     pub(super) scale: f32,
-    /// How much of a slope above that of the tangent plane counts.
+    /// The weight of a slope above that of the tangent plane.
     pub(super) weight: f32,
 }
 
 impl Heights {
-    /// The heights of a part of `whole` pixels, less than half of which are its margins; pixels are made between those.
+    /// The heights of a part of `whole` pixels, less than half of which are its margins; pixels are computed between
+    /// the margins.
     ///
     /// # Errors
     ///
@@ -71,7 +73,7 @@ impl Heights {
             let first = i64::from(margin[0]) - i64::from(left);
             for (column, value) in (first..).zip(values) {
                 let height = source[plane::index(wrap_x, column, size[0])];
-                // Not a number is above nothing, and infinity would be above all.
+                // NaN is above nothing, while infinity would be above everything.
                 *value = if height.is_finite() { height } else { f32::NAN };
             }
         });
@@ -93,7 +95,7 @@ impl Heights {
         &self.padded.row(row as u32)[first..first + self.span]
     }
 
-    /// All that a row of pixels is compared with.
+    /// All heights with which a row of pixels is compared.
     pub(super) fn lines(&self, row: u32, rays: &[Ray], strength: f64) -> Lines<'_> {
         let line = |sample: &Sample| Line {
             near: self.line(row, sample.near),

@@ -1,4 +1,4 @@
-//! Where occlusion looks: steps along rays, in whole pixels.
+//! The rays of occlusion: steps in whole pixels.
 //!
 //! Rays leave a pixel at 16 even azimuths of the plane. A ray is followed in whole steps along the axis on which it
 //! crosses more pixels, and between the two pixels beside it on the other axis the height is linear, so that samples lie on
@@ -8,7 +8,7 @@
 use super::OcclusionOptions;
 use dapple_raster::glam::DVec2;
 
-/// How many azimuths there are.
+/// The number of azimuths.
 const AZIMUTHS: usize = 16;
 
 /// The directions of the first half, a sixteenth of a turn apart; the other half is opposite.
@@ -31,18 +31,19 @@ const DIRECTIONS: [[f64; 2]; AZIMUTHS / 2] = {
     ]
 };
 
-/// About how many steps double the way, once they are longer than a pixel.
+/// The approximate number of steps that double the distance, once they are longer than a pixel.
 const STEPS_TO_DOUBLE: u32 = 8;
 
-/// Places across a ray are multiples of this part of a pixel: the same for every window, whatever its extent rounds to.
+/// The resolution of places across a ray, in parts of a pixel: the same for every window, whatever its extent rounds
+/// to.
 const PARTS: f64 = (1 << 20) as f64;
 
-/// The places that are looked at in one azimuth.
+/// The samples in one azimuth.
 #[derive(Clone, Debug)]
 pub(super) struct Ray {
-    /// The unit vector of the plane.
+    /// The direction of the ray: a unit vector of the plane.
     pub(super) direction: DVec2,
-    /// Where to look, from near to far.
+    /// The samples, from near to far.
     pub(super) samples: Vec<Sample>,
 }
 
@@ -53,15 +54,15 @@ pub(super) struct Sample {
     pub(super) near: [i32; 2],
     /// Columns and rows from the start of the ray to the other of the two pixels.
     pub(super) far: [i32; 2],
-    /// How far it is from `near` to `far`, from 0 to below 1.
+    /// The place between `near` and `far`, from 0 to below 1.
     pub(super) part: f32,
-    /// How far it is from the start of the ray, in units of the plane.
+    /// The distance from the start of the ray, in units of the plane.
     pub(super) distance: f64,
-    /// How much of what rises there above the tangent plane counts, from 0 to 1.
+    /// The weight of heights there above the tangent plane, from 0 to 1.
     pub(super) weight: f32,
 }
 
-/// The rays of options, each followed by the opposite one. The radius is at most some thousand pixels.
+/// The rays for options, each followed by the opposite one. The radius is at most some thousand pixels.
 pub(super) fn rays(options: &OcclusionOptions, pixel: DVec2) -> Vec<Ray> {
     let halves = DIRECTIONS.iter().flat_map(|&direction| {
         let direction = DVec2::from(direction);
@@ -74,7 +75,7 @@ pub(super) fn rays(options: &OcclusionOptions, pixel: DVec2) -> Vec<Ray> {
     halves.map(ray).collect()
 }
 
-/// How many columns and rows rays reach to each side.
+/// The numbers of columns and rows that rays reach to each side.
 pub(super) fn reach(rays: &[Ray]) -> [u32; 2] {
     let samples = rays.iter().flat_map(|ray| &ray.samples);
     samples.fold([0; 2], |reach, sample| {
@@ -85,7 +86,7 @@ pub(super) fn reach(rays: &[Ray]) -> [u32; 2] {
     })
 }
 
-/// Where to look in a direction.
+/// The samples in a direction.
 fn samples(options: &OcclusionOptions, direction: DVec2, pixel: DVec2) -> Vec<Sample> {
     // Pixels crossed per unit of the way.
     let speed = direction / pixel;
@@ -118,7 +119,7 @@ fn samples(options: &OcclusionOptions, direction: DVec2, pixel: DVec2) -> Vec<Sa
     steps(last).into_iter().map(sample).collect()
 }
 
-/// The effect of a height at this part of the radius, from 1 to 0.
+/// The weight of a height at this fraction of the radius, from 1 to 0.
 fn weight(part: f64, fade: f64) -> f32 {
     if part <= 1.0 - fade {
         1.0
@@ -127,7 +128,7 @@ fn weight(part: f64, fade: f64) -> f32 {
     }
 }
 
-/// Whole numbers up to `last`, one apart and then ever further, with `last` at the end.
+/// Whole numbers up to `last`, one apart and then ever further apart, ending with `last`.
 fn steps(last: u32) -> Vec<u32> {
     let mut steps = Vec::new();
     let mut step = 0;

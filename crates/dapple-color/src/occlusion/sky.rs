@@ -1,22 +1,22 @@
-//! What a row of pixels sees of the sky, in registers of neighboring pixels.
+//! The visible sky of a row of pixels, in registers of neighboring pixels.
 
 use super::lines::{Lines, View};
 use crate::arctangent::arctangent;
 use fearless_simd::{f32x16, prelude::*};
 
-/// The columns of a register.
+/// The number of columns in a register.
 const LANES: usize = 16;
 
-/// How many registers are done side by side: what belongs to a sample is read once for all of them.
+/// The number of registers that are processed side by side: the data of a sample is read once for all of them.
 const SIDE: usize = 2;
 
-/// How many columns are done side by side.
+/// The number of columns that are processed side by side.
 pub(super) const COLUMNS: usize = SIDE * LANES;
 
-/// Slopes up to this are told apart: their squares are far from the end of `f32`.
+/// The largest slope that is not clamped: its square is far from the end of `f32`.
 const STEEPEST: f32 = 1e9;
 
-/// The part of the sky that a row of pixels sees.
+/// Computes the visible part of the sky for a row of pixels.
 #[inline(always)]
 pub(super) fn see_row<S: Simd>(simd: S, lines: &Lines<'_>, values: &mut [f32]) {
     for (values, first) in values.chunks_mut(COLUMNS).zip((0..).step_by(COLUMNS)) {
@@ -28,7 +28,7 @@ pub(super) fn see_row<S: Simd>(simd: S, lines: &Lines<'_>, values: &mut [f32]) {
     }
 }
 
-/// The part of the sky that the columns from `first` on see.
+/// The visible part of the sky for the columns from `first` on.
 #[inline(always)]
 fn see<S: Simd>(simd: S, lines: &Lines<'_>, first: usize) -> [f32x16<S>; SIDE] {
     let zero = f32x16::splat(simd, 0.0);
@@ -75,7 +75,7 @@ fn slope<S: Simd>(simd: S, lines: &Lines<'_>, first: usize) -> [f32x16<S>; 2] {
     [is_finite.select(x, level), is_finite.select(y, level)]
 }
 
-/// The largest slopes to a sample of a ray, from those of the tangent planes on. What is not a number is not larger.
+/// The largest slopes to a sample of a ray, starting from those of the tangent planes. NaN is never larger.
 #[inline(always)]
 fn horizons<S: Simd>(
     simd: S,
@@ -108,8 +108,8 @@ fn horizons<S: Simd>(
     horizons
 }
 
-/// The sky between the zenith and a horizon, twice over the upward part of the normal, without what opposite azimuths take
-/// from each other.
+/// The sky between the zenith and a horizon, twice over the upward part of the normal, without the terms that cancel
+/// between opposite azimuths.
 #[inline(always)]
 fn arc<S: Simd>(simd: S, tangent: f32x16<S>, horizon: f32x16<S>) -> f32x16<S> {
     (tangent * horizon + 1.0) / (horizon * horizon + 1.0) + tangent * arctangent(simd, horizon)
@@ -120,7 +120,7 @@ fn load<S: Simd>(simd: S, line: &[f32], first: usize) -> f32x16<S> {
     f32x16::from_slice(simd, &line[first..first + LANES])
 }
 
-/// Numbers brought between two ends. Minimum and maximum of a processor would do, but differ in what is not a number.
+/// Numbers clamped between two ends. The processor's minimum and maximum differ in their treatment of NaN.
 #[inline(always)]
 fn limit<S: Simd>(simd: S, x: f32x16<S>, low: f32, high: f32) -> f32x16<S> {
     let [low, high] = [f32x16::splat(simd, low), f32x16::splat(simd, high)];

@@ -204,7 +204,7 @@ fn occlusion_does_not_change_with_resolution() {
             let mean = around.map(|(x, y)| fine.row(4 * row + y)[4 * column + x] * 0.25);
             let mean: f32 = mean.iter().sum();
             let here = coarse.row(row)[column];
-            // Both look for the horizon in steps of up to an eighth of the way, but at other places.
+            // Both search the horizon in steps of up to an eighth of the way, but at other places.
             assert!(
                 (here - mean).abs() < 0.015,
                 "{here} and {mean} at {column}, {row}"

@@ -1,10 +1,10 @@
-//! What the tests of all maps from heights check.
+//! Checks that the tests of all maps from heights share.
 
 use crate::{ColorErrorKind, HeightPlane};
 use dapple_raster::Raster;
 use dapple_raster::glam::DVec2;
 
-/// Checks that a strength that is not finite and an extent that is none are refused.
+/// Checks that a strength that is not finite and a bad extent are errors.
 pub(crate) fn bad_planes_are_refused(refusal: impl Fn(HeightPlane) -> ColorErrorKind) {
     for strength in [f64::NAN, f64::INFINITY] {
         let refused = refusal(HeightPlane {
@@ -24,7 +24,7 @@ pub(crate) fn bad_planes_are_refused(refusal: impl Fn(HeightPlane) -> ColorError
     }
 }
 
-/// Checks that a radius that is not finite, negative, or of more than 2^14 of 4 × 4 pixels is refused.
+/// Checks that a radius that is not finite, negative, or of more than 2^14 of 4 × 4 pixels is an error.
 pub(crate) fn bad_radii_are_refused(refusal: impl Fn(f64) -> ColorErrorKind) {
     for radius in [f64::NAN, f64::INFINITY] {
         let refused = refusal(radius);
@@ -53,7 +53,7 @@ where
     }
 }
 
-/// Checks that options come back from JSON, and that a name that is none of theirs is refused.
+/// Checks that options come back from JSON, and that an unknown name is an error.
 #[cfg(feature = "serde")]
 pub(crate) fn options_are_data<T>(options: &T)
 where

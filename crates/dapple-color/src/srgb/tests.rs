@@ -35,7 +35,7 @@ impl Natural {
     }
 }
 
-/// How `x`, a multiple of 2^-63 in `[2^-40, 2)`, compares with the curve at `numerator / denominator`.
+/// Compares `x`, a multiple of 2^-63 in `[2^-40, 2)`, with the curve at `numerator / denominator`.
 fn compare_with_curve(x: f64, [numerator, denominator]: [u64; 2]) -> Ordering {
     let exponent = 1 + 1023 - (x.to_bits() >> 52) as i32 + 52;
     let mantissa = (x.to_bits() & ((1 << 52) - 1)) | (1 << 52);

@@ -1,4 +1,4 @@
-//! Sites in cells that can change, to find the images in a rectangle.
+//! Sites in cells that can be edited, to find the images in a rectangle.
 
 use crate::lattice::Lattice;
 use glam::DVec2;
@@ -15,7 +15,7 @@ pub(super) struct Buckets {
 }
 
 impl Buckets {
-    /// Cells for `n` sites, without any.
+    /// Empty cells, suited to `n` sites.
     pub(super) fn new(lattice: &Lattice, n: usize) -> Self {
         let side = (lattice.size.x * (lattice.size.y * SITES_PER_CELL / n.max(1) as f64)).sqrt();
         // A thin domain has one row; no more cells than that are ever worth it.

@@ -1,15 +1,16 @@
 //! A Delaunay graph whose points can be inserted, moved and removed, one at a time.
 //!
-//! An edit changes the axes of the point itself and of the points that it is or was connected to: those between which a
-//! point is taken away, or put. So the points about the place are triangulated anew, as a tile of [`delaunay`] is, in a
-//! square that grows until no image outside of it can change one of these stars. Where there are few points, or at the hull
-//! of points that do not wrap, all of them are.
+//! An edit changes the axes of the point itself and of the points that it is or was connected to. So the points near
+//! the place are triangulated anew, like a tile of [`delaunay`], in a square that grows until no image outside of it
+//! can change one of these stars. Where there are few points, or at the hull of points that do not wrap, all points are
+//! triangulated.
 //!
-//! The triangulation itself is not kept: on a torus it would hold several images of points at its border, all of which an
-//! edit would have to follow, and a triangulation of a hundred points takes as long as finding one's way in a large one.
+//! The triangulation itself is not stored: on a torus it would hold several images of points at its border, which an
+//! edit would all have to update, and to triangulate a hundred points takes no longer than to locate a place in a large
+//! triangulation.
 //!
-//! Points have a number within, which is never given again, so that an edit does not touch those far away. Their index is
-//! the place of their number among those that are there.
+//! Each point has an internal number, which is never used again, so that an edit does not touch points far away. The
+//! index of a point is the rank of its number among those in use.
 
 use super::buckets::Buckets;
 use super::images::Cover;
@@ -21,19 +22,20 @@ use dapple_points::{Domain, PointIdx, PointSet};
 use glam::DVec2;
 use std::collections::BTreeMap;
 
-/// Up to so many points are all triangulated anew.
+/// The number of points up to which all of them are triangulated anew.
 const FEW: usize = 256;
 
-/// Half the sides of the squares in which points are triangulated, one after the other, in mean distances.
+/// Half the sides of the squares in which points are triangulated, tried one after the other, in mean distances.
 const REACHES: [f64; 3] = [4.0, 7.0, 14.0];
 
-/// The most images in such a square. There are more of them only where points crowd, or on thin domains.
+/// The largest number of images in such a square. It is exceeded only where points crowd, or on thin domains.
 const IMAGES_LIMIT: usize = 4096;
 
-/// The points for each cell of the buckets at which there must be more cells.
+/// The number of points for each cell of the buckets above which the number of cells grows.
 const CROWD: usize = 8;
 
-/// The Delaunay graph of points that can be inserted, moved and removed: at any time that of [`delaunay`], bit for bit.
+/// The Delaunay graph of points that can be inserted, moved and removed, at any time equal to the result of
+/// [`delaunay`], bit for bit.
 ///
 /// # Examples
 ///
@@ -52,7 +54,7 @@ const CROWD: usize = 8;
 pub struct EditableDelaunay {
     domain: Domain,
     lattice: Lattice,
-    /// Of each number: the position, the site, and the axes, which lead to numbers. Numbers of removed points stay.
+    /// For each number: the position, the site, and the axes, which refer to numbers. Entries of removed points remain.
     positions: Vec<DVec2>,
     sites: Vec<DVec2>,
     rows: Vec<Vec<Axis>>,
@@ -64,9 +66,9 @@ pub struct EditableDelaunay {
 /// A point with the vectors of its axes, in their order.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Star {
-    /// Where the point is.
+    /// The position of the point.
     pub center: DVec2,
-    /// Where its axes lead from there.
+    /// The vectors from the point along its axes.
     pub vectors: Vec<DVec2>,
 }
 
@@ -116,7 +118,7 @@ impl EditableDelaunay {
         Ok(self.star_of(self.number(point)?))
     }
 
-    /// The points with an image in a rectangle, and some beside it, in their order.
+    /// The points with an image in a rectangle, and some beside it, in the order of their indices.
     #[must_use]
     pub fn points_in(&self, low: DVec2, high: DVec2) -> Vec<PointIdx> {
         let steps = |at: DVec2, slack: f64| self.lattice.steps(at - self.domain.origin) + slack;
@@ -140,18 +142,18 @@ impl EditableDelaunay {
         found.into_iter().map(|number| self.index(number)).collect()
     }
 
-    /// The points.
+    /// The points as a set.
     ///
     /// # Errors
     ///
-    /// None, in truth: each of them was accepted.
+    /// None in practice: each position was accepted before.
     pub fn to_points(&self) -> Result<PointSet, dapple_points::PointsError> {
         let numbers = self.numbers.iter();
         let positions = numbers.map(|&number| self.positions[number as usize]);
         PointSet::new(self.domain, positions.collect())
     }
 
-    /// The graph.
+    /// The graph, equal to that of [`delaunay`].
     #[must_use]
     pub fn to_graph(&self) -> Graph {
         let mut graph = Graph {
@@ -173,14 +175,13 @@ impl EditableDelaunay {
         graph
     }
 
-    /// Adds a point after the last one. Gives the stars that were there before and those that are there now, as far as they
-    /// changed.
+    /// Adds a point after the last one. Returns the stars that changed, in their old and in their new state.
     ///
     /// # Errors
     ///
     /// [`Outside`](GraphErrorKind::Outside) for a position that is not in the domain,
-    /// [`Coincident`](GraphErrorKind::Coincident) where another point is, [`Thin`](GraphErrorKind::Thin) as for [`delaunay`].
-    /// Nothing has changed then.
+    /// [`Coincident`](GraphErrorKind::Coincident) where another point is, [`Thin`](GraphErrorKind::Thin) as for
+    /// [`delaunay`]. The graph is unchanged after an error.
     pub fn insert(&mut self, position: DVec2) -> Result<Vec<Star>, GraphError> {
         let (position, site) = self.accepted(position, None)?;
         let number = self.positions.len() as u32;
@@ -210,8 +211,8 @@ impl EditableDelaunay {
         Ok(stars)
     }
 
-    /// Moves a point; along wrapped axes the position is brought into the domain. Gives the stars that were there before and
-    /// those that are there now, as far as they changed.
+    /// Moves a point; along wrapped axes the position is brought into the domain. Returns the stars that changed, in
+    /// their old and in their new state.
     ///
     /// # Errors
     ///
@@ -240,13 +241,13 @@ impl EditableDelaunay {
         Ok(stars)
     }
 
-    /// Takes a point away; those after it move up by one. Gives the stars that were there before and those that are there
-    /// now, as far as they changed.
+    /// Removes a point; the indices of those after it decrease by one. Returns the stars that changed, in their old and
+    /// in their new state.
     ///
     /// # Errors
     ///
-    /// [`NotThere`](GraphErrorKind::NotThere) if there is no such point, [`Thin`](GraphErrorKind::Thin) as for [`delaunay`].
-    /// Nothing has changed then.
+    /// [`NotThere`](GraphErrorKind::NotThere) if there is no such point, [`Thin`](GraphErrorKind::Thin) as for
+    /// [`delaunay`]. The graph is unchanged after an error.
     pub fn remove(&mut self, point: PointIdx) -> Result<Vec<Star>, GraphError> {
         let number = self.number(point)?;
         let site = self.sites[number as usize];
@@ -274,7 +275,7 @@ impl EditableDelaunay {
     }
 
     fn index(&self, number: u32) -> PointIdx {
-        // What is asked for is there; else it is where it would be.
+        // The number is in use; otherwise this would be the index at which to insert it.
         let (Ok(index) | Err(index)) = self.numbers.binary_search(&number);
         PointIdx(index as u32)
     }
@@ -308,7 +309,7 @@ impl EditableDelaunay {
         self.buckets.insert(number, site);
     }
 
-    /// A position in the domain and its site, if no other point is there.
+    /// Checks that a position lies in the domain and no other point is there; returns the position and its site.
     fn accepted(&self, position: DVec2, own: Option<u32>) -> Result<(DVec2, DVec2), GraphError> {
         let wrapped = self.domain.wrap(position);
         if !position.is_finite() || !self.domain.contains(wrapped) {
@@ -323,8 +324,8 @@ impl EditableDelaunay {
         Ok((wrapped, site))
     }
 
-    /// The axes of the `asked` points near a place and of the point `hub` there with all its neighbors; nothing if too many
-    /// points would have to be looked at.
+    /// The axes of the `asked` points near a place, and of the point `hub` there with all its neighbors; `None` if too
+    /// many points would have to be triangulated.
     fn rows_about(
         &self,
         place: DVec2,
@@ -351,7 +352,7 @@ impl EditableDelaunay {
         })
     }
 
-    /// The axes of all points in the square about a place that no image outside of it can change.
+    /// The axes of those points in the square about a place that no image outside of it can change.
     fn certain_rows(&self, place: DVec2, reach: f64) -> Option<BTreeMap<u32, Vec<Axis>>> {
         let cover = Cover::about(&self.lattice, place, reach);
         let mut images = Vec::new();
@@ -378,7 +379,8 @@ impl EditableDelaunay {
         Some(numbers.into_iter().filter_map(taken).collect())
     }
 
-    /// Puts rows in the place of others, or all if none are given. Gives the stars that changed, before and after.
+    /// Replaces some rows, or all if none are given. Returns the stars that changed, in their old and in their new
+    /// state.
     fn replace(&mut self, rows: Option<Vec<(u32, Vec<Axis>)>>) -> Result<Vec<Star>, GraphError> {
         let rows = match rows {
             Some(rows) => rows,

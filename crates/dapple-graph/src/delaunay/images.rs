@@ -1,4 +1,4 @@
-//! Which images of the points a patch needs.
+//! The images of points that a patch needs.
 
 use super::patch::Image;
 use super::star::Star;
@@ -8,7 +8,7 @@ use glam::DVec2;
 use robust::{Coord, incircle};
 use std::collections::BTreeSet;
 
-/// The rectangle whose images are all in a patch; without bounds along the axes that do not wrap.
+/// A rectangle of which a patch has all images; unbounded along the axes that do not wrap.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cover {
     low: DVec2,
@@ -28,8 +28,8 @@ impl Cover {
         }
     }
 
-    /// The square of some steps about a place. Where it reaches past an end of the domain that does not wrap, it has no
-    /// bound: there is nothing more.
+    /// The square that reaches some steps to each side of a place. Where it reaches past an end of the domain that does
+    /// not wrap, it is unbounded, since there are no more images.
     pub(super) fn about(lattice: &Lattice, place: DVec2, reach: f64) -> Self {
         let (mut low, mut high) = (place - reach, place + reach);
         for axis in (0..2).filter(|&axis| !lattice.wrap[axis]) {
@@ -101,7 +101,8 @@ pub(super) struct Missing<'g, 'a> {
     lattice: &'a Lattice,
     cover: Cover,
     grid: &'g LazyGrid<'a>,
-    /// Farther than this from a point no circumcircle of its true triangles reaches (inside of the domain's strip).
+    /// The distance, along each axis, that the circumcircles of a point's true triangles do not exceed (inside of the
+    /// domain's strip).
     reach: DVec2,
     /// Where images were inserted before.
     inserted: BTreeSet<(i64, i64)>,
@@ -112,10 +113,10 @@ pub(super) struct Missing<'g, 'a> {
     scaffolded: bool,
     /// The row whose star is searched.
     row: u32,
-    /// Whether that star will change.
+    /// Whether the star will change.
     changes: bool,
     budget: Budget,
-    /// Whether there was too much to search.
+    /// Whether there were too many images to search.
     too_thin: bool,
 }
 
@@ -141,8 +142,8 @@ impl<'g, 'a> Missing<'g, 'a> {
         }
     }
 
-    /// Adds for each circumcircle of the star at `center` that holds a missing image the one that is nearest to its
-    /// center. Whether the star will change.
+    /// Adds the missing images nearest to the centers of the circumcircles of the star at `center`, one for each
+    /// circumcircle that holds any. Returns whether the star will change.
     pub(super) fn search(&mut self, row: u32, center: DVec2, star: &Star) -> bool {
         self.row = row;
         self.changes = false;
@@ -274,7 +275,7 @@ impl<'g, 'a> Missing<'g, 'a> {
 
     /// Takes the images that were found, to be inserted now.
     ///
-    /// Fails where there was too much to search, or all that was found is more than one search may go through.
+    /// Fails if there were too many images to search, or if more were found than one search may go through.
     pub(super) fn take(&mut self) -> Result<Vec<(Image, u32)>, TooThin> {
         self.inserted.append(&mut self.pending);
         if self.too_thin || self.inserted.len() as u64 > triangulated_limit(self.grid.sites().len())

@@ -5,9 +5,9 @@ use core::cmp::Ordering;
 
 /// Sorts the images by their distance from their mean, farthest first.
 ///
-/// This is how `spade` sorts them too, which then finds nothing to do. For images that are spread evenly, squared
-/// distances are as well, and one pass through as many buckets as images is faster than a sort by comparison. A
-/// rounding error in the mean costs time, but not the right result.
+/// This is the order in which `spade` sorts them, which then has nothing to do. For images that are spread evenly,
+/// squared distances are as well, and one pass through as many buckets as images is faster than a sort by comparison. A
+/// rounding error in the mean costs time, but does not change the result.
 pub(super) fn farthest_first(images: &[Image]) -> Vec<Image> {
     let n = images.len();
     let share = 1.0 / n as f64;

@@ -1,4 +1,4 @@
-//! A triangulated part of the periodic plane, and the rows of the graph for the points that it is made for.
+//! Patch: a triangulated part of the periodic plane, and the rows of the graph for the points inside of it.
 
 use super::Refusal;
 use super::images::{Cover, Missing};
@@ -17,12 +17,12 @@ pub(super) struct Image {
     pub(super) position: Point2<f64>,
     /// The number of the point.
     pub(super) point: u32,
-    /// Which row of the patch is its, or [`Image::FOREIGN`].
+    /// The row of the image in the patch, or [`Image::FOREIGN`].
     pub(super) row: u32,
 }
 
 impl Image {
-    /// The row of an image whose axes nobody asks for.
+    /// The row of an image whose axes are not needed.
     pub(super) const FOREIGN: u32 = u32::MAX;
 
     pub(super) fn new(at: DVec2, point: u32, row: u32) -> Self {
@@ -131,7 +131,7 @@ impl<'a> Patch<'a> {
         self.vertices.iter().map(row).collect()
     }
 
-    /// Inserts images until the stars of the given rows are true. Whether there were any to insert.
+    /// Inserts images until the stars of the given rows are true. Returns whether there were any to insert.
     fn complete(&mut self, doubtful: &[u32], grid: &LazyGrid<'a>) -> Result<bool, TooThin> {
         let mut star = Star::default();
         let mut missing = Missing::new(self.lattice, self.cover, grid);
@@ -157,7 +157,7 @@ impl<'a> Patch<'a> {
         }
     }
 
-    /// The rows with the given ones read again.
+    /// The rows, with the given ones read again.
     fn replaced(&self, rows: &Rows, again: &[u32]) -> Rows {
         let mut star = Star::default();
         let mut result = Rows {

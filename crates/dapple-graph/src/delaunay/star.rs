@@ -1,4 +1,4 @@
-//! The edges around one vertex of a triangulation, and which of them are axes.
+//! The edges around one vertex of a triangulation, and those among them that are axes.
 //!
 //! Unit: steps of the lattice, relative to the vertex; whole numbers.
 
@@ -13,11 +13,11 @@ use robust::{Coord, incircle};
 /// A neighbor of a vertex.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Spoke {
-    /// Where it lies.
+    /// The place of the neighbor, relative to the vertex, in steps.
     pub(super) at: DVec2,
     /// The number of its point.
     to: u32,
-    /// Whether no triangle lies between it and the next neighbor.
+    /// Whether there is no triangle between it and the next neighbor.
     pub(super) gap_after: bool,
 }
 
@@ -30,12 +30,12 @@ pub(super) struct Star {
     lower: u64,
     /// Whether two neighboring circumcircles may be equal.
     co_circular: bool,
-    /// Whether a circumcircle may reach farther than asked.
+    /// Whether a circumcircle may exceed the reach.
     far: bool,
 }
 
 impl Star {
-    /// Reads the star of a vertex, and has a quick look for equal circumcircles and for ones that reach farther than
+    /// Reads the star of a vertex, with a quick test for equal circumcircles and for ones that reach farther than
     /// `reach` steps.
     #[inline]
     pub(super) fn read(&mut self, vertex: Vertex<'_>, reach: f64) {
@@ -53,7 +53,7 @@ impl Star {
                 gap_after: edge.is_outer_edge(),
             };
             self.has_gaps |= spoke.gap_after;
-            // Past 64 neighbors nobody looks at this.
+            // This mask is not used past 64 neighbors.
             self.lower |= u64::from(is_lower(spoke.at)).wrapping_shl(self.spokes.len() as u32);
             look.pass(spoke.at);
             self.spokes.push(spoke);
@@ -64,7 +64,7 @@ impl Star {
         (self.co_circular, self.far) = (look.co_circular, look.far);
     }
 
-    /// Whether a triangle may reach farther than asked, or is not there.
+    /// Whether a triangle may exceed the reach, or is missing.
     pub(super) fn is_doubtful(&self) -> bool {
         self.far || self.has_gaps || self.spokes.len() < 3
     }
@@ -111,7 +111,7 @@ impl Star {
     }
 
     /// Whether the triangles on both sides of an edge have the same circumcircle, so that the edge is one of several
-    /// diagonals that could be.
+    /// possible diagonals.
     #[cold]
     fn is_diagonal(&self, index: usize) -> bool {
         let n = self.spokes.len();
@@ -125,10 +125,10 @@ impl Star {
     }
 }
 
-/// A quick look at the neighbors as they pass by: what it finds may turn out to be fine, but it overlooks nothing.
+/// A quick test of the neighbors as they are read. It may report circumcircles that are fine, but it overlooks none.
 struct Look {
     reach_sq: f64,
-    /// The last two neighbors, their squared distances and their cross product; at first not numbers.
+    /// The last two neighbors, their squared distances and their cross product; NaN at first.
     a: DVec2,
     b: DVec2,
     a_sq: f64,
@@ -154,7 +154,7 @@ impl Look {
         }
     }
 
-    /// The next neighbor. Every comparison with what is not a number yet is false.
+    /// Passes on to the next neighbor. Every comparison with a value that is still NaN is false.
     #[inline]
     fn pass(&mut self, c: DVec2) {
         let Self {

@@ -1,4 +1,4 @@
-//! Large sets on a torus, tile by tile: each triangulation stays in the cache, and the tiles are independent.
+//! Large sets on a torus, tile by tile: each triangulation fits into the cache, and the tiles are independent.
 
 use super::Refusal;
 use super::images::Cover;
@@ -8,18 +8,18 @@ use crate::lattice::Lattice;
 use dapple_raster::parallel;
 use glam::DVec2;
 
-/// About how many points a tile has.
+/// The approximate number of points of a tile.
 const POINTS_PER_TILE: f64 = 8192.0;
 
 /// The tiles of a domain.
 pub(super) struct Tiles<'a> {
     lattice: &'a Lattice,
     margin: f64,
-    /// Where the columns and rows begin, and at the end where the last one ends.
+    /// The coordinates at which the columns and rows begin, and the end of the last one.
     starts: [Vec<f64>; 2],
 }
 
-/// A tile's images, and the points whose rows it makes.
+/// A tile's images, and the points for which it makes rows.
 #[derive(Default)]
 struct Tile {
     images: Vec<Image>,
@@ -61,7 +61,7 @@ impl<'a> Tiles<'a> {
             let mut patch = Patch::new(self.lattice, cover, &tile.images, tile.points.len())?;
             Ok::<Rows, Refusal>(patch.rows(&grid)?)
         });
-        // The refusal is that of the first tile that has one, whichever was there first.
+        // Returns the error of the first tile that has one, whatever the order of the threads.
         let parts = parts.into_iter().collect::<Result<Vec<_>, _>>()?;
         Ok(merged(&tiles, &parts, sites.len()))
     }
@@ -70,7 +70,7 @@ impl<'a> Tiles<'a> {
         self.starts[axis].len() - 1
     }
 
-    /// Gives each tile its points and the images within the margin.
+    /// Assigns its points, and the images within the margin, to each tile.
     fn fill(&self, sites: &[DVec2]) -> Vec<Tile> {
         let mut tiles: Vec<Tile> = Vec::new();
         tiles.resize_with(self.count(0) * self.count(1), Tile::default);
@@ -92,7 +92,7 @@ impl<'a> Tiles<'a> {
         tiles
     }
 
-    /// The column (or row) that a coordinate lies in, then those that it is near, each with the period to add.
+    /// The column (or row) of a coordinate, then those that it is near, each with the period to add.
     fn near(&self, axis: usize, at: f64) -> [Option<(usize, f64)>; 3] {
         let starts = &self.starts[axis];
         let (count, size) = (self.count(axis), self.lattice.size[axis]);

@@ -1,7 +1,7 @@
 //! The triangles of a Delaunay graph: its faces, walked around from axis to axis.
 //!
-//! Every face but the outer one lies in an empty circle with all its corners on it. Where there are more than three of them,
-//! the face is a polygon, which is cut into a fan.
+//! Every face but the outer one lies in an empty circle with all its corners on it. A face with more than three corners
+//! is a polygon, which is cut into a fan.
 
 use super::delaunay;
 use crate::angle::turn;
@@ -12,9 +12,9 @@ use glam::DVec2;
 /// A triangle of points, or of images of points on a domain that wraps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Triangle {
-    /// The points at its corners, in the turn from x to y.
+    /// The points at its corners, in the direction from x towards y.
     pub corners: [PointIdx; 3],
-    /// From the first corner to those images of the second and the third, in the units of the positions.
+    /// The vectors from the first corner to the images of the second and the third, in the units of the positions.
     pub sides: [DVec2; 2],
 }
 
@@ -61,7 +61,7 @@ pub fn delaunay_triangles(points: &PointSet) -> Result<Vec<Triangle>, GraphError
     Ok(triangles)
 }
 
-/// For each axis the next one around the face that lies beside it in the turn from x to y.
+/// For each axis, the next one around the face beside it, in the direction from x towards y.
 fn next_around_faces(graph: &Graph) -> Vec<u32> {
     let next = |from: PointIdx, axis: &Axis| {
         let row = graph.axes(axis.to);
@@ -80,7 +80,7 @@ fn push_fan(graph: &Graph, first: PointIdx, face: &[Axis], triangles: &mut Vec<T
     let [a, b, ..] = face else {
         return;
     };
-    // All corners of an inner face turn one way; those of the outer face turn the other way, or not at all.
+    // All corners of an inner face turn one way; those of the outer face turn the other way, or lie on a line.
     let steps = |axis: &Axis| graph.lattice.steps(axis.vector);
     if turn(steps(a), steps(b)) <= 0.0 {
         return;

@@ -1,5 +1,5 @@
-//! What the lattice hashes must do: flip half of their output bits for any input bit, show no trace of the lattice,
-//! and never change.
+//! Properties of the lattice hashes: half of the output bits flip for any input bit, the lattice leaves no trace, and
+//! the values never change.
 
 use super::{hash1, hash2, hash3, hash4};
 use crate::{Seed, unit_f64};

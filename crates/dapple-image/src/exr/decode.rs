@@ -1,8 +1,8 @@
 //! Reading OpenEXR: all flat parts, scan lines or tiles, 16- and 32-bit numbers; of several resolutions the largest.
 //!
-//! Deep data and subsampled channels are refused. The sizes of all parts are held against the limits before memory for the
-//! pixels is asked for. The codec has assertions that damaged bytes can reach; where a program unwinds on panic (the
-//! default), they are caught here and become [`ImageErrorKind::Damaged`].
+//! Deep data and subsampled channels are errors. The sizes of all parts are checked against the limits before memory
+//! for the pixels is allocated. The codec has assertions that damaged bytes can reach; where a program unwinds on panic
+//! (the default), they are caught here and become [`ImageErrorKind::Damaged`].
 
 use super::{ExrImage, ExrPlane};
 use crate::image::EXR_SIGNATURE as SIGNATURE;
@@ -29,7 +29,7 @@ pub fn decode_exr(bytes: &[u8], limits: &Limits) -> Result<ExrImage, ImageError>
     if !bytes.starts_with(&SIGNATURE) {
         return Err(ImageError::new(ImageErrorKind::UnknownFormat));
     }
-    // Nothing outlives the call that a panic could leave half done.
+    // No data that a panic could leave half done outlives the call.
     catch_unwind(AssertUnwindSafe(|| decode(bytes, limits)))
         .unwrap_or_else(|_| Err(ImageError::damaged("OpenEXR", "the codec gave up")))
 }
@@ -49,7 +49,7 @@ fn decode(bytes: &[u8], limits: &Limits) -> Result<ExrImage, ImageError> {
         .map_err(refusal)?;
     let mut layers = image.layer_data;
     if let [layer] = layers.as_mut_slice() {
-        // There is nothing that its name would tell it from.
+        // A single part needs no name to be distinguished.
         layer.attributes.layer_name = None;
     }
     let mut planes = Vec::new();
@@ -59,7 +59,7 @@ fn decode(bytes: &[u8], limits: &Limits) -> Result<ExrImage, ImageError> {
     Ok(ExrImage { planes })
 }
 
-/// Refuses what is not read and what is too large, by the headers alone.
+/// Checks for unsupported features and sizes past the limits, by the headers alone.
 fn check_headers(headers: &[Header], limits: &Limits) -> Result<(), ImageError> {
     let mut bytes = 0_u64;
     for header in headers {
@@ -87,7 +87,7 @@ fn push_planes(
     layer: Layer<AnyChannels<FlatSamples>>,
     planes: &mut Vec<ExrPlane>,
 ) -> Result<(), ImageError> {
-    // The format has no side past 2^31; if one did not fit, the raster below would refuse the length.
+    // The format has no side past 2^31; if one did not fit, the raster below would report the length.
     let side = |side: usize| u32::try_from(side).unwrap_or(u32::MAX);
     let size = [side(layer.size.0), side(layer.size.1)];
     let part = layer.attributes.layer_name.map(|name| name.to_string());

@@ -18,9 +18,9 @@ const NAME_LIMIT: usize = 255;
 ///
 /// # Errors
 ///
-/// [`ImageErrorKind::PlaneName`] if a name is empty, not ASCII, too long or there twice, [`ImageErrorKind::SizeMismatch`]
-/// if the planes have different sizes, [`ImageErrorKind::Empty`] if there is no plane, [`ImageErrorKind::Unsupported`] if
-/// the format has no room for a side as long.
+/// [`ImageErrorKind::PlaneName`] if a name is empty, not ASCII, too long or there twice,
+/// [`ImageErrorKind::SizeMismatch`] if the planes have different sizes, [`ImageErrorKind::Empty`] if there is no plane,
+/// [`ImageErrorKind::Unsupported`] if a side is too long for the format.
 ///
 /// # Examples
 ///
@@ -67,8 +67,8 @@ pub fn encode_exr(planes: &[ExrPlane]) -> Result<Vec<u8>, ImageError> {
 ///
 /// # Errors
 ///
-/// Those of [`encode_exr`], and [`ImageErrorKind::Io`] if the file cannot be written; what was there before is then
-/// untouched.
+/// Those of [`encode_exr`], and [`ImageErrorKind::Io`] if the file cannot be written; a file that was there before is
+/// then unchanged.
 pub fn write_exr(path: impl AsRef<Path>, planes: &[ExrPlane]) -> Result<(), ImageError> {
     let path = path.as_ref();
     let bytes = encode_exr(planes).map_err(|error| error.at(path))?;

@@ -1,4 +1,4 @@
-//! From rasters of values to OpenEXR files in one call. Every number is kept as it is.
+//! Functions that write rasters as OpenEXR files in one call. Every number is kept.
 
 use super::{ExrPlane, write_exr};
 use crate::ImageError;

@@ -1,11 +1,11 @@
 //! An OpenEXR file in tiles that is written row by row, with one band of tiles in memory.
 //!
 //! A file has a header, a table with the place of every tile, and the tiles. The codec makes the header and the tiles;
-//! the order is kept here: tiles go to the file band by band, and the table is written last, into the gap that was left
-//! for it.
+//! this module keeps their order: tiles go to the file band by band, and the table is written last, into the gap that
+//! was left for it.
 //!
-//! Runs of equal bytes are compressed, and nothing else. Measured on a fractal height of 2048 × 2048 pixels and on colors
-//! and normals from it, ZIP makes files that are 0.6 to 2.5 % smaller, since the lower bits of `f32` are noise, and takes
+//! Only runs of equal bytes are compressed. Measured on a fractal height of 2048 × 2048 pixels and on colors and
+//! normals from it, ZIP makes files that are 0.6 to 2.5 % smaller, since the lower bits of `f32` are noise, and takes
 //! eleven times as long; PIZ gains less and takes longer still. Masks, cells and flat parts are runs.
 
 use crate::limits::check_side;
@@ -22,40 +22,40 @@ use exr::meta::header::{Header, LayerAttributes};
 use exr::meta::{BlockDescription, MetaData, magic_number};
 use std::io::{Seek, SeekFrom, Write};
 
-/// Columns and rows of a tile.
+/// The numbers of columns and rows of a tile.
 const TILE: usize = 64;
 
-/// How many tiles are compressed before they are written.
+/// The number of tiles that are compressed before they are written.
 const GROUP: usize = 64;
 
-/// The longest side that is written, in pixels. Coordinates have 32 bits with a sign, and programs refuse those past half
-/// of that.
+/// The longest side that can be written, in pixels. Coordinates have 32 bits with a sign, and programs reject those
+/// past half of that.
 const SIDE_LIMIT: u32 = i32::MAX as u32 / 2 - 1;
 
-/// An OpenEXR file on its way into `sink`.
+/// An OpenEXR file that is being written into `sink`.
 pub(crate) struct TileStream<W> {
     sink: W,
     band: Band,
-    /// Where the table of tiles begins in the file.
+    /// The place of the table of tiles in the file.
     table: u64,
-    /// Where the next tile begins in the file.
+    /// The place of the next tile in the file.
     position: u64,
-    /// Where the tiles so far begin.
+    /// The places of the tiles written so far.
     places: Vec<u64>,
 }
 
-/// The rows that are not in the file yet.
+/// The rows that are not yet in the file.
 struct Band {
     /// The only header of the file.
     headers: [Header; 1],
-    /// Of each row the numbers of the first plane, then those of the second, and so on.
+    /// The numbers of each row: those of the first plane, then those of the second, and so on.
     values: Vec<f32>,
-    /// The first of these rows.
+    /// The first row of the band.
     first_row: usize,
 }
 
 impl<W: Write + Seek> TileStream<W> {
-    /// A file of planes whose names are sorted, into an empty sink. The header is written at once.
+    /// Begins a file of planes, whose names are sorted, in an empty sink. The header is written at once.
     pub(crate) fn new(mut sink: W, size: [u32; 2], planes: &[&str]) -> Result<Self, ImageError> {
         check_side(size, SIDE_LIMIT, "OpenEXR")?;
         let headers = [header(size, planes)];
@@ -81,7 +81,7 @@ impl<W: Write + Seek> TileStream<W> {
         })
     }
 
-    /// Writes whole rows of the width that the file has, no more than it lacks. `part` is the number of a value in a
+    /// Writes whole rows of the width of the file, no more than are missing. `part` returns the number of a value in a
     /// plane.
     pub(crate) fn write_rows<T>(
         &mut self,
@@ -100,7 +100,7 @@ impl<W: Write + Seek> TileStream<W> {
         Ok(())
     }
 
-    /// Ends the file, all of whose rows must be there.
+    /// Ends the file, after all of its rows.
     pub(crate) fn finish(mut self) -> Result<W, ImageError> {
         let table: Vec<u8> = self.places.iter().flat_map(|at| at.to_le_bytes()).collect();
         let mut write = || {
@@ -113,7 +113,7 @@ impl<W: Write + Seek> TileStream<W> {
         Ok(self.sink)
     }
 
-    /// Writes the tiles of the rows that wait, from left to right.
+    /// Writes the tiles of the waiting rows, from left to right.
     fn write_band(&mut self) -> Result<(), ImageError> {
         let columns: Vec<usize> = (0..self.band.size().x()).step_by(TILE).collect();
         let mut bytes = Vec::new();
@@ -154,7 +154,7 @@ impl Band {
         self.height() == TILE || self.first_row + self.height() == self.size().y()
     }
 
-    /// The tile that begins in a column, compressed.
+    /// The compressed tile that begins in a column.
     fn chunk(&self, column: usize) -> exr::error::Result<Chunk> {
         let columns = self.size().x();
         let width = TILE.min(columns - column);
@@ -185,7 +185,7 @@ fn header(size: [u32; 2], planes: &[&str]) -> Header {
         rounding_mode: RoundingMode::Down,
     });
     let size = (size[0] as usize, size[1] as usize);
-    // The name is that of a part, and a file of one part needs none.
+    // The name is that of a part, and the only part of a file needs none.
     Header::new(Text::default(), size, planes.iter().map(channel).collect())
         .with_encoding(Compression::RLE, blocks, LineOrder::Increasing)
         .with_attributes(LayerAttributes::default())

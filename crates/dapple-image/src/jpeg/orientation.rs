@@ -1,18 +1,18 @@
-//! The orientation of a photograph, as its Exif data says, and turning it upright.
+//! The orientation of a photograph by its Exif data, and turning it upright.
 //!
-//! Reference: "Exchangeable image file format for digital still cameras: Exif Version 2.32", CIPA DC-008, 2019, tag
-//! 274 of the first directory of its TIFF data. Whatever is odd about the data means the usual orientation.
+//! Reference: "Exchangeable image file format for digital still cameras: Exif Version 2.32", CIPA DC-008, 2019, tag 274
+//! of the first directory of its TIFF data. Malformed data means the usual orientation.
 
 use crate::ImageError;
 use dapple_raster::Raster;
 
-/// The tag in a directory.
+/// The tag of the orientation in a directory.
 const TAG: u16 = 274;
 
-/// The bytes of an entry in a directory.
+/// The length of an entry in a directory, in bytes.
 const ENTRY: usize = 12;
 
-/// How the rows and columns of a file lie in the picture: from 1 (as they should) to 8.
+/// The orientation of the rows and columns of a file in the picture: from 1 (upright) to 8.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Orientation(u16);
 
@@ -31,7 +31,7 @@ impl Orientation {
         }
     }
 
-    /// The upright picture of pixels that lie like this in a file of `size` columns and rows.
+    /// The upright picture of the pixels of a file of `size` columns and rows with this orientation.
     pub(super) fn raster<T: Copy>(
         self,
         size: [u32; 2],
@@ -82,7 +82,7 @@ fn find(exif: &[u8]) -> Option<u16> {
     };
     let n_entries = short(directory)?;
     let entries = (0..usize::from(n_entries)).map(|entry| directory + 2 + ENTRY * entry);
-    // After tag, type and count comes the number itself, where it is short.
+    // The number itself follows tag, type and count, if it is short.
     entries
         .take_while(|&at| at < exif.len())
         .find(|&at| short(at) == Some(TAG))
@@ -94,8 +94,8 @@ mod tests {
     use super::Orientation;
     use dapple_raster::Raster;
 
-    /// The pixels of a picture of 3 columns and 2 rows, as the eight orientations store it: the specification says where
-    /// the first row and the first column of the file are in the picture.
+    /// The pixels of a picture of 3 columns and 2 rows, as the eight orientations store it. The specification defines
+    /// where the first row and the first column of the file are in the picture.
     const STORED: [([u32; 2], &[u8]); 8] = [
         ([3, 2], b"abcdef"),
         ([3, 2], b"cbafed"),

@@ -1,4 +1,4 @@
-//! What is read from JPEG files, and what is refused.
+//! JPEG files that are read, and those that are errors.
 
 use super::{SIGNATURE, decode_jpeg};
 use crate::{Image, ImageErrorKind, Limits, PngPixels, Transfer, decode_image};
@@ -10,7 +10,7 @@ fn color(x: u32, y: u32) -> [u8; 3] {
     [(3 * x + 20) as u8, (2 * y + 60) as u8, (x + y + 100) as u8]
 }
 
-/// A file of these samples; `set` chooses the kind of coding.
+/// Encodes samples as a file; `set` chooses the kind of coding.
 fn encode(
     size: [u32; 2],
     kind: ColorType,
@@ -78,7 +78,7 @@ fn all_codings_give_the_picture() {
 
 #[test]
 fn value_stability_jpeg() {
-    // The codes that the whole-number transform of the codec gives.
+    // The exact codes of the codec's whole-number transform.
     let image = decode_jpeg(&files([9, 9])[1], &Limits::default()).unwrap();
     let PngPixels::Rgb8(codes) = image.pixels else {
         panic!("the file is not RGB");

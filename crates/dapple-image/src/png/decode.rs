@@ -1,8 +1,8 @@
-//! Reading PNG.
+//! Decoder of PNG.
 //!
 //! Palettes, 1, 2 and 4 bits, the transparent color (`tRNS`) and interlacing are all resolved into the eight kinds of
-//! [`PngPixels`]; of an animation the first picture is read. The size is held against the limits before memory for the
-//! pixels is asked for.
+//! [`PngPixels`]; of an animation the first picture is read. The size is checked against the limits before memory for
+//! the pixels is allocated.
 
 use super::{PngImage, PngPixel, PngPixels, Transfer};
 use crate::image::PNG_SIGNATURE as SIGNATURE;
@@ -11,7 +11,7 @@ use dapple_raster::Raster;
 use png::{BitDepth, ColorType, DecodingError};
 use std::io::Cursor;
 
-/// The image in the bytes of a PNG file.
+/// Decodes the bytes of a PNG file.
 ///
 /// # Errors
 ///
@@ -37,14 +37,14 @@ pub fn decode_png(bytes: &[u8], limits: &Limits) -> Result<PngImage, ImageError>
     limits.check_bytes(length as u64)?;
     let mut samples = vec![0; length];
     reader.next_frame(&mut samples).map_err(refuse)?;
-    // Without the end of the file something after the pixels may be lost, so it counts as damaged, too.
+    // Without the end of the file, chunks after the pixels may be lost, so it counts as damaged, too.
     reader.finish().map_err(refuse)?;
     let transfer = transfer_of(reader.info());
     let pixels = PngPixels::from_samples(size, reader.output_color_type(), &samples)?;
     Ok(PngImage { pixels, transfer })
 }
 
-/// Refuses a size without pixels, which the codec does not tell from other damage.
+/// Checks that the size has pixels, which the codec reports like other damage.
 fn check_not_empty(bytes: &[u8]) -> Result<(), ImageError> {
     // After the signature comes the length of the first chunk, its name, and columns and rows of four bytes each.
     let Some(header) = bytes
@@ -65,7 +65,7 @@ fn check_not_empty(bytes: &[u8]) -> Result<(), ImageError> {
     Ok(())
 }
 
-/// Refuses a palette that ends within a color, of which version 0.18.1 of the codec takes the missing part from beyond
+/// Checks that a palette does not end within a color. Version 0.18.1 of the codec takes the missing part from beyond
 /// its end (image-rs/image-png, issue 694).
 fn check_palette(info: &png::Info<'_>) -> Result<(), ImageError> {
     match &info.palette {
@@ -80,7 +80,7 @@ fn check_palette(info: &png::Info<'_>) -> Result<(), ImageError> {
     }
 }
 
-/// Checks everything that the format lets check, and skips what is never used.
+/// The options of the codec: all checks on, and unused chunks skipped.
 fn options() -> png::DecodeOptions {
     let mut options = png::DecodeOptions::default();
     options.set_ignore_checksums(false);
@@ -128,7 +128,7 @@ impl PngPixels {
             (Rgb, Sixteen) => Self::Rgb16(raster(size, samples)?),
             (Rgba, Eight) => Self::Rgba8(raster(size, samples)?),
             (Rgba, Sixteen) => Self::Rgba16(raster(size, samples)?),
-            // The codec was asked to resolve these.
+            // The codec was configured to resolve these.
             _ => {
                 let feature = "this kind of PNG pixel";
                 return Err(ImageError::new(ImageErrorKind::Unsupported { feature }));

@@ -1,8 +1,8 @@
-//! Writing PNG.
+//! Encoder of PNG.
 //!
-//! Color is marked with the chunk `sRGB` (perceptual intent) and, for programs that do not know that one, with `gAMA`, as
-//! the specification recommends. Data carries no color chunk at all: a `gAMA` of 1 would make viewers brighten a height
-//! map, while programs that read data take the numbers as they are.
+//! Color is marked with the chunk `sRGB` (perceptual intent) and, for programs that do not know it, with `gAMA`, as the
+//! specification recommends. Data has no color chunk at all: a `gAMA` of 1 would make viewers brighten a height map,
+//! while programs that read data use the plain numbers.
 
 use super::stream::PngStream;
 use super::{PngPixel, Transfer};
@@ -44,8 +44,8 @@ pub fn encode_png<P: PngPixel>(
 ///
 /// # Errors
 ///
-/// Those of [`encode_png`], and [`Io`](crate::ImageErrorKind::Io) if the file cannot be written; what was there before is
-/// then untouched.
+/// Those of [`encode_png`], and [`Io`](crate::ImageErrorKind::Io) if the file cannot be written; a file that was there
+/// before is then unchanged.
 pub fn write_png<P: PngPixel>(
     path: impl AsRef<Path>,
     pixels: RasterView<'_, P>,

@@ -1,4 +1,4 @@
-//! What a PNG file holds; what is read from JPEG is of the same kinds.
+//! The content of a PNG file; JPEG files are read to the same type.
 
 use super::Transfer;
 use dapple_raster::Raster;
@@ -8,8 +8,8 @@ use dapple_raster::Raster;
 pub struct PngImage {
     /// The pixels.
     pub pixels: PngPixels,
-    /// [`Transfer::Srgb`] if the file says so (with the chunk `sRGB`, or a `gAMA` of 0.45455), else
-    /// [`Transfer::Data`], which for a file that says nothing may be color all the same.
+    /// [`Transfer::Srgb`] if the file declares it (with the chunk `sRGB`, or a `gAMA` of 0.45455), else
+    /// [`Transfer::Data`]; a file without a declaration may still hold color.
     pub transfer: Transfer,
 }
 

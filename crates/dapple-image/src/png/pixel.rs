@@ -1,23 +1,23 @@
-//! The pixels that a PNG file can have.
+//! The types of pixels in a PNG file.
 
-/// A pixel of 8 or 16 bits per channel: gray, gray with alpha, red-green-blue, or that with alpha.
+/// A pixel of 8 or 16 bits per channel: gray, gray with alpha, RGB, or RGB with alpha.
 ///
 /// It is implemented for `u8` and `u16` and for arrays of two, three and four of them. Alpha comes last and is not
 /// multiplied into the color.
 pub trait PngPixel: Copy + sealed::Sealed {
-    /// Samples of a pixel: 1 to 4.
+    /// The number of samples of a pixel: 1 to 4.
     #[doc(hidden)]
     const CHANNELS: usize;
 
-    /// Bits of a sample: 8 or 16.
+    /// The bits of a sample: 8 or 16.
     #[doc(hidden)]
     const BITS: u32;
 
-    /// Writes the samples as the file has them into bytes of their length.
+    /// Writes the samples, in the byte order of the file, into bytes of their length.
     #[doc(hidden)]
     fn write_bytes(self, bytes: &mut [u8]);
 
-    /// The pixel of these samples, which are of its length.
+    /// Reads a pixel from the bytes of its samples.
     #[doc(hidden)]
     fn from_bytes(bytes: &[u8]) -> Self;
 }
@@ -92,7 +92,7 @@ impl PngPixel for u16 {
 }
 
 mod sealed {
-    /// Keeps [`super::PngPixel`] to what the format has.
+    /// Restricts [`super::PngPixel`] to the types of the format.
     pub trait Sealed {}
     impl Sealed for u8 {}
     impl Sealed for u16 {}

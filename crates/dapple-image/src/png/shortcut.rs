@@ -1,4 +1,4 @@
-//! From rasters of values to PNG files in one call. Values below 0 and above 1 are clamped, and NaN becomes 0.
+//! Functions that write rasters as PNG files in one call. Values below 0 and above 1 are clamped, and NaN becomes 0.
 
 use crate::content::Pixel;
 use crate::{Depth, Encoding, ImageError, RowWriter, file};

@@ -1,14 +1,14 @@
-//! A PNG file that is written row by row in constant memory.
+//! Writing of a PNG file row by row in constant memory.
 //!
-//! The codec writes into a buffer that cannot fail, and what is in it goes on to the file after every row: the codec
-//! would keep the file to itself, and nothing that a file does can reach it this way.
+//! The codec writes into a buffer that cannot fail, which is copied to the file after every row. Otherwise the codec
+//! would own the file; and in this way no error of the file can reach the codec.
 //!
-//! How hard it tries was measured on maps of 2048 × 2048 pixels: a fractal height, its normals, and colors from it. With
-//! 16 bits the lower half of a sample is nearly noise, and level 1 makes files no larger than level 6 does (6.65 and 6.73
-//! MB of 8.4 for the height, 24.13 and 24.15 of 25.2 for the normals, 19.14 and 19.19 of 25.2 for the colors) in a fifth
-//! to a seventh of the time. With 8 bits level 3 takes a fifth of the time of level 6, for files that are at most 5 %
-//! larger, where level 1 would make them up to a third larger. The fastest way of the codec has a fixed code for small
-//! numbers, and cannot make normals smaller at all.
+//! The compression levels were chosen by measurements on maps of 2048 × 2048 pixels: a fractal height, its normals, and
+//! colors from it. With 16 bits the lower half of a sample is nearly noise, and level 1 makes files no larger than
+//! level 6 does (6.65 and 6.73 MB of 8.4 for the height, 24.13 and 24.15 of 25.2 for the normals, 19.14 and 19.19 of
+//! 25.2 for the colors) in a fifth to a seventh of the time. With 8 bits level 3 takes a fifth of the time of level 6,
+//! for files that are at most 5 % larger, where level 1 would make them up to a third larger. The fastest mode of the
+//! codec has a fixed code for small numbers, and cannot make normals smaller at all.
 
 use super::{GAMMA_OF_SRGB, PngPixel, Transfer};
 use crate::limits::check_side;
@@ -18,16 +18,16 @@ use png::{BitDepth, ColorType, DeflateCompression, EncodingError, StreamWriter};
 use std::io::{self, Write};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// The longest side that the format has, in pixels.
+/// The longest side of the format, in pixels.
 const SIDE_LIMIT: u32 = i32::MAX as u32;
 
-/// The longest row that is written, in bytes; the codec holds three of them from the beginning.
+/// The longest row that can be written, in bytes; the codec allocates three of them at the beginning.
 const ROW_LIMIT: u64 = 1 << 30;
 
-/// How many bytes of compressed data make a chunk of the file.
+/// The number of bytes of compressed data in a chunk of the file.
 const CHUNK_LENGTH: usize = 1 << 16;
 
-/// A PNG file on its way into `sink`.
+/// A PNG file that is being written into `sink`.
 pub(crate) struct PngStream<W> {
     sink: W,
     codec: StreamWriter<'static, Pipe>,
@@ -36,12 +36,12 @@ pub(crate) struct PngStream<W> {
     samples: Vec<u8>,
 }
 
-/// Bytes between the codec and the file; both ends hold it.
+/// A buffer between the codec and the file, shared by both.
 #[derive(Clone, Default)]
 struct Pipe(Arc<Mutex<Vec<u8>>>);
 
 impl<W: Write> PngStream<W> {
-    /// A file of pixels of one kind, of which the header is written at once.
+    /// Begins a file of pixels of one kind; the header is written at once.
     pub(crate) fn new<P: PngPixel>(
         sink: W,
         size: [u32; 2],
@@ -59,7 +59,7 @@ impl<W: Write> PngStream<W> {
         Ok(stream)
     }
 
-    /// Writes whole rows of the width that the file has, no more than it lacks.
+    /// Writes whole rows of the width of the file, no more than are missing.
     pub(crate) fn write_rows<T, P: PngPixel>(
         &mut self,
         rows: RasterView<'_, T>,
@@ -78,7 +78,7 @@ impl<W: Write> PngStream<W> {
         Ok(())
     }
 
-    /// Ends the file, all of whose rows must be there.
+    /// Ends the file, after all of its rows.
     pub(crate) fn finish(self) -> Result<W, ImageError> {
         let Self {
             mut sink,
@@ -102,7 +102,7 @@ impl<W: Write> PngStream<W> {
 
 impl Pipe {
     fn bytes(&self) -> MutexGuard<'_, Vec<u8>> {
-        // Nobody panics while holding it, and bytes would be in order all the same.
+        // No thread panics while it holds the lock, and the bytes would be in order all the same.
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
@@ -118,7 +118,7 @@ impl Write for Pipe {
     }
 }
 
-/// The bytes of a row, for a size that can be written.
+/// The number of bytes of a row, for a size that can be written.
 fn check_size(size: [u32; 2], pixel: usize) -> Result<usize, ImageError> {
     check_side(size, SIDE_LIMIT, "PNG")?;
     let bytes = u64::from(size[0]) * pixel as u64;

@@ -1,4 +1,4 @@
-//! From the codes of a PNG file to values and colors.
+//! Conversion of the codes of a PNG file to values and colors.
 
 use super::{PngImage, PngPixels};
 use crate::image::transparent;
@@ -7,7 +7,7 @@ use dapple_color::{Code, LinearRgb, LinearRgba};
 use dapple_raster::Raster;
 
 impl PngImage {
-    /// The numbers of a gray image, `code / max`, from 0 to 1; no transfer curve is undone, whatever the file says.
+    /// The numbers of a gray image, `code / max`, from 0 to 1; no transfer curve is applied, whatever the file says.
     ///
     /// # Errors
     ///
@@ -29,7 +29,7 @@ impl PngImage {
         }
     }
 
-    /// The colors in linear light, with the codes read as sRGB whatever the file says; gray gives grays.
+    /// The colors in linear light, with the codes read as sRGB whatever the file says; gray images become gray colors.
     ///
     /// # Errors
     ///
@@ -80,7 +80,7 @@ fn gray_alpha<C: Code>(&[code, alpha]: &[C; 2]) -> LinearRgba {
     }
 }
 
-/// Refuses a raster whose last channel, alpha, is not at its maximum everywhere.
+/// Checks that the last channel of a raster, alpha, is at its maximum everywhere.
 fn opaque<'a, C: Code, const CHANNELS: usize>(
     raster: &'a Raster<[C; CHANNELS]>,
     needed: &'static str,

@@ -1,4 +1,4 @@
-//! The bytes of arrays and raw heights, put down by hand.
+//! The bytes of arrays and raw heights, compared with bytes written by hand.
 
 use crate::content::Pixel;
 use crate::{Content, Depth, Encoding, ImageErrorKind, RowWriter};
@@ -6,7 +6,7 @@ use dapple_color::{LinearRgb, LinearRgba, Normal};
 use dapple_raster::Raster;
 use std::io::Cursor;
 
-/// The file of an image that is written in bands of one and two rows.
+/// Encodes an image that is written in bands of one and two rows.
 fn encode<T: Pixel + Clone>(image: &Raster<T>, encoding: Encoding) -> Vec<u8> {
     let [width, height] = image.size();
     let sink = Cursor::new(Vec::new());

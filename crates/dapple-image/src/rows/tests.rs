@@ -1,4 +1,4 @@
-//! The writer of rows beside the writers of whole images, and what it refuses.
+//! The writer of rows compared with the writers of whole images, and its errors.
 //!
 //! Reference: for the bytes of tiles, Academy Software Foundation, "OpenEXR File Layout", <https://openexr.com>.
 
@@ -46,7 +46,7 @@ fn normals(size: [u32; 2]) -> Raster<Normal> {
     })
 }
 
-/// The file of an image that is written in bands of these heights, over and over.
+/// Encodes an image that is written in bands of these heights, over and over.
 fn encode<T: Pixel + Clone>(image: &Raster<T>, encoding: Encoding, heights: &[u32]) -> Vec<u8> {
     let [width, height] = image.size();
     let sink = Cursor::new(Vec::new());

@@ -7,7 +7,7 @@ use glam::DVec2;
 use std::fs;
 use std::path::PathBuf;
 
-/// An empty folder of its own for a test.
+/// Creates an empty folder for a test.
 fn folder(name: &str) -> PathBuf {
     let folder = std::env::temp_dir().join(format!("dapple-mesh-{}-{name}", std::process::id()));
     let _ = fs::remove_dir_all(&folder);

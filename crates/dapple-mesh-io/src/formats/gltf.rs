@@ -3,19 +3,20 @@
 //! Reference: The Khronos Group, *glTF 2.0 Specification*, 2021 (ISO/IEC 12113:2022).
 //!
 //! All triangles of the default scene become one mesh, with the transforms of their nodes applied; without a scene all
-//! nodes count, and each of the copies that `EXT_mesh_gpu_instancing` makes of their meshes. Triangle strips and fans
-//! become triangles, point primitives only vertices; lines, skins, morph targets and animations are left out. Primitives
-//! of one node with the same attributes share their vertices. Where only some primitives have colors or texture
-//! coordinates, the others become white and zero; normals are kept only if all have them. The material is the first that
-//! a primitive has. Textures are taken as they are if they are PNG or JPEG and use the same texture coordinates as the
-//! base color; their samplers and transforms are left out, as is everything that [`Material`] does not have.
+//! nodes count, and each of the copies of their meshes by `EXT_mesh_gpu_instancing`. Triangle strips and fans become
+//! triangles, point primitives only vertices; lines, skins, morph targets and animations are left out. Primitives of
+//! one node with the same attributes share their vertices. Where only some primitives have colors or texture
+//! coordinates, the others become white and zero; normals are kept only if all have them. The material is the first
+//! that a primitive has. Textures are copied unchanged if they are PNG or JPEG and use the same texture coordinates as
+//! the base color; their samplers and transforms are left out, as are all properties that [`Material`] lacks.
 //!
 //! At a seam of the texture a glTF file has two vertices at one position; [`Mesh::repair`](dapple_mesh::Mesh::repair)
-//! makes one of them. Texture coordinates belong to corners and do not mind; [`Repair::face_before`](dapple_mesh::Repair)
-//! says whose they are.
+//! merges them. Texture coordinates belong to corners and are not affected;
+//! [`Repair::face_before`](dapple_mesh::Repair) maps faces to those before the repair.
 //!
-//! The reader is ours since the crate `gltf` panics at files that pass its validation (a test shows one), does not know
-//! of copies, and reads no data URIs without an image library; tests use it as a second reader of what is written here.
+//! The reader is ours since the crate `gltf` panics at files that pass its validation (a test shows one), does not
+//! support instancing, and reads no data URIs without an image library; tests use it as a second reader of written
+//! files.
 
 mod accessor;
 mod container;
@@ -40,7 +41,7 @@ use std::borrow::Cow;
 
 const FORMAT: &str = "glTF";
 
-/// The line of the table of formats.
+/// The entry of the table of formats.
 pub(super) const GLTF: MeshFormat = MeshFormat {
     name: FORMAT,
     endings: &["glb", "gltf"],
@@ -52,8 +53,8 @@ pub(super) const GLTF: MeshFormat = MeshFormat {
     }),
 };
 
-/// Extensions that a file may require: copies of meshes are made, and the others change nothing here, or only the types
-/// of accessors, which are all read.
+/// Extensions that a file may require: instancing is supported, and the others do not matter here, or only add types of
+/// accessors, all of which are read.
 const EXTENSIONS: [&str; 5] = [
     "EXT_mesh_gpu_instancing",
     "KHR_mesh_quantization",
@@ -62,7 +63,7 @@ const EXTENSIONS: [&str; 5] = [
     "KHR_lights_punctual",
 ];
 
-/// A file with its buffers.
+/// A document with its buffers.
 struct Source<'a> {
     document: Document,
     buffers: Vec<Cow<'a, [u8]>>,
@@ -73,8 +74,8 @@ struct Source<'a> {
 /// # Errors
 ///
 /// [`MeshIoErrorKind::File`] if the bytes are not a glTF file, or it requires another file;
-/// [`MeshIoErrorKind::Unsupported`] if its version is not 2, or it requires an extension; and what
-/// [`Mesh::new`](dapple_mesh::Mesh::new) and [`Model::check`] refuse.
+/// [`MeshIoErrorKind::Unsupported`] if its version is not 2, or it requires an extension; and the errors of
+/// [`Mesh::new`](dapple_mesh::Mesh::new) and [`Model::check`].
 ///
 /// # Examples
 ///
@@ -98,7 +99,7 @@ pub fn read(bytes: &[u8]) -> Result<Model, MeshIoError> {
 /// Those of [`read`]. A missing texture is no error.
 pub fn read_with(bytes: &[u8], beside: &mut Beside<'_>) -> Result<Model, MeshIoError> {
     let container = Container::read(bytes)?;
-    // Other versions have other types in the same places, so that this has to be asked first.
+    // Other versions have other types in the same places, so the version has to be checked first.
     let Head { asset } = parse(container.json)?;
     if !asset.version.starts_with("2.") {
         return Err(unsupported(format!("glTF {}", asset.version)));
@@ -147,7 +148,7 @@ impl Source<'_> {
         bytes.ok_or_else(|| wrong(format!("there are no bytes for buffer view {index}")))
     }
 
-    /// The material of a number; the default if there is none.
+    /// The material with a number; the default if there is none.
     fn material(&self, index: usize, beside: &mut Beside<'_>) -> Material {
         let Some(material) = self.document.materials.get(index) else {
             return Material::default();
@@ -176,7 +177,7 @@ impl Source<'_> {
         }
     }
 
-    /// Which set of texture coordinates the textures of a material use: that of the base color, else of the normals.
+    /// The set of texture coordinates that the textures of a material use: that of the base color, else of the normals.
     fn uvs_of_material(&self, index: usize) -> u32 {
         let material = self.document.materials.get(index);
         let pbr = material.and_then(|material| material.pbr_metallic_roughness.as_deref());
@@ -187,7 +188,7 @@ impl Source<'_> {
         info.map_or(0, |info| info.tex_coord)
     }
 
-    /// The image of a texture, if there is one that is PNG or JPEG.
+    /// The image of a texture, if it is PNG or JPEG.
     fn image(&self, texture: usize, beside: &mut Beside<'_>) -> Option<EncodedImage> {
         let image = self.document.textures.get(texture)?.source?;
         let image = self.document.images.get(image)?;

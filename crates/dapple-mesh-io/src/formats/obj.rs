@@ -3,16 +3,16 @@
 //! Reference: Wavefront, *Advanced Visualizer Manual*, appendix B1 (Object Files) and B2 (MTL). Colors of vertices
 //! follow `v x y z`, as many programs write them. Wavefront's v goes up, so that v becomes 1 - v on the way in and out.
 //!
-//! All faces become one mesh, whatever their objects, groups and materials, since a texture is to run across these; the
-//! material is the first that a face has. Normals, which OBJ gives to corners, become those of vertices if no vertex has
-//! two, and stay with the corners otherwise; where a corner has none, all are left out. Texture coordinates and normals
-//! that corners name and that there are not are left out, too, which [`Model::left_out`] says. Lines, points and
-//! free-form surfaces are left out. Of a material its `Kd` (linear, and only without a texture, since with one it is
-//! seldom meant), `d`, `map_Kd` and `norm` are read and written. A texture that is missing, or neither PNG nor JPEG, is
-//! left out.
+//! All faces become one mesh, whatever their objects, groups and materials, since a texture is to continue across
+//! these; the material is the first that a face has. Normals, which OBJ gives to corners, become those of vertices if
+//! no vertex has two, and stay with the corners otherwise; where a corner has none, all are left out. Texture
+//! coordinates and normals that corners name but the file lacks are left out, too, and listed in [`Model::left_out`].
+//! Lines, points and free-form surfaces are left out. Of a material its `Kd` (linear, and only without a texture, since
+//! with one it is seldom meant), `d`, `map_Kd` and `norm` are read and written. A texture that is missing, or neither
+//! PNG nor JPEG, is left out.
 //!
-//! The reader is ours for what is promised of it: all bits of `f64`, errors that name their line, a list of what is left
-//! out, and a limit of memory whatever the file says.
+//! The reader is ours because of its guarantees: all bits of `f64`, errors that name their line, a list of omitted
+//! parts, and a limit of memory whatever the file says.
 
 mod mtl;
 mod write;
@@ -35,7 +35,7 @@ use std::borrow::Cow;
 
 const FORMAT: &str = "OBJ";
 
-/// The line of the table of formats.
+/// The entry of the table of formats.
 pub(super) const OBJ: MeshFormat = MeshFormat {
     name: FORMAT,
     endings: &["obj"],
@@ -47,24 +47,24 @@ pub(super) const OBJ: MeshFormat = MeshFormat {
     }),
 };
 
-/// The number of a texture coordinate or normal where a corner has none.
+/// The index of a texture coordinate or normal for a corner without one.
 const NONE: u32 = u32::MAX;
-/// The number of a texture coordinate or normal that there cannot be, as any number that is too large.
+/// The index of a texture coordinate or normal that cannot exist, such as one that is too large.
 const MISSING: u32 = u32::MAX - 1;
 
-/// The numbers of the position, texture coordinate and normal of a corner.
+/// The indices of the position, texture coordinate and normal of a corner.
 type Corner = [u32; 3];
 
 #[derive(Default)]
 struct Draft {
     positions: Vec<DVec3>,
-    /// One for each position up to the last that has one; others are white.
+    /// The colors, one for each position up to the last that has one; others are white.
     colors: Vec<LinearRgba>,
     uvs: Vec<DVec2>,
     normals: Vec<DVec3>,
     faces: Vec<[Corner; 3]>,
     libraries: Vec<String>,
-    /// The name of the material in use, and whether a face has it.
+    /// The name of the material in use, and whether a face uses it.
     material: Option<(String, bool)>,
 }
 
@@ -72,8 +72,8 @@ struct Draft {
 ///
 /// # Errors
 ///
-/// [`MeshIoErrorKind::File`](crate::MeshIoErrorKind::File) with the line if the bytes are not an OBJ file;
-/// and what [`Mesh::new`] and [`Model::check`] refuse.
+/// [`MeshIoErrorKind::File`](crate::MeshIoErrorKind::File) with the line if the bytes are not an OBJ file; and the
+/// errors of [`Mesh::new`] and [`Model::check`].
 ///
 /// # Examples
 ///
@@ -91,7 +91,7 @@ pub fn read(bytes: &[u8]) -> Result<Model, MeshIoError> {
 ///
 /// # Errors
 ///
-/// Those of [`read`]; of other files, only a `Kd` beyond single precision is an error.
+/// Those of [`read`]. In other files, only a `Kd` beyond single precision is an error.
 pub fn read_with(bytes: &[u8], beside: &mut Beside<'_>) -> Result<Model, MeshIoError> {
     let mut draft = Draft::default();
     let text = joined(bytes);
@@ -112,8 +112,8 @@ pub fn read_with(bytes: &[u8], beside: &mut Beside<'_>) -> Result<Model, MeshIoE
     Ok(model)
 }
 
-/// The text with lines joined that end with a backslash, but for comments, where that is often the end of a path. Where
-/// a joined line ends there are as many ends of lines as before, so that all others keep their numbers.
+/// Joins lines that end with a backslash to the next one, except in comments, where it is often the end of a path. A
+/// joined line is followed by as many line ends as it had before, so that all other lines keep their numbers.
 fn joined(bytes: &[u8]) -> Cow<'_, [u8]> {
     let continued = |pair: &[u8]| pair[0] == b'\\' && matches!(pair[1], b'\n' | b'\r');
     if !bytes.windows(2).any(continued) {
@@ -125,7 +125,7 @@ fn joined(bytes: &[u8]) -> Cow<'_, [u8]> {
         let content = line.trim_ascii_end();
         let is_comment = n_joined == 0 && line.starts_with(b"#");
         match content.strip_suffix(b"\\") {
-            // The backslash is the very last before the end of the line.
+            // The backslash is the last byte before the end of the line.
             Some(start)
                 if !is_comment && matches!(line[content.len()..], [b'\n'] | [b'\r', b'\n']) =>
             {
@@ -156,7 +156,7 @@ impl Draft {
             }
             b"vn" => self.normals.push(line.position(1)?),
             b"f" => self.add_face(line)?,
-            // Some programs repeat it for each object.
+            // Some programs repeat this line for each object.
             b"mtllib" if self.libraries.last() != Some(&name(line)) => {
                 self.libraries.push(name(line));
             }
@@ -196,7 +196,7 @@ impl Draft {
         Ok(())
     }
 
-    /// The numbers from 0 of a corner, whose own are from 1, or from -1 back from the last there is.
+    /// The indices of a corner from 0; the numbers in the file count from 1, or from -1 backward from the last.
     fn corner(&self, word: &[u8]) -> Option<Corner> {
         let counts = [self.positions.len(), self.uvs.len(), self.normals.len()];
         let mut corner = [NONE; 3];
@@ -217,7 +217,7 @@ impl Draft {
         parts.next().is_none().then_some(corner)
     }
 
-    /// Refuses a face that names a vertex which the file does not have.
+    /// Fails for a face with a vertex that the file does not have.
     fn check_vertices(&self, text: &[u8]) -> Result<(), MeshIoError> {
         let count = self.positions.len();
         let missing = |corner: &&Corner| corner[0] as usize >= count;
@@ -227,7 +227,7 @@ impl Draft {
         let Some((face, corner)) = first.next() else {
             return Ok(());
         };
-        // Vertices may come after the faces, so that only now the line is looked for.
+        // Vertices may follow the faces, so the line is searched only now.
         let mut n_faces = 0;
         for line in lines(FORMAT, text).filter(|line| line.words[0] == b"f") {
             n_faces += line.words.len().saturating_sub(3);
@@ -238,7 +238,7 @@ impl Draft {
         Ok(())
     }
 
-    /// Takes away what corners name and the file does not have, and says so.
+    /// Removes texture coordinates and normals that corners name but the file lacks, and returns a list of them.
     fn take_away_missing(&mut self) -> Vec<String> {
         let mut left_out = Vec::new();
         for (i, count, what) in [
@@ -267,12 +267,12 @@ impl Draft {
             .map(|face| face.map(|corner| corner[0]))
             .collect();
         let uvs = self.face_uvs();
-        // The corners name vertices that there are before normals are spread over these.
+        // The vertices of all corners were checked before normals are spread over them.
         let count = self.positions.len();
         let mesh = Mesh::new(core::mem::take(&mut self.positions), &faces)?;
         let corner_normals = self.corner_normals();
         let normals = self.vertex_normals(count, corner_normals.as_deref());
-        // Only at creases corners have normals of their own.
+        // Only creases need corner normals.
         let corner_normals = corner_normals.filter(|_| normals.is_none());
         if !self.colors.is_empty() {
             self.colors.resize(count, WHITE);
@@ -291,7 +291,7 @@ impl Draft {
         Ok(model)
     }
 
-    /// The texture coordinates of the corners, zero where there are none, or nothing if no corner has one.
+    /// The texture coordinates of the corners, zero where there are none, or `None` if no corner has one.
     fn face_uvs(&self) -> Option<Vec<[DVec2; 3]>> {
         if self.faces.iter().flatten().all(|corner| corner[1] == NONE) {
             return None;
@@ -310,7 +310,8 @@ impl Draft {
         self.faces.iter().map(of_face).collect()
     }
 
-    /// The normals of the vertices, if no vertex has two at its corners; those of a cloud of points in their order.
+    /// The normals of the vertices, if no vertex has two at its corners; for a cloud of points, in the order of the
+    /// file.
     fn vertex_normals(
         &self,
         count: usize,
@@ -332,10 +333,10 @@ impl Draft {
     }
 }
 
-/// The color of vertices that have none where others do.
+/// The color of vertices without one, if others have colors.
 const WHITE: LinearRgba = LinearRgba::opaque(LinearRgb::WHITE);
 
-/// The rest of a line as a name, which may have spaces.
+/// The rest of a line as a name, which may contain spaces.
 fn name(line: &Line<'_>) -> String {
     joined_words(&line.name_words())
 }
@@ -350,7 +351,7 @@ fn index(number: i64, count: usize) -> Option<u32> {
     } else {
         i64::try_from(count).ok()? + number
     };
-    // Zero names nothing, and would be one past the last.
+    // Zero is no valid number, and would become one past the last.
     u32::try_from(from_zero)
         .ok()
         .filter(|&index| number != 0 && index != NONE)

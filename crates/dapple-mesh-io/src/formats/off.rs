@@ -2,11 +2,11 @@
 //!
 //! Reference: the manual of Geomview, `http://www.geomview.org/docs/html/OFF.html`.
 //!
-//! Read are all headers of three dimensions: `OFF` with the letters `ST`, `C` and `N` before it, in this order, for
+//! All headers of three dimensions are read: `OFF` with the letters `ST`, `C` and `N` before it, in this order, for
 //! texture coordinates, colors and normals of the vertices, and none at all, which means `OFF`. The counts may follow
 //! the header on its line, even without a space. Colors are three or four numbers, 0 to 255 if a vertex has only whole
-//! ones and else 0 to 1; those of faces are left out. A vertex is on one line; a face may go on over several. The
-//! four-dimensional, n-dimensional and binary variants are refused.
+//! ones and else 0 to 1; those of faces are left out. A vertex is on one line; a face may continue over several. The
+//! four-dimensional, n-dimensional and binary variants are errors.
 
 use super::MeshFormat;
 use crate::MeshIoError;
@@ -20,7 +20,7 @@ use glam::{DVec2, DVec3};
 
 const FORMAT: &str = "OFF";
 
-/// The line of the table of formats.
+/// The entry of the table of formats.
 pub(super) const OFF: MeshFormat = MeshFormat {
     name: FORMAT,
     endings: &["off"],
@@ -28,7 +28,7 @@ pub(super) const OFF: MeshFormat = MeshFormat {
     writer: None,
 };
 
-/// The columns of the vertices, as the header lists them.
+/// The columns of the vertices, according to the header.
 #[derive(Clone, Copy, Default)]
 struct Header {
     texture: bool,
@@ -49,8 +49,8 @@ struct Vertices {
 ///
 /// # Errors
 ///
-/// [`MeshIoErrorKind::File`](crate::MeshIoErrorKind::File) with the line if the bytes are not an OFF file;
-/// and what [`Mesh::new`] and [`Model::check`] refuse.
+/// [`MeshIoErrorKind::File`](crate::MeshIoErrorKind::File) with the line if the bytes are not an OFF file; and the
+/// errors of [`Mesh::new`] and [`Model::check`].
 ///
 /// # Examples
 ///
@@ -80,7 +80,7 @@ pub fn read(bytes: &[u8]) -> Result<Model, MeshIoError> {
     let (mut faces, mut corners) = (Vec::new(), Vec::new());
     for _ in 0..n_faces {
         let mut line = lines.next().ok_or_else(|| ended("faces", n_faces))?;
-        // A polygon may go on over several lines, and its color is on the last of them.
+        // A polygon may continue over several lines, and its color is on the last of them.
         let count = polygon_count(&line)?;
         while line.words.len() <= count {
             let more = lines.next();
@@ -95,7 +95,7 @@ pub fn read(bytes: &[u8]) -> Result<Model, MeshIoError> {
     vertices.into_model(header, &faces)
 }
 
-/// Takes the header off its line.
+/// Removes the header from its line and parses it.
 fn take_header(line: &mut Line<'_>) -> Result<Header, MeshIoError> {
     let word = line.words[0];
     if parse::<f64>(word).is_some() {
@@ -127,7 +127,7 @@ fn strip<'a>(word: &'a [u8], prefix: &[u8]) -> (&'a [u8], bool) {
         .map_or((word, false), |rest| (rest, true))
 }
 
-/// How many vertices and faces there are; the number of edges, which follows, is never needed.
+/// The numbers of vertices and faces; the number of edges, which follows, is not used.
 fn counts_of(line: Option<&Line<'_>>) -> Result<[u64; 2], MeshIoError> {
     let line = line.ok_or_else(|| MeshIoError::file(FORMAT, "there are no counts"))?;
     let count = |at: usize| line.words.get(at).copied().and_then(parse::<u64>);
@@ -144,12 +144,12 @@ fn ended(what: &str, count: u64) -> MeshIoError {
     )
 }
 
-/// How many corners the polygon has that begins on a line.
+/// The number of corners of the polygon that begins on a line.
 fn polygon_count(line: &Line<'_>) -> Result<usize, MeshIoError> {
     parse(line.words[0]).ok_or_else(|| line.error("the number of corners of a face is needed"))
 }
 
-/// The corner that a word is, which is the number of a vertex, from 0.
+/// The vertex of a corner, a number from 0.
 fn corner(line: &Line<'_>, word: &[u8], n_vertices: u64) -> Result<u32, MeshIoError> {
     let corner: u32 =
         parse(word).ok_or_else(|| line.error("a corner is not the number of a vertex"))?;
@@ -201,7 +201,7 @@ impl Vertices {
     }
 }
 
-/// The color in three or four numbers from a place on.
+/// The color in three or four numbers, starting at a word.
 fn color(line: &Line<'_>, at: usize, count: usize) -> Result<LinearRgba, MeshIoError> {
     let whole = line
         .words

@@ -3,15 +3,15 @@
 //! Reference: Greg Turk, *The PLY Polygon File Format* (1994), as distributed with the models of the Stanford 3D
 //! Scanning Repository.
 //!
-//! Read are text and binary files of both byte orders, with any scalar type for any property. Of the element `vertex`:
+//! Text and binary files of both byte orders are read, with any scalar type for any property. Of the element `vertex`:
 //! `x y z`, `nx ny nz`, `red green blue alpha` (also with `diffuse_` before or as `r g b a`) and `s t`, `u v` or
 //! `texture_u texture_v`. Of the element `face`: the list `vertex_indices` or `vertex_index`, and `texcoord` with two
-//! numbers for each corner, which goes before those of vertices. Of the element `tristrips`: the list `vertex_indices`,
-//! in which -1 ends a strip. Everything else is passed over. Colors are coded as
-//! sRGB: 0 to 255, for `ushort` 0 to 65535, and for `float` and `double` 0 to 1. Texture coordinates have v up, as OBJ,
-//! so that v becomes 1 - v.
+//! numbers for each corner, which takes precedence over those of vertices. Of the element `tristrips`: the list
+//! `vertex_indices`, in which -1 ends a strip. All other elements and properties are skipped. Colors are coded as sRGB:
+//! 0 to 255, for `ushort` 0 to 65535, and for `float` and `double` 0 to 1. As in OBJ, v goes up in the file, so that v
+//! becomes 1 - v.
 //!
-//! The reader is ours for what is promised of it: any scalar type for any property, errors that name their line, and a
+//! The reader is ours because of its guarantees: any scalar type for any property, errors that name their line, and a
 //! limit of memory whatever the header says.
 
 mod body;
@@ -36,7 +36,7 @@ use header::{Element, Header, Kind, Scalar};
 
 const FORMAT: &str = "PLY";
 
-/// The line of the table of formats.
+/// The entry of the table of formats.
 pub(super) const PLY: MeshFormat = MeshFormat {
     name: FORMAT,
     endings: &["ply"],
@@ -48,7 +48,7 @@ pub(super) const PLY: MeshFormat = MeshFormat {
     }),
 };
 
-/// The columns of a vertex, and the names that properties have for them.
+/// The columns of a vertex, and the names of properties for each.
 const COLUMNS: [&[&str]; 12] = [
     &["x"],
     &["y"],
@@ -68,7 +68,7 @@ const CORNERS: [&str; 2] = ["vertex_indices", "vertex_index"];
 
 #[derive(Default)]
 struct Draft {
-    /// How many the header says, also where faces come before them.
+    /// The number of vertices in the header, also if faces come before them.
     n_vertices: u64,
     positions: Vec<DVec3>,
     normals: Vec<DVec3>,
@@ -78,7 +78,7 @@ struct Draft {
     face_uvs: Vec<[DVec2; 3]>,
 }
 
-/// Which column a property of a vertex is for, and how a color is coded in it.
+/// The column for a property of a vertex, and the coding of a color in it.
 struct Target {
     column: usize,
     coding: Coding,
@@ -89,8 +89,8 @@ struct Target {
 /// # Errors
 ///
 /// [`MeshIoErrorKind::File`](crate::MeshIoErrorKind::File) if the bytes are not a PLY file, or have fewer elements than
-/// the header says, with the line in the header and in a body of text; and what [`Mesh::new`] and [`Model::check`]
-/// refuse.
+/// the header says, with the line in the header and in a body of text; and the errors of [`Mesh::new`] and
+/// [`Model::check`].
 ///
 /// # Examples
 ///
@@ -123,10 +123,10 @@ pub fn read(bytes: &[u8]) -> Result<Model, MeshIoError> {
     draft.into_model()
 }
 
-/// Reads an element that is not needed.
+/// Skips an element that is not used.
 fn pass_over(element: &Element, body: &mut Body<'_>) -> Result<(), MeshIoError> {
     let mut list = Vec::new();
-    // Without properties there is nothing to read, however many there are said to be.
+    // Without properties there is nothing to read, whatever the count.
     let count = if element.properties.is_empty() {
         0
     } else {
@@ -159,7 +159,7 @@ impl Draft {
             return Err(MeshIoError::file(FORMAT, why));
         }
         let (mut row, mut codings) = ([0.0; COLUMNS.len()], [Coding::Unit; 4]);
-        // The alpha of a color without one.
+        // The alpha of a color without alpha.
         row[9] = 1.0;
         for target in targets
             .iter()
@@ -261,7 +261,7 @@ impl Draft {
         Ok(())
     }
 
-    /// The vertex that a number is.
+    /// The vertex with a number.
     fn vertex(&self, number: f64, body: &Body<'_>) -> Result<u32, MeshIoError> {
         let vertex = number as u32;
         if f64::from(vertex) == number && u64::from(vertex) < self.n_vertices {
@@ -286,7 +286,7 @@ impl Draft {
     }
 }
 
-/// Which column a property is for.
+/// The column for a property.
 fn target(name: &str, kind: Kind) -> Option<Target> {
     let column = COLUMNS.iter().position(|names| names.contains(&name))?;
     let Kind::Scalar(scalar) = kind else {

@@ -1,4 +1,4 @@
-//! A closed surface of triangles whose connections change.
+//! A closed surface of triangles whose connectivity changes.
 
 use super::Cut;
 use crate::{ModelError, ModelErrorKind};
@@ -9,18 +9,18 @@ use glam::DVec3;
 pub(super) struct Sheet {
     positions: Vec<DVec3>,
     faces: Vec<[u32; 3]>,
-    /// The faces at each vertex; those of a vertex that is gone are none.
+    /// The faces at each vertex; empty for a removed vertex.
     fans: Vec<Vec<u32>>,
     n_faces: usize,
 }
 
-/// The vertex that collapsed faces name.
+/// The vertices of a collapsed face.
 const GONE: [u32; 3] = [u32::MAX; 3];
-/// The least cosine between the normal of a face and that of the same face after a change.
+/// The smallest cosine between the normals of a face before and after a change.
 const TURN: f64 = 0.5;
-/// A face may get less even as long as it is at least this even.
+/// The evenness above which a face may get less even.
 const EVEN: f64 = 0.3;
-/// The part of the way to the middle of its neighbors that a vertex goes.
+/// The fraction of the way to the middle of its neighbors that a vertex moves.
 const SLIDE: f64 = 0.8;
 
 impl Sheet {
@@ -55,7 +55,7 @@ impl Sheet {
         self.n_faces
     }
 
-    /// Collapses short edges, no two of them near each other, until `count` faces are left.
+    /// Collapses short edges, no two of them adjacent, until `count` faces are left.
     pub(super) fn collapse(&mut self, cut: &Cut, count: usize) {
         let mut edges: Vec<(f64, u32, u32)> = self
             .edges(|_, from, to| from < to)
@@ -78,7 +78,7 @@ impl Sheet {
         }
     }
 
-    /// Flips edges where that makes the worse of the two triangles better.
+    /// Flips edges where that improves the worse of the two triangles.
     pub(super) fn flip(&mut self) {
         for [a, b] in self.edges(|_, from, to| from < to) {
             self.flip_edge(a, b);
@@ -107,7 +107,7 @@ impl Sheet {
         }
     }
 
-    /// The faces and vertices that are left.
+    /// The mesh of the remaining faces and vertices.
     pub(super) fn into_mesh(self) -> Result<Mesh, ModelError> {
         let mut numbers = vec![0; self.positions.len()];
         let mut positions = Vec::new();
@@ -124,7 +124,7 @@ impl Sheet {
         Ok(Mesh::new(positions, &faces)?)
     }
 
-    /// Moves `b` to `a` if the surface stays what it is.
+    /// Moves `b` to `a` if the topology and the shape of the surface allow it.
     fn collapse_edge(&mut self, cut: &Cut, a: u32, b: u32) -> bool {
         let [Some(left), Some(right)] = [self.face_of(a, b), self.face_of(b, a)] else {
             return false;
@@ -186,8 +186,8 @@ impl Sheet {
         self.fans[c as usize].push(right);
     }
 
-    /// Whether the faces at `vertices` keep their sides and stay as even as they are, if all these vertices move to one
-    /// position, where the normal is `normal`. Faces with two of the vertices go.
+    /// Whether the faces at `vertices` keep their orientation and their evenness if all these vertices move to one
+    /// position, where the normal is `normal`. Faces with two of the vertices are removed.
     fn keeps_shape(&self, vertices: &[u32], to: DVec3, normal: DVec3) -> bool {
         let (mut least_before, mut least_after) = (EVEN, EVEN);
         for &vertex in vertices {
@@ -210,7 +210,7 @@ impl Sheet {
                 }
                 least_after = least_after.min(evenness(after));
                 let [old, new] = [before, after].map(area_normal);
-                // The normal of a tiny face says little; then that of the faces around it does.
+                // The normal of a tiny face is unreliable; it is replaced by that of the faces around it.
                 let sides = [(old, old.length()), (normal, 1.0)];
                 let kept =
                     |&(side, length): &(DVec3, f64)| new.dot(side) >= TURN * new.length() * length;
@@ -222,7 +222,7 @@ impl Sheet {
         least_after >= least_before
     }
 
-    /// The directed edges of the faces that `wanted` takes, in the order of the faces.
+    /// The directed edges of the faces for which `wanted` is true, in the order of the faces.
     fn edges(&self, wanted: impl Fn(&Self, u32, u32) -> bool) -> Vec<[u32; 2]> {
         let mut edges = Vec::new();
         for &[a, b, c] in self.faces.iter().filter(|&&face| face != GONE) {
@@ -248,7 +248,7 @@ impl Sheet {
         fan.find(|&face| next(self.faces[face as usize], from) == to)
     }
 
-    /// The corner of a face that is neither of two.
+    /// The corner of a face that is neither of two others.
     fn third(&self, face: u32, a: u32, b: u32) -> u32 {
         let [x, y, z] = self.faces[face as usize];
         if x != a && x != b {
@@ -294,7 +294,7 @@ fn next([a, b, c]: [u32; 3], corner: u32) -> u32 {
     }
 }
 
-/// The position on the surface that a line through a position meets, if the secant method finds one soon.
+/// The position where a line through a position meets the surface, if the secant method converges soon.
 fn settled(cut: &Cut, from: DVec3, along: DVec3) -> Option<DVec3> {
     const STEPS: u32 = 8;
     let (mut at, mut distance, mut slope) = (from, cut.distance(from), 1.0);
@@ -319,10 +319,10 @@ fn area_normal([a, b, c]: [DVec3; 3]) -> DVec3 {
     (b - a).cross(c - a)
 }
 
-/// How equilateral a triangle is: from 0 for one without an area to 1.
+/// The evenness of a triangle: from 0 for one without an area to 1 for an equilateral one.
 fn evenness([a, b, c]: [DVec3; 3]) -> f64 {
     let sides = (b - a).length_squared() + (c - b).length_squared() + (a - c).length_squared();
-    // Twice the area of an equilateral triangle is this part of its sides' squares.
+    // Twice the area of an equilateral triangle is this fraction of the sum of its squared sides.
     const EQUILATERAL: f64 = 0.288_675_134_594_812_9;
     let doubled = area_normal([a, b, c]).length();
     if sides > 0.0 {

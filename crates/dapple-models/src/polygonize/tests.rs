@@ -1,4 +1,4 @@
-//! Meshes around solids: closed, manifold, and where they should be.
+//! Meshes of solids: closed, manifold, and at the right place.
 
 use super::{TOLERANCE, polygonize, polygonize_n};
 use crate::ModelErrorKind;
@@ -8,7 +8,7 @@ use dapple_mesh::Mesh;
 use glam::DVec3;
 use std::collections::BTreeMap;
 
-/// The Euler characteristic of a mesh, after a look that it is closed, manifold, consistently wound and in one piece.
+/// The Euler characteristic of a mesh, after a check that it is closed, manifold, consistently wound and connected.
 pub(crate) fn euler(mesh: &Mesh) -> i64 {
     let mut edges = BTreeMap::new();
     let mut after = vec![BTreeMap::new(); mesh.positions().len()];
@@ -150,7 +150,7 @@ fn points_of_the_lattice_on_the_surface_leave_no_slivers() {
     assert!(angles[0] > 15.0, "least {}", angles[0]);
 }
 
-/// A solid of a function and a half width of its bounds.
+/// A solid of a distance function and half the width of its bounds.
 struct Odd(fn(DVec3) -> f64, f64);
 
 impl Solid for Odd {

@@ -25,17 +25,18 @@ const TETRAHEDRA: [[usize; 4]; 6] = [
     [0, 5, 1, 7],
 ];
 
-/// The cells along each side of the smallest blocks.
+/// The number of cells along each side of the smallest blocks.
 const LEAF: i64 = 4;
-/// From the middle of a block to its farthest corners, in cells of the block: half the longest diagonal, √11 / 2.
+/// The distance from the middle of a block to its farthest corners, in cells of the block: half the longest diagonal,
+/// √11 / 2.
 const REACH: f64 = 0.5 * 1.658_312_395_177_7;
-/// How much faster than the position a distance may change.
+/// The largest ratio of the change of a distance to the change of the position.
 const STRETCH: f64 = 1.2;
 
 /// A point of the lattice.
 type Point = [i64; 3];
 
-/// The positions of the vertices and the triangles of the surface.
+/// Finds the surface: the positions of its vertices, and its triangles.
 pub(super) fn march(cut: &Cut) -> (Vec<DVec3>, Vec<[u32; 3]>) {
     let mut march = March::new(cut);
     let size = march.size.unsigned_abs().next_power_of_two() as i64;
@@ -58,9 +59,9 @@ const BITS: u32 = 20;
 
 struct March<'a> {
     cut: &'a Cut<'a>,
-    /// The lattice's coordinates of its first point.
+    /// The coordinates of the first point of the lattice.
     low: Point,
-    /// Cells along each axis of the lattice.
+    /// The number of cells along each axis of the lattice.
     size: i64,
     triangles: Vec<[Crossing; 3]>,
 }
@@ -131,10 +132,10 @@ impl<'a> March<'a> {
         }
     }
 
-    /// Adds the triangles that part the inside corners of a tetrahedron from the outside ones.
+    /// Adds the triangles that separate the inside corners of a tetrahedron from the outside ones.
     fn tetrahedron(&mut self, cell: Point, corners: [usize; 4], inside: &[bool; 8]) {
         let n_inside = corners.iter().filter(|&&corner| inside[corner]).count();
-        // The inside corners first. An odd number of swaps turns the volume over, and one more turns it back.
+        // The inside corners come first. An odd number of swaps mirrors the volume, and one more restores it.
         let (mut order, mut odd) = (corners, false);
         for left in [0, 1, 2, 0, 1, 0] {
             if !inside[order[left]] && inside[order[left + 1]] {
@@ -161,7 +162,7 @@ impl<'a> March<'a> {
         }
     }
 
-    /// Where the surface crosses an edge.
+    /// The position where the surface crosses an edge.
     fn crossing(&self, edge: Crossing) -> DVec3 {
         let coordinate = |axis: u32| (edge >> (3 + BITS * axis) & ((1 << BITS) - 1)) as i64;
         let point = [0, 1, 2].map(coordinate);
@@ -175,10 +176,10 @@ impl<'a> March<'a> {
     }
 }
 
-/// A number between 0 and 1 at which a function is zero to a tolerance, or jumps over it; its values at 0 and 1 are given
-/// and have different signs.
+/// A number between 0 and 1 at which a function is zero within a tolerance, or jumps over zero; its values at 0 and 1
+/// are `ends`, of different signs.
 fn root(ends: [f64; 2], tolerance: f64, value: impl Fn(f64) -> f64) -> f64 {
-    /// A third of them halve the range, which is enough for its last bits.
+    /// The largest number of steps. A third of them halve the range, which is enough for its last bits.
     const STEPS: u32 = 150;
     let [mut low, mut high] = [0.0, 1.0];
     let [mut at_low, mut at_high] = ends;
@@ -202,7 +203,7 @@ fn root(ends: [f64; 2], tolerance: f64, value: impl Fn(f64) -> f64) -> f64 {
     middle
 }
 
-/// The edge between two corners of a cell. One's steps are among the other's.
+/// The edge between two corners of a cell. The steps of one are a subset of the other's.
 fn crossing(cell: Point, from: usize, to: usize) -> Crossing {
     let point = sum(cell, corner(from & to));
     let steps = (from ^ to) as u64;

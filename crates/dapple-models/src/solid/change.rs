@@ -1,16 +1,16 @@
-//! Solids at other places and in other shapes.
+//! Transformed solids.
 
 use super::Solid;
 use glam::{DQuat, DVec3};
 
-/// A solid that is turned around the origin and then moved.
+/// A solid that is rotated around the origin and then moved.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placed<S> {
-    /// The solid before.
+    /// The solid before the transform.
     pub solid: S,
-    /// The turn, of length 1.
+    /// The rotation, of length 1.
     pub rotation: DQuat,
-    /// The move.
+    /// The translation.
     pub offset: DVec3,
 }
 
@@ -27,7 +27,7 @@ impl<S: Solid> Solid for Placed<S> {
     }
 }
 
-/// A solid with its left and right exchanged: what was at x is at -x.
+/// A solid with its left and right exchanged: x becomes -x.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mirrored<S>(pub S);
 
@@ -47,10 +47,10 @@ impl<S: Solid> Solid for Mirrored<S> {
 
 /// A solid that is stretched or squashed along the axes, from the origin.
 ///
-/// Its distance is the true one at the most, and less where the scales differ.
+/// Its distance is at most the true one, and less where the scales differ.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scaled<S> {
-    /// The solid before.
+    /// The solid before the transform.
     pub solid: S,
     /// The factors along the axes, above 0.
     pub scale: DVec3,
@@ -69,7 +69,7 @@ impl<S: Solid> Solid for Scaled<S> {
 /// A solid with a layer of even thickness around it, which rounds its edges.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grown<S> {
-    /// The solid before.
+    /// The solid without the layer.
     pub solid: S,
     /// The thickness of the layer.
     pub by: f64,
@@ -86,15 +86,15 @@ impl<S: Solid> Solid for Grown<S> {
     }
 }
 
-/// A solid whose sides are bent up: what is at x is lifted by `lift` x².
+/// A solid whose sides are bent up: a position at x is lifted by `lift` x².
 ///
-/// Its distance is the true one at the most, and less where it is bent.
+/// Its distance is at most the true one, and less where it is bent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bent<S> {
     solid: S,
     lift: f64,
     bounds: [DVec3; 2],
-    /// The least factor of distances under the bend.
+    /// The smallest factor of distances under the bend.
     shrink: f64,
 }
 
@@ -122,7 +122,7 @@ impl<S: Solid> Bent<S> {
 
 impl<S: Solid> Solid for Bent<S> {
     fn distance(&self, at: DVec3) -> f64 {
-        // Beyond the solid the bend goes on straight, so that its slope has a limit.
+        // Beyond the solid the bend continues straight, so that its slope is bounded.
         let x = at.x.max(self.bounds[0].x).min(self.bounds[1].x);
         let lift = self.lift * x * (2.0 * at.x - x);
         self.solid.distance(at - DVec3::Y * lift) * self.shrink

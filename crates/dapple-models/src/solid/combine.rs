@@ -1,4 +1,4 @@
-//! Solids that melt into each other.
+//! Solids that blend into each other.
 
 use super::{Solid, box_distance};
 use core::fmt;
@@ -49,7 +49,7 @@ impl Solid for Blend {
         let mut distance = f64::INFINITY;
         for part in &self.parts {
             let least = box_distance(part.bounds, at);
-            // Further than that a part changes nothing. A distance that is less than that to the box would make a step.
+            // Farther away, a part has no effect. A distance smaller than that to the box would make a step.
             if least < distance + part.width {
                 distance = blend(distance, part.solid.distance(at).max(least), part.width);
             }
@@ -58,7 +58,7 @@ impl Solid for Blend {
     }
 
     fn bounds(&self) -> [DVec3; 2] {
-        // A seam reaches out by a sixth of its width at the most.
+        // A seam protrudes by at most a sixth of its width.
         let around = |[low, high]: [DVec3; 2], part: &Part| {
             let seam = part.width / 6.0;
             [

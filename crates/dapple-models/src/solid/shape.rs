@@ -1,4 +1,4 @@
-//! The simple shapes.
+//! Elementary solids.
 
 use super::{Solid, box_distance};
 use glam::DVec3;
@@ -8,7 +8,7 @@ use glam::DVec3;
 pub struct Ball {
     /// The middle.
     pub center: DVec3,
-    /// From the middle to the surface.
+    /// The distance from the middle to the surface.
     pub radius: f64,
 }
 
@@ -29,7 +29,7 @@ impl Solid for Ball {
 pub struct Ellipsoid {
     /// The middle.
     pub center: DVec3,
-    /// From the middle to the surface along each axis, above 0.
+    /// The distances from the middle to the surface along each axis, above 0.
     pub radii: DVec3,
 }
 
@@ -51,10 +51,10 @@ impl Solid for Ellipsoid {
 
 /// The distance from a point outside to an ellipsoid around the origin.
 ///
-/// The nearest point is `r² p / (r² + t)` for the t above 0 at which it lies on the ellipsoid. What is left to zero falls
-/// with t and is convex, so Newton's steps from 0 come closer and never go past.
+/// The nearest point is `r² p / (r² + t)` for the t above 0 at which it lies on the ellipsoid. The function whose root
+/// is t falls with t and is convex, so Newton's steps from 0 approach it and never overshoot.
 fn outer_distance(radii: DVec3, at: DVec3) -> f64 {
-    /// More than ever seen: each step doubles the digits once it is near.
+    /// The largest number of steps, more than ever needed: each step doubles the number of digits near the root.
     const STEPS: u32 = 40;
     let squares = radii * radii;
     let mut t = 0.0;
@@ -64,7 +64,7 @@ fn outer_distance(radii: DVec3, at: DVec3) -> f64 {
         let terms = terms * terms;
         let excess = terms.element_sum() - 1.0;
         let step = excess / (2.0 * (terms * inverse).element_sum());
-        // The last bits do not matter, and NaN ends the search.
+        // The last bits do not matter, and NaN ends the iteration.
         if excess.is_nan() || excess <= 1e-13 {
             break;
         }
@@ -93,7 +93,7 @@ impl Solid for RoundCone {
     }
 }
 
-/// A round cone with what its distance needs.
+/// A round cone, with precomputed values for its distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Spindle {
     from: DVec3,
@@ -103,7 +103,7 @@ pub(super) struct Spindle {
     radius: f64,
     /// The decrease of the radius along a unit of the axis.
     taper: f64,
-    /// How far a normal of the mantle goes along the axis while it goes out by a unit.
+    /// The distance along the axis by which a normal of the mantle moves per unit outward.
     lean: f64,
 }
 
@@ -139,7 +139,7 @@ impl Spindle {
         let reach = at - self.from;
         let height = reach.dot(self.axis);
         let aside = (reach - self.axis * height).length();
-        // The normal of the mantle through the point meets the axis here.
+        // The foot of the normal of the mantle through the point, on the axis.
         let foot = (height - aside * self.lean).clamp(0.0, self.length);
         let along = height - foot;
         (aside * aside + along * along).sqrt() - (self.radius - self.taper * foot)
@@ -153,7 +153,7 @@ pub struct Torus {
     pub center: DVec3,
     /// The direction through the hole, of length 1.
     pub axis: DVec3,
-    /// From the middle of the ring to the middle of its tube.
+    /// The distance from the middle of the ring to the middle of its tube.
     pub ring: f64,
     /// The radius of the tube.
     pub tube: f64,
@@ -180,7 +180,7 @@ impl Solid for Torus {
 pub struct RoundBox {
     /// The middle.
     pub center: DVec3,
-    /// From the middle to the faces.
+    /// The distances from the middle to the faces.
     pub half: DVec3,
     /// The radius of the edges, at most the least of `half`.
     pub rounding: f64,

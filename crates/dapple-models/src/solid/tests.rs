@@ -1,4 +1,4 @@
-//! Distances of solids beside sampled ones.
+//! Distances of solids compared with sampled ones.
 
 use super::{
     Ball, Bent, Blend, Ellipsoid, Grown, Mirrored, Placed, RoundBox, RoundCone, Scaled, Solid,
@@ -124,7 +124,7 @@ fn distance_of_an_ellipsoid_equals_the_nearest_of_many_points() {
     let outside = |at: &DVec3| ((*at - center) / radii).length() > 1.0;
     let on = |at: DVec3| center + radii * at.normalize();
     for at in positions().filter(outside).take(100) {
-        // From the best of coarse points by ever smaller random steps.
+        // Starts from the best of coarse points, with ever smaller random steps.
         let mut best = on(at);
         let mut reach = 1.0;
         for _ in 0..8 {

@@ -22,7 +22,7 @@ struct Link {
     reach: f64,
 }
 
-/// The links between two points of the caller. Their angles are small enough not to be seen in figures.
+/// The number of links between two points of the caller. Their angles are too small to see in figures.
 const LINKS: u32 = 5;
 
 impl Tube {
@@ -51,7 +51,7 @@ impl Tube {
 
 impl Solid for Tube {
     fn distance(&self, at: DVec3) -> f64 {
-        // The link that is likely the nearest goes first, so that most others need no look.
+        // The link that is probably the nearest is tested first, so that most others can be skipped.
         let (mut first, mut least_sq) = (0, f64::INFINITY);
         for (index, link) in self.links.iter().enumerate() {
             let distance_sq = (at - link.center).length_squared();

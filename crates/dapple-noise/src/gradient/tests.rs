@@ -1,4 +1,4 @@
-//! The noise beside its formula as a sum over all corners, its bounds, periods, doors and pinned values.
+//! The noise beside its formula as a sum over all corners; its bounds, periods, sampling methods and pinned values.
 
 use super::{GradientNoise, GradientNoise2, GradientNoise3, GradientNoise4, fade};
 use crate::gradients::all;
@@ -11,7 +11,7 @@ use proptest::prelude::*;
 
 const SEED: Seed = Seed(7);
 
-/// The sum over the 2^N corners of the product of the blends along all axes and of the gradient's plane, in `f64`.
+/// The noise in `f64`: over the 2^N corners, the sum of each gradient's plane times the blends along all axes.
 fn oracle<const N: usize>(noise: &GradientNoise<N>, position: [f64; N]) -> f64 {
     let blend = |t: f64| t * t * t * (10.0 + t * (6.0 * t - 15.0));
     let mut sum = 0.0;
@@ -60,7 +60,7 @@ fn values_are_the_sum_over_all_corners() {
     );
 }
 
-/// The largest value that any gradients make at an offset in a cell.
+/// The largest value that any choice of gradients makes at an offset in a cell.
 fn supremum<const N: usize>(offset: [f64; N]) -> f64 {
     (0..1 << N)
         .map(|corner: usize| {

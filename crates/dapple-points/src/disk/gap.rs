@@ -1,4 +1,4 @@
-//! The exact search of a cell for places that no disc covers.
+//! Exact search for places in a cell that no disc covers.
 //!
 //! The set subcells of a cell are squares of places. A square that lies wholly in one disc is dropped; of the others
 //! one random place is tried, then each square is cut in four, and so on down to single places. Whatever the
@@ -43,7 +43,7 @@ impl Default for GapSearch {
 }
 
 impl GapSearch {
-    /// Collects the discs that reach into a cell. The sheet must hold points only.
+    /// Collects the discs that reach into a cell. The sheet must hold points only, no proposals.
     #[inline(always)]
     pub(crate) fn gather<S: Simd>(&mut self, simd: S, grid: &Grid, sheet: &Sheet, cell: Cell) {
         let [first, last] = span(0, LATTICE);
@@ -134,7 +134,7 @@ impl GapSearch {
         self.quarters = core::mem::replace(&mut self.squares, quarters);
     }
 
-    /// Which discs cover the quarters of side `size` of a square wholly, as bits that are set; the quarters in rows.
+    /// The quarters of side `size` of a square that discs cover wholly: a set bit for each, by rows.
     #[inline(always)]
     fn covered_quarters<S: Simd>(
         &self,

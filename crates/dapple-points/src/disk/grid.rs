@@ -26,11 +26,11 @@ pub(crate) const LATTICE: u32 = 1 << 22;
 /// One step of the lattice, in cells.
 pub(crate) const STEP: f32 = 1.0 / LATTICE as f32;
 
-/// An offset that is far from every place: what an empty cell holds. Its square is still finite.
+/// The offset of an empty cell: far from every place, and its square is still finite.
 pub(crate) const FAR: f32 = 1e9;
 
-/// The least width and height of a cell over the reach with which what is [`FAR`] away is still out of reach. In a domain
-/// that is thinner, cells are taken for this wide, which adds less than 1e-16 to a squared distance of 1.
+/// The smallest width and height of a cell, over the reach, at which an offset of [`FAR`] is still out of reach. In a
+/// thinner domain, cells are taken to be this wide, which adds less than 1e-16 to a squared distance of 1.
 const THINNEST: f32 = 2.0 / FAR;
 
 /// By how much the reach of a point is larger than the radius, relatively. Rounding to `f32` may shorten a distance by
@@ -90,13 +90,13 @@ impl Grid {
         (self.cells[1] + 2 * HALO) as usize
     }
 
-    /// Where the arrays hold a cell.
+    /// The index of a cell in the arrays.
     #[inline(always)]
     pub(crate) fn index(&self, cell: Cell) -> usize {
         cell.row as usize * self.stride() + cell.column as usize
     }
 
-    /// The random bits of a cell of the domain.
+    /// The hash of a cell of the domain.
     #[inline(always)]
     pub(crate) fn hash(&self, seed: Seed, cell: Cell) -> CellHash {
         // There are less than 2^32 cells. One word per cell is half the work of two.
@@ -104,7 +104,7 @@ impl Grid {
         CellHash::new(seed, [i64::from(number)])
     }
 
-    /// The cell of the domain that a cell of the margin is a copy of.
+    /// The cell of the domain that a cell of the margin copies.
     ///
     /// Other cells are their own originals, and so are those of the margin along an axis that does not wrap.
     #[inline(always)]
@@ -153,7 +153,7 @@ impl Grid {
     }
 }
 
-/// Refuses radii for which there is no set, or too large a one.
+/// Checks that a set with this radius exists and is not too large.
 fn check_radius(domain: &Domain, radius: f64, max_points: u64) -> Result<(), PointsError> {
     let refuse = |kind| Err(PointsError::new(kind));
     if !(radius > 0.0 && radius.is_finite()) {

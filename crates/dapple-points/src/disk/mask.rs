@@ -1,7 +1,7 @@
-//! Which parts of a cell may still take a point: 64 bits, one for each of 8 × 8 subcells.
+//! Masks of the parts of a cell that may still take a point: 64 bits, one for each of 8 × 8 subcells.
 //!
-//! A bit is cleared once a single disc covers its subcell wholly. What several discs cover only together keeps its
-//! bit: masks tell where to throw darts, not where the gaps are.
+//! A bit is cleared once a single disc covers its subcell wholly. A subcell that is only covered by several discs
+//! together keeps its bit: masks tell where to throw darts, not where the gaps are.
 //!
 //! The subcells that a point covers depend on where in its cell it lies. [`Coverage`] has them for a raster of 16 × 16
 //! boxes of such offsets, and for a box only those subcells that are covered from everywhere in the box.

@@ -1,4 +1,4 @@
-//! What the cells hold: at most one place each, a point or the proposal of one.
+//! The contents of the cells: at most one place each, a point or a proposal.
 
 use super::grid::{Cell, FAR, Grid, HALO};
 use super::mask::REACH;
@@ -22,7 +22,7 @@ pub(crate) const COLUMNS: [f32; LANES] = [-2.0, -1.0, 0.0, 1.0, 2.0, FAR, FAR, F
 
 /// Offsets and ranks of all cells, margin included, row by row.
 ///
-/// An empty cell is [`FAR`] away along x; its other numbers mean nothing.
+/// An empty cell is [`FAR`] away along x; its other numbers have no meaning.
 #[derive(Clone, Debug)]
 pub(crate) struct Sheet {
     pub(crate) x: Vec<f32>,
@@ -88,8 +88,8 @@ impl Sheet {
         }
     }
 
-    /// Which of the five cells from `start` hold a place that conflicts with `place`, and which of these hold one whose
-    /// rank is at least `rank`: a bit for each.
+    /// The cells, of the five from `start`, that hold a point in conflict with `place`, and those that hold anything in
+    /// conflict with a rank of at least `rank`: two masks with a bit for each cell.
     #[inline(always)]
     fn conflicts_in_row<S: Simd>(
         &self,
@@ -111,7 +111,7 @@ impl Sheet {
         [points.to_bitmask(), above.to_bitmask()]
     }
 
-    /// The conflict of a point in `cell`.
+    /// The conflicts of the place in `cell`.
     #[inline(always)]
     pub(crate) fn rivals<S: Simd>(&self, simd: S, grid: &Grid, cell: Cell) -> Rivals {
         let middle = grid.index(cell);
@@ -131,12 +131,13 @@ impl Sheet {
     }
 }
 
-/// The conflict of a proposed point.
+/// The conflicts of a proposed point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Rivals {
-    /// A point, and perhaps proposals.
+    /// A conflict with a point, and perhaps with proposals.
     Point,
-    /// The proposals whose rank is no lower, by the cells around; none at all if no bit is set.
+    /// Conflicts with proposals of the same or a higher rank only: a bit for each cell around; no conflict if no bit is
+    /// set.
     Proposals(u32),
 }
 

@@ -1,8 +1,8 @@
 //! One slice of time: every open cell proposes at most one place, and the proposals are settled among themselves.
 //!
-//! Proposals have random ranks. One is accepted if it conflicts with no point and with no accepted proposal of higher
-//! rank: what sequential dart throwing in the order of the ranks would do, but whether a proposal is accepted depends
-//! only on a few around it, so nobody has to go in order.
+//! Proposals have random ranks. A proposal is accepted if it conflicts with no point and with no accepted proposal of
+//! higher rank. This is the result of sequential dart throwing in the order of the ranks, but it depends only on a few
+//! proposals nearby, so they can be settled in any order.
 
 use super::gap::GapSearch;
 use super::grid::{Cell, FAR, Grid, HALO, LATTICE, STEP};
@@ -13,7 +13,7 @@ use dapple_hash::Seed;
 use dapple_raster::simd::dispatch;
 use fearless_simd::{Level, prelude::*};
 
-/// A place that a cell would like to have a point at.
+/// The place where a cell proposes a point.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Proposal {
     pub(crate) cell: Cell,
@@ -26,7 +26,8 @@ pub(crate) struct Proposal {
 pub(crate) enum Verdict {
     Accepted,
     Rejected,
-    /// It depends on these proposals, which are in conflict with it and of no lower rank.
+    /// It depends on these proposals, which conflict with it and have the same or a higher rank: a bit for each cell
+    /// around.
     Open(u32),
 }
 
@@ -45,10 +46,10 @@ pub(crate) fn dart_chances(mean: f64) -> Chances {
     })
 }
 
-/// Consecutive rows of cells, which are worked on together.
+/// Consecutive rows of cells that are processed together.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Band {
-    /// Its rows, counted with the margin.
+    /// The rows of the band, counted with the margin.
     pub(crate) rows: Range<u32>,
     /// Cells that may still take a point.
     pub(crate) open: Vec<Cell>,
@@ -122,8 +123,8 @@ impl Band {
         self.open.truncate(kept);
     }
 
-    /// Draws the proposals of the open cells by an exact search, and drops the cells that have no free place. `masks`
-    /// are those of the band's rows.
+    /// Draws the proposals of the open cells by an exact search, and drops the cells without a free place. `masks` are
+    /// those of the band's rows.
     #[inline(always)]
     pub(crate) fn draw_gaps<S: Simd>(
         &mut self,
@@ -172,7 +173,7 @@ impl Band {
         }
     }
 
-    /// Finds out which proposals are in conflict with what.
+    /// Finds the conflicts of all proposals.
     #[inline(always)]
     pub(crate) fn judge<S: Simd>(&mut self, simd: S, grid: &Grid, sheet: &Sheet) {
         for proposal in &mut self.proposals {
@@ -184,7 +185,7 @@ impl Band {
         }
     }
 
-    /// Decides which proposals are accepted, once they are judged.
+    /// Decides which proposals are accepted, after [`judge`](Self::judge).
     pub(crate) fn settle(&mut self, grid: &Grid, sheet: &Sheet) {
         for slot in 0..self.proposals.len() {
             let Proposal { cell, verdict, .. } = self.proposals[slot];
@@ -205,8 +206,8 @@ impl Band {
 
     /// Whether the proposal of a cell is accepted.
     ///
-    /// The answers within the band are kept; those of proposals in other bands are worked out again by each band that
-    /// needs them, so that bands share nothing.
+    /// Answers within the band are stored. Answers about proposals in other bands are computed again by each band that
+    /// needs them, so that bands share no memory.
     fn is_accepted(&mut self, grid: &Grid, sheet: &Sheet, cell: Cell) -> bool {
         let slot = self.rows.contains(&cell.row).then(|| {
             let index = grid.index(cell) - self.rows.start as usize * grid.stride();
@@ -253,7 +254,7 @@ impl Band {
     }
 }
 
-/// The rank of a proposal with the given random bits, of which the lower half has served already.
+/// The rank of a proposal from the upper half of its random bits; the lower half is used elsewhere.
 #[inline(always)]
 fn rank(lot: u64) -> i32 {
     ((lot >> 33) as i32).min(HIGHEST_PROPOSAL)
@@ -274,7 +275,7 @@ fn dart(mask: u64, bits: u64) -> [f32; 2] {
     ]
 }
 
-/// Clears in `masks`, those of the rows `rows`, what the points accepted in a band cover.
+/// Clears the subcells that the accepted points of a band cover in `masks`, the masks of the rows `rows`.
 #[inline(always)]
 pub(crate) fn cover(
     grid: &Grid,
@@ -305,7 +306,7 @@ pub(crate) fn cover(
     }
 }
 
-/// Clears what a point in column `column` covers of a row.
+/// Clears the subcells in one row of cells that a point in column `column` covers.
 #[inline(always)]
 fn cover_row(grid: &Grid, row: &mut [u64], column: u32, kept: &[u64; REACH]) {
     let first = (column - HALO) as usize;

@@ -1,7 +1,7 @@
 //! The slices of a set, one after another, on all cores.
 //!
-//! Each step of a slice runs over bands of rows, which read what the step before has written and write only their own
-//! rows, so the number of threads changes nothing.
+//! Each step of a slice runs over bands of rows, which read the results of the step before and write only their own
+//! rows, so that the result does not depend on the number of threads.
 
 use super::grid::{Cell, FAR, Grid, HALO};
 use super::mask::Coverage;
@@ -13,13 +13,14 @@ use dapple_raster::simd::dispatch;
 use fearless_simd::Level;
 use glam::DVec2;
 
-/// Rows of cells in a band: few enough to keep several cores busy, many enough that little is done twice.
+/// Rows of cells in a band: few enough to keep several cores busy, many enough that bands repeat little of each other's
+/// work.
 const BAND_ROWS: u32 = 64;
 
-/// For how long each slice throws darts: the mean number of darts at a cell.
+/// The mean number of darts at a cell in each slice.
 const DARTS: [f64; 8] = [0.3, 0.4, 0.6, 1.0, 2.0, 4.0, 8.0, 16.0];
 
-/// A set in the making.
+/// A set under construction.
 #[derive(Debug)]
 pub(crate) struct Solution<'a> {
     grid: &'a Grid,
@@ -31,7 +32,7 @@ pub(crate) struct Solution<'a> {
 }
 
 impl<'a> Solution<'a> {
-    /// The domain without points.
+    /// A solution for the domain, without points.
     pub(crate) fn new(grid: &'a Grid, coverage: &'a Coverage, level: Level) -> Self {
         let end = HALO + grid.cells[1];
         let first_rows = (HALO..end).step_by(BAND_ROWS as usize);
@@ -149,7 +150,7 @@ impl<'a> Solution<'a> {
         self.sheet.wrap_rows(grid);
     }
 
-    /// Clears from the masks what the newest points cover.
+    /// Clears the subcells that the newest points cover from the masks.
     fn cover(&mut self) {
         let (grid, coverage, level) = (self.grid, self.coverage, self.level);
         let bands = &self.bands;

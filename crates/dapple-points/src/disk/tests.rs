@@ -1,4 +1,4 @@
-//! What makes a Poisson-disk set one, checked by means that share nothing with how it was made.
+//! The properties of a Poisson-disk set, checked by means that share nothing with its construction.
 
 use super::mask::Coverage;
 use super::solve::Solution;

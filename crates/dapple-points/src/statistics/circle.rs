@@ -22,8 +22,9 @@ pub struct EmptyCircle {
 impl PointSet {
     /// The largest empty circle with its center in the domain, or none for a set without points.
     ///
-    /// Its radius is how far one can get from all points. Around wrapped axes every copy of every point counts, the
-    /// only point's own copies too. Along the other axes the circle may stick out of the domain, its center may not.
+    /// Its radius is the largest distance of any place in the domain to the nearest point. Around wrapped axes every
+    /// copy of every point counts, also those of a single point. Along the other axes the circle may stick out of the
+    /// domain, but its center may not.
     ///
     /// # Examples
     ///
@@ -68,7 +69,7 @@ struct VoronoiCell {
 }
 
 impl VoronoiCell {
-    /// Becomes the cell of the point at `position`.
+    /// Makes this the cell of the point at `position`.
     fn cut_out(&mut self, set: &PointSet, grid: &Grid, position: DVec2) {
         self.start(set, position);
         let center = grid.cell(position);
@@ -83,7 +84,7 @@ impl VoronoiCell {
         }
     }
 
-    /// The part of the plane that is nearer to the point than to its own copies, and in the domain.
+    /// Starts with the part of the domain that is nearer to the point than to its own copies.
     fn start(&mut self, set: &PointSet, position: DVec2) {
         let domain = set.domain();
         let half = domain.size * 0.5;
@@ -105,10 +106,10 @@ impl VoronoiCell {
         self.measure();
     }
 
-    /// Keeps what is nearer to the point than to the one at `other` from it.
+    /// Clips the cell to the half-plane nearer to its point than to another point, at `other` relative to it.
     fn clip(&mut self, other: DVec2) {
         let other_sq = other.length_squared();
-        // A point in the same place takes nothing away; one too far off does not reach the cell.
+        // A point in the same place clips nothing; one too far off does not reach the cell.
         if other_sq == 0.0 || other_sq > 4.0 * self.reach_sq {
             return;
         }

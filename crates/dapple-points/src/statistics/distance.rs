@@ -1,11 +1,11 @@
-//! How close points come to each other, and how tightly they are packed.
+//! Distances between points, and how densely they are packed.
 
 use super::grid::{Grid, Images};
 use crate::PointSet;
 use core::f64::consts::PI;
 
 impl PointSet {
-    /// The smallest distance between two points, or none where there are fewer than two.
+    /// The smallest distance between two points, or none for fewer than two points.
     ///
     /// A point's distance to its own copies around a wrapped axis does not count. Points that coincide have distance 0.
     ///
@@ -44,7 +44,7 @@ impl PointSet {
         Some(best_sq.sqrt())
     }
 
-    /// How many other points a point has within `distance`, on average; 0 for an empty set.
+    /// The mean number of other points within `distance` of a point; 0 for an empty set.
     ///
     /// Points at exactly this distance count. Each other point counts once, by the shortest way, however large the
     /// distance is. Near the sides of an axis that does not wrap points have fewer neighbors.

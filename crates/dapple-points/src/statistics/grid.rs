@@ -6,16 +6,16 @@ use glam::DVec2;
 /// Mean number of points per cell: few enough to skip most of the far ones, enough to walk few empty cells.
 const POINTS_PER_CELL: f64 = 2.0;
 
-/// The share of a cell by which rounding may put a point into the wrong one, with much to spare.
+/// The share of a cell by which rounding may put a point into the wrong one; a generous bound.
 const ROUNDING: f64 = 1e-6;
 
-/// How often a search may meet the cells of a domain that wraps.
+/// How often a search may visit the cells of a domain that wraps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Images {
     /// Each cell once, by the shortest way.
     Nearest,
-    /// Each cell as often as it repeats within one period to either side: no image farther off is the nearest one to
-    /// anything that lies within half a period.
+    /// Each cell as often as it repeats within one period to either side. No image farther off can be the nearest one
+    /// to a place within half a period.
     All,
 }
 
@@ -81,24 +81,24 @@ impl Grid {
         })
     }
 
-    /// A distance that nothing in ring `ring`, or in a later one, falls below.
+    /// A lower bound of the distances to all points in ring `ring` and beyond.
     pub(super) fn distance_to_ring(&self, ring: i64) -> f64 {
         (ring as f64 - 1.0 - ROUNDING) * self.side
     }
 
-    /// The last ring that holds anything within `distance`, or anything at all.
+    /// The last ring that can hold a point within `distance`, or any point at all.
     pub(super) fn last_ring(&self, distance: f64) -> i64 {
         let reach = (distance / self.side + 1.0 + ROUNDING) as i64;
         reach.clamp(0, self.counts[0].max(self.counts[1]))
     }
 
-    /// The last ring that holds anything.
+    /// The last ring that can hold a point.
     pub(super) fn outermost_ring(&self) -> i64 {
         self.counts[0].max(self.counts[1]) + 1
     }
 
-    /// Calls `visit` with each point in the cells at a distance of `ring` cells, and with what must be added to its
-    /// position to bring it there.
+    /// Calls `visit` with each point in the cells of ring `ring`, and with the shift to add to its position to bring it
+    /// there.
     pub(super) fn visit_ring(
         &self,
         center: [i64; 2],

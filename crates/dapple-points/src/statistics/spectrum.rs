@@ -26,7 +26,7 @@ const FREQUENCY_LIMIT: u64 = 1 << 24;
 /// The most rings that a spectrum has.
 const RING_LIMIT: f64 = 65_536.0;
 
-/// How far the spectrum reaches, and how finely.
+/// Options of a spectrum: its range and its resolution.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -65,7 +65,7 @@ pub struct SpectrumRing {
     pub n_frequencies: u32,
     /// Their mean power: 1 for white noise.
     pub power: f64,
-    /// The variance of their power, over what it is for an isotropic process: 1 if there is none. A ring of a single
+    /// The variance of their power, divided by that of an isotropic process: 1 for an isotropic set. A ring of a single
     /// frequency, or without power, has 1.
     pub anisotropy: f64,
 }
@@ -185,7 +185,7 @@ impl SpectrumOptions {
     }
 }
 
-/// sqrt(N / area) of the sets, once they have been found to fit together.
+/// sqrt(N / area) of the sets, after a check that they share one domain and are not empty.
 fn unit_frequency(sets: &[PointSet]) -> Result<f64, PointsError> {
     let Some(first) = sets.first() else {
         return Err(PointsError::new(PointsErrorKind::NoPoints));

@@ -1,4 +1,4 @@
-//! Sets that the tests of the statistics share.
+//! Point sets for the tests of the statistics.
 
 use crate::{Domain, PointSet};
 use dapple_hash::{Seed, hash1, unit_f64};

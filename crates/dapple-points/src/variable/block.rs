@@ -1,9 +1,10 @@
-//! One leaf at work: its cells, with a margin for the points around it, and the darts thrown at them.
+//! Block: a leaf with its cells, a margin for the points around it, and the darts thrown at them.
 //!
 //! A cell's diagonal is at most the smallest radius, so a cell holds at most one point. In the margin, where radii may
-//! be smaller, a second point of a cell goes to a list on the side. Most darts fall too close to a point. They are
-//! found out in 32-bit floating point, eight cells at a time, with the smallest radius of the leaf in the place of
-//! their own, and a margin for rounding; only what passes has its radius read and is tested in 64 bits.
+//! be smaller, a second point of a cell goes to a separate list. Most darts fall too close to a point. The quick test
+//! rejects most of these in 32-bit floating point, eight cells at a time, with the smallest radius of the leaf instead
+//! of the dart's own, and a margin for rounding. Only the darts that pass have their radius read and are tested in 64
+//! bits.
 
 use super::leaf::{Leaf, RadiusField};
 use super::rule::DiskRule;
@@ -17,16 +18,16 @@ const QUICK_REACH: usize = 2;
 /// Cells of a row that the quick test reads at once: those within reach, and some past them.
 const LANES: usize = 8;
 
-/// The part of a squared distance that the quick test gives away for rounding: coordinates of up to 40 cells with 24
-/// bits are off by 5e-6 of a cell at most.
+/// The part of a squared distance that the quick test allows for rounding: coordinates of up to 40 cells with 24 bits
+/// are off by 5e-6 of a cell at most.
 const QUICK_MARGIN: f64 = 4e-5;
 
-/// Margins have at most as many cells; points farther out go to the list on the side.
+/// The largest number of cells in a margin; points farther out go to a separate list.
 const MOST_MARGIN: f64 = 6.0;
 
 const NOBODY: u32 = u32::MAX;
 
-/// A point that stays.
+/// An accepted point.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sample {
     pub(super) position: DVec2,
@@ -44,9 +45,9 @@ pub(super) struct Local {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Neighbor {
     pub(super) block: u32,
-    /// The shift that brings its points near the block.
+    /// The shift that brings the neighbor's points near the block.
     pub(super) shift: DVec2,
-    /// How many of its points are known here.
+    /// The number of the neighbor's points that this block has taken in.
     pub(super) seen: usize,
 }
 
@@ -85,7 +86,7 @@ pub(super) struct Block {
     quick: [Vec<f32>; 3],
     /// By cell: its point among `locals`.
     slots: Vec<u32>,
-    /// Points without a cell of their own.
+    /// The points that have no cell of their own.
     aside: Vec<u32>,
     /// Scratch memory.
     found: Vec<u32>,
@@ -131,7 +132,7 @@ impl Block {
         }
     }
 
-    /// Takes in what the blocks around have placed since the last time.
+    /// Takes in the points that the blocks around have placed since the last time.
     pub(super) fn pull(&mut self, blocks: &[Self], setting: &Setting<'_>) {
         for neighbor in 0..self.neighbors.len() {
             let Neighbor { block, shift, seen } = self.neighbors[neighbor];
@@ -144,7 +145,7 @@ impl Block {
         }
     }
 
-    /// Takes in a point of another block, or a copy of one's own, if a dart could ever meet it.
+    /// Takes in a point of another block, or a copy of one of its own, if a dart could ever meet it.
     fn take_in(&mut self, sample: &Sample, shift: DVec2, setting: &Setting<'_>) {
         let at = (sample.position - setting.field.domain.origin) + shift - self.leaf.min;
         let away = (at - self.leaf.size).max(-at).max(DVec2::ZERO);
@@ -226,7 +227,7 @@ impl Block {
     ) -> bool {
         let domain = setting.field.domain;
         let position = domain.origin + (self.leaf.min + (min + size * place));
-        // What counts is the position as the caller will see it, with its rounding.
+        // The test uses the position as the caller will see it, with its rounding.
         let at = (position - domain.origin) - self.leaf.min;
         if !domain.contains(position) {
             return false;
@@ -322,7 +323,7 @@ impl Block {
         fits
     }
 
-    /// Collects the points within `reach` of a rectangle, and some others, and says how many they are.
+    /// Collects the points within `reach` of a rectangle, and some others, and returns their number.
     pub(super) fn collect_near(
         &self,
         min: DVec2,

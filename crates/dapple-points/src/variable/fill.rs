@@ -1,4 +1,4 @@
-//! Filling what is left, until no further point fits.
+//! The last step: filling the open area until no further point fits.
 //!
 //! Mohamed S. Ebeida, Scott A. Mitchell, Anjul Patney, Andrew A. Davidson and John D. Owens, "A Simple Algorithm for
 //! Maximal Poisson-Disk Sampling in High Dimensions", Computer Graphics Forum 31(2), 2012,
@@ -15,16 +15,16 @@ use glam::DVec2;
 /// A cell is cut into this many parts along each side at first.
 const SIDE: usize = 4;
 
-/// How often these parts are quartered: what is left has 2^-20 of the side of a cell.
+/// How often these parts are quartered: the smallest have 2^-20 of the side of a cell.
 const LEVELS: u32 = 18;
 
-/// The part of a squared distance that the first cut gives away for rounding to 24 bits.
+/// The part of a squared distance that the first cut allows for rounding to 24 bits.
 const MARGIN: f64 = 1e-5;
 
 /// Darts per level into one cell.
 const DARTS: usize = 4;
 
-/// A cell with more parts is left as it is. It takes a radius that jumps to get there.
+/// The largest number of parts of a cell; a cell with more is left as it is. Only a radius that jumps gets there.
 const MOST_PARTS: usize = 4096;
 
 /// A bound of the radius is loose if it is off by more than this part of the half perimeter of half a part.
@@ -42,7 +42,7 @@ const WAYS: [DVec2; 4] = [
 #[derive(Clone, Copy, Debug)]
 struct Part {
     center: DVec2,
-    /// The radius is at least this.
+    /// The lower bound of the radius.
     least: f64,
     /// The most by which the radius may exceed `least`.
     slack: f64,
@@ -107,7 +107,7 @@ impl Filler {
         }
     }
 
-    /// Cuts a cell into sixteenths and keeps those that no disc covers; says whether there are any.
+    /// Cuts a cell into sixteenths and keeps those that no disc covers; returns whether any are left.
     fn start(&mut self, block: &Block, min: DVec2, rule: DiskRule) -> bool {
         let max = min + block.cell;
         let [least, most] = block.leaf.bounds(min, block.cell);

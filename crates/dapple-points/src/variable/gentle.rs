@@ -1,10 +1,10 @@
 //! Radii for a density of any kind: one with edges, gaps and grain, such as a photograph.
 //!
 //! A set of points cannot follow a density that changes by more over a distance than its points are apart, and
-//! [`variable_poisson_disk`](crate::variable_poisson_disk) refuses a radius whose slope is 1 or more. Here the radius is
-//! read on a lattice, and each place gets the least of `radius(q) + slope · |p - q|` over all places `q`: the largest
-//! radius below the given one that rises by no more than the slope. Around what is dense and small the points so thin
-//! out slowly, and nothing small is lost.
+//! [`variable_poisson_disk`](crate::variable_poisson_disk) refuses a radius whose slope is 1 or more. Here the radius
+//! is read on a lattice, and each place gets the least of `radius(q) + slope · |p - q|` over all places `q`: the
+//! largest radius below the given one that rises by no more than the slope. The points therefore thin out slowly around
+//! small, dense spots, and no small spot is lost.
 //!
 //! Distances are those of steps to the eight neighbors, which are up to 8 % longer than straight ones. They come from two
 //! sweeps over the lattice, there and back: Gunilla Borgefors, "Distance transformations in digital images", Computer
@@ -60,11 +60,11 @@ pub fn gentle_radius_for_count(
             limit: PLACES_MAX,
         }));
     }
-    // It refuses what is no domain and no density.
+    // This call checks the domain and the density.
     let radius = radius_for_count(domain, density, n_points)?;
     let lattice = Lattice::new(&domain, places);
     let steep = lattice.read(&radius);
-    // Nothing is further apart than this, also where the density is 0.
+    // The largest radius that is of use, also where the density is 0.
     let most = domain.size.max_element();
     let mut scale = 1.0;
     let mut gentle = Vec::new();

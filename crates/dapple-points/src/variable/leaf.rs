@@ -1,9 +1,9 @@
 //! Cutting the domain into rectangles in which the radius hardly changes.
 //!
-//! A rectangle is halved along its longer side until a few hundred points fit and the radius varies by less than
-//! half. What the radius does in it is read on a lattice of 10 × 10 places. From the differences of neighboring places
-//! comes the slope; between the places the radius is taken to fall and rise by no more than 1.5 times this slope allows.
-//! That it does not rise any further is checked wherever it is read, since the distances of points depend on it.
+//! A rectangle is halved along its longer side until a few hundred points fit and the radius varies by less than half.
+//! The radius is read on a lattice of 10 × 10 places, and the differences of neighboring places give the slope. Between
+//! the places the radius is assumed to fall and rise by no more than 1.5 times this slope allows. Each later reading
+//! checks that it does not rise further, since the distances of points depend on it.
 
 use super::density::RSA_DENSITY;
 use super::rule::DiskRule;
@@ -15,10 +15,10 @@ use glam::DVec2;
 /// Places per side of the lattice on which the radius is read.
 const LATTICE: usize = 10;
 
-/// A leaf has at most as many cells along a side.
+/// The largest number of cells along a side of a leaf.
 const MOST_CELLS: f64 = 32.0;
 
-/// A leaf of no more cells along its sides is left as it is, however much the radius varies in it.
+/// The number of cells along its sides up to which a leaf is not cut, however much the radius varies in it.
 const FEW_CELLS: f64 = 4.0;
 
 /// The ratio of the largest to the smallest radius that a leaf of more cells may have.
@@ -60,15 +60,15 @@ impl Leaf {
 /// The range and slope of the radius in a rectangle.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Radii {
-    /// The radius is at least this, as far as the slope between the places read is no larger than along them.
+    /// The lower bound of the radius, valid while its slope between the places read is no larger than along them.
     pub(super) least: f64,
     /// The largest radius that was read.
     pub(super) largest: f64,
-    /// The radius is at most this; checked wherever it is read later.
+    /// The upper bound of the radius, checked wherever it is read later.
     pub(super) most: f64,
     /// The change of the radius per distance, with a margin.
     pub(super) slope: f64,
-    /// The farthest that a place is from where the radius was read.
+    /// The largest distance of a place in the leaf to the places where the radius was read.
     pub(super) spread: f64,
 }
 
@@ -99,7 +99,8 @@ enum Below {
 pub(super) struct RadiusField<'a> {
     pub(super) domain: &'a Domain,
     pub(super) radius: &'a Varying,
-    /// The slope with which the radius may rise between the places where it is read, if it is larger than along them.
+    /// The slope with which the radius may rise between the places where it is read, if that is larger than the slope
+    /// along them.
     pub(super) rise: f64,
 }
 
@@ -117,9 +118,9 @@ impl RadiusField<'_> {
         }
     }
 
-    /// The leaf of a rectangle, if it may be one, and about how many points go into it.
+    /// The leaf of a rectangle, if it is fit to be one, and the approximate number of points in it.
     fn leaf(&self, min: DVec2, size: DVec2) -> Result<(Option<Leaf>, f64), PointsError> {
-        // The smallest radius is no larger than the one in the middle: for most rectangles that is answer enough.
+        // The smallest radius is no larger than the one in the middle, which decides the matter for most rectangles.
         let middle = self.at(self.domain.origin + (min + size * 0.5))?;
         if size.max_element() * SQRT_2 > MOST_CELLS * middle {
             return Ok((None, RSA_DENSITY * (size.x / middle) * (size.y / middle)));
@@ -135,7 +136,7 @@ impl RadiusField<'_> {
         Ok((leaf, n_points))
     }
 
-    /// The range of the radius in a rectangle, and about how many points lie there.
+    /// The range of the radius in a rectangle, and the approximate number of points in it.
     fn survey(&self, min: DVec2, size: DVec2) -> Result<(Radii, Lattice, f64), PointsError> {
         if let Varying::Constant(_) = self.radius {
             let radius = self.at(self.domain.origin + min)?;
@@ -225,7 +226,7 @@ impl Tree {
                 open.push((first.0, first.1, Some((node, 0))));
                 Below::Nodes([0; 2])
             };
-            // Checked as it grows, so that nothing large is ever made for a set that is not.
+            // The number is checked as it grows, so that no large tree is built for a set that is refused.
             if n_points > point_limit as f64 {
                 return Err(PointsError::new(PointsErrorKind::TooMany {
                     needed: n_points.max(first_guess),
@@ -284,7 +285,7 @@ impl Tree {
     }
 }
 
-/// The columns and rows of cells of a leaf of this size, if it may be one.
+/// The columns and rows of cells of a leaf of this size, if it is fit to be one.
 fn cells_of(size: DVec2, radii: &Radii) -> Option<[u32; 2]> {
     let cells = (size * (SQRT_2 * (1.0 + ROUNDING)) / radii.least).ceil();
     let is_leaf = radii.least > 0.0

@@ -1,4 +1,4 @@
-//! How far apart two points must be whose radii differ.
+//! The smallest distance of two points with different radii.
 
 dapple_raster::named! {
     /// How far apart two points must be whose radii differ.

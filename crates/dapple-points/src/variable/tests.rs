@@ -50,7 +50,7 @@ fn error(domain: Domain, radius: &Varying) -> PointsError {
     variable_poisson_disk(domain, radius, &Default::default(), Seed(1)).unwrap_err()
 }
 
-/// Distance over what the rule asks for, at the closest pair.
+/// The distance of the closest pair over the distance that the rule demands.
 fn closest_pair(set: &PointSet, radius: &Varying, rule: DiskRule) -> f64 {
     let radii: Vec<f64> = set.positions().iter().map(|&at| radius.at(at)).collect();
     let mut closest = f64::INFINITY;
@@ -63,7 +63,8 @@ fn closest_pair(set: &PointSet, radius: &Varying, rule: DiskRule) -> f64 {
     closest
 }
 
-/// Distance over what the rule asks for, at the emptiest place: a dense lattice, refined where it is emptiest.
+/// At the emptiest place, found on a dense lattice and refined: the distance to the points over the distance that the
+/// rule demands.
 fn emptiest_place(set: &PointSet, radius: &Varying, rule: DiskRule) -> f64 {
     let radii: Vec<f64> = set.positions().iter().map(|&at| radius.at(at)).collect();
     let domain = set.domain();
@@ -214,7 +215,7 @@ fn variable_sets_are_the_same_for_any_number_of_threads() {
     }
 }
 
-/// Points over what 0.697 / r² predicts, in the part of the domain with x in `from..to`.
+/// The number of points over that predicted by 0.697 / r², in the part of the domain with x in `from..to`.
 fn relative_density(radius: &Varying, from: f64, to: f64) -> f64 {
     let (mut n_points, mut expected) = (0.0, 0.0);
     for seed in 0..20 {

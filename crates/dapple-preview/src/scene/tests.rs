@@ -1,4 +1,4 @@
-//! Whole pictures: where things are, how they are lit, and what is refused.
+//! Whole pictures: positions, lighting, and errors.
 
 use crate::{
     Camera, Cut, Environment, Light, Material, Mesh, Mirror, Object, Part, PreviewErrorKind, Scene,
@@ -13,7 +13,7 @@ use glam::{DQuat, DVec3};
 const RED: LinearRgb = LinearRgb::new(1.0, 0.0, 0.0);
 const WHITE: LinearRgb = LinearRgb::WHITE;
 
-/// A look that is one color in all light.
+/// A look of one color under any light.
 fn glowing(color: LinearRgb) -> impl Fn(&Surface) -> Material + Send + Sync {
     move |_| Material::matte(LinearRgb::BLACK).with_emission(color)
 }
@@ -22,12 +22,12 @@ fn matte(color: LinearRgb) -> impl Fn(&Surface) -> Material + Send + Sync {
     move |_| Material::matte(color)
 }
 
-/// From z = 8 to the origin, with y up.
+/// A camera at z = 8 that looks at the origin, with y up.
 fn front() -> Camera {
     Camera::look_at(DVec3::Z * 8.0, DVec3::ZERO)
 }
 
-/// From above to the origin, with -z up.
+/// A camera above that looks at the origin, with -z up.
 fn above() -> Camera {
     Camera::look_at(DVec3::Y * 8.0, DVec3::ZERO).with_up(DVec3::NEG_Z)
 }
@@ -41,7 +41,7 @@ fn middle(scene: &Scene<'_>) -> LinearRgb {
     render(scene, 1).pixels()[0]
 }
 
-/// All kinds of shapes, lights and looks.
+/// A scene with all kinds of shapes, lights and looks.
 fn everything() -> Scene<'static> {
     let corners = [DVec3::X, DVec3::Y, DVec3::Z, DVec3::NEG_X];
     let mesh = Mesh::smooth(&corners, &[[0, 1, 2], [2, 1, 3], [1, 0, 3]]).unwrap();

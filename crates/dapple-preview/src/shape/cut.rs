@@ -1,8 +1,9 @@
 //! Cuts through solids, which show a solid texture inside.
 //!
-//! A cut is a convex wedge of at most two half spaces, and either what is inside of it stays or what is outside. A ray is
-//! in a wedge along one stretch, so a cut is a matter of stretches: constructive solid geometry after Scott D. Roth, "Ray
-//! Casting for Modeling Solids", Computer Graphics and Image Processing 18(2), 1982, doi 10.1016/0146-664X(82)90169-1.
+//! A cut is a convex wedge of at most two half spaces; either the inside of it stays or the outside. A ray is in a
+//! wedge along one stretch, so a cut is an operation on stretches: constructive solid geometry after Scott D. Roth,
+//! "Ray Casting for Modeling Solids", Computer Graphics and Image Processing 18(2), 1982, doi
+//! 10.1016/0146-664X(82)90169-1.
 
 use super::solid::{Boundary, Face, Stretch};
 use crate::PreviewError;
@@ -28,18 +29,18 @@ use glam::DVec3;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Cut {
-    /// Keeps the points `p` with `normal · p ≤ offset` for the normal made as long as 1.
+    /// Keeps the points `p` with `normal · p ≤ offset` for the normalized normal.
     HalfSpace {
-        /// Points to what is taken away; any length but zero.
+        /// The direction toward the removed part; any length but zero.
         normal: DVec3,
-        /// How far the face is from the origin along the normal.
+        /// The distance of the face from the origin along the normal.
         offset: f64,
     },
     /// Keeps the points whose angle around the y axis is in a range.
     Sector {
-        /// Where the range begins, in radians: 0 is +x, π/2 is -z.
+        /// The start of the range, in radians: 0 is +x, π/2 is -z.
         start: f64,
-        /// How long the range is, in radians, above 0 and below 2π.
+        /// The length of the range, in radians, above 0 and below 2π.
         sweep: f64,
     },
 }
@@ -103,7 +104,7 @@ impl Wedge {
         self.faces[face].0
     }
 
-    /// The stretches of a ray within a solid that the cut leaves. `None` has no length.
+    /// The stretches of a ray within a solid that the cut leaves; unused elements are `None`.
     pub(crate) fn apply(&self, ray: &Ray, stretches: [Option<Stretch>; 2]) -> [Option<Stretch>; 4] {
         let wedge = self.stretch(ray);
         match (self.keeps, wedge) {

@@ -11,7 +11,7 @@ use crate::ray::Ray;
 use crate::surface::{Chart, Part};
 use glam::DVec3;
 
-/// More steps than bisection needs to reach neighboring numbers from a bracket of any size that a torus has.
+/// The largest number of steps; bisection reaches neighboring numbers from any bracket of a torus in fewer.
 const ROOT_STEPS_MAX: u32 = 128;
 
 /// A closed surface that fills its inside.
@@ -28,7 +28,7 @@ pub(crate) struct Solid {
     pub(crate) wedge: Option<Wedge>,
 }
 
-/// Which surface a ray goes through.
+/// The surface through which a ray passes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Face {
     Skin,
@@ -36,14 +36,14 @@ pub(crate) enum Face {
     Cut(usize),
 }
 
-/// Where a ray goes in or out.
+/// The place where a ray enters or leaves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Boundary {
     pub(crate) distance: f64,
     pub(crate) face: Face,
 }
 
-/// A part of a ray that is inside, longer than nothing.
+/// A stretch of a ray inside of a solid, of positive length.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Stretch {
     pub(crate) enter: Boundary,
@@ -55,7 +55,7 @@ impl Stretch {
         (self.enter.distance < self.exit.distance).then_some(self)
     }
 
-    /// The part before a boundary.
+    /// The part before a boundary, if any.
     pub(crate) fn before(mut self, end: Boundary) -> Option<Self> {
         if end.distance < self.exit.distance {
             self.exit = end;
@@ -63,7 +63,7 @@ impl Stretch {
         self.checked()
     }
 
-    /// The part after a boundary.
+    /// The part after a boundary, if any.
     pub(crate) fn after(mut self, start: Boundary) -> Option<Self> {
         if start.distance > self.enter.distance {
             self.enter = start;
@@ -71,7 +71,7 @@ impl Stretch {
         self.checked()
     }
 
-    /// The part that both have.
+    /// The intersection of two stretches, if any.
     pub(crate) fn and(self, other: Self) -> Option<Self> {
         self.after(other.enter)?.before(other.exit)
     }
@@ -92,7 +92,7 @@ impl Solid {
             .find(|boundary| boundary.distance > 0.0)
     }
 
-    /// The unit normal, outward on the skin and either way on a cut, and what surface it is.
+    /// The unit normal (outward on the skin, either way on a cut), the part, and the chart of the surface.
     pub(crate) fn detail(&self, position: DVec3, face: Face) -> (DVec3, Part, Chart) {
         match (face, &self.wedge) {
             (Face::Cut(index), Some(wedge)) => (wedge.normal(index), Part::Cut, Chart::None),
@@ -105,7 +105,7 @@ impl Solid {
 }
 
 impl Skin {
-    /// The parts of a ray that are inside, in order, those behind the origin included.
+    /// The stretches of a ray inside of the solid, in order, including those behind the origin.
     fn stretches(&self, ray: &Ray) -> [Option<Stretch>; 2] {
         // The point of the ray nearest to the center, from which distances are small.
         let middle = -ray.origin.dot(ray.direction);
@@ -150,7 +150,7 @@ impl Skin {
     }
 }
 
-/// Where a ray that starts at its point nearest to the center of a torus goes in and out.
+/// The stretches inside of a torus of a ray that starts at its point nearest to the center.
 fn torus_stretches(nearest: &Ray, major: f64, minor: f64) -> [Option<[f64; 2]>; 2] {
     let [origin, direction] = [nearest.origin, nearest.direction];
     // In units of the outer radius, within which the torus is.
@@ -170,7 +170,7 @@ fn torus_stretches(nearest: &Ray, major: f64, minor: f64) -> [Option<[f64; 2]>; 
     let quartic = Quartic::of_torus(origin, direction, [major, minor]);
     let mut ends = [[0.0; 2]; 2];
     let (mut count, mut from) = (0, -reach);
-    // Inside from the start only if the ray touches the sphere around it all, by rounding.
+    // By rounding, a ray that touches the enclosing sphere may begin inside.
     let mut enter = (quartic.at(from) < 0.0).then_some(from);
     for to in quartic.turns(reach).into_iter().chain([reach]) {
         let root = quartic.root([from, to]);
@@ -185,7 +185,7 @@ fn torus_stretches(nearest: &Ray, major: f64, minor: f64) -> [Option<[f64; 2]>; 
         }
         from = to;
     }
-    // Inside to the end only if the ray touches that sphere again, by rounding.
+    // By rounding, a ray that touches the enclosing sphere may end inside.
     if let Some(start) = enter
         && count < 2
     {
@@ -203,9 +203,11 @@ struct Quartic {
 }
 
 impl Quartic {
-    /// Below zero where a ray is inside of a torus; the ray starts at its point nearest to the center.
+    /// The quartic that is below zero where a ray is inside of a torus; the ray starts at its point nearest to the
+    /// center.
     ///
-    /// Inside is `(|p|² + R² - r²)² < 4 R² (x² + z²)`, and `|p|² = |o|² + t²` since o and d are at right angles.
+    /// A point is inside if `(|p|² + R² - r²)² < 4 R² (x² + z²)`, and `|p|² = |o|² + t²` since o and d are
+    /// perpendicular.
     fn of_torus(origin: DVec3, direction: DVec3, [major, minor]: [f64; 2]) -> Self {
         let four_major_sq = 4.0 * major * major;
         let a = origin.length_squared() + (major - minor) * (major + minor);
@@ -230,7 +232,7 @@ impl Quartic {
         (4.0 * t * t + 2.0 * c2) * t + c1
     }
 
-    /// The places between `-reach` and `reach`, in order, between which the quartic only rises or only falls.
+    /// The places between `-reach` and `reach`, in order, between which the quartic is monotonic.
     fn turns(&self, reach: f64) -> [f64; 3] {
         let [_, _, c2] = self.c;
         // The slope turns where 12 t² + 2 c2 is zero.
@@ -245,15 +247,15 @@ impl Quartic {
         turns
     }
 
-    /// The root between two places between which the quartic only rises or only falls.
+    /// The root in a bracket in which the quartic is monotonic.
     fn root(&self, bracket: [f64; 2]) -> Option<f64> {
         bracketed_root(bracket, |t| (self.at(t), self.slope(t)))
     }
 }
 
-/// The root of a function that has a change of sign in a bracket, from its value and its slope.
+/// The root of a function in a bracket with a change of sign; the function returns its value and its slope.
 ///
-/// Newton steps, and a bisection where a step would leave the bracket or the bracket has hardly become shorter.
+/// Newton steps, with a bisection where a step would leave the bracket or the bracket has hardly become shorter.
 fn bracketed_root([low, high]: [f64; 2], function: impl Fn(f64) -> (f64, f64)) -> Option<f64> {
     let [mut low, mut high] = [low, high];
     let [at_low, at_high] = [low, high].map(|t| function(t).0);
@@ -270,7 +272,8 @@ fn bracketed_root([low, high]: [f64; 2], function: impl Fn(f64) -> (f64, f64)) -
             high = t;
         }
         let newton = t - value / slope;
-        // Also for a slope of zero, which gives infinity or NaN; every eighth step bisects, so that the bracket shrinks.
+        // This is false also for a slope of zero, which makes infinity or NaN; every eighth step bisects, so that the
+        // bracket shrinks.
         let inside = newton > low && newton < high;
         let next = if inside && step % 8 != 7 {
             newton

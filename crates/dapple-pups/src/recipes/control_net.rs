@@ -16,11 +16,11 @@ use glam::{DVec2, DVec3};
 pub struct ControlNet {
     /// Where the points are, and how they are weighted.
     pub pups: Pups,
-    /// What they hold.
+    /// The values, labels or colors of the points.
     pub values: NetValues,
 }
 
-/// What control points hold.
+/// The values, labels or colors of control points.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum NetValues {
@@ -42,7 +42,7 @@ pub trait NetField: Field {
     /// The nets of its layers, the coarsest first; a single one where there are no layers.
     fn nets(&self) -> Vec<ControlNet>;
 
-    /// What [`PupsField::to_points`] gives.
+    /// The texture as control points that are given one by one: see [`PupsField::to_points`].
     fn to_points(&self, tile: Domain) -> Option<ControlPoints> {
         let _ = tile;
         None
@@ -80,6 +80,18 @@ impl ControlNet {
         }
     }
 
+    /// The label of each point and the value of each label, where points have labels that are not just their own.
+    #[must_use]
+    pub fn shared_labels(&self) -> Option<(&[u32], &[f32])> {
+        match &self.values {
+            NetValues::Labels { labels, values } => {
+                let is_own = labels.iter().zip(0..).all(|(&label, index)| label == index);
+                (!is_own).then_some((labels, values))
+            }
+            _ => None,
+        }
+    }
+
     /// The points as options of [`control_points`](crate::control_points) whose domain is `tile`; nothing for colors, and
     /// where the texture repeats otherwise than the tile.
     fn to_points(&self, tile: Domain) -> Option<ControlPoints> {
@@ -94,16 +106,19 @@ impl ControlNet {
             return None;
         }
         let orientations = self.orientations();
+        let shared = self.shared_labels();
         let points = self.pups.points().iter().zip(numbers);
         let points = points.map(|((point, at), value)| ControlPoint {
             x: at.x,
             y: at.y,
-            value,
+            value: shared.is_none().then_some(value),
+            label: shared.map(|(labels, _)| labels[point.index()]),
             orientation: orientations.as_ref().map(|vectors| vectors[point.index()]),
         });
         Some(ControlPoints {
             domain: tile,
             points: points.collect(),
+            values: shared.map_or(Vec::new(), |(_, values)| values.to_vec()),
             net: net_options(self.pups.options()),
             cells: match self.values {
                 NetValues::Labels { .. } => Cells::Hard,
@@ -154,7 +169,7 @@ impl PupsField {
     ///
     /// let cow = CowOptions::default();
     /// let mut points = cow.build(&(), Seed(7))?.to_points(cow.domain).expect("a cow is one net of numbers");
-    /// points.points[3].value = 0.5;
+    /// points.points[3].label = Some(1);
     /// let edited = control_points(&points, Seed(7))?;
     /// # Ok::<(), dapple_pups::PupsError>(())
     /// ```

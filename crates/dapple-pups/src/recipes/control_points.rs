@@ -24,6 +24,12 @@ pub struct ControlPoints {
     pub domain: Domain,
     /// The points, in units of the plane.
     pub points: Vec<ControlPoint>,
+    /// The values of labels, from label 0 on; none by default.
+    #[cfg_attr(
+        feature = "serde",
+        serde(default, skip_serializing_if = "Vec::is_empty")
+    )]
+    pub values: Vec<f32>,
     /// How they are weighted; where points have an orientation, `orientations` is not to be given.
     #[cfg_attr(feature = "serde", serde(default))]
     pub net: NetOptions,
@@ -80,8 +86,8 @@ pub enum Cells {
     Hard,
 }
 
-/// A control point.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// A control point. It has a value of its own or a label, which stands for a value that points share.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
     feature = "serde",
@@ -93,8 +99,18 @@ pub struct ControlPoint {
     pub x: f64,
     /// Down, in units of the plane.
     pub y: f64,
-    /// The value of the texture there.
-    pub value: f32,
+    /// The value of the texture there; not given beside a label.
+    #[cfg_attr(
+        feature = "serde",
+        serde(default, skip_serializing_if = "Option::is_none")
+    )]
+    pub value: Option<f32>,
+    /// The place of its value in the `values` of labels, from 0.
+    #[cfg_attr(
+        feature = "serde",
+        serde(default, skip_serializing_if = "Option::is_none")
+    )]
+    pub label: Option<u32>,
     /// Where it is strong: a vector of any length, as `[x, y]` or, with a part that takes strength away without a
     /// direction, as `[x, y, z]`. All points have one, or none has.
     #[cfg_attr(
@@ -113,6 +129,7 @@ impl Default for ControlPoints {
         Self {
             domain: Domain::paper_torus(),
             points: Vec::new(),
+            values: Vec::new(),
             net: NetOptions::default(),
             cells: Cells::default(),
             wrap: [true; 2],
@@ -126,8 +143,9 @@ impl Default for ControlPoints {
 /// # Errors
 ///
 /// [`NoPoints`](PupsErrorKind::NoPoints) if there are none, [`Points`](PupsErrorKind::Points) for points outside of the
-/// domain, [`Conflict`](PupsErrorKind::Conflict) if only some points have an orientation, or the options give
-/// orientations too, and what [`PupsOptions::check`](crate::PupsOptions::check) refuses.
+/// domain, [`Conflict`](PupsErrorKind::Conflict) if only some points have an orientation, the options give orientations
+/// too, or a point has not either a value or a label, [`Count`](PupsErrorKind::Count) for a label without a value, and what
+/// [`PupsOptions::check`](crate::PupsOptions::check) refuses.
 pub fn control_points(options: &ControlPoints, seed: Seed) -> Result<PupsField, PupsError> {
     let points = options.point_set()?;
     let net = &options.net;
@@ -139,8 +157,15 @@ pub fn control_points(options: &ControlPoints, seed: Seed) -> Result<PupsField, 
         }
         None => net.pups(&points, seed)?,
     };
-    let values = options.points.iter().map(|point| point.value).collect();
-    Ok(PupsField::Numbers(options.cells.texture(pups, values)?))
+    let numbers = options.numbers(&options.points)?;
+    let labels: Option<Vec<u32>> = options.points.iter().map(|point| point.label).collect();
+    Ok(match (options.cells, labels) {
+        (Cells::Hard, Some(labels)) => {
+            let values = options.values.clone();
+            PupsField::numbers(LabelTexture::new(pups, labels, values)?)
+        }
+        (cells, _) => PupsField::Numbers(cells.texture(pups, numbers)?),
+    })
 }
 
 impl Cells {
@@ -178,6 +203,30 @@ impl ControlPoints {
             ..self.domain
         };
         Ok(domain.grown(self.margin.into()))
+    }
+
+    /// The value of each of some points: its own, or that of its label.
+    pub(crate) fn numbers<'a>(
+        &self,
+        points: impl IntoIterator<Item = &'a ControlPoint>,
+    ) -> Result<Vec<f32>, PupsError> {
+        let number = |point: &ControlPoint| match (point.value, point.label) {
+            (Some(value), None) => Ok(value),
+            (None, Some(label)) => {
+                let missing = PupsErrorKind::Count {
+                    what: "values of labels",
+                    count: self.values.len(),
+                    needed: label as usize + 1,
+                };
+                let value = self.values.get(label as usize).copied();
+                value.ok_or_else(|| PupsError::new(missing))
+            }
+            _ => {
+                let rule = "a control point has either a `value` or a `label`";
+                Err(PupsError::new(PupsErrorKind::Conflict { rule }))
+            }
+        };
+        points.into_iter().map(number).collect()
     }
 
     /// The orientations that the points have, if they have any.

@@ -16,7 +16,7 @@ use dapple_hash::{CellHash, Seed, unit_f64};
 use dapple_points::{PointIdx, PointSet};
 use glam::DVec2;
 
-/// Control points on circles: each goes around its own once in a loop, one way or the other.
+/// Motion of control points on circles: each point goes once around its own circle in a loop, one way or the other.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(

@@ -15,8 +15,8 @@ fn options(domain: Domain, positions: &[DVec2], net: NetOptions, cells: Cells) -
     let point = |(index, at): (i64, &DVec2)| ControlPoint {
         x: at.x,
         y: at.y,
-        value: random(index, 0) as f32,
-        orientation: None,
+        value: Some(random(index, 0) as f32),
+        ..ControlPoint::default()
     };
     ControlPoints {
         domain,
@@ -58,7 +58,8 @@ fn edit(pups: &mut EditablePups, number: i64) -> Vec<dapple_pups::Changed> {
             .insert(ControlPoint {
                 x: anywhere.x,
                 y: anywhere.y,
-                value,
+                value: Some(value),
+                label: None,
                 orientation,
             })
             .unwrap(),
@@ -187,7 +188,8 @@ fn edits_that_are_refused_change_nothing() {
     let point = |at: DVec2, value, orientation| ControlPoint {
         x: at.x,
         y: at.y,
-        value,
+        value: Some(value),
+        label: None,
         orientation,
     };
     let near = there + DVec2::splat(1e-12);

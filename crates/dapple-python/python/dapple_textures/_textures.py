@@ -685,6 +685,7 @@ def control_points(
     points: Sequence[Mapping[str, object]],
     domain: Domain | None = None,
     *,
+    values: Sequence[float] = (),
     cells: Literal["mixed", "hard"] = "mixed",
     axis_scale: float = 1.0,
     weight: Weight = "cubic",
@@ -697,10 +698,11 @@ def control_points(
 
     Parameters
     ----------
-    points : dictionaries with "x", "y", "value" and, in all or in none, "orientation": [x, y] or
+    points : dictionaries with "x", "y", "value" or "label", and, in all or in none, "orientation": [x, y] or
         [x, y, z].
     domain : where control points lie; the texture repeats where it wraps. By default the paper's torus, Domain(2,
         (-1, -1)).
+    values : the values of labels, from label 0.
     cells : "mixed", the weighted mean of the values, or "hard", the value of the strongest point.
     axis_scale : the length of axes as a multiple of their edges, above 0.5 and at most 16.
     weight : how the weight of a control point falls off: "cubic", "quintic" or {"oscillating": {"dips": n, "depth":
@@ -721,6 +723,7 @@ def control_points(
     """
     options = {
         "points": points,
+        "values": values,
         "cells": cells,
         "net": _net(axis_scale, weight, orientations, strength, fade),
     }

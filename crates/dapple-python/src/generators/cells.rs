@@ -22,7 +22,7 @@ use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use texture::{Cells, Texture};
 
-/// How a field of cells was made.
+/// The description of a field of cells.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct CellsMade {
     seed: Seed,
@@ -35,15 +35,15 @@ pub(crate) struct CellsMade {
     range: CellsRange,
 }
 
-/// The range of values that becomes 0 to 1.
+/// The range of values that is mapped to 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 enum CellsRange {
-    /// None: the values are distances.
+    /// No range: the values are distances.
     Plain,
-    /// The measured one.
+    /// The measured range.
     Normalized,
-    /// This one.
+    /// A range given by the caller.
     Given([f32; 2]),
 }
 
@@ -79,7 +79,7 @@ impl CellsMade {
         Ok(Function::Space(Arc::new(Cells { texture, period })))
     }
 
-    /// The basis without what is made of its distances.
+    /// The basis, without the combination of its distances.
     fn basis<const N: usize>(&self) -> Result<Basis<N>>
     where
         Axes: Space<N>,
@@ -137,9 +137,9 @@ impl CellsMade {
     }
 }
 
-/// Worley's cells: a field whose value is made of the distances to the nearest of scattered feature points.
+/// Worley's cells: a field of the distances to the nearest of scattered feature points.
 ///
-/// It has all that a `Field` has, and the feature points themselves.
+/// It has all methods of `Field`, and access to the feature points.
 #[pyclass(extends = Field, frozen, module = "dapple_textures")]
 pub(crate) struct Worley {
     made: CellsMade,
@@ -154,7 +154,7 @@ impl Worley {
         )?)
     }
 
-    /// The field that a description of cells gives.
+    /// Makes the field of a description of cells.
     pub(crate) fn from_made(py: Python<'_>, made: CellsMade) -> Result<Py<PyAny>> {
         Ok(Self::with(py, made)?.into_any())
     }
@@ -174,9 +174,10 @@ impl Worley {
 /// metric : "euclidean", "manhattan", "chebyshev", or {"minkowski": 3}.
 /// scatter : {"poisson": {"density": 3}}, the paper's; {"unclamped": {"density": 3}}; {"jittered": {"jitter": 1}}, one
 ///     point in each cell.
-/// period : cells after which it repeats exactly: one number, or one for each axis, x first; None where it does not.
+/// period : the number of cells after which it repeats exactly: one number, or one for each axis, x first; None for an
+///     axis along which it does not.
 /// octaves : a fractal sum, {"count": 6, "lacunarity": 2, "gain": 0.5, "seeds": "own"}.
-/// range : the two values that become 0 and 1.
+/// range : the two values that are mapped to 0 and 1.
 ///
 /// Examples
 /// --------
@@ -215,7 +216,7 @@ pub(crate) fn worley(
     Worley::with(py, made)
 }
 
-/// Calls a function with the number of axes and of feature points as constants.
+/// Calls a function with the numbers of axes and of feature points as constants.
 macro_rules! with_counts {
     ($dims:expr, $count:expr, $call:ident($($argument:expr),*)) => {
         match ($dims, $count) {
@@ -253,9 +254,9 @@ impl Worley {
 
     /// The nearest feature points of positions, nearest first.
     ///
-    /// `positions` has the shape (…, dims), x first, in cells; `count` is from 1 to 4. The result has `distance` (…, count),
-    /// float32, in cells as the metric measures them; `vector` (…, count, dims), float64, from the feature point to the position; `id` (…, count), uint64, what
-    /// a point is known by.
+    /// `positions` has the shape (…, dims), x first, in cells; `count` is from 1 to 4. The result has `distance` (…,
+    /// count), float32, in cells in the metric; `vector` (…, count, dims), float64, from the feature point to the
+    /// position; `id` (…, count), uint64, the id of the point.
     #[pyo3(signature = (positions, *, count = 1))]
     fn features<'py>(
         &self,
@@ -278,11 +279,11 @@ impl Worley {
         arrays::features(py, arrays)
     }
 
-    /// The nearest feature points at the pixels of a plane: what `features` gives there, bit for bit.
+    /// The nearest feature points at the pixels of a plane: equal to those of `features`, bit for bit.
     ///
-    /// `outputs` names the planes to make; the others are None. With `count` points their shapes are (count, rows,
-    /// columns) and, for vectors, (count, rows, columns, dims), float32. Fields of more than two axes are cut where the
-    /// further coordinates are `at`.
+    /// `outputs` names the planes to compute; the others are None. With `count` points their shapes are (count, rows,
+    /// columns) and, for vectors, (count, rows, columns, dims), float32. Fields of more than two axes are cut at the
+    /// further coordinates `at`.
     #[pyo3(signature = (size, *, count = 1, outputs = None, extent = None, origin = None, window = None, at = None),
         text_signature = "(self, size, *, count=1, outputs=('distance', 'vector', 'id'), extent=None, origin=None, window=None, at=None)")]
     #[expect(clippy::too_many_arguments, reason = "they are keywords")]
@@ -396,5 +397,5 @@ impl Worley {
     }
 }
 
-/// The planes that `render_features` can make.
+/// The planes that `render_features` can compute.
 const OUTPUTS: [&str; 3] = ["distance", "vector", "id"];

@@ -13,7 +13,7 @@ use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// How gradient noise was made.
+/// The description of gradient noise.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct GradientMade {
     seed: Seed,
@@ -22,7 +22,7 @@ pub(crate) struct GradientMade {
     octaves: Option<OctavesMade>,
 }
 
-/// A fractal sum, of which each octave has a seed of its own.
+/// The options of a fractal sum, in which each octave has a seed of its own.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct OctavesMade {
     count: u32,
@@ -98,10 +98,11 @@ impl Volume for GradientNoise4 {
 /// ----------
 /// seed : int, from 0 to 2**64 - 1.
 /// dims : 2, 3 or 4 axes.
-/// period : cells after which it repeats exactly: one number, or one for each axis, x first; None where it does not.
-/// octaves : how many octaves are summed (fBm), each with a seed of its own; 1 to 32. Two axes only.
-/// gain : how much lower each octave is than the one before, -1 to 1.
-/// lacunarity : how much finer each octave is, 1 to 16; whole if there is a period.
+/// period : the number of cells after which it repeats exactly: one number, or one for each axis, x first; None for an
+///     axis along which it does not.
+/// octaves : the number of octaves that are summed (fBm), each with a seed of its own; 1 to 32. Two axes only.
+/// gain : the ratio of the heights of an octave and the one before, -1 to 1.
+/// lacunarity : the ratio of the frequencies of an octave and the one before, 1 to 16; whole if there is a period.
 /// shape : "sum", "ridged" or "billow" (turbulence).
 ///
 /// Examples

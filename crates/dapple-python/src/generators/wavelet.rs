@@ -15,7 +15,7 @@ use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// How wavelet noise was made.
+/// The description of wavelet noise.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct WaveletMade {
     seed: Seed,
@@ -45,10 +45,10 @@ impl Build for WaveletMade {
     }
 }
 
-/// Wavelet noise of space.
+/// Wavelet noise in three dimensions.
 struct Solid(Arc<WaveletNoise3>);
 
-/// Wavelet noise of space at a plane.
+/// Wavelet noise in three dimensions, restricted to a plane.
 struct Section {
     noise: Arc<WaveletNoise3>,
     z: f64,
@@ -98,8 +98,8 @@ impl dapple::raster::Field for Section {
 /// ----------
 /// seed : int, from 0 to 2**64 - 1.
 /// dims : 2 or 3 axes.
-/// period : cells after which it repeats, an even number of at least 4: one number, or one for each axis, x first. The tile
-///     is kept in memory: 4 bytes for each cell of it.
+/// period : the number of cells after which it repeats, an even number of at least 4: one number, or one for each axis,
+///     x first. The tile is kept in memory: 4 bytes for each of its cells.
 /// weights : the weight of each band, coarsest first; each is twice as fine as the one before. 1 to 16 of them.
 ///
 /// Examples

@@ -1,4 +1,4 @@
-//! The rectangle that points lie in, whose opposite sides may be joined.
+//! The rectangle of points, whose opposite sides may be joined.
 
 use crate::error::Result;
 use crate::grid::pair;
@@ -9,7 +9,7 @@ use pyo3::types::PyBool;
 /// A rectangle whose left and right sides, and whose top and bottom, may be joined: a torus, a cylinder or a plain
 /// rectangle.
 ///
-/// What is made of points in a domain repeats along the axes that wrap, after the length of its side.
+/// Points and textures in a domain repeat along the axes that wrap, after the length of its side.
 ///
 /// Parameters
 /// ----------

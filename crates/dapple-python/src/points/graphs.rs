@@ -1,4 +1,4 @@
-//! Graphs of points: which are neighbors.
+//! Graphs of points: the neighbors of each.
 
 use super::{Domain, Points, set};
 use crate::arrays;
@@ -11,22 +11,22 @@ use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// How a graph was made of points.
+/// The description of the construction of a graph.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum GraphMade {
-    /// Neighbors in Delaunay's triangulation.
+    /// The Delaunay graph.
     Delaunay,
-    /// Pairs of points whose circle is empty.
+    /// The Gabriel graph: pairs of points whose circle is empty.
     Gabriel,
-    /// The nearest points in cones.
+    /// The Yao graph: the nearest point in each cone.
     Yao { cones: u32, direction: Direction },
-    /// The nearest points.
+    /// The graph of the `k` nearest points.
     KNearest { k: u32, direction: Direction },
 }
 
 impl GraphMade {
-    /// The graph of points.
+    /// Makes the graph of points.
     pub(crate) fn build(
         self,
         points: &PointSet,
@@ -40,10 +40,10 @@ impl GraphMade {
     }
 }
 
-/// Which points are neighbors, and the ways from each to the others.
+/// The neighbors of points, and the vectors to them.
 ///
-/// Graphs are made by `delaunay`, `gabriel`, `yao` and `k_nearest`. Where axes wrap, edges lead around, a point may be its
-/// own neighbor, and two points may be neighbors several times, by different ways.
+/// Graphs are made by `delaunay`, `gabriel`, `yao` and `k_nearest`. Where axes wrap, edges lead around, a point may be
+/// its own neighbor, and two points may be neighbors several times, with different vectors.
 #[pyclass(frozen, module = "dapple_textures")]
 pub(crate) struct Graph {
     points: Arc<PointSet>,
@@ -61,12 +61,12 @@ impl Graph {
         })
     }
 
-    /// The points that are connected.
+    /// The points of the graph.
     pub(crate) fn set(&self) -> &Arc<PointSet> {
         &self.points
     }
 
-    /// How it was made of its points.
+    /// The description of the construction.
     pub(crate) fn made(&self) -> GraphMade {
         self.made
     }
@@ -76,7 +76,7 @@ impl Graph {
         &self.graph
     }
 
-    /// Each edge once: from which point, and its axis there. Those of a graph that is not symmetric have one end only.
+    /// Each edge once: the first point, and its axis there. Edges of a graph that is not symmetric have one end only.
     fn each_edge(&self) -> impl Iterator<Item = (u32, &Axis)> {
         let one_way = !self.graph.is_symmetric();
         let from = (0..self.graph.n_points() as u32).map(PointIdx);
@@ -102,7 +102,7 @@ impl Graph {
     }
 }
 
-/// Indices of points as NumPy and SciPy take them, in rows of N.
+/// Indices of points for NumPy and SciPy, in rows of N.
 fn indices<const N: usize>(
     py: Python<'_>,
     rows: impl Iterator<Item = [u32; N]>,
@@ -114,7 +114,7 @@ fn indices<const N: usize>(
 
 #[pymethods]
 impl Graph {
-    /// The points that it connects.
+    /// The points of the graph.
     #[getter]
     fn points(&self) -> Points {
         Points::shared_with(&self.points)
@@ -132,17 +132,17 @@ impl Graph {
         indices(py, self.each_edge().map(|(from, axis)| [from, axis.to.0]))
     }
 
-    /// The way of each edge, from its first point to its second, around axes that wrap: float64 of the shape (m, 2).
+    /// The vector of each edge, from its first point to its second, around axes that wrap: float64 of the shape (m, 2).
     fn vectors<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyAny>> {
         let vectors: Vec<DVec2> = self.each_edge().map(|(_, axis)| axis.vector).collect();
         set::positions(py, &vectors)
     }
 
-    /// The neighbors of all points in compressed rows: those of point i are `indices[indptr[i]:indptr[i + 1]]`, by the
-    /// angle of the ways to them, `vectors`.
+    /// The neighbors of all points in compressed rows: those of point i are `indices[indptr[i]:indptr[i + 1]]`, sorted
+    /// by the angle of the vectors to them, `vectors`.
     ///
-    /// `scipy.sparse.csr_array((lengths, indices, indptr))` is the matrix of a graph on a domain without wrapping; with it
-    /// pairs may come more than once.
+    /// `scipy.sparse.csr_array((lengths, indices, indptr))` is the matrix of a graph on a domain without wrapping; with
+    /// wrapping, pairs may occur more than once.
     fn axes<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyAny>> {
         let offsets: Vec<i64> = self.graph.offsets().iter().map(|&at| at.into()).collect();
         let axes = self.graph.all_axes();
@@ -157,9 +157,9 @@ impl Graph {
         arrays::result(py, "Axes", parts)
     }
 
-    /// The triangles of Delaunay's triangulation, as points: int64 of the shape (t, 3), in the turn from x to y.
+    /// The triangles of Delaunay's triangulation, as points: int64 of the shape (t, 3), in the direction from x to y.
     ///
-    /// Where more than three points lie on an empty circle, one of several triangulations is taken.
+    /// Where more than three points lie on an empty circle, one of several triangulations is chosen.
     fn triangles<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyAny>> {
         let triangles = self.each_triangle(py)?;
         indices(
@@ -170,8 +170,8 @@ impl Graph {
         )
     }
 
-    /// Where the corners of the triangles lie: float64 of the shape (t, 3, 2). Where axes wrap, the second and the third
-    /// corner may lie outside of the domain, so that a triangle is in one piece.
+    /// The corners of the triangles: float64 of the shape (t, 3, 2). Where axes wrap, the second and the third corner
+    /// may lie outside of the domain, so that a triangle is in one piece.
     fn corners<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyAny>> {
         let triangles = self.each_triangle(py)?;
         let corners = triangles.iter().flat_map(|triangle| {
@@ -207,7 +207,7 @@ impl Graph {
     }
 }
 
-/// The graph of points that is described.
+/// Makes the graph of a description.
 #[pyfunction]
 pub(crate) fn _graph_from_description(
     py: Python<'_>,
@@ -231,8 +231,8 @@ fn direction(symmetric: bool) -> Direction {
 /// Delaunay's graph: two points are neighbors if a circle through both has no other point on it or in it ("Sur la sphère
 /// vide", 1934).
 ///
-/// `points` are `Points`, or an array (n, 2) in `domain`; by default the domain of an array is the rectangle around it, and
-/// nothing wraps. All decisions are exact; copies of points across axes that wrap count.
+/// `points` are `Points`, or an array (n, 2) in `domain`; by default the domain of an array is the smallest rectangle
+/// around it, which does not wrap. All decisions are exact; copies of points across axes that wrap count.
 ///
 /// Examples
 /// --------
@@ -252,7 +252,7 @@ pub(crate) fn delaunay(
     Graph::new(py, Points::read(points, domain)?, GraphMade::Delaunay)
 }
 
-/// Gabriel's graph: two points are neighbors if the circle over the way between them has no other point on it or in it
+/// Gabriel's graph: two points are neighbors if the circle whose diameter they are has no other point on it or in it
 /// ("A New Statistical Approach to Geographic Variation Analysis", 1969).
 ///
 /// `points` and `domain` are those of `delaunay`.
@@ -275,8 +275,8 @@ pub(crate) fn gabriel(
 /// Yao's graph: each point leads to the nearest one in each of some equal cones, the first of which begins at the x axis
 /// ("On Constructing Minimum Spanning Trees", 1982).
 ///
-/// `points` and `domain` are those of `delaunay`. `cones` is from 1 to 32; with `symmetric`, points also lead back to those
-/// that lead to them.
+/// `points` and `domain` are those of `delaunay`. `cones` is from 1 to 32; with `symmetric`, every edge leads both
+/// ways.
 ///
 /// Examples
 /// --------
@@ -299,7 +299,7 @@ pub(crate) fn yao(
 
 /// The graph in which each point leads to the `k` nearest ones, 1 to 4096.
 ///
-/// `points` and `domain` are those of `delaunay`; with `symmetric`, points also lead back to those that lead to them.
+/// `points` and `domain` are those of `delaunay`; with `symmetric`, every edge leads both ways.
 ///
 /// Examples
 /// --------

@@ -1,4 +1,4 @@
-//! Placing points.
+//! Placement of points.
 
 use super::{Domain, Points, varying};
 use crate::data;
@@ -10,18 +10,18 @@ use dapple::points::{PointSet, PointsError, RSA_DENSITY, VariablePoissonOptions}
 use dapple::raster::Varying;
 use pyo3::prelude::*;
 
-/// How far apart points are to be.
+/// The distance or the number of points.
 enum Wanted {
-    /// At least this far, in units of the domain.
+    /// At least this distance, in units of the domain.
     Distance(Varying),
-    /// About so many, as dense everywhere.
+    /// About this number, with uniform density.
     Count(u32),
-    /// About so many, after a density that is given up to a factor.
+    /// About this number, following a density that is given up to a factor.
     CountAfter(Varying, u32),
 }
 
 impl Wanted {
-    /// The points that it connects.
+    /// Places the points.
     fn place(
         self,
         domain: dapple::points::Domain,
@@ -43,29 +43,29 @@ impl Wanted {
     }
 }
 
-/// Columns and rows at which a density is read: about two along the mean distance of points, and 64 to 4096.
+/// The columns and rows at which a density is read: about two along the mean distance of points, and 64 to 4096.
 fn places(domain: &dapple::points::Domain, count: u32) -> [u32; 2] {
     let distance = (RSA_DENSITY * domain.area() / f64::from(count.max(1))).sqrt();
     let along = |side: f64| (2.0 * side / distance).clamp(64.0, 4096.0) as u32;
     [along(domain.size.x), along(domain.size.y)]
 }
 
-/// Random points that keep their distance, with room for no further one ("blue noise"); maximal Poisson-disk sets, after
-/// Cook, "Stochastic Sampling in Computer Graphics" (1986).
+/// Random points that keep a distance from each other, with room for no further one ("blue noise"); maximal
+/// Poisson-disk sets, after Cook, "Stochastic Sampling in Computer Graphics" (1986).
 ///
-/// Give `distance`, `density`, `count`, or `count` and `density`. What varies is a number, {"ramp": {"from": [x, y], "to":
-/// [x, y], "start": a, "end": b}}, {"geometric_ramp": …} with equal ratios over equal lengths, an array (rows, columns) that
-/// covers the domain, or a `Field`.
+/// Give `distance`, `density`, `count`, or `count` and `density`. A distance or density may vary: it is a number,
+/// {"ramp": {"from": [x, y], "to": [x, y], "start": a, "end": b}}, {"geometric_ramp": …} with equal ratios over equal
+/// lengths, an array (rows, columns) that covers the domain, or a `Field`.
 ///
 /// Parameters
 /// ----------
-/// domain : where the points lie; their distances are taken around axes that wrap.
-/// distance : the smallest distance of two points, above 0. Where it varies, it must not change by as much as itself over
-///     its own length; what does is refused as "too_steep".
-/// density : points per area: a distance of sqrt(0.697 / density). With `count` it is given up to a factor, may be 0, and
-///     may change as abruptly as a photograph: around what is dense points thin out slowly.
-/// count : about how many points there are.
-/// rule : which distance two points of different ones keep: "average", "larger" or "smaller".
+/// domain : the domain of the points; distances are measured around axes that wrap.
+/// distance : the smallest distance of two points, above 0. If it varies, its slope must be below 1; a larger slope is
+///     the error "too_steep".
+/// density : points per area: a distance of sqrt(0.697 / density). With `count` it is given up to a factor, may be 0,
+///     and may change as abruptly as in a photograph: points thin out slowly around dense parts.
+/// count : the approximate number of points.
+/// rule : the distance of two points with different ones: "average", "larger" or "smaller".
 /// seed : int, from 0 to 2**64 - 1.
 ///
 /// Examples
@@ -175,9 +175,9 @@ pub(crate) fn nested_poisson_disk(
 ///
 /// Parameters
 /// ----------
-/// domain : where the points lie.
+/// domain : the domain of the points.
 /// cells : columns and rows, (x, y), or a number for both.
-/// jitter : from 0, where a point is at the center of its cell, to 1, where it is anywhere in it.
+/// jitter : the distance from the center of the cell, from 0 to 1, anywhere in it.
 /// seed : int, from 0 to 2**64 - 1.
 ///
 /// Examples
@@ -206,7 +206,7 @@ pub(crate) fn jittered_grid(
     Ok(Points::new(set))
 }
 
-/// Independent random points, as dense everywhere: those of a smaller count are the first of a larger one.
+/// Independent random points of uniform density; those of a smaller count are the first of a larger one.
 ///
 /// Examples
 /// --------

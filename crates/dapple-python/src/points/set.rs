@@ -1,4 +1,4 @@
-//! Sets of points, and what is measured on them.
+//! Sets of points, and their statistics.
 
 use super::Domain;
 use crate::arrays::{self, Positions};
@@ -11,15 +11,15 @@ use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyDict, PyList};
 use std::sync::Arc;
 
-/// Points in a domain, in an order that stays: an array of the shape (n, 2) that knows after which distances it repeats.
+/// Points in a domain, in a fixed order: an array of the shape (n, 2) with the periods of its domain.
 ///
-/// NumPy takes it for its array, as in `np.asarray(points)` or `scipy.spatial.KDTree(points)`; `np.array(points)` is a copy
-/// that can be written. Sets are equal where all of their points and domains are; like arrays they cannot be keys.
+/// NumPy treats it as its array, as in `np.asarray(points)` or `scipy.spatial.KDTree(points)`; `np.array(points)` is a
+/// copy that can be written. Sets are equal if all of their points and domains are; like arrays they cannot be keys.
 ///
 /// Parameters
 /// ----------
 /// array : positions of the shape (n, 2), x first. Along axes that wrap they are brought into the domain.
-/// domain : where they lie; by default the smallest rectangle around them, which does not wrap.
+/// domain : their domain; by default the smallest rectangle around them, which does not wrap.
 ///
 /// Examples
 /// --------
@@ -34,7 +34,7 @@ pub(crate) struct Points {
     array: PyOnceLock<Py<PyAny>>,
 }
 
-/// The largest coordinate at which a rectangle around points still has its corners in range.
+/// The largest coordinate at which the corners of a rectangle around points are still in range.
 const FARTHEST: f64 = 1e299;
 
 impl Points {
@@ -45,7 +45,7 @@ impl Points {
         }
     }
 
-    /// The set that others hold too.
+    /// A set that shares its points with others.
     pub(crate) fn shared_with(set: &Arc<PointSet>) -> Self {
         Self {
             set: Arc::clone(set),
@@ -58,7 +58,7 @@ impl Points {
         Arc::clone(&self.set)
     }
 
-    /// Points from Python: a set, or an array with the domain that is given, or without one.
+    /// Reads points from Python: a set, or an array with or without a domain.
     pub(crate) fn read(
         points: &Bound<'_, PyAny>,
         domain: Option<&Domain>,
@@ -86,7 +86,7 @@ impl Points {
         Ok(Arc::new(PointSet::new(domain, positions)?))
     }
 
-    /// The positions as an array that cannot be written, made once.
+    /// The positions as a read-only array, made once.
     fn shared<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyAny>> {
         let array = self.array.get_or_try_init(py, || -> Result<Py<PyAny>> {
             let array = positions(py, self.set.positions())?;
@@ -105,9 +105,9 @@ pub(crate) fn positions<'py>(py: Python<'py>, positions: &[DVec2]) -> Result<Bou
     arrays::array(py, numbers.into_flattened(), &[positions.len(), 2])
 }
 
-/// The smallest rectangle around positions, whose sides are at least a little longer than nothing.
+/// The smallest rectangle around positions, with sides of positive length.
 fn rectangle_around(positions: &[DVec2]) -> dapple::points::Domain {
-    // What is not finite is refused with its point when the set is made.
+    // Positions that are not finite fail with their index when the set is made.
     let held = || {
         positions
             .iter()
@@ -118,7 +118,7 @@ fn rectangle_around(positions: &[DVec2]) -> dapple::points::Domain {
     let largest = (high - low).max_element();
     let least = if largest > 0.0 { largest * 1e-6 } else { 1.0 };
     let size = (high - low).max(DVec2::splat(least));
-    // Far from the origin, rounding may take the size away, or leave the last point outside.
+    // Far from the origin, rounding may lose the size, or leave the last point outside.
     let rounding = low.abs().max(high.abs()) * (2.0 * f64::EPSILON);
     let is_lost = (low + size).cmplt(high) | (low + size).cmple(low);
     let size = DVec2::select(is_lost, size + rounding, size);
@@ -142,13 +142,14 @@ impl Points {
         self.shared(py)
     }
 
-    /// Where the points lie, and along which axes that wraps.
+    /// The domain of the points.
     #[getter]
     fn domain(&self) -> Domain {
         Domain(*self.set.domain())
     }
 
-    /// The smallest distance of two points, around axes that wrap where that is shorter; None of fewer than two points.
+    /// The smallest distance of two points, around axes that wrap where that is shorter; None for fewer than two
+    /// points.
     fn minimum_distance(&self, py: Python<'_>) -> Result<Option<f64>> {
         threads::run(py, || self.set.minimum_distance())
     }
@@ -163,7 +164,7 @@ impl Points {
         circle.transpose()
     }
 
-    /// How many other points a point has within a distance, on average.
+    /// The mean number of other points within a distance of a point.
     fn mean_neighbor_count(&self, py: Python<'_>, distance: f64) -> Result<f64> {
         threads::run(py, || self.set.mean_neighbor_count(distance))
     }
@@ -174,7 +175,7 @@ impl Points {
         self.set.normalized_density(distance)
     }
 
-    /// The positions, in another type if that is asked for; NumPy calls it.
+    /// The positions, converted to another type if requested; NumPy calls it.
     #[pyo3(signature = (dtype = None, copy = None))]
     fn __array__<'py>(
         &self,
@@ -226,14 +227,14 @@ impl Points {
 
 /// The power spectrum of points, averaged over rings of equal frequency, and over several sets of one domain.
 ///
-/// Frequencies are in units of sqrt(n / area): 1 is about one over the distance of neighbors. White noise has a power of 1
-/// everywhere; of points that keep their distance little is left at low frequencies ("blue noise"). Lagae and Dutré, "A
-/// Comparison of Methods for Generating Poisson Disk Distributions" (2008).
+/// Frequencies are in units of sqrt(n / area): 1 is about one over the distance of neighbors. White noise has a power
+/// of 1 everywhere; points that keep a distance have little power at low frequencies ("blue noise"). Lagae and Dutré,
+/// "A Comparison of Methods for Generating Poisson Disk Distributions" (2008).
 ///
 /// Parameters
 /// ----------
 /// points : Points, or a list of them with the same domain, which must wrap along both axes.
-/// highest_frequency : how far the spectrum reaches, above 0.
+/// highest_frequency : the highest frequency of the spectrum, above 0.
 /// ring_width : the width of a ring, above 0.
 ///
 /// Examples

@@ -9,8 +9,8 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Arc;
 
-/// What varies: a number, `{"ramp": …}` or `{"geometric_ramp": …}`, a field of the plane, or an array (rows, columns) that
-/// covers the domain. `what` names it in messages.
+/// Reads a number that may vary: a number, `{"ramp": …}` or `{"geometric_ramp": …}`, a field of the plane, or an array
+/// (rows, columns) that covers the domain. `what` names it in messages.
 pub(crate) fn varying(what: &str, data: &Bound<'_, PyAny>, domain: &Domain) -> Result<Varying> {
     if let Ok(number) = data.extract::<f64>() {
         return Ok(Varying::Constant(number));

@@ -1,4 +1,4 @@
-//! What control points are given: values, labels and orientations.
+//! Values, labels and orientations for control points.
 
 use crate::arrays;
 use crate::error::Result;
@@ -9,7 +9,7 @@ use dapple::pups::ReferenceImage;
 use dapple::raster::glam::{DVec2, DVec3};
 use pyo3::prelude::*;
 
-/// Labels as indices of NumPy arrays.
+/// Labels as an integer array.
 fn labels<'py>(py: Python<'py>, labels: &[u32]) -> Result<Bound<'py, PyAny>> {
     let labels: Vec<i64> = labels.iter().copied().map(i64::from).collect();
     let shape = [labels.len()];
@@ -26,7 +26,7 @@ fn vectors<'py>(py: Python<'py>, vectors: Vec<DVec3>) -> Result<Bound<'py, PyAny
     arrays::array(py, numbers.into_flattened(), &shape)
 }
 
-/// Independent random values from 0 to below 1, float32 of the shape (count,): those of the textures here.
+/// Independent random values from 0 to below 1, float32 of the shape (count,): those that the textures use.
 ///
 /// Examples
 /// --------
@@ -44,7 +44,7 @@ pub(crate) fn random_values(
     arrays::array(py, dapple::pups::random_values(count, seed.0), &[count])
 }
 
-/// Independent random labels from 0 to below `n_labels`, each as probable, int64 of the shape (count,).
+/// Independent random labels from 0 to below `n_labels`, all equally probable, int64 of the shape (count,).
 ///
 /// Examples
 /// --------
@@ -63,7 +63,7 @@ pub(crate) fn random_labels(
     labels(py, &dapple::pups::random_labels(count, n_labels, seed.0)?)
 }
 
-/// Refuses more points than a set has.
+/// Checks that the number of points fits in a set.
 fn check_count(count: usize) -> Result<()> {
     if count <= 1 << 31 {
         return Ok(());
@@ -104,7 +104,7 @@ pub(crate) fn biased_labels<'py>(
 
 /// Labels of groups of points that a graph connects, int64 of the shape (n,), from 0 without gaps.
 ///
-/// A group has from `sizes[0]` to `sizes[1]` points, 1 to 16, or fewer where it cannot be otherwise.
+/// A group has from `sizes[0]` to `sizes[1]` points, 1 to 16, or fewer if this is impossible.
 ///
 /// Examples
 /// --------
@@ -125,7 +125,7 @@ pub(crate) fn grouped_labels<'py>(
     labels(py, &found)
 }
 
-/// Random labels 0 and 1 after a gray image, int64 of the shape (n,): 1 with the probability of the pixel under the point.
+/// Random labels 0 and 1 by a gray image, int64 of the shape (n,): 1 with the probability of the pixel under the point.
 ///
 /// `image` has the shape (rows, columns) and values from 0 to 1; it covers the domain of the points.
 ///

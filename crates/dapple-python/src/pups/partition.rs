@@ -1,4 +1,4 @@
-//! Control points with weights that sum to 1 at every position, and what they make of values.
+//! Control points with weights that sum to 1 at every position, and the fields of their values.
 
 use super::vectors::Values;
 use crate::arrays::{self, Positions};
@@ -21,7 +21,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
 use serde::{Deserialize, Serialize};
 
-/// How a net of control points was made.
+/// The description of a net of control points.
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct NetMade {
     domain: dapple::points::Domain,
@@ -43,12 +43,12 @@ impl Build for NetMade {
     }
 }
 
-/// How values of control points were made a field.
+/// The description of a field of values at control points.
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct PupsMade {
     net: Shared<NetMade>,
     values: Vec<f32>,
-    /// How many values there are in a row, where they have rows.
+    /// The number of values in a row, if there are rows.
     channels: Option<usize>,
     labels: Option<Vec<u32>>,
 }
@@ -70,23 +70,23 @@ impl Build for PupsMade {
 /// for Texture Synthesis" (2013).
 ///
 /// The weight of a point falls off along its axes, which are its edges in a graph, and is 0 beyond its neighbors. With
-/// values at the points, the weighted mean is a smooth field; with labels, the point with the largest weight gives cells.
+/// values at the points, the weighted mean is a smooth field; with labels, the labels of the points with the largest
+/// weight make cells.
 ///
 /// Parameters
 /// ----------
 /// points : Points, or an array (n, 2) in `domain`.
-/// domain : where an array of points lies, and along which axes that wraps; by default the rectangle around it, which does
-///     not.
+/// domain : the domain of an array of points; by default the smallest rectangle around it, which does not wrap.
 /// graph : a graph of the points; Delaunay's by default.
-/// axis_scale : the length of axes as a multiple of their edges, above 0.5 and at most 16. Up to 1 the field has, at a
-///     control point, its value; above it is smoother.
-/// weight : how the weight falls off: "cubic", "quintic", or {"oscillating": {"dips": 3, "depth": 0.5}} with 1 to 16 dips
-///     and a depth of 0 to 0.99.
-/// orientations : where the weight of each point leans: None, "random" (drawn from `seed`), an array (n, 2) or (n, 3) of
-///     vectors, {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle": radians}.
+/// axis_scale : the length of axes as a multiple of their edges, above 0.5 and at most 16. Up to 1 the field equals the
+///     value at a control point; above it is smoother.
+/// weight : the falloff of the weight: "cubic", "quintic", or {"oscillating": {"dips": 3, "depth": 0.5}} with 1 to 16
+///     dips and a depth of 0 to 0.99.
+/// orientations : the direction in which the weight of each point leans: None, "random" (drawn from `seed`), an array
+///     (n, 2) or (n, 3) of vectors, {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle": radians}.
 /// strength : how strongly orientations shift weights, from 0 to below 1.
-/// fade : how short the border that an axis leaves on its point's cell is beside its edge when the axis begins to fade, from 0,
-///     which is never, to 1. With 0.25 the field changes smoothly where points move.
+/// fade : the length of the border that an axis leaves on its point's cell, as a fraction of its edge, below which the
+///     axis fades, from 0, never, to 1. With 0.25 the field changes smoothly if points move.
 /// seed : int, from 0 to 2**64 - 1.
 ///
 /// Examples
@@ -103,7 +103,7 @@ pub(crate) struct Partition {
     pups: Pups,
 }
 
-/// How control points are connected and weighted, as it is said.
+/// The arguments for the net of control points, in the form of the caller.
 struct NetArguments<'a, 'py> {
     points: &'a Bound<'py, PyAny>,
     domain: Option<&'a Domain>,
@@ -142,7 +142,7 @@ impl NetArguments<'_, '_> {
         Ok(Partition { net, pups })
     }
 
-    /// The vectors of the orientations.
+    /// Reads the vectors of the orientations.
     fn vectors(&self, points: &PointSet) -> Result<Option<Vec<DVec3>>> {
         let Some(orientations) = self.orientations else {
             return Ok(None);
@@ -170,7 +170,7 @@ impl NetArguments<'_, '_> {
     }
 }
 
-/// Values and how many there are in a row.
+/// Reads values, and their number in a row.
 fn read_values(values: &Bound<'_, PyAny>) -> Result<(Vec<f32>, Option<usize>)> {
     let array: PyArrayLikeDyn<'_, f32, AllowTypeChange> = values.extract()?;
     let array = array.as_array();
@@ -223,8 +223,8 @@ impl Partition {
     /// The field of the control points' values: a `Field` for values of the shape (n,), a `ColorField` for (n, channels)
     /// with 1 to 8 channels.
     ///
-    /// With `labels`, a whole number for each point, `values` are those of the labels, and every position has the value of
-    /// the label of its strongest point: cells with sharp borders. `labels=range(n)` makes each point a cell.
+    /// With `labels`, a whole number for each point, `values` are those of the labels, and every position has the value
+    /// of the label of its strongest point: cells with sharp borders. `labels=range(n)` makes each point a cell.
     #[pyo3(signature = (values, *, labels = None))]
     fn field(
         &self,
@@ -242,10 +242,10 @@ impl Partition {
         color_field::object(py, Made::Pups(Shared::new(made)))
     }
 
-    /// The points with a weight at positions of the shape (…, 2), and their weights, which sum to 1: those of position i
-    /// are `indices[indptr[i]:indptr[i + 1]]` and `weights[…]`, as in `scipy.sparse.csr_array`.
+    /// The points with a weight at positions of the shape (…, 2), and their weights, which sum to 1: those of position
+    /// i are `indices[indptr[i]:indptr[i + 1]]` and `weights[…]`, as in `scipy.sparse.csr_array`.
     ///
-    /// A point may come more than once where its copies across axes that wrap have weights.
+    /// A point may occur more than once if its copies across axes that wrap have weights.
     fn weights<'py>(
         &self,
         py: Python<'py>,
@@ -332,7 +332,7 @@ impl Partition {
     }
 }
 
-/// The partition that is described.
+/// Makes the partition of a description.
 #[pyfunction]
 pub(crate) fn _partition_from_description(py: Python<'_>, description: &str) -> Result<Partition> {
     let net: core::result::Result<Shared<NetMade>, _> = serde_json::from_str(description);
@@ -344,7 +344,7 @@ pub(crate) fn _partition_from_description(py: Python<'_>, description: &str) -> 
 /// The field of values at control points: smooth, exact at the points, and repeating where their domain wraps; Caron and
 /// Mould, "Partition of Unity Parametrics for Texture Synthesis" (2013).
 ///
-/// It is `Partition(points, …).field(values, labels=labels)`; the parameters are those.
+/// It equals `Partition(points, …).field(values, labels=labels)`, with the same parameters.
 ///
 /// Examples
 /// --------

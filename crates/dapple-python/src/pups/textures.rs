@@ -1,4 +1,4 @@
-//! The textures of the paper, by their names and options as data.
+//! The textures of the paper, by name, with options as data.
 
 use super::vectors::Values;
 use crate::arrays;
@@ -19,11 +19,11 @@ use serde_json::{Map, Value};
 use std::marker::PhantomData;
 use std::sync::Arc;
 
-/// How a texture of the paper was made.
+/// The description of a texture of the paper.
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct TextureMade {
     kind: String,
-    /// All options, but for the domain where there is another one.
+    /// All options, without the domain if there is another one.
     options: Value,
     domain: Option<dapple::points::Domain>,
     image: Option<Image>,
@@ -66,7 +66,7 @@ trait Texture {
     fn build(options: Self::Options, made: &TextureMade) -> Result<PupsField>;
 }
 
-/// A kind of textures that follow an image.
+/// The options of a texture that is guided by an image.
 struct Referenced<T>(PhantomData<T>);
 
 impl<T: PupsRecipe + DeserializeOwned + Serialize> Texture for T {
@@ -91,7 +91,7 @@ impl<T: PupsRecipe<ReferenceImage> + DeserializeOwned + Serialize> Texture for R
     }
 }
 
-/// The options with a domain, which wraps along no axis along which the texture changes.
+/// The options with a domain; it does not wrap along axes along which the texture changes.
 fn placed<T: PupsRecipe<I>, I>(mut options: T, domain: Option<dapple::points::Domain>) -> T {
     if let Some(domain) = domain {
         let usual = T::default().domain_mut().wrap;
@@ -126,7 +126,7 @@ macro_rules! kinds {
 
 dapple::pups::recipes!(kinds);
 
-/// The kind of a name.
+/// The kind with a name.
 fn kind(name: &str) -> Result<&'static Kind> {
     let found = KINDS.iter().find(|kind| kind.name == name);
     found.ok_or_else(|| {
@@ -139,7 +139,7 @@ fn kind(name: &str) -> Result<&'static Kind> {
     })
 }
 
-/// The texture of a kind with these options.
+/// Makes a texture of a kind with these options.
 #[pyfunction]
 pub(crate) fn _texture(
     py: Python<'_>,
@@ -166,11 +166,11 @@ pub(crate) fn _texture(
     color_field::object(py, Made::Texture(Shared::new(made)))
 }
 
-/// All kinds of textures as JSON: for each what it is, whether it follows an image, and its options with their defaults.
+/// All kinds of textures as JSON: a sentence, whether an image guides it, and the options with their defaults.
 #[pyfunction]
 pub(crate) fn _texture_defaults() -> Result<String> {
     let described = KINDS.iter().map(|kind| {
-        // Points that are given one by one have no default.
+        // Points have no default, since they are given one by one.
         let given = if kind.name == "points" {
             "{\"points\": []}"
         } else {

@@ -1,4 +1,4 @@
-//! Functions of the plane with several numbers at each position, behind one type for all counts.
+//! Functions of the plane with several numbers at each position, as one type for all counts.
 
 use crate::error::{Error, Result};
 use dapple::pups::{LabelTexture, Pups, VectorLabelTexture, VectorTexture};
@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 /// A function of the plane with several numbers at each position.
 pub(crate) trait Vectors: Send + Sync {
-    /// How many numbers there are.
+    /// The number of channels.
     fn n_channels(&self) -> usize;
 
     /// The distances after which it repeats.
@@ -52,7 +52,7 @@ macro_rules! vectors {
 
 vectors!(VectorTexture: |this| this.pups(), Labels: |this| this.pups);
 
-/// A texture of labels with vectors, and its net, which says where it repeats.
+/// A texture of labels with vectors, and its net, which determines the period.
 struct Labels<const N: usize> {
     texture: VectorLabelTexture<N>,
     pups: Pups,
@@ -72,7 +72,7 @@ impl<const N: usize> Labels<N> {
     }
 }
 
-/// What control points with values give.
+/// The field of values at control points.
 #[derive(Clone)]
 pub(crate) enum Values {
     /// A number at each position.
@@ -81,11 +81,11 @@ pub(crate) enum Values {
     Vectors(Arc<dyn Vectors>),
 }
 
-/// The most numbers that a control point has.
+/// The largest number of values of a control point.
 pub(crate) const MOST_CHANNELS: usize = 8;
 
 impl Values {
-    /// Values of control points, or of their labels: single numbers, or rows of so many.
+    /// Makes the field of values at control points, or of their labels: single numbers, or rows of them.
     pub(crate) fn new(
         pups: Pups,
         values: &[f32],
@@ -117,7 +117,7 @@ impl Values {
         }))
     }
 
-    /// The field of numbers.
+    /// The field, if it has single numbers.
     pub(crate) fn numbers(self) -> Result<Arc<dyn Field>> {
         match self {
             Self::Numbers(field) => Ok(field),

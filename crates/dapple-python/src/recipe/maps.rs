@@ -1,4 +1,4 @@
-//! The maps of a material: their names, and what their numbers are.
+//! The maps of a material: their names and contents.
 
 use crate::error::{Error, Result};
 use crate::pictures::{Content, Kind};
@@ -6,7 +6,7 @@ use dapple::recipe::MapKind;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
 
-/// What the numbers of a map are, and how many a pixel has.
+/// The kind of a map: its content and number of channels.
 pub(super) fn kind_of(map: MapKind) -> Kind {
     let (content, n_channels) = match map {
         MapKind::Albedo => (Content::Color, 3),
@@ -20,13 +20,13 @@ pub(super) fn kind_of(map: MapKind) -> Kind {
     }
 }
 
-/// What the numbers of a picture of this name are, where its channels alone would make them colors.
+/// The content of a picture with this name, if its channels alone would make it a color.
 pub(crate) fn content_of(name: &str) -> Option<Content> {
     let kind = kind_of(MapKind::from_name(name)?);
     (kind.n_channels > 1 && kind.content != Content::Color).then_some(kind.content)
 }
 
-/// The maps that a name or several stand for, each of them once.
+/// The maps for one name or several, each of them once.
 pub(super) fn maps(names: &Bound<'_, PyAny>) -> Result<Vec<MapKind>> {
     let names: Vec<String> = match names.cast::<PyString>() {
         Ok(name) => vec![name.to_str()?.to_owned()],
@@ -50,7 +50,7 @@ pub(super) fn maps(names: &Bound<'_, PyAny>) -> Result<Vec<MapKind>> {
     Ok(maps)
 }
 
-/// The map of a name.
+/// The map with a name.
 fn map(name: &str) -> Result<MapKind> {
     MapKind::from_name(name).ok_or_else(|| {
         let names = MapKind::ALL.map(MapKind::name).join(", ");

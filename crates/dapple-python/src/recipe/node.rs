@@ -7,12 +7,12 @@ use dapple::recipe::{Images, Plan, Recipe};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// How a field of a recipe was made.
+/// The description of a field of a recipe.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct NodeMade {
     /// The recipe as JSON.
     pub(super) recipe: String,
-    /// The node, or the height.
+    /// The name of the node; `None` for the height.
     pub(super) node: Option<String>,
     pub(super) time: f64,
 }

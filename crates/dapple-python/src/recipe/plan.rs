@@ -1,4 +1,4 @@
-//! Recipes that are ready to be baked.
+//! Plans: recipes that are ready to be baked.
 
 use super::maps::{_map_info, kind_of, maps};
 use super::{NodeMade, Recipe, sha256};
@@ -53,7 +53,7 @@ struct Gathered {
 }
 
 impl Gathered {
-    /// Adds rows of a map that has `n_values` numbers in all. A map that comes in one piece is taken as it is.
+    /// Adds rows of a map with `n_values` numbers in all. A map in one piece is moved, not copied.
     fn push(&mut self, rows: MapRows, n_values: usize) -> Result<()> {
         let rows = match rows {
             MapRows::Gray(raster) => raster.into_pixels(),
@@ -82,7 +82,7 @@ fn flat<T>(pixels: Vec<T>, numbers: impl Fn(T) -> [f32; 3]) -> Vec<f32> {
         .into_flattened()
 }
 
-/// The numbers of all bands of maps, as a dictionary of arrays.
+/// Gathers the numbers of all bands of maps, as a dictionary of arrays.
 fn gather<'py>(
     py: Python<'py>,
     mut bake: Bake<'_>,
@@ -151,8 +151,9 @@ impl Plan {
     /// ----------
     /// size : (rows, columns) of the whole tile, or a number for both. It may be far larger than memory.
     /// maps : the name of a map, or the names of several, each once: see `map_names`.
-    /// window : the part to make, as `np.s_[100:150, 33:94]`: bit for bit the crop of the whole. It must lie inside.
-    /// as_xarray : gives an `xarray.Dataset` with coordinates in units of the plane instead of a dictionary.
+    /// window : the part to bake, such as `np.s_[100:150, 33:94]`: bit for bit the crop of the whole. It must lie
+    ///     inside.
+    /// as_xarray : return an `xarray.Dataset` with coordinates in units of the plane instead of a dictionary.
     #[pyo3(signature = (size, maps = None, *, window = None, as_xarray = false),
         text_signature = "(self, size, maps='height', *, window=None, as_xarray=False)")]
     fn bake<'py>(
@@ -182,7 +183,7 @@ impl Plan {
         Ok(dataset.call1((maps, pixel, (x, y)))?)
     }
 
-    /// The recipe that it was made from.
+    /// The recipe of the plan.
     #[getter]
     fn recipe(&self) -> Recipe {
         Recipe {
@@ -190,31 +191,31 @@ impl Plan {
         }
     }
 
-    /// The part of a loop that has passed.
+    /// The elapsed part of a loop.
     #[getter]
     fn time(&self) -> f64 {
         self.time
     }
 
-    /// Whether every map can be made in parts: no node sees the whole tile.
+    /// Whether every map can be baked in parts: no node depends on the whole tile.
     #[getter]
     fn is_local(&self) -> bool {
         self.plan.check_local().is_ok()
     }
 
-    /// Refuses a plan with a node that sees the whole tile.
+    /// Fails for a plan with a node that depends on the whole tile.
     fn check_local(&self) -> Result<()> {
         Ok(self.plan.check_local()?)
     }
 
-    /// The maps by their names: how many channels they have, whether they are colors ("linear") or data ("non-color"), and
-    /// the `content` with which `write_image` writes them.
+    /// The maps by name: the number of channels, whether they are colors ("linear") or data ("non-color"), and the
+    /// `content` for `write_image`.
     #[getter]
     fn map_info<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyDict>> {
         _map_info(py)
     }
 
-    /// The numbers of a node as a field, by its name: those of the height of the material by default.
+    /// The numbers of a node as a field, by its name; those of the height of the material by default.
     #[pyo3(signature = (node = None))]
     fn field(&self, node: Option<String>) -> Result<Field> {
         if !self.images.is_empty() {
@@ -230,7 +231,7 @@ impl Plan {
         })))
     }
 
-    /// The SHA-256 of all that the plan is made of, its images too: the same on every machine.
+    /// The SHA-256 of all inputs of the plan, including its images: the same on every machine.
     #[getter]
     fn hash(&self) -> Result<String> {
         let text = self.recipe.to_json()?;
@@ -292,7 +293,7 @@ impl Plan {
     }
 }
 
-/// The plan of a recipe in JSON, with its images.
+/// Makes the plan of a recipe in JSON, with its images.
 #[pyfunction]
 pub(crate) fn _plan_from_parts(
     py: Python<'_>,

@@ -1,4 +1,4 @@
-//! The parts of a picture that machines make on their own.
+//! Shards: the parts of a picture for independent bakes.
 
 use crate::error::Result;
 use crate::grid::size as size_of;
@@ -9,8 +9,8 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 
 /// The windows of the shards of a picture, as pairs of (first row, first column) and (rows, columns), row by row.
 ///
-/// A shard is a part that a machine makes on its own; the last ones of a row and of a column are cut off at the border.
-/// They are those of `dapple shards`.
+/// A shard is a part that one machine bakes; the last ones of a row and of a column are cropped at the border. They are
+/// those of `dapple shards`.
 #[pyfunction]
 pub(crate) fn shards(size: &Bound<'_, PyAny>, shard: &Bound<'_, PyAny>) -> Result<ShardList> {
     let shards = Shards::new(size_of(size)?, size_of(shard)?)?;
@@ -28,7 +28,7 @@ type Sides = (u32, u32);
 
 #[pymethods]
 impl ShardList {
-    /// How many shards there are below one another and side by side.
+    /// The numbers of shards one below another and side by side.
     #[getter]
     fn grid(&self) -> Sides {
         let [columns, rows] = self.shards.grid();

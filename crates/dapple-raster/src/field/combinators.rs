@@ -1,4 +1,4 @@
-//! The methods by which fields are composed.
+//! The trait [`FieldExt`]: methods that compose fields.
 
 use super::{
     Fractal, FractalShape, Frequency, Mapped, Mixed, Offset, Pair, PairOperation, Rotated, Warped,
@@ -6,10 +6,10 @@ use super::{
 use crate::{Field, RasterError};
 use glam::DVec2;
 
-/// Composition of fields: where a field is asked, what becomes of its values, and sums of it at several scales.
+/// Composition of fields: transformed positions, changed values, and sums at several scales.
 ///
-/// Every field has these methods. What they give keeps the promises of [`Field`], above all the same bits from all of
-/// its doors, and has the period that follows from those of its parts.
+/// Every field has these methods. Their results keep the promises of [`Field`], above all the same bits from all of its
+/// methods, and have the period that follows from those of their parts.
 ///
 /// # Examples
 ///
@@ -67,7 +67,7 @@ pub trait FieldExt: Field + Sized {
         }
     }
 
-    /// A function of this field's values.
+    /// This field's values passed through a function.
     fn map<M: Fn(f32) -> f32 + Send + Sync>(self, function: M) -> Mapped<Self, M> {
         Mapped {
             field: self,
@@ -126,7 +126,7 @@ pub trait FieldExt: Field + Sized {
         self.with(other, PairOperation::Maximum)
     }
 
-    /// Two fields joined value by value.
+    /// Two fields combined value by value with an operation.
     fn with<B: Field>(self, other: B, operation: PairOperation) -> Pair<Self, B> {
         Pair {
             first: self,
@@ -135,7 +135,8 @@ pub trait FieldExt: Field + Sized {
         }
     }
 
-    /// A part of the way from this field to another: this where `by` is 0 or less, the other where it is 1 or more.
+    /// The linear interpolation from this field to another: this field where `by` is 0 or less, the other one where it
+    /// is 1 or more.
     fn mix<B: Field, T: Field>(self, to: B, by: T) -> Mixed<Self, B, T> {
         Mixed { from: self, to, by }
     }
@@ -156,8 +157,8 @@ pub trait FieldExt: Field + Sized {
         repeat(self, octaves, gain, lacunarity, FractalShape::Sum)
     }
 
-    /// Ridges where the values of this field, which should lie about 0, go through 0: as [`fbm`](Self::fbm), of
-    /// `1 - |value|`.
+    /// Ridges where the values of this field, which should lie about 0, cross 0: a sum of octaves like that of
+    /// [`fbm`](Self::fbm), of `1 - |value|`.
     ///
     /// # Errors
     ///
@@ -169,8 +170,8 @@ pub trait FieldExt: Field + Sized {
         repeat(self, octaves, gain, lacunarity, FractalShape::Ridged)
     }
 
-    /// Round hills with creases where the values of this field, which should lie about 0, go through 0: as
-    /// [`fbm`](Self::fbm), of `|value|`.
+    /// Round hills with creases where the values of this field, which should lie about 0, cross 0: a sum of octaves
+    /// like that of [`fbm`](Self::fbm), of `|value|`.
     ///
     /// # Errors
     ///

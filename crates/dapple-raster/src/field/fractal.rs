@@ -8,10 +8,10 @@ use super::values::{by_bands, zip_rows};
 use crate::{Field, Frequency, RasterError, RasterViewMut, Window};
 use glam::DVec2;
 
-/// The most octaves of a sum.
+/// The largest number of octaves of a sum.
 const MOST_OCTAVES: usize = 32;
 
-/// A sum of octaves, `Σ gain^i · shape(field_i(lacunarity^i · position))`. Nothing is divided by the sum of the weights.
+/// A sum of octaves, `Σ gain^i · shape(field_i(lacunarity^i · position))`, not divided by the sum of the weights.
 ///
 /// # Examples
 ///
@@ -34,7 +34,7 @@ pub struct Fractal<F> {
 }
 
 crate::named! {
-    /// What becomes of the values of an octave before they are summed; all three are made for values about 0.
+    /// The function that the values of each octave pass through before they are summed; made for values about 0.
     #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
     #[non_exhaustive]
     pub enum FractalShape {
@@ -43,7 +43,7 @@ crate::named! {
         Sum = "sum",
         /// `1 - |value|`: ridges where values go through 0.
         Ridged = "ridged",
-        /// `|value|`: creases there, and round hills between them; Perlin called it turbulence.
+        /// `|value|`: creases where values go through 0, and round hills between them; Perlin called it turbulence.
         Billow = "billow",
     }
 }
@@ -96,7 +96,8 @@ impl<F: Field> Fractal<F> {
         Ok(sum)
     }
 
-    /// The sum of the weights without their signs: values of octaves from -1 to 1 give sums from minus this to this.
+    /// The sum of the absolute weights: octaves with values from -1 to 1 have sums from minus this number to this
+    /// number.
     #[must_use]
     pub fn weight(&self) -> f32 {
         let weights = self.weights.iter().map(|weight| f64::from(weight.abs()));

@@ -1,11 +1,11 @@
-//! Periods of what is made of several fields.
+//! Periods of fields that are composed of several fields.
 
 /// How many times the longer of two periods may go before both end at the same place; past this they count as having
 /// no period in common.
 const MOST_REPEATS: u32 = 64;
 
 /// The distance after which two fields repeat together along each axis: the least common multiple of their
-/// [periods](crate::Field::period), if it is at most 64 times the longer one. For those who write a field of fields.
+/// [periods](crate::Field::period), if it is at most 64 times the longer one. For fields that are made of other fields.
 #[must_use]
 pub fn common_period(a: [Option<f64>; 2], b: [Option<f64>; 2]) -> [Option<f64>; 2] {
     core::array::from_fn(|axis| common_multiple(a[axis]?, b[axis]?))

@@ -1,4 +1,4 @@
-//! Fields that ask another field elsewhere.
+//! Fields that sample another field at transformed positions.
 
 use super::common_period;
 use crate::{Field, RasterError, RasterViewMut, Window};
@@ -35,7 +35,7 @@ pub struct Warped<F, X, Y> {
     pub(super) amount: f64,
 }
 
-/// Fills a window by the rows of its positions.
+/// Fills a window row by row from its positions.
 fn render_rows(
     field: &impl Field,
     window: &Window,

@@ -5,7 +5,7 @@ use crate::{Field, RasterError, RasterViewMut, Window, parallel};
 use core::fmt;
 use glam::DVec2;
 
-/// How many values of a field are worked out at a time: with as many others they stay in a core's cache.
+/// How many values of a field are computed at a time: few enough that two such bands stay in a core's cache.
 const BAND: usize = 1 << 17;
 
 /// A field whose values go through a function: see [`FieldExt::map`](super::FieldExt::map).
@@ -15,7 +15,7 @@ pub struct Mapped<F, M> {
     pub(super) function: M,
 }
 
-/// Two fields joined value by value: see [`FieldExt::add`](super::FieldExt::add) and its like.
+/// Two fields combined value by value: see [`FieldExt::add`](super::FieldExt::add) and its siblings.
 #[derive(Clone, Copy, Debug)]
 pub struct Pair<A, B> {
     pub(super) first: A,
@@ -24,7 +24,7 @@ pub struct Pair<A, B> {
 }
 
 crate::named! {
-    /// What becomes of two values.
+    /// The operation that combines two values.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
     #[non_exhaustive]
     pub enum PairOperation {
@@ -41,7 +41,7 @@ crate::named! {
     }
 }
 
-/// A part of the way from one field to another: see [`FieldExt::mix`](super::FieldExt::mix).
+/// The interpolation from one field to another: see [`FieldExt::mix`](super::FieldExt::mix).
 #[derive(Clone, Copy, Debug)]
 pub struct Mixed<A, B, T> {
     pub(super) from: A,
@@ -174,7 +174,7 @@ fn unit(value: f32) -> f32 {
     value.clamp(0.0, 1.0)
 }
 
-/// Renders a field band by band and gives each of its values to `change` with the one that is there.
+/// Renders a field band by band and passes each of its values to `change` with the value already in the output.
 fn join(
     field: &impl Field,
     window: &Window,
@@ -213,7 +213,7 @@ pub(super) fn by_bands(
     done.into_iter().collect()
 }
 
-/// Changes values by others of the same places.
+/// Changes values by the values of others at the same places.
 pub(super) fn zip_rows(
     values: &mut RasterViewMut<'_, f32>,
     others: &mut RasterViewMut<'_, f32>,

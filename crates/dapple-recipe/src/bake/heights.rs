@@ -1,4 +1,4 @@
-//! The heights of a band and of a margin about it, with what other maps are made of, too.
+//! The heights of a band with a margin, and the steps that other maps share with the height.
 
 use super::MapKind;
 use super::maps::{NORMAL_HALO, beside_height, curvature_options, occlusion_options};
@@ -7,20 +7,20 @@ use crate::{Plan, RecipeError, Values, Whole};
 use dapple_raster::{Raster, RasterError, Window};
 use std::sync::Arc;
 
-/// The most pixels of a band with its margin for which more than the heights is kept: eight times those of a usual band,
-/// which take 32 MiB for each step. Past that, the other maps work everything out for themselves.
+/// The largest number of pixels of a band with its margin for which more than the heights is kept: eight times those of
+/// a usual band, which take 32 MiB for each step. Above it, the other maps compute all their steps again.
 const SHARED_PIXELS: usize = 1 << 23;
 
-/// Heights, of which those that two bands share are made once.
+/// Computes the heights of bands; rows that two bands share are computed once.
 #[derive(Clone, Debug)]
 pub(super) struct Heights {
-    /// Whether a map needs them.
+    /// Whether any map needs heights.
     wanted: bool,
-    /// How far the maps look, in pixels.
+    /// The halo of the maps, in pixels.
     halo: [u32; 2],
-    /// The steps on the way to the height that other maps are made of, too.
+    /// The steps of the height on which other maps depend, too.
     shared: Vec<usize>,
-    /// The lowest rows of the last band, which the margin of the next one begins with.
+    /// The lowest rows of the last band, with which the margin of the next one begins.
     last: Option<Rows>,
 }
 
@@ -35,7 +35,7 @@ struct Rows {
 pub(super) struct Margined {
     pub(super) raster: Option<Raster<f32>>,
     pub(super) halo: [u32; 2],
-    /// Values of steps that other maps need too, in the band itself.
+    /// The values, in the band itself, of steps that other maps need too.
     pub(super) shared: Box<Known>,
 }
 
@@ -61,7 +61,7 @@ impl Heights {
         Ok(heights)
     }
 
-    /// The heights of a band, below or beside the last one.
+    /// Computes the heights of a band below or beside the last one.
     pub(super) fn of(
         &mut self,
         plan: &Plan,
@@ -114,7 +114,7 @@ impl Heights {
 }
 
 impl Rows {
-    /// No rows yet, above those of the window.
+    /// An empty set of rows, above those of the window.
     fn none(window: &Window) -> Self {
         let [width, _] = window.size;
         Self {
@@ -126,7 +126,7 @@ impl Rows {
         }
     }
 
-    /// The rows from one on, if that is among them.
+    /// The rows from `first` on, if it is among them.
     fn rows_from(&self, first: i64) -> Option<Self> {
         let [width, rows] = self.window.size;
         let above = u32::try_from(first.checked_sub(self.window.first[1])?).ok()?;
@@ -146,7 +146,7 @@ impl Rows {
         })
     }
 
-    /// Makes the rows of the window that are below these.
+    /// Computes the rows of the window that are below these.
     fn complete(
         &mut self,
         plan: &Plan,
@@ -175,7 +175,7 @@ impl Rows {
     }
 }
 
-/// The values of a window without its margin.
+/// Crops the margin from the values of a window.
 fn cropped(
     values: Values,
     window: &Window,

@@ -12,19 +12,19 @@ use dapple_raster::{Raster, Window, Wrap};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[non_exhaustive]
 pub enum MapKind {
-    /// The height, from 0 to 1 where the recipe keeps to it.
+    /// The height, from 0 to 1 for recipes that stay in this range.
     Height,
     /// The normals of the height.
     Normal,
-    /// How much of the sky a place sees, from 0 to 1: ambient occlusion.
+    /// Ambient occlusion: the visible part of the sky, from 0 to 1.
     Occlusion,
     /// The curvature as a gray: ½ where it is flat, more on edges, less in grooves.
     Curvature,
-    /// The color.
+    /// The base color.
     Albedo,
-    /// From 0, a mirror, to 1, chalk.
+    /// The roughness: from 0, a mirror, to 1, chalk.
     Roughness,
-    /// From 0, no metal, to 1, all metal.
+    /// The metalness: from 0, no metal, to 1, all metal.
     Metallic,
     /// Occlusion, roughness and metallic as red, green and blue, as glTF and engines pack them.
     Orm,
@@ -39,7 +39,7 @@ pub enum MapRows {
     Color(Raster<LinearRgb>),
     /// Normals.
     Normal(Raster<Normal>),
-    /// Three numbers that are no color.
+    /// Three numbers that are not a color.
     Packed(Raster<[f32; 3]>),
 }
 
@@ -56,7 +56,7 @@ impl MapKind {
         Self::Orm,
     ];
 
-    /// The map of this name; `basecolor` and `base_color` are the albedo.
+    /// The map with a name; `basecolor` and `base_color` are the albedo.
     #[must_use]
     pub fn from_name(name: &str) -> Option<Self> {
         if let "basecolor" | "base_color" = name {
@@ -93,7 +93,7 @@ impl MapRows {
         }
     }
 
-    /// These rows with further ones of the same map below.
+    /// Appends further rows of the same map below.
     pub(super) fn joined(self, below: Self) -> Result<Self, RecipeError> {
         fn join<T>(above: Raster<T>, below: Raster<T>) -> Result<Raster<T>, RecipeError> {
             let size = [above.width(), above.height().saturating_add(below.height())];
@@ -111,7 +111,7 @@ impl MapRows {
         })
     }
 
-    /// A range of numbers, made as wide as the finite numbers of these rows need.
+    /// A range of numbers, extended by the finite numbers of these rows.
     #[must_use]
     pub fn range(&self, range: [f32; 2]) -> [f32; 2] {
         fn widened(range: [f32; 2], numbers: impl Iterator<Item = f32>) -> [f32; 2] {
@@ -139,10 +139,10 @@ impl MapRows {
     }
 }
 
-/// The columns and rows at each side that a normal depends on.
+/// The numbers of columns and rows at each side on which a normal depends.
 pub(super) const NORMAL_HALO: [u32; 2] = [1; 2];
 
-/// How the heights of a plan lie in the plane. What lies past the margin does not matter.
+/// The plane of the heights of a plan. The wrap past the margin does not matter.
 fn height_plane(plan: &Plan) -> HeightPlane {
     HeightPlane {
         strength: plan.material().relief,
@@ -151,7 +151,7 @@ fn height_plane(plan: &Plan) -> HeightPlane {
     }
 }
 
-/// A plan's choices for ambient occlusion.
+/// The options of a plan for ambient occlusion.
 pub(super) fn occlusion_options(plan: &Plan) -> Result<OcclusionOptions, RecipeError> {
     let material = plan.material();
     let radius = material
@@ -171,7 +171,7 @@ pub(super) fn occlusion_options(plan: &Plan) -> Result<OcclusionOptions, RecipeE
     })
 }
 
-/// A plan's choices for curvature.
+/// The options of a plan for curvature.
 pub(super) fn curvature_options(plan: &Plan) -> Result<CurvatureOptions, RecipeError> {
     let material = plan.material();
     let radius = material
@@ -190,7 +190,7 @@ pub(super) fn curvature_options(plan: &Plan) -> Result<CurvatureOptions, RecipeE
     })
 }
 
-/// The steps that are maps themselves, in the order of the maps: all but those that are made of the height.
+/// The steps that are maps themselves, in the order of the maps: all maps except those computed from the height.
 pub(super) fn beside_height(plan: &Plan, kinds: &[MapKind]) -> Vec<usize> {
     let channels = plan.channels();
     let of_kind = |kind: &MapKind| match kind {
@@ -203,7 +203,7 @@ pub(super) fn beside_height(plan: &Plan, kinds: &[MapKind]) -> Vec<usize> {
     kinds.iter().flat_map(of_kind).collect()
 }
 
-/// The maps of a band, of which the heights are known.
+/// Computes the maps of a band from its heights.
 pub(super) fn maps(
     plan: &Plan,
     whole: &Whole,
@@ -224,7 +224,7 @@ pub(super) fn maps(
         heights,
         occlusion: None,
     };
-    // Two maps may show it, and it takes the longest.
+    // Two maps may show occlusion, and it takes the longest.
     let shows_occlusion = |kind: &MapKind| matches!(kind, MapKind::Occlusion | MapKind::Orm);
     if kinds.iter().any(shows_occlusion) {
         around.occlusion = Some(around.make_occlusion()?);
@@ -260,23 +260,23 @@ fn pack(
     Ok(two.zip_map(blue, |&[red, green], &blue| [red, green, blue])?)
 }
 
-/// The maps that look around a pixel.
+/// The maps that depend on the surroundings of a pixel.
 struct Around<'a> {
     plan: &'a Plan,
     tile: [u32; 2],
     size: [u32; 2],
     heights: &'a Margined,
-    /// Made where a map shows it.
+    /// The occlusion, computed if a map shows it.
     occlusion: Option<Raster<f32>>,
 }
 
 impl Around<'_> {
-    /// The heights with a margin; there are some wherever a map is made of them.
+    /// The heights with a margin; they exist if any map depends on them.
     fn margined(&self) -> Result<&Raster<f32>, RecipeError> {
         foreseen(self.heights.raster.as_ref())
     }
 
-    /// The occlusion; there is some wherever a map shows it.
+    /// The occlusion; it exists if any map shows it.
     fn occlusion(&self) -> Result<&Raster<f32>, RecipeError> {
         foreseen(self.occlusion.as_ref())
     }
@@ -285,7 +285,7 @@ impl Around<'_> {
         self.within([0; 2])
     }
 
-    /// The heights with a margin of so many columns and rows, at most that which all maps need.
+    /// The heights with a margin of the given numbers of columns and rows, at most that of all maps.
     fn within(&self, margin: [u32; 2]) -> Result<Raster<f32>, RecipeError> {
         let first = [0, 1].map(|axis| self.heights.halo[axis] - margin[axis]);
         let size = [0, 1].map(|axis| self.size[axis] + 2 * margin[axis]);
@@ -319,7 +319,7 @@ impl Around<'_> {
     }
 }
 
-/// The values that several maps of a band need.
+/// A raster that several maps of a band need; its absence is an error.
 fn foreseen(raster: Option<&Raster<f32>>) -> Result<&Raster<f32>, RecipeError> {
     raster.ok_or_else(|| {
         let rule = "a map was not foreseen";

@@ -1,10 +1,10 @@
-//! Shards: the parts of a picture that are baked on their own, by any number of machines.
+//! Shards: the parts of a picture for independent bakes on any number of machines.
 
 use crate::{RecipeError, Region};
 
-/// The shards of a picture: regions of equal size, row by row from the top, of which the last ones are cut off at the border.
+/// The shards of a picture: regions of equal size, row by row from the top; the last ones are cropped at the border.
 ///
-/// Nothing is stored but the two sizes, so that a list may have any length. A shard baked as the
+/// Only the two sizes are stored, so that a list may have any length. A shard baked as the
 /// [`region`](crate::BakeOptions::region) of a bake is, bit for bit, that part of the whole picture.
 ///
 /// # Examples
@@ -57,7 +57,7 @@ impl Shards {
         self.shard
     }
 
-    /// How many shards there are side by side, and one below the other.
+    /// The numbers of shards side by side, and one below the other.
     #[must_use]
     pub fn grid(&self) -> [u32; 2] {
         [0, 1].map(|axis| self.size[axis].div_ceil(self.shard[axis]))
@@ -74,8 +74,8 @@ impl Shards {
         u64::from(columns) * u64::from(rows)
     }
 
-    /// The shard with this index, or `None` past the last one. Its column among the shards is the rest of the index
-    /// divided by the columns of the [`grid`](Self::grid).
+    /// The shard with an index, or `None` past the last one. Its column among the shards is the index modulo the
+    /// columns of the [`grid`](Self::grid).
     #[must_use]
     pub fn get(&self, index: u64) -> Option<Region> {
         let columns = u64::from(self.grid()[0]);
@@ -90,7 +90,7 @@ impl Shards {
 
     /// The shard in this column and row of the grid.
     fn at(&self, place: [u64; 2]) -> Region {
-        // Both are within the picture.
+        // Both fit, since they are within the picture.
         let first = [0, 1].map(|axis| (place[axis] * u64::from(self.shard[axis])) as u32);
         let size = [0, 1].map(|axis| self.shard[axis].min(self.size[axis] - first[axis]));
         Region { first, size }

@@ -1,14 +1,14 @@
-//! How an image with alpha is used where no alpha is needed.
+//! The use of an image with alpha where no alpha is needed.
 
 use crate::input::hex_from_color;
 use dapple_color::LinearRgb;
 use serde::de::{Deserialize, Deserializer, Error, Unexpected};
 use serde::ser::{Serialize, Serializer};
 
-/// How an image with alpha is used where no alpha is needed. In a file: `"drop"`, or `"over:#rrggbb"`.
+/// The use of an image with alpha where no alpha is needed. In a file: `"drop"`, or `"over:#rrggbb"`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ImageAlpha {
-    /// The colors are used without it.
+    /// The colors are used without alpha.
     Drop,
     /// The image is laid over this color, in linear light.
     Over(LinearRgb),

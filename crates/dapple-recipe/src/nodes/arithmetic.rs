@@ -1,4 +1,4 @@
-//! Sums, products and the like of inputs at each position.
+//! Sums, products and other arithmetic of inputs at each position.
 
 use super::NodeKind;
 use crate::plan::{Builder, Step};
@@ -12,17 +12,17 @@ use serde::{Deserialize, Serialize};
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Add(pub Vec<Input>);
 
-/// The first number less the second.
+/// The first number minus the second.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Subtract(pub [Input; 2]);
 
-/// The product of all inputs, numbers or colors (part by part); at least one.
+/// The product of all inputs, numbers or colors (by component); at least one.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Multiply(pub Vec<Input>);
 
-/// The first number over the second; 0 where that is 0.
+/// The first number divided by the second; 0 where the second is 0.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Divide(pub [Input; 2]);
@@ -37,7 +37,7 @@ pub struct Minimum(pub Vec<Input>);
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Maximum(pub Vec<Input>);
 
-/// A number without its sign.
+/// The absolute value of a number.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Absolute(pub Input);

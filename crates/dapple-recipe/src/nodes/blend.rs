@@ -13,14 +13,14 @@ use serde::{Deserialize, Serialize};
 pub struct Blended {
     /// The layers, at least one.
     pub layers: Vec<BlendedLayer>,
-    /// How weights become shares; as given by default.
+    /// The rule that turns weights into shares; as given by default.
     #[serde(default)]
     #[cfg_attr(
         feature = "schema",
         schemars(schema_with = "crate::schema::traced::<Weighting>")
     )]
     pub weighting: Weighting,
-    /// How layers are mixed by their shares; linear by default. The others see the whole tile.
+    /// The rule by which layers are mixed; linear by default. The other rules depend on the whole tile.
     #[serde(default)]
     #[cfg_attr(
         feature = "schema",
@@ -37,12 +37,12 @@ pub struct Blended {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct BlendedLayer {
-    /// A number or a color.
+    /// The layer's texture: a number or a color.
     pub input: Input,
-    /// How much of it there is, at least 0, beside the other layers: a number; 1 by default.
+    /// The weight of the layer, at least 0, relative to the other layers: a number; 1 by default.
     #[serde(default = "full")]
     pub weight: Input,
-    /// Its height for `weighting = { height = … }`: a number.
+    /// The height of the layer for `weighting = { height = … }`: a number.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub height: Option<Input>,
 }
@@ -82,7 +82,7 @@ impl NodeKind for Blended {
         for number in weights.chain(heights).chain(&self.mask) {
             inputs.push(plan.number(number)?);
         }
-        // Each pixel on its own, as long as no mean over all is needed.
+        // Each pixel is computed on its own if no mean over all is needed.
         Ok(if self.mixing == Mixing::Linear {
             plan.local(inputs, move |inputs| {
                 layers.blend(inputs, [inputs[0].len() as u32, 1])
@@ -95,8 +95,8 @@ impl NodeKind for Blended {
     }
 }
 
-/// How layers are blended. The inputs are those of the layers, their weights, the heights of those that have one, and the
-/// mask.
+/// The layers of a blend. The inputs are those of the layers, their weights, the heights of those that have one, and
+/// the mask.
 #[derive(Clone, Debug)]
 struct Layers {
     how: Blend,
@@ -107,7 +107,7 @@ struct Layers {
 }
 
 impl Layers {
-    /// The blend of pictures of this size.
+    /// Blends pictures of this size.
     fn blend(&self, inputs: &[&Values], size: [u32; 2]) -> Result<Values, RecipeError> {
         let count = self.heights.len();
         let maps = Values::maps(&inputs[..count], size)?;

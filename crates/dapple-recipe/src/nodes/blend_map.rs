@@ -1,4 +1,4 @@
-//! Maps that say where another texture shows first.
+//! Maps of the places where another texture shows first.
 
 use super::NodeKind;
 use crate::plan::{Builder, Step};
@@ -6,17 +6,17 @@ use crate::{Input, RecipeError, Values};
 use dapple_tile::{BlendMap, rank_equalize};
 use serde::{Deserialize, Serialize};
 
-/// A map from 0 to 1, each value as often as any other, that is low in the cracks of a texture: where another one shows
-/// first. It sees the whole tile.
+/// A map from 0 to 1, with all values equally frequent, that is low in the cracks of a texture, where another one shows
+/// first. It depends on the whole tile.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct BlendMapOf {
-    /// A number, or a color, of which the luminance counts.
+    /// A number, or a color, whose luminance is used.
     pub input: Input,
     /// The size of the features, such as the diameter of stones, in units of the plane.
     pub feature_size: f64,
-    /// How steep it is before all values become equally frequent, above 0; 1 by default.
+    /// The steepness before all values become equally frequent, above 0; 1 by default.
     #[serde(default = "one")]
     pub contrast: f64,
 }

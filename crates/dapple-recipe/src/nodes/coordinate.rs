@@ -1,4 +1,4 @@
-//! How far along a direction positions are.
+//! Coordinates along a direction.
 
 use super::NodeKind;
 use crate::RecipeError;
@@ -8,14 +8,14 @@ use dapple_raster::field_fn;
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
-/// How far along a direction a position is: `(position − center) · along`.
+/// The coordinate of a position along a direction: `(position − center) · along`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct Coordinate {
-    /// Where it is 0, in units of the plane; the origin by default.
+    /// The position where the coordinate is 0, in units of the plane; the origin by default.
     pub center: [f64; 2],
-    /// The direction, times how much it grows per unit; `[1, 0]` by default.
+    /// The direction, times the growth of the coordinate per unit; `[1, 0]` by default.
     pub along: [f64; 2],
 }
 

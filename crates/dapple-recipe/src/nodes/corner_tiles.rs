@@ -7,24 +7,24 @@ use crate::{Input, RecipeError, RecipeErrorKind, Values};
 use dapple_tile::CornerTiles;
 use serde::{Deserialize, Serialize};
 
-/// The tile as a board of pieces of several textures, chosen by random colors at their corners: see [`CornerTiles`]. It sees the
-/// whole tile.
+/// The tile as a board of pieces of several textures, chosen by random colors at their corners: see [`CornerTiles`]. It
+/// depends on the whole tile.
 ///
 /// [`CornerTiles`]: dapple_tile::CornerTiles
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct CornerTilesOf {
-    /// Two to four numbers or colors, which repeat: each piece is as large as all of them, made smaller.
+    /// Two to four numbers or colors that repeat: each piece shows a whole tile of them, scaled down.
     pub inputs: Vec<Input>,
-    /// How many pieces there are along each axis, x first; `[4, 4]` by default. They have a whole number of pixels.
+    /// The number of pieces along each axis, x first; `[4, 4]` by default. They have a whole number of pixels.
     #[serde(default = "four")]
     #[cfg_attr(feature = "schema", schemars(transform = { super::disturb::COPIES }))]
     pub copies: [u32; 2],
     /// The share of the side of a piece that cuts may take, above 0 and at most 1; ½ by default.
     #[serde(default = "half")]
     pub width: f64,
-    /// The name by which it draws, instead of its own, or a seed.
+    /// The name or the seed for its random numbers; its own name by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub seed: Option<NodeSeed>,
 }

@@ -1,4 +1,4 @@
-//! How far from a center positions are.
+//! Distances from a center.
 
 use super::NodeKind;
 use crate::RecipeError;
@@ -8,7 +8,8 @@ use dapple_raster::field_fn;
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
-/// How far from a center a position is, in units of the plane; from the nearest of its repeats where the recipe repeats.
+/// The distance of a position from a center, in units of the plane; from the nearest of its repeats if the recipe
+/// repeats.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]

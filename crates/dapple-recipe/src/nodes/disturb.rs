@@ -7,27 +7,28 @@ use dapple_pups::{Range, range};
 use dapple_tile::Disturbance;
 use serde::{Deserialize, Serialize};
 
-/// The tile as copies of a texture, each with another piece of it inside of its border: see [`Disturbance`]. It sees the whole
-/// tile.
+/// The tile as copies of a texture, each with another piece of it inside of its border: see [`Disturbance`]. It depends
+/// on the whole tile.
 ///
 /// [`Disturbance`]: dapple_tile::Disturbance
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Disturbed {
-    /// A number or a color, which repeats: each copy is all of it, made smaller.
+    /// A number or a color that repeats: each copy shows a whole tile of it, scaled down.
     pub input: Input,
-    /// How many copies there are along each axis, x first; `[4, 4]` by default. They have a whole number of pixels.
+    /// The number of copies along each axis, x first; `[4, 4]` by default. They have a whole number of pixels.
     #[serde(default = "four")]
     #[cfg_attr(feature = "schema", schemars(transform = { COPIES }))]
     pub copies: [u32; 2],
-    /// How many pixels along each border of a copy stay as they are; 4 by default.
+    /// The number of unchanged pixels along each border of a copy; 4 by default.
     #[serde(default = "frozen")]
     pub frozen: u32,
-    /// How many more pixels the cut may take; 24 by default. Together at most half of a copy.
+    /// The number of further pixels in which the cut may lie; 24 by default. Together with the frozen ones at most half
+    /// of a copy.
     #[serde(default = "margin")]
     pub margin: u32,
-    /// The name by which it draws, instead of its own, or a seed.
+    /// The name or the seed for its random numbers; its own name by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub seed: Option<NodeSeed>,
 }
@@ -46,7 +47,7 @@ fn margin() -> u32 {
 
 pub(super) const COPIES: Range = range!(at least 1);
 
-/// Refuses no copy at all.
+/// Fails for a number of copies that is 0.
 pub(super) fn check_copies(copies: [u32; 2]) -> Result<(), RecipeError> {
     let mut counts = copies.into_iter();
     counts.try_for_each(|count| RecipeError::check_in(COPIES, "number of copies", count.into()))

@@ -5,14 +5,15 @@ use crate::RecipeError;
 use crate::plan::{Builder, Laid, Step};
 use serde::{Deserialize, Serialize};
 
-/// An image, laid over the tile and read between its pixels; past its edges it repeats, or goes on, as the recipe does.
+/// An image, laid over the tile and interpolated between its pixels; past its edges it repeats or is clamped, as the
+/// recipe is.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct ImageNode {
-    /// The file, as it is asked for; the command takes it from the folder of the recipe.
+    /// The image file; the command reads it from the folder of the recipe.
     pub file: String,
-    /// How its alpha is used; by default a partly transparent image is refused.
+    /// The use of its alpha; by default a partly transparent image is an error.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub alpha: Option<ImageAlpha>,
 }

@@ -1,4 +1,4 @@
-//! Ranges of numbers stretched to others.
+//! Linear maps between ranges of numbers.
 
 use super::NodeKind;
 use crate::plan::{Builder, Step};
@@ -6,17 +6,17 @@ use crate::{Input, RecipeError};
 use dapple_pups::{Range, range};
 use serde::{Deserialize, Serialize};
 
-/// A range stretched to another: how most textures become heights.
+/// A range mapped to another, which turns most textures into heights.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Levels {
     /// The number.
     pub input: Input,
-    /// The range that is stretched; 0 to 1 by default. Its ends may lie either way round, but must differ.
+    /// The range that is mapped; 0 to 1 by default. It may be descending, but its ends must differ.
     #[serde(default = "unit")]
     pub from: [f32; 2],
-    /// The range that the result has at the ends of `from`; 0 to 1 by default.
+    /// The results at the ends of `from`; 0 to 1 by default.
     #[serde(default = "unit")]
     pub to: [f32; 2],
     /// The curve between the ends; a line by default.
@@ -30,13 +30,13 @@ fn unit() -> [f32; 2] {
 
 const END: Range = range!(finite);
 
-/// The curve between the ends of a range. All but the first stay at its ends outside of it.
+/// The curve between the ends of a range. All but the first are constant outside of it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum LevelsCurve {
-    /// A line that goes on past the ends.
+    /// A line that continues past the ends.
     Unclamped,
     /// A line.
     #[default]
@@ -67,7 +67,7 @@ impl NodeKind for Levels {
 }
 
 impl LevelsCurve {
-    /// How far the result is from the first end of the new range, for a number that is `t` from that of the old one.
+    /// The fraction of the new range for a fraction `t` of the old one.
     fn at(self, t: f32) -> f32 {
         match self {
             Self::Unclamped => t,

@@ -1,4 +1,4 @@
-//! Textures with the borders of another.
+//! Textures with the borders of another one.
 
 use super::NodeKind;
 use crate::plan::{Builder, Step};
@@ -6,17 +6,18 @@ use crate::{Input, RecipeError, Values};
 use dapple_tile::MatchBorders;
 use serde::{Deserialize, Serialize};
 
-/// A texture with the borders of another, so that both fit beside each other: see [`MatchBorders`]. It sees the whole tile.
+/// A texture with the borders of another one, so that both fit beside each other: see [`MatchBorders`]. It depends on
+/// the whole tile.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Framed {
     /// A number or a color.
     pub input: Input,
-    /// The texture that the borders are taken from: a number or a color.
+    /// The texture that provides the borders: a number or a color.
     pub border: Input,
-    /// How far from a border the texture changes, and which part of the other becomes it, as in [`MatchBorders`]. Lengths
-    /// are in pixels of the bake.
+    /// The width within which the texture changes, and the part of the other one that becomes the border, as in
+    /// [`MatchBorders`]. Lengths are in pixels of the bake.
     #[serde(default)]
     #[cfg_attr(
         feature = "schema",

@@ -1,11 +1,11 @@
-//! Parts of the way from one input to another.
+//! Interpolation from one input to another.
 
 use super::NodeKind;
 use crate::plan::{Builder, Step};
 use crate::{Input, RecipeError, Values};
 use serde::{Deserialize, Serialize};
 
-/// A part of the way from one input to another.
+/// The interpolation from one input to another.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
@@ -14,7 +14,7 @@ pub struct Mix {
     pub from: Input,
     /// The number or color at 1.
     pub to: Input,
-    /// The part of the way: a number, cut off at 0 and 1.
+    /// The fraction of the way: a number, clamped to 0 to 1.
     pub by: Input,
 }
 

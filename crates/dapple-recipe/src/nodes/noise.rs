@@ -15,18 +15,18 @@ use serde::{Deserialize, Serialize};
 pub struct Fractal {
     /// The noise of an octave; PUPs by default.
     pub basis: FractalBasis,
-    /// About how many bumps there are per unit of the plane in the first octave; 8 by default. For gradients and
+    /// The approximate number of bumps per unit of the plane in the first octave; 8 by default. For gradients and
     /// wavelets, these are their cells.
     #[cfg_attr(feature = "schema", schemars(transform = { FREQUENCY }))]
     pub frequency: f64,
-    /// How many octaves, 1 to 16, each twice as fine as the one before; 4 by default.
+    /// The number of octaves, 1 to 16, each twice as fine as the one before; 4 by default.
     #[cfg_attr(feature = "schema", schemars(transform = { OCTAVES }))]
     pub octaves: u32,
     /// The amplitude of an octave as a multiple of the one before, above 0 and at most 1; ½ by default.
     #[serde(alias = "persistence")]
     #[cfg_attr(feature = "schema", schemars(transform = { GAIN }))]
     pub gain: f64,
-    /// The name by which it draws, instead of its own, or a seed.
+    /// The name or the seed for its random numbers; its own name by default.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub seed: Option<NodeSeed>,
 }
@@ -121,7 +121,7 @@ impl Fractal {
     }
 }
 
-/// Half more than a value, cut off at 0 and 1.
+/// A value plus one half, clamped to 0 to 1.
 fn about_half(value: f32) -> f32 {
     (0.5 + value).clamp(0.0, 1.0)
 }

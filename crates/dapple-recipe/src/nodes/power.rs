@@ -1,4 +1,4 @@
-//! Powers.
+//! Powers of numbers.
 
 use super::NodeKind;
 use crate::plan::{Builder, Step};
@@ -6,7 +6,7 @@ use crate::{Input, RecipeError};
 use dapple_pups::{Range, range};
 use serde::{Deserialize, Serialize};
 
-/// A number to a power.
+/// A number raised to a power.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]

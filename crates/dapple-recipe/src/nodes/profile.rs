@@ -6,7 +6,7 @@ use crate::{Input, RecipeError};
 use dapple_worley::Profile;
 use serde::{Deserialize, Serialize};
 
-/// A cross-section: how high a bump is where a number has a value.
+/// A cross-section of bumps: the height as a function of a number.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]

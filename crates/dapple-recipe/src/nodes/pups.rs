@@ -7,7 +7,7 @@ use dapple_points::Domain;
 use dapple_pups::{ControlNet, ControlPoints, PupsField, PupsRecipe, ReferenceImage};
 use serde::{Deserialize, Serialize};
 
-/// A texture after an image, which covers the tile. Of a color image the luminance counts.
+/// A texture guided by an image, which covers the tile. The luminance of a color image is used.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[cfg_attr(
     feature = "schema",
@@ -19,9 +19,9 @@ use serde::{Deserialize, Serialize};
     bound(deserialize = "T: Default + Deserialize<'de>")
 )]
 pub struct Referenced<T> {
-    /// The file, as it is asked for.
+    /// The image file.
     pub file: String,
-    /// How its alpha is used; by default a partly transparent image is refused.
+    /// The use of its alpha; by default a partly transparent image is an error.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub alpha: Option<ImageAlpha>,
     /// The options of the texture.
@@ -31,15 +31,15 @@ pub struct Referenced<T> {
 
 /// A texture of `dapple-pups` as a node.
 pub(crate) trait Texture {
-    /// The image that the texture follows, with how its alpha is used.
+    /// The image that guides the texture, and the use of its alpha.
     fn image(&self) -> Option<(&str, Option<ImageAlpha>)> {
         None
     }
 
-    /// Whether it makes colors.
+    /// Whether the texture makes colors.
     fn is_color(&self) -> bool;
 
-    /// About how many control points the texture has on a tile.
+    /// The approximate number of control points of the texture on a tile.
     fn expected_points(&self, tile: Domain) -> f64;
 
     /// The texture on the tile of a plan.
@@ -52,12 +52,12 @@ impl<T: PupsRecipe> Texture for T {
     }
 
     fn expected_points(&self, tile: Domain) -> f64 {
-        placed(self, tile, 0.0).expected_points()
+        placed(self, tile).expected_points()
     }
 
     fn build(&self, plan: &Builder<'_>) -> Result<PupsField, RecipeError> {
         check_domain(self)?;
-        Ok(placed(self, plan.domain(), plan.time()).build(&(), plan.seed(None))?)
+        Ok(now(self, plan).build(&(), plan.seed(None))?)
     }
 }
 
@@ -71,7 +71,7 @@ impl<T: PupsRecipe<ReferenceImage>> Texture for Referenced<T> {
     }
 
     fn expected_points(&self, tile: Domain) -> f64 {
-        placed(&self.options, tile, 0.0).expected_points()
+        placed(&self.options, tile).expected_points()
     }
 
     fn build(&self, plan: &Builder<'_>) -> Result<PupsField, RecipeError> {
@@ -80,23 +80,32 @@ impl<T: PupsRecipe<ReferenceImage>> Texture for Referenced<T> {
             Picture::Colors(raster) => raster.map(|color| color.luminance()),
         })?;
         check_domain(&self.options)?;
-        Ok(placed(&self.options, plan.domain(), plan.time()).build(&image, plan.seed(None))?)
+        Ok(now(&self.options, plan).build(&image, plan.seed(None))?)
     }
 }
 
-/// The options at a time, with the tile as their domain, which wraps along no axis along which the texture changes.
-fn placed<T: PupsRecipe<Image>, Image>(options: &T, tile: Domain, time: f64) -> T {
+/// The options with the tile of a plan as their domain, at its time if the points move.
+fn now<T: PupsRecipe<Image>, Image>(options: &T, plan: &Builder<'_>) -> T {
+    let mut options = placed(options, plan.domain());
+    let net = options.net_mut();
+    if net.motion.is_some() {
+        net.time = plan.time();
+    }
+    options
+}
+
+/// The options with the tile as their domain, which wraps along no axis along which the texture changes.
+fn placed<T: PupsRecipe<Image>, Image>(options: &T, tile: Domain) -> T {
     let usual = T::default().domain_mut().wrap;
     let mut options = options.clone();
     *options.domain_mut() = Domain {
         wrap: [0, 1].map(|axis| tile.wrap[axis] && usual[axis]),
         ..tile
     };
-    options.net_mut().time = time;
     options
 }
 
-/// Refuses options with a domain of their own.
+/// Fails for options with a domain of their own.
 fn check_domain<T: PupsRecipe<Image>, Image>(options: &T) -> Result<(), RecipeError> {
     if options.clone().domain_mut() == T::default().domain_mut() {
         return Ok(());
@@ -105,7 +114,7 @@ fn check_domain<T: PupsRecipe<Image>, Image>(options: &T) -> Result<(), RecipeEr
     Err(RecipeError::new(RecipeErrorKind::Conflict { rule }))
 }
 
-/// Makes the node of the textures in the table of `dapple-pups`.
+/// Defines the node of the textures in the table of `dapple-pups`.
 macro_rules! node {
     ($(#[doc = $about:literal] $name:literal $variant:ident($options:ty),)*) => {
         /// A partition-of-unity texture: one of the recipes of `dapple-pups`.
@@ -119,10 +128,10 @@ macro_rules! node {
         }
 
         impl PupsNode {
-            /// The names of the textures, as they are in files, with a sentence about each.
+            /// The names of the textures in files, with a sentence about each.
             pub const KINDS: [(&str, &str); [$($name),*].len()] = [$(($name, $about.trim_ascii())),*];
 
-            /// The texture of this name with all its defaults; what it needs is empty.
+            /// The texture with a name, with all defaults; required options are empty.
             #[must_use]
             pub fn of_kind(name: &str) -> Option<Self> {
                 match name {
@@ -149,7 +158,7 @@ impl PupsNode {
         self.texture().is_color()
     }
 
-    /// The image file that the texture follows, if it follows one.
+    /// The image file that guides the texture, if there is one.
     #[must_use]
     pub fn image_file(&self) -> Option<&str> {
         Some(self.texture().image()?.0)
@@ -166,9 +175,9 @@ pub struct ControlNets {
 }
 
 impl Recipe {
-    /// The control points of the `pups` node of this name; nothing if there is none.
+    /// The control points of the `pups` node with this name; `None` if there is no such node.
     ///
-    /// A texture of one layer of numbers can be had as a node of points: all but `octaves`, `turbulence` and
+    /// A texture of one layer of numbers can be converted to a node of points: all except `octaves`, `turbulence` and
     /// `cellular_noise`, which have layers, and `color_noise`.
     ///
     /// # Errors
@@ -184,7 +193,7 @@ impl Recipe {
     /// let recipe = Recipe::from_toml(text)?;
     /// let nets = recipe.control_nets("hide", &Images::new(), 0.0, &PlanLimits::default())?;
     /// let points = nets.and_then(|nets| nets.points).expect("a cow is one net of numbers");
-    /// assert!(points.points.iter().all(|point| point.value == 0.0 || point.value == 1.0));
+    /// assert!(points.points.iter().all(|point| point.label.is_some()), "white or black");
     /// # Ok::<(), dapple_recipe::RecipeError>(())
     /// ```
     pub fn control_nets(
@@ -210,7 +219,7 @@ impl Recipe {
         Ok(Some(ControlNets {
             nets: field.nets(),
             points: points.map(|points| ControlPoints {
-                // In a recipe it is the tile, and is not to be given.
+                // In a recipe the domain is the tile, and must not be set.
                 domain: ControlPoints::default().domain,
                 ..points
             }),

@@ -1,4 +1,4 @@
-//! Colors for numbers.
+//! Color ramps.
 
 use super::NodeKind;
 use crate::plan::{Builder, Step};
@@ -6,7 +6,7 @@ use crate::{Input, RecipeError, RecipeErrorKind, Values};
 use dapple_color::{ColorRamp, ColorStop, Interpolation, LinearRgb, Outside, Palette, RampSpace};
 use serde::{Deserialize, Serialize};
 
-/// Colors for numbers: a palette, or colors of one's own.
+/// A color for each number: a palette, or a list of colors.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
@@ -24,7 +24,7 @@ pub struct Ramped {
     #[serde(default, skip_serializing_if = "Vec::is_empty", with = "colors")]
     #[cfg_attr(feature = "schema", schemars(with = "Vec<crate::ColorOf>"))]
     pub colors: Vec<LinearRgb>,
-    /// The number at which each color is; at equal distances from 0 to 1 by default.
+    /// The position of each color on the ramp; at equal distances from 0 to 1 by default.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub positions: Vec<f32>,
     /// The space in which two colors are mixed; Oklab by default.
@@ -34,14 +34,14 @@ pub struct Ramped {
         schemars(schema_with = "crate::schema::traced::<RampSpace>")
     )]
     pub space: RampSpace,
-    /// How colors change between two stops; linearly by default.
+    /// The interpolation between two stops; linear by default.
     #[serde(default)]
     #[cfg_attr(
         feature = "schema",
         schemars(schema_with = "crate::schema::traced::<Interpolation>")
     )]
     pub interpolation: Interpolation,
-    /// How the ramp continues past its ends; with the color at the end by default.
+    /// The continuation past the ends of the ramp; the color at the end by default.
     #[serde(default)]
     #[cfg_attr(
         feature = "schema",

@@ -5,10 +5,10 @@ use dapple_hash::Seed;
 use serde::de::{Deserialize, Deserializer, Error, Visitor};
 use serde::ser::{Serialize, Serializer};
 
-/// The seed of a node in place of its own name: two nodes with one seed draw the same random numbers.
+/// The seed of a node in place of its own name: two nodes with the same seed draw the same random numbers.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum NodeSeed {
-    /// A seed, whatever that of the recipe is.
+    /// A seed, independent of that of the recipe.
     Seed(Seed),
     /// A name, such as that of another node.
     Name(String),

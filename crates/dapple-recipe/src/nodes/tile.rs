@@ -6,21 +6,21 @@ use crate::{Input, RecipeError, RecipeErrorKind, Values};
 use dapple_tile::{Method, Seamless};
 use serde::{Deserialize, Serialize};
 
-/// Made to repeat: of use where the input does not repeat itself, such as a photograph. It sees the whole tile.
+/// A texture made to repeat, for inputs that do not repeat, such as a photograph. It depends on the whole tile.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Tiled {
     /// A number or a color.
     pub input: Input,
-    /// How; the periodic part by default. Lengths in it are in pixels of the bake.
+    /// The method; the periodic part by default. Lengths in it are in pixels of the bake.
     #[serde(default)]
     #[cfg_attr(
         feature = "schema",
         schemars(schema_with = "crate::schema::traced::<Method>")
     )]
     pub method: Method,
-    /// Along which axes; both by default.
+    /// The axes along which the result repeats; both by default.
     #[serde(default = "both")]
     pub axes: [bool; 2],
 }

@@ -1,4 +1,4 @@
-//! Nodes at positions that are shifted.
+//! Nodes at displaced positions.
 
 use super::NodeKind;
 use crate::plan::{Builder, Step};
@@ -6,19 +6,19 @@ use crate::{Input, RecipeError};
 use dapple_pups::{Range, range};
 use serde::{Deserialize, Serialize};
 
-/// Another node at positions that are shifted by `amount · (x, y)`.
+/// Another node at positions displaced by `amount · (x, y)`.
 #[doc(alias = "domain warping")]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Warp {
-    /// The node that is asked elsewhere. No node that it is made of may see the whole tile.
+    /// The node that is sampled at the displaced positions. It must not depend on the whole tile.
     pub input: Input,
-    /// How far to the right, as a multiple of the amount: a number.
+    /// The displacement to the right, as a multiple of the amount: a number.
     pub x: Input,
-    /// How far down, as a multiple of the amount: a number.
+    /// The displacement down, as a multiple of the amount: a number.
     pub y: Input,
-    /// How far a 1 goes, in units of the plane; 1 by default.
+    /// The displacement of a value of 1, in units of the plane; 1 by default.
     #[serde(default = "one")]
     pub amount: f64,
 }

@@ -13,14 +13,14 @@ use serde::{Deserialize, Serialize};
 pub struct Wave {
     /// The number.
     pub input: Input,
-    /// Waves per unit of the number; 1 by default. Of a coordinate along which the recipe repeats, the tile must hold a
-    /// whole number of them.
+    /// Waves per unit of the number; 1 by default. For a coordinate along which the recipe repeats, the tile must hold
+    /// a whole number of them.
     #[serde(default = "one")]
     pub frequency: f64,
-    /// How far the wave has come at 0, in waves; 0 by default.
+    /// The phase at 0, in waves; 0 by default.
     #[serde(default)]
     pub phase: f64,
-    /// Its form; a sine by default.
+    /// The waveform; a sine by default.
     #[serde(default)]
     pub form: Waveform,
 }
@@ -40,9 +40,9 @@ pub enum Waveform {
     /// `½ + ½ sin 2πt`.
     #[default]
     Sine,
-    /// From 0 up to 1 and down again, in lines.
+    /// Up from 0 to 1 and down again, in straight lines.
     Triangle,
-    /// From 0 up to 1, then 0 at once.
+    /// Up from 0 to 1, then a jump to 0.
     Sawtooth,
     /// 0 in the first half, 1 in the second.
     Square,

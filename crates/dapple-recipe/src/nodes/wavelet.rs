@@ -19,7 +19,7 @@ pub struct WaveletNode {
     pub frequency: f64,
     /// The weight of each band, coarsest first, each twice as fine as the one before; a single 1 by default.
     pub weights: Vec<f32>,
-    /// The name by which it draws, instead of its own, or a seed.
+    /// The name or the seed for its random numbers; its own name by default.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub seed: Option<NodeSeed>,
 }
@@ -34,7 +34,7 @@ impl Default for WaveletNode {
     }
 }
 
-/// The cells of a wavelet tile along axes that do not repeat.
+/// The number of cells of a wavelet tile along axes that do not repeat.
 const UNBOUND_TILE: u32 = 128;
 
 impl NodeKind for WaveletNode {
@@ -64,7 +64,7 @@ pub(super) fn noise(
     Ok(noise.frequency(frequency))
 }
 
-/// The work of making such noise.
+/// The work of generating this noise.
 pub(super) fn work(plan: &Builder<'_>, frequency: f64) -> Result<Work, RecipeError> {
     let [across, down] = cells(plan, frequency)?.map(f64::from);
     Ok(Work {

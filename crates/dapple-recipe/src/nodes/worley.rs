@@ -23,51 +23,51 @@ use std::sync::Arc;
 pub struct WorleyNode {
     /// Cells per unit of the plane, one number or one for each axis; 1 by default.
     pub frequency: Frequency,
-    /// The value of a position; F1 by default.
+    /// The value at a position; F1 by default.
     pub value: WorleyValue,
-    /// How distances are measured; Euclidean by default.
+    /// The metric of distances; Euclidean by default.
     #[cfg_attr(
         feature = "schema",
         schemars(schema_with = "crate::schema::traced::<Metric>")
     )]
     pub metric: Metric,
-    /// How many feature points a cell has, and where; Poisson by default.
+    /// The distribution of feature points; Poisson by default.
     #[cfg_attr(
         feature = "schema",
         schemars(schema_with = "crate::schema::traced::<Scatter>")
     )]
     pub scatter: Scatter,
-    /// A fractal sum instead of a single texture. Its first octave has the frequency.
+    /// The octaves of a fractal sum, for a sum instead of a single texture. The first octave has the frequency.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[cfg_attr(
         feature = "schema",
         schemars(schema_with = "crate::schema::traced::<Octaves>")
     )]
     pub octaves: Option<Octaves>,
-    /// The range of values that becomes 0 to 1; none by default, which gives the distances themselves.
+    /// The range of values that is mapped to 0 to 1; none by default, so that values are distances.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub range: Option<[f32; 2]>,
-    /// How it moves with time; it does not by default.
+    /// The motion over time; none by default.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub motion: Option<Motion>,
-    /// The name by which it draws, instead of its own, or a seed.
+    /// The name or the seed for its random numbers; its own name by default.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub seed: Option<NodeSeed>,
 }
 
-/// A slice of the basis in four dimensions, whose fourth axis is time: the pictures of a loop join.
+/// A slice of the basis in four dimensions, whose fourth axis is time: the first and last pictures of a loop join.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Motion {
-    /// How many cells a loop goes along the fourth axis, at least 1.
+    /// The number of cells along the fourth axis in a loop, at least 1.
     pub cells: u32,
-    /// Where the slice lies along the third axis, in cells; 0 by default.
+    /// The position of the slice along the third axis, in cells; 0 by default.
     #[serde(default)]
     pub z: f64,
 }
 
-/// Something per unit of the plane, for each axis.
+/// A number per unit of the plane, for each axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frequency(pub [f64; 2]);
 
@@ -77,7 +77,7 @@ impl Default for Frequency {
     }
 }
 
-/// The value that a position has by its nearest feature points.
+/// The value at a position, from its nearest feature points.
 ///
 /// In a file: `"f1"`, `"f2_minus_f1"` and so on, `"cell_value"`, `"edge_distance"`, or the four coefficients of F1 to F4.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -177,7 +177,7 @@ impl WorleyNode {
         }))
     }
 
-    /// Refuses what only combinations of distances have.
+    /// Fails for options that only combinations of distances have.
     fn check_single(&self, has_metric: bool) -> Result<(), RecipeError> {
         let rule = if self.octaves.is_some() || self.range.is_some() {
             "`cell_value` and `edge_distance` have neither `octaves` nor a `range`"
@@ -192,7 +192,7 @@ impl WorleyNode {
 
 const PLACE: Range = range!(finite);
 
-/// The value of the cell at a position of four dimensions; NaN where there is none.
+/// The value of the cell at a position of four dimensions; NaN for a position without a cell.
 fn cell_value(worley: &Worley4, at: [f64; 4]) -> f32 {
     let [nearest] = worley.sample(at);
     if nearest.distance.is_nan() {
@@ -263,7 +263,7 @@ pub(crate) const WORLEY_VALUES: [&str; 13] = [
 ];
 
 impl WorleyValue {
-    /// The value of this name.
+    /// The value with a name.
     #[must_use]
     pub fn from_name(name: &str) -> Option<Self> {
         let index = WORLEY_VALUES.iter().position(|&known| known == name)?;
@@ -274,7 +274,7 @@ impl WorleyValue {
         })
     }
 
-    /// Its name, where it has one.
+    /// The name of the value, if it has one.
     #[must_use]
     pub fn name(self) -> Option<&'static str> {
         WORLEY_VALUES

@@ -1,4 +1,4 @@
-//! Making steps of nodes: the tile, the seed and the inputs that a node asks for.
+//! The builder of steps, which provides the tile, the seed and the inputs to nodes.
 
 use super::memory::{Memory, StepId};
 use super::step::{Global, Local, Step, Tile};
@@ -14,24 +14,24 @@ use indexmap::IndexMap;
 use std::cell::Cell;
 use std::fmt::Write as _;
 
-/// Makes steps of nodes, one after the other.
+/// Builds the steps of nodes, one after the other.
 pub(crate) struct Builder<'a> {
     recipe: &'a Recipe,
     images: &'a Images,
     time: f64,
-    /// The name of the node that is being made.
+    /// The name of the current node.
     node: &'a str,
     work: WorkSum<'a>,
     memory: Option<&'a Memory>,
-    /// Whether the node that is being made has asked what time it is.
+    /// Whether the current node has used the time.
     asks_time: Cell<bool>,
     pub(super) steps: Vec<Step>,
-    /// For each step the number of its description, where there is a memory.
+    /// The number of the description of each step, if there is a memory.
     pub(super) ids: Vec<StepId>,
     pub(super) names: IndexMap<String, usize>,
 }
 
-/// Cells or bumps per unit of the plane.
+/// The range of a number of cells or bumps per unit of the plane.
 pub(crate) const FREQUENCY: Range = range!(above 0 to 1e6);
 
 impl<'a> Builder<'a> {
@@ -56,7 +56,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// Adds the step of a node all of whose inputs have steps.
+    /// Adds the step of a node whose inputs have steps.
     pub(super) fn add(&mut self, name: &'a str, node: &Node) -> Result<(), RecipeError> {
         self.enter(name, node)?;
         let before = self.memory.and_then(|memory| self.id_in(memory, node));
@@ -85,10 +85,10 @@ impl<'a> Builder<'a> {
         self.ids.extend(id);
     }
 
-    /// The number of all that the values of the node follow from, and whether the time is known to be a part of that; none
-    /// where it cannot be told.
+    /// The number of the description from which the values of the node follow, and whether it is known to include the
+    /// time; `None` if there is no description.
     fn id_in(&self, memory: &Memory, node: &Node) -> Option<(StepId, bool)> {
-        // What cannot be written as data, such as a function, cannot be compared.
+        // Options that cannot be written as data, such as functions, cannot be compared.
         serde_json::to_writer(std::io::sink(), node).ok()?;
         let Recipe {
             seed, extent, wrap, ..
@@ -110,20 +110,20 @@ impl<'a> Builder<'a> {
         })
     }
 
-    /// Goes to a node, if that is no more work than is allowed.
+    /// Makes a node current, if its work is within the limits.
     pub(crate) fn enter(&mut self, name: &'a str, node: &Node) -> Result<(), RecipeError> {
         self.node = name;
         let work: Work = node.kind().work(self)?;
         self.work.add(&work)
     }
 
-    /// The part of a loop that has passed.
+    /// The elapsed part of a loop, from 0 to 1.
     pub(crate) fn time(&self) -> f64 {
         self.asks_time.set(true);
         self.time
     }
 
-    /// How the tile continues past its edges.
+    /// The wrapping of the tile past its edges.
     pub(crate) fn wrap(&self) -> [Wrap; 2] {
         wrap(self.recipe.wrap)
     }
@@ -137,7 +137,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// An image that the recipe names.
+    /// The image with a name.
     pub(crate) fn image(&self, file: &str) -> Result<&'a Picture, RecipeError> {
         self.images.get(file).ok_or_else(|| {
             let file = file.to_owned();
@@ -145,7 +145,7 @@ impl<'a> Builder<'a> {
         })
     }
 
-    /// The seed of the node, which draws by its own name unless it says otherwise.
+    /// The seed of the current node: that of its own name unless `other` is given.
     pub(crate) fn seed(&self, other: Option<&NodeSeed>) -> Seed {
         match other {
             None => self.recipe.seed.child(self.node, 0),
@@ -154,7 +154,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// The cells of the tile along each axis that repeats, of a frequency per axis.
+    /// The numbers of cells of the tile along each axis that repeats, for a frequency per axis.
     pub(crate) fn periods(&self, frequency: [f64; 2]) -> Result<[Option<u32>; 2], RecipeError> {
         let mut periods = [None; 2];
         for axis in 0..2 {
@@ -172,7 +172,7 @@ impl<'a> Builder<'a> {
         Ok(periods)
     }
 
-    /// The step of an input that may be a color.
+    /// The step of an input that is a number or a color.
     pub(crate) fn any(&mut self, input: &Input) -> Result<usize, RecipeError> {
         let step = match input {
             Input::Number(number) => {
@@ -205,7 +205,7 @@ impl<'a> Builder<'a> {
         self.steps[step].is_color()
     }
 
-    /// A step that makes each value of those of the inputs at its position, colors if one of them has colors.
+    /// A step that combines the inputs at each position; it makes colors if any input does.
     pub(crate) fn local(
         &self,
         inputs: Vec<usize>,
@@ -218,7 +218,7 @@ impl<'a> Builder<'a> {
         })
     }
 
-    /// A step that makes each value of all values of the inputs, colors if one of them has colors. Pictures of the inputs
+    /// A step that combines the whole pictures of the inputs; it makes colors if any input does. Pictures of the inputs
     /// have as many pixels as one of the tile's copies.
     pub(crate) fn global(
         &self,
@@ -277,12 +277,12 @@ impl<'a> Builder<'a> {
     }
 }
 
-/// How a tile that repeats along some axes continues past its edges.
+/// The wrapping past the edges of a tile that repeats along some axes.
 pub(super) fn wrap(repeats: [bool; 2]) -> [Wrap; 2] {
     repeats.map(|repeats| if repeats { Wrap::Repeat } else { Wrap::Clamp })
 }
 
-/// Refuses no input at all.
+/// Checks that there is an input.
 fn at_least_one(inputs: Vec<usize>) -> Result<Vec<usize>, RecipeError> {
     if inputs.is_empty() {
         let (what, count, needed) = ("inputs", 0, "at least 1");

@@ -1,4 +1,4 @@
-//! The values of steps at many positions.
+//! Evaluation of steps at many positions.
 
 use super::step::{Laid, Step, needed};
 use super::{Picture, Values, Whole};
@@ -8,7 +8,7 @@ use dapple_raster::{Raster, RasterViewMut, Texel, Window, parallel};
 use glam::DVec2;
 use std::sync::Arc;
 
-/// Where the values are wanted.
+/// The positions of an evaluation.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Places<'a> {
     Window(&'a Window),
@@ -38,7 +38,7 @@ impl Places<'_> {
     }
 }
 
-/// Steps with their values, which were made before.
+/// Steps with values that were computed before.
 pub(crate) type Known = [(usize, Arc<Values>)];
 
 /// The values of the steps `wanted`, in their order.
@@ -59,7 +59,7 @@ pub(super) fn evaluate(
         if values[index].is_none() {
             values[index] = Some(Arc::new(step(steps, whole, places, index, &values)?));
         }
-        // The next steps use the memory again, which is in a cache still.
+        // The next steps reuse the memory while it is in a cache.
         for input in steps[index].inputs() {
             if last_use[input] == index {
                 values[input] = None;
@@ -70,7 +70,7 @@ pub(super) fn evaluate(
     Ok(wanted.iter().map(value).collect())
 }
 
-/// For each step the last one of `order` that takes its values; none takes those of the steps `wanted` last.
+/// For each step the last one of `order` that uses its values; values of the steps `wanted` remain until the end.
 fn last_uses(steps: &[Step], order: &[usize], wanted: &[usize]) -> Vec<usize> {
     let mut last_use = vec![usize::MAX; steps.len()];
     for &index in order {
@@ -84,10 +84,10 @@ fn last_uses(steps: &[Step], order: &[usize], wanted: &[usize]) -> Vec<usize> {
     last_use
 }
 
-/// The most and the fewest pixels that a thread takes at a time.
+/// The largest and the smallest number of pixels that a thread takes at a time.
 const CHUNK_PIXELS: [u32; 2] = [1 << 16, 1 << 11];
 
-/// The positions that a warp asks at a time: what is made for them stays in a cache.
+/// The number of positions that a warp evaluates at a time, so that the values fit in a cache.
 const CHUNK_POSITIONS: usize = 1 << 12;
 
 /// The values of the steps `wanted` at the pixels of a window, on all cores where the feature `rayon` is on.
@@ -102,7 +102,7 @@ pub(super) fn window(
         return Ok(Vec::new());
     }
     let [width, height] = window.size;
-    // Small pictures are for all threads, too.
+    // Small pictures are divided among all threads, too.
     let share = window.n_pixels() / (2 * parallel::n_threads());
     let [most, fewest] = CHUNK_PIXELS;
     let pixels = u32::try_from(share).map_or(most, |share| share.clamp(fewest, most));
@@ -130,11 +130,11 @@ pub(super) fn window(
             &known.collect::<Vec<_>>(),
         )
     });
-    // The error is that of the first chunk that has one, whichever was there first.
+    // The error is that of the first chunk that has one, whatever the order of the threads.
     Ok(join(chunks.into_iter().collect::<Result<_, _>>()?))
 }
 
-/// The values of all chunks, one after the other, for each of the steps.
+/// Joins the values of all chunks, for each of the steps.
 fn join(chunks: Vec<Vec<Arc<Values>>>) -> Vec<Values> {
     let mut chunks = chunks.into_iter();
     let first = chunks.next().unwrap_or_default();
@@ -208,7 +208,7 @@ fn step(
     }
 }
 
-/// The positions, shifted by the amount times two numbers for each.
+/// The positions, displaced by the amount times two numbers for each.
 fn shifted(mut positions: Vec<DVec2>, x: &Values, y: &Values, amount: f64) -> Vec<DVec2> {
     let shifts = x.numbers().iter().zip(y.numbers());
     for (position, (&x, &y)) in positions.iter_mut().zip(shifts) {
@@ -239,7 +239,7 @@ mod tests {
     use crate::plan::step::{Local, Step, shared};
     use dapple_raster::glam::DVec2;
 
-    /// The sum of the absolute values of some inputs: without a plan, which would compile all nodes again.
+    /// A step that sums the absolute values of some inputs, without a plan, which would compile all nodes again.
     fn sum(inputs: &[usize]) -> Step {
         Step::Local(Local {
             inputs: inputs.to_vec(),

@@ -1,4 +1,4 @@
-//! Nodes as fields: what previews, seam tests and warps of one's own can ask.
+//! Nodes as fields, for previews, seam tests and other programs.
 
 use super::evaluate::{Places, evaluate};
 use super::step::Step;
@@ -9,17 +9,17 @@ use dapple_tile::TileErrorKind;
 use glam::DVec2;
 use std::sync::Arc;
 
-/// The number that a node makes at every position of the plane.
+/// The number of a node at every position of the plane.
 ///
-/// A node may refuse what it is given, such as a blend whose weights are below 0. Then many positions and windows are
-/// refused, and [`sample`](Field::sample), which cannot refuse, gives NaN.
+/// A node may fail for its inputs, such as a blend with weights below 0. Then sampling of many positions and of windows
+/// fails, and [`sample`](Field::sample), which cannot fail, returns NaN.
 #[derive(Clone, Debug)]
 pub struct NodeField {
     steps: Arc<[Step]>,
     step: usize,
 }
 
-/// The color that a node makes at every position of the plane.
+/// The color of a node at every position of the plane.
 #[derive(Clone, Debug)]
 pub struct NodeColors {
     steps: Arc<[Step]>,
@@ -73,7 +73,7 @@ impl NodeColors {
     ///
     /// # Errors
     ///
-    /// Those of the nodes that the color is made of, such as a blend whose weights are below 0.
+    /// Those of the node and its inputs, such as a blend with weights below 0.
     pub fn sample(&self, position: DVec2) -> Result<LinearRgb, RecipeError> {
         let values = one(&self.steps, Places::Positions(&[position]), self.step)?;
         // There is a value for each position.
@@ -84,9 +84,9 @@ impl NodeColors {
     ///
     /// # Errors
     ///
-    /// [`Raster`](RecipeErrorKind::Raster) if the window has a bad size, and as [`sample`](Self::sample).
+    /// [`Raster`](RecipeErrorKind::Raster) if the window has a bad size, and those of [`sample`](Self::sample).
     pub fn to_raster(&self, window: &Window) -> Result<Raster<LinearRgb>, RecipeError> {
-        // A window of a bad size is refused before anything is made for it.
+        // The size is checked before any values are computed.
         let mut raster = Raster::filled(window.size, LinearRgb::BLACK)?;
         let values = one(&self.steps, Places::Window(window), self.step)?;
         let colors = Arc::unwrap_or_clone(values).into_colors();

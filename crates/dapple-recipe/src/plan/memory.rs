@@ -1,8 +1,8 @@
-//! What plans have made, for later plans of recipes that are like theirs.
+//! A memory of computed values, shared by plans of similar recipes.
 //!
-//! A step is known by a description of all that its values follow from: its node, the tile, the seed, the time, and the
-//! steps that it is made of. Where a later plan has a step with the same description, its fields need not be made again,
-//! nor its values at the same pixels. The bits are those of a plan without a memory.
+//! A step is identified by a description of all data from which its values follow: its node, the tile, the seed, the
+//! time, and its inputs. If a later plan has a step with the same description, its fields and its values at the same
+//! pixels are reused. The bits are those of a plan without a memory.
 
 use super::{Picture, Step};
 use crate::Values;
@@ -13,19 +13,19 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// What plans have made, for later plans: see [`Plan::new_with_memory`](super::Plan::new_with_memory).
+/// Values and steps of plans, for reuse in later plans: see [`Plan::new_with_memory`](super::Plan::new_with_memory).
 ///
-/// Copies of a memory are the same memory.
+/// Clones share the same memory.
 #[derive(Clone)]
 pub struct Memory {
     kept: Arc<Mutex<Kept>>,
     max_bytes: usize,
 }
 
-/// The number of a description. It is never given to another one.
+/// The number of a description, unique for the lifetime of the memory.
 pub(crate) type StepId = u64;
 
-/// The pixels of a window, as they can be compared.
+/// The pixels of a window, in a form that can be compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct Pixels {
     origin: [u64; 2],
@@ -39,36 +39,36 @@ struct Pixels {
 struct Kept {
     next: StepId,
     ids: BTreeMap<String, StepId>,
-    /// The bytes of all descriptions.
+    /// The total number of bytes of the descriptions.
     id_bytes: usize,
-    /// What changes with time.
+    /// The numbers of steps that change with time.
     timed: BTreeSet<StepId>,
-    /// Steps that are made of no other, with the plan that used each last.
+    /// Steps without inputs, with the last plan that used each.
     sources: BTreeMap<StepId, (Source, u64)>,
     n_plans: u64,
     values: BTreeMap<(StepId, Pixels), (Arc<Values>, u64)>,
-    /// What was used when, from the longest ago on.
+    /// The stored values by their last use, oldest first.
     uses: BTreeMap<u64, (StepId, Pixels)>,
     n_uses: u64,
     bytes: usize,
     pictures: Vec<Picture>,
 }
 
-/// A step that is made of no other.
+/// A step without inputs.
 enum Source {
     Field(Arc<dyn Field>),
     Colors(Arc<VectorTexture<3>>),
 }
 
-/// The most bytes of descriptions; past that, all is forgotten.
+/// The largest number of bytes of descriptions; past it, the memory is cleared.
 const MAX_ID_BYTES: usize = 1 << 26;
-/// How many plans ago a step that is made of no other was used at most. It may be a texture with many points.
+/// The largest age, in plans, of an unused step without inputs. It may be a texture with many points.
 const MAX_AGE: u64 = 4;
-/// The most images that are known again.
+/// The largest number of images that are recognized.
 const MAX_PICTURES: usize = 64;
 
 impl Memory {
-    /// A memory that keeps values of at most so many bytes.
+    /// A memory for values of at most `max_bytes` bytes.
     #[must_use]
     pub fn new(max_bytes: usize) -> Self {
         Self {
@@ -77,13 +77,13 @@ impl Memory {
         }
     }
 
-    /// The bytes of the values that are kept.
+    /// The number of bytes of the stored values.
     #[must_use]
     pub fn bytes(&self) -> usize {
         self.lock().bytes
     }
 
-    /// Whether the values of a number of steps at a window may be kept without forgetting most others.
+    /// Whether the values of some steps at a window fit without evicting most others.
     pub(super) fn has_room(&self, steps: usize, window: &Window) -> bool {
         let bytes = steps
             .saturating_mul(window.n_pixels())
@@ -91,7 +91,7 @@ impl Memory {
         bytes <= self.max_bytes / 2
     }
 
-    /// Begins a plan, and forgets the textures that the last ones did not use.
+    /// Begins a plan, and drops steps that the last plans did not use.
     pub(super) fn begin(&self) {
         let mut kept = self.lock();
         kept.n_plans += 1;
@@ -99,7 +99,7 @@ impl Memory {
         kept.sources.retain(|_, (_, used)| *used + MAX_AGE >= now);
     }
 
-    /// The number of a description.
+    /// The number of a description; a new one if it is unknown.
     pub(super) fn id(&self, description: String) -> StepId {
         let mut kept = self.lock();
         if let Some(&id) = kept.ids.get(&description) {
@@ -115,18 +115,18 @@ impl Memory {
         id
     }
 
-    /// Whether what has this number has changed with time so far.
+    /// Whether the step with this number has used the time so far.
     pub(super) fn is_timed(&self, id: StepId) -> bool {
         self.lock().timed.contains(&id)
     }
 
-    /// The number of what changes with time, at a time.
+    /// The number of a step that changes with time, at a time.
     pub(super) fn at_time(&self, id: StepId, time: f64) -> StepId {
         self.lock().timed.insert(id);
         self.id(format!("{id} at {}", time.to_bits()))
     }
 
-    /// A number that no description has.
+    /// A number without a description.
     pub(super) fn new_id(&self) -> StepId {
         let mut kept = self.lock();
         kept.next += 1;
@@ -139,7 +139,7 @@ impl Memory {
         if kept.pictures.len() >= MAX_PICTURES {
             kept.forget_all();
         }
-        // What is kept cannot be replaced by others at the same place in memory.
+        // The address identifies the image, since a stored image cannot be replaced by others at the same address.
         let is_it = |other: &Picture| match (other, picture) {
             (Picture::Numbers(a), Picture::Numbers(b)) => Arc::ptr_eq(a, b),
             (Picture::Colors(a), Picture::Colors(b)) => Arc::ptr_eq(a, b),
@@ -152,7 +152,7 @@ impl Memory {
         })
     }
 
-    /// A step that was made before and is made of no other.
+    /// A stored step without inputs.
     pub(super) fn source(&self, id: StepId) -> Option<Step> {
         let mut kept = self.lock();
         let now = kept.n_plans;
@@ -164,7 +164,7 @@ impl Memory {
         })
     }
 
-    /// Keeps a step if it is made of no other.
+    /// Stores a step if it has no inputs.
     pub(super) fn keep_source(&self, id: StepId, step: &Step) {
         let source = match step {
             Step::Field(field) => Source::Field(field.clone()),
@@ -190,7 +190,7 @@ impl Memory {
         Some(values)
     }
 
-    /// Keeps the values of a step at the pixels of a window, and forgets what was not used for the longest time.
+    /// Stores the values of a step at the pixels of a window, and drops the least recently used ones.
     pub(super) fn keep(&self, id: StepId, window: &Window, values: Arc<Values>) {
         let mut kept = self.lock();
         let key = (id, Pixels::of(window));
@@ -221,7 +221,7 @@ impl fmt::Debug for Memory {
 }
 
 impl Kept {
-    /// Begins anew. Numbers go on, so that plans that are still there are not mistaken for others.
+    /// Clears the memory. Numbers continue, so that existing plans are not confused with new ones.
     fn forget_all(&mut self) {
         *self = Self {
             next: self.next,
@@ -258,7 +258,7 @@ impl Pixels {
 }
 
 impl Values {
-    /// How much memory they take.
+    /// The number of bytes of the values.
     fn bytes(&self) -> usize {
         match self {
             Self::Numbers(numbers) => size_of_val(&numbers[..]),

@@ -1,11 +1,11 @@
-//! The order of nodes: what each is made of comes before it.
+//! The order of nodes: each comes after its inputs.
 
 use crate::{Node, Recipe, RecipeError, RecipeErrorKind};
 
-/// The most nodes of a recipe. People do not write more, and a chain of them must not be too deep to follow.
+/// The largest number of nodes of a recipe: more than people write, and few enough for recursion along a chain of them.
 const MAX_NODES: usize = 1024;
 
-/// The names of all nodes, each after those that it is made of; else in the order of the recipe.
+/// The names of all nodes, each after its inputs, otherwise in the order of the recipe.
 pub(crate) fn order(recipe: &Recipe) -> Result<Vec<&str>, RecipeError> {
     check_names(recipe)?;
     let mut order = Order {
@@ -43,7 +43,7 @@ fn check_names(recipe: &Recipe) -> Result<(), RecipeError> {
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum State {
     New,
-    /// On the path from the node that was begun with.
+    /// The node is on the current path.
     Open,
     Done,
 }
@@ -56,7 +56,7 @@ struct Order<'a> {
 }
 
 impl<'a> Order<'a> {
-    /// Puts a node into the order, after its inputs. At most as deep as there are nodes.
+    /// Adds a node to the order, after its inputs. The depth is at most the number of nodes.
     fn visit(&mut self, index: usize) -> Result<(), RecipeError> {
         let (name, node) = self.entry(index);
         match self.states[index] {
@@ -93,7 +93,7 @@ impl<'a> Order<'a> {
             .ok_or_else(|| unknown(self.recipe, name))
     }
 
-    /// The way from a node on the path back to it.
+    /// The error of a cycle from a node on the path back to it.
     fn cycle(&self, index: usize) -> RecipeError {
         let start = self
             .path
@@ -106,7 +106,7 @@ impl<'a> Order<'a> {
     }
 }
 
-/// The refusal of a name that no node has.
+/// The error of a name that no node has.
 pub(crate) fn unknown(recipe: &Recipe, name: &str) -> RecipeError {
     let names = recipe.nodes.keys().map(String::as_str);
     RecipeError::new(RecipeErrorKind::UnknownNode {

@@ -1,4 +1,4 @@
-//! The steps of a plan, each of which makes the values of a node or of a constant.
+//! The steps of a plan; each computes the values of a node or of a constant.
 
 use super::Picture;
 use crate::{RecipeError, Values};
@@ -27,7 +27,7 @@ pub(crate) enum Step {
     Global(Global),
 }
 
-/// A step each of whose values is made of the values of the inputs at the same position.
+/// A step that computes each value from the values of the inputs at the same position.
 pub(crate) struct Local {
     pub(crate) inputs: Vec<usize>,
     pub(crate) color: bool,
@@ -36,27 +36,27 @@ pub(crate) struct Local {
 
 type LocalFunction = dyn Fn(&[&Values]) -> Result<Values, RecipeError> + Send + Sync;
 
-/// A step each of whose values is made of all values of the inputs, over the whole tile.
+/// A step that computes each value from all values of the inputs, over the whole tile.
 pub(crate) struct Global {
     pub(crate) inputs: Vec<usize>,
     pub(crate) color: bool,
-    /// How many copies of its inputs' pictures the tile has along each axis.
+    /// The number of copies of the inputs' pictures in the tile along each axis.
     pub(crate) copies: [u32; 2],
     pub(crate) apply: Box<GlobalFunction>,
 }
 
 type GlobalFunction = dyn Fn(&Tile<'_>) -> Result<Values, RecipeError> + Send + Sync;
 
-/// The tile as a step sees it that sees the whole of it.
+/// The tile for a step that depends on the whole of it.
 pub(crate) struct Tile<'a> {
     pub(crate) inputs: &'a [&'a Values],
-    /// Columns and rows of the inputs.
+    /// The numbers of columns and rows of the inputs.
     pub(crate) input_size: [u32; 2],
     /// The pixels of the tile.
     pub(crate) window: &'a Window,
 }
 
-/// An image that lies over the tile.
+/// An image that covers the tile.
 #[derive(Clone, Debug)]
 pub(crate) struct Laid {
     pub(crate) picture: Picture,
@@ -65,7 +65,7 @@ pub(crate) struct Laid {
 }
 
 impl Tile<'_> {
-    /// The inputs as maps: all of colors, if one of them has colors.
+    /// The inputs as maps: all in color, if any input is.
     pub(crate) fn maps(&self) -> Result<Vec<Map>, RecipeError> {
         Ok(Values::maps(self.inputs, self.input_size)?)
     }
@@ -88,17 +88,17 @@ impl fmt::Debug for Step {
 }
 
 impl Step {
-    /// The step of a number at each position.
+    /// The step of a field of numbers.
     pub(crate) fn field(field: impl Field + 'static) -> Self {
         Self::Field(Arc::new(field))
     }
 
-    /// The step, known to make colors whatever its inputs are.
+    /// The step, marked as one of colors whatever its inputs are.
     pub(crate) fn with_colors(self) -> Self {
         self.with_color(true)
     }
 
-    /// The step, known to make numbers whatever its inputs are.
+    /// The step, marked as one of numbers whatever its inputs are.
     pub(crate) fn with_numbers(self) -> Self {
         self.with_color(false)
     }
@@ -110,7 +110,7 @@ impl Step {
         self
     }
 
-    /// Whether it makes colors, not numbers.
+    /// Whether the step makes colors, not numbers.
     pub(crate) fn is_color(&self) -> bool {
         match self {
             Self::Number(_) | Self::Field(_) => false,
@@ -122,7 +122,7 @@ impl Step {
         }
     }
 
-    /// The steps that it is made of.
+    /// The indices of its inputs.
     pub(crate) fn inputs(&self) -> Vec<usize> {
         match self {
             Self::Local(Local { inputs, .. }) | Self::Global(Global { inputs, .. }) => {
@@ -134,8 +134,9 @@ impl Step {
     }
 }
 
-/// The steps that are needed for others, in their order. What a warp asks elsewhere is not needed here, and what sees the
-/// whole tile has been evaluated before; nor is what only those need that are known.
+/// The steps that must be evaluated for `wanted`, in their order. This leaves out the inputs of warps, which are
+/// evaluated elsewhere, steps that depend on the whole tile, which are evaluated before, known steps, and steps that
+/// only these need.
 pub(super) fn needed(
     steps: &[Step],
     wanted: &[usize],
@@ -149,12 +150,12 @@ pub(super) fn needed(
     })
 }
 
-/// The steps that others are made of in the end, themselves included, in their order.
+/// The steps on which others depend, themselves included, in their order.
 pub(super) fn ancestors(steps: &[Step], wanted: &[usize]) -> Vec<usize> {
     reached(steps, wanted, |index| steps[index].inputs())
 }
 
-/// The steps that are reached from others, in their order, where each leads to earlier ones.
+/// The steps that are reachable from others, in their order; each leads to earlier ones.
 fn reached(steps: &[Step], wanted: &[usize], leads_to: impl Fn(usize) -> Vec<usize>) -> Vec<usize> {
     let mut reached = vec![false; steps.len()];
     wanted.iter().for_each(|&index| reached[index] = true);
@@ -168,11 +169,11 @@ fn reached(steps: &[Step], wanted: &[usize], leads_to: impl Fn(usize) -> Vec<usi
     (0..steps.len()).filter(|&index| reached[index]).collect()
 }
 
-/// The steps on the way to `wanted` that `height` is made of, too, but for those that are ready without being kept.
+/// The steps that `wanted` and `height` have in common, except for those that cost nothing to make again.
 pub(super) fn shared(steps: &[Step], height: usize, wanted: &[usize]) -> Vec<usize> {
     let of_height = needed(steps, &[height], |_| false);
     let is_shared = |index: usize| {
-        // A constant is made as soon as it is copied, and what sees the whole tile lies ready.
+        // A constant is as fast to make as to copy, and steps that depend on the whole tile are stored already.
         let is_ready = matches!(
             steps[index],
             Step::Number(_) | Step::Color(_) | Step::Global(_)

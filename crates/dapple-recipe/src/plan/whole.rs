@@ -1,4 +1,4 @@
-//! The steps that see the whole tile, evaluated beforehand for a picture of a given size.
+//! The steps that depend on the whole tile, evaluated beforehand for a picture of a given size.
 
 use super::builder::wrap;
 use super::evaluate::Places;
@@ -9,10 +9,10 @@ use dapple_raster::{Raster, Window, Wrap};
 use glam::DVec2;
 use std::sync::Arc;
 
-/// The values of all steps that see the whole tile, for a picture of one size: a value for each pixel and step.
+/// The values of all steps that depend on the whole tile, for a picture of one size: a value for each pixel and step.
 #[derive(Clone, Debug, Default)]
 pub struct Whole {
-    /// The tile as a window; none where no step sees it.
+    /// The tile as a window; `None` if no step depends on the whole of it.
     window: Option<Window>,
     wrap: [Wrap; 2],
     extent: DVec2,
@@ -20,13 +20,13 @@ pub struct Whole {
 }
 
 impl Plan {
-    /// Whether a map of the material, or a node, sees the whole tile, so that a picture of it cannot be made in bands.
+    /// Whether a map of the material depends on the whole tile, so that it cannot be baked in bands.
     #[must_use]
     pub fn sees_whole(&self) -> bool {
         !self.needed_globals(&self.channels().steps()).is_empty()
     }
 
-    /// The steps that see the whole tile and take part in some steps, in their order.
+    /// The steps that depend on the whole tile and are needed for some steps, in their order.
     fn needed_globals(&self, wanted: &[usize]) -> Vec<(usize, &Global)> {
         let needed = ancestors(self.steps(), wanted).into_iter();
         let global = |index: usize| match &self.steps()[index] {
@@ -36,7 +36,7 @@ impl Plan {
         needed.filter_map(global).collect()
     }
 
-    /// Refuses a material that sees the whole tile.
+    /// Checks that the material does not depend on the whole tile.
     ///
     /// # Errors
     ///
@@ -52,7 +52,7 @@ impl Plan {
         Err(self.within(index, error))
     }
 
-    /// An error in the node of a step.
+    /// Adds the node of a step to an error.
     pub(super) fn within(&self, index: usize, error: RecipeError) -> RecipeError {
         match self.names.iter().find(|&(_, &step)| step == index) {
             Some((name, _)) => error.within(name),
@@ -60,17 +60,17 @@ impl Plan {
         }
     }
 
-    /// Evaluates the steps that see the whole tile, for a picture of `size` pixels.
+    /// Evaluates the steps that depend on the whole tile, for a picture of `size` pixels.
     ///
     /// # Errors
     ///
-    /// What the crates of the nodes refuse, [`Raster`](RecipeErrorKind::Raster) for a size that is too large, and
+    /// The errors of the crates of the nodes, [`Raster`](RecipeErrorKind::Raster) for a size that is too large, and
     /// [`TooMuch`](RecipeErrorKind::TooMuch) for more pixels in all than the limits of the plan allow.
     pub fn whole(&self, size: [u32; 2]) -> Result<Whole, RecipeError> {
         self.whole_of(size, &self.channels().steps())
     }
 
-    /// Evaluates the steps that see the whole tile and that others are made of.
+    /// Evaluates the steps that depend on the whole tile and are needed for `wanted`.
     fn whole_of(&self, size: [u32; 2], wanted: &[usize]) -> Result<Whole, RecipeError> {
         let globals = self.needed_globals(wanted);
         let Some(&(first, _)) = globals.first() else {
@@ -93,7 +93,7 @@ impl Plan {
         Ok(whole)
     }
 
-    /// The values of a node at the pixels of the tile, or of a part of it, whether the material is made of it or not.
+    /// The values of a node at the pixels of the tile, or of a part of it, whether the material uses it or not.
     ///
     /// # Errors
     ///
@@ -118,7 +118,7 @@ impl Plan {
         )
     }
 
-    /// The picture of a step that sees the whole tile, from the memory if it is there.
+    /// The picture of a step that depends on the whole tile, from the memory if it is there.
     fn known_picture(
         &self,
         whole: &Whole,
@@ -140,7 +140,7 @@ impl Plan {
         Values::clone(&values).picture(window.size)
     }
 
-    /// The values of a step that sees the whole tile.
+    /// Computes the values of a step that depends on the whole tile.
     fn picture(
         &self,
         whole: &Whole,
@@ -168,7 +168,7 @@ impl Values {
 }
 
 impl Global {
-    /// The pixels of the inputs: those of the picture, or where it is made of smaller copies, of one of them.
+    /// The pixels of the inputs: those of the picture, or of one of the smaller copies in it.
     fn window_of_inputs(&self, window: &Window) -> Result<Window, RecipeError> {
         let mut size = window.size;
         for (side, copies) in size.iter_mut().zip(self.copies) {
@@ -188,7 +188,8 @@ impl Global {
 }
 
 impl Whole {
-    /// The values of a step at some places: pixels of the picture where the places are such, else what lies between them.
+    /// The values of a step at some places: pixels of the picture where the places are pixels, else interpolated
+    /// values.
     pub(super) fn at(&self, index: usize, places: Places<'_>) -> Result<Values, RecipeError> {
         let (Some(tile), Some(Some(picture))) = (self.window, self.pictures.get(index)) else {
             return Err(RecipeError::new(RecipeErrorKind::Global { during: "yet" }));

@@ -1,14 +1,14 @@
-//! How much work a recipe asks for, found out before any of it is done.
+//! Estimates of the work of a recipe, before any of it is done.
 //!
-//! A few lines of a recipe can ask for any number of control points, for wavelet noise of any size, and for warps of
-//! warps, each of which works out all that it is made of once more.
+//! A few lines of a recipe can demand any number of control points, wavelet noise of any size, and warps of warps, each
+//! of which evaluates all its inputs once more.
 
 use super::step::{Global, Step, needed};
 use crate::{RecipeError, RecipeErrorKind};
 
-/// How much work a recipe may ask for before it is refused.
+/// Limits of the work of a recipe.
 ///
-/// The defaults are far above what textures need, and within the memory of a small machine.
+/// The defaults are far above the needs of textures, and within the memory of a small machine.
 ///
 /// # Examples
 ///
@@ -23,17 +23,20 @@ use crate::{RecipeError, RecipeErrorKind};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PlanLimits {
-    /// Control points of all nodes together, by an estimate that is rather too high; 2^22 by default, which take about
-    /// 2 GiB.
+    /// The largest number of control points of all nodes together, by an estimate that is rather too high; 2^22 by
+    /// default, which take about 2 GiB.
     pub control_points: u64,
-    /// Cells of the tiles of all wavelet noise together; 2^24 by default, such as a tile of 4096 × 4096.
+    /// The largest number of cells of the tiles of all wavelet noise together; 2^24 by default, such as a tile of 4096
+    /// × 4096.
     pub wavelet_cells: u64,
-    /// Values that are worked out for each pixel: one for each node and for each number or color that is an input. What is
-    /// under a warp, or under a node that sees the whole tile, counts once more for each of these. 4096 by default.
+    /// The largest number of values that are computed for each pixel: one for each node and for each number or color
+    /// that is an input. Nodes under a warp, or under a node that depends on the whole tile, count once more for each
+    /// of these. 4096 by default.
     pub values: u64,
-    /// How many warps may lie one under another; 32 by default.
+    /// The largest number of warps one under another; 32 by default.
     pub warps: u64,
-    /// Pixels of all pictures of nodes that see the whole tile together, for the size of a bake; 2^29 by default.
+    /// The largest number of pixels of all pictures of nodes that depend on the whole tile together, for the size of a
+    /// bake; 2^29 by default.
     pub pixels: u64,
 }
 
@@ -50,14 +53,14 @@ impl Default for PlanLimits {
 }
 
 impl PlanLimits {
-    /// Refuses more pixels than there may be.
+    /// Fails for more pixels than the limit.
     pub(super) fn check_pixels(&self, pictures: usize, size: [u32; 2]) -> Result<(), RecipeError> {
         let pixels = pictures as f64 * f64::from(size[0]) * f64::from(size[1]);
         check("pixels that are seen as a whole", pixels, self.pixels)
     }
 }
 
-/// Refuses more than there may be.
+/// Fails for a value above its limit.
 fn check(what: &'static str, value: f64, limit: u64) -> Result<(), RecipeError> {
     if value > limit as f64 {
         return Err(RecipeError::new(RecipeErrorKind::TooMuch {
@@ -69,12 +72,12 @@ fn check(what: &'static str, value: f64, limit: u64) -> Result<(), RecipeError> 
     Ok(())
 }
 
-/// The work of making the step of a node.
+/// The work of building the step of a node.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Work {
-    /// Control points to be placed and connected.
+    /// The number of control points to be placed and connected.
     pub(crate) control_points: f64,
-    /// Cells of tiles of wavelet noise.
+    /// The number of cells of tiles of wavelet noise.
     pub(crate) wavelet_cells: f64,
 }
 
@@ -92,7 +95,7 @@ impl<'a> WorkSum<'a> {
         }
     }
 
-    /// Adds the work of making a node, or refuses it.
+    /// Adds the work of building a node, or fails past the limits.
     pub(super) fn add(&mut self, work: &Work) -> Result<(), RecipeError> {
         let Self { limits, sum } = self;
         sum.control_points += work.control_points;
@@ -106,15 +109,15 @@ impl<'a> WorkSum<'a> {
     }
 }
 
-/// How much is worked out for each pixel.
+/// The numbers of values that are computed for each pixel.
 struct Values {
-    /// For each step, the values that are worked out for it once more, beside its own.
+    /// For each step, the number of values that are computed again for it, besides its own.
     under: Vec<f64>,
-    /// For each step, how many warps lie one under another, itself counted.
+    /// For each step, the number of nested warps, including itself.
     warps: Vec<u64>,
 }
 
-/// Refuses steps that work out too much for each pixel; the error comes with the step that it is about.
+/// Fails for steps with too many values for each pixel; the error comes with the index of the step.
 pub(super) fn check_steps(steps: &[Step], limits: &PlanLimits) -> Result<(), (usize, RecipeError)> {
     let what = "values for each pixel";
     let last = steps.len().saturating_sub(1);

@@ -50,7 +50,7 @@ impl Reference<'_> {
         }
     }
 
-    /// The table of the options of a type.
+    /// Appends the table of the options of a type.
     fn options(&self, page: &mut String, table: &Value) {
         page.push_str("\n| option | what it is | form | default |\n|---|---|---|---|\n");
         for (name, option) in self.written(table) {
@@ -65,7 +65,7 @@ impl Reference<'_> {
         }
     }
 
-    /// The types that options have, beside those of nodes.
+    /// Appends the sections of the types of options, other than those of nodes.
     fn types(&self, page: &mut String) {
         page.push_str("\n## Forms\n");
         for name in FORMS {
@@ -84,7 +84,7 @@ impl Reference<'_> {
         name_of(schema).map_or(schema, |name| self.followed(&self.types[name]))
     }
 
-    /// The options of a table that people are to write, by their names.
+    /// The options of a table, by name, without those that users do not write.
     fn written<'b>(&'b self, table: &'b Value) -> impl Iterator<Item = (&'b str, &'b Value)> {
         let all = object(&table["properties"]);
         all.filter(|(_, option)| {
@@ -92,7 +92,7 @@ impl Reference<'_> {
         })
     }
 
-    /// The form of a value, in words.
+    /// The form of a value, as text.
     fn form(&self, schema: &Value) -> String {
         if let Some(name) = name_of(schema) {
             if let Some((_, link)) = SECTIONS.iter().find(|(section, _)| *section == name) {
@@ -157,7 +157,7 @@ impl Reference<'_> {
     }
 }
 
-/// The forms that have a section of their own.
+/// The forms with sections.
 const FORMS: [&str; 7] = [
     "Input",
     "NodeSeed",
@@ -168,7 +168,7 @@ const FORMS: [&str; 7] = [
     "AxialWeight",
 ];
 
-/// The types that are sections before that, with links to them.
+/// The types with earlier sections, and links to them.
 const SECTIONS: [(&str, &str); 3] = [
     ("Material", "[the material](#the-material)"),
     ("Node", "[node](#nodes)"),
@@ -183,14 +183,14 @@ fn name_of(schema: &Value) -> Option<&str> {
     schema["$ref"].as_str()?.strip_prefix("#/$defs/")
 }
 
-/// The kind of a value; that of an option which may be left out is the one beside `null`.
+/// The kind of a value; for an option that may be left out, the one beside `null`.
 fn kind(schema: &Value) -> &str {
     let kinds = list(&schema["type"]).filter_map(Value::as_str);
     let beside_null = kinds.into_iter().find(|&kind| kind != "null");
     beside_null.or(schema["type"].as_str()).unwrap_or("table")
 }
 
-/// The range of a number, behind its kind.
+/// The range of a number, as text after its kind.
 fn range(schema: &Value) -> String {
     let part = |key: &str, word: &str| {
         let number = schema[key].as_f64()?;
@@ -208,7 +208,7 @@ fn text(schema: &Value) -> String {
     text.replace('|', "\\|")
 }
 
-/// A default as TOML has it.
+/// A default in TOML syntax.
 fn in_toml(value: &Value) -> String {
     match value {
         Value::Array(all) => {
@@ -217,7 +217,7 @@ fn in_toml(value: &Value) -> String {
         }
         Value::Object(all) if all.is_empty() => "{}".to_owned(),
         Value::Object(all) => {
-            // The domain of a texture is not to be given.
+            // The domain of a texture must not be set.
             let all = all.iter().filter(|(name, _)| *name != "domain");
             let all = all.map(|(name, value)| format!("{name} = {}", in_toml(value)));
             format!("{{ {} }}", all.collect::<Vec<_>>().join(", "))

@@ -1,7 +1,8 @@
-//! Schemas of types of other crates, found by what their `Deserialize` asks for.
+//! Schemas of types of other crates, found by tracing their `Deserialize`.
 //!
-//! A probe is read in place of data. Whatever a type asks it for is the answer, and the reading ends with it as an error.
-//! Where there are several ways to go on, such as the fields of a struct, the type is read once for each of them.
+//! A probe is read in place of data. The first value that a type requests is the answer, and ends the reading as an
+//! error. Where there are several ways to continue, such as the fields of a struct, the type is read once for each of
+//! them.
 
 use core::fmt;
 use schemars::{Schema, SchemaGenerator};
@@ -19,11 +20,11 @@ pub(crate) fn traced<T: DeserializeOwned>(_: &mut SchemaGenerator) -> Schema {
     Schema::try_from(schema).unwrap_or_default()
 }
 
-/// The kind of value that a type asked for.
+/// The kind of value that a type requested.
 #[derive(Debug)]
 struct Found {
     asked: Asked,
-    /// The lists, by their lengths, that it is in; innermost first.
+    /// The lists around it, by their lengths; innermost first.
     lists: Vec<Option<usize>>,
 }
 
@@ -32,7 +33,7 @@ enum Asked {
     Value(Value),
     Fields(&'static [&'static str]),
     Variants(&'static [&'static str]),
-    /// A variant without anything in it.
+    /// A variant without content.
     Word,
 }
 
@@ -67,7 +68,7 @@ impl Error for Found {
     }
 }
 
-/// The schema at the end of a way through a type; none for a word that stands alone.
+/// The schema at the end of a way through a type; `None` for a single word.
 fn explore<T: DeserializeOwned>(way: &mut Vec<usize>) -> Option<Value> {
     let Err(found) = T::deserialize(Probe { way }) else {
         return None;
@@ -127,15 +128,15 @@ fn one_of(variants: Vec<(&str, Option<Value>)>) -> Value {
     json!({ "oneOf": all })
 }
 
-/// A stand-in for data. At a struct or an enum it goes on into the field or variant of the next number of its way, and ends
-/// where there is none.
+/// A stand-in for data. At a struct or an enum it continues into the field or variant of the next number of its way,
+/// and ends where there is none.
 #[derive(Clone, Copy)]
 struct Probe<'a> {
     way: &'a [usize],
 }
 
 impl<'a> Probe<'a> {
-    /// The next number of the way, and what goes on from there.
+    /// The next number of the way, and the probe that continues from there.
     fn fork(self) -> Option<(usize, Self)> {
         let (&index, way) = self.way.split_first()?;
         Some((index, Self { way }))
@@ -168,7 +169,7 @@ impl<'a> Probe<'a> {
     }
 }
 
-/// Makes the methods of a probe for values that are not made of others.
+/// Implements the methods of a probe for elementary values.
 macro_rules! values {
     ($($method:ident => $schema:tt,)*) => {
         $(fn $method<V: Visitor<'de>>(self, _: V) -> Result<V::Value, Found> {
@@ -195,7 +196,7 @@ impl<'de> Deserializer<'de> for Probe<'_> {
         deserialize_unit => { "type": "null" },
     }
 
-    /// Words that are read by their names are told by the refusal of another one.
+    /// The names of words are taken from the error for an unknown one.
     fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Found> {
         match visitor.visit_str::<Found>("\u{1}") {
             Err(found) => Err(found),
@@ -272,7 +273,7 @@ impl<'de> SeqAccess<'de> for Probe<'_> {
     }
 }
 
-/// A field or a variant by its name, and the probe for what is in it.
+/// A field or a variant by its name, and the probe for its content.
 struct Named<'a> {
     name: &'static str,
     rest: Probe<'a>,

@@ -1,5 +1,5 @@
-//! The data of a text in TOML or JSON. Recipes are read from it, so that the readers of their many types are compiled once
-//! and not for each format.
+//! The data of a text in TOML or JSON. Recipes are read from it, so that the readers of their many types are compiled
+//! once, and not for each format.
 
 use super::refusal::{Part, Refusal};
 use core::fmt;
@@ -94,7 +94,7 @@ impl Content {
         Some(value)
     }
 
-    /// The value as the errors of readers name it.
+    /// The value as errors of readers name it.
     fn unexpected(&self) -> Unexpected<'_> {
         match self {
             Self::Null => Unexpected::Unit,
@@ -171,7 +171,7 @@ impl<'de> Deserializer<'de> for &'de Content {
     }
 }
 
-/// The elements of a list, from one on.
+/// The remaining elements of a list.
 struct Elements<'de> {
     list: &'de [Content],
     next: usize,
@@ -200,7 +200,7 @@ impl<'de> SeqAccess<'de> for Elements<'de> {
     }
 }
 
-/// The entries of a table, from one on.
+/// The remaining entries of a table.
 struct Entries<'de> {
     table: &'de [(String, Content)],
     next: usize,
@@ -248,7 +248,7 @@ impl<'de> EnumAccess<'de> for Variant<'de> {
 }
 
 impl Variant<'_> {
-    /// A refusal of what is in the variant.
+    /// Adds the variant to an error in its content.
     fn refusal(&self, refusal: Refusal) -> Refusal {
         refusal.inside(Part::Key(self.name.to_owned()))
     }

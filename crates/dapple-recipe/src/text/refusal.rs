@@ -1,4 +1,4 @@
-//! Errors of reading a recipe from data, and the places in the text that they are about.
+//! Errors of reading a recipe from data, and their places in the text.
 
 use crate::Place;
 use core::fmt;
@@ -7,13 +7,13 @@ use serde::de::{
 };
 use toml::de::{DeTable, DeValue};
 
-/// Why a value was refused, with the way to it from the whole text.
+/// The error of a value, with the path to it from the whole text.
 #[derive(Debug)]
 pub(super) struct Refusal {
     pub(super) message: String,
-    /// The way, innermost part first.
+    /// The path, innermost part first.
     parts: Vec<Part>,
-    /// Whether the last key of the way is refused itself, not its value.
+    /// Whether the error is about the last key of the path, not its value.
     is_key: bool,
 }
 
@@ -43,19 +43,19 @@ impl Error for Refusal {
 }
 
 impl Refusal {
-    /// The refusal of a value, as that of the one which it is in.
+    /// Adds the part of a value that contains the erroneous one.
     pub(super) fn inside(mut self, part: Part) -> Self {
         self.parts.push(part);
         self
     }
 
-    /// The refusal of a key.
+    /// The error of a key.
     pub(super) fn of_key(mut self, key: &str) -> Self {
         self.is_key = true;
         self.inside(Part::Key(key.to_owned()))
     }
 
-    /// The byte at which the refused key or value begins in a text in TOML.
+    /// The byte in a text in TOML at which the erroneous key or value begins.
     pub(super) fn byte_in_toml(&self, text: &str) -> Option<usize> {
         let table = DeTable::parse(text).ok()?;
         let mut span = table.span();
@@ -79,7 +79,7 @@ impl Refusal {
         Some(span.start)
     }
 
-    /// The place at which the reader of a text in JSON has read the refused key or value.
+    /// The place at which the reader of a text in JSON had read the erroneous key or value.
     pub(super) fn place_in_json(&self, text: &str) -> Option<Place> {
         let mut reader = serde_json::Deserializer::from_str(text);
         let walk = Walk {
@@ -94,7 +94,7 @@ impl Refusal {
     }
 }
 
-/// A walk through JSON to a key or a value, where it ends in an error.
+/// A walk through JSON to a key or a value, where it ends with an error.
 #[derive(Clone, Copy)]
 struct Walk<'a> {
     parts: &'a [Part],
@@ -102,7 +102,7 @@ struct Walk<'a> {
 }
 
 impl Walk<'_> {
-    /// Goes on into a value if the next part of the way is the one that leads there.
+    /// Descends into a value if the next part of the path leads there.
     fn step(self, leads_there: impl FnOnce(&Part) -> bool) -> Option<Self> {
         let (next, parts) = self.parts.split_last()?;
         leads_there(next).then_some(Self { parts, ..self })

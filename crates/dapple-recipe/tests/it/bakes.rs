@@ -1,4 +1,4 @@
-//! Tests of bakes: bands, regions, threads and looks around a pixel.
+//! Tests of bakes: bands, regions, threads and the surroundings of pixels.
 
 use dapple_color::{ColorRamp, LinearRgb, RampSpace};
 use dapple_raster::{Raster, Wrap};
@@ -67,7 +67,7 @@ fn plan(text: &str) -> Plan {
     Plan::new(&recipe, &Images::new(), 0.0).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// All maps of a bake, each as the bits of its numbers in rows.
+/// Bakes all maps; each is the bits of its numbers in rows.
 fn bake(plan: &Plan, options: &BakeOptions) -> Vec<Vec<u32>> {
     let mut maps = vec![Vec::new(); options.maps.len()];
     for band in Bake::new(plan, options).unwrap() {

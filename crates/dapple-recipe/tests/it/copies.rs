@@ -1,4 +1,4 @@
-//! Nodes that are made of copies and pieces of others.
+//! Nodes that combine copies and pieces of others.
 
 use dapple_color::LinearRgb;
 use dapple_raster::Raster;
@@ -17,11 +17,11 @@ nodes.b = { worley = { value = \"f2_minus_f1\", frequency = 2.0, seed = 2 } }
 nodes.c = { ramp = { input = \"b\", colors = [\"#000000\", \"#ffffff\"] } }
 ";
 
-/// What a node `x` makes as the albedo, a gray where it is a number.
+/// Renders a node `x` as the albedo; numbers become grays.
 fn albedo(node: &str, size: [u32; 2]) -> Result<Raster<LinearRgb>, RecipeError> {
     let text = format!("{TEXTURES}nodes.x = {node}\n[material]\nalbedo = \"x\"\n");
     let recipe = Recipe::from_toml(&text)?;
-    // What it is read from is what it is written to.
+    // Writing and reading again must not change the recipe.
     let again = Recipe::from_toml(&recipe.to_toml()?)?;
     assert_eq!(again.to_json()?, recipe.to_json()?, "{node}");
     let plan = Plan::new(&recipe, &Images::new(), 0.0)?;

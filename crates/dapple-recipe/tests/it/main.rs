@@ -1,4 +1,4 @@
-//! Recipes through their public doors: nodes and readers are compiled once, in the library.
+//! Tests of recipes through their public interface: nodes and readers are compiled once, in the library.
 
 mod bakes;
 mod copies;

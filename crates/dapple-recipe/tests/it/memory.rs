@@ -1,4 +1,4 @@
-//! Plans that take from a memory what others have made.
+//! Plans that reuse values from a memory.
 
 use dapple_recipe::{
     Bake, BakeOptions, Images, MapKind, MapRows, Memory, Plan, PlanLimits, Recipe,
@@ -18,7 +18,7 @@ fn with(recipe: &Recipe, time: f64, memory: &Memory) -> Plan {
     Plan::new_with_memory(recipe, &Images::new(), time, &PlanLimits::default(), memory).unwrap()
 }
 
-/// The recipe with another number in one of its nodes each time.
+/// The recipe, each time with another number in one of its nodes.
 fn changed(text: &str) -> Vec<Recipe> {
     let changes = [
         ("seed = ", "seed = 1"),

@@ -2,7 +2,8 @@
 
 use dapple_raster::{Field, Raster};
 use dapple_recipe::{
-    ControlNets, Images, Node, Picture, Plan, PlanLimits, PupsNode, Recipe, RecipeErrorKind,
+    ControlNets, ControlPoint, Images, Node, Picture, Plan, PlanLimits, PupsNode, Recipe,
+    RecipeErrorKind,
 };
 use std::sync::Arc;
 
@@ -69,6 +70,66 @@ fn textures_of_one_net_are_textures_of_points_bit_for_bit() {
             let edited = Recipe::from_toml(&edited.to_toml().unwrap()).unwrap();
             assert!(bits(&edited) == bits(&recipe), "{pups}, {wrap:?}");
         }
+    }
+}
+
+#[test]
+fn labels_that_points_share_stay_labels() {
+    for pups in [
+        "cells = { spacing = 0.3, points_per_cell = [3, 4] }",
+        "space_giraffe = { spacing = 0.5 }",
+        "label_ramp = { spacing = 0.3 }",
+    ] {
+        let mut points = nets(&recipe(pups, [false, true])).points.unwrap();
+        assert!(points.values.len() * 2 < points.points.len(), "{pups}");
+        let is_labeled =
+            |label| move |point: &&ControlPoint| (point.value, point.label) == (None, Some(label));
+        let n_labeled = |label| points.points.iter().filter(is_labeled(label)).count();
+        let all: usize = (0..)
+            .zip(&points.values)
+            .map(|(label, _)| n_labeled(label))
+            .sum();
+        assert_eq!(all, points.points.len(), "{pups}");
+        points.values[1] = 7.0;
+        let mut changed = recipe(pups, [false, true]);
+        changed.nodes["t"] = Node::Pups(PupsNode::Points(points));
+        assert!(bits(&changed).contains(&7_f32.to_bits()), "{pups}");
+        let again = nets(&changed).points.unwrap();
+        assert_eq!(again.values[1], 7.0, "{pups}");
+    }
+    let own = nets(&recipe("cells = { spacing = 0.3 }", [true; 2]))
+        .points
+        .unwrap();
+    assert!(own.points.iter().all(|point| point.label.is_none()));
+    assert_eq!(own.values, [0.0; 0]);
+}
+
+#[test]
+fn a_control_point_has_a_value_or_a_label_with_one() {
+    let refusal = |points: &str| {
+        let recipe = recipe(&format!("points = {points}"), [true; 2]);
+        Plan::new(&recipe, &images(), 0.0)
+            .err()
+            .map(|error| error.to_string())
+    };
+    let mixed = "{ points = [{ x = 0, y = 0, label = 1 }, { x = 1, y = 1, value = 0.5 }], values = [0, 1] }";
+    assert_eq!(refusal(mixed), None);
+    for (points, part) in [
+        (
+            "{ points = [{ x = 0, y = 0 }] }",
+            "either a `value` or a `label`",
+        ),
+        (
+            "{ points = [{ x = 0, y = 0, value = 1, label = 0 }], values = [1] }",
+            "either a `value` or a `label`",
+        ),
+        (
+            "{ points = [{ x = 0, y = 0, label = 2 }], values = [0, 1] }",
+            "3",
+        ),
+    ] {
+        let refusal = refusal(points).unwrap_or_default();
+        assert!(refusal.contains(part), "{points}: {refusal}");
     }
 }
 

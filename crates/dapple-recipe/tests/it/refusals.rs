@@ -1,9 +1,9 @@
-//! Tests of what a plan refuses.
+//! Tests of the errors of a plan.
 
 use dapple_raster::{Field, glam::DVec2};
 use dapple_recipe::{Images, Plan, PlanLimits, Recipe, RecipeError, RecipeErrorKind};
 
-/// What is wrong with a recipe of these nodes, whose height is the node `a`.
+/// The error of a recipe of these nodes, whose height is the node `a`.
 fn refusal(nodes: &str) -> RecipeError {
     let text = format!("dapple = 1\n{nodes}\n[material]\nheight = \"a\"\n");
     let recipe = Recipe::from_toml(&text).unwrap_or_else(|error| panic!("{nodes}: {error}"));
@@ -233,7 +233,7 @@ fn nodes_that_draw_by_one_name_see_the_same_points() {
     assert_ne!(at("a"), at("c"), "by their own names");
 }
 
-/// What a recipe of these nodes, within the limits, has too much of, and in which node.
+/// The item of which a recipe of these nodes has too much within the limits, and its node.
 fn too_much(nodes: &str, limits: &PlanLimits) -> (&'static str, Option<String>) {
     let text = format!("dapple = 1\n{nodes}\n[material]\n");
     let recipe = Recipe::from_toml(&text).unwrap_or_else(|error| panic!("{nodes}: {error}"));
@@ -305,7 +305,7 @@ fn the_work_of_all_nodes_counts_together() {
 
 #[test]
 fn warps_of_warps_are_refused_before_they_take_forever() {
-    // Each warp works out the one before it twice.
+    // Each warp evaluates the one before it twice.
     let chain = |count: u32, shift: fn(u32) -> String| {
         let warp = |index: u32| {
             let (before, shift) = (index - 1, shift(index - 1));

@@ -1,4 +1,4 @@
-//! Recipes read from text and written to it, and what is refused with its place.
+//! Recipes read from text and written to it, and errors with their place.
 
 use dapple_recipe::{MAX_TEXT, Place, Recipe, RecipeErrorKind};
 

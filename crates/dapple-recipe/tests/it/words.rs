@@ -1,4 +1,4 @@
-//! Slips and the words that were meant.
+//! Misspellings and the intended words.
 
 use dapple_recipe::similar_words;
 

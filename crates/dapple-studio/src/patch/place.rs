@@ -6,7 +6,7 @@ use crate::data::{insert_element, json_of_item, remove_element, rewrite, table_o
 use serde_json::{Map, Value as Json};
 use toml_edit::{ArrayOfTables, InlineTable, Item, Table, Value};
 
-/// What is at a place of a document.
+/// The table, the list or the value at a place of a document.
 pub(super) enum Place<'a> {
     Table(&'a mut Table),
     Tables(&'a mut ArrayOfTables),

@@ -1,6 +1,7 @@
 //! Changes of texts beside the same changes of their data.
 
-use super::{Op, Part, apply};
+use super::{Op, Part, apply, spliced};
+use crate::Document;
 use crate::data::json_of_table;
 use dapple::recipe::{Images, Plan, Recipe};
 use proptest::prelude::*;
@@ -432,5 +433,47 @@ proptest! {
         let new = apply(text, &[Op::Set { path, value: number.into() }]).unwrap();
         prop_assert_eq!(comments(&new), comments(text));
         prop_assert_eq!(new.lines().count(), text.lines().count());
+    }
+}
+
+#[test]
+fn numbers_are_replaced_as_other_changes_are_made() {
+    let document = Document::new(TEXT);
+    let sets = [
+        set("seed", json!(9)),
+        set("seed", json!(7)),
+        set("nodes.cells.worley.scatter.jittered.jitter", json!(1)),
+        set("nodes.sum.add.1", json!(0.5)),
+        set("nodes.sum.add.1", json!(-1e-9)),
+        set("nodes.grain.noise.octaves", json!(4.5)),
+        set("nodes.dots.pups.points.points.1.x", json!(0.123_456_789)),
+        set("nodes.dots.pups.points.points.0.value", json!(0)),
+    ];
+    for one in &sets {
+        for other in &sets {
+            let ops = [one.clone(), other.clone()];
+            let expected = apply(TEXT, &ops).unwrap();
+            let is_twice = matches!((one, other), (Op::Set { path: a, .. }, Op::Set { path: b, .. }) if a == b);
+            let spliced = spliced(&document, &ops);
+            assert_eq!(spliced, (!is_twice).then_some(expected), "{ops:?}");
+        }
+    }
+    let vectors = Document::new("a = [ 1.0,2.5 ] # a list\nb = { c = 3 }\n");
+    assert_eq!(
+        spliced(
+            &vectors,
+            &[set("a", json!([2, 0.25])), set("b.c", json!(4))]
+        )
+        .as_deref(),
+        Some("a = [ 2.0,0.25 ] # a list\nb = { c = 4 }\n")
+    );
+    for other in [
+        set("nodes.cells.worley.value", json!("f1")),
+        set("nodes.cells.worley.depth", json!(3)),
+        set("nodes.sum.add", json!([0.5])),
+        set("seed", json!(u64::MAX)),
+        set("seed", json!(null)),
+    ] {
+        assert_eq!(spliced(&document, &[other.clone()]), None, "{other:?}");
     }
 }

@@ -8,7 +8,7 @@ use std::path::Path;
 /// The files by their names.
 const FILES: &[(&str, &[u8])] = include!(concat!(env!("OUT_DIR"), "/page.rs"));
 
-/// What is shown where there is no page.
+/// The page of a program that was built without the page.
 const MISSING: &str = "<!doctype html><html lang=en><title>dapple studio</title><p>The page of the studio is not part \
     of this program: build it with <code>cargo xtask studio</code> in the repository of dapple, which needs Node.</p>";
 
@@ -58,7 +58,7 @@ fn of_folder(name: &str, dist: &Path) -> Response {
     }
 }
 
-/// What a file is, by its ending.
+/// The type of a file, by its ending.
 pub(super) fn content_type(name: &str) -> &'static str {
     match name
         .rsplit_once('.')

@@ -3,7 +3,7 @@
 use super::Shared;
 use super::disk::QUIET;
 use super::flow::Flow;
-use super::worker::{Sample, Task, TaskKind, Worker};
+use super::worker::{Sample, Worker};
 use crate::message::{Hello, Mode, Output, Reply, Request};
 use crate::{Session, Shown, StudioError};
 use axum::extract::ws::{Message, WebSocket, WebSocketUpgrade};
@@ -150,6 +150,11 @@ impl Page {
                 None => Ok(()),
             };
         }
+        let file = self.file.as_ref().map_or("", |(name, _)| name);
+        if let Some(task) = self.session.task(&request, file) {
+            self.worker.ask(task);
+            return Ok(());
+        }
         let images = |recipe: &Recipe| self.worker.images(recipe);
         let replies = match self.session.handle(&request, &images) {
             Some(replies) => {
@@ -172,7 +177,7 @@ impl Page {
         Ok(())
     }
 
-    /// Answers a request that needs files or takes long.
+    /// Answers a request that needs files.
     fn answer_with_files(
         &mut self,
         request: Request,
@@ -183,22 +188,6 @@ impl Page {
                 builtin: None,
                 text: None,
             } => self.open(file).map_err(|error| ("open", error)),
-            Request::Seams { size } => Ok(self.ask("seams", TaskKind::Seams { size })),
-            Request::Points { node } => {
-                let time = self.session.view().time;
-                Ok(self.ask("points", TaskKind::Points { node, time }))
-            }
-            Request::Code { kind, size, maps } => {
-                let name = self.file.as_ref().map(|(name, _)| name.clone());
-                let name = name.unwrap_or_default();
-                let code = TaskKind::Code {
-                    kind,
-                    size,
-                    maps,
-                    name,
-                };
-                Ok(self.ask("code", code))
-            }
             Request::Gallery { size } => {
                 self.worker.sample(self.samples(size));
                 Ok(Vec::new())
@@ -207,7 +196,6 @@ impl Page {
                 self.worker.vary(self.session.strip(request));
                 Ok(Vec::new())
             }
-            Request::Export(export) => Ok(self.ask("export", TaskKind::Export(export))),
             Request::Save {
                 text,
                 file,
@@ -223,17 +211,6 @@ impl Page {
                 StudioError::new("give one of `builtin`, `file` and `text`"),
             )),
         }
-    }
-
-    /// Has the worker answer.
-    fn ask(&self, what: &'static str, kind: TaskKind) -> Vec<Reply> {
-        let document = self.session.document().clone();
-        self.worker.ask(Task {
-            what,
-            document,
-            kind,
-        });
-        Vec::new()
     }
 
     fn open(&mut self, file: String) -> Result<Vec<Reply>, StudioError> {

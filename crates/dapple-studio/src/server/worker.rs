@@ -1,9 +1,9 @@
 //! The thread that draws what one page shows. What is drawn is always the newest; what was asked for besides comes before.
 
 use super::Shared;
-use crate::message::{CodeKind, Export, Output, Reply, Shape};
+use crate::message::{Export, Output, Reply};
 use crate::render::{Job, Renderer, World};
-use crate::{Document, Picture, Shown, StudioError, Variant, code, points, seams};
+use crate::{Lit, Shown, StudioError, Task, Variant};
 use dapple::color::LinearRgb;
 use dapple::raster::Raster;
 use dapple::recipe::{Images, Recipe};
@@ -14,32 +14,7 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Instant, SystemTime};
 use tokio::sync::mpsc::UnboundedSender;
 
-/// Something that a page asked for besides pictures.
-pub(super) struct Task {
-    /// The type of the request.
-    pub(super) what: &'static str,
-    pub(super) document: Arc<Document>,
-    pub(super) kind: TaskKind,
-}
-
-pub(super) enum TaskKind {
-    Seams {
-        size: [u32; 2],
-    },
-    Points {
-        node: String,
-        time: f64,
-    },
-    Code {
-        kind: CodeKind,
-        size: Option<[u32; 2]>,
-        maps: Option<Vec<String>>,
-        name: String,
-    },
-    Export(Export),
-}
-
-/// What the thread has to do.
+/// The work that waits for the thread.
 #[derive(Default)]
 struct Queue {
     job: Option<Job>,
@@ -139,7 +114,7 @@ impl Worker {
         if queue.tasks.len() >= MOST_TASKS {
             drop(queue);
             let error = StudioError::new("too much is asked for at once");
-            self.inside.put(Reply::refused(task.what, &error).into());
+            self.inside.put(Reply::refused(task.what(), &error).into());
             return;
         }
         queue.tasks.push_back(task);
@@ -160,7 +135,7 @@ impl Drop for Worker {
     }
 }
 
-/// What the thread does next.
+/// The next work of the thread.
 enum Next {
     Draw(Job),
     Do(Task),
@@ -178,14 +153,14 @@ impl Inside {
         while let Some(next) = self.next() {
             let what = match &next {
                 Next::Draw(_) => "view",
-                Next::Do(task) => task.what,
+                Next::Do(task) => task.what(),
                 Next::Vary(_) => "strip",
                 Next::Sample(_) => "gallery",
             };
             // A defect in a method must not end the server while somebody works.
             let done = catch_unwind(AssertUnwindSafe(|| match next {
                 Next::Draw(job) => renderer.draw(&job, self),
-                Next::Do(task) => self.perform(task),
+                Next::Do(task) => self.perform(&task),
                 Next::Vary(variant) => renderer.draw_variant(&variant, self),
                 Next::Sample(sample) => self.show(&sample),
             }));
@@ -229,69 +204,23 @@ impl Inside {
             folder.check_images(recipe)?;
             self.shared.host.images(recipe, folder.path())
         };
-        let made = self.shared.gallery.of(&sample.text, sample.side, images);
-        if let Ok(made) = made {
-            self.put(Output::Picture(Picture {
-                generation: 0,
-                shown: sample.shown,
-                first: [0; 2],
-                size: made.size,
-                scale: 1,
-                is_draft: false,
-                is_last: true,
-                pixels: made.pixels.clone(),
-            }));
+        let Sample { shown, text, side } = sample;
+        let made = self.shared.gallery.of(*shown, text, *side, images);
+        if let Ok(picture) = made {
+            self.put(Output::Picture(picture));
         }
     }
 
-    fn perform(&self, task: Task) {
-        let reply = self.reply(&task);
-        let reply = reply.unwrap_or_else(|error| Reply::refused(task.what, &error));
-        self.put(reply.into());
-    }
-
-    fn reply(&self, task: &Task) -> Result<Reply, StudioError> {
-        let recipe = task
-            .document
-            .recipe()
-            .map_err(|error| StudioError::from(error.clone()))?;
-        Ok(match &task.kind {
-            TaskKind::Seams { size } => {
-                let images = self.images(recipe)?;
-                Reply::Seams {
-                    maps: seams::report(recipe, &images, *size)?,
-                }
-            }
-            TaskKind::Points { node, time } => {
-                let images = self.images(recipe)?;
-                let points = points::report(recipe, &images, node, *time)?;
-                Reply::Points(Box::new(points))
-            }
-            TaskKind::Code {
-                kind,
-                size,
-                maps,
-                name,
-            } => {
-                let code = code::Code {
-                    kind: *kind,
-                    size: *size,
-                    maps: maps.as_deref(),
-                    name,
-                };
-                Reply::Code {
-                    kind: *kind,
-                    text: code.text(&task.document, recipe)?,
-                }
-            }
-            TaskKind::Export(export) => {
-                let folder = &self.shared.folder;
-                folder.check_images(recipe)?;
-                let files = self.shared.host.export(recipe, folder.path(), export)?;
-                let (id, files) = self.shared.exports.keep(files);
-                Reply::Exported { id, files }
-            }
-        })
+    fn perform(&self, task: &Task) {
+        let images = |recipe: &Recipe| self.images(recipe);
+        let export = |recipe: &Recipe, export: &Export| {
+            let folder = &self.shared.folder;
+            folder.check_images(recipe)?;
+            let files = self.shared.host.export(recipe, folder.path(), export)?;
+            let (id, files) = self.shared.exports.keep(files);
+            Ok(Reply::Exported { id, files })
+        };
+        self.put(task.answer(&images, &export).into());
     }
 }
 
@@ -311,14 +240,8 @@ impl World for Inside {
         Ok(loaded.images.clone())
     }
 
-    fn preview(
-        &self,
-        recipe: &Recipe,
-        images: &Images,
-        time: f64,
-        shape: Shape,
-    ) -> Result<Raster<LinearRgb>, StudioError> {
-        self.shared.host.preview(recipe, images, time, shape)
+    fn preview(&self, lit: &Lit<'_>) -> Result<Raster<LinearRgb>, StudioError> {
+        self.shared.host.preview(lit)
     }
 
     fn now(&self) -> f64 {

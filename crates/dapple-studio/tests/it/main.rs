@@ -7,6 +7,7 @@
 
 mod drawing;
 mod messages;
+mod points;
 #[cfg(feature = "server")]
 mod server;
 mod world;

@@ -3,7 +3,7 @@
 use dapple::color::LinearRgb;
 use dapple::raster::Raster;
 use dapple::recipe::{Images, Recipe};
-use dapple_studio::{Export, ExportedFile, Host, Named, ServeOptions, Shape, StudioError, serve};
+use dapple_studio::{Export, ExportedFile, Host, Lit, Named, ServeOptions, StudioError, serve};
 use serde_json::{Value, json};
 use std::fs;
 use std::io::{Read as _, Write as _};
@@ -36,13 +36,7 @@ impl Host for TestHost {
         }])
     }
 
-    fn preview(
-        &self,
-        _: &Recipe,
-        _: &Images,
-        _: f64,
-        _: Shape,
-    ) -> Result<Raster<LinearRgb>, StudioError> {
+    fn preview(&self, _: &Lit<'_>) -> Result<Raster<LinearRgb>, StudioError> {
         Ok(Raster::filled([2, 1], LinearRgb::WHITE).unwrap())
     }
 
@@ -542,4 +536,41 @@ fn all_recipes_have_small_pictures() {
             "{picture}"
         );
     }
+}
+
+#[test]
+fn points_of_labeled_cells_come_with_their_labels() {
+    let server = Server::new(None);
+    let mut page = server.page();
+    let text = "dapple = 1\n[nodes.hide.pups.cells]\nspacing = 0.2\npoints_per_cell = [3, 4]\n[material]\nheight = \"hide\"\n";
+    say(&mut page, &json!({ "type": "doc", "rev": 0, "text": text }));
+    let points = |page: &mut Page| {
+        say(page, &json!({ "type": "points", "node": "hide" }));
+        until(page, "points")
+    };
+    let before = points(&mut page);
+    let ops = json!([{ "op": "make_points", "node": "hide" }]);
+    say(&mut page, &json!({ "type": "patch", "rev": 0, "ops": ops }));
+    until(&mut page, "edits");
+    let after = points(&mut page);
+    assert_eq!(
+        (&before["editable"], &after["editable"]),
+        (&json!(false), &json!(true))
+    );
+    for key in ["points", "values", "edges"] {
+        assert_eq!(before[key], after[key], "{key}");
+    }
+    let values = after["values"].as_array().unwrap();
+    for point in after["points"].as_array().unwrap() {
+        let label = point["label"].as_u64().unwrap() as usize;
+        assert_eq!(point["value"], values[label], "{point}");
+    }
+    let label = json!(["nodes", "hide", "pups", "points", "points", 0, "label"]);
+    let ops = json!([{ "op": "set", "path": label, "value": values.len() - 1 }]);
+    say(&mut page, &json!({ "type": "patch", "rev": 1, "ops": ops }));
+    until(&mut page, "edits");
+    assert_eq!(
+        points(&mut page)["points"][0]["label"],
+        json!(values.len() - 1)
+    );
 }

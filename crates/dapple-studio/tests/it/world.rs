@@ -1,11 +1,7 @@
 //! A world in which sessions are tested.
 
-use dapple::color::LinearRgb;
-use dapple::raster::Raster;
 use dapple::recipe::{Images, Recipe};
-use dapple_studio::{
-    Output, Picture, Renderer, Reply, Request, Session, Shape, StudioError, World,
-};
+use dapple_studio::{Output, Picture, Renderer, Reply, Request, Session, StudioError, World};
 use serde_json::{Value, json};
 use std::cell::{Cell, RefCell};
 
@@ -22,16 +18,6 @@ pub(crate) struct TestWorld {
 impl World for TestWorld {
     fn images(&self, _: &Recipe) -> Result<Images, StudioError> {
         Ok(Images::new())
-    }
-
-    fn preview(
-        &self,
-        _: &Recipe,
-        _: &Images,
-        _: f64,
-        _: Shape,
-    ) -> Result<Raster<LinearRgb>, StudioError> {
-        Err(StudioError::new("there is no light here"))
     }
 
     fn now(&self) -> f64 {

@@ -1,5 +1,4 @@
 // The keys of the page, and what they do.
-import { MODES } from './looking.svelte';
 import type { Studio } from './studio.svelte';
 
 /** The sheet of keys, by where they hold. */
@@ -69,7 +68,7 @@ export function pressed(studio: Studio, event: KeyboardEvent): boolean {
   if (studio.sheet !== 'none' || event.altKey) return false;
   if (event.key === 'F6') return nextPart(event.shiftKey);
   if (busy(event.target)) return false;
-  const mode = MODES[Number(event.key) - 1];
+  const mode = studio.modes[Number(event.key) - 1];
   if (mode && /^[1-6]$/.test(event.key)) {
     if ((mode.id === 'tiled') !== (looking.mode === 'tiled')) looking.window = null;
     looking.mode = mode.id;

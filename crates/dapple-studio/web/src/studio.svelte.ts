@@ -7,7 +7,7 @@ import { MAP } from './core/protocol';
 import { at, entry, Schemas, type Range } from './core/schema';
 import type { Transport } from './core/transport';
 import { recall, remember, type Unsaved } from './core/unsaved';
-import { Looking } from './looking.svelte';
+import { Looking, MODES } from './looking.svelte';
 import { Rendering } from './rendering.svelte';
 
 /** A dialog or a sheet over the page. */
@@ -44,7 +44,7 @@ export class Studio {
   schemas = $derived(this.hello ? new Schemas(this.hello.schema) : null);
   readonly document: StudioDocument;
   /** What is to be opened once a person agrees to lose changes. */
-  leaving: { builtin?: string; file?: string } | null = null;
+  leaving: { builtin?: string; file?: string; text?: string } | null = null;
   /** A file that was changed by somebody else. */
   disk = $state.raw<{ text: string; hash: string; file: string } | null>(null);
   /** Counts connections, so that views are asked for again. */
@@ -83,6 +83,16 @@ export class Studio {
 
   get reading(): boolean {
     return this.hello?.mode === 'watch';
+  }
+
+  /** Whether there is no server: files are opened and saved by the browser. */
+  get alone(): boolean {
+    return this.hello?.mode === 'static';
+  }
+
+  /** The views that there are: without a server none is rendered by the command. */
+  get modes(): readonly (typeof MODES)[number][] {
+    return MODES.filter(({ id }) => id !== 'exact' || !this.alone);
   }
 
   get valid(): boolean {
@@ -190,7 +200,7 @@ export class Studio {
   }
 
   /** Asks before changes are lost, then opens. */
-  leave(what: { builtin?: string; file?: string }): void {
+  leave(what: { builtin?: string; file?: string; text?: string }): void {
     this.leaving = what;
     this.sheet = 'leave';
   }

@@ -20,6 +20,13 @@ export const skip =
   (!existsSync(DAPPLE) && `skipped: no command at ${DAPPLE}; name one by DAPPLE`) ||
   (!existsSync(join(DIST, 'index.html')) && `skipped: the page is not built at ${DIST}; run npm run build`);
 
+/** The page without a server, as `cargo xtask web` builds it; it is tested where STATIC names it. */
+export const STATIC = process.env.STATIC ?? '';
+export const skipStatic =
+  (STATIC === '' && 'skipped: STATIC names no folder of `cargo xtask web`') ||
+  (!CHROMIUM && 'skipped: no Chromium; name one by CHROMIUM') ||
+  (!existsSync(DAPPLE) && `skipped: no command at ${DAPPLE}; name one by DAPPLE`);
+
 /** A studio that runs: its folder, its address, and how to end it. */
 export async function serve(args = [], command = 'studio', folder = mkdtempSync(join(tmpdir(), 'dapple-studio-'))) {
   const child = spawn(DAPPLE, [command, '--no-open', '--dist', DIST, ...args], { cwd: folder });

@@ -18,23 +18,42 @@ spacing = 0.5
 height = "dots"
 `;
 
+const LABELED = `dapple = 1
+name = "patches"
+extent = [2.0, 2.0]
+
+[nodes.dots.pups.cells]
+spacing = 0.4
+points_per_cell = [3, 4]
+
+[material]
+height = "dots"
+`;
+
+/** Shows the points of the node `dots`. */
+async function look(page) {
+  await settled(page);
+  await select(page, 'dots');
+  await page.locator('#tab-node').click();
+  await page.locator('svg .point').first().waitFor();
+  await settled(page);
+}
+
 describe('control points', { skip, timeout: 120_000 }, () => {
+  const folder = mkdtempSync(join(tmpdir(), 'dapple-points-'));
   let studio;
+  let other;
   let page;
   before(async () => {
-    const folder = mkdtempSync(join(tmpdir(), 'dapple-points-'));
     writeFileSync(join(folder, 'dots.toml'), RECIPE);
     studio = await serve(['dots.toml'], 'studio', folder);
     page = await open(studio.url);
-    await settled(page);
-    await select(page, 'dots');
-    await page.locator('#tab-node').click();
-    await page.locator('svg .point').first().waitFor();
-    await settled(page);
+    await look(page);
   });
   after(async () => {
     await endBrowser();
     studio?.end();
+    other?.end();
   });
 
   /** The point nearest to a place, in pixels from the middle of the picture. */
@@ -92,6 +111,29 @@ describe('control points', { skip, timeout: 120_000 }, () => {
     assert.notEqual(await last.getAttribute('aria-label'), label);
     await page.keyboard.press('Delete');
     await page.waitForFunction((n) => document.querySelectorAll('svg .point').length === n, many);
+    assert.deepEqual(page.wrong, []);
+  });
+
+  test('points with labels keep them, and take others', async () => {
+    writeFileSync(join(folder, 'patches.toml'), LABELED);
+    other = await serve(['patches.toml'], 'studio', folder);
+    const page = await open(other.url);
+    await look(page);
+    await page.getByRole('button', { name: 'Make points editable' }).click();
+    await page.locator('svg.open .point').first().waitFor();
+    await settled(page);
+    const [, values] = /\nvalues = \[(.*)\]/.exec(await text(page));
+    const last = values.split(',').length - 1;
+    await page.locator('svg .point').first().focus();
+    await page.locator('.value select').selectOption(String(last));
+    await settled(page);
+    assert.match(await text(page), new RegExp(`points = \\[\\n {4}\\{[^}]*label = ${last}\\b`));
+    const before = await hash(page, 'node');
+    await page.getByLabel('its value').fill('0.125');
+    await page.keyboard.press('Tab');
+    await settled(page);
+    assert.match(await text(page), /\nvalues = \[.*0\.125\]/);
+    assert.notEqual(await hash(page, 'node'), before);
     assert.deepEqual(page.wrong, []);
   });
 });

@@ -16,8 +16,6 @@ pub(super) fn from_uvs(
     size: [u32; 2],
     padding: u32,
 ) -> Result<Atlas, SynthError> {
-    check_side(size[0])?;
-    check_side(size[1])?;
     if uvs.len() != surface.mesh().faces().len() {
         return Err(SynthError::new(SynthErrorKind::Count {
             what: "faces with uv",
@@ -25,9 +23,23 @@ pub(super) fn from_uvs(
             needed: "as many as the mesh has",
         }));
     }
-    let mut faces = Raster::filled(size, NONE)?;
     let scale = DVec2::new(f64::from(size[0]), f64::from(size[1]));
-    let corners: Vec<[DVec2; 3]> = uvs.iter().map(|face| place(*face, scale)).collect();
+    covered(
+        uvs.iter().map(|face| place(*face, scale)).collect(),
+        size,
+        padding,
+    )
+}
+
+/// The atlas in which faces cover the texels between their corners, and `padding` texels around them.
+pub(super) fn covered(
+    corners: Vec<[DVec2; 3]>,
+    size: [u32; 2],
+    padding: u32,
+) -> Result<Atlas, SynthError> {
+    check_side(size[0])?;
+    check_side(size[1])?;
+    let mut faces = Raster::filled(size, NONE)?;
     for (face, corners) in (0..).zip(&corners) {
         cover(&mut faces, face, corners);
     }

@@ -1,6 +1,6 @@
 //! Square tiles of two right triangles.
 
-use super::{Atlas, NONE, PADDING_MAX, check_side};
+use super::{Atlas, NONE, check_padding, check_side};
 use crate::{SynthError, SynthErrorKind};
 use dapple_mesh::{FaceIdx, Surface};
 use dapple_raster::Raster;
@@ -14,8 +14,7 @@ struct Frame {
 
 impl Frame {
     fn new(padding: u32) -> Result<Self, SynthError> {
-        let holds = (1..=PADDING_MAX).contains(&padding);
-        SynthError::check(holds, "padding", padding.into(), "from 1 to 1024")?;
+        check_padding(padding)?;
         Ok(Self { padding })
     }
 

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::SynthErrorKind;
-use crate::shapes::{sphere, square, synthesizer};
+use crate::shapes::{pixel_per_site, row, sphere, square, synthesizer};
 use dapple_mesh::{CREASE, Mesh};
 use glam::DVec2;
 
@@ -25,6 +25,18 @@ fn plane(angle: f64, mirrored: bool) -> (Synthesizer, Atlas) {
         .collect();
     let atlas = Atlas::from_uvs(plane.surface(), &uvs, [40, 30], 0).unwrap();
     (plane, atlas)
+}
+
+/// Bakes a normal for each site, which are mixed.
+fn baked(
+    synthesizer: &Synthesizer,
+    normals: &[Normal],
+    y: NormalY,
+    atlas: &Atlas,
+    shading: &[[DVec3; 3]],
+) -> Result<Raster<Normal>, SynthError> {
+    let texture = pixel_per_site(normals.len());
+    bake_normals(synthesizer, &texture, &row(normals), y, atlas, shading)
 }
 
 /// Shading without a crease.
@@ -51,7 +63,7 @@ fn assert_all(map: &Raster<Normal>, want: [f64; 3], what: &str) {
 fn rotated_field_rotates_the_normals() {
     for angle in [0.0, 0.3, 1.5, 3.0, -2.0] {
         let (plane, atlas) = plane(angle, false);
-        let map = bake_normals(
+        let map = baked(
             &plane,
             &[TILTED; N],
             NormalY::OpenGl,
@@ -70,7 +82,7 @@ fn rotated_field_rotates_the_normals() {
 #[test]
 fn mirrored_layout_mirrors_the_normals() {
     let (plane, atlas) = plane(0.0, true);
-    let map = bake_normals(
+    let map = baked(
         &plane,
         &[TILTED; N],
         NormalY::OpenGl,
@@ -88,7 +100,7 @@ fn green_points_down_for_directx() {
         y: -TILTED.y,
         ..TILTED
     };
-    let up = bake_normals(
+    let up = baked(
         &plane,
         &[TILTED; N],
         NormalY::OpenGl,
@@ -96,7 +108,7 @@ fn green_points_down_for_directx() {
         &smooth(&plane),
     )
     .unwrap();
-    let down = bake_normals(
+    let down = baked(
         &plane,
         &[down; N],
         NormalY::DirectX,
@@ -117,8 +129,7 @@ fn flat_normals_stay_flat() {
         Atlas::by_area(sphere.surface(), 300).unwrap(),
     ] {
         for y in [NormalY::OpenGl, NormalY::DirectX] {
-            let map =
-                bake_normals(&sphere, &[Normal::FLAT; N], y, &atlas, &smooth(&sphere)).unwrap();
+            let map = baked(&sphere, &[Normal::FLAT; N], y, &atlas, &smooth(&sphere)).unwrap();
             assert!(map.pixels().iter().all(|&normal| normal == Normal::FLAT));
         }
     }
@@ -132,7 +143,7 @@ fn normals_cancel_to_flat() {
         y: 0.0,
         z: 0.0,
     }; N];
-    let map = bake_normals(&plane, &inward, NormalY::OpenGl, &atlas, &smooth(&plane)).unwrap();
+    let map = baked(&plane, &inward, NormalY::OpenGl, &atlas, &smooth(&plane)).unwrap();
     assert_all(&map, [0.0, 0.0, 1.0], "nothing");
 }
 
@@ -142,7 +153,7 @@ fn decoded_normals_are_the_mixed_vectors_of_the_sites() {
     let sphere = synthesizer(sphere(), N, |at, _| DVec3::Y.cross(at) + DVec3::splat(0.2));
     let surface = sphere.surface();
     let atlas = Atlas::uniform(surface, 300).unwrap();
-    let map = bake_normals(
+    let map = baked(
         &sphere,
         &[TILTED; N],
         NormalY::OpenGl,
@@ -211,7 +222,7 @@ fn normals_keep_their_tilt_where_the_mesh_is_shaded_flat() {
     let roof = synthesizer(roof, N, |_, _| DVec3::X);
     let flat = roof.surface().mesh().corner_normals(CREASE);
     let atlas = Atlas::uniform(roof.surface(), 128).unwrap();
-    let map = bake_normals(&roof, &[TILTED; N], NormalY::OpenGl, &atlas, &flat).unwrap();
+    let map = baked(&roof, &[TILTED; N], NormalY::OpenGl, &atlas, &flat).unwrap();
     let mut shown = 0;
     for row in 0..128 {
         for column in 0..128 {
@@ -235,7 +246,7 @@ fn normals_keep_their_tilt_where_the_mesh_is_shaded_flat() {
 #[test]
 fn bad_normals_are_refused() {
     let (plane, atlas) = plane(0.0, false);
-    let error = bake_normals(
+    let error = baked(
         &plane,
         &[TILTED; N + 1],
         NormalY::OpenGl,
@@ -248,14 +259,14 @@ fn bad_normals_are_refused() {
         "{error}"
     );
     let normals = [TILTED; N];
-    let error = bake_normals(&plane, &normals, NormalY::OpenGl, &atlas, &[]).unwrap_err();
+    let error = baked(&plane, &normals, NormalY::OpenGl, &atlas, &[]).unwrap_err();
     assert!(
         matches!(error.kind(), SynthErrorKind::Count { count: 0, .. }),
         "{error}"
     );
     for bad in [f32::NAN, f32::INFINITY] {
         let normal = Normal { y: bad, ..TILTED };
-        let error = bake_normals(
+        let error = baked(
             &plane,
             &[normal; N],
             NormalY::OpenGl,
@@ -273,7 +284,7 @@ fn bad_normals_are_refused() {
 #[test]
 fn value_stability_bake_normals() {
     let (plane, atlas) = plane(0.3, false);
-    let map = bake_normals(
+    let map = baked(
         &plane,
         &[TILTED; N],
         NormalY::OpenGl,
@@ -291,7 +302,7 @@ fn normals_have_the_same_bits_on_any_number_of_threads() {
     let sphere = synthesizer(sphere(), N, |_, _| DVec3::NEG_Y);
     let atlas = Atlas::uniform(sphere.surface(), 200).unwrap();
     let bake = || {
-        bake_normals(
+        baked(
             &sphere,
             &[TILTED; N],
             NormalY::OpenGl,

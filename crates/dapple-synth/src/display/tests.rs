@@ -1,7 +1,7 @@
 //! Models that fit together, also as files.
 
 use super::*;
-use crate::shapes::{sphere, square, synthesizer};
+use crate::shapes::{pixel_per_site, row, sphere, square, synthesizer};
 use crate::{bake_colors, bake_values, displaced_sites};
 use dapple_color::LinearRgb;
 use dapple_image::{Transfer, encode_png};
@@ -55,7 +55,13 @@ fn sites_are_the_vertices_of_both_models() {
 fn textured_model_comes_back_from_its_file() {
     let sphere = synthesizer(sphere(), N, |_, _| DVec3::NEG_Y);
     let atlas = Atlas::uniform(sphere.surface(), 256).unwrap();
-    let map = bake_colors(&sphere, &[LinearRgb::new(1.0, 0.5, 0.0); N], &atlas).unwrap();
+    let map = bake_colors(
+        &sphere,
+        &pixel_per_site(N),
+        &row(&[LinearRgb::new(1.0, 0.5, 0.0); N]),
+        &atlas,
+    )
+    .unwrap();
     let codes = map.map(|color| color.to_srgb::<u8>());
     let png = EncodedImage::new(encode_png(codes.view(), Transfer::Srgb).unwrap()).unwrap();
     let model = textured_model(
@@ -134,7 +140,7 @@ fn assert_shown(atlas: &Atlas, n_levels: u32, texels: f64) {
     let plane = synthesizer(square(), N, |_, _| DVec3::NEG_Y);
     let sites = plane.hierarchy().sites().positions().iter();
     let values: Vec<f32> = sites.map(|at| at.x as f32).collect();
-    let map = bake_values(&plane, &values, atlas).unwrap();
+    let map = bake_values(&plane, &pixel_per_site(values.len()), &row(&values), atlas).unwrap();
     let mut level = map.clone();
     for number in 0..n_levels {
         let texel = f64::from(1 << number) / texels;

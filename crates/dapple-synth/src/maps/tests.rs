@@ -1,7 +1,7 @@
 //! Maps beside plain interpolation, and columns that are refused.
 
 use super::*;
-use crate::shapes::{sphere, synthesizer};
+use crate::shapes::{pixel_per_site, row, sphere, synthesizer};
 use crate::{Atlas, SynthErrorKind};
 use dapple_hash::{Seed, hash1, unit_f32};
 use glam::DVec3;
@@ -22,7 +22,7 @@ fn random() -> Vec<f32> {
 #[test]
 fn values_are_those_of_plain_interpolation() {
     let (sphere, atlas) = case();
-    let map = bake_values(&sphere, &random(), &atlas).unwrap();
+    let map = bake_values(&sphere, &pixel_per_site(N), &row(&random()), &atlas).unwrap();
     for row in (0..200).step_by(7) {
         for column in (0..200).step_by(5) {
             let Some(point) = atlas.point(sphere.surface(), [column, row]) else {
@@ -43,7 +43,7 @@ fn values_are_those_of_plain_interpolation() {
 fn colors_are_mixed_in_their_codes_and_stay_what_they_are_where_all_are_alike() {
     let (sphere, atlas) = case();
     let color = LinearRgb::from_srgb([12_u8, 200, 255]);
-    let map = bake_colors(&sphere, &[color; N], &atlas).unwrap();
+    let map = bake_colors(&sphere, &pixel_per_site(N), &row(&[color; N]), &atlas).unwrap();
     let codes = |color: &LinearRgb| color.to_srgb::<u8>();
     assert!(
         map.pixels()
@@ -56,8 +56,8 @@ fn colors_are_mixed_in_their_codes_and_stay_what_they_are_where_all_are_alike() 
         .iter()
         .map(|&gray| LinearRgb::from_srgb([u16::from_unit(gray); 3]))
         .collect();
-    let map = bake_colors(&sphere, &colors, &atlas).unwrap();
-    let values = bake_values(&sphere, &grays, &atlas).unwrap();
+    let map = bake_colors(&sphere, &pixel_per_site(N), &row(&colors), &atlas).unwrap();
+    let values = bake_values(&sphere, &pixel_per_site(N), &row(&grays), &atlas).unwrap();
     for (color, value) in map.pixels().iter().zip(values.pixels()) {
         let [code, _, _] = color.to_srgb::<u16>();
         // Codes are rounded before and after.
@@ -71,7 +71,7 @@ fn colors_are_mixed_in_their_codes_and_stay_what_they_are_where_all_are_alike() 
 #[test]
 fn texels_without_a_face_have_the_mean_of_all_sites() {
     let (sphere, atlas) = case();
-    let map = bake_values(&sphere, &random(), &atlas).unwrap();
+    let map = bake_values(&sphere, &pixel_per_site(N), &row(&random()), &atlas).unwrap();
     assert_eq!(atlas.face([199, 199]), None, "beyond the tiles");
     let mean = random().iter().map(|&value| f64::from(value)).sum::<f64>() / N as f64;
     assert_eq!(map.row(199)[199], mean as f32);
@@ -80,10 +80,17 @@ fn texels_without_a_face_have_the_mean_of_all_sites() {
 #[test]
 fn bad_columns_are_refused() {
     let (sphere, atlas) = case();
-    for count in [0, N - 1, N + 1] {
+    for count in [1, N - 1, N + 1] {
+        let texture = pixel_per_site(count);
         let errors = [
-            bake_values(&sphere, &vec![0.0; count], &atlas).unwrap_err(),
-            bake_colors(&sphere, &vec![LinearRgb::BLACK; count], &atlas).unwrap_err(),
+            bake_values(&sphere, &texture, &row(&vec![0.0; count]), &atlas).unwrap_err(),
+            bake_colors(
+                &sphere,
+                &texture,
+                &row(&vec![LinearRgb::BLACK; count]),
+                &atlas,
+            )
+            .unwrap_err(),
         ];
         for error in errors {
             let SynthErrorKind::Count { count: got, .. } = *error.kind() else {
@@ -98,8 +105,8 @@ fn bad_columns_are_refused() {
         let mut colors = vec![LinearRgb::BLACK; N];
         colors[3] = LinearRgb::new(0.0, bad, 0.0);
         for error in [
-            bake_values(&sphere, &values, &atlas).unwrap_err(),
-            bake_colors(&sphere, &colors, &atlas).unwrap_err(),
+            bake_values(&sphere, &pixel_per_site(N), &row(&values), &atlas).unwrap_err(),
+            bake_colors(&sphere, &pixel_per_site(N), &row(&colors), &atlas).unwrap_err(),
         ] {
             assert!(
                 matches!(error.kind(), SynthErrorKind::Range { .. }),
@@ -112,7 +119,7 @@ fn bad_columns_are_refused() {
 #[test]
 fn value_stability_bake_values() {
     let (sphere, atlas) = case();
-    let map = bake_values(&sphere, &random(), &atlas).unwrap();
+    let map = bake_values(&sphere, &pixel_per_site(N), &row(&random()), &atlas).unwrap();
     let texels = [[10, 20], [100, 50], [150, 177]].map(|[x, y]: [u32; 2]| map.row(y)[x as usize]);
     assert_eq!(
         texels.map(f32::to_bits),
@@ -125,8 +132,9 @@ fn value_stability_bake_values() {
 fn colors_have_the_same_bits_on_any_number_of_threads() {
     let (sphere, atlas) = case();
     let colors: Vec<LinearRgb> = random().into_iter().map(LinearRgb::gray).collect();
-    let [one, two, seven] =
-        crate::shapes::on_threads(|| bake_colors(&sphere, &colors, &atlas).unwrap());
+    let [one, two, seven] = crate::shapes::on_threads(|| {
+        bake_colors(&sphere, &pixel_per_site(N), &row(&colors), &atlas).unwrap()
+    });
     assert_eq!(one, two, "2 threads");
     assert_eq!(one, seven, "7 threads");
 }

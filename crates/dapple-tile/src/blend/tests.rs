@@ -1,4 +1,4 @@
-//! Blends beside their formulas, and what they keep.
+//! Blends compared with their formulas, and the contrast that they keep.
 
 use super::{Blend, Layer, Mixing, blend, blend_by_tile};
 use crate::gauss::blur;
@@ -33,7 +33,7 @@ fn ramp() -> [Raster<f32>; 2] {
     ]
 }
 
-/// The root of the mean square of what a pixel differs from its four neighbors, in the middle 32 columns.
+/// The root mean square of the difference of a pixel from its four neighbors, in the middle 32 columns.
 fn fine_contrast(raster: &Raster<f32>) -> f64 {
     let mut sum = 0.0;
     for row in 1..i64::from(SIZE[1]) - 1 {
@@ -46,14 +46,14 @@ fn fine_contrast(raster: &Raster<f32>) -> f64 {
     (sum / (32.0 * f64::from(SIZE[1] - 2))).sqrt()
 }
 
-/// The fine contrast in the middle of a ramp between two unlike textures, over theirs.
+/// The fine contrast in the middle of a ramp between two unlike textures, as a fraction of that of the textures.
 fn contrast_kept(weighting: Weighting, mixing: Mixing) -> f64 {
     let weights = ramp();
     let trials = 4;
     let kept = (0..trials).map(|trial| {
         let [grass, gravel] = [10, 20].map(|seed| noise(SIZE, seed + trial));
         let gravel = blur(&gravel, 0.8, [Wrap::Repeat; 2]).unwrap();
-        // As much contrast as the grass, so that it does not count which of the two lies where.
+        // Scaled to the contrast of the grass, so that the order of the two does not matter.
         let contrast = fine_contrast(&grass);
         let scale = (contrast / fine_contrast(&gravel)) as f32;
         let gravel = gravel.map(|value| 0.4 + scale * (value - 0.5));
@@ -86,13 +86,13 @@ fn contrast_is_lost_and_kept_as_stated() {
         // Half of each of two independent textures has sqrt(1/2) of the contrast; 3 % for the small sample.
         (given, Mixing::Linear, 0.69, 0.73),
         (given, Mixing::KeepVariance, 0.98, 1.02),
-        // The sharper the transition, the fewer pixels have something of both. Measured: 1.01 and 0.92.
+        // The sharper the transition, the fewer pixels are a mix of both. Measured: 1.01 and 0.92.
         (height(0.1), Mixing::Linear, 0.95, 1.05),
         (height(0.3), Mixing::Linear, 0.86, 0.96),
         // Measured: 0.97 and 1.05. The edges of the mask add to the contrast what transitions take.
         (mask(4.0), Mixing::Linear, 0.92, 1.02),
         (mask(1e9), Mixing::Linear, 1.0, 1.1),
-        // Bands alone do nothing. Sharpened they keep 0.88, and 0.99 with a mask.
+        // Bands without sharpening change nothing. Sharpened they keep 0.88, and 0.99 with a mask.
         (given, pyramid(0.0), 0.69, 0.73),
         (given, pyramid(8.0), 0.85, 0.92),
         (mask(4.0), pyramid(8.0), 0.95, 1.04),

@@ -1,4 +1,4 @@
-//! Blend maps of stones whose cracks are known.
+//! Blend maps of stones with known cracks.
 
 use super::BlendMap;
 use crate::{TileErrorKind, rank_equalize};
@@ -35,7 +35,7 @@ const GRAY: Stones = Stones {
 };
 
 impl Stones {
-    /// The picture, and how far each pixel lies inside of its stone, below zero in cracks.
+    /// The picture, and the distance of each pixel from the border of its stone, below zero in cracks.
     fn render(&self) -> (Raster<f32>, Raster<f64>) {
         let places = Seed(self.seed).child("place", 0);
         let grain = Seed(self.seed).child("grain", 0);
@@ -85,7 +85,7 @@ fn nearest(points: &[[f64; 3]], at: [f64; 2]) -> (f64, f64) {
     ((f2 - f1) / (2.0 * (x * x + y * y).sqrt()), gray)
 }
 
-/// What part of the lowest quarter of a map lies in cracks.
+/// The fraction of the lowest quarter of a map that lies in cracks.
 fn quarter_in_cracks(map: &Raster<f32>, inside: &Raster<f64>) -> f64 {
     let ranks = rank_equalize(map).unwrap();
     let pixels = ranks.pixels().iter().zip(inside.pixels());
@@ -94,7 +94,7 @@ fn quarter_in_cracks(map: &Raster<f32>, inside: &Raster<f64>) -> f64 {
     cracks as f64 / low.len() as f64
 }
 
-/// The mean of the map over the pixels that lie so far inside of their stones.
+/// The mean of the map over the pixels whose distance from the border of their stone is in a range.
 fn mean_where(map: &Raster<f32>, inside: &Raster<f64>, range: Range<f64>) -> f64 {
     let pixels = map.pixels().iter().zip(inside.pixels());
     let chosen: Vec<f64> = pixels
@@ -134,7 +134,7 @@ fn the_lowest_quarter_lies_in_the_cracks_of_dark_light_and_noisy_stones() {
                 .filter(|inside| **inside < 0.0)
                 .count();
             assert!(covered >= texture.pixels().len() / 4, "{covered} pixels");
-            // More than 0.997 was measured for all of them. What misses is a dent of the noise on a stone, or a rim.
+            // More than 0.997 was measured for all of them. The rest are dents of the noise on a stone, and rims.
             let share = quarter_in_cracks(&map, &inside);
             assert!(share > 0.97, "{stones:?}: {share}");
             // Measured: at most 0.12 in cracks, at least 0.66 on stones.

@@ -1,4 +1,4 @@
-//! Corner tiles: that they fit, their order, windows, and the variance.
+//! Corner tiles: their fit, their order, windows, and the variance.
 
 use super::{CornerTiles, Cuts};
 use crate::disturb::rolled;
@@ -142,7 +142,7 @@ fn cuts_go_on_in_the_tile_beside() {
             let corner = |index: usize, place: u32| index / 3_usize.pow(place) % n;
             let [upper, lower] = [corner(index, 1), corner(index, 3)];
             let fits = [corner(next, 0), corner(next, 2)] == [upper, lower];
-            // The cut between two pieces of one source is not to be seen.
+            // A cut between two pieces of one source should be invisible.
             if fits && upper != lower {
                 let step = cut.ends()[1].abs_diff(other.ends()[0]);
                 assert!(step <= 1, "{step} pixels from tile {index} to {next}");

@@ -1,4 +1,4 @@
-//! Disturbed copies: what stays, what changes, windows, and the variance.
+//! Disturbed copies: their unchanged borders, changed middles, windows, and the variance.
 
 use super::{Disturbance, shift};
 use crate::test_fields::{gravel, same_on_threads, seam_ratio_of, variance};
@@ -30,7 +30,7 @@ fn render_keeps_the_frozen_border_of_every_copy_bit_for_bit() {
             }
         }
     }
-    // Stones are equally bright inside, so that some pixels are met by their like.
+    // Stones are equally bright inside, so that some pixels meet equal ones.
     assert!(n_changed > 192 * 168 / 4, "only {n_changed} pixels changed");
 }
 
@@ -95,7 +95,7 @@ fn render_keeps_the_variance_and_has_no_seam() {
     let kept = variance(&maps) / variance(&tiles);
     // 12 tiles of 49 stones, whose variance is known to some percent.
     assert!((0.95..1.05).contains(&kept), "variance {kept}");
-    // The frozen border is the one piece of the tile that does not vary: 12 · 63 pixels of stones of 9.
+    // The frozen border is the only part of the tile that does not vary: 12 · 63 pixels of stones of 9.
     assert!((0.85..1.15).contains(&ratio), "seam ratio {ratio}");
 }
 
@@ -104,7 +104,7 @@ fn render_shows_the_tile_or_its_shifted_self_but_along_a_thin_line() {
     let tile = gravel(2, [60, 60], true);
     let disturbance = Disturbance::new(Seed(4));
     let map = disturbance.render(&tile, [0, 0], [240, 240]).unwrap();
-    // Any piece of three pixels in a row that is nowhere in the tile was mixed.
+    // Any piece of three pixels in a row that does not occur in the tile was mixed.
     let bits = |piece: &[f32]| [0, 1, 2].map(|at| piece[at].to_bits());
     let tripled = tile.tile([2, 1]).unwrap();
     let pieces = tripled.view();

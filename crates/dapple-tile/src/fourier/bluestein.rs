@@ -1,13 +1,13 @@
-//! Lengths with large prime factors: a convolution with a chirp.
+//! Transforms of lengths with large prime factors: a convolution with a chirp.
 
 use super::passes::{self, Pass};
 use super::{BAND, Element, LANES, exchange_parts, times, turn};
 
-/// Since `jk = (j² + k² − (k − j)²) / 2`, a transform is a convolution with `exp(πi j²/n)`, and before and after it a
-/// product with the conjugate.
+/// A transform by convolution. Since `jk = (j² + k² − (k − j)²) / 2`, it is a convolution with `exp(πi j²/n)`, with a
+/// product with the conjugate before and after.
 #[derive(Debug)]
 pub(super) struct Chirp {
-    /// `exp(−πi j²/n)`, as cosine and sine.
+    /// The chirp `exp(−πi j²/n)`, as cosine and sine.
     chirp: Vec<[f64; 2]>,
     /// The transform of the conjugate chirp around a circle that is long enough, divided by its length.
     kernel: Vec<[f64; 2]>,
@@ -18,7 +18,7 @@ pub(super) struct Chirp {
 impl Chirp {
     pub(super) fn new(length: usize) -> Self {
         let n = length as u64;
-        // j² modulo 2n, without a number that does not fit: (j + 1)² = j² + 2j + 1.
+        // j² modulo 2n, without overflow: (j + 1)² = j² + 2j + 1.
         let squares = (0..n).scan(0, |square, j| {
             let now = *square;
             *square = (now + 2 * j + 1) % (2 * n);

@@ -1,19 +1,19 @@
-//! Lines side by side, and the way of planes through them.
+//! Lines side by side, and their exchange with planes.
 
 use dapple_raster::parallel;
 
-/// How many complex lines are transformed side by side: what fills vector registers and leaves lines of a few thousand
-/// elements in the second-level cache.
+/// The number of complex lines that are transformed side by side: they fill vector registers, and lines of a few
+/// thousand elements stay in the second-level cache.
 pub(crate) const LANES: usize = 8;
 
-/// How many real lines these are.
+/// The number of real lines in [`LANES`] complex ones.
 pub(crate) const BAND: usize = 2 * LANES;
 
 /// The elements of [`BAND`] real lines at one place. Line `l` below [`LANES`] and line `LANES + l` are the real and the
 /// imaginary part of one complex line.
 pub(crate) type Element = [f64; BAND];
 
-/// All complex lines times a complex factor.
+/// The product of all complex lines with a complex factor.
 pub(crate) fn times(element: &Element, [re, im]: [f64; 2]) -> Element {
     let mut product = [0.0; BAND];
     for lane in 0..LANES {
@@ -34,10 +34,10 @@ pub(crate) fn columns(plane: &[f64], width: usize, first: usize) -> Vec<Element>
     plane.chunks_exact(width).map(element).collect()
 }
 
-/// Changes the columns of a plane, [`BAND`] at once, and gives the transposed plane of what they became.
+/// Changes the columns of a plane, [`BAND`] at once, and returns the result transposed.
 ///
-/// `change` must treat the real and the imaginary parts as lines of their own, as every linear map with real
-/// coefficients does.
+/// `change` must treat the real and the imaginary parts as separate lines, as every linear map with real coefficients
+/// does.
 pub(crate) fn map_columns(
     plane: &[f64],
     width: usize,
@@ -51,7 +51,7 @@ pub(crate) fn map_columns(
     })
 }
 
-/// What `make` gives for each index below `count`, one after the other, on all cores where the feature `rayon` is on.
+/// The concatenated results of `make` for the indices below `count`, on all cores where the feature `rayon` is on.
 pub(crate) fn par_flat_map<T: Copy + Send>(
     count: usize,
     make: impl Fn(usize) -> Vec<T> + Sync,

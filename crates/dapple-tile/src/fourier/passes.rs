@@ -1,11 +1,11 @@
-//! Lengths with small factors only: one pass over all lines for each factor.
+//! Transforms of lengths with small factors only: one pass over all lines for each factor.
 
 use super::{BAND, Element, LANES, turn};
 
-/// The radices, in the order in which they are taken out of a length.
+/// The radices, in the order in which they are divided out of a length.
 const RADICES: [usize; 5] = [4, 2, 3, 5, 7];
 
-/// Splits transforms into `radix` times as many, `radix` times as short.
+/// A pass, which splits transforms into `radix` times as many, `radix` times as short.
 ///
 /// Before the pass there are `stride` transforms of `radix * blocks` elements, which lie `stride` apart.
 #[derive(Debug)]
@@ -13,13 +13,13 @@ pub(super) struct Pass {
     radix: usize,
     blocks: usize,
     stride: usize,
-    /// By block, then by output of the butterfly: its factor, as cosine and sine.
+    /// The factors of the outputs of the butterfly, by block and output, as cosine and sine.
     twiddles: Vec<[f64; 2]>,
-    /// `exp(−2πi j/radix)`.
+    /// The roots of unity `exp(−2πi j/radix)`.
     roots: Vec<[f64; 2]>,
 }
 
-/// The passes for a length, if it has no other prime factor than 2, 3, 5 and 7.
+/// The passes for a length, if its only prime factors are 2, 3, 5 and 7.
 pub(super) fn plan(length: usize) -> Option<Vec<Pass>> {
     let mut passes = Vec::new();
     let mut rest = length;
@@ -68,7 +68,7 @@ impl Pass {
         }
     }
 
-    /// Applies the butterfly of the radix, `R`, everywhere.
+    /// Applies the butterfly of the radix `R` to all elements.
     #[inline(always)]
     fn run<const R: usize>(
         &self,

@@ -37,8 +37,8 @@ fn column_spectra(values: &[f64], width: usize, n_halves: usize) -> Vec<[f64; 2]
     })
 }
 
-/// The spectrum of a real line that traveled as one part of a complex one, from the elements at a frequency and at the
-/// negative one.
+/// The spectrum of a real line that was transformed as one part of a complex one, from the elements at a frequency and
+/// at the negative one.
 fn half_of_pair(element: &Element, opposite: &Element, line: usize) -> [f64; 2] {
     let lane = line % LANES;
     let [re, im] = [element[lane], element[LANES + lane]];

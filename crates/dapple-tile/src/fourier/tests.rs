@@ -1,4 +1,4 @@
-//! Transforms beside the naive sum.
+//! Transforms compared with the naive sum.
 
 use super::*;
 use proptest::prelude::*;
@@ -26,7 +26,7 @@ fn random_lines(length: usize) -> Vec<Element> {
     (0..length).map(element).collect()
 }
 
-/// The definition, for one line.
+/// The transform of one line by its definition.
 fn naive(lines: &[Element], lane: usize) -> Vec<[f64; 2]> {
     let n = lines.len();
     let frequency = |k: usize| {

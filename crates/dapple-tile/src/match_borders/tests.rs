@@ -1,4 +1,4 @@
-//! Matched borders: that any two tiles fit, and what does not change.
+//! Matched borders: any two tiles fit, and the rest does not change.
 
 use super::{BorderSource, MatchBorders};
 use crate::test_fields::{fbm, gravel, seam_ratio_of, top_power, turned};
@@ -207,7 +207,7 @@ fn matched_tiles_keep_their_detail() {
         sums[1] += after.iter().map(top_power).sum::<f64>();
     }
     let kept = sums[1] / sums[0];
-    // 32 tiles of 64 stones. What is lost is that of a mean along the cut, what is added are the stones that it splits.
+    // 32 tiles of 64 stones. A mean along the cut loses detail, and stones that the cut splits add some.
     assert!(
         (0.95..1.08).contains(&kept),
         "power of the top octave {kept}"

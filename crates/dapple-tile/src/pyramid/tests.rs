@@ -143,7 +143,7 @@ fn pyramid_on_the_torus_commutes_with_shifts_of_whole_coarse_pixels() {
 
 #[test]
 fn sharpened_shares_sum_to_one_for_any_power() {
-    // As a filter may leave them: a little below zero and above one.
+    // Values as a filter may leave them: a little below zero and above one.
     let share = noise([9, 9], 1).map(|value| 1.2 * value - 0.1);
     let shares = [share.map(|share| 1.0 - share), share];
     for power in [1.0, 2.5, 9.0, 1e6, 1e300] {

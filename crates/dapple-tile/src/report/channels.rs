@@ -1,4 +1,4 @@
-//! Reports of all channels of a map, and one verdict over them.
+//! Reports of all channels of a map, with one verdict.
 
 use super::{SeamOptions, SeamReport};
 use crate::{Map, TileError};
@@ -8,8 +8,8 @@ use dapple_raster::Raster;
 
 /// The seam reports of all channels of an image.
 ///
-/// A seam that only one channel has shows as a change of hue, and the luminance need not have it. `Display` names the channels
-/// that do not pass and why, above the table of the worst.
+/// A seam in a single channel shows as a change of hue, and may be absent from the luminance. `Display` names the
+/// channels that do not pass and why, above the table of the worst.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SeamReports {
@@ -21,14 +21,15 @@ pub struct SeamReports {
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ChannelReport {
-    /// The name of the channel; none where it is the only one.
+    /// The name of the channel; empty where it is the only one.
     pub channel: String,
-    /// Its report.
+    /// The report of the channel.
     pub report: SeamReport,
 }
 
 impl SeamReports {
-    /// How well an image repeats whose channels have these names. Without channels it fails as too small.
+    /// Measures how well an image repeats, from its channels and their names. An image without channels fails as too
+    /// small.
     ///
     /// # Errors
     ///
@@ -48,7 +49,8 @@ impl SeamReports {
         })
     }
 
-    /// How well a map repeats: values as they are, normals by x and y, and colors as they are displayed, in sRGB.
+    /// Measures how well a map repeats: values as they are, normals by x and y, and colors as they are displayed, in
+    /// sRGB.
     ///
     /// # Errors
     ///
@@ -61,7 +63,7 @@ impl SeamReports {
         )
     }
 
-    /// How well a map repeats, and what it has kept of the map of the same kind that it was made of.
+    /// Measures how well a map repeats, and how much it has kept of the map of the same kind from which it was made.
     ///
     /// # Errors
     ///
@@ -85,20 +87,20 @@ impl SeamReports {
         &self.channels
     }
 
-    /// Whether all channels pass, and there is one.
+    /// Whether there is a channel and all channels pass.
     #[must_use]
     pub fn passes(&self) -> bool {
         !self.channels.is_empty() && self.channels.iter().all(|of| of.report.passes())
     }
 
-    /// The largest [`badness`](SeamReport::badness) of a channel.
+    /// The largest [`badness`](SeamReport::badness) of all channels.
     #[must_use]
     pub fn badness(&self) -> f64 {
         self.worst()
             .map_or(SeamReport::MOST, |of| of.report.badness())
     }
 
-    /// The channel with the largest badness, the first of equals.
+    /// The channel with the largest badness, the first of equal ones.
     #[must_use]
     pub fn worst(&self) -> Option<&ChannelReport> {
         let worse =
@@ -139,7 +141,7 @@ impl fmt::Display for SeamReports {
     }
 }
 
-/// The channels of a map as they are seen.
+/// The channels of a map as they are displayed.
 fn channels(map: &Map) -> Result<Vec<(&'static str, Raster<f32>)>, TileError> {
     Ok(match map {
         Map::Value(values) => vec![("", values.clone())],

@@ -5,7 +5,7 @@
 use super::quotient;
 use dapple_raster::{Raster, Wrap};
 
-/// How many columns or rows a band is wide.
+/// The width of a band, in columns or rows.
 const BAND: usize = 8;
 
 /// [`SeamReport::lowest_local_detail`](super::SeamReport::lowest_local_detail) of an image.
@@ -49,7 +49,7 @@ fn mean_121([before, here, after]: [f64; 3]) -> f64 {
     ((before + after) + 2.0 * here) / 4.0
 }
 
-/// The lowest mean of as many neighbors as a band is wide.
+/// The lowest mean of neighbors over the width of a band.
 fn lowest_band(powers: &[f64], wrap: Wrap) -> f64 {
     let n = powers.len();
     let width = BAND.min(n);

@@ -1,16 +1,16 @@
-//! Whether both sides of a wrap are mirror images.
+//! Test whether both sides of a wrap are mirror images.
 
 use crate::TileError;
 use crate::axis::transpose;
 use dapple_raster::Raster;
 
-/// How many pixels on either side are compared.
+/// The number of pixels on either side that are compared.
 const REACH: usize = 8;
 
-/// The largest part of what varies there that may differ.
+/// The largest difference of mirror images, as a fraction of the variation there.
 const LARGEST: f64 = 0.01;
 
-/// Whether the last columns are the first ones, backward, or the rows are, along an axis that repeats.
+/// Whether the last columns are the mirror image of the first ones, or the rows are, along an axis that repeats.
 pub(super) fn is_mirrored(tile: &Raster<f32>, axes: [bool; 2]) -> Result<bool, TileError> {
     Ok((axes[0] && along_rows(tile)) || (axes[1] && along_rows(&transpose(tile)?)))
 }

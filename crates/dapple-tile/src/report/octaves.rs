@@ -7,8 +7,8 @@ use crate::fourier::power_spectrum;
 use core::f64::consts::TAU;
 use dapple_raster::Raster;
 
-/// The lowest frequency of an octave that is measured, in cycles per side. Of the Hann window's peak, which is 2 wide to
-/// either side, nothing then reaches an octave from 0.
+/// The lowest frequency of an octave that is measured, in cycles per side. The peak of the Hann window at 0 reaches 2
+/// to either side, and so reaches no octave.
 const LEAST_CYCLES: u32 = 4;
 
 /// The power of the tile in each octave as a multiple of that of the source, finest first.
@@ -21,7 +21,7 @@ pub(super) fn kept(source: &Raster<f32>, tile: &Raster<f32>) -> Vec<f64> {
     pairs.map(|(kept, all)| quotient(kept, all)).collect()
 }
 
-/// The mean square, under the window, of what an image has in each octave.
+/// The mean square of an image in each octave, under the window.
 fn octave_powers(image: &Raster<f32>, n_octaves: usize) -> Vec<f64> {
     let mut powers = vec![0.0; n_octaves];
     if n_octaves == 0 {
@@ -48,9 +48,9 @@ fn octave_powers(image: &Raster<f32>, n_octaves: usize) -> Vec<f64> {
     powers
 }
 
-/// The pixels less their mean, times the windows of columns and rows.
+/// The pixels minus their mean, times the windows of columns and rows.
 fn windowed(image: &Raster<f32>, [columns, rows]: &[Vec<f64>; 2]) -> Vec<f64> {
-    // From the first pixel, so that a flat image is exactly zero.
+    // Relative to the first pixel, so that a flat image is exactly zero.
     let first = f64::from(image.pixels()[0]);
     let offset = |&value: &f32| f64::from(value) - first;
     let mean = image.pixels().iter().map(offset).sum::<f64>() / image.pixels().len() as f64;

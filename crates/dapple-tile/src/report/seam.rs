@@ -1,4 +1,4 @@
-//! The step across the wrap, beside the steps inside of the tile.
+//! The step across the wrap, compared with the steps inside of the tile.
 //!
 //! Reference: our own.
 
@@ -10,30 +10,31 @@ use dapple_raster::Raster;
 /// The widths of the means on either side of a boundary, in pixels.
 const WIDTHS: [u32; 4] = [1, 2, 4, 8];
 
-/// How much the step across the wrap differs from the steps inside of the tile, at one scale.
+/// The ratio of the step across the wrap and the steps inside of the tile, at one scale.
 ///
 /// The step across a boundary is the difference of the means of the `width` pixels before it and the `width` pixels after
 /// it, along one line; its absolute value is averaged over all lines.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Seam {
-    /// How many pixels there are in a mean.
+    /// The number of pixels in a mean.
     pub width: u32,
-    /// From the last column to the first.
+    /// The seam from the last column to the first.
     ///
     /// `None` if the tile does not repeat along this axis, or if no boundary of the lattice inside of the tile has
     /// `width` pixels on either side.
     pub x: Option<SeamRatio>,
-    /// From the last row to the first; `None` as for x.
+    /// The seam from the last row to the first; `None` as for x.
     pub y: Option<SeamRatio>,
-    /// Over all axes that repeat: the sum of the steps across their wraps divided by the sum of their steps inside.
-    /// `None` if one of them has none.
+    /// Both axes together: the sum of the steps across their wraps divided by the sum of their steps inside. `None` if
+    /// a repeating axis has none.
     pub both: Option<SeamRatio>,
-    /// By how many standard deviations of the boundaries inside the wrap is more visible than the most visible of them, along
-    /// the axis where it is more so; 0 if it is not.
+    /// How much more visible the wrap is than the most visible boundary inside, in standard deviations of the
+    /// boundaries inside, along the axis where this is larger; 0 if it is less visible.
     ///
-    /// How visible a boundary is is the mean over lines of its step divided by the mean of the 8 steps on either side on that
-    /// line and a tenth of the mean step of the line. Deviations are at least 5 % of the mean. `None` if there is no room on an axis.
+    /// The visibility of a boundary is the mean over lines of its step divided by the mean of the 8 steps on either
+    /// side on that line and a tenth of the mean step of the line. Deviations are at least 5 % of the mean. `None` if
+    /// there is no room on an axis.
     pub stands_out: Option<f64>,
 }
 
@@ -76,7 +77,7 @@ pub(super) fn seams(tile: &Raster<f32>, options: &SeamOptions) -> Result<[Seam; 
     }))
 }
 
-/// How far the wrap stands out, along the axis where it does so most; `None` if one of them has no room.
+/// How much the wrap stands out, along the axis where it does so most; `None` if one of them has no room.
 fn stands_out(lines: [Option<&Raster<f32>>; 2], width: u32, options: &SeamOptions) -> Option<f64> {
     let mut most: f64 = 0.0;
     for (lines, lattice) in lines.into_iter().zip(options.lattice) {
@@ -95,14 +96,14 @@ fn stands_out(lines: [Option<&Raster<f32>>; 2], width: u32, options: &SeamOption
 #[derive(Clone, Copy)]
 struct Steps {
     wrap: f64,
-    /// The mean over the boundaries inside.
+    /// The mean step of the boundaries inside.
     inside: f64,
-    /// Their variance.
+    /// The variance of the steps inside.
     variance: Option<f64>,
 }
 
 impl Steps {
-    /// Of the wrap, which comes first, and the boundaries inside.
+    /// The steps of the wrap and of the boundaries inside.
     fn new(wrap: f64, inside: &[f64]) -> Self {
         let mean = inside.iter().sum::<f64>() / inside.len() as f64;
         let squares: f64 = inside
@@ -116,7 +117,7 @@ impl Steps {
         }
     }
 
-    /// The sums of the steps of two axes, which are taken as independent.
+    /// The sums of the steps of two axes, which count as independent.
     fn plus(self, other: Self) -> Self {
         let variances = self.variance.zip(other.variance);
         Self {
@@ -172,8 +173,8 @@ fn axis_steps(tile: &Raster<f32>, lattice: usize) -> [Option<Steps>; 4] {
     })
 }
 
-/// The first pixels of the two means at the wrap, and then at every boundary of the lattice with room for both; none
-/// if there is none inside.
+/// The first pixels of the two means at the wrap, and then at every boundary of the lattice with room for both. Empty
+/// if there is no boundary inside.
 pub(super) fn boundaries(n: usize, width: usize, lattice: usize) -> Vec<[usize; 2]> {
     let last = n.saturating_sub(width);
     let inside = (lattice..=last).step_by(lattice);
@@ -183,7 +184,7 @@ pub(super) fn boundaries(n: usize, width: usize, lattice: usize) -> Vec<[usize; 
     if all.len() > 1 { all } else { Vec::new() }
 }
 
-/// From the sums of the `half` pixels from each on, to those of twice as many.
+/// Replaces the sums of `half` pixels from each pixel on by those of twice as many.
 ///
 /// In this order the sums of the same pixels, backward, are the same to the last bit, and the seam of a mirror image is
 /// exactly 0.

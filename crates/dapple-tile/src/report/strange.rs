@@ -1,9 +1,9 @@
-//! How unlike anything in the source a tile is near its seams.
+//! Strangeness: how unlike the source a tile is near its seams.
 //!
-//! Each of some squares of pixels across and beside the wrap is compared with all of the source. What was cut or moved as
-//! a whole is found there; a stain, a cut-off line, or two pictures laid over each other is not. How near a good match
-//! is depends on the picture, and is what squares of the source find elsewhere in the source: the measure is the mean distance
-//! to the nearest, as a multiple of theirs.
+//! Sample squares of pixels across and beside the wrap are compared with all of the source. Parts that were cut or
+//! moved as a whole are found there; a stain, a cut-off line, or two pictures laid over each other is not. The distance
+//! of a good match depends on the picture: squares of the source are compared with the rest of the source. The measure
+//! is the mean distance of the tile's squares to their nearest match, as a multiple of that of the source's squares.
 //!
 //! Reference: our own, after the nearest neighbors of Alexei A. Efros and Thomas K. Leung, "Texture Synthesis by
 //! Non-parametric Sampling", ICCV 1999, <https://doi.org/10.1109/ICCV.1999.790383>.
@@ -16,16 +16,16 @@ use dapple_raster::{Raster, Wrap, parallel};
 /// The side of a square, in pixels.
 const SIDE: u32 = 8;
 
-/// How many squares are compared in each zone.
+/// The number of squares that are compared in each zone.
 const SQUARES: u32 = 128;
 
-/// The most places of the source that are looked at.
+/// The largest number of places of the source that are compared.
 const PLACES: u32 = 1 << 15;
 
 /// The part of a side, on the far side of the wrap, where methods lay two pictures over each other.
 const BESIDE: u32 = 5;
 
-/// The least distance that a match in the source is taken to have, as a multiple of the deviation of the source.
+/// The smallest distance of a match in the source, as a multiple of the deviation of the source.
 const LEAST_DISTANCE: f64 = 0.01;
 
 type Square = [f32; (SIDE * SIDE) as usize];
@@ -60,7 +60,7 @@ pub(super) fn strangeness(
     Ok(Some(most))
 }
 
-/// Squares across the wrap of the columns, and squares beside it; turned back if the tile was turned.
+/// Squares across the wrap of the columns, and squares beside it; transposed back if the tile was transposed.
 fn zones(tile: &Raster<f32>, is_turned: bool) -> [Vec<Square>; 2] {
     let [width, height] = tile.size();
     let beside = (width / BESIDE).saturating_sub(SIDE).max(1);
@@ -76,7 +76,7 @@ fn zones(tile: &Raster<f32>, is_turned: bool) -> [Vec<Square>; 2] {
     ]
 }
 
-/// Places along a side that are far from each other: the golden section of the side, again and again.
+/// Places along a side that are far from each other: multiples of the golden section of the side.
 fn spread(index: u32, side: u32) -> i64 {
     // 2^32 divided by the golden ratio.
     let part = u64::from(index.wrapping_mul(2_654_435_769));
@@ -99,7 +99,7 @@ fn square(tile: &Raster<f32>, corner: [i64; 2], is_turned: bool) -> Square {
     })
 }
 
-/// Squares of the source, on a lattice that is fine enough for as many as are looked at.
+/// Squares of the source, on a lattice that is as fine as the largest number of places allows.
 struct Places<'a> {
     source: &'a Raster<f32>,
     corners: Vec<[u32; 2]>,
@@ -145,7 +145,7 @@ impl<'a> Places<'a> {
         distances.iter().sum::<f64>() / squares.len() as f64
     }
 
-    /// The distance of a square from the nearest in the source, other than some.
+    /// The distance of a square from the nearest in the source, apart from the excluded ones.
     fn distance(&self, square: &Square, is_left_out: impl Fn(&[u32; 2]) -> bool) -> f64 {
         let mut least = f64::INFINITY;
         for corner in self.corners.iter().filter(|corner| !is_left_out(corner)) {
@@ -197,7 +197,7 @@ mod tests {
     fn a_picture_that_repeats_is_not_strange_beside_itself() {
         let tile = fbm(2, [96, 64], true);
         let strangeness = strangeness(&tile, &tile, [true; 2]).unwrap().unwrap();
-        // Squares inside are found exactly, and those across the wrap like any that are not.
+        // Squares inside are found exactly, and those across the wrap match like any others.
         assert!(strangeness < 1.12, "{strangeness}");
     }
 

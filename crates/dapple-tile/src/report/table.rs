@@ -1,9 +1,9 @@
-//! A report as text.
+//! A report as a text table.
 
 use super::{DetailKept, SeamRatio, SeamReport};
 use core::fmt;
 
-/// How wide a cell is: `1.02 ± 0.05`, or a ratio as large as they come.
+/// The width of a cell, which fits `1.02 ± 0.05` and the largest ratio.
 const CELL: usize = 16;
 
 /// The entry of a quantity that was not measured.
@@ -53,7 +53,7 @@ impl SeamReport {
 }
 
 impl DetailKept {
-    /// The lines about the source; the first goes on where the lowest local detail of the tile stands.
+    /// Writes the lines about the source; the first continues the line of the lowest local detail of the tile.
     fn write(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let source = format!("of the source {:.3}", self.source_lowest_local_detail);
         write!(f, "  ({source})\n{:<22}", "detail kept")?;
@@ -61,7 +61,7 @@ impl DetailKept {
             write!(f, "{NOTHING:>CELL$}")?;
         }
         for (index, kept) in self.octaves.iter().enumerate() {
-            // Three in a line, under the columns of the ratios.
+            // Three in a line, aligned with the columns of the ratios.
             if index > 0 && index % 3 == 0 {
                 write!(f, "\n{:<22}", "")?;
             }

@@ -64,7 +64,7 @@ fn gate_passes_noise_and_stops_seams() {
         Raster::from_fn([64, 64], pixel).unwrap()
     };
     assert!(!SeamReport::of(&ramp(0.05), &options).unwrap().passes());
-    // The wrap is not asked about.
+    // The wrap along x is not measured.
     let y_only = SeamOptions {
         axes: [false, true],
         ..options

@@ -1,33 +1,33 @@
-//! What is wrong with a tile, by the numbers of its report.
+//! The verdict: the faults of a tile, by the numbers of its report.
 //!
 //! The limits were set on 2 × 2 copies of 13 photographs, made to repeat in 10 ways, that were judged by eye first.
 
 use super::{DetailKept, SeamReport};
 use core::fmt;
 
-/// By how many standard deviations a wrap may be more visible than the most visible boundary inside.
+/// The largest visibility of a wrap above the most visible boundary inside, in standard deviations.
 const STANDS_OUT: f64 = 2.5;
 
-/// The least detail that the softest band may have, as a part of that of the softest band of the source.
+/// The smallest detail of the softest band, as a fraction of that of the softest band of the source.
 const SOFTEST: f64 = 0.85;
 
-/// The least power that the third octave may have kept. A mean of two pictures has kept half of it.
+/// The smallest power that the third octave must keep. A mean of two pictures keeps half of it.
 const THIRD_OCTAVE: f64 = 0.65;
 
-/// The most that squares at the seam may be further from the source than the source is from itself.
+/// The largest distance of squares at the seam from the source, as a multiple of that of the source from itself.
 const STRANGEST: f64 = 1.12;
 
-/// The largest share of samples that may be cut off at 0 or 1.
+/// The largest share of clipped samples.
 const CLIPPED: f64 = 0.004;
 
-/// The width of the means in which a seam must have been measured at least, in pixels.
+/// The smallest width of the means for which a seam must have been measured, in pixels.
 const LEAST_WIDTH: u32 = 4;
 
 /// A fault of a tile.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Fault {
-    /// The tile has too few pixels to tell a seam from what is inside.
+    /// The tile has too few pixels to compare a seam with the inside.
     TooSmall,
     /// The step across the wrap is more visible than any boundary inside, by [`Seam::stands_out`](super::Seam::stands_out).
     Step {
@@ -38,11 +38,11 @@ pub enum Fault {
     Soft,
     /// Contrast was lost at all scales, as where two pictures lie over each other.
     Ghosts,
-    /// The pixels at the seam are unlike any in the source.
+    /// The pixels at the seam are unlike all pixels of the source.
     Strange,
-    /// Samples were cut off at 0 or 1.
+    /// Samples were clipped to 0 or 1.
     Clipped {
-        /// Their share, from 0 to 1.
+        /// The share of clipped samples, from 0 to 1.
         share: f64,
     },
     /// Both sides of the wrap are mirror images, and those of the source are not.
@@ -68,7 +68,7 @@ impl fmt::Display for Fault {
 impl SeamReport {
     /// The faults of the tile; none if it [passes](Self::passes).
     ///
-    /// Without a source only steps are looked for. A wrap that shows less than the boundaries inside is no fault.
+    /// Without a source, only steps are tested. A wrap that is less visible than the boundaries inside is no fault.
     #[must_use]
     pub fn faults(&self) -> Vec<Fault> {
         let mut faults = Vec::new();
@@ -102,7 +102,7 @@ impl SeamReport {
         self.faults().is_empty()
     }
 
-    /// How bad the worst of the tile is, as a multiple of what is accepted: tiles that pass have at most 1.
+    /// The worst measure of the tile, as a multiple of its limit: tiles that pass have at most 1.
     ///
     /// It ranks tiles of one source. A tile that is too small to be judged has [`MOST`](Self::MOST).
     #[must_use]
@@ -120,7 +120,7 @@ impl SeamReport {
             .min(Self::MOST)
     }
 
-    /// The width of the means at which the wrap stands out most, and by how much.
+    /// The width of the means at which the wrap stands out most, and how much it does.
     fn most_visible(&self) -> (u32, f64) {
         let measured = self
             .seams
@@ -134,7 +134,7 @@ impl SeamReport {
 }
 
 impl DetailKept {
-    /// Each measure as a multiple of what is accepted, with the fault that it is above 1.
+    /// Each measure as a multiple of its limit, with the fault for values above 1.
     fn measures(&self, lowest_local_detail: f64) -> [(f64, Fault); 5] {
         let over = |limit: f64, kept: f64| super::quotient(limit, kept);
         let power = self

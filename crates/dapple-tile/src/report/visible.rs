@@ -1,8 +1,8 @@
-//! How plainly the step across the wrap shows among the boundaries inside.
+//! The visibility of the step across the wrap among the boundaries inside.
 //!
-//! A step is hidden by what changes around it, and shows on even ground: so each step is divided by the mean of the steps
-//! beside it on its line, before lines are averaged (contrast masking). That tells a cut through a brick from the joints
-//! between bricks, which the mean of plain steps does not.
+//! Changes around a step hide it, and it is visible on even ground: so each step is divided by the mean of the steps
+//! beside it on its line, before lines are averaged (contrast masking). That distinguishes a cut through a brick from
+//! the joints between bricks, which the mean of plain steps does not.
 //!
 //! Reference: our own.
 
@@ -10,13 +10,13 @@ use super::quotient;
 use super::seam::boundaries;
 use dapple_raster::Raster;
 
-/// How many steps on either side hide a step.
+/// The number of steps on either side that can hide a step.
 const AROUND: usize = 8;
 
-/// The part of the mean step of a line that is added to the steps around, so that nothing is divided by zero.
+/// The fraction of the mean step of a line that is added to the steps around, to avoid a division by zero.
 const FLOOR: f64 = 0.1;
 
-/// The least standard deviation of the boundaries inside, as a part of their mean: what the eye does not tell apart.
+/// The smallest standard deviation of the boundaries inside, as a fraction of their mean: the eye cannot see less.
 const LEAST_DEVIATION: f64 = 0.05;
 
 /// [`Seam::stands_out`](super::Seam::stands_out) along the rows of a tile, for means of `width` pixels.
@@ -48,7 +48,7 @@ pub(super) fn stands_out(tile: &Raster<f32>, width: usize, lattice: usize) -> Op
     Some(above(wrap, inside))
 }
 
-/// By how many standard deviations a number is above the largest of others, at least 0.
+/// How far a number is above the largest of others, in standard deviations of these; at least 0.
 fn above(wrap: f64, inside: &[f64]) -> f64 {
     let mean = inside.iter().sum::<f64>() / inside.len() as f64;
     let squares = inside.iter().map(|shown| (shown - mean) * (shown - mean));

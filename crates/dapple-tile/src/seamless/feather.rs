@@ -1,14 +1,15 @@
 //! Crossfades: the usual baselines.
 //!
-//! [`Feather::HalfShift`] is what GIMP's filter "Tile Seamless" and its kin do: the image is mixed with itself rolled by
-//! half of its size, whose borders are continuous where its middle is not, and each is seen where it is good. Here it is
-//! done along one axis after the other, and not once along the diagonal, so that each axis can be had alone.
-//! [`Feather::Margin`] mixes the two ends of the image over each other, as many small tools do, and gives up the margin.
+//! [`Feather::HalfShift`] is the method of GIMP's filter "Tile Seamless" and similar tools: the image is mixed with
+//! itself rolled by half of its size, whose borders are continuous where its middle is not, and each is visible where
+//! it is continuous. Here it is done along one axis after the other, and not once along the diagonal, so that it works
+//! for a single axis. [`Feather::Margin`] mixes the two ends of the image over each other, as many small tools do, and
+//! loses the margin.
 //!
 //! Weights rise linearly, as in those tools, and the half shift mixes plainly, which costs contrast: these are baselines.
 //! Widths are in pixels.
 //!
-//! Reference: our own, after what those tools do.
+//! Reference: our own, after these tools.
 
 use crate::axis::each_axis;
 use crate::overlap::{check_margin, overlap};
@@ -23,14 +24,15 @@ use dapple_raster::Raster;
     serde(rename_all = "snake_case", deny_unknown_fields)
 )]
 pub enum Feather {
-    /// With the image moved by half of its size, all the way to the middle; the size stays. A side has at least 4 pixels.
+    /// A crossfade with the image rolled by half of its size, all the way to the middle; the size stays. A side has at
+    /// least 4 pixels.
     #[default]
     HalfShift,
-    /// Of the two ends over a margin, in pixels, by which the tile is smaller.
+    /// A crossfade of the two ends over a margin, in pixels, by which the tile is smaller.
     Margin {
         /// The width of the crossfade, in pixels, from 1 to half of the side.
         margin: u32,
-        /// How the two are mixed. By default the variance is kept.
+        /// The weights of the mix. By default the variance is kept.
         #[cfg_attr(feature = "serde", serde(default))]
         crossfade: Crossfade,
     },
@@ -61,7 +63,7 @@ pub(crate) fn tile(
     }
 }
 
-/// Every row mixed with itself, rolled by half of its length.
+/// Mixes every row with itself, rolled by half of its length.
 fn half_shift(plane: &Raster<f32>) -> Result<Raster<f32>, TileError> {
     let length = plane.width();
     if length < LEAST_SIDE {

@@ -1,7 +1,7 @@
-//! The image beside its mirror image.
+//! The image beside its mirror image, as a tile.
 //!
-//! Nothing is lost, and the seam is exact: along each axis that repeats, the last pixel meets itself, and the first too.
-//! The price is a tile twice as long and a kaleidoscope: a baseline to compare with.
+//! No pixel is lost, and the seam is exact: along each axis that repeats, the last pixel meets itself, and the first
+//! too. The price is a tile twice as long and a kaleidoscope: a baseline to compare with.
 
 use crate::TileError;
 use dapple_raster::{Raster, Wrap};

@@ -4,23 +4,24 @@
 //! 2011, <https://doi.org/10.1007/s10851-010-0227-1>.
 //!
 //! An image is `u = p + s`. The smooth part solves `Δs = v` on the torus, where `Δ` is the sum of the four neighbors
-//! less four times the pixel, and `v` is zero but at the borders: there it is the jump to the pixel across the wrap. The
-//! mean of `s` is zero, so that `p = u − s` keeps the mean; it also keeps all detail, since `s` has none. `p` is the
-//! image whose differences are nearest, by least squares, to those of `u` inside and to zero across the wrap.
+//! minus four times the pixel, and `v` is zero except at the borders, where it is the jump to the pixel across the
+//! wrap. The mean of `s` is zero, so that `p = u − s` keeps the mean; it also keeps all detail, since `s` has none. `p`
+//! is the image whose differences are nearest, by least squares, to those of `u` inside and to zero across the wrap.
 //!
 //! Departures. The jumps across x and those across y are solved one after the other, which their sum allows: with
 //! frequencies along the border only, the solution across it is a difference of two powers, `ρ^(n−1−x) − ρ^x`, known
 //! without a second transform. Along an axis that does not repeat there are no jumps, and the image is continued by its
 //! mirror image, as the least squares want it.
 //!
-//! Everything is `f64` up to the pixels of the result.
+//! All arithmetic is `f64` up to the pixels of the result.
 
 use crate::TileError;
 use crate::fourier::{BAND, Element, Fourier, LANES, par_flat_map, times};
 use core::f64::consts::PI;
 use dapple_raster::{Raster, parallel};
 
-/// Powers below this are taken as zero: it is far below the rounding of all sums, and far above numbers that are slow.
+/// Powers below this are replaced by zero: it is far below the rounding of all sums, and far above subnormal numbers,
+/// which are slow.
 const NEGLIGIBLE: f64 = 1e-40;
 
 /// The periodic parts of all planes.
@@ -32,7 +33,7 @@ pub(crate) fn tile(planes: &[Raster<f32>], axes: [bool; 2]) -> Result<Vec<Raster
     planes.iter().map(tile).collect()
 }
 
-/// For each pixel of the first border across an axis, the pixel of the last border less it.
+/// For each pixel of the first border across an axis, the pixel of the last border minus it.
 pub(crate) fn jumps(plane: &Raster<f32>, axis: usize) -> Vec<f64> {
     let last = border(plane, axis, plane.size()[axis] - 1);
     let differences = last.zip(border(plane, axis, 0));
@@ -52,7 +53,7 @@ pub(crate) fn border(
     pixels.take(count).map(|&value| f64::from(value))
 }
 
-/// A plane less its smooth part.
+/// A plane minus its smooth part.
 ///
 /// `jumps` holds, for each axis that repeats, the jump at each pixel of the first border across it.
 pub(crate) fn without_jumps(
@@ -69,11 +70,11 @@ pub(crate) fn without_jumps(
     Ok(Raster::from_vec(plane.size(), pixels)?)
 }
 
-/// The image with mean zero whose Laplacian is zero but for the jumps at the first borders, and their opposites at the
-/// last ones.
+/// The image with mean zero whose Laplacian is zero except for the jumps at the first borders, and their negatives at
+/// the last ones.
 pub(crate) struct Smooth {
     size: [usize; 2],
-    /// The share of the jumps across x, in bands whose lines are columns.
+    /// The part from the jumps across x, in bands whose lines are columns.
     across_x: Vec<Vec<Element>>,
     across_y: Option<Layer>,
 }
@@ -169,7 +170,7 @@ impl Layer {
         }
     }
 
-    /// The [`BAND`] lines along the border from line `band * BAND` on; those past the last are of no use.
+    /// The [`BAND`] lines along the border from line `band * BAND` on; those past the last are unused.
     fn band(&self, band: usize) -> Vec<Element> {
         let n = self.fourier.length();
         let first = band * BAND;
@@ -198,7 +199,7 @@ impl Mode {
     /// `ρ^(across − 1 − x)` and `ρ^x` right at the borders.
     fn new(k: usize, n: usize, jump: [f64; 2], across: usize) -> Self {
         let sine = libm::sin(PI * (k as f64 / n as f64));
-        // 1 − cos φ, without a difference of nearly equal numbers.
+        // 1 − cos φ, without the cancellation of nearly equal numbers.
         let rise = 2.0 * sine * sine;
         let decay = 1.0 / (1.0 + rise + (rise * (2.0 + rise)).sqrt());
         let scale = decay / ((1.0 + decay) * (1.0 - power(decay, across)));
@@ -208,7 +209,7 @@ impl Mode {
         }
     }
 
-    /// `ρ^(across − 1 − x) − ρ^x` for [`BAND`] positions from `first` on.
+    /// The profile `ρ^(across − 1 − x) − ρ^x` for [`BAND`] positions from `first` on.
     fn profile(&self, first: usize, across: usize) -> Element {
         let mut profile = [0.0; BAND];
         let mut near = power(self.decay, first);
@@ -226,20 +227,20 @@ impl Mode {
     }
 }
 
-/// The solution for a jump of 1 all along the border: straight from border to border.
+/// The solution for a jump of 1 all along the border: linear from border to border.
 fn ramp(first: usize, across: usize) -> Element {
     let middle = 0.5 * (across - 1) as f64;
     core::array::from_fn(|at| ((first + at) as f64 - middle) / across as f64)
 }
 
-/// A real element in the first line.
+/// An element with a real number in the first line, and zeros in the others.
 fn only_first(value: f64) -> Element {
     let mut element = [0.0; BAND];
     element[0] = value;
     element
 }
 
-/// `base^exponent` for a base from 0 to 1, or 0 where that is [`NEGLIGIBLE`].
+/// The power `base^exponent` for a base from 0 to 1, or 0 if it is below [`NEGLIGIBLE`].
 fn power(base: f64, exponent: usize) -> f64 {
     let (mut square, mut product, mut rest) = (base, 1.0, exponent);
     while rest > 0 && product > NEGLIGIBLE {

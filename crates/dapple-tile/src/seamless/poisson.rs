@@ -4,12 +4,12 @@
 //! Transactions on Graphics 22 (SIGGRAPH 2003), <https://doi.org/10.1145/882262.882269>, here without a boundary: a
 //! torus has none.
 //!
-//! The field to be met is that of the differences between neighbors: inside they are those of the source, across the
-//! wrap they are chosen by [`WrapGradient`]. The result is nearest to the field by least squares, and keeps the mean.
-//! Along an axis that does not repeat, the image ends as it likes.
+//! The target is a field of differences between neighbors: inside they are those of the source, across the wrap
+//! [`WrapGradient`] chooses them. The result is nearest to the field by least squares, and keeps the mean. Along an
+//! axis that does not repeat, the ends are free.
 //!
-//! Inside, the source meets the field already; what is left is the error across the wrap. So the result is the source
-//! less the smooth part of [`periodic`](super::periodic), with that error in place of the jump. With
+//! Inside, the source meets the field already; what remains is the error across the wrap. So the result is the source
+//! minus the smooth part of [`periodic`](super::periodic), with that error in place of the jump. With
 //! [`WrapGradient::Zero`] error and jump are the same, and so are both methods, bit for bit.
 
 use super::periodic::{border, jumps, without_jumps};
@@ -17,7 +17,7 @@ use crate::TileError;
 use dapple_raster::Raster;
 
 dapple_raster::named! {
-    /// The gradient that is wanted across the wrap, where the source has none.
+    /// The target gradient across the wrap, where the source has none.
     #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
     pub enum WrapGradient {
         /// None: the last pixel continues to the first. The same image as [`Method::Periodic`](crate::Method::Periodic).
@@ -41,7 +41,7 @@ pub(crate) fn tile(
     planes.iter().map(tile).collect()
 }
 
-/// The gradient that is wanted across the wrap less the one that is there, for each pixel of a border.
+/// The target gradient across the wrap minus the actual one, for each pixel of a border.
 fn wrap_errors(plane: &Raster<f32>, wrap: WrapGradient, axis: usize) -> Vec<f64> {
     let mut errors = jumps(plane, axis);
     if wrap == WrapGradient::Extrapolate {

@@ -1,7 +1,7 @@
-//! A margin laid over the opposite side, and a soft cut along the line of least difference.
+//! A soft cut along the line of least difference, where a margin overlaps the opposite side.
 //!
-//! The last columns are laid over the first ones, and where the two are most alike the picture changes from one to the
-//! other: the cut of Alexei A. Efros and William T. Freeman, "Image Quilting for Texture Synthesis and Transfer",
+//! The last columns are laid over the first ones, and the picture changes from one to the other where the two are most
+//! alike: the cut of Alexei A. Efros and William T. Freeman, "Image Quilting for Texture Synthesis and Transfer",
 //! SIGGRAPH 2001, <https://doi.org/10.1145/383259.383296>. Rows follow in the same way, on the result, which repeats
 //! along x already.
 //!
@@ -21,7 +21,7 @@ use crate::overlap::{check_margin, ends, overlap};
 use crate::{Crossfade, TileError};
 use dapple_raster::Raster;
 
-/// The tile is smaller than the image by the margin, along each axis that repeats.
+/// Options of a soft cut. The tile is smaller than the image by the margin, along each axis that repeats.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -29,12 +29,12 @@ use dapple_raster::Raster;
     serde(default, deny_unknown_fields)
 )]
 pub struct SoftCut {
-    /// How wide the two sides lie over each other, in pixels, from 1 to half of the side. By default 32.
+    /// The width of the overlap of the two sides, in pixels, from 1 to half of the side. By default 32.
     pub margin: u32,
     /// Half of the width over which the cut is softened, in pixels, from 0 (a hard cut) to half of the margin. By default
     /// 4.
     pub half_width: f32,
-    /// How the sides are mixed there. By default the variance is kept.
+    /// The mix of the sides along the cut. By default the variance is kept.
     pub crossfade: Crossfade,
 }
 

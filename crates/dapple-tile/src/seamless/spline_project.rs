@@ -1,13 +1,14 @@
 //! The paper's blend tile: an image halved and doubled again by filters that wrap around.
 //!
 //! Source: Du Jin-Lian, Wang Song and Meng Xianhai, "Wavelet and Blend maps for texture synthesis", section 3: an image
-//! `R` becomes a smaller `R_d` by equation 12, and `R_d` the tile `R_n` by equation 13. `R_d` is what to store: with one
-//! level it has a quarter of the pixels, and `R_n` comes from it whole. The filters are those of Cook and DeRose,
-//! "Wavelet Noise", ACM Transactions on Graphics 24(3) (SIGGRAPH 2005), <https://doi.org/10.1145/1073204.1073264>.
+//! `R` becomes a smaller `R_d` by equation 12, and `R_d` the tile `R_n` by equation 13. Only `R_d` needs to be stored:
+//! with one level it has a quarter of the pixels, and `R_n` follows from it exactly. The filters are those of Cook and
+//! DeRose, "Wavelet Noise", ACM Transactions on Graphics 24(3) (SIGGRAPH 2005),
+//! <https://doi.org/10.1145/1073204.1073264>.
 //!
 //! Decided here, where the paper is silent: the filters repeat along the axes on which the tile does, which alone makes
-//! it one, and are mirrored along the others; the phase and the number of levels are options; pixels are coefficients of
-//! the spline, or its values if asked for.
+//! it periodic, and are mirrored along the others; the phase and the number of levels are options; pixels are
+//! coefficients of the spline, or optionally its values.
 //!
 //! What to expect: one level leaves 34 to 66 % of a step at the border and takes most of the top octave away. To remove
 //! the seam first, use [`Method::PeriodicThenProject`](crate::Method::PeriodicThenProject).
@@ -18,7 +19,7 @@ use crate::sines::{self, Axis};
 use dapple_raster::Raster;
 use dapple_wavelet::{Border, Degree, Fit, Phase, SplineFilter};
 
-/// The functions that a tile is made of.
+/// The functions from which a tile is built.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(
     feature = "serde",
@@ -34,7 +35,7 @@ pub enum Basis {
 }
 
 dapple_raster::named! {
-    /// How the pixels of the image determine the spline.
+    /// The relation of the pixels of the image to the spline.
     #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
     pub enum Pixels {
         /// They are its coefficients, as in the paper.
@@ -53,13 +54,13 @@ dapple_raster::named! {
     serde(default, deny_unknown_fields)
 )]
 pub struct SplineProject {
-    /// How often the image is halved. By default 1.
+    /// The number of times the image is halved. By default 1.
     pub levels: u32,
-    /// Where coarse coefficients lie. By default centered.
+    /// The position of the coarse coefficients. By default centered.
     pub phase: Phase,
-    /// The functions that the tile is made of. By default quadratic B-splines.
+    /// The functions from which the tile is built. By default quadratic B-splines.
     pub basis: Basis,
-    /// How pixels determine the spline. By default as its coefficients.
+    /// The relation of pixels to the spline. By default they are its coefficients.
     pub pixels: Pixels,
 }
 
@@ -75,10 +76,11 @@ impl Default for SplineProject {
 }
 
 impl SplineProject {
-    /// The small tile, from which [`refine`](Self::refine) makes the whole one: the paper's `R_d`.
+    /// The small tile, from which [`refine`](Self::refine) makes the full one: the paper's `R_d`.
     ///
-    /// It repeats along `axes`, x first. Along an axis that repeats it has `1/2^levels` as many pixels, along another the
-    /// length that [`Border::Mirror`] names; its pixels are to the coarse function what those of the image are to the fine one.
+    /// It repeats along `axes`, x first. Along an axis that repeats it has `1/2^levels` as many pixels, along another
+    /// the length that [`Border::Mirror`] defines. Its pixels relate to the coarse function as those of the image to
+    /// the fine one.
     ///
     /// # Errors
     ///
@@ -117,14 +119,14 @@ impl SplineProject {
         }
     }
 
-    /// The tile of `size` pixels that a small tile stands for: the paper's `R_n`.
+    /// The tile of `size` pixels for a small tile: the paper's `R_n`.
     ///
     /// With `coarse` from [`coarse`](Self::coarse) and the size of the image, this is the tile of the image that
     /// [`Seamless`](crate::Seamless) makes, to the last bit.
     ///
     /// # Errors
     ///
-    /// Those of [`coarse`](Self::coarse); and if the small tile has not the size that `size` has once halved.
+    /// Those of [`coarse`](Self::coarse); and if the small tile has another size than `size` has after halving.
     pub fn refine(
         &self,
         coarse: &Raster<f32>,
@@ -133,7 +135,7 @@ impl SplineProject {
     ) -> Result<Raster<f32>, TileError> {
         check_finite(coarse)?;
         let sizes = self.sizes(size, axes)?;
-        // Refuses a size that is too large before there is memory for it.
+        // This checks the size before memory is allocated.
         Raster::filled(size, ())?;
         Raster::filled(sizes[self.levels as usize], ())?.check_same_size(coarse.size())?;
         match self.basis {
@@ -168,7 +170,7 @@ impl SplineProject {
         }
     }
 
-    /// The coefficients of the spline that a raster is of.
+    /// The coefficients of the spline for the pixels of a raster.
     fn coefficients(
         &self,
         filter: &SplineFilter,
@@ -181,7 +183,7 @@ impl SplineProject {
         })
     }
 
-    /// The raster of a spline with these coefficients.
+    /// The pixels for a spline with these coefficients.
     fn pixels(
         &self,
         filter: &SplineFilter,
@@ -218,7 +220,7 @@ pub(crate) fn tile(
     planes.iter().map(tile).collect()
 }
 
-/// Lines repeat along the axes on which the tile does.
+/// The borders of the filters: periodic along the axes on which the tile repeats, else mirrored.
 fn borders(axes: [bool; 2]) -> [Border; 2] {
     axes.map(|repeats| match repeats {
         true => Border::Periodic,

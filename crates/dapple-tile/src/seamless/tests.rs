@@ -1,4 +1,4 @@
-//! What holds for every method.
+//! Properties of every method.
 
 use super::*;
 use crate::{Crossfade, TileErrorKind};

@@ -1,4 +1,4 @@
-//! The projector onto sines beside a dense one.
+//! The projector onto sines compared with a dense one.
 
 use super::*;
 use crate::fourier::LANES;
@@ -36,7 +36,7 @@ fn axes() -> impl Iterator<Item = Axis> {
     repeating.chain(mirrored)
 }
 
-/// An orthonormal basis of the functions that a coarse line stands for.
+/// An orthonormal basis of the functions of a coarse line.
 fn basis(axis: &Axis) -> Vec<Vec<f64>> {
     let [n, m] = [axis.fine as usize, axis.coarse as usize];
     let line = |function: &dyn Fn(f64) -> f64| {
@@ -61,7 +61,7 @@ fn basis(axis: &Axis) -> Vec<Vec<f64>> {
     basis
 }
 
-/// Where the first coarse sample lies, in pixels.
+/// The place of the first coarse sample, in pixels.
 fn first_sample(axis: &Axis) -> f64 {
     let middle = 0.5 * (f64::from(axis.fine) / f64::from(axis.coarse) - 1.0);
     if axis.phase == Phase::CookDeRose {
@@ -75,7 +75,7 @@ fn first_sample(axis: &Axis) -> f64 {
 fn unit_lines(length: usize) -> impl Iterator<Item = Vec<Element>> {
     (0..length).map(move |at| {
         let mut line = vec![[0.0; BAND]; length];
-        // One line of each part, so that both are looked at.
+        // One line of each part, so that both are tested.
         line[at][3] = 1.0;
         line[at][LANES + 1] = -2.0;
         line

@@ -1,4 +1,4 @@
-//! Shares: partitions of unity, and who is on top.
+//! Shares: partitions of unity, and the order of layers.
 
 use super::{Weighting, normalize, step};
 use crate::{Layer, TileErrorKind, rank_equalize};

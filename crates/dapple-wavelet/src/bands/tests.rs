@@ -1,4 +1,4 @@
-//! Bands put together again.
+//! Reconstruction of rasters from their bands.
 
 use super::*;
 use crate::WaveletErrorKind;
@@ -70,7 +70,7 @@ fn details_are_what_is_lost() {
     assert_eq!(bands.details[0], lost, "the first detail");
     assert_eq!(bands.details[1].size(), [12, 8], "the second detail");
     assert_eq!(bands.coarse.size(), [6, 4], "the rest");
-    // What is lost has nothing left to halve.
+    // A second halving of the detail finds nothing.
     let rest = filter
         .down(&bands.details[0], PERIODIC)
         .expect("a good raster");

@@ -1,4 +1,4 @@
-//! The properties of the filters; their vectors are below.
+//! The properties of the filters; `vectors` has their pinned values.
 
 mod vectors;
 

@@ -1,15 +1,15 @@
-//! The bands of a noise: the same tile, smaller and elsewhere.
+//! The bands of a noise: the same tile, scaled and shifted.
 
 use super::place::{Period, Place, floor};
 use dapple_hash::{Seed, hash1};
 
-/// One band.
+/// One band of a noise.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Band<const N: usize> {
     pub(super) weight: f32,
-    /// Cells of this band in one of the first: a power of two.
+    /// The number of cells of this band in a cell of the first band: a power of two.
     pub(super) frequency: f64,
-    /// By how many cells the tile is shifted along each axis, below its size there. Zero for the first band.
+    /// The shift of the tile in cells along each axis, below its size there. Zero for the first band.
     pub(super) offset: [f64; N],
 }
 
@@ -36,7 +36,7 @@ impl<const N: usize> Band<N> {
         }
     }
 
-    /// Where places of the noise are in this band.
+    /// Maps places of the noise to this band.
     #[inline(always)]
     pub(super) fn places(&self, periods: [Period; N], mut places: [Place; N]) -> [Place; N] {
         for (axis, place) in places.iter_mut().enumerate() {
@@ -45,10 +45,10 @@ impl<const N: usize> Band<N> {
         places
     }
 
-    /// Where a place along an axis, whose period is given, is in this band.
+    /// Maps a place along one axis, with the given period, to this band.
     #[inline(always)]
     pub(super) fn place(&self, period: Period, place: Place, axis: usize) -> Place {
-        // The first band is the noise as it is.
+        // The first band is the noise itself.
         if self.frequency == 1.0 {
             return place;
         }

@@ -15,7 +15,7 @@ impl WaveletNoise<2> {
         self.sum(position.to_array(), |places| self.tile.value(places))
     }
 
-    /// The value at a position in cells, which is [`sample`](Self::sample)'s, and its gradient per cell.
+    /// The value at a position in cells, equal to that of [`sample`](Self::sample), and its gradient per cell.
     ///
     /// The gradient is the spline's own, not a difference; where a coordinate is not finite it is NaN.
     #[must_use]
@@ -54,7 +54,7 @@ impl WaveletNoise<3> {
         self.sum(position.to_array(), |places| self.tile.value(places))
     }
 
-    /// The value at a position in cells, which is [`sample`](Self::sample)'s, and its gradient per cell.
+    /// The value at a position in cells, equal to that of [`sample`](Self::sample), and its gradient per cell.
     ///
     /// The gradient is the spline's own, not a difference; where a coordinate is not finite it is NaN.
     #[must_use]
@@ -69,8 +69,8 @@ impl WaveletNoise<3> {
 
     /// The values at the pixel centers of a window that lies at the depth `z`, into memory of its size.
     ///
-    /// They are those of [`sample`](Self::sample) to the last bit. The whole slice of the tile is made first, once for each
-    /// band, which windows much smaller than a slice do not repay.
+    /// They equal those of [`sample`](Self::sample) to the last bit. The whole slice of the tile is computed first,
+    /// once for each band, which does not pay for windows much smaller than a slice.
     ///
     /// # Errors
     ///

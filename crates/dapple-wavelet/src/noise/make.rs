@@ -1,4 +1,4 @@
-//! Tiles from white noise: what is left of it without its projection.
+//! Generation of noise tiles: white noise minus its projection.
 
 use super::band::Band;
 use super::place::Period;
@@ -10,10 +10,10 @@ use crate::{Border, SplineFilter, WaveletError, WaveletErrorKind};
 use dapple_hash::{CellHash, Seed};
 use dapple_raster::Raster;
 
-/// The most cells of a tile: half a gigabyte.
+/// The largest number of cells of a tile: half a gigabyte.
 const MOST_CELLS: u32 = 1 << 27;
 
-/// The fewest cells along an axis that can be halved and doubled.
+/// The smallest number of cells along an axis that can be halved and doubled.
 const FEWEST_CELLS: u32 = 4;
 
 impl WaveletNoise2 {
@@ -28,9 +28,9 @@ impl WaveletNoise2 {
         Self::of_size([size; 2], seed)
     }
 
-    /// Noise of the plane that repeats after as many cells along each axis as `size` says: one band, of weight 1.
+    /// Noise of the plane that repeats after `size` cells along each axis: one band, of weight 1.
     ///
-    /// Of two equal numbers it is that of [`new`](Self::new). The variance is 1 for any size.
+    /// For two equal numbers it equals that of [`new`](Self::new). The variance is 1 for any size.
     ///
     /// # Errors
     ///
@@ -67,9 +67,9 @@ impl WaveletNoise3 {
         Self::of_size([size; 3], seed)
     }
 
-    /// Noise of space that repeats after as many cells along each axis as `size` says: one band, of weight 1.
+    /// Noise of space that repeats after `size` cells along each axis: one band, of weight 1.
     ///
-    /// Of three equal numbers it is that of [`new`](Self::new). The variance is 1 for any size.
+    /// For three equal numbers it equals that of [`new`](Self::new). The variance is 1 for any size.
     ///
     /// # Errors
     ///
@@ -92,7 +92,7 @@ impl WaveletNoise3 {
 }
 
 impl<const N: usize> WaveletNoise<N> {
-    /// One band, of weight 1, of what white noise has and its projection has not.
+    /// One band, of weight 1, of the difference of white noise and its projection.
     fn from_white(
         size: [u32; N],
         seed: Seed,
@@ -119,7 +119,8 @@ impl<const N: usize> WaveletNoise<N> {
     }
 }
 
-/// Refuses sides too short to be halved and doubled, odd ones, and tiles of too many cells.
+/// Checks that sides are even, long enough to be halved and doubled, and that the tile has no more cells than the
+/// limit.
 fn check_size<const N: usize>(size: [u32; N]) -> Result<(), WaveletError> {
     let range = |what, value, range| {
         let kind = WaveletErrorKind::Range { what, value, range };

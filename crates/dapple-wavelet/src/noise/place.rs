@@ -1,8 +1,8 @@
-//! Where a position lies on a tile that repeats: a cell, and a fraction of it.
+//! Places on a tile that repeats: a cell, and a fraction of it.
 //!
 //! All steps are exact, so that positions one period apart have the same place, however far they are from the origin.
 
-/// From here on coordinates are brought near by a remainder, which is exact but slow. Below, whole numbers and their
+/// From here on coordinates are reduced by a remainder, which is exact but slow. Below, whole numbers and their
 /// products with the period are exact.
 const FAR: f64 = (1_u64 << 50) as f64;
 
@@ -21,7 +21,7 @@ pub(super) struct Period {
 pub(super) struct Place {
     /// A whole number, at least 0 and below the period.
     pub(super) cell: f64,
-    /// From 0 to 1, and 1 only where a coordinate just below a whole number has no better fraction.
+    /// From 0 to 1; it is 1 only where a coordinate just below a whole number has no closer fraction.
     pub(super) fraction: f64,
 }
 
@@ -68,7 +68,7 @@ impl Period {
         }
     }
 
-    /// The whole number from 0 on and below the period that is a whole number of periods away.
+    /// The number in the period, from 0 on, that is a whole number of periods away.
     #[inline(always)]
     pub(super) fn wrap(self, cell: f64) -> f64 {
         let rest = cell - round(cell * self.inverse) * self.cells;
@@ -116,8 +116,8 @@ impl Place {
     }
 }
 
-/// The largest whole number that is not above. (`f64::floor` is a call where the processor's own is not known to be
-/// there.)
+/// The largest whole number not above `x`. (`f64::floor` is a function call unless the processor is known to have an
+/// instruction for it.)
 #[inline(always)]
 pub(super) fn floor(x: f64) -> f64 {
     let near = round(x);

@@ -1,7 +1,7 @@
-//! Windows of noise: what the pixels of a column or of a row share is computed once.
+//! Rendering of windows of noise: the terms that the pixels of a column or of a row share are computed once.
 //!
-//! A row of pixels lies in one row of places. The three rows of coefficients around it become one, and then each pixel
-//! needs three numbers of that instead of nine. The sums are those of a single position, in the same order.
+//! A row of pixels lies in one row of places. The three rows of coefficients around it are blended into one, and then
+//! each pixel needs three of its numbers instead of nine. The sums are those of a single position, in the same order.
 
 use super::band::Band;
 use super::place::{Period, Place};
@@ -28,7 +28,7 @@ pub(super) fn render<const N: usize>(
     Ok(())
 }
 
-/// A window of noise, with what its columns share.
+/// A window of noise, with the data that its columns share.
 struct Picture<'a, const N: usize> {
     periods: [Period; 2],
     window: &'a Window,
@@ -41,7 +41,7 @@ struct Picture<'a, const N: usize> {
 struct Sheet<'a, const N: usize> {
     band: &'a Band<N>,
     tile: &'a Tile<2>,
-    /// Where the columns are; anywhere, if they are blind.
+    /// The places of the columns; arbitrary for blind columns.
     columns: Vec<Place>,
 }
 
@@ -88,7 +88,7 @@ impl<const N: usize> Sheet<'_, N> {
     /// Adds the weighted values of a row of pixels.
     fn add_row(&self, y: Place, values: &mut [f32]) {
         let (tile, weight) = (self.tile, self.band.weight);
-        // A row of the tile repays itself only if it is read often enough.
+        // Blending a row of the tile pays only if it is read often enough.
         if self.columns.len() < tile.row_len() / 4 {
             for (value, &x) in values.iter_mut().zip(&self.columns) {
                 *value += weight * tile.value([x, y]);

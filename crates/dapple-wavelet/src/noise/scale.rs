@@ -1,4 +1,4 @@
-//! How large noise is: its mean square over all seeds, exactly, for tiles of any size.
+//! The scale of noise: its mean square over all seeds, exactly, for tiles of any size.
 //!
 //! Noise is `(I − P) R` with `R` white and `P` the projection along every axis. Its mean square, in a metric `M` that is a
 //! product of one per axis, is `tr((I − P)ᵀ M (I − P))` divided by the number of coefficients, and that is

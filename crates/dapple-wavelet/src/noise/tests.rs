@@ -1,4 +1,4 @@
-//! What the tests of noise share: an oracle, and positions without any order.
+//! Shared parts of the tests of noise: an oracle, and scattered positions.
 
 mod bits;
 mod statistics;
@@ -17,7 +17,7 @@ fn scattered<const N: usize>(count: i64, half_width: f64) -> impl Iterator<Item 
     })
 }
 
-/// As [`scattered`], but every fourth coordinate is a whole number.
+/// Positions in a box of the given half width around the origin; every fourth coordinate is a whole number.
 fn positions<const N: usize>(count: i64, half_width: f64) -> impl Iterator<Item = [f64; N]> {
     scattered::<N>(count, half_width)
         .enumerate()
@@ -30,7 +30,7 @@ fn positions<const N: usize>(count: i64, half_width: f64) -> impl Iterator<Item 
         })
 }
 
-/// The sum of the bands, each the sum of all coefficients times their B-splines.
+/// The noise by its definition: the sum of the bands, each the sum of all coefficients times their B-splines.
 fn oracle<const N: usize>(noise: &WaveletNoise<N>, position: [f64; N]) -> f64 {
     let bands = noise.bands.iter().map(|band| {
         let axes = 0..N;
@@ -40,7 +40,7 @@ fn oracle<const N: usize>(noise: &WaveletNoise<N>, position: [f64; N]) -> f64 {
     bands.sum()
 }
 
-/// The sum over the last `axes` axes, where the cells of the others are chosen.
+/// The sum over the last `axes` axes, for fixed cells along the others.
 fn spline<const N: usize>(
     noise: &WaveletNoise<N>,
     position: &[f64],

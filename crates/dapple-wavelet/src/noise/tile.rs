@@ -2,16 +2,16 @@
 
 use super::place::Place;
 
-/// Coefficients, with one more cell before the tile and one after it along each axis: three are read around a place, and
-/// so no reader has to wrap.
+/// Coefficients with a margin of one more cell before the tile and one after it along each axis: three are read around
+/// a place, so no reader has to wrap.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Tile<const N: usize> {
-    /// Cells along each axis, with those that are there twice.
+    /// The number of cells along each axis, including the margins.
     sides: [usize; N],
     coefficients: Vec<f32>,
 }
 
-/// How many cells there are more along each axis than the tile has.
+/// The number of margin cells along each axis.
 const MORE: usize = 2;
 
 impl<const N: usize> Tile<N> {
@@ -50,7 +50,7 @@ impl<const N: usize> Tile<N> {
         self.coefficients[axes.fold(0, |at, (cell, side)| at * side + cell + 1)]
     }
 
-    /// Three coefficients of a row, from a place in memory on.
+    /// Three consecutive coefficients of a row, from an index in memory on.
     #[inline(always)]
     fn three(&self, at: usize) -> [f32; 3] {
         let row = &self.coefficients[at..at + 3];
@@ -75,13 +75,13 @@ impl Tile<2> {
         (across(x.weights(), row), gradient)
     }
 
-    /// The weighted sum of the rows around a place, as many as a row has cells in memory.
+    /// The weighted sum of the rows around a place, as long as a row in memory.
     pub(super) fn blend_row(&self, y: Place, row: &mut [f32]) {
         let rows = &self.coefficients[y.index() * self.sides[0]..][..3 * self.sides[0]];
         blend(y.weights(), rows, row);
     }
 
-    /// Cells of a row in memory.
+    /// The length of a row in memory, in cells.
     pub(super) fn row_len(&self) -> usize {
         self.sides[0]
     }
@@ -123,7 +123,7 @@ impl Tile<3> {
         (across(x.weights(), row), gradient)
     }
 
-    /// The tile of the plane at a depth. Its values are those of this tile there, to the last bit.
+    /// The two-dimensional tile at a depth. Its values equal those of this tile there, to the last bit.
     pub(super) fn slice(&self, z: Place) -> Tile<2> {
         let [width, height, _] = self.sides;
         let area = width * height;

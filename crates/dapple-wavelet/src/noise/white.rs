@@ -1,8 +1,8 @@
-//! White noise by place: what the bands are made of.
+//! White noise by place, from which the bands are made.
 //!
-//! A value is the sum of the four 16-bit words of a hash, moved and scaled so that its mean is 0 and its variance 1. It
-//! is nearly normal (its kurtosis is 2.7, where a normal one has 3), never further than 3.47 from zero, and needs no
-//! logarithm, whose bits would differ between platforms.
+//! A value is the sum of the four 16-bit words of a hash, shifted and scaled so that its mean is 0 and its variance 1.
+//! It is nearly normal (its kurtosis is 2.7, that of a normal distribution 3), never further than 3.47 from zero, and
+//! needs no logarithm, whose bits would differ between platforms.
 
 use crate::WaveletError;
 use dapple_hash::{CellHash, Seed};

@@ -1,4 +1,4 @@
-//! B-splines beside their definition.
+//! B-splines compared with their definition.
 
 use super::*;
 use crate::oracle::{DEGREES, all_filters, spread};

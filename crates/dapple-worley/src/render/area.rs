@@ -1,8 +1,8 @@
-//! Parts of a block: squares, tiles, and what is left of them.
+//! Areas: parts of a block, such as squares, tiles, and remainders of these.
 
 use core::ops::Range;
 
-/// Columns of a block, rows of its band, and slices.
+/// A box of pixels: columns of a block, rows of its band, and slices.
 #[derive(Clone, Debug)]
 pub(super) struct Area {
     pub(super) columns: Range<usize>,
@@ -11,7 +11,7 @@ pub(super) struct Area {
 }
 
 impl Area {
-    /// Its parts of at most so many columns and rows.
+    /// The parts of the area with at most the given numbers of columns and rows.
     pub(super) fn parts(&self, size: [usize; 2]) -> Parts<'_> {
         Parts {
             column: self.columns.start,
@@ -21,7 +21,7 @@ impl Area {
         }
     }
 
-    /// Whether it is larger than so many columns and rows.
+    /// Whether the area has more columns or rows than given.
     pub(super) fn is_larger(&self, [width, height]: [usize; 2]) -> bool {
         self.columns.len() > width || self.rows.len() > height
     }
@@ -31,7 +31,7 @@ impl Area {
 pub(super) struct Parts<'a> {
     area: &'a Area,
     size: [usize; 2],
-    /// Where the next one begins.
+    /// The first column of the next part.
     column: usize,
     row: usize,
 }

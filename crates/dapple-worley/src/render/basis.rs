@@ -1,4 +1,4 @@
-//! What pictures need of a basis, whatever its number of axes.
+//! The interface between rendering and a basis, for any number of axes.
 
 use super::bins::{Bins, Grid};
 use super::table::{CellBox, Table};
@@ -11,19 +11,19 @@ use dapple_raster::simd;
 use dapple_raster::simd::dispatch;
 use fearless_simd::Level;
 
-/// A basis as pictures see it: only hashes and the tables of feature points know the number of axes. Places and vectors
-/// have zeros along the axes that the basis has not.
+/// A basis in the form that rendering uses: only hashes and the tables of feature points depend on the number of axes.
+/// Places and vectors have zeros along the missing axes.
 pub trait Basis: Sync + fmt::Debug {
-    /// How distances are measured.
+    /// The metric of the basis.
     fn metric(&self) -> Metric;
 
-    /// The feature points per cell, on average about a cell.
+    /// The mean number of feature points per cell, near a cell.
     fn density(&self, cell: [i64; MOST_AXES]) -> f64;
 
-    /// Puts the feature points of some cells into a table.
+    /// Generates the feature points of some cells into a table.
     fn fill(&self, level: Level, table: &mut Table, cells: CellBox);
 
-    /// Puts the feature points of some cells into bins.
+    /// Generates the feature points of some cells into bins.
     fn collect(&self, level: Level, bins: &mut Bins, cells: &CellBox, grid: &Grid);
 
     /// The nearest points of a place, nearest first; at most four.
@@ -74,7 +74,7 @@ where
     }
 }
 
-/// A place in a space that has fewer axes.
+/// A place without the coordinates of the missing axes.
 fn first_axes<const N: usize>(place: &FlatPlace) -> Place<N> {
     Place {
         cell: first(place.cell),
@@ -82,7 +82,7 @@ fn first_axes<const N: usize>(place: &FlatPlace) -> Place<N> {
     }
 }
 
-/// The parts along the axes that there are.
+/// The components along the axes of the basis.
 fn first<T: Copy, const N: usize>(parts: [T; MOST_AXES]) -> [T; N] {
     core::array::from_fn(|axis| parts[axis])
 }

@@ -1,8 +1,8 @@
-//! Feature points in the order of the pixels that they are near to.
+//! Feature points sorted by the pixels near to them.
 //!
-//! The pixels of a block are covered by tiles of 4 × 4. A point lies in a column of tiles, and in a row of half tiles:
-//! points are sorted by these, column by column, so that those near to a tile are a run in each of the columns about
-//! it. The terms of a point are made once, for the columns of all the tiles that it may matter to.
+//! The pixels of a block are covered by tiles of 4 × 4. A point lies in a column of tiles, and in a row of half tiles.
+//! Points are sorted by these, column by column, so that those near to a tile are a run in each of the columns of tiles
+//! near it. The terms of a point are computed once, for the columns of all the tiles that may need it.
 
 use super::LANES;
 use super::table::{CellBox, numbers, words};
@@ -13,24 +13,24 @@ use crate::metric::{Exact, Measure, Powers};
 use dapple_hash::CellHashes;
 use fearless_simd::{f32x4, f32x16, i32x4, i32x16, mask32x16, prelude::*, u32x16};
 
-/// The columns and rows of a tile.
+/// The number of columns and of rows of a tile.
 pub(super) const TILE: usize = 4;
 
-/// The rows of half a tile.
+/// The number of rows of half a tile.
 pub(super) const HALF: usize = TILE / 2;
 
-/// Which points a tile is compared with.
+/// The range of points that a tile is compared with.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Reach {
-    /// Those in so many columns of tiles on either side.
+    /// The number of columns of tiles on either side.
     pub(super) tiles: usize,
-    /// Those in so many rows of half tiles on either side.
+    /// The number of rows of half tiles on either side.
     pub(super) halves: usize,
-    /// Those as far away as this, along the axes across the picture together, as a key.
+    /// The largest joint key along the axes across the picture.
     pub(super) key: f32,
 }
 
-/// Where the pixels lie.
+/// The coordinates of the pixels of a block.
 #[derive(Clone, Copy, Debug)]
 pub struct Grid {
     pub(super) metric: Metric,
@@ -39,45 +39,46 @@ pub struct Grid {
     pub(super) origin: [i64; MOST_AXES],
     /// The coordinates of the first pixel.
     pub(super) first: [i32; MOST_AXES],
-    /// How many columns and rows there are.
+    /// The numbers of columns and rows.
     pub(super) size: [usize; 2],
-    /// Steps from one column to the next, and from one row to the next.
+    /// The steps from one column to the next, and from one row to the next.
     pub(super) pixel: [f32; 2],
-    /// The axis that goes with the rows.
+    /// The axis along which rows differ.
     pub(super) row_axis: usize,
 }
 
-/// A point, with the terms of the columns of so many tiles.
+/// A point, with its terms for the columns of `TILES` tiles.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
 pub(super) struct Point<const TILES: usize> {
-    /// The terms at the columns of the tiles about it.
+    /// The terms for the columns of the tiles near it.
     pub(super) terms: [[f32; TILE]; TILES],
-    /// The coordinate along the axis of the rows.
+    /// The coordinate along the axis of the rows, in steps.
     pub(super) row: i32,
-    /// The joined terms along the axes across the picture.
+    /// The accumulated terms along the axes across the picture.
     pub(super) across: f32,
 }
 
-/// The feature points near to the pixels of a block.
+/// The feature points near to the pixels of a block, first in the order of their cells, then sorted by place.
 #[derive(Debug)]
 pub struct Bins {
-    /// How many points there are.
+    /// The number of points.
     len: usize,
-    /// In the order of the cells: the coordinates along the axes of the picture,
+    /// The coordinates of the points along the axes of the picture, in the order of the cells.
     steps: [Vec<i32>; 2],
-    /// the joined terms along the others,
+    /// The accumulated terms of the points along the other axes, in the order of the cells.
     across: Vec<f32>,
-    /// and the column of tiles and the row of half tiles, in the upper and the lower half.
+    /// The places of the points, in the order of the cells: the column of tiles in the upper half of the word, the row
+    /// of half tiles in the lower half.
     places: Vec<u32>,
-    /// The rows of half tiles with points.
+    /// The number of rows of half tiles with points.
     pub(super) n_halves: usize,
-    /// Where the points of each place begin, and where those of the last end.
+    /// The index of the first point of each place, and at the end the number of points.
     pub(super) starts: Vec<u32>,
-    /// In the order of the places, if they are compared with 3 or with 5 columns of tiles.
+    /// The points in the order of the places, if they are compared with 3 columns of tiles; those for 5 columns follow.
     pub(super) near: Vec<Point<3>>,
     pub(super) wide: Vec<Point<5>>,
-    /// The coordinates of the columns, with those of the tiles about them.
+    /// The coordinates of the columns, including those of the tiles beside the block.
     columns: Vec<i32>,
 }
 
@@ -96,14 +97,14 @@ impl Bins {
         }
     }
 
-    /// Begins with the columns of another block and how many rows it has.
+    /// Clears the bins for another block with these columns and number of rows.
     pub(super) fn clear(&mut self, columns: &[i32], height: usize, reach: Reach) {
         let width = columns.len();
         let n_tiles = width.div_ceil(TILE) + 2 * reach.tiles;
         self.n_halves = 2 * height.div_ceil(TILE) + 2 * reach.halves;
         self.starts.clear();
         self.starts.resize(n_tiles * self.n_halves + 2, 0);
-        // Whatever lies beyond the ends is not looked at.
+        // The columns past the ends are not used.
         let more = 2 * TILE * reach.tiles;
         self.columns.clear();
         self.columns.resize(more, 0);
@@ -112,7 +113,7 @@ impl Bins {
         self.columns.resize(end, 0);
     }
 
-    /// Makes the points of `cells` that some tile is compared with.
+    /// Generates the points of `cells` that any tile is compared with.
     #[inline(always)]
     pub(super) fn collect<S: Simd, const N: usize>(
         &mut self,
@@ -142,7 +143,7 @@ impl Bins {
         }
     }
 
-    /// Adds the points of sixteen cells that some tile is compared with.
+    /// Adds those of the points of sixteen cells that any tile is compared with.
     #[inline(always)]
     fn add<S: Simd, const N: usize>(
         &mut self,
@@ -153,7 +154,7 @@ impl Bins {
         grid: &Grid,
     ) {
         let simd = numbers.simd;
-        // Where there is only one, this is known when the code is compiled.
+        // For two axes this is known at compile time.
         let row_axis = if N == 2 { 1 } else { grid.row_axis };
         let Grid { metric, reach, .. } = *grid;
         let most = numbers.reduce_max();
@@ -201,7 +202,7 @@ impl Bins {
         }
     }
 
-    /// Takes in some of sixteen points.
+    /// Appends the selected ones of sixteen points.
     #[inline(always)]
     fn push<S: Simd, const N: usize>(
         &mut self,
@@ -224,7 +225,7 @@ impl Bins {
         self.len += matters.to_bitmask().count_ones() as usize;
     }
 
-    /// Finds out where the points of each place go.
+    /// Counts the points of each place, which gives the index at which each place begins.
     pub(super) fn count(&mut self) {
         for &place in &self.places[..self.len] {
             self.starts[index(place, self.n_halves) + 2] += 1;
@@ -236,7 +237,7 @@ impl Bins {
         }
     }
 
-    /// Puts the points in the order of the places, and makes their terms.
+    /// Sorts the points by place, and computes their terms.
     #[inline(always)]
     pub(super) fn sort<S: Simd, M: Measure, const TILES: usize>(
         &mut self,
@@ -280,8 +281,9 @@ impl Bins {
 /// The numbers of the lanes.
 const ASCENDING: [i32; LANES] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15];
 
-/// In which groups of so many pixels sixteen points lie, from their distances to the middle of the first pixel; the
-/// first `around` groups lie before it. What lies before those may come out as the first one or as very many.
+/// The groups of `pixels` pixels in which sixteen points lie, from their distances to the middle of the first pixel.
+/// The first `around` groups lie before it. The result for a point before those may be the first group or a very large
+/// number.
 #[inline(always)]
 fn bin<S: Simd>(ahead: i32x16<S>, pixel: f32, pixels: usize, around: usize) -> u32x16<S> {
     let group = pixels as f32;
@@ -290,7 +292,7 @@ fn bin<S: Simd>(ahead: i32x16<S>, pixel: f32, pixels: usize, around: usize) -> u
     bins.to_int::<i32x16<S>>().bitcast()
 }
 
-/// The number of a place.
+/// The index of a place.
 #[inline(always)]
 fn index(place: u32, n_halves: usize) -> usize {
     (place >> 16) as usize * n_halves + (place & 0xFFFF) as usize

@@ -1,4 +1,4 @@
-//! A block: a few columns of a band, whose feature points are made once.
+//! A block: a few columns of a band, whose feature points are generated once.
 
 use super::area::Area;
 use super::bins::Bins;
@@ -17,18 +17,18 @@ use crate::{LIMIT, Metric};
 use core::ops::Range;
 use fearless_simd::Level;
 
-/// The most cells of a block, with its neighborhood; where there are more, a pixel is larger than a cell.
+/// The largest number of cells of a block with its neighborhood; with more cells, a pixel is larger than a cell.
 pub(super) const MOST_CELLS: u128 = 1 << 16;
 
-/// The most cells along an axis, so that steps fit into 32 bits.
+/// The largest number of cells along an axis, so that steps fit into 32 bits.
 pub(super) const LONGEST_SIDE: usize = 1000;
 
-/// Slices are filled together if they are no further apart than this many steps.
+/// The largest distance, in steps, of slices that are filled together.
 const DEEPEST: i32 = STEPS * 5 / 16;
 
 /// A few columns of a band.
 pub(super) struct Block<'a> {
-    /// Its band, or those of several slices with the same columns and rows.
+    /// The band of the block, or the bands of several slices with the same columns and rows.
     pub(super) bands: &'a [Band<'a>],
     pub(super) level: Level,
     /// The columns of the block, in the window.
@@ -38,11 +38,12 @@ pub(super) struct Block<'a> {
 /// Per-thread scratch memory, kept from block to block.
 pub(super) struct Memory {
     pub(super) table: Table,
-    /// The points about a square whose neighborhood had to grow.
+    /// The points near a square whose neighborhood had to grow.
     pub(super) wide_table: Table,
-    /// Whether the candidates are from there.
+    /// Whether the candidates come from the wide table.
     pub(super) is_wide: bool,
-    /// The candidates of a square, and the corner that they are counted from in the plane of the picture, in steps.
+    /// The candidates of a square, and the corner in the plane of the picture from which their coordinates are counted,
+    /// in steps.
     pub(super) list: PointList,
     pub(super) square: FlatPoints,
     pub(super) low: [i32; MOST_AXES],
@@ -54,17 +55,17 @@ pub(super) struct Memory {
     pub(super) dominance: Dominance,
     /// Pixels that need points further away.
     pub(super) unknown: Vec<Area>,
-    /// The planes about a feature point, and the distances to edges that are drawn already.
+    /// The planes between a feature point and its neighbors, and the distances to edges that are drawn already.
     pub(super) neighbors: Neighbors,
     pub(super) planes: Planes,
     pub(super) values: Vec<f32>,
     pub(super) runs: Vec<Range<usize>>,
-    /// The points in the order of the pixels that they are near to.
+    /// The points sorted by the pixels near to them.
     pub(super) bins: Bins,
-    /// The coordinates of the columns of the block, in steps from the lower corner of the table, and those of the rows
-    /// of the band along the other axes; the last one is repeated to fill a register.
+    /// The coordinates of the columns of the block and, along the other axes, of the rows of the band, in steps from
+    /// the lower corner of the table. The last one is repeated to fill a register.
     pub(super) lines: [Vec<i32>; MOST_AXES],
-    /// The coordinates of several slices along the axes across them.
+    /// The coordinates of several slices, along the axes across them.
     pub(super) slices: Vec<[i32; MOST_AXES]>,
     n_axes: usize,
 }
@@ -95,7 +96,7 @@ impl Memory {
         }
     }
 
-    /// Where the pixels of an area lie, in some of the slices.
+    /// The box of the pixels of an area, in some of the slices.
     #[inline]
     pub(super) fn pixel_box(&self, area: &Area) -> PixelBox {
         let mut pixels = PixelBox {
@@ -121,11 +122,11 @@ impl Memory {
         pixels
     }
 
-    /// The axis across several slices.
+    /// The axis along which several slices differ.
     fn deep_axis(&self) -> Option<usize> {
         let (first, last) = (self.slices.first()?, self.slices.last()?);
         let axes = 2..self.n_axes;
-        // Slices in one place are told apart by none; the third does.
+        // Slices at the same place differ along no axis; the third one is as good as any.
         Some(
             axes.clone()
                 .find(|&axis| first[axis] != last[axis])
@@ -133,7 +134,7 @@ impl Memory {
         )
     }
 
-    /// Takes down where the columns of a block and the rows of its band lie, from the lower corner of some cells.
+    /// Stores the coordinates of the columns of a block and the rows of its band, from the lower corner of some cells.
     pub(super) fn take_lines(&mut self, block: &Block<'_>, cells: &CellBox) {
         self.n_axes = cells.n_axes;
         let band = &block.bands[0];
@@ -182,7 +183,7 @@ impl Block<'_> {
         }
     }
 
-    /// How many slices from the first one on can be filled from one list of candidates.
+    /// The number of slices, from the first one on, that can share one list of candidates.
     fn n_together(&self, first: usize, out: &Output<'_>) -> usize {
         if first + 1 == self.bands.len() {
             return 1;
@@ -200,7 +201,7 @@ impl Block<'_> {
         };
         let axes = 2..bands[0].rows.len();
         let far = |band: &Band<'_>, axis: usize| (place(band, axis) - place(&bands[0], axis)).abs();
-        // Only along one of the axes across them.
+        // Slices may differ along one axis only.
         let next = bands.get(1).unwrap_or(&bands[0]);
         let deep = axes.clone().find(|&axis| far(next, axis) > 0.0);
         let is_near = |band: &&Band<'_>| {
@@ -212,8 +213,7 @@ impl Block<'_> {
         bands.iter().take_while(is_near).count().max(1)
     }
 
-    /// The greatest n of `F_n` that the inner loops find: one, two or four; those that tell which points they are, two
-    /// or four.
+    /// The number of nearest points that the inner loops find: one, two or four for values, otherwise two or four.
     fn depth(out: &Output<'_>) -> usize {
         match (out, out.depth()) {
             (Output::Values(..), 1) => 1,
@@ -222,19 +222,19 @@ impl Block<'_> {
         }
     }
 
-    /// How far away the points of the pixels in the middle are about.
+    /// A guess of the distance of the points that the pixels in the middle need.
     fn guess(&self, out: &Output<'_>) -> Guess {
         let Picture { basis, section, .. } = self.bands[0].picture;
         Guess::new(basis, self.middle(), section.n_axes, Self::depth(out))
     }
 
-    /// How to fill the block if its cells are small.
+    /// The parameters of the method for small cells, if it can be used.
     fn splat(&self, out: &Output<'_>, guess: Guess) -> Option<Splat> {
         let is_values = matches!(out, Output::Values(..));
         Splat::new(self, guess.distance).filter(|_| is_values)
     }
 
-    /// Fills the pixels of slices that lie near one another.
+    /// Fills the pixels of slices that share their candidates.
     fn render_together(&self, outs: &mut [Output<'_>], memory: &mut Memory) {
         if let Output::Edges(rows) = &mut outs[0] {
             self.edges(rows, memory);
@@ -248,7 +248,7 @@ impl Block<'_> {
         let guess = self.guess(&outs[0]);
         let splat = self.splat(&outs[0], guess);
         let reach = splat.map_or(0, |splat| splat.reach.ceil() as i32);
-        // Powers take so long that no other than values gain anything side by side.
+        // Powers are so slow that lanes gain nothing, except for values.
         let is_single = !is_values && matches!(metric, Metric::Minkowski(_));
         let cells = self.cells(guess.ring.max(reach));
         let Some(cells) = cells.filter(|_| !is_single) else {
@@ -261,7 +261,7 @@ impl Block<'_> {
             splat.render(self, &cells, values, rows, memory);
             return;
         }
-        // The picture before may be of the same cells.
+        // The previous picture may have left the points of the same cells.
         if !memory.table.has(&cells, wants_ids) {
             memory.table.wants_ids = wants_ids;
             basis.fill(self.level, &mut memory.table, cells);
@@ -302,7 +302,7 @@ impl Block<'_> {
         middle
     }
 
-    /// The cells that the block needs, if it can be filled from a table.
+    /// The cells whose points the block needs, if a table can hold them.
     pub(super) fn cells(&self, ring: i32) -> Option<CellBox> {
         let band = &self.bands[0];
         let is_finite = band.columns.is_finite && band.rows.iter().all(|rows| rows.is_finite);
@@ -334,7 +334,7 @@ impl Block<'_> {
         is_small.then_some(cells)
     }
 
-    /// Fills pixels each on its own.
+    /// Fills pixels one by one.
     pub(super) fn one_by_one(&self, area: &Area, outs: &mut [Output<'_>]) {
         for slice in area.slices.clone() {
             for row in area.rows.clone() {

@@ -1,4 +1,4 @@
-//! The candidates of a tile, and what they add to the keys of its pixels.
+//! The candidates of a tile, and their terms at its pixels.
 
 use super::LANES;
 use super::area::Area;
@@ -12,7 +12,7 @@ use crate::metric::{Exact, Measure};
 use fearless_simd::{f32x16, i32x16, prelude::*};
 
 impl Memory {
-    /// Picks the candidates of a tile from those of its square, and makes their terms.
+    /// Selects the candidates of a tile from those of its square, and computes their terms.
     #[inline(always)]
     pub(super) fn candidates<S: Simd, M: Measure>(
         &mut self,
@@ -65,14 +65,14 @@ impl Memory {
         }
         self.column_terms(simd, measure, area, square);
         match plan.row_axis {
-            // Slices have their own.
+            // These terms are computed for each slice.
             Some(_) if plan.deep_axis.is_some() => {}
             Some(row_axis) => self.row_terms(simd, measure, area, square, row_axis),
             None => self.slanted_terms(simd, measure, area, square),
         }
     }
 
-    /// Where the pixels of a tile lie, from the lower corner of its square.
+    /// The box of the pixels of a tile, from the lower corner of its square.
     #[inline(always)]
     fn cuboid(&self, area: &Area, square: &Square) -> Cuboid {
         let mut cuboid = square.cuboid;
@@ -90,7 +90,7 @@ impl Memory {
         cuboid
     }
 
-    /// Makes the terms of the columns of a tile.
+    /// Computes the terms of the columns of a tile.
     #[inline(always)]
     fn column_terms<S: Simd, M: Measure>(
         &mut self,
@@ -110,8 +110,8 @@ impl Memory {
         }
     }
 
-    /// Makes the terms of the rows of a tile in the slice at some steps from the lower corner of a square; they go
-    /// along the second axis.
+    /// Computes the terms of the rows of a tile in one slice, given in steps from the lower corner of a square. Rows
+    /// differ along the second axis.
     #[inline(always)]
     pub(super) fn slice_terms<S: Simd>(
         &mut self,
@@ -143,7 +143,7 @@ impl Memory {
         }
     }
 
-    /// Makes the terms of the rows of a tile, which go along one axis.
+    /// Computes the terms of the rows of a tile that differ along one axis.
     #[inline(always)]
     fn row_terms<S: Simd, M: Measure>(
         &mut self,
@@ -166,7 +166,7 @@ impl Memory {
         }
     }
 
-    /// Makes the terms of the rows of a tile, which go along several axes.
+    /// Computes the terms of the rows of a tile that differ along several axes.
     #[inline(always)]
     fn slanted_terms<S: Simd, M: Measure>(
         &mut self,
@@ -191,7 +191,7 @@ impl Memory {
     }
 }
 
-/// Sixteen places of a line, in cells from the lower corner of a square.
+/// Sixteen coordinates of a line, in cells from the lower corner of a square.
 #[inline(always)]
 fn places<S: Simd>(simd: S, line: &[i32], low: i32) -> f32x16<S> {
     (i32x16::from_slice(simd, &line[..LANES]) - low).to_float::<f32x16<S>>() * STEP

@@ -1,4 +1,4 @@
-//! Which feature points matter to a box of pixels: the candidates.
+//! Culling: which feature points matter to a box of pixels. These are its candidates.
 //!
 //! A point can be among the `K` nearest of some pixel only if it is nearer to the box than a bound. There are two: the
 //! `K`-th smallest of the distances from the points to their furthest corner of the box, which always holds and is
@@ -11,7 +11,7 @@ use crate::metric::Measure;
 use core::ops::Range;
 use fearless_simd::{f32x16, i32x16, mask32x16, prelude::*, u32x16};
 
-/// Where some pixels lie, in steps from the lower corner of a table.
+/// The box around some pixels, in steps from the lower corner of a table.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PixelBox {
     pub(super) n_axes: usize,
@@ -21,7 +21,7 @@ pub(super) struct PixelBox {
 
 impl PixelBox {
     /// The cells of the table within `ring` cells of those that the box touches, as the first and the last along each
-    /// axis. May reach past the table.
+    /// axis. They may reach past the table.
     pub(super) fn cells(&self, ring: i32) -> [[i32; MOST_AXES]; 2] {
         let mut cells = [[0; MOST_AXES]; 2];
         for axis in 0..self.n_axes {
@@ -31,7 +31,7 @@ impl PixelBox {
         cells
     }
 
-    /// How far it is from the box to the nearest place outside of these cells, in steps.
+    /// The distance from the box to the nearest place outside of these cells, in steps.
     pub(super) fn border(&self, [first, last]: [[i32; MOST_AXES]; 2]) -> i32 {
         let mut border = i32::MAX;
         for axis in 0..self.n_axes {
@@ -53,7 +53,7 @@ impl PixelBox {
         sum
     }
 
-    /// The longest of its sides, in steps.
+    /// The longest side of the box, in steps.
     pub(super) fn extent(&self) -> i32 {
         let mut extent = 0;
         for axis in 0..self.n_axes {
@@ -67,36 +67,35 @@ impl PixelBox {
 #[derive(Debug)]
 pub(super) struct PointList {
     pub(super) len: usize,
-    /// Their coordinates along each axis, in steps from the lower corner of the table. There is room for a register
-    /// more.
+    /// The coordinates along each axis, in steps from the lower corner of the table, padded by a register.
     pub(super) steps: [Vec<i32>; MOST_AXES],
-    /// Which points of the table they are, if that is wanted.
+    /// The indices of the points in the table, if needed.
     pub(super) numbers: Vec<u32>,
-    /// Memory for the smallest keys of points.
+    /// Scratch memory for the smallest keys of points.
     near: Vec<f32>,
 }
 
-/// Where candidates are taken from.
+/// The points from which candidates are selected.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Points<'a> {
     pub(super) steps: &'a [Vec<i32>; MOST_AXES],
-    /// The numbers of the points, if they are not simply counted.
+    /// The indices of the points in the table, unless they are consecutive.
     pub(super) numbers: Option<&'a [u32]>,
-    /// Which of them.
+    /// The ranges of points to select from.
     pub(super) runs: &'a [Range<usize>],
     pub(super) wants_numbers: bool,
 }
 
-/// Which points are candidates.
+/// The criterion for candidates.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Keep {
-    /// Those that can be among so many nearest, where bounds are multiplied by a looseness.
+    /// The points that can be among the given number of nearest ones; bounds are multiplied by the looseness.
     Nearest(usize, f32),
-    /// Those whose smallest key is at most this.
+    /// The points whose smallest key is at most this.
     Within(f32),
 }
 
-/// For whom candidates are picked.
+/// The box, the metric and the criterion for which points are culled.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cull<'a, M> {
     pub(super) measure: M,
@@ -114,7 +113,7 @@ impl PointList {
         }
     }
 
-    /// The points, to be culled again.
+    /// The points of the list, to be culled again.
     pub(super) fn points<'a>(&'a self, run: &'a Range<usize>, wants_numbers: bool) -> Points<'a> {
         Points {
             steps: &self.steps,
@@ -124,7 +123,7 @@ impl PointList {
         }
     }
 
-    /// Takes those of some points that are candidates, in their order.
+    /// Appends those of some points that are candidates, in their order.
     #[inline(always)]
     pub(super) fn cull<S: Simd, M: Measure>(
         &mut self,
@@ -139,7 +138,7 @@ impl PointList {
         }
     }
 
-    /// Culls points, compiled for boxes with `N` axes.
+    /// Culls points; compiled for boxes with `N` axes.
     #[inline(always)]
     fn cull_axes<S: Simd, M: Measure, const N: usize>(
         &mut self,
@@ -169,7 +168,7 @@ impl PointList {
             Keep::Within(bound) => bound,
             Keep::Nearest(depth, looseness) => smallest_but(depth - 1, least) * looseness,
         };
-        // An infinite bound keeps what is there, and only that.
+        // With an infinite bound, padding must still be left out.
         let bound = bound.min(f32::MAX);
         let mut at = 0;
         for run in points.runs {
@@ -181,7 +180,7 @@ impl PointList {
         }
     }
 
-    /// Empties the list, and makes room for some points; returns for how many.
+    /// Clears the list, and reserves memory for some points; returns their number.
     fn make_room(&mut self, points: Points<'_>, n_axes: usize) -> usize {
         self.len = 0;
         let slots = points.runs.iter().map(|run| run.len().div_ceil(LANES));
@@ -197,7 +196,7 @@ impl PointList {
         room
     }
 
-    /// Takes in some of sixteen points.
+    /// Appends the selected ones of sixteen points.
     #[inline(always)]
     fn push<S: Simd>(
         &mut self,
@@ -228,14 +227,14 @@ impl PointList {
 /// The numbers of the lanes.
 const ASCENDING: [u32; LANES] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15];
 
-/// The first lanes, at most sixteen.
+/// A mask of the first `n` lanes, at most sixteen.
 #[inline(always)]
 pub(super) fn lanes_before<S: Simd>(simd: S, n: usize) -> mask32x16<S> {
     mask32x16::from_bitmask(simd, u64::MAX >> (64 - n.min(LANES)))
 }
 
 impl<M: Measure> Cull<'_, M> {
-    /// The smallest and the largest keys that sixteen points have in the box.
+    /// The smallest and the largest keys of sixteen points in the box.
     #[inline(always)]
     fn keys<S: Simd, const N: usize>(
         &self,
@@ -250,7 +249,7 @@ impl<M: Measure> Cull<'_, M> {
             let steps = i32x16::from_slice(simd, &steps[axis][start..start + LANES]);
             let ahead = (steps - low).to_float::<f32x16<S>>() * STEP;
             let past = ahead - (high - low) as f32 * STEP;
-            // Terms are not below zero, so that the first ones become the keys as they are.
+            // Terms are not below zero, so that the first ones are the initial keys.
             let [near, far] = self
                 .measure
                 .terms([past.max(-ahead).max(zero), ahead.max(-past)]);
@@ -261,7 +260,7 @@ impl<M: Measure> Cull<'_, M> {
     }
 }
 
-/// The smallest number of the lanes that is left when `n` have been taken away; more, if some are equal.
+/// The smallest number in the lanes after the `n` smallest are removed; a larger one, if some are equal.
 ///
 /// Each lane holds the distance of another point, so it bounds that of the point in this place of the order.
 #[inline(always)]

@@ -1,4 +1,4 @@
-//! Pictures of the distance to the edge of the Voronoi cell.
+//! Rendering of the distance to the edge of the Voronoi cell.
 //!
 //! The cells with pixels in a block are drawn one by one. Between the feature point of a cell and each other one there
 //! is a plane halfway ([`planes`](super::planes)). The distance from such a plane, below zero beyond it, is linear
@@ -25,32 +25,32 @@ use core::ops::Range;
 use dapple_raster::simd::dispatch;
 use fearless_simd::{f32x16, f64x8, i32x16, prelude::*};
 
-/// The most columns of a block: fewer cells lie across the borders of wide blocks.
+/// The largest number of columns of a block: fewer cells lie across the borders of wide blocks.
 pub(super) const COLUMNS: usize = 256;
 
-/// From one row of values to the next; a row may end anywhere in a register.
+/// The distance of two rows of values in memory; a row may end anywhere in a register.
 const STRIDE: usize = COLUMNS + LANES;
 
-/// How far away neighbors of a point are looked for, times the guess of how far the nearest are from any place: first
-/// so far, then farther if that was not far enough.
+/// The distances within which neighbors of a point are searched, as multiples of the guess of the distance of the
+/// nearest points: first the smaller one, then the larger one if that was not enough.
 const REACHES: [f32; 2] = [1.7, 2.6];
 
-/// The longest way to a neighbor, in cells: from one and a half times as far, ways are exact in `f32`.
+/// The longest vector to a neighbor, in cells: vectors up to one and a half times as long are exact in `f32`.
 const LONGEST_REACH: f32 = 5.0;
 
-/// The cells about a block in which points are needed, times those that the guess reaches over: from a pixel to its
-/// nearest point, and from there to the neighbors.
+/// The ring of cells around a block in which points are needed, as a multiple of the cells that the guess reaches over:
+/// from a pixel to its nearest point, and from there to the neighbors.
 const RINGS: i32 = 4;
 
-/// Where the pixels of a block lie.
+/// The coordinates of the pixels of a block.
 struct Pixels<'a> {
     n_rows: usize,
     n_columns: usize,
     /// The coordinates of the columns, and of the rows along the other axes, in steps.
     lines: &'a [Vec<i32>; MOST_AXES],
-    /// How many columns there are from one cell to the next; negative, if they go backwards.
+    /// The number of columns per cell; negative, if coordinates fall from column to column.
     columns_per_cell: f32,
-    /// How many columns one may lie beside its place.
+    /// The largest distance of a column from its even position, in columns.
     unevenness: f32,
     /// The smallest and the largest coordinate of the columns, from the first one, in cells.
     ends: [f32; 2],
@@ -91,7 +91,7 @@ impl Block<'_> {
         }
     }
 
-    /// The value of a pixel, on its own.
+    /// The value of a single pixel.
     #[cold]
     pub(super) fn edge(&self, column: usize, row: usize) -> f32 {
         let band = &self.bands[0];
@@ -99,7 +99,7 @@ impl Block<'_> {
         place.map_or(f32::NAN, |place| band.picture.basis.edge_distance(&place))
     }
 
-    /// Draws the cells that pixels may lie in.
+    /// Draws the cells in which pixels may lie.
     #[inline(always)]
     fn draw_cells<S: Simd>(&self, simd: S, guess: Guess, memory: &mut Memory) {
         let whole = memory.pixel_box(&self.all());
@@ -127,7 +127,7 @@ impl Block<'_> {
                     break;
                 };
                 let is_alone = neighbors.find(simd, table, point, reach, around);
-                // Where two points are in the same place, all is edge.
+                // Where two points coincide, the whole cell is edge.
                 if !is_alone || neighbors.hide(simd, &whole) {
                     break;
                 }
@@ -144,7 +144,7 @@ impl<'a> Pixels<'a> {
     fn new(lines: &'a [Vec<i32>; MOST_AXES], [n_columns, n_rows]: [usize; 2]) -> Self {
         let columns = &lines[0][..n_columns];
         let extent = (columns[n_columns - 1] - columns[0]) as f32;
-        // Where all columns lie at one place, any of them may be meant.
+        // Where all columns lie at one place, any of them may be the one.
         let [columns_per_step, mut unevenness] = match extent {
             0.0 => [0.0, n_columns as f32],
             _ => [(n_columns - 1) as f32 / extent, 0.0],
@@ -163,7 +163,7 @@ impl<'a> Pixels<'a> {
         }
     }
 
-    /// Draws a cell, and tells whether its neighbors are all that matter.
+    /// Draws a cell; returns whether its neighbors are all that matter.
     #[inline(always)]
     fn draw<S: Simd>(
         &self,
@@ -209,7 +209,7 @@ impl<'a> Pixels<'a> {
         is_enough
     }
 
-    /// Finds out in which columns sixteen rows may have pixels of a cell, and how far these are from its point.
+    /// Finds the columns in which sixteen rows may have pixels of a cell, and the distances of these from its point.
     #[inline(always)]
     fn outline<S: Simd>(
         &self,
@@ -237,7 +237,7 @@ impl<'a> Pixels<'a> {
                 ahead += rest[axis] * neighbors.normals[axis][plane];
             }
             let normal = neighbors.normals[0][plane];
-            // Planes along the row are crossed somewhere, too; this moves them by less than the slack.
+            // Planes along the row need a crossing, too; this moves them by less than the slack.
             let normal = normal.abs().max(SLACK / 8.0).copysign(normal);
             let crossing = ahead * (-1.0 / normal);
             let [at_low, at_high] = if normal > 0.0 {
@@ -266,7 +266,7 @@ impl<'a> Pixels<'a> {
     }
 }
 
-/// The pixels that a cell may have.
+/// The pixels that may lie in a cell.
 struct Outline {
     /// In each row, the first column and the one past the last.
     starts: [i32; BAND_ROWS],
@@ -287,7 +287,7 @@ struct Along<'a> {
 }
 
 impl Along<'_> {
-    /// Draws some pixels of the row, and tells whether the planes are all that matter to them.
+    /// Draws some pixels of the row; returns whether the planes are all that matter to them.
     #[inline(always)]
     fn draw<S: Simd>(&self, simd: S, columns: Range<usize>, values: &mut [f32]) -> bool {
         let (planes, sight) = (self.planes, self.sight);
@@ -319,22 +319,23 @@ impl Along<'_> {
     }
 }
 
-/// How far the distances of a cell may be relied upon, in cells.
+/// The limits within which the distances of a cell are reliable, in cells.
 struct Sight {
-    /// They may be wrong by this much.
+    /// The largest error of a distance.
     error: f64,
-    /// Where one is no larger than this, the search may find another point the nearest.
+    /// The distance to an edge up to which the search may find another point the nearest.
     least: f32,
-    /// Where the sum of one and of the way to the point is larger than this, a plane beyond the reach may be nearer;
+    /// The largest sum of the distance to an edge and the distance to the point; past it, a plane beyond the reach may
+    /// be nearer.
     half: f32,
-    /// and where the way is, one that was not picked.
+    /// The squared distance to the point past which a plane that was not selected may be nearer.
     radius_sq: f32,
 }
 
 impl Sight {
-    /// Distances of the planes are sums of products with normals, where nothing that counts is above half of the
-    /// reach; fewer than sixteen roundings, those of [`Worley::edge_distance`](crate::Worley::edge_distance) among
-    /// them, are each of at most 2⁻⁵³ of that.
+    /// The limits for a cell. Distances of the planes are sums of products with normals, and the relevant ones are at
+    /// most half of the reach. They take fewer than sixteen roundings, including those of
+    /// [`Worley::edge_distance`](crate::Worley::edge_distance), each of at most 2⁻⁵³ of that.
     ///
     /// A key of the search is the square of a distance to five roundings at most, each of 2⁻²⁴ of it. Squares of two
     /// distances differ by twice the distance between the points, times that from the plane.

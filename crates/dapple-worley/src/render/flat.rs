@@ -1,14 +1,14 @@
-//! Candidates as points of the picture's plane, and those that are nearer than others in a whole rectangle of pixels.
+//! Candidates as points of the picture's plane, and the removal of those that others dominate.
 //!
-//! The axes across the picture add the same to the keys of a point at all pixels. So a point is flat: a column, a row,
-//! and the rest.
+//! The axes across the picture add the same amount to the keys of a point at all pixels. So a point is flat: a column,
+//! a row, and the rest.
 //!
-//! Where terms are added up, what a point is nearer than another is a sum over the axes, and along each axis it grows
-//! or shrinks all the way, since terms are convex. So its smallest value in a rectangle is the sum of the smaller ones
-//! of two ends. If that is above zero, the one point *dominates* the other: it is nearer in the whole rectangle.
-//! A point that `K` others dominate is not among the `K` nearest of any pixel.
+//! Where terms are added up, the difference of the keys of two points is a sum over the axes, and along each axis it is
+//! monotonic, since terms are convex. So its smallest value in a rectangle is the sum of the smaller ones of the two
+//! ends. If that is above zero, the one point *dominates* the other: it is nearer in the whole rectangle. A point that
+//! `K` others dominate is not among the `K` nearest of any pixel.
 //!
-//! This leaves about half of the points that are left by bounds for each point alone.
+//! This removes about half of the points that remain after bounds for each point alone.
 
 use super::LANES;
 use super::cull::{PixelBox, PointList, lanes_before};
@@ -26,14 +26,15 @@ pub(super) struct Cuboid {
     pub(super) is_deep: bool,
 }
 
-/// Which points are left out.
+/// The criterion for dominated points, and memory for the test.
 #[derive(Debug)]
 pub(super) struct Dominance {
-    /// Those that so many others dominate,
+    /// The number of others that must dominate a point to remove it.
     pub(super) depth: usize,
-    /// if those others are about this near to the middle of the rectangle: farther ones dominate few.
+    /// The distance from the middle of the rectangle within which points are tested as dominators: farther ones
+    /// dominate few.
     pub(super) distance: f32,
-    /// Memory for those others.
+    /// Scratch memory for the dominators.
     dominators: Dominators,
 }
 
@@ -46,7 +47,7 @@ impl Dominance {
         }
     }
 
-    /// Those that are near have no larger keys than this at the far corner.
+    /// The largest key at the far corner of a point that is tested as a dominator.
     #[inline(always)]
     fn nearby(&self, metric: Metric, cuboid: &Cuboid) -> f32 {
         let sides = [0, 1, 2].map(|axis| cuboid.high[axis] - cuboid.low[axis]);
@@ -55,19 +56,19 @@ impl Dominance {
     }
 }
 
-/// What is to spare of the largest key of a point: there are fewer than 64 roundings in its key, in that of another
-/// point, and in what compares them, and none of them is of more than 2⁻²⁴ of that. (Another point with larger terms
-/// does not dominate in any case.)
+/// The allowance for rounding, relative to the largest key of a point: there are fewer than 64 roundings in its key, in
+/// that of another point, and in their comparison, and each of them is of at most 2⁻²⁴ of that. (Another point with
+/// larger terms does not dominate in any case.)
 const SPARE: f32 = 128.0 / (1 << 24) as f32;
 
-/// Sixteen points, as seen from a rectangle.
+/// Sixteen points, with their terms in a rectangle.
 #[derive(Clone, Copy)]
 struct Seen<S: Simd> {
-    /// Along the three axes, their terms at the low and at the high end; nothing along the third if there is one slice.
+    /// The terms at the low and at the high end of the three axes; unused along the third if there is one slice.
     ends: [[f32x16<S>; 2]; 3],
-    /// What the other axes add.
+    /// The terms of the other axes, accumulated.
     rest: f32x16<S>,
-    /// The largest keys that they have.
+    /// The largest keys in the rectangle.
     far: f32x16<S>,
 }
 
@@ -95,9 +96,9 @@ impl<S: Simd> Seen<S> {
 #[derive(Debug)]
 struct Dominators {
     len: usize,
-    /// Along the three axes, their terms at the low and at the high end.
+    /// The terms at the low and at the high end of the three axes.
     ends: [[Vec<f32>; 2]; 3],
-    /// What the other axes add.
+    /// The terms of the other axes, accumulated.
     rest: Vec<f32>,
 }
 
@@ -111,7 +112,7 @@ impl Dominators {
         }
     }
 
-    /// Takes all away, and makes room for so many and a register more.
+    /// Clears the list, and reserves memory for `n` points and a register more.
     #[inline(always)]
     fn clear(&mut self, n: usize) {
         self.len = 0;
@@ -124,7 +125,7 @@ impl Dominators {
         }
     }
 
-    /// Takes in some of sixteen points.
+    /// Appends the selected ones of sixteen points.
     #[inline(always)]
     fn push<S: Simd, const DEEP: bool>(&mut self, seen: &Seen<S>, mask: mask32x16<S>) {
         let to = self.len..self.len + LANES;
@@ -140,7 +141,7 @@ impl Dominators {
         self.len += mask.to_bitmask().count_ones() as usize;
     }
 
-    /// How many dominate each of sixteen points.
+    /// The number of points that dominate each of sixteen points.
     #[inline(always)]
     fn count<S: Simd, const DEEP: bool>(&self, seen: &Seen<S>) -> u32x16<S> {
         let mut number = u32x16::splat(seen.far.simd, 0);
@@ -164,7 +165,7 @@ impl Dominators {
     }
 }
 
-/// The axes of space that go with a picture's rows, and with several slices. The first goes with the columns.
+/// The axes of space along which a picture's rows, and several slices, differ. Columns differ along the first.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PictureAxes {
     pub(super) rows: usize,
@@ -175,15 +176,15 @@ pub(super) struct PictureAxes {
 #[derive(Debug)]
 pub(super) struct FlatPoints {
     pub(super) len: usize,
-    /// Their coordinates along the axes of the columns and of the rows, in cells from some corner that is less than 8
-    /// cells away, and so exact. There is room for a register more.
+    /// The coordinates along the axes of the columns and of the rows, in cells from a corner that is less than 8 cells
+    /// away, and therefore exact. They are padded by a register.
     pub(super) x: Vec<f32>,
     pub(super) y: Vec<f32>,
-    /// Coordinates along the axis across several slices.
+    /// The coordinates along the axis across several slices.
     pub(super) z: Vec<f32>,
-    /// What the other axes add to their keys.
+    /// The terms of the other axes, accumulated.
     pub(super) rest: Vec<f32>,
-    /// Which points of the table they are, if that is wanted.
+    /// The indices of the points in the table, if needed.
     pub(super) numbers: Vec<u32>,
     pub(super) wants_numbers: bool,
 }
@@ -201,7 +202,7 @@ impl FlatPoints {
         }
     }
 
-    /// Takes all away, and makes room for so many.
+    /// Clears the list, and reserves memory for `n` points.
     #[inline(always)]
     fn clear(&mut self, n: usize, wants_numbers: bool) {
         self.len = 0;
@@ -217,8 +218,8 @@ impl FlatPoints {
         }
     }
 
-    /// Takes all of a list, whose coordinates are counted from the lower corner of some pixels. The rows of the picture
-    /// go along `row_axis`, and several slices lie along `deep_axis`.
+    /// Appends all points of a list, with coordinates counted from the lower corner of some pixels. The rows of the
+    /// picture differ along `row_axis`, and several slices along `deep_axis`.
     #[inline(always)]
     pub(super) fn flatten<S: Simd, M: Measure>(
         &mut self,
@@ -253,7 +254,8 @@ impl FlatPoints {
         }
     }
 
-    /// Takes the points that fewer than `depth` others dominate in a cuboid. Only for metrics whose terms are added up.
+    /// Selects the points that fewer than `depth` others dominate in a cuboid. Only for metrics whose terms are added
+    /// up.
     #[inline(always)]
     pub(super) fn take_undominated<S: Simd>(
         &mut self,
@@ -270,7 +272,8 @@ impl FlatPoints {
         }
     }
 
-    /// Takes the points that fewer than `depth` others dominate, compiled for one slice or, where `DEEP`, for several.
+    /// Selects the points that fewer than `depth` others dominate; compiled for one slice or, where `DEEP`, for
+    /// several.
     #[inline(always)]
     fn take_undominated_axes<S: Simd, const DEEP: bool>(
         &mut self,

@@ -6,11 +6,11 @@ use crate::sink::Values;
 use core::ops::Range;
 use fearless_simd::{f32x16, prelude::*};
 
-/// The most columns and rows of a tile: two registers.
+/// The largest number of columns and of rows of a tile: two registers.
 pub(super) const TILE: usize = 2 * LANES;
 
-/// What a point that may be among the nearest adds to the keys of a tile: the terms of the columns, and those of all
-/// other axes together for each row. What follows the last column or row means nothing.
+/// The terms of a point that may be among the nearest, at the pixels of a tile: those of the columns, and those of all
+/// other axes together for each row. Elements after the last column or row are unused.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Candidate {
     pub(super) columns: [f32; TILE],
@@ -27,16 +27,16 @@ pub(super) struct Rows<'a> {
     /// Which of the registers of a tile's columns comes first, 0 or 1; 0, if there are two.
     pub(super) register: usize,
     pub(super) candidates: &'a [Candidate],
-    /// Keys from here on may be wrong.
+    /// The key from which on keys may be wrong.
     pub(super) limit: f32,
     pub(super) values: &'a Values,
 }
 
 impl Rows<'_> {
-    /// Fills pixels row by row, and returns the row from which on keys reach the limit: the end, if none does.
+    /// Fills pixels row by row, and returns the first row with a key that reaches the limit, or the end of the rows.
     ///
-    /// Roots take long, but while they are taken, the processor goes on to compare the next few rows: not too many at
-    /// once, so that it can look that far ahead.
+    /// Square roots take long, but meanwhile the processor compares the next few rows: not too many at once, so that it
+    /// can look that far ahead.
     #[inline(always)]
     pub(super) fn fill<S: Simd, M: Measure, const K: usize>(
         &self,
@@ -59,7 +59,7 @@ impl Rows<'_> {
         }
     }
 
-    /// `R` rows and `C` registers of columns at once; none stands for a part of one.
+    /// Fills groups of `R` rows and `C` registers of columns; `C = 0` stands for a part of a register.
     #[inline(always)]
     fn fill_groups<S: Simd, M: Measure, const K: usize, const R: usize, const C: usize>(
         &self,
@@ -75,7 +75,7 @@ impl Rows<'_> {
             for candidate in self.candidates {
                 let row_terms = &candidate.rows.as_chunks::<R>().0[group];
                 for part in 0..C.max(1) {
-                    // Within bounds, as the compiler sees.
+                    // The remainder shows the compiler that this is within bounds.
                     let register = (register + part) % 2;
                     let columns = &candidate.columns.as_chunks::<LANES>().0[register];
                     let column_terms = f32x16::from_slice(simd, columns);
@@ -115,7 +115,7 @@ impl Rows<'_> {
     }
 }
 
-/// Takes in one more key, and leaves out the largest.
+/// Inserts one more key in its order, and drops the largest.
 #[inline(always)]
 fn insert<S: Simd, const K: usize>(best: &mut [f32x16<S>; K], key: f32x16<S>) {
     for rank in (1..K).rev() {
@@ -124,7 +124,8 @@ fn insert<S: Simd, const K: usize>(best: &mut [f32x16<S>; K], key: f32x16<S>) {
     best[0] = lesser(best[0], key);
 }
 
-/// Floats of at least zero are in the order of their bits, and most processors compare whole numbers faster.
+/// The smaller of two numbers. Floats of at least zero are in the order of their bits, and most processors compare
+/// whole numbers faster.
 #[inline(always)]
 pub(super) fn lesser<S: Simd, V: SimdFloat<S, Element = f32>>(a: V, b: V) -> V {
     if floats_are_faster(a.token()) {
@@ -143,7 +144,7 @@ pub(super) fn greater<S: Simd, V: SimdFloat<S, Element = f32>>(a: V, b: V) -> V 
     }
 }
 
-/// SSE2 has no minimum of 32-bit whole numbers.
+/// Whether floats are compared faster than whole numbers: SSE2 has no minimum of 32-bit whole numbers.
 #[inline(always)]
 fn floats_are_faster<S: Simd>(simd: S) -> bool {
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]

@@ -1,4 +1,5 @@
-//! The planes halfway between a feature point and its neighbors, and which of them matter to its Voronoi cell.
+//! The planes halfway between a feature point and its neighbors, and the selection of those that bound its Voronoi
+//! cell.
 
 use super::cull::{PixelBox, lanes_before};
 use super::table::Table;
@@ -7,32 +8,32 @@ use crate::fixed::{MOST_AXES, STEP};
 use core::ops::Range;
 use fearless_simd::{f32x16, f64x8, i32x16, mask32x16, prelude::*};
 
-/// Distances in `f32` are less than this away from what they should be, in cells.
+/// A bound of the error of distances in `f32`, in cells.
 pub(super) const SLACK: f32 = 1.0 / (1 << 14) as f32;
 
-/// The planes of neighbors within this part of the reach tell where about the cell is.
+/// The part of the reach within which neighbors are used for the outline of the cell.
 const INNER: f32 = 0.75;
 
-/// The neighbors of a feature point, and the planes halfway to them in `f32`. There is room for a register more.
+/// The neighbors of a feature point, and the planes halfway to them in `f32`; padded by a register.
 #[derive(Debug)]
 pub(super) struct Neighbors {
     pub(super) n_axes: usize,
     /// The feature point, in steps from the corner of the table.
     pub(super) point: [i32; MOST_AXES],
-    /// All neighbors up to this distance are there, in cells.
+    /// The distance within which all neighbors are included, in cells.
     pub(super) reach: f32,
-    /// The ways from the neighbors to the point in cells, axis by axis, and their squared lengths.
+    /// The vectors from the neighbors to the point in cells, axis by axis, and their squared lengths.
     ways: [Vec<f32>; MOST_AXES],
     lengths_sq: Vec<f32>,
     len: usize,
     /// Unit normals towards the point, and distances from it in cells.
     pub(super) normals: [Vec<f32>; MOST_AXES],
     pub(super) distances: Vec<f32>,
-    /// Those that tell where about the cell is.
+    /// The neighbors that are used for the outline of the cell.
     pub(super) inner: Vec<usize>,
 }
 
-/// The planes that matter to a cell. There is room for a register more.
+/// The planes that can bound a cell, padded by a register.
 #[derive(Debug)]
 pub(super) struct Planes {
     pub(super) n_axes: usize,
@@ -41,7 +42,7 @@ pub(super) struct Planes {
     pub(super) normals: [Vec<f64>; MOST_AXES],
     /// Distances from the point, in cells.
     distances: Vec<f64>,
-    /// Distances from where a row of pixels has the first coordinate of the point, in cells.
+    /// The distances from the place where a row of pixels has the first coordinate of the point, in cells.
     pub(super) offsets: Vec<f64>,
 }
 
@@ -60,8 +61,8 @@ impl Neighbors {
         }
     }
 
-    /// Takes the neighbors of a point of a table up to `reach` cells away; `runs` have all of these. Tells whether no
-    /// other point is in the same place.
+    /// Finds the neighbors of a point of a table up to `reach` cells away; `runs` include all of these. Returns whether
+    /// no other point is in the same place.
     #[inline(always)]
     pub(super) fn find<S: Simd>(
         &mut self,
@@ -95,7 +96,7 @@ impl Neighbors {
         n_there == 1
     }
 
-    /// Takes all away, and makes room for the points of some runs.
+    /// Clears the list, and reserves memory for the points of some runs.
     fn clear(&mut self, n_axes: usize, runs: &[Range<usize>]) {
         (self.n_axes, self.len) = (n_axes, 0);
         let mut room = LANES;
@@ -110,7 +111,7 @@ impl Neighbors {
         }
     }
 
-    /// Takes in some of sixteen points.
+    /// Appends the selected ones of sixteen points.
     #[inline(always)]
     fn push<S: Simd>(
         &mut self,
@@ -157,7 +158,7 @@ impl Neighbors {
         false
     }
 
-    /// Makes their planes.
+    /// Computes the planes of the neighbors.
     #[inline(always)]
     pub(super) fn make_planes<S: Simd>(&mut self, simd: S) {
         self.inner.clear();
@@ -181,8 +182,9 @@ impl Neighbors {
         }
     }
 
-    /// Puts the planes that matter within some distance of the point in `planes`. A plane does not, if another one is
-    /// nearer to all of that ball: if it is nearer to the point by more than the normals differ, times the radius.
+    /// Selects the planes that matter within some distance of the point, into `planes`. A plane does not matter if
+    /// another one is nearer to all of that ball, which is so if it is nearer to the point by more than the difference
+    /// of the normals times the radius.
     #[inline(always)]
     pub(super) fn pick<S: Simd>(&self, simd: S, radius_sq: f32, planes: &mut Planes) {
         planes.clear(self.n_axes, self.len);
@@ -229,7 +231,7 @@ impl Planes {
         }
     }
 
-    /// Takes all away, and makes room for so many.
+    /// Clears the planes, and reserves memory for `n`.
     fn clear(&mut self, n_axes: usize, n: usize) {
         (self.n_axes, self.len) = (n_axes, 0);
         let room = n + F64_LANES;
@@ -241,7 +243,7 @@ impl Planes {
         }
     }
 
-    /// Makes the planes, where normals are the ways still.
+    /// Computes the planes from the vectors to the neighbors, which `normals` hold at first.
     #[inline(always)]
     fn make<S: Simd>(&mut self, simd: S) {
         for start in (0..self.len).step_by(F64_LANES) {
@@ -261,7 +263,8 @@ impl Planes {
         }
     }
 
-    /// Makes the offsets for a row; `rest` is the way from the point to there along the axes past the first, in cells.
+    /// Computes the offsets for a row; `rest` is the vector from the point to there along the axes past the first, in
+    /// cells.
     #[inline(always)]
     pub(super) fn take_row<S: Simd>(&mut self, simd: S, rest: &[f64; MOST_AXES]) {
         for start in (0..self.len).step_by(F64_LANES) {
@@ -275,7 +278,7 @@ impl Planes {
         }
     }
 
-    /// The smallest distance from the point.
+    /// The smallest distance of a plane from the point, in cells.
     pub(super) fn least(&self) -> f64 {
         let distances = self.distances[..self.len].iter();
         distances.copied().fold(f64::INFINITY, f64::min)

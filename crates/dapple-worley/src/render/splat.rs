@@ -1,9 +1,9 @@
-//! Small cells: every feature point is compared at the few tiles about it.
+//! Rendering of small cells: every feature point is compared at the few tiles near it.
 //!
-//! Where a cell has only a few pixels, looking for the points that matter to each tile takes longer than comparing
-//! them. So tiles have 4 × 4 pixels, a register, and each is compared with all points that lie in it or in the tiles
-//! about it ([`bins`](super::bins)). All points nearer to a pixel than the edge of these have been compared there
-//! then, and its keys are right if the `K`-th is smaller than that.
+//! Where a cell has only a few pixels, culling points for each tile takes longer than comparing them. So tiles have 4 ×
+//! 4 pixels, a register, and each is compared with all points that lie in it or in the tiles near it
+//! ([`bins`](super::bins)). This includes all points nearer to a pixel than the edge of these tiles, and the pixel's
+//! keys are right if the `K`-th is smaller than that.
 
 use super::bins::{Bins, Grid, HALF, Point, Reach, TILE};
 use super::block::{Block, Memory};
@@ -18,49 +18,49 @@ use crate::sink::{ValueLanes, Values};
 use dapple_raster::simd::{baseline, dispatch};
 use fearless_simd::{Level, f32x4, f32x16, i32x4, prelude::*};
 
-/// By how much of a pixel a pixel may lie beside its place: well below what [`SURE`] leaves.
+/// The largest distance of a pixel from its even position, in pixels: well below the room that [`SURE`] leaves.
 const UNEVEN: f32 = 0.001;
 
-/// The largest part of the distance from a tile to the edge of those about it that is relied upon: the place of a
-/// point among the pixels is rounded.
+/// The reliable part of the distance from a tile to the edge of the tiles near it: the place of a point among the
+/// pixels is rounded.
 const SURE: f32 = 0.999;
 
-/// Where the tiles about a tile reach further than this, in cells, there are better ways;
+/// The largest reach, in cells, of the tiles near a tile: past it, other methods are faster.
 const FARTHEST: f32 = 3.5;
 
-/// and also where they reach further than so many times the distance that is needed.
+/// The largest ratio of the reach to the distance that is needed: past it, other methods are faster.
 const MOST_WASTE: f32 = 4.0;
 
-/// The tiles about a tile that points are taken from, on either side.
+/// The number of tiles to either side of a tile from which points are taken, the smaller and the larger one.
 const NEAR: usize = 1;
 const WIDE: usize = 2;
 
-/// More half tiles above and below a tile than this are too many.
+/// The largest number of half tiles above and below a tile from which points are taken.
 const MOST_HALVES: usize = 8;
 
-/// How many times as far as the guess points are taken from along the axes across the picture: searching a pixel on its
-/// own takes as long as comparing hundreds.
+/// The distance along the axes across the picture within which points are taken, as a multiple of the guess: searching
+/// a pixel on its own takes as long as comparing hundreds of points.
 const SPARE: f32 = 1.1;
 
-/// How a block is filled.
+/// The parameters of the method for small cells, for a block.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Splat {
-    /// The tiles and half tiles about a tile that points are taken from.
+    /// The number of tiles and of half tiles to each side of a tile from which points are taken.
     around: [usize; 2],
-    /// The distance from any pixel within which no point is left out, in cells.
+    /// The distance from any pixel within which all points are compared, in cells.
     pub(super) reach: f32,
     /// Steps from one column to the next, and from one row to the next along the axis that goes with the rows.
     pixel: [f32; 2],
-    /// The axis that goes with the rows.
+    /// The axis along which rows differ.
     row_axis: usize,
 }
 
 impl Splat {
-    /// How to fill a block whose pixels need points as far away as `distance`, if it can be filled in this way.
+    /// The parameters for a block whose pixels need points as far away as `distance`, if the method can be used.
     pub(super) fn new(block: &Block<'_>, distance: f32) -> Option<Self> {
         let section = &block.bands[0].picture.section;
         let row_axis = section.row_axis()?;
-        // The terms of the axes across the picture are joined before those of the rows.
+        // The terms of the axes across the picture are accumulated before those of the rows.
         if section.n_axes == 4 && row_axis != 1 {
             return None;
         }
@@ -96,7 +96,7 @@ impl Splat {
         None
     }
 
-    /// Whether pixels are as evenly spaced as tiles need it: far from zero, `f64` may not tell them apart.
+    /// Whether pixels are as evenly spaced as tiles need it: far from zero, rounding of `f64` may make them uneven.
     pub(super) fn is_even(&self, lines: &[Vec<i32>; MOST_AXES]) -> bool {
         let is_even = |axis: usize, pixel: f32| {
             let line = &lines[axis][..lines[axis].len() - LANES];
@@ -167,7 +167,7 @@ impl Splat {
         }
     }
 
-    /// The cells with points within reach.
+    /// The cells with points within reach of the block.
     fn cells(&self, block: &Block<'_>, cells: &CellBox, memory: &Memory) -> CellBox {
         let pixels = memory.pixel_box(&block.all());
         let reach = (self.reach / STEP) as i32 + 1;
@@ -249,15 +249,15 @@ fn fill_block<const TILES: usize>(
     }
 }
 
-/// The points of a block in the order of their places.
+/// The points of a block in the order of their places, and the limits within which a row of tiles reads them.
 #[derive(Clone, Copy, Debug)]
 struct Runs<'a, const TILES: usize> {
     metric: Metric,
-    /// Keys from here on may be wrong.
+    /// The key from which on keys may be wrong.
     limit: f32,
     starts: &'a [u32],
     n_halves: usize,
-    /// The half tiles above and below a tile that its points come from.
+    /// The number of half tiles above and below a tile from which its points are taken.
     halves: usize,
     points: &'a [Point<TILES>],
     /// The coordinates of the rows.
@@ -280,16 +280,16 @@ impl<'a, const TILES: usize> Runs<'a, TILES> {
 
 /// A row of tiles.
 struct TileRow<'a> {
-    /// Which one, in the band.
+    /// The index of the row of tiles in the band.
     index: usize,
     values: &'a Values,
-    /// Its rows of pixels.
+    /// The rows of pixels.
     pixels: [&'a mut [f32]; TILE],
-    /// For each tile, the pixels whose keys reach the limit, which are not filled.
+    /// For each tile, a bit for each pixel whose keys reach the limit; these are not filled.
     unknown: &'a mut [u16],
 }
 
-/// Fills a row of tiles; `DEEP`, if there may be axes across the picture.
+/// Fills a row of tiles; `DEEP` is true if there may be axes across the picture.
 fn fill_by_depth<M: Measure, const TILES: usize, const DEEP: bool>(
     level: Level,
     measure: M,
@@ -303,7 +303,7 @@ fn fill_by_depth<M: Measure, const TILES: usize, const DEEP: bool>(
     }
 }
 
-/// The tiles that the points of one column of tiles matter to are held in registers.
+/// Fills a row of tiles. The tiles that one column of points matters to are held in registers.
 #[inline(always)]
 fn fill<S: Simd, M: Measure, const K: usize, const TILES: usize, const DEEP: bool>(
     simd: S,
@@ -325,7 +325,7 @@ fn fill<S: Simd, M: Measure, const K: usize, const TILES: usize, const DEEP: boo
             if DEEP {
                 rows = measure.accumulate(rows, f32x4::splat(simd, point.across));
             }
-            // Each of the four numbers four times.
+            // Each of the four numbers is repeated four times.
             let rows = f32x16::block_splat(rows);
             let rows = rows.zip_low(rows);
             let rows = rows.zip_low(rows);
@@ -350,7 +350,7 @@ fn fill<S: Simd, M: Measure, const K: usize, const TILES: usize, const DEEP: boo
 }
 
 impl TileRow<'_> {
-    /// Puts the values of a tile, but for the pixels whose keys reach the limit.
+    /// Stores the values of a tile, except for the pixels whose keys reach the limit.
     #[inline(always)]
     fn put<S: Simd, M: Measure, const K: usize>(
         &mut self,

@@ -1,7 +1,8 @@
 //! Squares of up to 64 × 64 pixels and their tiles of up to 32 × 32: from candidates to values.
 //!
-//! The candidates of a square are picked from the table, and those of each of its tiles from them. Where a key reaches
-//! the edge of the neighborhood that the candidates come from, the pixels are filled again from a larger one.
+//! The candidates of a square are selected from the table, and those of each of its tiles from the square's. Where a
+//! key reaches the edge of the neighborhood that the candidates come from, the pixels are filled again from a larger
+//! one.
 
 use super::area::Area;
 use super::block::{Block, Memory};
@@ -17,16 +18,17 @@ use crate::{LIMIT, Metric};
 use core::ops::Range;
 use dapple_raster::simd::{baseline, dispatch};
 
-/// A distance that hardly any of the nearest points exceeds.
+/// A guess of the distance of the nearest points, which few of them exceed.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Guess {
     pub(super) distance: f32,
-    /// The cells that it reaches over.
+    /// The number of cells that the distance reaches over.
     pub(super) ring: i32,
 }
 
 impl Guess {
-    /// A ball of that size has so many points on average that fewer than `depth` are unlikely: about one in 250.
+    /// The guess for `depth` points: a ball of that size has so many points on average that fewer than `depth` are
+    /// unlikely, about one in 250.
     pub(super) fn new(
         basis: &dyn Basis,
         middle: [i64; MOST_AXES],
@@ -34,7 +36,7 @@ impl Guess {
         depth: usize,
     ) -> Self {
         let points = [5.5, 7.8, 9.8, 11.6][depth - 1];
-        // The volumes of the Euclidean unit balls, near enough for a guess.
+        // The volumes of the Euclidean unit balls, precise enough for a guess.
         let ball = [1.0, 2.0, 3.1, 4.2, 4.9][n_axes];
         let distance = libm::pow(points / (ball * basis.density(middle)), 1.0 / n_axes as f64);
         Self {
@@ -44,28 +46,28 @@ impl Guess {
     }
 }
 
-/// How a block is filled.
+/// The parameters with which a block is filled.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Plan {
-    /// The greatest n of `F_n` that is needed.
+    /// The greatest n for which `F_n` is needed.
     pub(super) depth: usize,
     pub(super) guess: Guess,
     pub(super) metric: Metric,
-    /// The axis of the rows, if the terms of all others can be joined before those of the rows.
+    /// The axis of the rows, if the terms of all other axes can be accumulated before those of the rows.
     pub(super) row_axis: Option<usize>,
-    /// The columns and rows of a tile.
+    /// The numbers of columns and rows of a tile.
     pub(super) tile: [usize; 2],
-    /// The axis across the slices, if there are several.
+    /// The axis along which slices differ, if there are several.
     pub(super) deep_axis: Option<usize>,
 }
 
 impl Plan {
-    /// The points that can be among the nearest.
+    /// The criterion for points that can be among the nearest.
     pub(super) fn nearest(&self) -> Keep {
         Keep::Nearest(self.depth, self.metric.looseness())
     }
 
-    /// Where pixels lie, from their lower corner.
+    /// The box of pixels, in cells from its lower corner.
     fn cuboid(&self, pixels: &PixelBox) -> Cuboid {
         let mut high = [0.0; 3];
         for (high, axis) in high
@@ -83,55 +85,55 @@ impl Plan {
         }
     }
 
-    /// Whether points that are never among the nearest of a rectangle are left out.
+    /// Whether dominated points are removed from the candidates of a rectangle.
     pub(super) fn culls_dominated(&self) -> bool {
         self.row_axis.is_some() && self.metric.is_exact_sum()
     }
 }
 
-/// A square whose candidates are picked.
+/// A square, after its candidates are selected.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Square {
     pub(super) pixels: PixelBox,
     /// The box of its pixels, from its lower corner.
     pub(super) cuboid: Cuboid,
-    /// Whether it is its only tile.
+    /// Whether the square is a single tile.
     pub(super) is_tile: bool,
-    /// Keys from here on may be wrong.
+    /// The key from which on keys may be wrong.
     pub(super) limit: f32,
     pub(super) plan: Plan,
 }
 
-/// The columns and rows of the squares, and of their tiles.
+/// The numbers of columns and rows of the squares, and of their tiles.
 const SIZES: [[[usize; 2]; 2]; 3] = [
     [[64, 64], [32, 32]],
     [[32, 32], [32, 16]],
     [[16, 16], [16, 16]],
 ];
 
-/// Squares are not wider than this many steps: in wider ones, almost all points matter.
+/// The largest width of a square, in steps: in wider ones, almost all points matter.
 const WIDEST_SQUARE: i32 = STEPS + STEPS / 2;
 
-/// How many cells a square and its neighborhood may span, so that coordinates in it are exact in `f32`.
+/// The largest number of cells that a square and its neighborhood span, so that coordinates in it are exact in `f32`.
 const SPAN: i32 = 8;
 
-/// From where feature points are taken for a square.
+/// The region from which feature points for a square are taken.
 #[derive(Clone, Copy, Debug)]
 struct Neighborhood {
-    /// So many cells on every side of those that the square touches.
+    /// The number of cells on every side of those that the square touches.
     ring: i32,
-    /// How near to the square points are looked for; all that could matter, if nothing.
+    /// The distance from the square within which points are selected; `None` selects all that could matter.
     guess: Option<f32>,
 }
 
 impl Neighborhood {
-    /// Whether coordinates within it are exact.
+    /// Whether coordinates within the neighborhood are exact.
     fn fits(&self, pixels: &PixelBox) -> bool {
         let [first, last] = pixels.cells(self.ring);
         (0..pixels.n_axes).all(|axis| last[axis] - first[axis] < SPAN)
     }
 
-    /// The next larger one.
+    /// The next larger neighborhood.
     fn grown(self) -> Self {
         Self {
             ring: self.ring + i32::from(self.guess.is_none()),
@@ -156,7 +158,7 @@ impl Block<'_> {
         let square;
         [square, plan.tile] = SIZES.into_iter().find(fits).unwrap_or_else(|| {
             neighborhood.guess = Some(plan.guess.distance);
-            // Pixels are far apart.
+            // Whether the pixels are far apart.
             let is_widest = extent([LANES, 1]) as f32 * STEP >= 1.5;
             [[LANES, LANES / if is_widest { 4 } else { 2 }]; 2]
         });
@@ -205,7 +207,7 @@ impl Block<'_> {
         }
     }
 
-    /// Picks the candidates of a square from a table; all keys below the limit that is returned are right.
+    /// Selects the candidates of a square from a table; all keys below the returned limit are right.
     fn pick(
         &self,
         area: &Area,
@@ -326,8 +328,8 @@ impl Block<'_> {
         }
     }
 
-    /// Fills one or two registers of columns of a tile, up to the first row with a key beyond the limit, which it
-    /// returns.
+    /// Fills one or two registers of columns of a tile, and returns the first row with a key that reaches the limit, or
+    /// the end of the rows.
     fn fill_part(&self, part: Part<'_>, out: &mut Output<'_>, memory: &Memory) -> usize {
         let metric = part.square.plan.metric;
         if let Output::Values(values, out) = out {
@@ -363,7 +365,7 @@ impl Block<'_> {
         }
     }
 
-    /// Fills what shows which points are the nearest.
+    /// Fills features or gradients, which need the identity of the nearest points.
     fn fill_tracked<M: Measure>(
         &self,
         measure: M,
@@ -410,7 +412,7 @@ impl Block<'_> {
         left + area.columns.start..left + area.columns.end
     }
 
-    /// Puts what was found in a row.
+    /// Stores the nearest points of a row of pixels.
     fn put(&self, slice: usize, found: &Found, out: &mut Output<'_>) {
         match out {
             Output::Features(features) => found.put(features),
@@ -434,7 +436,7 @@ impl Block<'_> {
     }
 }
 
-/// Puts the gradients of some pixels of a row one after the other.
+/// Stores the gradients of some pixels of a row, one after the other.
 fn put_gradients<const N: usize>(tone: &Tone, metric: Metric, found: &Found, out: &mut [f32]) {
     for (lane, out) in out.as_chunks_mut::<N>().0.iter_mut().enumerate() {
         *out = tone.gradient(metric, &found.vectors::<N>(lane));

@@ -1,4 +1,4 @@
-//! The feature points of a box of cells, made once and then looked up.
+//! Tables of the feature points of a box of cells, generated once and then looked up.
 
 use super::LANES;
 use crate::fixed::{MOST_AXES, STEP_BITS};
@@ -7,7 +7,7 @@ use core::ops::Range;
 use dapple_hash::{CellHash, CellHashes};
 use fearless_simd::{prelude::*, u32x16};
 
-/// Cells along each axis, from the first to the last; only the cell 0 along axes that there are none of.
+/// A box of cells, from the first to the last along each axis; along missing axes it has only the cell 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CellBox {
     pub(super) n_axes: usize,
@@ -16,12 +16,12 @@ pub struct CellBox {
 }
 
 impl CellBox {
-    /// How many cells there are along an axis.
+    /// The number of cells along an axis.
     pub(super) fn side(&self, axis: usize) -> usize {
         (self.last[axis] - self.first[axis] + 1) as usize
     }
 
-    /// This box with `by` more cells on every side.
+    /// This box, extended by `by` cells on every side.
     pub(super) fn widened(mut self, by: i64) -> Self {
         for axis in 0..self.n_axes {
             self.first[axis] -= by;
@@ -30,7 +30,7 @@ impl CellBox {
         self
     }
 
-    /// The rows of cells along the first axis: the hash that those of the row begin with, and the first cell.
+    /// The rows of cells along the first axis: the hash state with which those of the row begin, and the first cell.
     pub(super) fn rows<const N: usize>(
         &self,
         lattice: &Lattice<N>,
@@ -50,7 +50,7 @@ impl CellBox {
         })
     }
 
-    /// How many cells there are; as many as can be counted, if there are more.
+    /// The number of cells; the largest number of the type, if it overflows.
     pub(super) fn n_cells(&self) -> u128 {
         let sides = self.first.iter().zip(self.last);
         sides
@@ -59,23 +59,22 @@ impl CellBox {
     }
 }
 
-/// So many points of a cell are copied without looking how many it has.
+/// The number of points of a cell that are copied without a look at their count.
 const USUAL: usize = 4;
 
 /// The feature points of a box of cells, row by row of cells.
 #[derive(Debug)]
 pub struct Table {
     pub(super) cells: CellBox,
-    /// Where the points of each cell begin, and where those of the last end.
+    /// The index of the first point of each cell, and at the end the number of points.
     starts: Vec<u32>,
-    /// Memory for the points of sixteen cells.
+    /// Scratch memory for the points of sixteen cells.
     scratch: Vec<u32>,
-    /// The coordinates along each axis, in steps from the lower corner of the box. After the last point there is room
-    /// for a whole register.
+    /// The coordinates along each axis, in steps from the lower corner of the box, padded by a whole register.
     pub(super) steps: [Vec<i32>; MOST_AXES],
-    /// Whether ids are wanted.
+    /// Whether ids are needed.
     pub(super) wants_ids: bool,
-    /// What the points are known by, if that is wanted.
+    /// The ids of the points, if needed.
     pub(super) ids: Vec<u64>,
 }
 
@@ -96,12 +95,12 @@ impl Table {
         }
     }
 
-    /// Whether it has the points of these cells, with ids or without.
+    /// Whether the table holds the points of these cells, with or without ids.
     pub(super) fn has(&self, cells: &CellBox, with_ids: bool) -> bool {
         !self.starts.is_empty() && self.cells == *cells && self.wants_ids == with_ids
     }
 
-    /// Makes the points of `cells`, which are at most 1000 along each axis.
+    /// Generates the points of `cells`, which are at most 1000 along each axis.
     #[inline(always)]
     pub(super) fn fill<S: Simd, const N: usize>(
         &mut self,
@@ -174,7 +173,7 @@ impl Table {
                 };
                 let from =
                     |index: usize| scratch[(index * N + axis) * LANES + lane].cast_signed() + shift;
-                // Most cells have no more points than this; what is too much is written over by the next cell.
+                // Most cells have no more points than this; the next cell overwrites what is too much.
                 let to = &mut self.steps[axis][end..end + number.max(USUAL)];
                 for index in 0..USUAL {
                     to[index] = from(index);
@@ -216,7 +215,7 @@ impl Table {
         }
     }
 
-    /// A point, in steps from the lower corner of the box.
+    /// The place of a point, in steps from the lower corner of the box.
     pub(super) fn point(&self, index: usize) -> [i32; MOST_AXES] {
         let mut point = [0; MOST_AXES];
         for axis in 0..self.cells.n_axes {
@@ -225,14 +224,13 @@ impl Table {
         point
     }
 
-    /// Whether it has the cells from `first` to `last` along each axis.
+    /// Whether the table holds the cells from `first` to `last` along each axis.
     pub(super) fn has_cells(&self, [first, last]: [[i32; MOST_AXES]; 2]) -> bool {
         (0..self.cells.n_axes)
             .all(|axis| first[axis] >= 0 && (last[axis] as usize) < self.cells.side(axis))
     }
 
-    /// The points of the cells that have places up to `reach` steps from a point along each axis, if the table has
-    /// these cells.
+    /// The points of the cells within `reach` steps of a point along each axis, if the table holds these cells.
     pub(super) fn around<'a>(
         &self,
         point: &[i32; MOST_AXES],
@@ -275,7 +273,7 @@ impl Table {
     }
 }
 
-/// How many points each of sixteen cells has, the first of which is `cell`.
+/// The numbers of points of sixteen cells, the first of which is `cell`.
 #[inline(always)]
 pub(super) fn numbers<S: Simd, const N: usize>(
     lattice: &Lattice<N>,
@@ -294,7 +292,7 @@ pub(super) fn numbers<S: Simd, const N: usize>(
     numbers
 }
 
-/// The low and the high half.
+/// The low and the high half of a coordinate.
 pub(super) fn words(coordinate: i64) -> [u32; 2] {
     [coordinate as u32, (coordinate >> 32) as u32]
 }

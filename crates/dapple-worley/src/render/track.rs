@@ -1,7 +1,7 @@
-//! The inner loop of pictures that tell which feature points are the nearest.
+//! The inner loop of pictures that need the identity of the nearest feature points.
 //!
-//! Keys hold the number of their candidate in the low bits, as in [`many`](crate::many). Pixels at which the order of
-//! two of the nearest cannot be told from the other bits are searched on their own.
+//! Keys hold the number of their candidate in the low bits, as in [`many`](crate::many). If the other bits do not tell
+//! the order of two of the nearest points, the pixel is searched on its own.
 
 use super::LANES;
 use super::flat::FlatPoints;
@@ -15,13 +15,13 @@ use crate::metric::Measure;
 use core::ops::Range;
 use fearless_simd::{f32x16, i32x16, prelude::*, u8x64, u32x16};
 
-/// The candidates of a tile, to be looked up when they are the nearest.
+/// The candidates of a tile, to look up those that are the nearest.
 #[derive(Debug)]
 pub(super) struct Lookup {
     n_axes: usize,
-    /// Their coordinates along each axis, in cells from a corner of the tile; padded to whole registers.
+    /// The coordinates along each axis, in cells from a corner of the tile; padded to whole registers.
     coordinates: [Vec<f32>; MOST_AXES],
-    /// Their ids, if they are wanted.
+    /// The ids, if they are needed.
     ids: Vec<u64>,
 }
 
@@ -34,7 +34,7 @@ impl Lookup {
         }
     }
 
-    /// Takes the candidates from the table; `low` is the corner, in steps.
+    /// Copies the candidates from the table; `low` is the corner, in steps.
     pub(super) fn fill(&mut self, points: &FlatPoints, table: &Table, low: [i32; MOST_AXES]) {
         let numbers = &points.numbers[..points.len];
         let room = points.len.next_multiple_of(LANES).max(LANES);
@@ -68,11 +68,11 @@ pub(super) struct TrackedRows<'a> {
     pub(super) register: usize,
     /// The coordinates of the columns, in steps, and those of the band's rows along the other axes.
     pub(super) lines: [&'a [i32]; MOST_AXES],
-    /// The corner from which candidates are counted.
+    /// The corner from which the candidates' coordinates are counted.
     pub(super) low: [i32; MOST_AXES],
     pub(super) candidates: &'a [Candidate],
     pub(super) lookup: &'a Lookup,
-    /// Keys from here on may be wrong.
+    /// The key from which on keys may be wrong.
     pub(super) limit: f32,
 }
 
@@ -81,19 +81,19 @@ pub(super) struct Found {
     pub(super) row: usize,
     pub(super) columns: Range<usize>,
     pub(super) n_axes: usize,
-    /// How many points there are.
+    /// The number of nearest points for each pixel.
     depth: usize,
     pub(super) distances: [[f32; LANES]; LIMIT],
-    /// The parts of a vector one after the other.
+    /// The components of the vectors, one after the other.
     pub(super) vectors: [[f32; MOST_AXES * LANES]; LIMIT],
     pub(super) ids: [[u64; LANES]; LIMIT],
-    /// The lanes whose order is not known, as bits.
+    /// A bit for each lane whose order is unknown.
     pub(super) unknown: u64,
 }
 
 impl TrackedRows<'_> {
-    /// Finds the `K` nearest points row by row, and returns the row from which on keys reach the limit: the end, if
-    /// none does.
+    /// Finds the `K` nearest points row by row, and returns the first row with a key that reaches the limit, or the end
+    /// of the rows.
     #[inline(always)]
     pub(super) fn fill<S: Simd, M: Measure, const K: usize>(
         &self,
@@ -143,7 +143,7 @@ impl TrackedRows<'_> {
         self.rows.end
     }
 
-    /// The keys of the `K` nearest, and of the next, with the numbers of their candidates in the low bits.
+    /// The keys of the `K` nearest points, and of the next one, with the numbers of their candidates in the low bits.
     #[inline(always)]
     fn smallest<S: Simd, M: Measure, const K: usize>(
         &self,
@@ -176,7 +176,7 @@ impl TrackedRows<'_> {
         (bits, next.to_bits())
     }
 
-    /// Takes down which points they are.
+    /// Looks up distances, vectors and ids of the nearest points.
     #[inline(always)]
     fn look_up<S: Simd, M: Measure, const N: usize>(
         &self,
@@ -211,7 +211,7 @@ impl TrackedRows<'_> {
     }
 }
 
-/// Puts the parts of sixteen vectors one after the other.
+/// Stores the components of sixteen vectors one after the other.
 #[inline(always)]
 fn interleave<S: Simd>(parts: &[f32x16<S>], out: &mut [f32; MOST_AXES * LANES]) {
     let out = out.as_chunks_mut::<LANES>().0;
@@ -256,7 +256,7 @@ fn look_up<S: Simd>(simd: S, table: &[f32], indices: u32x16<S>) -> f32x16<S> {
 }
 
 impl Found {
-    /// Puts the row into memory, but for what is unknown.
+    /// Stores the row in memory, except for the unknown pixels.
     pub(super) fn put(&self, features: &mut [FeatureRows<'_>]) {
         let columns = self.columns.clone();
         let n = columns.len();

@@ -1,4 +1,4 @@
-//! One position through every door, and beside the oracle.
+//! One position by every sampling method, compared with the oracle.
 
 use super::oracle::brute_force;
 use dapple_raster::{Raster, Window};
@@ -14,11 +14,11 @@ pub(super) const RANKS: [Combination; 4] = [
     Combination::F4,
 ];
 
-/// Of a pixel, in cells.
+/// The size of a pixel, in cells.
 const PIXEL: f64 = 1.0 / 64.0;
 
-/// The four nearest points of a position, which are the same through every door: one position, many positions, a
-/// window of features, and windows of values.
+/// The four nearest points of a position, which all sampling methods agree on: one position, many positions, a window
+/// of features, and windows of values.
 ///
 /// The position is a multiple of 2^-21 below 2^31, or of 2^-7, so that the window can have it as a pixel center.
 pub(super) fn sample_by_every_door<const N: usize>(
@@ -143,7 +143,7 @@ pub(super) fn agrees_with_oracle<const N: usize>(
     }
 }
 
-/// Checks that the way from a feature point begins at a point with its id, exactly.
+/// Checks that the vector from a feature point begins at a point with its id, exactly.
 fn leads_to_its_point<const N: usize>(
     worley: &Worley<N>,
     at: [f64; N],
@@ -152,7 +152,7 @@ fn leads_to_its_point<const N: usize>(
     Axes: Space<N>,
 {
     let vector: [f64; N] = feature.vector.into();
-    // Longer ways are rounded.
+    // Longer vectors are rounded.
     if vector.iter().any(|part| part.abs() >= 8.0) {
         return;
     }
@@ -174,8 +174,8 @@ fn leads_to_its_point<const N: usize>(
     );
 }
 
-/// How far the oracle must look so that it misses none of the five nearest points, but for one time in 10^7: as far as
-/// 30 points are expected, in the metric with the smallest balls.
+/// The distance to which the oracle must look so that it misses one of the five nearest points at most once in 10^7
+/// times: up to there 30 points are expected, in the metric with the smallest balls.
 pub(super) fn reach_of<const N: usize>(worley: &Worley<N>) -> Result<i64, WorleyError>
 where
     Axes: Space<N>,

@@ -1,4 +1,4 @@
-//! Far from the origin the picture is as sharp as there; and where there is no place, there is no number.
+//! Far from the origin the picture is as sharp as near it; a position without a place has no value.
 
 use super::doors::{RANKS, agrees_with_oracle, sample_by_every_door};
 use super::oracle::{METRICS, SCATTERS};

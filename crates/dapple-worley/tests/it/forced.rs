@@ -1,14 +1,14 @@
 //! Positions at which the own cell and its neighbors are not enough.
 //!
-//! Points further away than one cell are rare, so that pictures seldom show whether they are missed. Here such
-//! positions are looked for, must be found, and are checked through every door and beside the oracle.
+//! Points further away than one cell are rare, so that pictures seldom show whether they are missed. These tests search
+//! for such positions, fail if they find none, and check them by every sampling method and with the oracle.
 
 use super::doors::{agrees_with_oracle, reach_of, sample_by_every_door};
 use super::oracle::position;
 use dapple_hash::Seed;
 use dapple_worley::{Axes, Feature, Metric, Scatter, Space, Vector, Worley, WorleyError};
 
-/// How many cells away a feature point is, along its furthest axis.
+/// The distance of a feature point in cells, along its furthest axis.
 fn cells_away<const N: usize>(at: [f64; N], feature: &Feature<Vector<N>>) -> i64
 where
     Axes: Space<N>,

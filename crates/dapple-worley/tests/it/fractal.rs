@@ -1,4 +1,4 @@
-//! Fractal sums: doors, oracle, gradients, periods and ranges.
+//! Fractal sums: sampling methods, oracle, gradients, periods and ranges.
 
 use super::oracle::{METRICS, position};
 use dapple_hash::Seed;

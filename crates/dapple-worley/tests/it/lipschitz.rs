@@ -1,6 +1,6 @@
-//! No jumps: over any way, F1 to F4 change by at most its length in their metric.
+//! No jumps: over any path, F1 to F4 change by at most its length in their metric.
 //!
-//! This is what a search that misses points breaks, at the border of what it looks at.
+//! A search that misses points violates this, at the border of the cells it visits.
 
 use super::doors::RANKS;
 use super::oracle::{METRICS, SCATTERS, position};
@@ -9,8 +9,8 @@ use dapple_raster::{Raster, Window};
 use dapple_worley::{Axes, Metric, Plane, RESOLUTION, Space, Vector, Worley, WorleyError};
 use glam::DVec2;
 
-/// How far rounding may move the difference of two distances: a key is rounded a few times and its root once, and
-/// powers are good to about 1e-6.
+/// The largest change of the difference of two distances by rounding: a key is rounded a few times and its root once,
+/// and powers are good to about 1e-6.
 fn slack(metric: Metric, a: f32, b: f32) -> f32 {
     let relative = match metric {
         Metric::Minkowski(_) => 2e-6,

@@ -1,4 +1,5 @@
-//! The basis beside its oracle, through its public doors: the kernels are compiled once, in the library.
+//! Tests of the basis with its oracle, through its public interface, so that the kernels are compiled once, in the
+//! library.
 
 mod bits;
 mod cell_values;

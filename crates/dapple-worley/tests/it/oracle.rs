@@ -20,7 +20,7 @@ where
     found
 }
 
-/// The ways from all feature points within `reach` cells, and their ids.
+/// The vectors from all feature points within `reach` cells, and their ids.
 pub(super) fn vectors<const N: usize>(
     worley: &Worley<N>,
     position: [f64; N],
@@ -77,7 +77,7 @@ pub(super) const SCATTERS: [Scatter; 6] = [
     Scatter::Jittered { jitter: 0.3 },
 ];
 
-/// As [`brute_force`], in the Euclidean metric, with the ways from the points instead of their ids.
+/// All feature points within `reach` cells in the Euclidean metric, as distances and vectors, nearest first.
 pub(super) fn brute_force_vectors<const N: usize>(
     worley: &Worley<N>,
     position: [f64; N],

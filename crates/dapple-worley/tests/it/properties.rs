@@ -1,4 +1,4 @@
-//! What holds for every metric, scatter, period and seed.
+//! Properties of every metric, scatter, period and seed.
 
 use super::doors::{RANKS, agrees_with_oracle, reach_of, sample_by_every_door};
 use dapple_hash::Seed;
@@ -69,7 +69,7 @@ fn any_position<const N: usize>() -> impl Strategy<Value = [f64; N]> {
 
 fn cases(cases: u32) -> ProptestConfig {
     let default = ProptestConfig::default();
-    // More, if more are asked for.
+    // A larger number of cases, if it is set.
     let more = default.cases / 256;
     ProptestConfig {
         cases: cases * more.max(1),
@@ -97,7 +97,7 @@ where
     Ok(())
 }
 
-/// Moves by periods along every combination of axes; everything is the same there, to the last bit.
+/// Checks that samples are equal, to the last bit, after shifts by periods along every combination of axes.
 fn repeats<const N: usize>(
     worley: &Worley<N>,
     period: [Option<u32>; N],

@@ -1,4 +1,4 @@
-//! Pictures where points are thinned, and where slices are filled together.
+//! Pictures in which points are culled, and slices that are filled together.
 
 use dapple_hash::Seed;
 use dapple_raster::{Field, Raster, RasterErrorKind, Window};
@@ -8,8 +8,8 @@ use dapple_worley::{
 };
 use glam::{DVec2, DVec3, DVec4};
 
-/// A position that is as near to its nearest point as to the second one, to within a hair: on the way from `at` to
-/// another place with another nearest point.
+/// A position that is about equally far from its two nearest points: on the way from `at` to a place with another
+/// nearest point.
 pub(super) fn middle_ground<const N: usize>(worley: &Worley<N>, at: [f64; N]) -> [f64; N]
 where
     Axes: Space<N>,
@@ -32,7 +32,7 @@ where
     along(at, here)
 }
 
-/// So far along the first axis, and half as far along the second.
+/// A place at `way` along the first axis, and half as much along the second.
 fn along<const N: usize>(mut at: [f64; N], way: f64) -> [f64; N] {
     at[0] += way;
     at[1] += way / 2.0;
@@ -214,7 +214,7 @@ fn slices_of_another_size_are_refused_before_anything_is_drawn() -> Result<(), W
     Ok(())
 }
 
-/// Pictures that lie where hardly anybody goes, and their values one by one.
+/// Extreme planes and windows, compared with their values one by one.
 #[test]
 fn odd_planes_and_windows_hold_what_values_are() -> Result<(), WorleyError> {
     let up = |v: DVec3| Plane {
@@ -236,7 +236,7 @@ fn odd_planes_and_windows_hold_what_values_are() -> Result<(), WorleyError> {
     Ok(())
 }
 
-/// Zeros with a sign, and what is not a number, have the same bits in pictures as alone.
+/// Signed zeros and NaN have the same bits in pictures as in single values.
 #[test]
 fn values_of_nothing_have_the_same_bits_in_pictures() -> Result<(), WorleyError> {
     let window = Window::new(DVec2::ZERO, DVec2::ONE, [20, 20])?;

@@ -1,4 +1,4 @@
-//! Values that no change may move by accident: all pinned numbers of the crate.
+//! Pinned values of the crate, which no change may move by accident.
 //!
 //! Each test writes its numbers as lines of text, floating-point numbers as their bits. To pin them anew, take the
 //! lines that a failing test shows.

@@ -1,9 +1,9 @@
-//! Where the examples put what they make: a folder given as the first argument, or `target/examples-out`.
+//! The output folder of the examples: the first argument, or `target/examples-out`.
 
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// The path of a file in the folder, which is made where there is none.
+/// The path of a file in the folder, which is created if it does not exist.
 #[expect(clippy::disallowed_methods, reason = "an example writes files")]
 pub(crate) fn path(name: &str) -> io::Result<PathBuf> {
     let folder = std::env::args_os()
@@ -13,7 +13,7 @@ pub(crate) fn path(name: &str) -> io::Result<PathBuf> {
     Ok(folder.join(name))
 }
 
-/// Says what was written.
+/// Prints the path of a written file.
 #[expect(clippy::print_stdout, reason = "an example talks")]
 pub(crate) fn wrote(path: &Path) {
     println!("wrote {}", path.display());

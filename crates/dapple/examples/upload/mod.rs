@@ -10,17 +10,17 @@
 use dapple::color::{LinearRgb, Normal};
 use dapple::raster::{Raster, RasterError};
 
-/// What rows are padded to, in bytes.
+/// The alignment of rows, in bytes.
 const ROW_ALIGNMENT: usize = 256;
 
-/// A texture as a graphics API takes it.
+/// A texture in the form of a graphics API.
 pub(crate) struct Upload {
     pub(crate) format: Format,
-    /// The largest first.
+    /// The mip levels, the largest first.
     pub(crate) levels: Vec<Level>,
 }
 
-/// How a pixel is stored in four bytes, as WebGPU calls it.
+/// The format of a pixel in four bytes, with the name of WebGPU.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Format {
     Rgba8UnormSrgb,
@@ -29,15 +29,15 @@ pub(crate) enum Format {
 
 /// A mip level.
 pub(crate) struct Level {
-    /// Columns and rows.
+    /// The numbers of columns and rows.
     pub(crate) size: [u32; 2],
-    /// From the start of a row to that of the next; a multiple of 256.
+    /// The number of bytes from the start of a row to that of the next; a multiple of 256.
     pub(crate) bytes_per_row: usize,
     pub(crate) bytes: Vec<u8>,
 }
 
 impl Upload {
-    /// Colors, without alpha.
+    /// The texture of colors, without alpha.
     pub(crate) fn color(colors: &Raster<LinearRgb>) -> Result<Self, RasterError> {
         let mean = |four: [LinearRgb; 4]| (four[0] + four[1] + four[2] + four[3]) * 0.25;
         Self::new(Format::Rgba8UnormSrgb, colors, mean, |color| {
@@ -45,7 +45,7 @@ impl Upload {
         })
     }
 
-    /// Normals. Shaders make them as long as 1 again after sampling.
+    /// The texture of normals. Shaders normalize them again after sampling.
     pub(crate) fn normal(normals: &Raster<Normal>) -> Result<Self, RasterError> {
         let mean = |four: [Normal; 4]| {
             let mean = |part: fn(&Normal) -> f32| four.iter().map(part).sum::<f32>() * 0.25;

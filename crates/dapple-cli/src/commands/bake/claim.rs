@@ -109,7 +109,20 @@ fn targets(args: &Args, files: &OutputArgs, work: &Work) -> Result<Targets> {
         None => args.format.map_or("png", Format::ending),
     };
     let prefix = args.preset().map_or("", |preset| preset.prefix);
-    files.targets(&format!("{prefix}{}", work.recipe.name), &parts, ending)
+    let mut targets = files.targets(&format!("{prefix}{}", work.recipe.name), &parts, ending)?;
+    if let (Some(frame), Some(_)) = (args.frame, args.frames) {
+        // Of a loop the output itself is numbered, too, as is the JSON file beside it.
+        let numbered = targets.main.part(&frame.label())?;
+        for file in targets
+            .files
+            .iter_mut()
+            .filter(|file| **file == targets.main)
+        {
+            file.clone_from(&numbered);
+        }
+        targets.main = numbered;
+    }
+    Ok(targets)
 }
 
 /// The files of a shard, in a folder that is made for good: other runs may need it before this one is done.

@@ -43,6 +43,7 @@ impl Args {
             ("--format", self.format.is_some()),
             ("--region", self.region.is_some()),
             ("--shard", self.shard.is_some()),
+            ("--frames", self.frames.is_some()),
             ("--sheet", self.sheet),
             (
                 "--normal-y directx",

@@ -1,4 +1,4 @@
-//! Alpha in a blend: colors are mixed with their alpha multiplied in, so that what is transparent lends no color.
+//! Alpha in a blend: colors are mixed premultiplied by alpha, so that transparent pixels add no color.
 
 use super::layer::Material;
 use anyhow::Result;
@@ -6,7 +6,7 @@ use dapple::color::LinearRgb;
 use dapple::raster::Raster;
 use dapple::tile::Map;
 
-/// Multiplies alpha into the first maps, and adds it as the last map of every layer, if any layer has some.
+/// Multiplies alpha into the first maps, and adds it as the last map of every layer, if any layer has alpha.
 pub(in crate::commands) fn multiply(materials: &mut [Material]) -> Result<bool> {
     if materials.iter().all(|material| material.alpha.is_none()) {
         return Ok(false);
@@ -24,7 +24,7 @@ pub(in crate::commands) fn multiply(materials: &mut [Material]) -> Result<bool> 
     Ok(true)
 }
 
-/// Takes alpha from the end of the maps, and divides the first by it.
+/// Removes alpha from the end of the maps, and divides the first by it.
 pub(in crate::commands) fn divide(maps: &mut Vec<Map>) -> Result<Option<Raster<f32>>> {
     let Some(Map::Value(alpha)) = maps.pop() else {
         return Ok(None);

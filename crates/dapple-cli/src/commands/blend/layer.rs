@@ -19,16 +19,16 @@ const BASE: &str = "base";
 /// The name of the map that is a layer's height.
 pub(in crate::commands) const HEIGHT: &str = "height";
 
-/// A layer as it is typed.
+/// A layer on the command line.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(in crate::commands) struct LayerArg {
     path: PathBuf,
     weight: Option<Weight>,
-    /// The other maps by their names, in order; [`HEIGHT`] and `normal` are special.
+    /// The other maps by name, in order; [`HEIGHT`] and `normal` are special.
     maps: Vec<(String, PathBuf)>,
 }
 
-/// How much there is of a layer.
+/// The weight of a layer.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 enum Weight {
@@ -36,14 +36,14 @@ enum Weight {
     Mask(PathBuf),
 }
 
-/// A layer that was read.
+/// A layer with its images.
 #[derive(Debug)]
 pub(in crate::commands) struct Material {
-    /// Its maps, in the order of their names.
+    /// The maps, in the order of their names.
     pub(in crate::commands) maps: Vec<Map>,
-    /// The alpha of its first map, where that is kept.
+    /// The alpha of the first map, if it is kept.
     pub(in crate::commands) alpha: Option<Raster<f32>>,
-    /// Its height.
+    /// The height of the layer.
     pub(in crate::commands) height: Option<Raster<f32>>,
     /// Whether an image has more than 8 bits.
     pub(in crate::commands) is_deep: bool,
@@ -91,29 +91,29 @@ impl FromStr for LayerArg {
 }
 
 impl LayerArg {
-    /// The file of its first map.
+    /// The file of the first map.
     pub(in crate::commands) fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Whether it has a weight.
+    /// Whether the layer has a weight.
     pub(in crate::commands) fn has_weight(&self) -> bool {
         self.weight.is_some()
     }
 
-    /// Whether it has a height.
+    /// Whether the layer has a height.
     pub(in crate::commands) fn has_height(&self) -> bool {
         self.maps.iter().any(|(name, _)| name == HEIGHT)
     }
 
-    /// The names of its maps but the height.
+    /// The names of the maps, without the height.
     pub(in crate::commands) fn map_names(&self) -> Vec<&str> {
         let others = self.maps.iter().map(|(name, _)| name.as_str());
         let others: Vec<_> = others.filter(|name| *name != HEIGHT).collect();
         [BASE].into_iter().chain(others).collect()
     }
 
-    /// Reads all its images.
+    /// Reads all images of the layer.
     ///
     /// # Errors
     ///
@@ -159,21 +159,21 @@ impl LayerArg {
     }
 }
 
-/// Reads the images of all layers, which have one size in the end.
+/// A reader of the images of all layers, which have one size in the end.
 #[derive(Debug)]
 pub(in crate::commands) struct Reader {
-    /// The size that they are repeated or cut to.
+    /// The size to which images are repeated or cropped.
     size: Option<Size>,
-    /// How their alpha is handled.
+    /// The handling of alpha.
     alpha: Alpha,
-    /// The first that was read, and its size.
+    /// The first image that was read, and its size.
     first: Option<(PathBuf, [u32; 2])>,
-    /// The hint for images of unlike sizes.
+    /// The hint for images of different sizes.
     hint: &'static str,
 }
 
 impl Reader {
-    /// For images of a size, or of that of the first image; with a hint for those that have another.
+    /// A reader for images of a size, or of the size of the first image, with a hint for images of another size.
     pub(in crate::commands) fn new(size: Option<Size>, alpha: Alpha, hint: &'static str) -> Self {
         Self {
             size,
@@ -201,7 +201,7 @@ impl Reader {
         Ok(loaded)
     }
 
-    /// Reads an image whose alpha has nowhere to go.
+    /// Reads an image that must have no alpha.
     ///
     /// # Errors
     ///
@@ -218,7 +218,7 @@ impl Reader {
         Ok(loaded)
     }
 
-    /// Reads gray maps once more as color where another layer has color.
+    /// Reads gray maps again as color if another layer has color.
     ///
     /// # Errors
     ///
@@ -245,7 +245,7 @@ impl Reader {
     }
 }
 
-/// The weight of each layer at every pixel. Layers without one share what the others leave of 1.
+/// The weight of each layer at every pixel. Layers without a weight share the rest of 1.
 ///
 /// # Errors
 ///
@@ -274,7 +274,7 @@ pub(in crate::commands) fn weights(
         .collect())
 }
 
-/// The numbers of a map; of color its luminance.
+/// The numbers of a map, or the luminance of a color map.
 pub(in crate::commands) fn values(map: Map) -> Raster<f32> {
     match map {
         Map::Value(values) => values,
@@ -283,7 +283,8 @@ pub(in crate::commands) fn values(map: Map) -> Raster<f32> {
     }
 }
 
-/// The image before the first `,key=`, and the keys with their values. Other commas belong to the names of files.
+/// Splits the text into the image before the first `,key=`, and the keys with their values. Other commas belong to file
+/// names.
 fn split(text: &str) -> (String, Vec<(String, String)>) {
     let mut parts = text.split(',');
     let mut path = parts.next().unwrap_or_default().to_owned();
@@ -310,13 +311,13 @@ fn is_key(key: &str) -> bool {
             .all(|byte| byte.is_ascii_alphabetic() || b"_-".contains(&byte))
 }
 
-/// Refuses a key that is a slip of one that means something; others are names of maps.
+/// Fails for a key that looks like a misspelled option; other keys are names of maps.
 fn check_key(key: &str) -> Result<(), String> {
     let maps = MapKind::ALL.into_iter().map(MapKind::name);
     slip("key", key, ["weight"].into_iter().chain(maps)).map_or(Ok(()), Err)
 }
 
-/// A number, or the name of a mask.
+/// Parses a number, or the name of a mask.
 fn weight(text: &str) -> Result<Weight, String> {
     match text.parse::<f32>() {
         Ok(number) if number >= 0.0 && number.is_finite() => Ok(Weight::Number(number)),
@@ -325,7 +326,7 @@ fn weight(text: &str) -> Result<Weight, String> {
     }
 }
 
-/// A map in another size: repeated, or cut.
+/// A map in another size: repeated, or cropped.
 fn repeated(map: &Map, size: Size) -> Result<Map> {
     let context = "the images cannot be repeated";
     Ok(map_raster!(map, raster => repeat(raster, size.0).context(context)?))

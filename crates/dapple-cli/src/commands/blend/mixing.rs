@@ -1,4 +1,4 @@
-//! How `dapple blend` uses weights, and how it mixes.
+//! The weighting and the mixing of `dapple blend`.
 
 use crate::args::Axes;
 use crate::error::{Hint, usage};
@@ -11,7 +11,7 @@ use serde::Serialize;
 dapple::raster::named! {
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     enum WeightingName {
-        /// As they are.
+        /// The weights are the shares.
         Given = "given",
         /// The higher layer shows.
         Height = "height",
@@ -36,7 +36,7 @@ dapple::raster::named! {
 #[derive(clap::Args, Clone, Debug, Serialize)]
 #[command(next_help_heading = "Weighting and mixing")]
 pub(super) struct MixingArgs {
-    /// How weights are used; see below for what is the default.
+    /// How weights are used; the default is described below.
     #[arg(long, value_name = "HOW", value_parser = Word::<WeightingName>::all())]
     weighting: Option<WeightingName>,
 
@@ -44,8 +44,8 @@ pub(super) struct MixingArgs {
     #[arg(long, value_name = "N")]
     depth: Option<f64>,
 
-    /// mask: one over the width of transitions, in values of the tile, above 0 and at most 1e9: 1 is soft, 1e9 gives hard
-    /// edges; by default 8.
+    /// mask: one over the width of transitions, in values of the tile, above 0 and at most 1e9: 1 is soft, 1e9 makes
+    /// hard edges; by default 8.
     #[arg(long, value_name = "N")]
     gain: Option<f64>,
 
@@ -57,21 +57,22 @@ pub(super) struct MixingArgs {
     #[arg(long, value_name = "N")]
     levels: Option<u32>,
 
-    /// pyramid: how much sharper the transitions of the finest band are, at least 0; by default 8.
+    /// pyramid: the sharpness of the transitions of the finest band, at least 0; by default 8.
     #[arg(long, value_name = "N")]
     sharpness: Option<f64>,
 
-    /// pyramid: along which axes the images and their blend repeat; by default none, and past the edges lies the mirror image.
+    /// pyramid: the axes along which the images and their blend repeat; by default none, with mirror images past the
+    /// edges.
     #[arg(long, value_name = "AXES", value_parser = Word::<Axes>::all())]
     wrap: Option<Axes>,
 }
 
 impl MixingArgs {
-    /// The blend, with the weighting that goes with what there is unless one was asked for.
+    /// The options of the blend; the default weighting depends on the inputs.
     ///
     /// # Errors
     ///
-    /// If an option was given that has no effect.
+    /// If an option has no effect.
     pub(super) fn blend(&self, has_tile: bool, has_heights: bool) -> Result<Blend> {
         let weighting = self.weighting.unwrap_or(match (has_tile, has_heights) {
             (true, _) => WeightingName::Mask,

@@ -7,11 +7,11 @@ use dapple::hash::Seed;
 use dapple::tile::{BorderSource, CornerTiles, Disturbance, Map, MatchBorders, TileError};
 use serde::Serialize;
 
-/// The most tiles of corners.
+/// The largest number of tiles for corners.
 const CORNERS_MAX: usize = 4;
 
 dapple::raster::named! {
-    /// How copies become unlike.
+    /// The method by which copies vary.
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     enum Name {
         /// One tile: each copy keeps its border and has another piece of the tile inside.
@@ -23,41 +23,41 @@ dapple::raster::named! {
     }
 }
 
-/// The method and its options.
+/// Options of the method.
 #[derive(clap::Args, Clone, Debug, Serialize)]
 #[command(next_help_heading = "Method")]
 pub(super) struct MethodArgs {
-    /// The method; by default by the number of tiles.
+    /// The method; by default chosen by the number of tiles.
     #[arg(long, value_parser = Word::<Name>::all())]
     method: Option<Name>,
 
-    /// disturb: how many pixels along the borders of a tile stay as they are; by default 4, or an eighth of the shorter side if
-    /// that is less.
+    /// disturb: the number of unchanged pixels along the borders of a tile; by default 4, or an eighth of the shorter
+    /// side if that is less.
     #[arg(long, value_name = "PX")]
     frozen: Option<u32>,
 
-    /// disturb: how many more pixels the cut may take, together with the frozen ones at most half of a side; by default a
-    /// quarter of the shorter side.
+    /// disturb: the number of further pixels in which the cut may lie, together with the frozen ones at most half of a
+    /// side; by default a quarter of the shorter side.
     #[arg(long, value_name = "PX")]
     margin: Option<u32>,
 
-    /// borders: how far from its borders a tile changes, in pixels, from 1 to half of a side; by default a quarter of the shorter
-    /// side.
+    /// borders: the width of the changed borders of a tile, in pixels, from 1 to half of a side; by default a quarter
+    /// of the shorter side.
     #[arg(long, value_name = "PX")]
     width: Option<u32>,
 
-    /// borders: what all borders become: the border of the first tile, or its middle, if it does not repeat; by default the
-    /// border.
+    /// borders: the source of all borders: the border of the first tile, or its middle, if it does not repeat; by
+    /// default the border.
     #[arg(long, value_name = "WHICH", value_parser = Word::<BorderSource>::all())]
     source: Option<BorderSource>,
 
-    /// corners: the share of the shorter side that cuts may take, above 0 and at most 1; the more, the less the pieces are squares;
-    /// by default 0.75.
+    /// corners: the share of the shorter side that cuts may take, above 0 and at most 1; the larger, the less the
+    /// pieces look like squares; by default 0.75.
     #[arg(long, value_name = "PART")]
     share: Option<f64>,
 }
 
-/// A method with its options, of which those that depend on the tiles may be left open.
+/// A method with its options; those whose default depends on the tiles may be missing.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Method {
     Disturb {
@@ -78,7 +78,7 @@ impl MethodArgs {
     ///
     /// # Errors
     ///
-    /// If the method does not take this number of tiles, or an option of another method was given.
+    /// If the method does not allow this number of tiles, or an option of another method was given.
     pub(super) fn method(&self, count: usize, writes_tiles: bool) -> Result<Method> {
         let name = self.method.unwrap_or(match count {
             1 => Name::Disturb,
@@ -113,7 +113,7 @@ impl MethodArgs {
         }
     }
 
-    /// Refuses options of other methods, which would have no effect.
+    /// Fails for options of other methods, which would have no effect.
     fn check_used(&self, method: Name) -> Result<()> {
         for (option, is_given, used_by) in [
             ("frozen", self.frozen.is_some(), Name::Disturb),
@@ -132,7 +132,7 @@ impl MethodArgs {
 }
 
 impl Method {
-    /// The names of the tiles of a set that is made of `count` tiles.
+    /// The names of the tiles of a set from `count` tiles.
     pub(super) fn tile_names(self, count: usize) -> Vec<String> {
         let Self::Corners { .. } = self else {
             return (1..=count).map(|tile| tile.to_string()).collect();
@@ -144,7 +144,7 @@ impl Method {
     }
 }
 
-/// A method, and the maps of the tiles that it is to take, at least one.
+/// A method, and the maps of its tiles, at least one.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Tiles<'a> {
     pub(super) method: Method,
@@ -152,11 +152,11 @@ pub(super) struct Tiles<'a> {
 }
 
 impl Tiles<'_> {
-    /// A map.
+    /// Renders a map of copies.
     ///
     /// # Errors
     ///
-    /// A refusal of the method.
+    /// Errors of the method.
     pub(super) fn render(&self, seed: Seed, size: [u32; 2]) -> Result<Vec<Map>, TileError> {
         match self.method {
             Method::Disturb { frozen, margin } => {
@@ -170,7 +170,7 @@ impl Tiles<'_> {
                 disturbance.render_maps(&self.materials[0], [0, 0], size)
             }
             Method::Corners { share } => {
-                // A map of whole tiles repeats.
+                // Maps of whole tiles repeat.
                 let side = self.materials[0][0].size();
                 let period = [0, 1].map(|axis| {
                     let tiles = size[axis] / side[axis];
@@ -186,11 +186,11 @@ impl Tiles<'_> {
         }
     }
 
-    /// The tiles of a set, in the order of their names.
+    /// Makes the tiles of a set, in the order of their names.
     ///
     /// # Errors
     ///
-    /// A refusal of the method.
+    /// Errors of the method.
     pub(super) fn tiles(&self) -> Result<Vec<Vec<Map>>, TileError> {
         match self.method {
             Method::Corners { share } => self.corners(share)?.all(),

@@ -1,4 +1,4 @@
-//! The channels of an image as the file has them, and their statistics.
+//! The channels of an image in its file, and their statistics.
 
 use anyhow::Result;
 use dapple::color::Code;
@@ -8,9 +8,9 @@ use serde::Serialize;
 use serde_json::{Value, json};
 use std::fmt;
 
-/// How many parts a histogram has.
+/// The number of parts of a histogram.
 const BINS: u32 = 24;
-/// From an empty part of a histogram to its fullest.
+/// The bars of a histogram, from an empty part to the fullest.
 const BARS: [char; 9] = [' ', '▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
 
 const GRAY: [&str; 1] = ["gray"];
@@ -25,12 +25,12 @@ pub(super) struct Channel {
 }
 
 impl Channel {
-    /// How many of its pixels are NaN or infinite.
+    /// The number of pixels that are NaN or infinite.
     pub(super) fn n_not_finite(&self) -> usize {
         self.values.statistics().n_not_finite
     }
 
-    /// Its statistics for programs. Numbers that are not finite become null.
+    /// The statistics as JSON. Numbers that are not finite become null.
     pub(super) fn to_json(&self) -> Value {
         let statistics = self.values.statistics();
         json!({
@@ -48,13 +48,13 @@ impl Channel {
             .count()
     }
 
-    /// How many pixels lie in each part of the range.
+    /// The number of pixels in each part of the range.
     fn histogram(&self) -> Vec<usize> {
         let statistics = self.values.statistics();
         let finite = self.values.pixels().iter().copied();
         let finite: Vec<_> = finite.filter(|value| value.is_finite()).collect();
         let length = u32::try_from(finite.len()).unwrap_or(u32::MAX);
-        // Without a finite pixel there is no raster, and nothing to count.
+        // Without a finite pixel there is no raster, and the histogram is zero.
         Raster::from_vec([length, 1], finite).map_or_else(
             |_| vec![0; BINS as usize],
             |values| values.histogram(statistics.min, statistics.max, BINS),
@@ -66,7 +66,7 @@ impl Channel {
         let counts = self.histogram();
         let most = counts.iter().copied().max().unwrap_or(0).max(1);
         let bar = |&count: &usize| {
-            // A count above 0 has a bar.
+            // A count above 0 has a visible bar.
             let height = (count * (BARS.len() - 1)).div_ceil(most);
             BARS[height]
         };
@@ -97,11 +97,11 @@ impl Channel {
     }
 }
 
-/// The channels of an image, as the file has them.
+/// The channels of an image, uncoded as in the file.
 ///
 /// # Errors
 ///
-/// If the image has none that can be told apart.
+/// If the channels have no known names.
 pub(super) fn channels(image: &Image) -> Result<Vec<Channel>> {
     Ok(match image {
         Image::Png(png) | Image::Jpeg(png) => match &png.pixels {
@@ -125,7 +125,7 @@ pub(super) fn channels(image: &Image) -> Result<Vec<Channel>> {
     })
 }
 
-/// The format, in words.
+/// The format of an image, in words.
 pub(super) fn format(image: &Image) -> String {
     let (name, bits) = (image.format(), image.bits());
     match image {
@@ -137,12 +137,12 @@ pub(super) fn format(image: &Image) -> String {
     }
 }
 
-/// How much of an image is transparent, as parts of its pixels.
+/// The transparent parts of an image, as fractions of its pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub(super) struct Transparency {
-    /// With an alpha of 0.
+    /// The fraction with an alpha of 0.
     fully: f64,
-    /// With an alpha between 0 and 1.
+    /// The fraction with an alpha between 0 and 1.
     partly: f64,
 }
 
@@ -159,7 +159,7 @@ impl fmt::Display for Transparency {
     }
 }
 
-/// How much of the image is transparent, if it has alpha.
+/// The transparent parts of an image, if it has alpha.
 pub(super) fn transparency(channels: &[Channel]) -> Option<Transparency> {
     let alpha = channels
         .iter()
@@ -174,7 +174,7 @@ pub(super) fn transparency(channels: &[Channel]) -> Option<Transparency> {
     })
 }
 
-/// A line for each channel, under a header; each begins a new line.
+/// A line for each channel, below a header; each begins with a line end.
 pub(super) fn table(channels: &[Channel]) -> String {
     let mut table = format!(
         "\n  {:<12}{:>10}{:>10}{:>10}{:>10}  histogram from min to max",

@@ -12,7 +12,7 @@ use std::path::Path;
 ///
 /// # Errors
 ///
-/// If it cannot be read.
+/// If the mesh cannot be read.
 pub(super) fn findings(path: &Path) -> Result<Findings> {
     let model = input::model(path)?;
     let report = model.mesh.report();
@@ -74,7 +74,7 @@ fn counts(report: &MeshReport) -> [(&'static str, usize); 12] {
             report.winding_edges,
         ),
         ("faces without an area", report.degenerate_faces),
-        ("faces that are there twice", report.duplicate_faces),
+        ("duplicate faces", report.duplicate_faces),
         ("faces back to back with another", report.back_to_back_faces),
         (
             "vertices at the place of another",
@@ -84,7 +84,7 @@ fn counts(report: &MeshReport) -> [(&'static str, usize); 12] {
     ]
 }
 
-/// The corners of the box around it, if it has a vertex.
+/// The corners of the bounding box, if the mesh has a vertex.
 fn bounds(model: &Model) -> Option<[DVec3; 2]> {
     let positions = model.mesh.positions();
     let (&first, rest) = positions.split_first()?;
@@ -92,7 +92,7 @@ fn bounds(model: &Model) -> Option<[DVec3; 2]> {
     Some(rest.iter().fold([first; 2], grow))
 }
 
-/// The names of what it has besides positions.
+/// The names of the attributes besides positions.
 fn columns(model: &Model) -> Vec<&'static str> {
     let material = &model.material;
     let all = [

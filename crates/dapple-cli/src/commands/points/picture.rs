@@ -1,4 +1,4 @@
-//! Points as a picture: a dot for each, in the color of its level.
+//! Pictures of points: a dot for each, in the color of its level.
 
 use super::scatter::Scattered;
 use crate::args::{RampArg, Size};
@@ -9,14 +9,14 @@ use dapple::points::Domain;
 use dapple::points::glam::DVec2;
 use dapple::raster::Raster;
 
-/// The longest side of a picture.
+/// The longest side of a picture, in pixels.
 const SIDE_MAX: u32 = 1 << 14;
-/// The radius of a dot, as a part of the mean distance.
+/// The default radius of a dot, as a fraction of the mean distance.
 const DOT: f64 = 0.25;
-/// The smallest radius that is chosen, in pixels, so that a dot can be seen.
+/// The smallest default radius, in pixels, so that a dot is visible.
 const DOT_MIN: f64 = 0.6;
 
-/// The picture, as large as fits into `size` with square pixels.
+/// Draws the picture, as large as fits into `size` with square pixels.
 ///
 /// # Errors
 ///
@@ -67,7 +67,7 @@ fn colors(ramp: Option<&RampArg>, n_levels: usize) -> Vec<LinearRgb> {
     }
 }
 
-/// Where copies of the domain lie that reach into it.
+/// The shifts of copies of the domain that reach into it.
 fn shifts(domain: &Domain) -> impl Iterator<Item = DVec2> {
     let steps = |axis: usize| if domain.wrap[axis] { -1..=1 } else { 0..=0 };
     let (columns, rows, size) = (steps(0), steps(1), domain.size);
@@ -77,7 +77,7 @@ fn shifts(domain: &Domain) -> impl Iterator<Item = DVec2> {
     })
 }
 
-/// A disk with a soft edge, as far as it lies in the picture; `center` and `radius` in pixels.
+/// Draws a disk with a soft edge, as far as it lies in the picture; `center` and `radius` are in pixels.
 fn draw(picture: &mut Raster<LinearRgb>, center: DVec2, radius: f64, color: LinearRgb) {
     let [columns, rows] = [0, 1].map(|axis| {
         let side = f64::from(picture.size()[axis]);

@@ -6,17 +6,17 @@ use dapple::points::{EmptyCircle, PointSet, Spectrum, SpectrumOptions, spectrum}
 use serde_json::{Value, json};
 use std::fmt;
 
-/// Below this frequency, in units of sqrt(N / area), a set without clumps has hardly any power.
+/// The frequency, in units of sqrt(N / area), below which a set without clumps has hardly any power.
 const LOW: f64 = 0.5;
 
-/// The measurements.
+/// The measurements of a point set.
 pub(super) struct Report {
     n_points: usize,
     lengths: Vec<usize>,
     radius: Option<f64>,
     least_distance: Option<f64>,
     empty_circle: Option<EmptyCircle>,
-    /// Points per square of the radius, where there is one.
+    /// The number of points per square of the radius, if there is a radius.
     density: Option<f64>,
     spectrum: Option<Spectrum>,
 }
@@ -26,7 +26,7 @@ impl Report {
     ///
     /// # Errors
     ///
-    /// None that points of this command could cause.
+    /// None for points of this command.
     pub(super) fn of(scattered: &Scattered) -> Result<Self> {
         let points: &PointSet = &scattered.points;
         let options = SpectrumOptions::default();
@@ -39,12 +39,12 @@ impl Report {
             density: scattered
                 .radius
                 .map(|radius| points.normalized_density(radius)),
-            // Too many points have no spectrum in a reasonable time, and the rest still holds.
+            // Very many points have no spectrum in a reasonable time; the other measurements still hold.
             spectrum: spectrum(core::slice::from_ref(points), &options).ok(),
         })
     }
 
-    /// For programs.
+    /// The measurements as JSON.
     pub(super) fn to_json(&self) -> Value {
         let circle = self
             .empty_circle

@@ -1,4 +1,4 @@
-//! The kinds of point sets, and the options that each of them takes.
+//! The kinds of point sets, and their options.
 
 use crate::args::{Axes, Extent, Numbers, Size, image_alpha, seed};
 use crate::error::{Hint, usage};
@@ -22,7 +22,7 @@ use std::sync::Arc;
 
 /// The default number of points.
 const COUNT: u32 = 1000;
-/// The most columns and rows at which the density of an image is read.
+/// The largest number of columns and rows at which the density of an image is read.
 const PLACES_MAX: u32 = 2048;
 
 dapple::raster::named! {
@@ -36,27 +36,27 @@ dapple::raster::named! {
     }
 }
 
-/// The kind of point set and its options.
+/// Options of the kind of point set.
 #[derive(clap::Args, Clone, Debug, Serialize)]
 #[command(next_help_heading = "Points")]
 pub(super) struct ScatterArgs {
-    /// The kind of points; see below.
+    /// The kind of points, described below.
     #[arg(value_parser = Word::<Kind>::all(), default_value_t = Kind::Poisson, hide_possible_values = true, help_heading = None::<&str>)]
     kind: Kind,
 
-    /// Where the randomness comes from: any whole number from 0 to 2^64 - 1.
+    /// The seed of all random choices: any whole number from 0 to 2^64 - 1.
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = seed)]
     pub(super) seed: u64,
 
-    /// About how many points, at least 1; by default 1000.
+    /// The approximate number of points, at least 1; by default 1000.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     count: Option<u32>,
 
-    /// poisson: the least distance, in units of the domain, above 0.
+    /// poisson: the smallest distance, in units of the domain, above 0.
     #[arg(long, value_name = "R", conflicts_with = "count")]
     radius: Option<f64>,
 
-    /// nested: the least distances of the levels, the coarsest first.
+    /// nested: the smallest distances of the levels, the coarsest first.
     #[arg(
         long,
         value_name = "R,R,...",
@@ -65,25 +65,25 @@ pub(super) struct ScatterArgs {
     )]
     radii: Vec<f64>,
 
-    /// nested: how many levels, 1 to 16, each with about four times the points of the one before; by default 3.
+    /// nested: the number of levels, 1 to 16, each with about four times the points of the one before; by default 3.
     #[arg(long, value_name = "N", conflicts_with = "radii", value_parser = clap::value_parser!(u32).range(1..=16))]
     levels: Option<u32>,
 
-    /// variable: where points are dense: an image, whose bright parts are; or A:B, a ramp from left to right, which has
-    /// points in the ratio of A to B at its ends.
+    /// variable: the density of points: an image, with more points in brighter parts; or A:B, a ramp from left to
+    /// right, with points in the ratio of A to B at its ends.
     #[arg(long, value_name = "IMAGE|A:B")]
     density: Option<Density>,
 
-    /// variable: how the transparency of the image is handled, which is refused by default: `drop` takes the colors without it,
-    /// and `over:COLOR` lays the image over a color, such as `over:black`.
+    /// variable: how the transparency of the image is handled, which is an error by default: `drop` uses the colors
+    /// without it, and `over:COLOR` composites the image over a color, such as `over:black`.
     #[arg(long, value_name = "drop|over:COLOR", value_parser = image_alpha, requires = "density")]
     alpha: Option<ImageAlpha>,
 
-    /// variable: let dark parts of the image be dense.
+    /// variable: put more points in darker parts of the image.
     #[arg(long)]
     invert: bool,
 
-    /// variable: how far apart points of different radius are; by default the mean of their radii.
+    /// variable: the distance of points with different radii; by default the mean of their radii.
     #[arg(long, value_name = "RULE", value_parser = Word::<DiskRule>::all())]
     rule: Option<DiskRule>,
 
@@ -91,11 +91,11 @@ pub(super) struct ScatterArgs {
     #[arg(long, value_name = "NxM", conflicts_with = "count")]
     cells: Option<Size>,
 
-    /// jittered: from 0, the center of the cell, to 1, anywhere in it; by default 1.
+    /// jittered: the distance from the center of the cell, from 0 to 1, anywhere in it; by default 1.
     #[arg(long, value_name = "PART")]
     jitter: Option<f64>,
 
-    /// Width and height of the domain.
+    /// The width and height of the domain.
     #[arg(long, value_name = "WxH", default_value = "1", help_heading = "Domain")]
     domain: Extent,
 
@@ -109,7 +109,7 @@ pub(super) struct ScatterArgs {
     )]
     origin: Numbers<f64, 2>,
 
-    /// Along which axes the domain wraps: the points then repeat without a seam.
+    /// The axes along which the domain wraps: the points then repeat without a seam.
     #[arg(long, value_parser = Word::<Axes>::all(), default_value_t = Axes::Both, help_heading = "Domain")]
     wrap: Axes,
 }
@@ -118,9 +118,9 @@ pub(super) struct ScatterArgs {
 #[derive(Debug)]
 pub(super) struct Scattered {
     pub(super) points: PointSet,
-    /// How many points are of each level and the ones before; a single number for points without levels.
+    /// The number of points in each level and the ones before; a single number for points without levels.
     pub(super) lengths: Vec<usize>,
-    /// The least distance, if there is one.
+    /// The smallest distance, if there is one.
     pub(super) radius: Option<f64>,
 }
 
@@ -136,7 +136,7 @@ impl ScatterArgs {
     ///
     /// # Errors
     ///
-    /// If an option was given that the kind does not have, or has a bad value.
+    /// If an option does not belong to the kind, or has a bad value.
     pub(super) fn scatter(&self) -> Result<Scattered> {
         self.check_used()?;
         let Extent([width, height]) = self.domain;
@@ -184,7 +184,7 @@ impl ScatterArgs {
         let radii = if self.radii.is_empty() {
             let finest = poisson_disk_radius(domain, count).map_err(advise)?;
             let n_levels = self.levels.unwrap_or(3);
-            // Twice the radius for a quarter of the points.
+            // Twice the radius gives a quarter of the points.
             let radius = |level| finest * f64::from(1_u32 << (n_levels - 1 - level));
             (0..n_levels).map(radius).collect()
         } else {
@@ -240,7 +240,7 @@ impl ScatterArgs {
         radius.map_err(advise).with_context(|| input::name(path))
     }
 
-    /// Refuses options of other kinds, which would have no effect.
+    /// Fails for options of other kinds, which would have no effect.
     fn check_used(&self) -> Result<()> {
         let given = [
             ("radius", self.radius.is_some(), Kind::Poisson),
@@ -295,7 +295,7 @@ fn flat(points: PointSet, radius: Option<f64>) -> Scattered {
     }
 }
 
-/// Columns and rows of nearly square cells, about as many as points are wanted.
+/// The columns and rows of nearly square cells, about as many as the number of points.
 fn square_cells(domain: Domain, count: u32) -> [u32; 2] {
     let side = (domain.area() / f64::from(count)).sqrt();
     let along = |length: f64| ((length / side + 0.5).floor().max(1.0)) as u32;

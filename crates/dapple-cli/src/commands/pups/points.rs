@@ -63,8 +63,9 @@ fn point(text: &str) -> Result<ControlPoint> {
     Ok(ControlPoint {
         x,
         y,
-        value: value as f32,
+        value: Some(value as f32),
         orientation,
+        ..ControlPoint::default()
     })
 }
 
@@ -78,7 +79,7 @@ mod tests {
         let points = csv("x,y,value\n# a comment\n0.5,1,0.25\n\n1, 2, 3, 0, -1\n").unwrap();
         assert_eq!(
             (points[0].x, points[0].y, points[0].value),
-            (0.5, 1.0, 0.25)
+            (0.5, 1.0, Some(0.25))
         );
         assert_eq!(points[1].orientation, Some(DVec3::NEG_Y));
     }

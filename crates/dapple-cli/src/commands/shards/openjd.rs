@@ -9,7 +9,7 @@ use anyhow::{Context as _, Result};
 use serde::Serialize;
 use std::path::{Component, Path, absolute};
 
-/// The most letters that the name of a job has.
+/// The largest number of letters in the name of a job.
 const NAME_MAX: usize = 128;
 
 /// A job: its parameters, and the step that bakes.
@@ -22,7 +22,7 @@ pub(super) struct Template {
     steps: [Step; 1],
 }
 
-/// What whoever submits the job may change.
+/// A parameter that the user may change when the job is submitted.
 #[derive(Serialize)]
 #[serde(rename_all = "camelCase")]
 struct Parameter {
@@ -77,7 +77,8 @@ struct Action {
     args: Vec<String>,
 }
 
-/// A job with a task for each shard, whose bakes have these options. The recipe, the folder and the command are parameters.
+/// A job with a task for each shard, with the given options of the bakes. The recipe, the folder and the command are
+/// parameters.
 ///
 /// # Errors
 ///
@@ -138,8 +139,8 @@ fn recipe(typed: &str) -> Result<Parameter> {
     }
 }
 
-/// A parameter that is a path to what is named, which a farm may map. Templates name such paths below their own folder alone,
-/// which is taken to be this one. Others are texts, and mean the same on every machine.
+/// A parameter with the path of a file or folder, which a farm may map. Templates allow such paths only below their own
+/// folder, which is assumed to be the current one. Other paths are strings, the same on every machine.
 fn path(name: &'static str, what: [&'static str; 2], path: &Path) -> Result<Parameter> {
     let is_below = |part: Component<'_>| matches!(part, Component::Normal(_) | Component::CurDir);
     if path.components().all(is_below) {
@@ -155,7 +156,7 @@ fn path(name: &'static str, what: [&'static str; 2], path: &Path) -> Result<Para
     Ok(string(name, text_of_path(&path)?))
 }
 
-/// A parameter that is a text.
+/// A string parameter.
 fn string(name: &'static str, default: &str) -> Parameter {
     Parameter {
         name,

@@ -12,13 +12,13 @@ pub(super) fn own_uvs(
     repair: &Repair,
 ) -> Result<Vec<[DVec2; 3]>> {
     let Some(uvs) = &model.uvs else {
-        return Err(anyhow!("the mesh has no texture coordinates").hint("take --atlas area"));
+        return Err(anyhow!("the mesh has no texture coordinates").hint("take --atlas charts"));
     };
     let own = before_repair(surface, model, repair, uvs);
     let whole = own.map(|[a, b, c]| Some([a?, b?, c?]));
     whole.collect::<Option<_>>().ok_or_else(|| {
         anyhow!("a face was cut in repair, and its texture coordinates are gone")
-            .hint("take --atlas area, or repair the mesh before")
+            .hint("take --atlas charts, or repair the mesh before")
     })
 }
 

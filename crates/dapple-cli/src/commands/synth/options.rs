@@ -12,6 +12,8 @@ dapple::raster::named! {
     /// How a mesh is laid out in a texture.
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     pub(super) enum AtlasName {
+        /// Large pieces of the surface, each flattened as a whole.
+        Charts = "charts",
         /// Right triangles whose sizes follow the areas of the faces.
         Area = "area",
         /// Right triangles of one size, as in the paper.
@@ -56,12 +58,13 @@ pub(super) struct SurfaceArgs {
     #[arg(long, value_name = "PX", value_parser = clap::value_parser!(u32).range(1..=16384))]
     texture_size: Option<u32>,
 
-    /// How faces are laid out in the texture; by default by area.
+    /// How faces are laid out in the texture; by default in charts.
     #[arg(long, value_name = "HOW", value_parser = Word::<AtlasName>::all())]
     atlas: Option<AtlasName>,
 
-    /// Pixels around each piece of the texture that continue it, 1 to 1024: 2^k for k mipmap levels. By default up to a
-    /// 16th of the room for two faces, and all that is free with --atlas uv.
+    /// Pixels around each piece of the texture that continue it, 1 to 1024: 2^k for k mipmap levels of triangles, 3 * 2^k
+    /// for k + 2 of charts. By default 2 in charts, or a 1024th of the texture's side, up to a 16th of the room for two
+    /// faces in triangles, and all that is free with uv.
     #[arg(long, value_name = "PX", value_parser = clap::value_parser!(u32).range(1..=1024))]
     padding: Option<u32>,
 
@@ -153,7 +156,7 @@ impl SurfaceArgs {
     }
 
     pub(super) fn atlas(&self) -> AtlasName {
-        self.atlas.unwrap_or(AtlasName::Area)
+        self.atlas.unwrap_or(AtlasName::Charts)
     }
 
     pub(super) fn padding(&self) -> Option<u32> {
@@ -194,6 +197,7 @@ impl MatchArgs {
             evenness: self.evenness.unwrap_or(default.evenness),
             axes: surface.axes.unwrap_or(default.axes),
             center: default.center,
+            sources: default.sources,
         }
     }
 }

@@ -70,6 +70,7 @@ pub(super) fn run(args: &Args, mesh: &Path, context: &Context) -> Result<Exit> {
         _ => Some(atlas(args, &surface, &model, &repair)?),
     };
     let shading = shading(args.surface.crease(), &surface, &model, &repair);
+    let laid_out = atlas.as_ref().map(|atlas| atlas.report(&surface));
     let double_sided = model.material.double_sided || repair.before.back_to_back_faces > 0;
     let spinner = Progress::spinner("scattering sites", context);
     let sites = args.surface.sites(&args.matching);
@@ -98,7 +99,15 @@ pub(super) fn run(args: &Args, mesh: &Path, context: &Context) -> Result<Exit> {
     let repaired = repair.before != repair.after;
     job.finish(
         args,
-        json!({ "repaired": repaired, "double_sided": double_sided }),
+        json!({
+            "repaired": repaired,
+            "double_sided": double_sided,
+            "atlas": laid_out.map(|atlas| json!({
+                "pieces": atlas.pieces,
+                "texels_used": atlas.used,
+                "stretch": atlas.stretch,
+            })),
+        }),
     )?;
     Ok(Exit::Done)
 }
@@ -164,23 +173,16 @@ impl Covered {
         };
         let (synthesizer, texture) = (&self.synthesizer, &self.texture);
         Ok(match map {
-            Map::Value(raster) => {
-                Map::Value(bake_values(synthesizer, &texture.transfer(raster)?, atlas)?)
-            }
-            Map::Color(raster) => {
-                Map::Color(bake_colors(synthesizer, &texture.transfer(raster)?, atlas)?)
-            }
-            Map::Normal(raster) => {
-                let normals = texture.transfer(raster)?;
-                let y = NormalY::OpenGl;
-                Map::Normal(bake_normals(
-                    synthesizer,
-                    &normals,
-                    y,
-                    atlas,
-                    &self.shading,
-                )?)
-            }
+            Map::Value(raster) => Map::Value(bake_values(synthesizer, texture, raster, atlas)?),
+            Map::Color(raster) => Map::Color(bake_colors(synthesizer, texture, raster, atlas)?),
+            Map::Normal(raster) => Map::Normal(bake_normals(
+                synthesizer,
+                texture,
+                raster,
+                NormalY::OpenGl,
+                atlas,
+                &self.shading,
+            )?),
         })
     }
 
@@ -330,6 +332,8 @@ fn stem(path: &Path) -> String {
 fn atlas(args: &Args, surface: &Surface, model: &Model, repair: &Repair) -> Result<Atlas> {
     let (side, padding) = (args.surface.side(), args.surface.padding());
     let atlas = match (args.surface.atlas(), padding) {
+        (AtlasName::Charts, None) => Atlas::charts(surface, side),
+        (AtlasName::Charts, Some(padding)) => Atlas::charts_padded(surface, side, padding),
         (AtlasName::Area, None) => Atlas::by_area(surface, side),
         (AtlasName::Area, Some(padding)) => Atlas::by_area_padded(surface, side, padding),
         (AtlasName::Uniform, None) => Atlas::uniform(surface, side),

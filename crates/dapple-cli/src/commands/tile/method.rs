@@ -1,4 +1,4 @@
-//! The methods of `dapple tile`, and the options that each of them takes.
+//! The methods of `dapple tile`, and their options.
 
 use crate::error::{Hint, usage};
 use crate::words::Word;
@@ -9,14 +9,14 @@ use dapple::tile::{
 use dapple::wavelet::{Degree, Phase};
 use serde::Serialize;
 
-/// A method of the command line.
+/// The entry of a method.
 struct Row {
     name: &'static str,
-    /// Its help.
+    /// The help text of the method.
     about: &'static str,
-    /// The options that it takes, without `--`.
+    /// The options of the method, without `--`.
     options: &'static [&'static str],
-    /// The method with its options, for images of a size.
+    /// Makes the method with its options, for images of a size.
     make: fn(&MethodArgs, [u32; 2]) -> Method,
 }
 
@@ -69,13 +69,13 @@ const METHODS: [Row; 7] = [
 /// The name of the default method.
 const SOFT_CUT: &str = "soft-cut";
 
-/// The name for the best of all methods.
+/// The name that selects the best of all methods.
 const AUTO: &str = "auto";
 
 /// The options of splines.
 const PROJECT_OPTIONS: &[&str] = &["levels", "basis", "phase", "pixels"];
 
-/// Reads the name of a method.
+/// Parses the name of a method.
 fn method() -> Word<&'static str> {
     let auto = Word::none().or(AUTO, "The best of all by the seam report", AUTO);
     METHODS
@@ -85,10 +85,10 @@ fn method() -> Word<&'static str> {
 
 /// A method with its options.
 pub(super) struct Candidate {
-    /// Its name on the command line.
+    /// The name of the method on the command line.
     pub(super) name: String,
     pub(super) method: Method,
-    /// How many pixels apart the boundaries of a tile are that are like its wrap.
+    /// The distance in pixels, along each axis, of boundaries of the tile that are like its wrap.
     pub(super) lattice: [u32; 2],
 }
 
@@ -108,19 +108,19 @@ impl Candidate {
     }
 }
 
-/// Reads the functions that a tile is made of.
+/// Parses the basis functions of a tile.
 fn basis() -> Word<Basis> {
     let splines = Word::<Degree>::all().map(Basis::Spline);
     splines.or("sines", "Sines and cosines", Basis::Sines)
 }
 
-/// The margin where none is given: that of the library, if the image has room for it.
+/// The default margin: that of the library, if the image has room for it.
 fn default_margin(size: [u32; 2]) -> u32 {
     let shorter = size[0].min(size[1]);
     SoftCut::default().margin.min((shorter / 4).max(1))
 }
 
-/// The method and its options.
+/// Options of the method.
 #[derive(clap::Args, Clone, Debug, Serialize)]
 #[command(next_help_heading = "Method")]
 pub(super) struct MethodArgs {
@@ -128,8 +128,9 @@ pub(super) struct MethodArgs {
     #[arg(long, value_parser = method(), default_value = SOFT_CUT)]
     method: &'static str,
 
-    /// soft-cut, feather: how wide the two sides lie over each other, in pixels, from 1 to half of the side. By default 32
-    /// for soft-cut, or a quarter of the shorter side if that is less; without it, feather mixes the image with itself moved by half.
+    /// soft-cut, feather: the width of the overlap of the two sides, in pixels, from 1 to half of the side. By default
+    /// 32 for soft-cut, or a quarter of the shorter side if that is less; without it, feather mixes the image with
+    /// itself moved by half.
     #[arg(long, value_name = "PX")]
     margin: Option<u32>,
 
@@ -146,27 +147,27 @@ pub(super) struct MethodArgs {
     #[arg(long, value_name = "WHICH", value_parser = Word::<WrapGradient>::all())]
     wrap_gradient: Option<WrapGradient>,
 
-    /// spline, periodic-spline: how often the image is halved and doubled, from 0 to 32; by default 1.
+    /// spline, periodic-spline: the number of times the image is halved and doubled, from 0 to 32; by default 1.
     #[arg(long, value_name = "N")]
     levels: Option<u32>,
 
-    /// spline, periodic-spline: the functions that the tile is made of; by default quadratic splines.
+    /// spline, periodic-spline: the basis functions of the tile; by default quadratic splines.
     #[arg(long, value_name = "WHAT", value_parser = basis())]
     basis: Option<Basis>,
 
-    /// spline, periodic-spline: where coarse coefficients lie; by default centered.
+    /// spline, periodic-spline: the position of the coarse coefficients; by default centered.
     #[arg(long, value_name = "WHERE", value_parser = Word::<Phase>::all())]
     phase: Option<Phase>,
 
-    /// spline, periodic-spline: how pixels determine the spline; by default as its coefficients, as in the paper.
+    /// spline, periodic-spline: how pixels determine the spline; by default they are its coefficients, as in the paper.
     #[arg(long, value_name = "WHAT", value_parser = Word::<Pixels>::all())]
     pixels: Option<Pixels>,
 }
 
 impl MethodArgs {
-    /// The method with its options for images of a size, or all of them if the best shall be found.
+    /// The method with its options for images of a size, or all methods if the best is to be found.
     pub(super) fn candidates(&self, size: [u32; 2]) -> Vec<Candidate> {
-        // Poisson with zero is the periodic part.
+        // Poisson with a zero gradient equals the periodic part.
         let is_wanted = |row: &&Row| match self.is_auto() {
             true => row.name != "poisson",
             false => row.name == self.method,
@@ -231,11 +232,11 @@ impl MethodArgs {
         }
     }
 
-    /// Refuses options of other methods, which would have no effect.
+    /// Fails for options of other methods, which would have no effect.
     ///
     /// # Errors
     ///
-    /// If there is one.
+    /// If there is such an option.
     pub(super) fn check_used(&self) -> Result<()> {
         let given = [
             ("margin", self.margin.is_some()),

@@ -1,4 +1,4 @@
-//! Occlusion beside a plain oracle, and view factors that are known.
+//! Occlusion compared with a plain oracle, and known view factors.
 
 use super::{in_pixels, options, rubble};
 use crate::{HeightPlane, OcclusionOptions, ambient_occlusion};

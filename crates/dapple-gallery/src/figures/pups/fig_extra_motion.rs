@@ -66,7 +66,7 @@ fn moving(time: f64) -> anyhow::Result<Texture> {
     Ok(noise(&options, Seed(4))?)
 }
 
-/// The same points with axes that do not fade.
+/// A texture of the points and values of another one, whose axes do not fade.
 fn still(texture: &Texture) -> anyhow::Result<Texture> {
     let pups = Pups::delaunay(texture.pups().points())?;
     Ok(pups.texture(texture.values().to_vec())?)

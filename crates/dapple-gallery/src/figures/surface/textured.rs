@@ -6,7 +6,7 @@ use dapple_preview::Surface;
 use dapple_raster::{Raster, Wrap};
 use dapple_synth::mesh::{self, Mesh};
 use dapple_synth::{
-    Atlas, Coherence, Direction, Edges, Exemplar, HierarchyOptions, Options, Synthesizer, bake,
+    Atlas, Coherence, Direction, Edges, Exemplar, HierarchyOptions, Options, Synthesizer, bake_colors,
 };
 use glam::DVec2;
 
@@ -46,15 +46,9 @@ impl Job {
         let texture = synthesizer.synthesize(&exemplar, &options)?;
         let surface = synthesizer.surface();
         let atlas = Atlas::uniform(surface, self.map_side)?;
-        let map = bake::<3>(
-            surface,
-            synthesizer.hierarchy(),
-            texture.values(0),
-            &atlas,
-            [0.0; 3],
-        )?;
+        let map = bake_colors(&synthesizer, &texture, &self.image, &atlas)?;
         Ok(Textured {
-            map: map.map(|codes| srgb(*codes)),
+            map: map.map(|color| LinearRgb::from_srgb(color.to_srgb::<u8>())),
             uvs: atlas.uvs(),
             atlas,
             synthesizer,

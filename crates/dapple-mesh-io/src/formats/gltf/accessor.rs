@@ -6,15 +6,15 @@ use crate::MeshIoError;
 
 /// The numbers of an accessor.
 pub(super) struct Column {
-    /// How many numbers each element has.
+    /// The number of numbers in each element.
     pub(super) width: usize,
     pub(super) values: Vec<f64>,
 }
 
-/// How many more numbers the accessors of a file may give.
+/// The number of further numbers that the accessors of a file may have.
 ///
-/// Accessors may share bytes, stand for zeros, and be used by many nodes, so that a file can ask for more memory than
-/// it has bytes. A file that asks for more than four numbers for each of its bytes, and 2^24 more, is refused.
+/// Accessors may share bytes, stand for zeros, and be used by many nodes, so that a file can claim more memory than it
+/// has bytes. More than four numbers for each byte of the file, and 2^24 more, are an error.
 pub(super) struct Budget {
     left: usize,
 }
@@ -30,7 +30,7 @@ enum Component {
     F32,
 }
 
-/// Elements in the bytes of a buffer view.
+/// Elements in the bytes of a buffer view, and their layout.
 struct Elements<'a> {
     bytes: &'a [u8],
     stride: usize,
@@ -44,7 +44,7 @@ impl Budget {
         Self { left }
     }
 
-    /// Takes some, or refuses.
+    /// Takes `count` numbers from the budget; fails if fewer are left.
     pub(super) fn take(&mut self, count: usize) -> Result<(), MeshIoError> {
         let left = self.left.checked_sub(count);
         self.left = left.ok_or_else(|| wrong("it says much more than it has bytes for"))?;
@@ -53,7 +53,7 @@ impl Budget {
 }
 
 impl Source<'_> {
-    /// How many elements an accessor has.
+    /// The number of elements of an accessor.
     pub(super) fn count(&self, index: usize) -> Result<usize, MeshIoError> {
         Ok(self.accessor(index)?.count)
     }
@@ -71,13 +71,14 @@ impl Source<'_> {
                 "accessor {index} has a type that is not for indices"
             )));
         }
-        // Whole numbers below 2^32 stay what they are.
+        // Whole numbers below 2^32 are exact.
         Ok(column.values.iter().map(|&index| index as u32).collect())
     }
 
     /// The numbers of an accessor.
     ///
-    /// Whole numbers become fractions if they are normalized, or if `fractions` says that they can be nothing else.
+    /// Whole numbers become fractions if they are normalized, or if `fractions` says that the attribute is always
+    /// fractions.
     pub(super) fn column(
         &self,
         index: usize,
@@ -138,7 +139,7 @@ impl Source<'_> {
         })
     }
 
-    /// Puts the elements that a sparse accessor has apart in their places.
+    /// Puts the separate elements of a sparse accessor in their places.
     fn replace(
         &self,
         sparse: &Sparse,
@@ -180,7 +181,7 @@ impl Elements<'_> {
     /// The numbers of `count` elements.
     fn read(&self, count: usize) -> Result<Vec<f64>, MeshIoError> {
         let size = self.component.size();
-        // The last element need not have all of its stride.
+        // The last element may be shorter than the stride.
         let needed = count.checked_sub(1).map_or(Some(0), |n| {
             n.checked_mul(self.stride)?.checked_add(size * self.width)
         });
@@ -224,12 +225,12 @@ impl Component {
         }
     }
 
-    /// Whether indices may have this type.
+    /// Whether this type is allowed for indices.
     fn is_index(self) -> bool {
         matches!(self, Self::U8 | Self::U16 | Self::U32)
     }
 
-    /// The number in as many bytes as it has.
+    /// Reads a number of this type from its bytes.
     fn read(self, bytes: &[u8]) -> f64 {
         match (self, bytes) {
             (Self::I8, &[a]) => i8::from_le_bytes([a]).into(),
@@ -238,12 +239,12 @@ impl Component {
             (Self::U16, &[a, b]) => u16::from_le_bytes([a, b]).into(),
             (Self::U32, &[a, b, c, d]) => u32::from_le_bytes([a, b, c, d]).into(),
             (Self::F32, &[a, b, c, d]) => f32::from_le_bytes([a, b, c, d]).into(),
-            // No caller asks for other lengths.
+            // All callers pass the length of the type.
             _ => 0.0,
         }
     }
 
-    /// The fraction that a number is if it is normalized (specification, section 3.6.2.2).
+    /// The fraction of a normalized number (specification, section 3.6.2.2).
     fn fraction(self, value: f64) -> f64 {
         match self {
             Self::I8 => (value / 127.0).max(-1.0),

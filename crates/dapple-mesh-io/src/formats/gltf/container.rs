@@ -19,7 +19,7 @@ pub(super) struct Container<'a> {
 }
 
 impl<'a> Container<'a> {
-    /// Takes a GLB file apart; anything else is taken for JSON.
+    /// Splits a GLB file into its chunks; any other file counts as JSON.
     pub(super) fn read(bytes: &'a [u8]) -> Result<Self, MeshIoError> {
         if !bytes.starts_with(MAGIC) {
             let json = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
@@ -63,7 +63,7 @@ impl<'a> Container<'a> {
     }
 }
 
-/// The type and content of the first chunk, and what follows it.
+/// The type and content of the first chunk, and the rest.
 fn chunk(bytes: &[u8]) -> Option<([u8; 4], &[u8], &[u8])> {
     let length = word(bytes, 0)?;
     let kind = bytes.get(4..8)?.try_into().ok()?;
@@ -76,7 +76,7 @@ fn word(bytes: &[u8], at: usize) -> Option<usize> {
     usize::try_from(u32::from_le_bytes(bytes)).ok()
 }
 
-/// The bytes in a data URI, if it has them in base64.
+/// The bytes in a data URI, if it is in base64.
 pub(super) fn data(uri: &str) -> Option<Vec<u8>> {
     let (head, text) = uri.split_once(',')?;
     head.ends_with(";base64").then_some(())?;
@@ -101,7 +101,7 @@ pub(super) fn data(uri: &str) -> Option<Vec<u8>> {
     Some(bytes)
 }
 
-/// The name that a URI has, without its percent codes.
+/// A name in a URI, without percent codes.
 pub(super) fn percent_decoded(uri: &str) -> String {
     let mut bytes = Vec::with_capacity(uri.len());
     let mut rest = uri.as_bytes();

@@ -1,10 +1,10 @@
-//! The parts of the JSON of glTF that are read, with its own names.
+//! The parts of the JSON of glTF that the reader uses, with its names.
 //!
 //! Rare fields are boxed, so that a long list of empty objects takes little memory.
 
 use serde::Deserialize;
 
-/// The part of the document that all versions of glTF have.
+/// The part of the document that is common to all versions of glTF.
 #[derive(Deserialize)]
 pub(super) struct Head {
     pub(super) asset: Asset,
@@ -81,7 +81,7 @@ pub(super) struct Primitive {
     pub(super) attributes: std::collections::BTreeMap<String, usize>,
     pub(super) indices: Option<usize>,
     pub(super) material: Option<usize>,
-    /// Triangles where it is missing.
+    /// The kind of primitives; triangles if it is missing.
     pub(super) mode: Option<u32>,
 }
 
@@ -113,7 +113,7 @@ pub(super) struct SparsePart {
     pub(super) buffer_view: usize,
     #[serde(default)]
     pub(super) byte_offset: usize,
-    /// The type of the numbers; only indices have one.
+    /// The type of the numbers; only indices have it.
     pub(super) component_type: Option<u32>,
 }
 

@@ -1,4 +1,4 @@
-//! The scene of a glTF file as one mesh.
+//! Conversion of the scene of a glTF file to one mesh.
 
 use super::accessor::{Budget, Column};
 use super::document::{Instancing, Primitive};
@@ -18,16 +18,16 @@ struct Draft<'a> {
     source: &'a Source<'a>,
     budget: Budget,
     positions: Vec<DVec3>,
-    /// One for each position, as long as all primitives have them.
+    /// The normals, one for each position as long as all primitives have them.
     normals: Vec<DVec3>,
-    /// One for each position up to the last that has one, as of texture coordinates.
+    /// The colors, one for each position up to the last that has one; likewise the texture coordinates.
     colors: Vec<LinearRgba>,
     uvs: Vec<DVec2>,
     faces: Vec<[u32; 3]>,
     material: Option<usize>,
 }
 
-/// The model without its material, and the number of that. The file has `n_bytes` bytes, with its buffers.
+/// The model without its material, and the number of the material. The file has `n_bytes` bytes, with its buffers.
 pub(super) fn read(
     source: &Source<'_>,
     n_bytes: usize,
@@ -53,7 +53,7 @@ pub(super) fn read(
         let node = nodes
             .get(index)
             .ok_or_else(|| wrong(format!("there is no node {index}")))?;
-        // Nodes are trees, so that none is met twice.
+        // Nodes are trees, so that each is visited once.
         if core::mem::replace(&mut seen[index], true) {
             return Err(wrong(format!("node {index} has two parents")));
         }
@@ -127,7 +127,7 @@ impl Draft<'_> {
         let mesh = self.source.document.meshes.get(index);
         let mesh = mesh.ok_or_else(|| wrong(format!("there is no mesh {index}")))?;
         let turned = DMat3::from_mat4(transform).determinant() < 0.0;
-        // Where the vertices of some attributes begin.
+        // The first vertices of the attributes that were added already.
         let mut known = BTreeMap::new();
         for primitive in &mesh.primitives {
             self.budget.take(1)?;
@@ -167,7 +167,7 @@ impl Draft<'_> {
         ]
     }
 
-    /// Adds the vertices of attributes, and gives the number of the first.
+    /// Adds the vertices of attributes, and returns the number of the first.
     fn add_vertices(
         &mut self,
         attributes: Attributes,
@@ -178,7 +178,7 @@ impl Draft<'_> {
         let whole = self.normals.len() == first;
         if let Some(positions) = self.column(positions, 3..=3, false)? {
             let vectors = positions.values.chunks_exact(3).map(DVec3::from_slice);
-            // Without a transform all bits stay, also the sign of zero.
+            // Without a transform all bits are kept, also the sign of zero.
             if transform == DMat4::IDENTITY {
                 self.positions.extend(vectors);
             } else {
@@ -208,20 +208,20 @@ impl Draft<'_> {
             self.uvs
                 .extend(uvs.values.chunks_exact(2).map(DVec2::from_slice));
         }
-        // A longer column would run into the vertices of the next primitive.
+        // A longer column would overlap the vertices of the next primitive.
         if [self.normals.len(), self.colors.len(), self.uvs.len()]
             .into_iter()
             .any(|n| n > first && n != end)
         {
             return Err(wrong("attributes of a primitive have different counts"));
         }
-        // All numbers of vertices fit if the last does.
+        // The numbers of all vertices fit if the last does.
         let fits = u32::try_from(end).is_ok();
         let first = u32::try_from(first).ok().filter(|_| fits);
         first.ok_or_else(|| wrong("there are too many vertices"))
     }
 
-    /// The numbers of an attribute, if a primitive has it.
+    /// Reads an attribute, if a primitive has it.
     fn column(
         &mut self,
         accessor: Option<usize>,
@@ -260,7 +260,7 @@ impl Draft<'_> {
                 "an index is {index}, but there are {n_vertices} vertices"
             )));
         }
-        // In strips and fans an index is for three corners.
+        // In strips and fans each index is used for three corners.
         self.budget.take(indices.len().saturating_mul(3))?;
         let mut add = |[a, b, c]: [u32; 3]| {
             let [b, c] = if turned { [c, b] } else { [b, c] };
@@ -294,7 +294,7 @@ impl Draft<'_> {
     }
 }
 
-/// The numbers of an element, if there is such a column.
+/// The numbers of an element, if the column exists.
 fn element<const N: usize>(column: &Option<Column>, index: usize) -> Option<[f64; N]> {
     let (elements, _) = column.as_ref()?.values.as_chunks();
     elements.get(index).copied()

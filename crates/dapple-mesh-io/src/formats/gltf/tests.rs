@@ -1,4 +1,4 @@
-//! glTF by hand, back and forth, and through another reader.
+//! glTF files by hand, round trips, and through another reader.
 
 use super::*;
 use crate::MeshIoErrorKind;
@@ -9,7 +9,7 @@ use glam::{DVec2, DVec3};
 use proptest::prelude::*;
 use serde_json::{Value, json};
 
-/// Floats as base64, whose digits are those of RFC 4648.
+/// Encodes floats as base64, with the digits of RFC 4648.
 fn base64(bytes: &[u8]) -> String {
     const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let mut text = String::new();
@@ -79,7 +79,7 @@ fn faces(model: &Model) -> Vec<[u32; 3]> {
         .collect()
 }
 
-/// A cube with everything, whose corners at each vertex differ.
+/// A cube with all attributes, whose corners differ at each vertex.
 fn full() -> Model {
     let mut model = Model::from(cube());
     let uv = |i: usize, k: usize| DVec2::new(0.125 * (i % 4) as f64, 0.25 * k as f64);
@@ -298,7 +298,7 @@ fn what_is_not_read_is_named() {
         MeshIoErrorKind::Unsupported { feature } => feature.clone(),
         kind => panic!("{kind:?}"),
     };
-    // In the first version things have names in place of numbers.
+    // In the first version, names are used in place of numbers.
     let first =
         br#"{"asset": {"version": "1.0"}, "meshes": {"a": {}}, "nodes": {"b": {"meshes": ["a"]}}}"#;
     assert_eq!(feature(first), "glTF 1.0");
@@ -429,12 +429,12 @@ fn clouds_and_nothing_read_back() {
     );
 }
 
-/// The reason why the reader is ours: a file that is refused here passes the validation of the crate `gltf`, and makes it
-/// panic.
+/// The reason why the reader is ours: this file, which is an error here, passes the validation of the crate `gltf`, and
+/// makes it panic.
 #[test]
 fn file_that_makes_the_crate_gltf_panic_is_refused() {
     let mut document = square();
-    // Its validation wants the bounds of positions.
+    // The validation requires the bounds of positions.
     document["accessors"][0]["min"] = json!([0, 0, 0]);
     document["accessors"][0]["max"] = json!([1, 1, 0]);
     document["accessors"][1] =
@@ -522,7 +522,7 @@ fn written_file_is_valid_for_another_reader() {
     );
 }
 
-/// The least and the largest of each part.
+/// The smallest and the largest of each component.
 fn bound(positions: &[[f32; 3]]) -> ([f32; 3], [f32; 3]) {
     let fold = |choose: fn(f32, f32) -> f32| {
         [0, 1, 2].map(|axis| {

@@ -1,4 +1,4 @@
-//! Where the nodes of glTF take positions and normals.
+//! The transforms of nodes for positions and normals.
 
 use super::document::Node;
 use glam::{DMat3, DMat4, DQuat, DVec3};
@@ -15,7 +15,7 @@ pub(super) fn local(node: &Node) -> DMat4 {
     )
 }
 
-/// A scale, then a rotation by a quaternion, then a translation; what is missing changes nothing.
+/// A scale, then a rotation by a quaternion, then a translation; a missing part is the identity.
 pub(super) fn trs(
     translation: Option<[f64; 3]>,
     rotation: Option<[f64; 4]>,
@@ -33,12 +33,12 @@ pub(super) fn trs(
     )
 }
 
-/// The matrix that transforms normals, but for their lengths; it exists where the transform has no inverse, too.
+/// The matrix that transforms normals, up to their lengths; it exists even if the transform has no inverse.
 pub(super) fn cofactors(transform: DMat4) -> DMat3 {
     let matrix = DMat3::from_mat4(transform);
     let (x, y, z) = (matrix.x_axis, matrix.y_axis, matrix.z_axis);
     let cofactors = DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y));
-    // A mirror image has its outside where the cofactors say inside.
+    // A mirror transform exchanges inside and outside.
     if matrix.determinant() < 0.0 {
         -cofactors
     } else {
@@ -46,7 +46,7 @@ pub(super) fn cofactors(transform: DMat4) -> DMat3 {
     }
 }
 
-/// Where a rotation takes the axes. The quaternion need not be of unit length.
+/// The axes after a rotation. The quaternion need not be of unit length.
 fn axes(rotation: DQuat) -> [DVec3; 3] {
     let [x, y, z, w] = rotation.to_array();
     let square = x * x + y * y + z * z + w * w;

@@ -1,4 +1,4 @@
-//! Writing GLB.
+//! Encoder of GLB.
 
 use super::container::{BIN, JSON, MAGIC};
 use crate::split::with_vertex_normals;
@@ -18,13 +18,13 @@ const ELEMENT_ARRAY_BUFFER: u32 = 34963;
 const LINEAR: u32 = 9729;
 /// The filter for minification that blends between levels of a mipmap.
 const LINEAR_MIPMAP_LINEAR: u32 = 9987;
-/// The texture goes on past its edges as a tile.
+/// The texture repeats past its edges.
 const REPEAT: u32 = 10497;
 
-/// The largest number that is written, so that rounding leads to none that [`Model::check`] refuses.
+/// The largest number that is written, so that rounding never exceeds the limit of [`Model::check`].
 const PART_MAX: f32 = 1e30f32.next_down();
 
-/// The binary chunk with what describes it.
+/// The binary chunk with its views and accessors.
 #[derive(Default)]
 struct Bin {
     bytes: Vec<u8>,
@@ -33,28 +33,28 @@ struct Bin {
     images: Vec<Value>,
 }
 
-/// The vertices of a file: one of the mesh is several where its corners have different texture coordinates.
+/// The vertices of a file: a vertex of the mesh becomes several where its corners have different texture coordinates.
 struct Split {
-    /// The vertex of the mesh that each is; the first are those of the mesh.
+    /// The vertex of the mesh for each vertex of the file; the first are those of the mesh.
     vertex: Vec<usize>,
     uvs: Vec<[f32; 2]>,
     faces: Vec<[u32; 3]>,
 }
 
-/// The model as a GLB file.
+/// Encodes the model as a GLB file.
 ///
 /// Numbers are rounded to `f32`. Vertices keep their numbers; where corners have different texture coordinates or
 /// normals, further vertices follow. Faces have the normals of the model, of unit length, or else those of
-/// [`Mesh::vertex_normals`](dapple_mesh::Mesh::vertex_normals); +z stands for a zero, which glTF does not have. Colors are
-/// clamped to 0 to 1. Without texture coordinates, textures are left out. The material is rough and not metallic where
-/// no texture says otherwise; it has two sides if it says so or the mesh is open, and blends if its base color factor is
-/// not opaque. Samplers of textures that may not be shown by mipmaps have a minification filter without one: how many
-/// levels there are is up to who shows them, and all are asked for by any other.
-/// A model without faces becomes a cloud of points, and one without vertices an empty scene.
+/// [`Mesh::vertex_normals`](dapple_mesh::Mesh::vertex_normals); a zero normal, which glTF does not allow, becomes +z.
+/// Colors are clamped to 0 to 1. Without texture coordinates, textures are left out. The material is rough and not
+/// metallic unless a texture defines both; it has two sides if the model says so or the mesh is open, and blends if its
+/// base color factor is not opaque. Textures that must not be shown by mipmaps have samplers with a minification filter
+/// without them; otherwise viewers may use any number of levels. A model without faces becomes a cloud of points, and
+/// one without vertices an empty scene.
 ///
 /// # Errors
 ///
-/// What [`Model::check`] refuses; [`MeshIoErrorKind::Size`] if the file would have 2^32 bytes or more.
+/// The errors of [`Model::check`]; [`MeshIoErrorKind::Size`] if the file would have 2^32 bytes or more.
 pub fn write(model: &Model) -> Result<Vec<u8>, MeshIoError> {
     model.check()?;
     let mut bin = Bin::default();
@@ -84,12 +84,12 @@ pub fn write(model: &Model) -> Result<Vec<u8>, MeshIoError> {
         document["samplers"] = json!([{ "minFilter": min_filter, "magFilter": LINEAR, "wrapS": REPEAT, "wrapT": REPEAT }]);
         document["images"] = bin.images.into();
     }
-    // As they are without the feature `preserve_order` of serde_json, which any other crate of a program may turn on.
+    // The order without the feature `preserve_order` of serde_json, which any other crate of a program may turn on.
     document.sort_all_objects();
     container(document.to_string().into_bytes(), bin.bytes)
 }
 
-/// Adds the columns of a model without normals of corners, and gives the primitive that names them.
+/// Adds the columns of a model without corner normals, and returns the primitive that refers to them.
 fn primitive(model: &Model, bin: &mut Bin) -> Value {
     let mesh = &model.mesh;
     let split = Split::new(model);
@@ -135,7 +135,7 @@ fn material(model: &Model, bin: &mut Bin) -> Value {
         Some(json!({ "index": bin.image(image) }))
     };
     let metallic_roughness = texture(&material.metallic_roughness);
-    // Without a texture, the default of glTF would be metal.
+    // Without a texture, the default of glTF would be metallic.
     let metallic = if metallic_roughness.is_some() {
         1.0
     } else {
@@ -146,7 +146,7 @@ fn material(model: &Model, bin: &mut Bin) -> Value {
         "metallicFactor": metallic,
         "roughnessFactor": 1.0,
     });
-    // An image that holds all three is written once.
+    // An image with all three channels is written once.
     let occlusion = match &metallic_roughness {
         Some(texture) if material.occlusion == material.metallic_roughness => Some(texture.clone()),
         _ => texture(&material.occlusion),
@@ -173,13 +173,13 @@ fn material(model: &Model, bin: &mut Bin) -> Value {
     value
 }
 
-/// Whether an edge has only one face.
+/// Whether a mesh has an edge with only one face.
 fn is_open(mesh: &Mesh) -> bool {
     mesh.report().boundary_edges > 0
 }
 
-/// A normal at unit length. One that is, but for the rounding to single precision, stays as it is, so that what was read is
-/// written with the same bits.
+/// A normal at unit length. A normal that is of unit length already, up to rounding to single precision, stays
+/// unchanged, so that a file that was read is written with the same bits.
 fn unit(normal: DVec3) -> DVec3 {
     if (normal.length_squared() - 1.0).abs() < 1e-6 {
         normal
@@ -203,7 +203,7 @@ fn bound(positions: &[[f32; 3]], choose: fn(f32, f32) -> f32) -> [f32; 3] {
     positions.iter().copied().reduce(choose).unwrap_or_default()
 }
 
-/// The file of both chunks, each of which ends at a multiple of four bytes.
+/// Joins both chunks to a file; each ends at a multiple of four bytes.
 fn container(mut json: Vec<u8>, mut bin: Vec<u8>) -> Result<Vec<u8>, MeshIoError> {
     json.resize(json.len().next_multiple_of(4), b' ');
     bin.resize(bin.len().next_multiple_of(4), 0);
@@ -219,7 +219,7 @@ fn container(mut json: Vec<u8>, mut bin: Vec<u8>) -> Result<Vec<u8>, MeshIoError
     bytes.extend(2u32.to_le_bytes());
     bytes.extend(length.to_le_bytes());
     let mut chunk = |kind: &[u8; 4], content: &[u8]| {
-        // It fits, since all together do.
+        // The length fits, since the total does.
         bytes.extend((content.len() as u32).to_le_bytes());
         bytes.extend(kind);
         bytes.extend(content);
@@ -232,7 +232,7 @@ fn container(mut json: Vec<u8>, mut bin: Vec<u8>) -> Result<Vec<u8>, MeshIoError
 }
 
 impl Bin {
-    /// Adds a column of `f32`, and gives the number of its accessor.
+    /// Adds a column of `f32`, and returns the number of its accessor.
     fn floats<const N: usize>(&mut self, column: &[[f32; N]]) -> usize {
         let bytes: Vec<_> = column
             .iter()
@@ -244,7 +244,7 @@ impl Bin {
         self.accessor(json!({ "bufferView": view, "componentType": FLOAT, "count": column.len(), "type": shape }))
     }
 
-    /// Adds the indices of faces, and gives the number of their accessor.
+    /// Adds the indices of faces, and returns the number of their accessor.
     fn indices(&mut self, faces: &[[u32; 3]]) -> usize {
         let bytes: Vec<_> = faces
             .iter()
@@ -255,7 +255,7 @@ impl Bin {
         self.accessor(json!({ "bufferView": view, "componentType": UNSIGNED_INT, "count": 3 * faces.len(), "type": "SCALAR" }))
     }
 
-    /// Adds an image, and gives its number.
+    /// Adds an image, and returns its number.
     fn image(&mut self, image: &EncodedImage) -> usize {
         let view = self.view(image.bytes(), None);
         self.images
@@ -298,7 +298,7 @@ impl Split {
             return split;
         };
         let mut used = vec![false; count];
-        // The next vertex of the file that is the same one of the mesh.
+        // The next vertex of the file for the same vertex of the mesh.
         let mut next = vec![None; count];
         for (face, uvs) in split.faces.iter_mut().zip(uvs) {
             for (corner, uv) in face.iter_mut().zip(uvs) {

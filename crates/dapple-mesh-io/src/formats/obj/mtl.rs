@@ -18,9 +18,9 @@ struct Entry {
     normal_map: Option<String>,
 }
 
-/// The material of a name, or without a name the first, in the libraries that there are.
+/// The material with a name, or without a name the first, in the available libraries.
 ///
-/// Fails for a color that single precision cannot hold, in whichever material of the libraries it is.
+/// Fails for a color that single precision cannot hold, in any material of the libraries.
 pub(super) fn material(
     libraries: &[String],
     name: Option<&str>,
@@ -28,7 +28,7 @@ pub(super) fn material(
 ) -> Result<Material, MeshIoError> {
     let mut entries = Vec::new();
     for library in libraries {
-        // A name may have spaces, and a line may have several names.
+        // A name may contain spaces, and a line may have several names.
         let found = beside(library).map(|bytes| vec![bytes]);
         let found = found.unwrap_or_else(|| library.split(' ').filter_map(&mut *beside).collect());
         for bytes in found {
@@ -44,7 +44,7 @@ pub(super) fn material(
         .unwrap_or_default())
 }
 
-/// Adds the materials of a library. A line that is not understood is passed over.
+/// Adds the materials of a library. Unknown lines are skipped.
 fn read(bytes: &[u8], entries: &mut Vec<Entry>) -> Result<(), MeshIoError> {
     for line in lines("MTL", bytes) {
         if line.words[0] == b"newmtl" {
@@ -99,7 +99,7 @@ impl Entry {
     }
 }
 
-/// The color of a `Kd`, if single precision holds it.
+/// The color of a `Kd`, if it fits in single precision.
 fn diffuse(color: DVec3, line: &Line<'_>) -> Result<LinearRgb, MeshIoError> {
     let parts = color.as_vec3().to_array();
     match parts.iter().position(|part| !part.is_finite()) {
@@ -113,7 +113,7 @@ fn diffuse(color: DVec3, line: &Line<'_>) -> Result<LinearRgb, MeshIoError> {
     }
 }
 
-/// The name of the file behind the options of a texture, each of which is a word with a dash and what belongs to it.
+/// The name of the file after the options of a texture, each of which is a word with a dash and its arguments.
 fn file_name(line: &Line<'_>) -> Option<String> {
     let words = line.name_words();
     let mut words = words.as_slice();

@@ -1,4 +1,4 @@
-//! OBJ and MTL by hand, back and forth, and from the real world.
+//! OBJ and MTL files by hand, round trips, and files from the real world.
 
 use super::*;
 use crate::MeshIoErrorKind;
@@ -6,7 +6,7 @@ use crate::test_meshes::{cube, mesh, soup};
 use dapple_mesh::{EncodedImage, Material, VertexIdx};
 use proptest::prelude::*;
 
-/// A quad in two halves, as a program for another system writes it.
+/// A quad of two triangles, with the line ends of another system.
 const QUAD: &[u8] =
     b"# a quad \\\r\nmtllib my house.mtl\r\no one\r\nv 0 0 0 1 0 0 # red\r\nv 1 0 0\r\n\r\n\
 v 1 1 0\r\nv -0.5 1e-7 .25 0 0.5 1\r\nvt 0 0\r\nvt 1 0.25\r\nvt 1 1 0\r\nvt 0 1\r\nvn 0 0 1\r\n\
@@ -304,7 +304,7 @@ fn value_stability_obj_text() {
     assert_eq!(text, want);
 }
 
-/// The counts in the sources of the data.
+/// The files have the counts that their sources state.
 #[test]
 fn real_files_have_the_counts_that_are_known() {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data/meshes/");

@@ -1,4 +1,4 @@
-//! Writing OBJ, MTL, and textures beside them.
+//! Encoder of OBJ, MTL, and textures beside them.
 
 use crate::NamedFile;
 use crate::text::shortest;
@@ -9,27 +9,27 @@ use glam::{DVec2, DVec3};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-/// The model as an OBJ file without its material.
+/// Encodes the model as an OBJ file without its material.
 ///
 /// Positions, normals and texture coordinates have the fewest digits that read back as the same `f64`. Colors are
 /// clamped to 0 to 1, have 16 bits per channel, and no alpha.
 ///
 /// # Errors
 ///
-/// What [`Model::check`] refuses.
+/// The errors of [`Model::check`].
 pub fn write(model: &Model) -> Result<Vec<u8>, MeshIoError> {
     Ok(text(model, None)?.into_bytes())
 }
 
-/// The model as an OBJ file `stem.obj` and, if it has a material, its `stem.mtl` and the textures `stem_base_color.png`
-/// and `stem_normal.png`, or `.jpg`. The OBJ file is the last.
+/// Encodes the model as an OBJ file `stem.obj` and, if it has a material, its `stem.mtl` and the textures
+/// `stem_base_color.png` and `stem_normal.png`, or `.jpg`. The OBJ file is the last.
 ///
-/// The texture of metalness and roughness is left out, since MTL keeps both apart.
+/// The texture of metalness and roughness is left out, since MTL has separate textures for them.
 ///
 /// # Errors
 ///
-/// What [`Model::check`] refuses; [`MeshIoErrorKind::Name`] if the stem is empty, or has white space, a slash,
-/// a backslash or `#`, which a name in an OBJ file cannot have.
+/// The errors of [`Model::check`]; [`MeshIoErrorKind::Name`] if the stem is empty, or has white space, a slash, a
+/// backslash or `#`, which a name in an OBJ file cannot have.
 pub fn write_files(model: &Model, stem: &str) -> Result<Vec<NamedFile>, MeshIoError> {
     let odd = |c: char| c.is_whitespace() || c.is_control() || matches!(c, '/' | '\\' | '#');
     if stem.is_empty() || stem.contains(odd) {
@@ -52,7 +52,7 @@ fn file(name: String, bytes: &[u8]) -> NamedFile {
     NamedFile { name, bytes }
 }
 
-/// The text of the material, which names the textures that it puts among the files.
+/// The text of the material; its textures are added to the files.
 fn material(material: &Material, stem: &str, files: &mut Vec<NamedFile>) -> String {
     let LinearRgba { color, alpha } = material.base_color_factor;
     let mut text = format!(
@@ -113,14 +113,14 @@ fn numbers(text: &mut String, vector: DVec3) {
     }
 }
 
-/// The sRGB code of a color as fractions, whose five digits tell 16 bits apart.
+/// The sRGB code of a color as fractions, whose five digits distinguish 16 bits.
 fn coded(color: LinearRgb) -> DVec3 {
     let unit = |code: u16| (f64::from(code.to_unit()) * 1e6).round() / 1e6;
     DVec3::from_array(color.to_srgb::<u16>().map(unit))
 }
 
-/// Writes the normals and gives their numbers, from 1, for each corner: those of vertices in their order, or each of the
-/// corners' once.
+/// Writes the normals and returns their numbers, from 1, for each corner: those of vertices in their order, or each of
+/// the corners' once.
 fn normals(model: &Model, text: &mut String) -> Vec<[usize; 3]> {
     let mut line = |normal: DVec3| {
         text.push_str("vn");
@@ -150,7 +150,7 @@ fn normals(model: &Model, text: &mut String) -> Vec<[usize; 3]> {
         .collect()
 }
 
-/// Writes each texture coordinate once and gives their numbers, from 1, for each corner.
+/// Writes each texture coordinate once and returns their numbers, from 1, for each corner.
 fn uvs(model: &Model, text: &mut String) -> Vec<[usize; 3]> {
     let mut known = BTreeMap::new();
     let mut number = |uv: DVec2| {

@@ -6,10 +6,10 @@ use crate::MeshIoError;
 use crate::text::{in_range, parse};
 use core::fmt::Display;
 
-/// The rest of the file, which is still to be read.
+/// The rest of the file, which is not yet read.
 pub(super) struct Body<'a> {
     encoding: Encoding,
-    /// All of the file, with its header.
+    /// The whole file, with its header.
     bytes: &'a [u8],
     rest: &'a [u8],
 }
@@ -23,7 +23,7 @@ impl<'a> Body<'a> {
         }
     }
 
-    /// Says what is wrong with what was read last, in text with its line.
+    /// An error in the numbers read last, with the line if the body is text.
     pub(super) fn error(&self, why: impl Display) -> MeshIoError {
         if self.encoding != Encoding::Text {
             return MeshIoError::file(FORMAT, why.to_string());
@@ -33,10 +33,10 @@ impl<'a> Body<'a> {
         MeshIoError::file(FORMAT, format!("line {}: {why}", ends.count() + 1))
     }
 
-    /// Refuses an element of which there are said to be more than the bytes that are left can hold.
+    /// Checks that the remaining bytes can hold the number of elements in the header.
     pub(super) fn check_room(&self, element: &Element) -> Result<(), MeshIoError> {
         let least = |kind: Kind| match kind {
-            // A digit and a space, of which the last may be missing.
+            // A digit and a space, the last of which may be missing.
             _ if self.encoding == Encoding::Text => 2,
             Kind::Scalar(scalar) | Kind::List(scalar, _) => scalar.size(),
         };
@@ -57,8 +57,8 @@ impl<'a> Body<'a> {
         Err(MeshIoError::file(FORMAT, why))
     }
 
-    /// A part of a position, a normal or a texture coordinate that was read last. Those of binary files are looked at
-    /// when all are there, with the number of the vertex in place of a line.
+    /// Checks the last number read as a component of a position, a normal or a texture coordinate. Those of binary
+    /// files are checked when all are read, with the number of the vertex in place of a line.
     pub(super) fn in_range(&self, part: f64) -> Result<f64, MeshIoError> {
         if self.encoding == Encoding::Text {
             return in_range(part).map_err(|why| self.error(why));
@@ -66,7 +66,7 @@ impl<'a> Body<'a> {
         Ok(part)
     }
 
-    /// Reads the numbers of a property, in place of what was in the list.
+    /// Reads the numbers of a property into `list`, which is cleared first.
     pub(super) fn values(&mut self, kind: Kind, list: &mut Vec<f64>) -> Result<(), MeshIoError> {
         list.clear();
         let (count, item) = match kind {
@@ -83,7 +83,8 @@ impl<'a> Body<'a> {
     /// The length of a list.
     fn count(&mut self, scalar: Scalar) -> Result<usize, MeshIoError> {
         let count = self.scalar(scalar)?;
-        // Each has at least a byte, so that reading stops soon after a lie; no memory is taken on trust.
+        // Each number has at least a byte, so that reading stops soon after a false count; no memory is allocated for
+        // the claim.
         if count >= 0.0 && count <= self.rest.len() as f64 {
             return Ok(count as usize);
         }
@@ -106,7 +107,7 @@ impl<'a> Body<'a> {
         value.ok_or_else(|| self.error(why))
     }
 
-    /// The next word as a number.
+    /// Parses the next word as a number.
     fn word(&mut self) -> Option<f64> {
         let text = self.rest.trim_ascii_start();
         let end = text

@@ -1,16 +1,16 @@
-//! The header of a PLY file: which elements there are, and what each of them has.
+//! The header of a PLY file: its elements and their properties.
 
 use super::FORMAT;
 use crate::MeshIoError;
 use crate::text::{parse, words};
 
-/// The header of a PLY file, which describes its body.
+/// The header of a PLY file, which describes the body.
 pub(super) struct Header {
     pub(super) encoding: Encoding,
     pub(super) elements: Vec<Element>,
 }
 
-/// How numbers are written.
+/// The encoding of numbers.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Encoding {
     Text,
@@ -18,7 +18,7 @@ pub(super) enum Encoding {
     Big,
 }
 
-/// A kind of thing, of which all follow each other.
+/// An element: a kind of items, all of which follow each other.
 pub(super) struct Element {
     pub(super) name: String,
     pub(super) count: u64,
@@ -27,17 +27,17 @@ pub(super) struct Element {
     pub(super) properties: Vec<Property>,
 }
 
-/// A property that all things of an element have.
+/// A property of all items of an element.
 pub(super) struct Property {
     pub(super) name: String,
     pub(super) kind: Kind,
 }
 
-/// One number or several.
+/// The kind of a property: one number or a list.
 #[derive(Clone, Copy)]
 pub(super) enum Kind {
     Scalar(Scalar),
-    /// How many there are, and then they.
+    /// A list: the type of its length, and the type of its numbers.
     List(Scalar, Scalar),
 }
 
@@ -55,7 +55,7 @@ pub(super) enum Scalar {
 }
 
 impl Header {
-    /// The header at the beginning, and what follows it.
+    /// Parses the header, and returns it with the rest of the bytes.
     pub(super) fn read(bytes: &[u8]) -> Result<(Self, &[u8]), MeshIoError> {
         let mut header = Self {
             encoding: Encoding::Text,
@@ -87,7 +87,7 @@ impl Header {
         }
     }
 
-    /// Adds what a line says, if it says anything.
+    /// Adds a line of the header; `None` if it is invalid.
     fn add(&mut self, number: usize, line: &[&[u8]]) -> Option<()> {
         let text = |word: &[u8]| String::from_utf8_lossy(word).into_owned();
         match line {
@@ -119,7 +119,7 @@ impl Header {
 }
 
 impl Element {
-    /// Where the first property is that has one of these names.
+    /// The index of the first property with one of these names.
     pub(super) fn place(&self, names: &[&str]) -> Option<usize> {
         let mut properties = self.properties.iter();
         properties.position(|property| names.contains(&property.name.as_str()))
@@ -127,7 +127,7 @@ impl Element {
 }
 
 impl Scalar {
-    /// How many bytes it has in a binary file.
+    /// The number of bytes in a binary file.
     pub(super) fn size(self) -> usize {
         match self {
             Self::I8 | Self::U8 => 1,

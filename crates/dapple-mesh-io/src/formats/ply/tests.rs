@@ -1,4 +1,4 @@
-//! PLY by hand, and back and forth.
+//! PLY files by hand, and round trips.
 
 use super::*;
 use crate::MeshIoErrorKind;
@@ -7,7 +7,7 @@ use dapple_color::LinearRgb;
 use dapple_mesh::VertexIdx;
 use proptest::prelude::*;
 
-/// A quad with what other programs write beside it.
+/// A quad with elements and properties of other programs.
 const QUAD: &str = "ply\r\nformat ascii 1.0\r\ncomment by hand\r\nobj_info none\r\nelement camera 1\r\nproperty list uchar float view\r\nelement vertex 4\r\n\
 property double x\r\nproperty float confidence\r\nproperty float y\r\nproperty float z\r\nproperty uchar red\r\nproperty uchar green\r\nproperty uchar blue\r\n\
 element face 3\r\nproperty uchar flags\r\nproperty list uchar int vertex_index\r\nend_header\r\n\
@@ -40,7 +40,7 @@ fn quad_as_text_becomes_two_triangles_with_linear_colors() {
     assert_eq!((model.normals, model.uvs), (None, None));
 }
 
-/// The head of a text with five vertices on the plane z = 0.
+/// The beginning of a text file with five vertices on the plane z = 0.
 const FIVE: &str = "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\nproperty float z\n";
 
 #[test]
@@ -149,7 +149,7 @@ fn counts_that_the_bytes_cannot_hold_are_refused_at_once() {
         why(list),
         "a list says it has 4294967295 items, but there are only 3 bytes left"
     );
-    // Things without properties have no bytes.
+    // Items without properties have no bytes.
     let nothing = b"ply\nformat ascii 1.0\nelement face 18446744073709551615\nelement odd 18446744073709551615\nend_header\n";
     assert_eq!(read(nothing), Ok(Model::default()));
 }

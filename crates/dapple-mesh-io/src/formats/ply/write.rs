@@ -1,4 +1,4 @@
-//! Writing PLY.
+//! Encoder of PLY.
 
 use crate::MeshIoError;
 use crate::split::with_vertex_normals;
@@ -8,7 +8,7 @@ use dapple_mesh::Model;
 use glam::DVec3;
 use std::fmt::Write as _;
 
-/// The target of numbers: bytes or text.
+/// The output for numbers: bytes or text.
 struct Out {
     bytes: Vec<u8>,
     /// The line so far, for text.
@@ -17,26 +17,25 @@ struct Out {
     wide: [bool; 3],
 }
 
-/// The model as a binary PLY file, little-endian.
+/// Encodes the model as a binary PLY file, little-endian.
 ///
-/// Positions, normals and texture coordinates are each written as `float` if that loses nothing for any of them, and
-/// else as `double`, so that all come back bit for bit, but for 1 - v. Colors are 8 bits of sRGB per channel, with
-/// `alpha` if there is one. Where corners have different normals, further vertices follow, since PLY has normals only for
-/// vertices. A model without faces becomes a cloud of points, oriented if it has normals. The material
-/// is left out.
+/// Positions, normals and texture coordinates are each written as `float` if that is lossless for all of them, and else
+/// as `double`, so that all come back bit for bit, except for 1 - v. Colors are 8 bits of sRGB per channel, with
+/// `alpha` if there is one. Where corners have different normals, further vertices follow, since PLY has normals only
+/// for vertices. A model without faces becomes a cloud of points, oriented if it has normals. The material is left out.
 ///
 /// # Errors
 ///
-/// What [`Model::check`] refuses.
+/// The errors of [`Model::check`].
 pub fn write(model: &Model) -> Result<Vec<u8>, MeshIoError> {
     encode(model, None)
 }
 
-/// The model as a PLY file of text, otherwise as [`write()`] does it.
+/// Encodes the model as a PLY file of text; see [`write()`].
 ///
 /// # Errors
 ///
-/// What [`Model::check`] refuses.
+/// The errors of [`Model::check`].
 pub fn write_text(model: &Model) -> Result<Vec<u8>, MeshIoError> {
     encode(model, Some(String::new()))
 }
@@ -89,7 +88,7 @@ fn encode(model: &Model, line: Option<String>) -> Result<Vec<u8>, MeshIoError> {
     Ok(out.bytes)
 }
 
-/// Whether `f32` would lose something.
+/// Whether a number does not fit in `f32`.
 fn wide(part: f64) -> bool {
     f64::from(part as f32).to_bits() != part.to_bits()
 }

@@ -12,7 +12,7 @@ use glam::DVec2;
 /// How close a point may come to the center, the rim or the other of its pair, as a part of the radius.
 const GAP: f64 = 1.0 / 256.0;
 
-/// What a scaled spot leaves of its room, so that rounding does not matter.
+/// The part of its room that a scaled spot fills, so that rounding does not matter.
 const SLACK: f64 = 1.0 - 1e-6;
 
 /// The pairs around a center.

@@ -21,7 +21,7 @@ fn pictures(time: f64) -> Vec<(&'static str, Raster<f32>)> {
     macro_rules! draw {
         ($(#[$_:meta])* $name:literal Points($options:ty)) => {
             let points = random_values(20, Seed(1)).into_iter().zip(random_values(20, Seed(2)));
-            let point = |(x, y): (f32, f32)| ControlPoint { x: x.into(), y: y.into(), value: x, orientation: None };
+            let point = |(x, y): (f32, f32)| ControlPoint { x: x.into(), y: y.into(), value: Some(x), ..ControlPoint::default() };
             let mut options = ControlPoints { points: points.map(point).collect(), ..ControlPoints::default() };
             pictures.push(($name, gray(&mut options, &(), time)));
         };

@@ -8,7 +8,7 @@ use dapple::worley::{
 };
 use std::sync::Arc;
 
-/// A texture of cells, by the value that a position has.
+/// A texture of cells, by the kind of its values.
 pub(super) enum Texture<const N: usize>
 where
     Axes: Space<N>,
@@ -19,7 +19,7 @@ where
     CellValues(Worley<N>),
 }
 
-/// A texture of more axes at a plane.
+/// A texture of three or four axes, restricted to a plane.
 struct Section<const N: usize>
 where
     Axes: Space<N>,
@@ -58,7 +58,7 @@ where
     pub(super) period: Vec<Option<f64>>,
 }
 
-/// The plane along the first two axes at the further coordinates.
+/// The plane along the first two axes at fixed further coordinates.
 pub(super) fn plane<const N: usize>(rest: &[f64]) -> Plane<N>
 where
     Axes: Space<N>,

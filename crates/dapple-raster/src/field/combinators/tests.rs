@@ -1,4 +1,4 @@
-//! Every combinator beside its formula, by all doors of a field, and what it refuses.
+//! Every combinator beside its formula, with all methods of a field, and its errors.
 
 use super::FieldExt;
 use crate::{Field, Fractal, FractalShape, RasterErrorKind, Window, field_fn};
@@ -23,7 +23,7 @@ fn slope(position: DVec2) -> f32 {
     (0.5 * position.x - 0.25 * position.y) as f32
 }
 
-/// Looks at the values of all doors, on a window larger than a band, with odd positions.
+/// Compares the values of all methods, on a window larger than a band, with odd positions.
 fn check(name: &str, field: &dyn Field, formula: impl Fn(DVec2) -> f32) {
     let origin = DVec2::new(-1.3, 0.7);
     let whole = Window::new(origin, DVec2::new(5.1, 3.3), [300, 250]).unwrap();

@@ -176,6 +176,8 @@ export interface Points {
   extent: [number, number];
   wrap: [boolean, boolean];
   points: ControlPoint[];
+  /** The values of labels. */
+  values: number[];
   edges: [number, number, number, number][];
 }
 

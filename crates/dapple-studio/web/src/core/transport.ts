@@ -1,5 +1,5 @@
-// What carries messages: a WebSocket to `dapple studio` now, a worker with WebAssembly elsewhere. Nothing in the page
-// but this file knows which.
+// What carries messages: here a WebSocket to `dapple studio`, and in wasm.ts a worker with WebAssembly. Nothing else in the
+// page knows which.
 import type { Frame, Reply, Request } from './protocol';
 import { frame } from './protocol';
 

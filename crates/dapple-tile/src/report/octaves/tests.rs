@@ -5,7 +5,7 @@ use core::f64::consts::TAU;
 use dapple_hash::{Seed, hash2, unit_f32};
 use dapple_raster::Raster;
 
-/// A wave of so many cycles per pixel along each axis.
+/// A wave with the given cycles per pixel along each axis.
 fn wave(size: [u32; 2], frequency: [f64; 2]) -> Raster<f32> {
     let turn = |x, y| f64::from(x) * frequency[0] + f64::from(y) * frequency[1];
     Raster::from_fn(size, |x, y| libm::sin(TAU * turn(x, y) + 0.3) as f32).unwrap()
@@ -34,7 +34,7 @@ fn octaves_end_at_powers_of_a_half() {
     assert_eq!(octave(0, 128), usize::MAX);
 }
 
-/// From the definition, along rows and then along columns.
+/// The power spectrum by its definition, along rows and then along columns.
 fn naive_power_spectrum(values: &[f64], [width, height]: [usize; 2]) -> Vec<f64> {
     let mut plane: Vec<[f64; 2]> = values.iter().map(|&value| [value, 0.0]).collect();
     let lines = [(width, 1, height, width), (height, width, width, 1)];

@@ -1,4 +1,4 @@
-//! Seam ratios by hand and by naive sums.
+//! Seam ratios compared with values by hand and naive sums.
 
 use super::{SeamOptions, SeamRatio, seams};
 use crate::SeamReport;

@@ -1,4 +1,4 @@
-//! Crossfades: that they repeat, what they keep, what they cost.
+//! Crossfades: their periods, the detail that they keep, and their cost.
 
 use super::{Feather, tent, tile};
 use crate::test_fields::{fbm, gravel, seam_ratio};
@@ -107,7 +107,7 @@ fn tiles_have_no_seam() {
                 seam_ratio(&tile(&[image], &feather, BOTH).unwrap()[0], 1) / 8.0
             });
             let ratio: f64 = ratios.sum();
-            // A half shift shows the source at the border, and a flattened mix elsewhere: so it is above 1 there.
+            // A half shift has the source at the border, and a flattened mix elsewhere, so the ratio is above 1 there.
             assert!((0.8..1.5).contains(&ratio), "{feather:?}: {ratio}");
         }
     }

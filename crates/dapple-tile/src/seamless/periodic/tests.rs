@@ -1,4 +1,4 @@
-//! The periodic part beside Moisan's own formula.
+//! The periodic part compared with Moisan's own formula.
 
 use super::*;
 use crate::fourier::power_spectrum;

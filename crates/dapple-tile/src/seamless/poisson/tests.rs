@@ -1,4 +1,4 @@
-//! Poisson images beside dense least squares.
+//! Poisson images compared with dense least squares.
 
 use super::*;
 use crate::fourier::BAND;
@@ -43,7 +43,7 @@ fn by_divergence(plane: &Raster<f32>, wrap: WrapGradient, axes: [bool; 2]) -> Ve
     solve(matrix)
 }
 
-/// All pairs of neighbors, and the difference that is wanted between them.
+/// All pairs of neighbors, and the target difference between them.
 fn field(plane: &Raster<f32>, wrap: WrapGradient, axes: [bool; 2]) -> Vec<(usize, usize, f64)> {
     let [width, height] = plane.size().map(|length| length as usize);
     let value = |at: usize| f64::from(plane.pixels()[at]);

@@ -1,4 +1,4 @@
-//! Soft cuts: what is kept, that the tile repeats, and the quality of the seam on two textures.
+//! Soft cuts: kept pixels, periods, and the quality of the seam on two textures.
 
 use super::{SoftCut, differences, tile};
 use crate::test_fields::{fbm, gravel, same_on_threads, seam_ratio, step_at, top_power, turned};
@@ -122,8 +122,8 @@ fn differences_are_squares_over_the_variance_of_each_plane() {
     );
 }
 
-/// Mean seam ratios at 1 and 4 pixels, the top octave's power, and the steps across the middle of all cuts, of 24 tiles
-/// over that of their sources.
+/// Four ratios of 24 tiles to their sources: the mean seam at 1 and 4 pixels, the top octave's power, and the steps
+/// across the middle of all cuts.
 fn quality(texture: fn(u64, [u32; 2], bool) -> Raster<f32>) -> [f64; 4] {
     let cut = SoftCut::default();
     let sums = (0..24).map(|seed| {

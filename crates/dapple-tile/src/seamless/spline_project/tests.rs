@@ -1,4 +1,4 @@
-//! Blend tiles: steps left, small tiles, limits.
+//! Blend tiles: remaining steps, small tiles, limits.
 
 use super::*;
 use crate::{Method, Seamless, TileErrorKind};
@@ -113,7 +113,7 @@ fn tile_of_an_impulse_has_the_known_values() {
 #[test]
 fn tiles_of_coefficients_and_of_samples_equal_their_lines_in_double_precision() {
     let n = 40_u32;
-    // All rows are the same, so that nothing happens along y.
+    // All rows are the same, so that nothing changes along y.
     let image = Raster::from_fn([n, 8], |column, _| {
         noise([n, 1], 10).row(0)[column as usize]
     });

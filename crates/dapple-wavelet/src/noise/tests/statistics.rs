@@ -23,7 +23,7 @@ fn check_moments(values: &[f32], expected: f64) {
     let mean = values.iter().map(|&value| f64::from(value)).sum::<f64>() / n;
     let squares = values.iter().map(|&value| square(value));
     let variance = squares.sum::<f64>() / n;
-    // Projection keeps the mean, so noise has none but what rounding to `f32` gives.
+    // Projection keeps the mean, so noise has a mean of zero up to rounding to `f32`.
     assert!(mean.abs() < 1e-6, "{mean}");
     // A quarter of a million squares, nearly independent, have a mean that is right to 0.3 %.
     assert!(
@@ -124,7 +124,7 @@ fn variances_of_bands_add_up() {
     let positions = scattered::<2>(40_000, 1000.0);
     let squares = positions.map(|position| square(noise.sample(position.into())));
     let mean_square = squares.sum::<f64>() / 40_000.0;
-    // As above, and what neighboring bands have in common.
+    // The tolerance is that of independent bands, plus the correlation of neighboring bands.
     assert!((mean_square / 1.3125 - 1.0).abs() < 0.05, "{mean_square}");
 }
 

@@ -1,0 +1,233 @@
+//! Charts of small meshes.
+
+use super::padding;
+use crate::atlas::{Atlas, report::pieces, tangents::center, weights};
+use crate::shapes::{
+    cap, geodesic_sphere, moved, plane, scraps, sheet, sheets, sphere, torus, tube, two_squares,
+};
+use dapple_mesh::{FaceIdx, Mesh, Surface};
+use glam::{DVec2, DVec3};
+use proptest::prelude::*;
+
+/// The cube from 0 to 1.
+fn cube() -> Mesh {
+    let bits = (0..8).map(|corner| [0, 1, 2].map(|axis| f64::from(corner >> axis & 1)));
+    let sides = [
+        [0, 2, 3, 1],
+        [4, 5, 7, 6],
+        [0, 1, 5, 4],
+        [2, 6, 7, 3],
+        [0, 4, 6, 2],
+        [1, 3, 7, 5],
+    ];
+    let faces = sides.map(|[a, b, c, d]| [[a, b, c], [a, c, d]]).concat();
+    Mesh::new(bits.map(DVec3::from).collect(), &faces).unwrap()
+}
+
+/// Surfaces with and without borders, handles and sharp edges, in one piece and in several.
+fn surfaces() -> Vec<Surface> {
+    let meshes = [cube(), sphere(), cap(), tube(), two_squares()];
+    let meshes = meshes.into_iter().map(|mesh| Surface::new(mesh).unwrap());
+    let others = [plane(), torus(64, 32), geodesic_sphere(3), scraps(12)];
+    meshes
+        .chain(others)
+        .chain([sheets(&[0.0, 0.5, 1.0])])
+        .collect()
+}
+
+/// Every face is seen from outside, within the map, and has all texels whose centers are inside of it.
+fn assert_apart(atlas: &Atlas) {
+    let size = DVec2::from(atlas.size().map(f64::from));
+    for (face, corners) in (0..).map(FaceIdx).zip(&atlas.corners) {
+        let [a, b, c] = *corners;
+        if !a.is_finite() {
+            continue;
+        }
+        assert!((b - a).perp_dot(c - a) < 0.0, "{face:?} is mirrored");
+        let (low, high) = (a.min(b).min(c), a.max(b).max(c));
+        assert!(
+            low.min_element() >= 0.0 && high.cmple(size).all(),
+            "{face:?} is outside"
+        );
+        for row in low.y as u32..(high.y.ceil() as u32).min(atlas.size()[1]) {
+            for column in low.x as u32..(high.x.ceil() as u32).min(atlas.size()[0]) {
+                let at = weights(*corners, center([column, row]));
+                // A center on an edge belongs to both faces.
+                if at.iter().all(|&weight| weight > 1e-6) {
+                    assert_eq!(atlas.face([column, row]), Some(face), "{column}, {row}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn charts_are_in_the_map_not_mirrored_and_apart() {
+    for surface in surfaces() {
+        let atlas = Atlas::charts(&surface, 256).unwrap();
+        assert!(
+            atlas
+                .corners
+                .iter()
+                .flatten()
+                .all(|corner| corner.is_finite())
+        );
+        assert_eq!(atlas.coverage(), 1.0, "all texels continue some chart");
+        assert_apart(&atlas);
+    }
+}
+
+#[test]
+fn charts_are_as_far_apart_as_twice_their_padding() {
+    for surface in surfaces() {
+        for padding in [1, 2, 4] {
+            let atlas = Atlas::charts_padded(&surface, 256, padding).unwrap();
+            let pieces = pieces(&atlas, &surface);
+            let reach = i64::from(padding);
+            for [column, row] in texels(&atlas) {
+                let Some(face) = atlas.face([column, row]) else {
+                    continue;
+                };
+                let at = weights(atlas.corners[face.index()], center([column, row]));
+                if at.iter().any(|&weight| weight < 0.0) {
+                    continue;
+                }
+                for near in [
+                    [-reach, 0],
+                    [reach, 0],
+                    [0, -reach],
+                    [0, reach],
+                    [reach, reach],
+                ] {
+                    let [x, y] = [i64::from(column) + near[0], i64::from(row) + near[1]];
+                    let Some(other) = atlas.face([x as u32, y as u32]) else {
+                        continue;
+                    };
+                    let same = pieces[other.index()] == pieces[face.index()];
+                    assert!(same, "{near:?} from {column}, {row}, padding {padding}");
+                }
+            }
+        }
+    }
+}
+
+/// The texels that are not at the border of a map.
+fn texels(atlas: &Atlas) -> impl Iterator<Item = [u32; 2]> {
+    let [width, height] = atlas.size();
+    (5..height - 5).flat_map(move |row| (5..width - 5).map(move |column| [column, row]))
+}
+
+#[test]
+fn charts_of_what_is_flat_or_rolled_are_not_stretched() {
+    for (surface, pieces) in [
+        (Surface::new(cube()).unwrap(), 6),
+        (plane(), 1),
+        (Surface::new(two_squares()).unwrap(), 2),
+    ] {
+        let report = Atlas::charts(&surface, 256).unwrap().report(&surface);
+        assert_eq!(report.pieces, pieces, "pieces");
+        assert!((report.stretch - 1.0).abs() < 1e-6, "{}", report.stretch);
+    }
+    // A tube unrolls; its triangles are chords of the circle.
+    let tube = Surface::new(tube()).unwrap();
+    let report = Atlas::charts(&tube, 256).unwrap().report(&tube);
+    assert!((report.stretch - 1.0).abs() < 1e-4, "{}", report.stretch);
+    assert!(report.pieces <= 9, "{} pieces", report.pieces);
+}
+
+#[test]
+fn charts_share_vertices_and_texels_are_even() {
+    let surface = torus(64, 32);
+    let atlas = Atlas::charts(&surface, 512).unwrap();
+    let report = atlas.report(&surface);
+    assert!(report.stretch < 1.01, "{}", report.stretch);
+    assert!(report.pieces < 40, "{} pieces", report.pieces);
+    let corners = surface.mesh().faces().iter().zip(&atlas.corners);
+    let mut vertices: Vec<(u32, [u64; 2])> = corners
+        .flat_map(|(face, places)| [0, 1, 2].map(|at| (face[at].0, places[at])))
+        .map(|(vertex, place)| (vertex, place.to_array().map(f64::to_bits)))
+        .collect();
+    vertices.sort_unstable();
+    vertices.dedup();
+    let n_vertices = surface.mesh().positions().len();
+    assert!(
+        vertices.len() * 10 < n_vertices * 15,
+        "{} vertices of {n_vertices}",
+        vertices.len()
+    );
+    let tiles = Atlas::by_area(&surface, 512).unwrap().report(&surface);
+    assert!(tiles.stretch > 1.05, "{} with tiles", tiles.stretch);
+    assert!(tiles.used < report.used, "{} with tiles", tiles.used);
+}
+
+#[test]
+fn charts_do_not_depend_on_the_scale_and_place_of_a_mesh() {
+    let mesh = sphere();
+    let uvs = |mesh: Mesh| {
+        let surface = Surface::new(mesh).unwrap();
+        Atlas::charts(&surface, 128).unwrap().uvs()
+    };
+    let want = uvs(mesh.clone());
+    for scale in [2.0_f64.powi(-60), 2.0_f64.powi(60)] {
+        assert_eq!(uvs(moved(&mesh, |at| at * scale)), want, "times {scale}");
+    }
+    let moved = uvs(moved(&mesh, |at| at + DVec3::splat(8.0)));
+    assert_eq!(moved.len(), want.len());
+}
+
+#[test]
+fn charts_without_room_are_refused() {
+    let surface = Surface::new(sphere()).unwrap();
+    for side in [0, 1, 2, 1 << 15] {
+        assert!(Atlas::charts(&surface, side).is_err(), "side {side}");
+    }
+    for padding in [0, 64, 1025, u32::MAX] {
+        let atlas = Atlas::charts_padded(&surface, 64, padding);
+        assert!(atlas.is_err(), "padding {padding}");
+    }
+    assert_eq!([1, 511, 512, 2048, 4096].map(padding), [1, 1, 2, 2, 4]);
+}
+
+#[test]
+fn value_stability_charts() {
+    let atlas = Atlas::charts(&torus(24, 12), 256).unwrap();
+    let corners = atlas.corners.iter().flatten().flat_map(|at| at.to_array());
+    let bits = corners.fold(0_u64, |hash, part| hash.rotate_left(5) ^ part.to_bits());
+    assert_eq!(bits, 0x6d53_8c17_2df8_f54c, "{bits:#x}");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    #[test]
+    fn charts_of_any_soup_are_apart(
+        corners in prop::collection::vec(prop::array::uniform3(0_i8..4), 3..12),
+        faces in prop::collection::vec(prop::array::uniform3(0_u32..12), 1..40),
+    ) {
+        let n = corners.len() as u32;
+        let positions = corners.into_iter().map(|at| DVec3::from(at.map(f64::from))).collect();
+        let faces: Vec<[u32; 3]> = faces.iter().map(|face| face.map(|vertex| vertex % n)).collect();
+        let (mesh, _) = Mesh::new(positions, &faces).unwrap().repair();
+        if let Ok(surface) = Surface::new(mesh) {
+            let atlas = Atlas::charts(&surface, 512).unwrap();
+            prop_assert!(atlas.corners.iter().flatten().all(|corner| corner.is_finite()));
+            assert_apart(&atlas);
+        }
+    }
+
+    #[test]
+    fn charts_of_any_bent_sheet_are_apart(
+        heights in prop::collection::vec(0_i8..5, 49),
+        open in prop::array::uniform2(any::<bool>()),
+    ) {
+        let mesh = sheet([6, 6], open, |u, v| {
+            let at = [u, v].map(|part| (part * 6.0) as usize);
+            let [x, y] = [u, v].map(|part| part * core::f64::consts::TAU);
+            let out = 1.0 + 0.2 * f64::from(heights[at[1] * 7 + at[0]]);
+            DVec3::new(libm::cos(x) * out, libm::sin(x) * out, libm::cos(y))
+        });
+        if let Ok(surface) = Surface::new(mesh.repair().0) {
+            assert_apart(&Atlas::charts(&surface, 256).unwrap());
+        }
+    }
+}

@@ -1,0 +1,128 @@
+//! How good a layout is.
+//!
+//! Reference: Pedro V. Sander, John Snyder, Steven J. Gortler and Hugues Hoppe, "Texture Mapping Progressive Meshes",
+//! SIGGRAPH 2001, doi 10.1145/383259.383307, section 3: the stretch of a map.
+
+use super::{Atlas, NONE, tangents, weights};
+use dapple_mesh::{FaceEdge, FaceIdx, Surface};
+use glam::DVec2;
+
+/// How good a layout is for a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct AtlasReport {
+    /// The number of pieces: sets of faces that lie together in the map as they do on the surface.
+    pub pieces: usize,
+    /// The part of the texels whose centers lie on their faces, which is without padding: 0 to 1.
+    pub used: f64,
+    /// The L2 stretch of Sander et al.: the root mean square of how far a texel reaches on the surface, in all
+    /// directions, over what it would be if all texels were squares of one size. It is at least 1.
+    pub stretch: f64,
+}
+
+impl AtlasReport {
+    pub(super) fn new(atlas: &Atlas, surface: &Surface) -> Self {
+        Self {
+            pieces: pieces(atlas, surface)
+                .into_iter()
+                .filter(|&piece| piece != NONE)
+                .max()
+                .map_or(0, |last| last as usize + 1),
+            used: used(atlas),
+            stretch: stretch(atlas, surface),
+        }
+    }
+}
+
+/// For each face the number of its piece, from 0, or [`NONE`] without a place.
+pub(super) fn pieces(atlas: &Atlas, surface: &Surface) -> Vec<u32> {
+    let corners = &atlas.corners;
+    let mut pieces = vec![NONE; corners.len()];
+    let (mut count, mut open) = (0, Vec::new());
+    for first in (0..corners.len() as u32).map(FaceIdx) {
+        if pieces[first.index()] != NONE || !corners[first.index()][0].is_finite() {
+            continue;
+        }
+        pieces[first.index()] = count;
+        open.push(first);
+        while let Some(face) = open.pop() {
+            let edges = [0, 1, 2].map(|edge| FaceEdge { face, edge });
+            for (from, to) in edges.map(|from| (from, surface.adjacency().across(from))) {
+                let Some(to) = to.filter(|to| pieces[to.face.index()] == NONE) else {
+                    continue;
+                };
+                let ([a, b], [c, d]) = (ends(corners, from), ends(corners, to));
+                if a == d && b == c {
+                    pieces[to.face.index()] = count;
+                    open.push(to.face);
+                }
+            }
+        }
+        count += 1;
+    }
+    pieces
+}
+
+/// The places of the ends of an edge.
+fn ends(corners: &[[DVec2; 3]], at: FaceEdge) -> [DVec2; 2] {
+    let start = usize::from(at.edge);
+    [start, (start + 1) % 3].map(|corner| corners[at.face.index()][corner])
+}
+
+/// The part of the texels whose centers are on their faces.
+fn used(atlas: &Atlas) -> f64 {
+    let [width, height] = atlas.size();
+    let is_on = |texel: [u32; 2]| {
+        atlas.face(texel).is_some_and(|face| {
+            let weights = weights(atlas.corners[face.index()], tangents::center(texel));
+            weights.iter().all(|&weight| weight >= 0.0)
+        })
+    };
+    let texels = (0..height).flat_map(|row| (0..width).map(move |column| [column, row]));
+    let count = texels.filter(|&texel| is_on(texel)).count();
+    count as f64 / (f64::from(width) * f64::from(height))
+}
+
+/// The L2 stretch of all faces with a place.
+fn stretch(atlas: &Atlas, surface: &Surface) -> f64 {
+    let (mut sum, mut area) = (0.0, 0.0);
+    for (face, stretch) in (0..).map(FaceIdx).zip(stretches(atlas, surface)) {
+        if stretch.is_finite() {
+            sum += stretch * stretch * surface.face_area(face);
+            area += surface.face_area(face);
+        }
+    }
+    if area > 0.0 { (sum / area).sqrt() } else { 1.0 }
+}
+
+/// The L2 stretch of every face; NaN without a place.
+pub(super) fn stretches(atlas: &Atlas, surface: &Surface) -> Vec<f64> {
+    let (mut on_surface, mut in_map) = (0.0, 0.0);
+    let faces = (0..).map(FaceIdx).zip(&atlas.corners);
+    let reaches: Vec<f64> = faces
+        .map(|(face, corners)| {
+            let reach = reach(surface, face, *corners);
+            if reach.is_finite() {
+                let [a, b, c] = *corners;
+                on_surface += surface.face_area(face);
+                in_map += 0.5 * (b - a).perp_dot(c - a).abs();
+            }
+            reach
+        })
+        .collect();
+    let density = if on_surface > 0.0 {
+        (in_map / on_surface).sqrt()
+    } else {
+        1.0
+    };
+    reaches.into_iter().map(|reach| reach * density).collect()
+}
+
+/// The root mean square, over all directions, of the length on the surface of a texel of a face; NaN without a place.
+fn reach(surface: &Surface, face: FaceIdx, [a, b, c]: [DVec2; 3]) -> f64 {
+    let [pa, pb, pc] = surface.mesh().corners(face);
+    let (b, c, pb, pc) = (b - a, c - a, pb - pa, pc - pa);
+    let area = b.perp_dot(c);
+    let [along_u, along_v] = [pb * c.y - pc * b.y, pc * b.x - pb * c.x].map(|along| along / area);
+    (0.5 * (along_u.length_squared() + along_v.length_squared())).sqrt()
+}

@@ -1,0 +1,153 @@
+//! Reading an image between its pixels and at any size of the footprint: a map of the exemplar, or a larger version of it.
+//!
+//! Between pixels values are those of Catmull and Rom's cubic, kept within the range of the pixels that it reads, so that
+//! edges stay sharp and have no rim. For footprints of more than a pixel there are coarser versions, each the mean of
+//! 2 × 2 pixels of the one before, between which values are mixed.
+//!
+//! References: Edwin Catmull and Raphael Rom, "A class of local interpolating splines", Computer Aided Geometric Design,
+//! 1974; Lance Williams, "Pyramidal Parametrics", SIGGRAPH 1983, DOI 10.1145/800059.801126.
+
+use crate::{Edges, SynthError, SynthErrorKind};
+use dapple_raster::{Raster, Wrap, parallel};
+use glam::Vec2;
+
+/// A map with `N` channels, and its coarser versions.
+#[derive(Clone, Debug)]
+pub(crate) struct Detail<const N: usize> {
+    levels: Vec<Raster<[f32; N]>>,
+    wrap: Wrap,
+    /// The pixels of the map for one of the exemplar.
+    factor: f32,
+}
+
+/// How many times as large as an exemplar a map is.
+///
+/// # Errors
+///
+/// [`SynthErrorKind::Detail`] unless that is a whole number, the same along both sides.
+pub(crate) fn factor(map: [u32; 2], exemplar: [u32; 2]) -> Result<u32, SynthError> {
+    let factor = map[0] / exemplar[0].max(1);
+    if factor > 0 && exemplar.map(|side| side.checked_mul(factor)) == map.map(Some) {
+        return Ok(factor);
+    }
+    Err(SynthError::new(SynthErrorKind::Detail { map, exemplar }))
+}
+
+impl<const N: usize> Detail<N> {
+    /// A map that is a whole number of times as large as an exemplar.
+    pub(crate) fn new(
+        map: Raster<[f32; N]>,
+        exemplar: [u32; 2],
+        edges: Edges,
+    ) -> Result<Self, SynthError> {
+        let factor = factor(map.size(), exemplar)? as f32;
+        let wrap = match edges {
+            Edges::Cut => Wrap::Mirror,
+            Edges::Wrap => Wrap::Repeat,
+        };
+        let mut levels = vec![map];
+        while let Some(last) = levels.last()
+            && last.size().iter().any(|&side| side > 1)
+        {
+            levels.push(halved(last)?);
+        }
+        Ok(Self {
+            levels,
+            wrap,
+            factor,
+        })
+    }
+
+    /// The mean around a place of the exemplar; the footprint is the side of a square in its pixels.
+    #[inline]
+    pub(crate) fn sample(&self, place: Vec2, footprint: f32) -> [f32; N] {
+        let width = footprint * self.factor;
+        if width <= 1.0 {
+            return self.cubic(0, place);
+        }
+        let level = libm::log2f(width).min((self.levels.len() - 1) as f32);
+        let fine = level as usize;
+        let coarse = (fine + 1).min(self.levels.len() - 1);
+        let part = level - fine as f32;
+        let [a, b] = [fine, coarse].map(|level| self.cubic(level, place));
+        core::array::from_fn(|channel| a[channel] + part * (b[channel] - a[channel]))
+    }
+
+    /// The cubic through the 4 × 4 pixels around a place, in their range.
+    #[inline]
+    fn cubic(&self, level: usize, place: Vec2) -> [f32; N] {
+        let map = &self.levels[level];
+        // Exact: the divisor is a power of two.
+        let factor = self.factor / (1_u64 << level) as f32;
+        let at = (place + 0.5) * factor - 0.5;
+        let first = at.floor();
+        let part = at - first;
+        let [columns, rows] =
+            [(first.x, map.width()), (first.y, map.height())].map(|(first, n)| {
+                let first = first as i64 - 1;
+                [0, 1, 2, 3].map(|step| self.index(first + step, n))
+            });
+        let [across, down] = [part.x, part.y].map(weights);
+        let mut sum = [0.0; N];
+        let (mut low, mut high) = ([f32::INFINITY; N], [f32::NEG_INFINITY; N]);
+        for (row, down) in rows.into_iter().zip(down) {
+            let row = map.row(row);
+            for (column, across) in columns.into_iter().zip(across) {
+                let pixel = &row[column as usize];
+                for channel in 0..N {
+                    let value = pixel[channel];
+                    sum[channel] += across * down * value;
+                    low[channel] = if value < low[channel] {
+                        value
+                    } else {
+                        low[channel]
+                    };
+                    high[channel] = if value > high[channel] {
+                        value
+                    } else {
+                        high[channel]
+                    };
+                }
+            }
+        }
+        core::array::from_fn(|channel| sum[channel].max(low[channel]).min(high[channel]))
+    }
+
+    #[inline]
+    fn index(&self, at: i64, n: u32) -> u32 {
+        if (0..i64::from(n)).contains(&at) {
+            return at as u32;
+        }
+        self.wrap.index(at, n)
+    }
+}
+
+/// The weights of four pixels for a place that is `t` past the second one, from 0 to 1.
+#[inline]
+fn weights(t: f32) -> [f32; 4] {
+    let (t2, t3) = (t * t, t * t * t);
+    [
+        0.5 * (2.0 * t2 - t3 - t),
+        0.5 * (3.0 * t3 - 5.0 * t2 + 2.0),
+        0.5 * (4.0 * t2 - 3.0 * t3 + t),
+        0.5 * (t3 - t2),
+    ]
+}
+
+/// The means of 2 × 2 pixels; the last ones of an odd side are repeated.
+fn halved<const N: usize>(map: &Raster<[f32; N]>) -> Result<Raster<[f32; N]>, SynthError> {
+    let [width, height] = map.size();
+    let half = map.size().map(|side| side.div_ceil(2));
+    let rows = parallel::map(half[1] as usize, |row| {
+        let rows = [0, 1].map(|step| map.row((2 * row as u32 + step).min(height - 1)));
+        let mean = |column: u32| {
+            let [a, b] = [0, 1].map(|step| (2 * column + step).min(width - 1) as usize);
+            core::array::from_fn(|channel| {
+                let [above, below] = rows.map(|row| row[a][channel] + row[b][channel]);
+                0.25 * (above + below)
+            })
+        };
+        (0..half[0]).map(mean).collect::<Vec<[f32; N]>>()
+    });
+    Ok(Raster::from_vec(half, rows.concat())?)
+}

@@ -1,0 +1,234 @@
+//! Magnified bakes: texels read the exemplar itself, at the places that the sites around them predict.
+//!
+//! Every site near a texel predicts a place: its own source, and from there the way to the texel in the site's frame. Those
+//! that agree are a piece, and predict their mean. Where there are several pieces, the one whose sites have the most
+//! weight is shown; the others fade over a seam so narrow that it softens nothing.
+//!
+//! Reference: our own, after the magnification of Sylvain Lefebvre and Hugues Hoppe, "Parallel Controllable Texture
+//! Synthesis", SIGGRAPH 2005, DOI 10.1145/1186822.1073261, section 5.
+
+use crate::bake::{Group, Paint, bake_with};
+use crate::mesh_ground::Around;
+use crate::places::{AGREEMENT, Frame, Places, frames};
+use crate::sites::weight;
+use crate::{Atlas, SynthError, Synthesizer};
+use dapple_raster::Raster;
+use glam::{DVec2, Vec2, Vec3};
+
+/// How far away sites have a say, in spacings: half again as far as in means of values, so that seams are smooth and a
+/// site alone among others is outvoted.
+const RADIUS: f32 = 1.5;
+
+/// Pieces with less than this part of the largest share are not shown.
+const SHARE_LEAST: f32 = 1.0 / 256.0;
+
+/// What a texel shows of the exemplar.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Spot {
+    /// The place in pixels of the exemplar.
+    pub(crate) place: Vec2,
+    /// The side of the texel in pixels of the exemplar.
+    pub(crate) footprint: f32,
+    /// The directions in space of the exemplar's columns and rows, of length 1 but for rounding.
+    pub(crate) right: Vec3,
+    pub(crate) down: Vec3,
+}
+
+/// The values of an exemplar's map at every texel of an atlas.
+pub(crate) fn magnify<const N: usize>(
+    synthesizer: &Synthesizer,
+    places: &Places,
+    atlas: &Atlas,
+    background: [f32; N],
+    value: impl Fn(&Spot) -> [f32; N] + Sync,
+) -> Result<Raster<[f32; N]>, SynthError> {
+    let (surface, hierarchy) = (synthesizer.surface(), synthesizer.hierarchy());
+    let spacing = hierarchy.levels()[0].spacing();
+    let magnified = Magnified {
+        places,
+        frames: frames(hierarchy, synthesizer.orientation()),
+        footprints: footprints(synthesizer, atlas),
+        spacing: spacing as f32,
+        value,
+    };
+    bake_with(surface, hierarchy, atlas, background, &magnified)
+}
+
+/// The side of a texel on every face, in spacings: the root of its area.
+fn footprints(synthesizer: &Synthesizer, atlas: &Atlas) -> Vec<f32> {
+    let spacing = synthesizer.hierarchy().levels()[0].spacing();
+    let size = DVec2::from(atlas.size().map(f64::from));
+    let mesh = synthesizer.surface().mesh();
+    let side = |(corners, uvs): ([glam::DVec3; 3], [DVec2; 3])| {
+        let [a, b, c] = corners;
+        let [ua, ub, uc] = uvs.map(|uv| uv * size);
+        let texels = (ub - ua).perp_dot(uc - ua).abs();
+        let area = (b - a).cross(c - a).length();
+        let side = (area / texels).sqrt() / spacing;
+        if side.is_finite() { side as f32 } else { 0.0 }
+    };
+    let corners = (0..)
+        .map(dapple_mesh::FaceIdx)
+        .map(|face| mesh.corners(face));
+    let faces = atlas.uvs().into_iter();
+    faces
+        .zip(corners.take(mesh.faces().len()))
+        .map(|(uvs, corners)| side((corners, uvs)))
+        .collect()
+}
+
+/// The input of all texels.
+struct Magnified<'a, F> {
+    places: &'a Places,
+    frames: Vec<Frame>,
+    footprints: Vec<f32>,
+    spacing: f32,
+    value: F,
+}
+
+/// What a site predicts.
+#[derive(Clone, Copy, Debug)]
+struct Prediction {
+    site: u32,
+    place: Vec2,
+    weight: f32,
+}
+
+/// Sites that predict about the same place.
+#[derive(Clone, Copy, Debug)]
+struct Piece {
+    /// The prediction of the site with the largest weight.
+    place: Vec2,
+    /// Sums with the weights of the sites: of how far from `place` the predictions are, and of directions.
+    off: Vec2,
+    right: Vec3,
+    down: Vec3,
+    weight: f32,
+}
+
+/// Memory of a thread.
+#[derive(Debug, Default)]
+pub(crate) struct Pieces {
+    predictions: Vec<Prediction>,
+    pieces: Vec<Piece>,
+}
+
+impl<const N: usize, F: Fn(&Spot) -> [f32; N] + Sync> Paint<N> for Magnified<'_, F> {
+    type Memory = Pieces;
+
+    fn paint(&self, group: &Group<'_>, memory: &mut Pieces, values: &mut [[f32; N]]) {
+        let footprint = self.footprints[group.face.index()];
+        for (value, &point) in values.iter_mut().zip(group.points) {
+            let at = (group.surface.position(point) - group.center).as_vec3();
+            let normal = group.surface.normal(point).as_vec3();
+            self.predict(group.sites, at, normal, &mut memory.predictions);
+            self.gather(memory);
+            *value = self.mix(&memory.pieces, footprint);
+        }
+    }
+}
+
+impl<F> Magnified<'_, F> {
+    /// Lists what sites on the same sheet predict, that of the largest weight first.
+    fn predict(
+        &self,
+        sites: Around<'_>,
+        at: Vec3,
+        normal: Vec3,
+        predictions: &mut Vec<Prediction>,
+    ) {
+        predictions.clear();
+        let radius = RADIUS * self.spacing;
+        let mut nearest = (true, f32::INFINITY, None);
+        for record in sites.sites() {
+            let way = at - Vec3::from(record.position);
+            let x = way.length() / radius;
+            let is_opposed = Vec3::from(record.normal).dot(normal) < 0.0;
+            let prediction = Prediction {
+                site: record.site,
+                place: self.places.of_site[record.site as usize]
+                    + self.frames[record.site as usize].flat(way),
+                weight: 1.0,
+            };
+            if (is_opposed, x) < (nearest.0, nearest.1) {
+                nearest = (is_opposed, x, Some(prediction));
+            }
+            if x < 1.0 && !is_opposed {
+                let weight = weight(f64::from(x)) as f32;
+                let rank = predictions.partition_point(|other| other.weight >= weight);
+                predictions.insert(
+                    rank,
+                    Prediction {
+                        weight,
+                        ..prediction
+                    },
+                );
+            }
+        }
+        if predictions.is_empty() {
+            predictions.extend(nearest.2);
+        }
+    }
+
+    /// Puts predictions that agree together.
+    fn gather(&self, memory: &mut Pieces) {
+        memory.pieces.clear();
+        for prediction in &memory.predictions {
+            let &Prediction {
+                site,
+                place,
+                weight,
+            } = prediction;
+            let frame = &self.frames[site as usize];
+            let agrees = |piece: &&mut Piece| {
+                let off = self.places.difference(place, piece.place);
+                off.length_squared() < AGREEMENT * AGREEMENT
+            };
+            if let Some(piece) = memory.pieces.iter_mut().find(agrees) {
+                piece.off += self.places.difference(place, piece.place) * weight;
+                piece.right += frame.right * weight;
+                piece.down += frame.down * weight;
+                piece.weight += weight;
+            } else {
+                memory.pieces.push(Piece {
+                    place,
+                    off: Vec2::ZERO,
+                    right: frame.right * weight,
+                    down: frame.down * weight,
+                    weight,
+                });
+            }
+        }
+    }
+
+    /// The value of the piece with the most weight, or of several at their seam.
+    fn mix<const N: usize>(&self, pieces: &[Piece], footprint: f32) -> [f32; N]
+    where
+        F: Fn(&Spot) -> [f32; N],
+    {
+        let most = pieces
+            .iter()
+            .fold(0.0, |most: f32, piece| most.max(piece.weight));
+        let (mut sum, mut shares) = ([0.0; N], 0.0);
+        for piece in pieces {
+            let part = piece.weight / most;
+            let square = part * part;
+            let fourth = square * square;
+            let share = fourth * fourth;
+            if share < SHARE_LEAST {
+                continue;
+            }
+            let value = (self.value)(&Spot {
+                place: piece.place + piece.off / piece.weight,
+                footprint,
+                right: piece.right * (self.spacing / piece.weight),
+                down: piece.down * (self.spacing / piece.weight),
+            });
+            for (sum, value) in sum.iter_mut().zip(value) {
+                *sum += share * value;
+            }
+            shares += share;
+        }
+        sum.map(|sum| sum / shares)
+    }
+}

@@ -1,0 +1,113 @@
+//! Sub-pixel sources: the places in the exemplar, between its pixels, that sites are from.
+//!
+//! A site takes a whole pixel, but lies anywhere beside the sites whose texture it goes on with: so sources are off by half
+//! a pixel, and what is read with them has edges that jump from site to site. Here the source of a site is moved to the
+//! mean of itself and of what the neighbors predict, a few times. A neighbor predicts its own source, and from there the
+//! way to the site in the frame of the texture. One that continues another piece of the exemplar predicts something far
+//! away, and has no say.
+//!
+//! References: our own; that neighbors predict sources is from Michael Ashikhmin, "Synthesizing Natural Textures", I3D
+//! 2001, DOI 10.1145/364338.364405.
+//!
+//! Units: places are in pixels of the exemplar, the middle of the first one at 0, x to the right and y down.
+
+use crate::columns;
+use crate::{Edges, Exemplar, Hierarchy, Orientation, SiteIdx};
+use glam::{DVec3, Vec2, Vec3};
+
+/// How far from each other two predictions of one place may be, in pixels.
+pub(crate) const AGREEMENT: f32 = 1.5;
+
+/// How often sources are averaged.
+const N_STEPS: usize = 8;
+
+/// The sub-pixel sources of the finest sites.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Places {
+    pub(crate) of_site: Vec<Vec2>,
+    pub(crate) size: [u32; 2],
+    pub(crate) edges: Edges,
+}
+
+/// Directions on the surface at a site, in pixels of the exemplar for a length in space.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Frame {
+    pub(crate) right: Vec3,
+    pub(crate) down: Vec3,
+}
+
+impl Places {
+    /// The places of sites that took these pixels.
+    pub(crate) fn new(
+        hierarchy: &Hierarchy,
+        orientation: &Orientation,
+        exemplar: &Exemplar,
+        sources: &[u32],
+    ) -> Self {
+        let [width, _] = exemplar.size;
+        let place = |&pixel: &u32| Vec2::new((pixel % width) as f32, (pixel / width) as f32);
+        let mut places = Self {
+            of_site: sources.iter().map(place).collect(),
+            size: exemplar.size,
+            edges: exemplar.edges,
+        };
+        let frames = frames(hierarchy, orientation);
+        for _ in 0..N_STEPS {
+            let averaged = |site: usize| places.averaged(hierarchy, &frames, site);
+            let next = columns::column(places.of_site.len(), averaged);
+            places.of_site = next;
+        }
+        places
+    }
+
+    /// The mean of a site's source and those that its neighbors predict, if they agree.
+    fn averaged(&self, hierarchy: &Hierarchy, frames: &[Frame], site: usize) -> Vec2 {
+        let positions = hierarchy.sites().positions();
+        let (own, frame) = (self.of_site[site], &frames[site]);
+        let (mut sum, mut count) = (Vec2::ZERO, 1.0);
+        let graph = hierarchy.levels()[0].graph();
+        for &neighbor in graph.neighbors(SiteIdx(site as u32)) {
+            let way = (positions[site] - positions[neighbor.index()]).as_vec3();
+            // Frames turn on the way: the mean of both ends is that of its middle.
+            let way = 0.5 * (frame.flat(way) + frames[neighbor.index()].flat(way));
+            let off = self.difference(self.of_site[neighbor.index()] + way, own);
+            if off.length_squared() < AGREEMENT * AGREEMENT {
+                sum += off;
+                count += 1.0;
+            }
+        }
+        own + sum / count
+    }
+
+    /// The shortest way from one place to another one.
+    #[inline]
+    pub(crate) fn difference(&self, to: Vec2, from: Vec2) -> Vec2 {
+        let way = to - from;
+        match self.edges {
+            Edges::Cut => way,
+            Edges::Wrap => {
+                let size = Vec2::new(self.size[0] as f32, self.size[1] as f32);
+                way - (way / size).round() * size
+            }
+        }
+    }
+}
+
+impl Frame {
+    /// A way in space as one in the exemplar: what is lost where the surface bends is added again.
+    #[inline]
+    pub(crate) fn flat(&self, way: Vec3) -> Vec2 {
+        Vec2::new(way.dot(self.right), way.dot(self.down))
+    }
+}
+
+/// The frames of the finest sites.
+pub(crate) fn frames(hierarchy: &Hierarchy, orientation: &Orientation) -> Vec<Frame> {
+    let pixels = 1.0 / hierarchy.levels()[0].spacing();
+    let normals = hierarchy.sites().normals().iter();
+    let frame = |(normal, &down): (&DVec3, &DVec3)| Frame {
+        right: (normal.cross(down) * pixels).as_vec3(),
+        down: (down * pixels).as_vec3(),
+    };
+    normals.zip(orientation.vectors()).map(frame).collect()
+}
