@@ -20,6 +20,9 @@ export const SIZES = [128, 256, 512, 1024, 2048, 4096];
 /** Seconds that a loop takes. */
 const LOOP = 4;
 
+/** Milliseconds for a picture of a loop, beyond which it takes long. */
+const SLOW = 40;
+
 /** What the page shows of the recipe. */
 export class Looking {
   mode = $state<Mode>('maps');
@@ -34,8 +37,9 @@ export class Looking {
   room = $state.raw<[number, number]>([1, 1]);
   time = $state(0);
   playing = $state(false);
-  /** Whether full pictures take too long for a loop, which then plays in drafts. */
-  slow = $state(false);
+  /** How often the sides of the pictures of a loop are halved, since larger ones take too long. */
+  coarse = $state(0);
+  #late = 0;
   paused = $state(false);
   before = $state(false);
   dragging = $state(false);
@@ -88,7 +92,7 @@ export class Looking {
     const node = this.mode === 'node' ? selected : null;
     const paused = this.paused || this.mode === 'seams';
     const exact = this.mode === 'exact' ? { shape: this.exact } : null;
-    const rest = { time: this.time, draft: !this.playing || this.slow, thumbnails: !this.playing, paused, exact };
+    const rest = { time: this.time, draft: !this.playing, thumbnails: !this.playing, paused, exact };
     return { size, region, maps: this.needed(), node, ...rest };
   }
 
@@ -120,9 +124,17 @@ export class Looking {
     this.maps = order.filter((one) => chosen.includes(one));
   }
 
+  /** Notes how long a picture of the loop took: after some that took long the next ones are smaller. */
+  took(ms: number): void {
+    this.#late = Math.max(0, this.#late + (ms > SLOW ? 1 : -1));
+    if (this.#late < 3 || this.coarse === 2) return;
+    this.coarse += 1;
+    this.#late = 0;
+  }
+
   /** Plays the loop in time until the answer is called; a picture that is not there yet is waited for. */
   play(isDrawn: () => boolean): () => void {
-    this.slow = false;
+    this.coarse = this.#late = 0;
     let last = performance.now();
     let id = requestAnimationFrame(function step(this: void, now: number) {
       if (isDrawn()) {
@@ -142,7 +154,7 @@ export class Looking {
 
   /** The size and region that give each pixel of the screen one of the picture. */
   #detail(): { size: [number, number]; region: Region | null } {
-    const plain = { size: this.pixels, region: null };
+    const plain = { size: sized(this.playing ? this.size >> this.coarse : this.size, this.aspect), region: null };
     const now = this.window;
     if (!now || !this.sharp || !this.zooms) return plain;
     const wanted = now.zoom * devicePixelRatio;

@@ -13,9 +13,6 @@ import { Rendering } from './rendering.svelte';
 /** A dialog or a sheet over the page. */
 export type Sheet = 'none' | 'keys' | 'export' | 'save' | 'copy' | 'add' | 'start' | 'leave' | 'disk';
 
-/** Milliseconds up to which full pictures of a loop are played. */
-const SLOW = 50;
-
 /** Milliseconds for which something that was told is seen. */
 const NOTED = 6000;
 
@@ -284,7 +281,7 @@ export class Studio {
         return this.rendering.began(message);
       case 'rendered':
         this.rendering.rendered(message, this.document.rev);
-        if (!message.draft && this.looking.playing) this.looking.slow = message.ms > SLOW;
+        if (this.looking.playing) this.looking.took(message.ms);
         if (!message.draft && !this.looking.playing && !this.looking.dragging) this.said = `Rendered in ${Math.round(message.ms)} ms`;
         return;
       case 'seams':

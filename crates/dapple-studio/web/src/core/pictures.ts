@@ -132,9 +132,11 @@ export function draw(target: HTMLCanvasElement, picture: Picture, window: Window
   const left = Math.round(target.width / 2 - window.x * w);
   const top = Math.round(target.height / 2 - window.y * h);
   context.clearRect(0, 0, target.width, target.height);
+  // What a whole picture hides is not drawn.
+  const below = covers(picture.whole) ? [] : picture.base;
   for (let row = 0; row < repeats; row += 1) {
     for (let column = 0; column < repeats; column += 1) {
-      for (const piece of [...picture.base, ...picture.whole, ...picture.coming]) {
+      for (const piece of [...below, ...picture.whole, ...picture.coming]) {
         place(context, piece, { x: left + column * w, y: top + row * h, w, h });
       }
     }
