@@ -139,8 +139,8 @@ class Job:
     def openjd(self, *, parts: int | None = None, python: str = "python") -> dict[str, Any]:
         """Returns an Open Job Description template (2023-09) whose tasks bake the shards.
 
-        It is for farms such as Deadline Cloud. `parts` is the number of tasks: by default one for each shard, but at most 1024, which is a common limit of farms.
-        The template holds the absolute path or the address of the store.
+        It is for farms such as Deadline Cloud. `parts` is the number of tasks: by default one for each shard, but at most
+        1024, which is a common limit of farms. The template holds the absolute path or the address of the store.
         """
         check_shared(self.store)
         parts = min(len(self), 1024) if parts is None else parts
