@@ -1,4 +1,4 @@
-//! What Voronoi cells give, beside all feature points nearby.
+//! Tests of Voronoi cells against all feature points nearby.
 
 use super::oracle::{brute_force_vectors, position};
 use dapple_hash::Seed;

@@ -37,7 +37,7 @@ pub struct OwnTextured {
     pub panels: Vec<Panel>,
     /// The mesh with its texture map, for a file.
     pub model: Model,
-    /// What was repaired, as text; empty if nothing was.
+    /// The list of repairs as text; empty if there were none.
     pub mended: String,
 }
 
