@@ -1,4 +1,4 @@
-//! Workspace-wide tests. They live in the test binary `it`; the code of the READMEs is a test of this library.
+//! Workspace-wide tests. They live in the test binary `it`; this library tests the code in the READMEs.
 
 #![forbid(unsafe_code)]
 

@@ -1,4 +1,4 @@
-//! The targets of `tests/hostile`, for the fuzz targets of libFuzzer.
+//! The targets of `tests/hostile`, shared with the fuzz targets of libFuzzer.
 
 #[path = "../hostile/targets/mod.rs"]
 pub mod targets;

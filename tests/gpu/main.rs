@@ -1,11 +1,12 @@
-//! Textures on a real GPU, by `wgpu`: what the example `10_gpu_texture` prepares arrives, and is sampled as it should be.
+//! Textures on a real GPU, by `wgpu`: the data that the example `10_gpu_texture` prepares is uploaded intact and
+//! sampled correctly.
 //!
 //! ```sh
 //! cargo test -p dapple-tests --features gpu --test gpu
 //! ```
 //!
-//! The tests say so and pass where there is no adapter. On Linux without a GPU, the packages `libvulkan1` and
-//! `mesa-vulkan-drivers` have one that runs on the processor.
+//! Without an adapter the tests print a note and pass. On Linux without a GPU, the packages `libvulkan1` and
+//! `mesa-vulkan-drivers` provide an adapter that runs on the processor.
 
 #[path = "../../crates/dapple/examples/upload/mod.rs"]
 mod upload;
@@ -16,7 +17,7 @@ use dapple::pups::{NoiseOptions, noise};
 use dapple::raster::{Field, Raster, Window};
 use upload::{Format, Upload};
 
-/// Samples the top row, two pictures further right and one further up.
+/// A shader that samples the top row, two pictures further right and one further up.
 const SHADER: &str = "
 @group(0) @binding(0) var picture: texture_2d<f32>;
 @group(0) @binding(1) var repeating: sampler;
@@ -32,7 +33,8 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
 #[test]
 fn bytes_of_every_level_come_back_as_they_were_sent() {
     let Some(gpu) = Gpu::new() else { return };
-    // Small levels have padded rows; those of the second size all have, and its sides do not stay even.
+    // The small levels of the first size have padded rows; all levels of the second have, and its sides do not stay
+    // even.
     for size in [[256, 128], [200, 75]] {
         let height = height(size);
         let normals = normal_map(&height, &NormalOptions::default()).expect("normals");
@@ -62,7 +64,7 @@ fn a_repeating_sampler_sees_the_linear_colors_of_the_raster() {
     let texture = gpu.texture(&Upload::color(&colors).expect("mip levels"));
     let seen = gpu.sampled_row(&texture, 256);
     for (color, seen) in colors.row(0).iter().zip(seen) {
-        // What the file's 8 bits say; fractions between pixels have 8 bits, too, on GPUs.
+        // The color as the 8 bits of the file give it. GPUs also have 8 bits for positions between pixels.
         let coded = LinearRgb::from_srgb(color.to_srgb::<u8>());
         let pairs = coded.to_array().into_iter().zip(seen);
         let gap = pairs.fold(0.0_f32, |gap, (a, b)| gap.max((a - b).abs()));
@@ -70,14 +72,14 @@ fn a_repeating_sampler_sees_the_linear_colors_of_the_raster() {
     }
 }
 
-/// Noise from 0 to 1 over the unit square.
+/// A height map of noise from 0 to 1 over the unit square.
 fn height(size: [u32; 2]) -> Raster<f32> {
     let window = Window::unit(size).expect("a window");
     let noise = noise(&NoiseOptions::default(), Seed(7)).expect("noise");
     noise.to_raster(&window).expect("a picture")
 }
 
-/// A GPU, or what stands in for one.
+/// A GPU, or an adapter that emulates one.
 struct Gpu {
     device: wgpu::Device,
     queue: wgpu::Queue,
@@ -97,7 +99,7 @@ impl Gpu {
         Some(Self { device, queue })
     }
 
-    /// The texture with all of its levels.
+    /// Creates the texture with all of its levels.
     fn texture(&self, upload: &Upload) -> wgpu::Texture {
         let texture = self.device.create_texture(&wgpu::TextureDescriptor {
             label: None,
@@ -123,7 +125,7 @@ impl Gpu {
         texture
     }
 
-    /// The bytes of a level, with padded rows.
+    /// Reads the bytes of a level, with padded rows.
     fn read(&self, texture: &wgpu::Texture, mip_level: u32, bytes_per_row: usize) -> Vec<u8> {
         let [width, height] = [texture.width(), texture.height()].map(|side| side >> mip_level);
         let size = [width.max(1), height.max(1)];
@@ -145,7 +147,7 @@ impl Gpu {
         self.mapped(&buffer)
     }
 
-    /// The colors that a repeating sampler sees in the top row.
+    /// Returns the colors that a repeating sampler reads in the top row.
     fn sampled_row(&self, texture: &wgpu::Texture, width: u32) -> Vec<[f32; 3]> {
         let pipeline = self.pipeline();
         let sampler = self.device.create_sampler(&wgpu::SamplerDescriptor {
@@ -224,7 +226,7 @@ impl Gpu {
         })
     }
 
-    /// The bytes of a buffer, after all work is done.
+    /// Returns the bytes of a buffer after all work is done.
     fn mapped(&self, buffer: &wgpu::Buffer) -> Vec<u8> {
         buffer.map_async(wgpu::MapMode::Read, .., |mapped| {
             mapped.expect("a mapped buffer");

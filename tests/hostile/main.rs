@@ -1,6 +1,6 @@
-//! Input that is broken, in the hope of breaking something: every reader gives an answer or a refusal, and soon.
+//! Broken inputs for all readers: every reader returns a result or an error, in a short time.
 //!
-//! The same functions are fuzzed by libFuzzer for as long as one likes: see `tests/fuzz`.
+//! libFuzzer can run the same functions for any length of time: see `tests/fuzz`.
 
 mod mutate;
 #[expect(
@@ -13,7 +13,7 @@ use mutate::Mutator;
 use std::panic::catch_unwind;
 use targets::TARGETS;
 
-/// Gives a target its inputs, and each of them changed in so many ways.
+/// Runs a target on its seed inputs, and on `rounds` changed copies of each.
 fn try_out(target: &str, rounds: u64) {
     let found = TARGETS.into_iter().find(|(name, ..)| *name == target);
     let (name, run, seeds) = found.expect("the name of a target");
@@ -74,7 +74,8 @@ fn broken_lists_are_read_or_refused() {
     try_out("directions", 500);
 }
 
-/// The inputs to begin with, where they are asked for: `cargo xtask ci fuzz` gives them to libFuzzer.
+/// Writes the seed inputs to the folder `DAPPLE_FUZZ_SEEDS`, if it is set: `cargo xtask ci fuzz` passes them to
+/// libFuzzer.
 #[test]
 #[expect(
     clippy::disallowed_methods,

@@ -1,8 +1,8 @@
-//! Changes of bytes that are likely to be understood in part, the same in every run.
+//! Random changes of inputs that keep much of them valid, the same in every run.
 
 use dapple::hash::{Seed, rand_core::Rng};
 
-/// What numbers in texts are replaced with.
+/// The numbers that replace numbers in texts.
 const NUMBERS: [&str; 16] = [
     "0",
     "-1",
@@ -22,7 +22,7 @@ const NUMBERS: [&str; 16] = [
     "18446744073709551616",
 ];
 
-/// What numbers in binary files are replaced with.
+/// The bytes that replace numbers in binary files.
 const BYTES: [[u8; 4]; 8] = [
     [0; 4],
     [0xff; 4],
@@ -34,7 +34,7 @@ const BYTES: [[u8; 4]; 8] = [
     [0, 0, 0xc0, 0x7f],
 ];
 
-/// Changes the bytes of one input in one way.
+/// Makes random changes to inputs.
 pub(crate) struct Mutator {
     random: Box<dyn FnMut() -> u64>,
 }
@@ -47,12 +47,12 @@ impl Mutator {
         }
     }
 
-    /// A number below `n`, which is above zero.
+    /// Returns a random number below `n`, which must not be 0.
     fn below(&mut self, n: usize) -> usize {
         ((self.random)() % n as u64) as usize
     }
 
-    /// The bytes with one to four changes, some of which take from the other inputs.
+    /// Returns the bytes with one to four changes; some changes insert parts of the other inputs.
     pub(crate) fn changed(&mut self, bytes: &[u8], others: &[Vec<u8>]) -> Vec<u8> {
         let mut bytes = bytes.to_vec();
         for _ in 0..=self.below(4) {
@@ -83,7 +83,7 @@ impl Mutator {
         bytes
     }
 
-    /// Puts a part of other bytes in the place of as many or fewer.
+    /// Replaces up to as many bytes by a part of other bytes.
     fn splice(&mut self, bytes: &mut Vec<u8>, at: usize, other: &[u8]) {
         if other.is_empty() {
             return;
@@ -94,7 +94,7 @@ impl Mutator {
         bytes.splice(at..end, part.iter().copied());
     }
 
-    /// Replaces the first number of a text from a place on.
+    /// Replaces the first number in a text at or after a position.
     fn replace_number(&mut self, bytes: &mut Vec<u8>, at: usize) {
         let is_digit = |byte: &u8| byte.is_ascii_digit() || matches!(byte, b'.' | b'-');
         let Some(start) = bytes[at..].iter().position(is_digit) else {

@@ -1,4 +1,4 @@
-//! The pictures in the documentation of the crates: they are as made now, small, and shown.
+//! The pictures in the documentation of the crates are up to date, small, and included.
 //!
 //! `cargo xtask docs-images` rewrites them.
 #![expect(
@@ -11,7 +11,7 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// What all pictures of a crate may have together, in bytes: a user downloads them with the source.
+/// The limit on the total size of a crate's pictures, in bytes, since users download them with the source.
 const BYTES_MAX: u64 = 350_000;
 
 fn folder(documented: &Documented, name: &str) -> PathBuf {
@@ -19,7 +19,7 @@ fn folder(documented: &Documented, name: &str) -> PathBuf {
     root.join(documented.folder).join(name)
 }
 
-/// The crates, without the workspace itself, whose folder `docs` may have other files.
+/// Iterates over the crates without the workspace itself, whose folder `docs` may have other files.
 fn crates() -> impl Iterator<Item = &'static Documented> {
     DOCUMENTED
         .iter()
@@ -96,7 +96,7 @@ fn docs_pictures_of_readmes_are_shown_by_them() {
     }
 }
 
-/// The text of all files of a folder and of those in it.
+/// Returns the texts of all files in a folder and its subfolders, joined.
 fn sources(folder: &Path) -> String {
     let mut text = String::new();
     for entry in fs::read_dir(folder).expect("the source is there") {

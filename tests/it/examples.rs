@@ -1,4 +1,4 @@
-//! The examples are found from where a newcomer looks. That they compile is part of every `cargo test`.
+//! Checks that the documents for newcomers list every example. Every `cargo test` compiles the examples.
 #![expect(clippy::disallowed_methods, reason = "the examples are files")]
 
 use std::fs;
@@ -7,7 +7,7 @@ use std::path::Path;
 const LIB: &str = include_str!("../../crates/dapple/src/lib.rs");
 const README: &str = include_str!("../../crates/dapple/README.md");
 
-/// The names of the examples in order, with their texts.
+/// Returns the names of the examples in order, with their texts.
 fn examples() -> Vec<(String, String)> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../crates/dapple/examples");
     let mut examples = Vec::new();

@@ -1,4 +1,4 @@
-//! Every figure, small: it equals its line in figures.lock, for any number of threads.
+//! Renders every figure at a small size and compares it with its line in figures.lock, for any number of threads.
 
 use crate::with_threads;
 use dapple::recipe::Recipe;
@@ -10,7 +10,7 @@ fn lock() -> Lock {
         .expect("figures.lock can be read")
 }
 
-/// The figures as they are now, rendered by `n` threads.
+/// Renders the figures with `n` threads and returns their hashes.
 fn rendered_by(n: usize) -> Lock {
     let mut lock = Lock::default();
     for figure in figures() {

@@ -1,7 +1,7 @@
 //! Golden images: small pictures of what a crate draws, compared pixel for pixel with `tests/golden/`.
 //!
-//! `cargo xtask golden --bless` rewrites the files. A run that fails leaves what it drew as `<name>.new.png` in
-//! `target/tmp/golden/`, to be looked at beside the old one. One subject an image, at most 8 KiB.
+//! `cargo xtask golden --bless` rewrites the files. A failed run leaves the new picture as `<name>.new.png` in
+//! `target/tmp/golden/`, for comparison with the old one. Every image shows one subject and has at most 8 KiB.
 #![expect(clippy::disallowed_methods, reason = "golden images are files")]
 
 use anyhow::{Context, bail, ensure};
@@ -29,13 +29,13 @@ use std::{env, fs};
 /// The largest file, in bytes.
 const BYTES_MAX: usize = 8 * 1024;
 
-/// The pixels along a side.
+/// The width and height of most images, in pixels.
 const SIZE: u32 = 96;
 
-/// An image: its name, and how its file is made.
+/// A golden image: its name, and the function that makes its file.
 type Golden = (&'static str, fn() -> anyhow::Result<Vec<u8>>);
 
-/// The images.
+/// All golden images.
 const GOLDEN: &[Golden] = &[
     ("color-normal-map", color_normal_map),
     ("color-palettes", color_palettes),
@@ -77,7 +77,7 @@ fn golden_folder_holds_nothing_else() {
     }
 }
 
-/// Compares an image with its file, or rewrites the file where the environment asks for it.
+/// Compares an image with its file, or rewrites the file if the environment variable asks for it.
 fn check((name, draw): &Golden) -> anyhow::Result<()> {
     let bytes = draw().with_context(|| format!("{name} was not drawn"))?;
     ensure!(
@@ -169,7 +169,7 @@ fn pups_giraffe() -> anyhow::Result<Vec<u8>> {
 
 fn pups_turbulence() -> anyhow::Result<Vec<u8>> {
     let turbulence = turbulence(&OctavesOptions::default(), Seed(7))?.normalized();
-    // The right half would not fit into the size of a golden image.
+    // The right half would exceed the size limit of a golden image.
     gray(&turbulence.to_raster(&paper_window()?.crop([0, 0], [SIZE / 2, SIZE])?)?)
 }
 
@@ -186,7 +186,7 @@ fn pups_noise() -> anyhow::Result<Vec<u8>> {
     gray(&noise.to_raster(&window()?)?)
 }
 
-/// A point in each of 6 × 6 cells of the unit torus.
+/// Returns a random point in each of 6 × 6 cells of the unit torus.
 fn jittered_points() -> anyhow::Result<PointSet> {
     let jitter = |cell, axis| unit_f64(hash2(Seed(1), cell, axis));
     let position = |cell: [i64; 2]| {
@@ -197,7 +197,7 @@ fn jittered_points() -> anyhow::Result<PointSet> {
     Ok(PointSet::new(unit_torus(), positions.collect())?)
 }
 
-/// Pieces of two tiles of cracks, one finer than the other, with random colors at their corners.
+/// Corner tiles made from two tiles of cracks, one finer than the other, shown by random corner colors.
 fn tile_corner_tiles() -> anyhow::Result<Vec<u8>> {
     let cracks = |cells: u16| {
         let period = Some(u32::from(cells));
@@ -214,7 +214,7 @@ fn tile_corner_tiles() -> anyhow::Result<Vec<u8>> {
     gray(map)
 }
 
-/// Black and white by a tile of noise: from left to right more of it is white.
+/// Black and white blended by a tile of noise, with more white to the right.
 fn tile_mask() -> anyhow::Result<Vec<u8>> {
     let tile = rank_equalize(&wavelet_tile([32; 2], &[0.0, 0.5, 1.0], Seed(5))?)?;
     let tile = repeat(&tile, [SIZE; 2])?;
@@ -235,7 +235,7 @@ fn tile_mask() -> anyhow::Result<Vec<u8>> {
     }
 }
 
-/// Two by two copies of cells that were cropped where they do not repeat, and then cut.
+/// Two by two copies of a crop of cells that does not repeat, made seamless by a soft cut.
 fn tile_soft_cut() -> anyhow::Result<Vec<u8>> {
     let cells = Worley2::new(Seed(6)).combine(Combination::F1);
     let crop = Window::new(DVec2::ZERO, DVec2::splat(4.0), [64; 2])?;
@@ -247,14 +247,14 @@ fn tile_soft_cut() -> anyhow::Result<Vec<u8>> {
     gray(&repeat(&tile, [SIZE; 2])?)
 }
 
-/// Three bands of a tile of eight cells, one and a half times.
+/// Three bands of a noise tile of eight cells, shown one and a half times.
 fn wavelet_noise() -> anyhow::Result<Vec<u8>> {
     let noise = WaveletNoise2::new(8, Seed(7))?.with_weights(&[0.2, 0.05, 0.01])?;
     let window = Window::new(DVec2::ZERO, DVec2::splat(12.0), [SIZE; 2])?;
     gray(&noise.to_raster(&window)?.map(|value| 0.5 + value))
 }
 
-/// The ids of Manhattan cells that tile after four, as colors.
+/// Manhattan cells that repeat after four, colored by their ids.
 fn worley_cells() -> anyhow::Result<Vec<u8>> {
     let period = [Some(4), Some(4)];
     let worley = Worley2::new(Seed(3)).with_metric(Metric::Manhattan)?;
@@ -315,7 +315,7 @@ fn unit_torus() -> Domain {
     Domain::torus(DVec2::ZERO, DVec2::ONE)
 }
 
-/// All of the paper's torus.
+/// Returns a window of the paper's whole torus.
 fn paper_window() -> anyhow::Result<Window> {
     let Domain { origin, size, .. } = Domain::paper_torus();
     Ok(Window::new(origin, size, [SIZE; 2])?)

@@ -1,4 +1,5 @@
-//! The section "How to add" of ARCHITECTURE.md: each row names the files that one of a kind stands in, and they are few.
+//! Checks the section "How to add" of ARCHITECTURE.md: each row names the few files that a new item of its kind
+//! touches.
 
 #![expect(clippy::disallowed_methods, reason = "sources are files")]
 
@@ -9,15 +10,15 @@ use std::path::Path;
 
 const ARCHITECTURE: &str = include_str!("../../ARCHITECTURE.md");
 
-/// One of a kind, by which the files are counted.
+/// An existing item of a kind, whose files are counted.
 struct Example {
-    /// How its row in the section begins.
+    /// The start of its row in the section.
     row: &'static str,
-    /// The words that name it in code; files that hold one of them are counted.
+    /// Words that name the item in code; files that contain one of them are counted.
     words: &'static [&'static str],
-    /// Its name in the names of files, where the row has `NAME`.
+    /// The text that `NAME` in the row's file names stands for.
     file: &'static str,
-    /// How many files there may be.
+    /// The largest allowed number of files.
     most: usize,
 }
 
@@ -90,7 +91,7 @@ fn one_of_a_kind_stands_in_few_files_and_the_section_names_them() {
     }
 }
 
-/// The files of published crates whose code, outside of tests, holds one of the words.
+/// Returns the files of published crates whose code, without tests, contains one of the words.
 fn files_with(words: &[&str]) -> BTreeSet<String> {
     let mut files = BTreeSet::new();
     let unpublished = ["dapple-bench", "dapple-gallery", "dapple-models"];

@@ -14,7 +14,7 @@ mod seams;
 mod surfaces;
 mod tiles;
 
-/// The result of `work` in a pool of `n` threads.
+/// Runs `work` in a pool of `n` threads and returns its result.
 fn with_threads<T: Send>(n: usize, work: impl FnOnce() -> T + Send) -> T {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(n).build();
     pool.expect("a thread pool").install(work)

@@ -1,4 +1,4 @@
-//! What the README says about the workspace is so.
+//! Checks the statements of the README about the workspace.
 #![expect(clippy::disallowed_methods, reason = "the workspace is made of files")]
 
 use dapple_gallery::PAPERS;

@@ -1,6 +1,7 @@
-//! The Rust program of a recipe: it is what the recipe prints, it compiles, and it gives the recipe's bits.
+//! Checks the Rust program of a recipe: the file is what the recipe prints, it compiles, and it reproduces the recipe's
+//! bits.
 //!
-//! `DAPPLE_BLESS=1 cargo test -p dapple-tests recipe_code` writes the file anew.
+//! `DAPPLE_BLESS=1 cargo test -p dapple-tests recipe_code` rewrites the file.
 #![expect(clippy::disallowed_methods, reason = "the program lies in a file")]
 
 use dapple::recipe::{Bake, BakeOptions, Images, MapKind, Plan, Recipe};

@@ -1,8 +1,8 @@
-//! The wraps of tiles that repeat by construction: no different from any other boundary.
+//! Checks the wraps of tiles that repeat by construction: they look like any other boundary.
 //!
-//! Every generator of the workspace that has a period draws one period, 32 units of 8 pixels, with 50 seeds. The step
-//! across the wrap is to be, on average and at every scale, the step across the boundaries of the same kind inside: those
-//! of cells for what has cells, all of them for control points, which lie anywhere.
+//! Every periodic generator of the workspace draws one period, 32 units of 8 pixels, with 50 seeds. On average and at
+//! every scale, the step across the wrap must equal the step across inner boundaries of the same kind: boundaries of
+//! cells for textures made of cells, and any boundary for textures of control points, which lie anywhere.
 
 mod generators;
 
@@ -13,22 +13,23 @@ use dapple_tile::{Seam, SeamOptions, SeamReport};
 use generators::GENERATORS;
 use rayon::prelude::*;
 
-/// After how many units a tile repeats: the cells of cellular noise.
+/// The period of a tile in units; a unit is a cell of cellular noise.
 const PERIOD: u32 = 32;
 
-/// How many pixels a unit is wide.
+/// The width of a unit in pixels.
 const UNIT: u32 = 8;
 
-/// How many tiles of a generator are averaged.
+/// The number of tiles of a generator that are averaged.
 const N_TILES: u64 = 50;
 
-/// How many crops are: they are far from 1.
+/// The number of crops that are averaged: fewer, since their ratios are far from 1.
 const N_CROPS: u64 = 8;
 
-/// The largest standard error that a mean ratio may have. Most have less than 0.01; spots have few edges, and nearly all of it.
+/// The largest allowed standard error of a mean ratio. Most errors are below 0.01; the error of spots is near the
+/// limit, since they have few edges.
 const LARGEST_ERROR: f64 = 0.03;
 
-/// Something that draws a window of a texture with a period.
+/// A generator that draws a window of a periodic texture.
 struct Generator {
     name: &'static str,
     options: SeamOptions,
@@ -87,7 +88,7 @@ fn crops_of_generators_have_a_seam() -> Result<()> {
 }
 
 impl Generator {
-    /// The mean ratios of square pictures over all axes that repeat, at 1, 2, 4 and 8 pixels.
+    /// Returns the mean ratios of square pictures over all periodic axes, at 1, 2, 4 and 8 pixels.
     fn ratios(&self, units: u32, n_seeds: u64) -> Result<[Ratio; 4]> {
         let extent = DVec2::splat(f64::from(units));
         let window = &Window::new(DVec2::ZERO, extent, [units * self.unit; 2])?;

@@ -1,5 +1,5 @@
-//! Textures on surfaces: features follow the orientation, nothing jumps where faces meet, and real meshes and photographs
-//! go through the whole chain.
+//! Textures on surfaces: features follow the orientation, colors do not jump between faces, and real meshes and
+//! photographs go through the whole chain.
 
 use dapple_color::LinearRgb;
 use dapple_hash::Seed;
@@ -14,7 +14,7 @@ use dapple_synth::{
 };
 use std::path::{Path, PathBuf};
 
-/// Upright stripes of this width in pixels, dark and light together: the texture changes along P only.
+/// Makes vertical stripes, dark and light together `width` pixels wide: the texture changes only along P.
 fn stripes(width: u32) -> Exemplar {
     let image = Raster::from_fn([4 * width, 32], |x, _| {
         let turns = f64::from(x % width) / f64::from(width);
@@ -24,10 +24,10 @@ fn stripes(width: u32) -> Exemplar {
     Exemplar::new(&image.unwrap(), Edges::Wrap).unwrap()
 }
 
-/// The middle of the angles between the field and what the texture itself says: the direction of least change of the
-/// structure tensor (Bigün and Granlund 1987), in degrees.
+/// Returns the median angle between the field and the direction of the texture, in degrees. The direction of the
+/// texture is the direction of least change of the structure tensor (Bigün and Granlund 1987).
 ///
-/// The tensor is that of the gradients in a ball as wide as a stripe, so that there is an edge in it.
+/// The tensor comes from the gradients in a ball as wide as a stripe, which always contains an edge.
 fn median_turn(synthesizer: &Synthesizer, values: &[f64], stripe: u32) -> f64 {
     let hierarchy = synthesizer.hierarchy();
     let (sites, level) = (hierarchy.sites(), &hierarchy.levels()[0]);
@@ -51,7 +51,7 @@ fn median_turn(synthesizer: &Synthesizer, values: &[f64], stripe: u32) -> f64 {
                 xy += x * y;
                 yy += y * y;
             });
-            // The direction of most change is P where the texture follows the field.
+            // The direction of most change is P if the texture follows the field.
             (0.5 * libm::atan2(2.0 * xy, xx - yy)).abs().to_degrees()
         })
         .collect();
@@ -59,10 +59,10 @@ fn median_turn(synthesizer: &Synthesizer, values: &[f64], stripe: u32) -> f64 {
     turns[turns.len() / 2]
 }
 
-/// The gradient that fits the differences to a site's neighbors best.
+/// Returns the gradient that best fits the differences to the neighbors of a site.
 ///
-/// Sums over edges, each with its own difference, would be cheaper, but where the neighbors are not evenly around a site
-/// they lean to one side: by 3 degrees in the median for a texture that is right.
+/// A sum over edges, each with its own difference, would be cheaper. But it is biased where neighbors are unevenly
+/// spread: by 3 degrees in the median for a correct texture.
 fn gradient(hierarchy: &Hierarchy, site: SiteIdx, values: &[f64]) -> DVec3 {
     let sites = hierarchy.sites();
     let normal = sites.normals()[site.index()];
@@ -87,7 +87,7 @@ fn gradient(hierarchy: &Hierarchy, site: SiteIdx, values: &[f64]) -> DVec3 {
     right * along_right + down * ((xx * of_y - xy * of_x) / determinant)
 }
 
-/// A model's sites with the fields of several sets of directions.
+/// Returns the sites of a model, once with the field of each set of directions.
 fn with_fields(mesh: Mesh, fields: &[&[[DVec3; 2]]]) -> Vec<Synthesizer> {
     let surface = Surface::new(mesh).unwrap();
     let hierarchy = Hierarchy::new(&surface, &sites(40_000, 3)).unwrap();
@@ -156,8 +156,8 @@ fn turn_of_a_texture_that_is_right_is_none() {
     let [synthesizer] = &with_fields(models::bunny(4000).unwrap(), &[&[]])[..] else {
         panic!("one field");
     };
-    // Rings around the axis of the field are at right angles to it, so the stripes are turned by 90 degrees, less what the
-    // tensor's ball sees of the surface's own bend.
+    // Rings around the axis of the field are at right angles to it. So the stripes are turned by 90 degrees, less the
+    // bend of the surface within the tensor's ball.
     let hierarchy = synthesizer.hierarchy();
     let spacing = hierarchy.levels()[0].spacing();
     let heights = hierarchy
@@ -190,13 +190,13 @@ fn nothing_jumps_across_the_edges_of_the_mesh() {
             };
             let corners = surface.mesh().corners(face);
             let at = corners[usize::from(edge)].lerp(corners[(usize::from(edge) + 1) % 3], 0.4);
-            // What a texture map shows: the smooth normal counts, which both faces have in common.
+            // The color as a texture map shows it, with the smooth normal that both faces have in common.
             let [here, there] = [face, other.face].map(|face| {
                 let normal = surface.normal(surface.project(face, at));
                 let value = hierarchy.interpolate(0, &values, at, normal);
                 value.unwrap().unwrap()
             });
-            // The same sites count on both sides, so the colors are the same bits.
+            // The same sites have weight on both sides, so the colors have the same bits.
             assert_eq!(here, there, "{face:?}, edge {edge}");
             n_edges += 1;
         }
@@ -204,7 +204,7 @@ fn nothing_jumps_across_the_edges_of_the_mesh() {
     assert_eq!(n_edges, 9000, "all edges from both sides");
 }
 
-/// Real data beside the workspace; nothing where there is none.
+/// Returns the path of a data file beside the workspace; if it does not exist, prints a note and returns `None`.
 fn data(file: &str) -> Option<PathBuf> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data");
     let path = path.join(file);
@@ -215,7 +215,7 @@ fn data(file: &str) -> Option<PathBuf> {
     None
 }
 
-/// From files to a texture map.
+/// Synthesizes a texture from files and bakes a texture map.
 fn texture_map(mesh: Mesh, exemplar: &Path, n_sites: usize) -> Raster<[f32; 3]> {
     let image = read_image(exemplar, &Limits::default())
         .unwrap()

@@ -1,7 +1,7 @@
-//! What images become when they are made to repeat: without a seam, and without losing detail.
+//! Checks images that are made to repeat: they have no seam and keep their detail.
 //!
-//! Fractal noise and gravel are made here. Photographs are taken from `shared/data/exemplars` beside the workspace, and
-//! left out where there are none.
+//! Fractal noise and gravel are generated. Photographs come from `shared/data/exemplars` beside the workspace, and are
+//! skipped if they do not exist.
 
 use anyhow::{Context, Result};
 use dapple_hash::Seed;
@@ -12,10 +12,10 @@ use dapple_wavelet::WaveletNoise2;
 use dapple_worley::{Combination, Worley2};
 use std::path::Path;
 
-/// The pixels along a side of what is made to repeat.
+/// The width and height of a crop in pixels.
 const CROP: u32 = 128;
 
-/// Photographs of grains and blades. Bricks are not among them: they are longer than a margin.
+/// Photographs of grains and blades. Bricks are left out, since they are longer than a margin.
 const PHOTOGRAPHS: [&str; 6] = [
     "skimage_grass_gray_512.png",
     "skimage_gravel_gray_512.png",
@@ -25,15 +25,15 @@ const PHOTOGRAPHS: [&str; 6] = [
     "rock023_cc0_256.png",
 ];
 
-/// Of all crops of an image: the means of what their reports say.
+/// Means of the reports on all crops of an image.
 #[derive(Debug, Default)]
 struct Means {
     seam_at_1: f64,
     seam_at_4: f64,
     top_octave: f64,
-    /// How far the top octave is from 1 where it is furthest.
+    /// The largest deviation of the top octave's ratio from 1.
     furthest: f64,
-    /// The lowest local detail, as a multiple of that of the source.
+    /// The least local detail, as a multiple of the source's.
     local: f64,
 }
 
@@ -67,7 +67,7 @@ fn periodic_parts_leave_no_seam_and_keep_all_detail() -> Result<()> {
     Ok(())
 }
 
-/// All images, by name.
+/// Returns all images with their names.
 fn sources() -> Result<Vec<(&'static str, Raster<f32>)>> {
     let mut images = vec![("fractal noise", fractal_noise()?), ("gravel", gravel()?)];
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data/exemplars");
@@ -83,22 +83,22 @@ fn sources() -> Result<Vec<(&'static str, Raster<f32>)>> {
     Ok(images)
 }
 
-/// Four octaves, the first with ten cells to a crop. Its lattice is not that of the pixels, so that crops begin anywhere
-/// in a cell.
+/// Makes four octaves of noise, the first with ten cells per crop. The lattice does not align with the pixels, so that
+/// crops begin anywhere in a cell.
 fn fractal_noise() -> Result<Raster<f32>> {
     let noise = WaveletNoise2::new(64, Seed(5))?.with_weights(&[1.0, 0.5, 0.25, 0.125])?;
     let window = Window::new(DVec2::ZERO, DVec2::splat(41.0), [512; 2])?;
     Ok(noise.to_raster(&window)?)
 }
 
-/// Worley's cells, 12 pixels each.
+/// Makes Worley cells, 12 pixels each.
 fn gravel() -> Result<Raster<f32>> {
     let window = Window::new(DVec2::ZERO, DVec2::splat(512.0 / 12.0), [512; 2])?;
     let texture = Worley2::new(Seed(6)).combine(Combination::F2_MINUS_F1);
     Ok(texture.to_raster(&window)?)
 }
 
-/// Over all crops of an image, made to repeat by a method, or left as they are.
+/// Returns the means over all crops of an image, made to repeat by a method, or unchanged.
 fn means(image: &Raster<f32>, method: Option<Method>) -> Result<Means> {
     let [columns, rows] = image.size().map(|side| side / CROP);
     let n = f64::from(columns * rows);
@@ -109,8 +109,8 @@ fn means(image: &Raster<f32>, method: Option<Method>) -> Result<Means> {
             Some(method) => Seamless::new(method).apply(&crop)?,
             None => crop.clone(),
         };
-        // A soft cut leaves out the last columns and rows. The rest is compared with itself, so that what remains is
-        // what the method has done, not how one part of an image differs from another.
+        // A soft cut leaves out the last columns and rows. The rest is compared with itself, so that the report shows
+        // the effect of the method and not the difference between parts of an image.
         let source = crop.crop([0; 2], tile.size())?;
         let report = SeamReport::beside(&source, &tile, &SeamOptions::default())?;
         let ratio = |index: usize| report.seams[index].both.context("too small");

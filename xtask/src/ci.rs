@@ -1,4 +1,4 @@
-//! What CI runs, step by step; `.ci/run` installs what is missing and then comes here.
+//! The steps of CI; `.ci/run` installs the tools that are missing and then runs these steps.
 
 mod exchange;
 mod fuzz;
@@ -14,34 +14,34 @@ use xshell::{Cmd, Shell, cmd};
 /// A step of CI.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Step {
-    /// All tests, by the command that the README names.
+    /// All tests, by the command in the README.
     Test,
-    /// The formatting.
+    /// The formatting check.
     Fmt,
-    /// The lints, without a warning.
+    /// The lints, with warnings as errors.
     Clippy,
-    /// The documentation, without a warning.
+    /// The documentation, with warnings as errors.
     Doc,
-    /// The house rules.
+    /// The house rules, as in `cargo xtask tidy`.
     Tidy,
-    /// Every library crate alone: without features, and with each of them; its values without threads.
+    /// Every published crate alone: without features, with each of its features, and its tests without threads.
     Features,
-    /// Every published crate as the package that a registry would get.
+    /// The package of every published crate, as a registry would get it.
     Package,
-    /// Materials for other programs, given to those that are there.
+    /// Baked materials, opened by other programs if these are installed.
     Exchange,
-    /// The page of the studio, where Node is.
+    /// The page of the studio, if Node is installed.
     Page,
-    /// The studio without a server, where the compiler can make it.
+    /// The studio without a server, if the compiler can make it.
     Web,
-    /// The Python package, where Python is.
+    /// The Python package, if Python is installed.
     Python,
-    /// Each fuzz target for some seconds, where nightly Rust and cargo-fuzz are.
+    /// Each fuzz target for some seconds, if nightly Rust and cargo-fuzz are installed.
     Fuzz,
 }
 
 impl Step {
-    /// The steps, in the order in which CI runs them.
+    /// All steps, in the order in which CI runs them.
     pub(crate) const ALL: [Self; 12] = [
         Self::Test,
         Self::Fmt,
@@ -57,7 +57,7 @@ impl Step {
         Self::Fuzz,
     ];
 
-    /// What the command line calls the step.
+    /// Returns the name of the step on the command line.
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Test => "test",
@@ -75,7 +75,7 @@ impl Step {
         }
     }
 
-    /// The names of all steps, for a message.
+    /// Returns the names of all steps, for a message.
     pub(crate) fn names() -> String {
         Self::ALL.map(Self::name).join(", ")
     }
@@ -113,8 +113,8 @@ fn run(shell: &Shell, step: Step) -> anyhow::Result<()> {
     Ok(command.run()?)
 }
 
-/// Builds every published crate alone with no feature and with each of its features, and tests without threads those
-/// that can use them.
+/// Checks every published crate alone, without features and with each of its features. Crates with the feature `rayon`
+/// are also tested without it.
 fn features(shell: &Shell) -> anyhow::Result<()> {
     let workspace = Workspace::read(shell)?;
     for member in workspace.members.iter().filter(|member| member.published) {
@@ -137,7 +137,7 @@ fn features(shell: &Shell) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Makes the packages of all published crates, without building them: the step `features` builds each crate alone.
+/// Makes the packages of all published crates without building them, since the step `features` builds each crate alone.
 fn package(shell: &Shell) -> anyhow::Result<()> {
     let workspace = Workspace::read(shell)?;
     let published = workspace.members.iter().filter(|member| member.published);
@@ -148,7 +148,7 @@ fn package(shell: &Shell) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// No feature, each feature alone, and all of them.
+/// Returns the feature sets to build: no feature, each feature alone, and all of them.
 fn feature_sets(member: &Member) -> Vec<String> {
     let own = member
         .features
@@ -162,7 +162,7 @@ fn feature_sets(member: &Member) -> Vec<String> {
     sets
 }
 
-/// Says what is skipped, or fails where nothing may be.
+/// Prints what is skipped, or fails if `DAPPLE_NO_SKIP=1` is set.
 fn skip(reason: &str) -> anyhow::Result<()> {
     if std::env::var_os("DAPPLE_NO_SKIP").is_some_and(|value| value == "1") {
         bail!("{reason}; DAPPLE_NO_SKIP=1 lets nothing be skipped");
@@ -171,7 +171,7 @@ fn skip(reason: &str) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Whether a command succeeds.
+/// Returns whether a command succeeds.
 fn works(command: Cmd<'_>) -> bool {
     command.quiet().ignore_stderr().run().is_ok()
 }

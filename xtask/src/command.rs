@@ -6,7 +6,7 @@ use lexopt::{Arg, Parser};
 use std::ffi::OsString;
 use std::path::PathBuf;
 
-/// What `cargo xtask` prints without a command.
+/// The text that `cargo xtask` prints without a command.
 pub(crate) const HELP: &str = "\
 The chores of dapple.
 
@@ -30,17 +30,17 @@ Usage: cargo xtask <command>
   ci [step...]          what CI runs, or some of its steps: test fmt clippy doc tidy
                       features package exchange page web python fuzz";
 
-/// What is to be done.
+/// A command of `cargo xtask` with its arguments.
 #[derive(Debug, PartialEq)]
 pub(crate) enum Command {
     /// Render figures; the arguments are those of the binary `dapple-gallery`.
     Gallery(Vec<OsString>),
     /// Rewrite or compare the pictures in the documentation.
     DocsImages {
-        /// Compare them.
+        /// Compare the pictures instead of rewriting them.
         check: bool,
     },
-    /// Measure; the arguments are those of the binary `dapple-bench`.
+    /// Run the benchmarks; the arguments are those of the binary `dapple-bench`.
     Bench(Vec<OsString>),
     /// Build the page of the studio, and open it; the arguments are those of `dapple studio`.
     Studio(Vec<OsString>),
@@ -51,7 +51,7 @@ pub(crate) enum Command {
     },
     /// Compare or rewrite the golden images.
     Golden {
-        /// Rewrite them.
+        /// Rewrite the images instead of comparing them.
         bless: bool,
     },
     /// Check the house rules.
@@ -62,7 +62,7 @@ pub(crate) enum Command {
     Help,
 }
 
-/// The command that some arguments ask for.
+/// Parses the arguments into a command.
 pub(crate) fn parse(mut parser: Parser) -> anyhow::Result<Command> {
     let name = match parser.next()? {
         None | Some(Arg::Long("help") | Arg::Short('h')) => return Ok(Command::Help),
@@ -89,7 +89,7 @@ pub(crate) fn parse(mut parser: Parser) -> anyhow::Result<Command> {
     }
 }
 
-/// Whether the only option of a command is there.
+/// Returns whether `option`, the only option of a command, was given.
 fn flag(mut parser: Parser, command: &str, option: &str) -> anyhow::Result<bool> {
     let mut is_there = false;
     while let Some(argument) = parser.next()? {

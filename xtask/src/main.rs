@@ -1,6 +1,6 @@
 //! The chores of the workspace: `cargo xtask gallery`, `docs-images`, `bench`, `studio`, `web`, `golden`, `tidy` and `ci`.
 //!
-//! It depends on no crate of ours, so that it starts at once; what needs them runs through `cargo run --release`.
+//! It depends on none of our crates, so that it starts quickly; commands that need them run `cargo run --release`.
 
 #![forbid(unsafe_code)]
 

@@ -1,4 +1,4 @@
-//! The commands that run our own crates.
+//! Commands that run programs of the workspace.
 
 use anyhow::bail;
 use std::ffi::OsString;
@@ -20,7 +20,7 @@ pub(crate) fn docs_images(shell: &Shell, check: bool) -> anyhow::Result<()> {
     gallery(shell, &arguments)
 }
 
-/// Measures beside the peers.
+/// Runs the benchmarks against the peers.
 pub(crate) fn bench(shell: &Shell, arguments: &[OsString]) -> anyhow::Result<()> {
     let run = cmd!(
         shell,
@@ -29,10 +29,10 @@ pub(crate) fn bench(shell: &Shell, arguments: &[OsString]) -> anyhow::Result<()>
     Ok(run.quiet().run()?)
 }
 
-/// The program that gets the packages of the studio's page, and builds it.
+/// The program `npm`, which installs the packages of the studio's page and builds it.
 pub(crate) const NPM: &str = if cfg!(windows) { "npm.cmd" } else { "npm" };
 
-/// Builds the page of the studio, then runs the studio with the page in it.
+/// Builds the page of the studio, then runs the studio with it.
 pub(crate) fn studio(shell: &Shell, arguments: &[OsString]) -> anyhow::Result<()> {
     page(shell, &["run", "build"])?;
     let run = cmd!(

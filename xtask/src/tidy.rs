@@ -1,7 +1,7 @@
 //! `cargo xtask tidy`: the house rules that no compiler checks.
 //!
-//! A rule is a function from the [`Workspace`] as it was read to the list of what breaks the rule, so each has a test
-//! that shows it firing on a broken sample. `cargo test` runs all of them on the real workspace.
+//! A rule is a function from the [`Workspace`] to a list of violations, so each rule has a test that shows it firing on
+//! a broken sample. `cargo test` runs all rules on the real workspace.
 
 mod documents;
 mod layers;
@@ -12,7 +12,7 @@ use anyhow::bail;
 use workspace::Workspace;
 use xshell::Shell;
 
-/// A rule: what it says, and what it finds.
+/// A rule: its statement, and the function that finds violations.
 type Rule = (&'static str, fn(&Workspace) -> Vec<String>);
 
 /// All rules.
@@ -42,7 +42,7 @@ const RULES: [Rule; 11] = [
     ),
 ];
 
-/// Checks every rule, and reports all that is found.
+/// Checks every rule, and reports all violations.
 pub(crate) fn tidy(shell: &Shell) -> anyhow::Result<()> {
     let problems = problems(&Workspace::read(shell)?);
     if problems.is_empty() {

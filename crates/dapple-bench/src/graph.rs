@@ -1,8 +1,8 @@
-//! The graph group: the periodic Delaunay graph beside `spade`'s plain, bounded triangulation of the same points.
+//! The graph group: our periodic Delaunay graph beside the plain, bounded triangulation of `spade` on the same points.
 //!
-//! Ours starts from a point set and ends with the axes of every point in compressed rows; `spade`'s starts from a list
-//! of positions that is ready for it. Both are freed outside the clock. Confirmed: every point is a vertex, and the
-//! axes of a periodic triangulation are six for each point on average, exactly.
+//! Our side starts from a point set and ends with the axes of every point in compressed rows. `spade` starts from a
+//! list of positions that it takes over. The results of both are freed outside the clock. Confirmed: every point is a
+//! vertex, and each point has exactly six axes on average, as in every periodic triangulation.
 
 use crate::harness::Bench;
 use anyhow::Result;
@@ -16,7 +16,7 @@ pub(crate) fn run(bench: &mut Bench) -> Result<()> {
     Ok(())
 }
 
-/// The rows beside `spade`.
+/// The rows that compare with `spade`.
 #[cfg(feature = "peers")]
 mod beside_spade {
     use crate::harness::{Bench, Done, Side};

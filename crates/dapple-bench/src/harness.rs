@@ -1,15 +1,16 @@
-//! How a row is measured.
+//! The measurement of a row.
 //!
 //! **One thread.** Both sides run inside a thread pool of one thread, in turns (ours, theirs, ours, theirs …), and the
-//! clock is the processor time of that thread: other programs on the machine take wall time away, not processor time.
-//! What they do take (cache, memory bandwidth, clock speed) they take from both sides alike, since the turns are
-//! short. The time of a side is the median of its runs. What prepares a run (a copy of the input, freeing the last
-//! output) is outside the clock. One run of our side goes first, without the clock, so that memory is mapped.
+//! clock is the processor time of that thread: other programs on the machine take away wall time, not processor time.
+//! Cache, memory bandwidth and clock speed are also shared with other programs, but since the turns are short both
+//! sides suffer alike. The time of a side is the median of its runs. Preparation of a run (a copy of the input, freeing
+//! the last output) is outside the clock. One warm-up run of our side goes first, outside the clock, so that memory is
+//! mapped.
 //!
-//! **Two threads** are measured in another way, see `two_threads`.
+//! **Two threads** are measured differently, see `two_threads`.
 //!
-//! **Nothing wins by doing nothing.** Results pass through [`black_box`], and every row ends with a check of what both
-//! sides made, which also counts it (pixels, points), so that times are for work that was seen.
+//! **No side wins by skipping work.** Results pass through [`black_box`]. Every row ends with a check of what both
+//! sides made, which also counts it (pixels, points), so that times are per unit of verified work.
 
 mod two_threads;
 
@@ -23,7 +24,7 @@ use cpu_time::ThreadTime;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::hint::black_box;
 
-/// What runs cases and keeps their rows.
+/// The benchmark: runs cases that the filters select and collects their rows.
 #[derive(Debug)]
 pub(crate) struct Bench {
     filters: Vec<String>,
@@ -32,7 +33,7 @@ pub(crate) struct Bench {
     rows: Vec<Row>,
 }
 
-/// One side of a row: its memory, what prepares a run, and the run.
+/// One side of a row: its state, the preparation of a run, and the run itself.
 pub(crate) struct Side<'a, S> {
     state: S,
     runs_per_turn: u32,
@@ -41,7 +42,7 @@ pub(crate) struct Side<'a, S> {
 }
 
 impl<'a, S: Send> Side<'a, S> {
-    /// A side that works on `state`, where it finds its input and leaves its output.
+    /// Returns a side that works on `state`, which holds its input and its output.
     pub(crate) fn new(state: S, work: impl FnMut(&mut S) + Send + 'a) -> Self {
         Self {
             state,
@@ -51,19 +52,19 @@ impl<'a, S: Send> Side<'a, S> {
         }
     }
 
-    /// Runs `prepare` before every run, outside the clock.
+    /// Adds a preparation that runs before every run, outside the clock.
     pub(crate) fn prepared(mut self, prepare: impl FnMut(&mut S) + Send + 'a) -> Self {
         self.prepare = Box::new(prepare);
         self
     }
 
-    /// Runs this often in every turn, each timed on its own: for a job that is short beside the other side's.
+    /// Sets the number of runs per turn, each timed on its own, for a job that is short compared with the other side's.
     pub(crate) fn times(mut self, runs_per_turn: u32) -> Self {
         self.runs_per_turn = runs_per_turn;
         self
     }
 
-    /// The runs of one turn: seconds of processor time of this thread, each.
+    /// Runs one turn and appends the processor time of each run in seconds.
     fn turn(&mut self, seconds: &mut Vec<f64>) {
         for _ in 0..self.runs_per_turn {
             (self.prepare)(&mut self.state);
@@ -75,24 +76,24 @@ impl<'a, S: Send> Side<'a, S> {
     }
 }
 
-/// How much each side did in one run, counted from its output, in what the row's unit is for.
+/// The amount of work that each side did in one run, counted from its output in the row's unit.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Done {
-    /// Our side's pixels, points or positions.
+    /// The number of pixels, points or positions of our side.
     pub(crate) ours: usize,
-    /// The other side's.
+    /// The number of pixels, points or positions of the other side.
     pub(crate) theirs: usize,
 }
 
 impl Done {
-    /// One number for both sides.
+    /// The same amount for both sides.
     pub(crate) const fn both(n: usize) -> Self {
         Self { ours: n, theirs: n }
     }
 }
 
 impl Bench {
-    /// A bench that measures the cases which the filters select.
+    /// Returns a benchmark that measures the cases that the filters select.
     pub(crate) fn new(filters: Vec<String>) -> Result<Self> {
         let pool = |n_threads| ThreadPoolBuilder::new().num_threads(n_threads).build();
         Ok(Self {
@@ -103,24 +104,24 @@ impl Bench {
         })
     }
 
-    /// Whether the filters select a case.
+    /// Returns whether the filters select a case.
     pub(crate) fn wants(&self, case: &Case) -> bool {
         case.is_wanted(&self.filters)
     }
 
-    /// Whether the filters select one of some cases, so that what they share is worth preparing.
+    /// Returns whether the filters select any of some cases, so that their common inputs are worth preparing.
     pub(crate) fn wants_any(&self, cases: &[Case]) -> bool {
         cases.iter().any(|case| self.wants(case))
     }
 
-    /// The rows measured so far, in their order.
+    /// Returns the measured rows, in order.
     pub(crate) fn into_rows(self) -> Vec<Row> {
         self.rows
     }
 
-    /// Measures both sides on one thread in `turns` turns, and keeps the row; does nothing if the case is not wanted.
+    /// Measures both sides on one thread in `turns` turns and adds the row; does nothing if the case is not selected.
     ///
-    /// `confirm` looks at what both sides made in their last run.
+    /// `confirm` checks the output of the last run of both sides, and counts the work.
     pub(crate) fn beside<A: Send, B: Send>(
         &mut self,
         case: &Case,
@@ -155,7 +156,7 @@ impl Bench {
         Ok(())
     }
 
-    /// Runs a job on one thread: its seconds of processor time, and what it made.
+    /// Runs a job on one thread; returns its processor time in seconds, and its result.
     pub(crate) fn on_one<T: Send>(&self, job: impl FnOnce() -> T + Send) -> (f64, T) {
         self.one.install(|| {
             let start = ThreadTime::now();
@@ -164,19 +165,19 @@ impl Bench {
         })
     }
 
-    /// Keeps the row of a case that was measured in other ways, from the seconds for one unit of work.
+    /// Adds the row of a case that was measured elsewhere, from the seconds for one unit of work.
     pub(crate) fn measured(&mut self, case: &Case, ours: f64, theirs: f64) {
         self.keep(case.row(ours, theirs));
     }
 
-    /// Adds a row, as [`measured`](Self::measured) does, with a note that was not known before.
+    /// Adds a row like [`measured`](Self::measured), with a note that was computed at run time.
     pub(crate) fn measured_with(&mut self, case: &Case, ours: f64, theirs: f64, note: String) {
         let mut row = case.row(ours, theirs);
         row.note = note;
         self.keep(row);
     }
 
-    /// Keeps a row and tells of it.
+    /// Adds a row and prints it to standard error.
     fn keep(&mut self, row: Row) {
         let verdict = if row.holds { "" } else { "  BELOW ITS BAR" };
         eprintln!(
@@ -193,12 +194,12 @@ impl Bench {
     }
 }
 
-/// The name of a case in messages.
+/// Returns the name of a case for messages.
 fn in_case(case: &Case) -> String {
     format!("{}: {}, {}", case.group, case.case, case.peer)
 }
 
-/// The median: the middle value, or the mean of the two in the middle; NaN of nothing. Sorts the values.
+/// Returns the median: the middle value, or the mean of the two middle values; NaN for no values. Sorts the values.
 pub(crate) fn median(values: &mut [f64]) -> f64 {
     values.sort_by(f64::total_cmp);
     let middle = values.len() / 2;

@@ -17,7 +17,7 @@ pub(crate) struct Machine {
 }
 
 impl Machine {
-    /// The machine that this runs on; what it does not tell is "unknown".
+    /// Describes the machine that this program runs on; properties that it does not reveal are "unknown".
     pub(crate) fn this() -> Self {
         Self {
             processor: processor().unwrap_or_else(|| "an unknown processor".to_owned()),
@@ -44,7 +44,7 @@ impl fmt::Display for Machine {
     }
 }
 
-/// The model in `/proc/cpuinfo`, where there is one.
+/// Returns the model in `/proc/cpuinfo`, if that file exists.
 fn processor() -> Option<String> {
     #[expect(
         clippy::disallowed_methods,
@@ -54,8 +54,8 @@ fn processor() -> Option<String> {
     model_name(&text)
 }
 
-/// The first `model name` of the text of `/proc/cpuinfo`, followed by family and model, which tell processors apart
-/// whose name a virtual machine has cut short.
+/// Returns the first `model name` in the text of `/proc/cpuinfo`, followed by family and model: they identify a
+/// processor whose name a virtual machine has shortened.
 fn model_name(cpuinfo: &str) -> Option<String> {
     let field = |name: &str| {
         cpuinfo.lines().find_map(|line| {
@@ -70,7 +70,7 @@ fn model_name(cpuinfo: &str) -> Option<String> {
     }
 }
 
-/// The widest vector instructions of the processor among those that the crates dispatch on.
+/// Returns the widest vector instructions of the processor among those that the crates dispatch on.
 fn vectors() -> &'static str {
     #[cfg(target_arch = "x86_64")]
     {
@@ -88,7 +88,7 @@ fn vectors() -> &'static str {
     }
 }
 
-/// What `rustc --version` says, which under cargo is the compiler that built this.
+/// Returns the output of `rustc --version`; under cargo this is the compiler that built the program.
 fn compiler() -> Option<String> {
     let output = Command::new("rustc").arg("--version").output().ok()?;
     let text = String::from_utf8(output.stdout).ok()?;

@@ -1,12 +1,12 @@
 //! Side-by-side benchmarks against the peers: `cargo xtask bench [filter…] [--json FILE] [--check]`.
 //!
-//! Every row sets a job of ours beside the same job of somebody else (a peer) or of ourselves under other
-//! conditions, in one run, and says what the ratio must be. A filter is the name of a group, which selects its rows,
-//! or a part of a case's or peer's name.
+//! Every row compares a job of ours with the same job of another crate (a peer), or with our own job under other
+//! conditions, in one run. It states the ratio that must be reached. A filter is the name of a group, which selects its
+//! rows, or a part of a case's or peer's name.
 //!
-//! How rows are measured is in `harness`, how peers are used at their best in `peers`, and what each group sets side by
-//! side in `pups`, `points`, `graph`, `worley`, `noise`, `wavelet`, `tile`, `mesh`, `synth` and `recipe`. The peers are built only with the
-//! feature `peers`, which `cargo xtask bench` turns on; without it the rows of ours alone run.
+//! The module `harness` measures rows, `peers` uses each peer at its best, and each group has a module: `pups`,
+//! `points`, `graph`, `worley`, `noise`, `wavelet`, `tile`, `mesh`, `synth` and `recipe`. The peers are built only with
+//! the feature `peers`, which `cargo xtask bench` turns on; without it only the rows that compare our own jobs run.
 
 #![forbid(unsafe_code)]
 
@@ -44,23 +44,23 @@ use machine::Machine;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-/// Benchmarks beside the peers, one row for each bar that the library sets itself.
+/// Benchmarks against other crates, one row for each goal that the library sets itself.
 #[derive(Debug, Parser)]
 #[command(name = "cargo xtask bench")]
 struct Arguments {
-    /// Groups (pups, points, graph, worley, noise, wavelet, tile, mesh, synth, recipe), or parts of the names of cases or peers; all
-    /// of them by default.
+    /// Groups (pups, points, graph, worley, noise, wavelet, tile, mesh, synth, recipe), or parts of the names of cases or
+    /// peers; without filters all rows run.
     filters: Vec<String>,
     /// Writes the rows as JSON to this file.
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
-    /// Fails when a row does not hold.
+    /// Fails if a row misses its goal.
     #[arg(long)]
     check: bool,
-    /// Keeps the table in `crates/dapple-bench/RESULTS.md`.
+    /// Writes the table to `crates/dapple-bench/RESULTS.md`.
     #[arg(long)]
     write_results: bool,
-    /// Makes a texture of so many sites and prints what that took: a row's own process.
+    /// Synthesizes a texture with this number of sites and prints time and memory; a row runs it as a separate process.
     #[arg(long, hide = true, value_name = "N")]
     synthesize: Option<usize>,
 }

@@ -1,4 +1,4 @@
-//! The mesh group: how even sites are, and which of them are connected.
+//! The mesh group: the evenness of sites, and the graphs that connect them.
 
 mod evenness;
 #[cfg(feature = "peers")]

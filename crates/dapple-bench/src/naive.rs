@@ -1,20 +1,21 @@
-//! Naive partition-of-unity parametrics: every control point at every pixel. Both a peer and an oracle.
+//! Naive partition-of-unity parametrics, which visit every control point at every pixel: a peer and a reference for
+//! checks.
 //!
 //! Reference: Jack Caron and David Mould, "Partition of Unity Parametrics for Texture Synthesis", Graphics Interface
 //! 2013, equations 1 to 3: the weight of a control point `c` at `u` is the product of `A(p)` over its axes `r`, where
 //! `p = (u − c)·r / |r|²` is clamped to [0, 1] and `A(p) = 1 − 3p² + 2p³`; the value is the weighted mean.
 //!
-//! It is naive, not slow on purpose: `f32`, axes already divided by their squared length and flat in memory, and no
-//! further axis of a point once one has made its weight zero. Positions are in a unit torus.
+//! It is naive, but not deliberately slow: it uses `f32`, stores axes flat in memory and already divided by their
+//! squared length, and skips the remaining axes of a point once its weight is zero. Positions are in a unit torus.
 
-/// Control points with their axes, ready to be evaluated.
+/// Control points with their axes, prepared for evaluation.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Naive {
     centers: Vec<[f32; 2]>,
     values: Vec<f32>,
-    /// Where the axes of each point begin, and one more.
+    /// The index of the first axis of each point, and a final end index.
     first: Vec<u32>,
-    /// `r / |r|²` of each axis.
+    /// `r / |r|²` for each axis.
     axes: Vec<[f32; 2]>,
 }
 
@@ -38,7 +39,7 @@ impl Naive {
         self.first.push(self.axes.len() as u32);
     }
 
-    /// Fills one row of an image of the unit square; `y` is that of the pixel centers.
+    /// Fills one row of an image of the unit square; `y` is the coordinate of the pixel centers.
     pub(crate) fn row(&self, y: f64, row: &mut [f32]) {
         let pixel = 1.0 / row.len() as f64;
         for (column, value) in row.iter_mut().enumerate() {
@@ -46,7 +47,7 @@ impl Naive {
         }
     }
 
-    /// The value at a position of the unit square.
+    /// Returns the value at a position of the unit square.
     pub(crate) fn sample(&self, position: [f64; 2]) -> f32 {
         let [x, y] = position.map(|coordinate| coordinate as f32);
         let (mut sum, mut total) = (0.0, 0.0);
@@ -65,7 +66,7 @@ impl Naive {
     }
 }
 
-/// The product of the axial weights at an offset from the control point.
+/// Returns the product of the axial weights at an offset from the control point.
 fn weight(dx: f32, dy: f32, axes: &[[f32; 2]]) -> f32 {
     let mut weight = 1.0;
     for axis in axes {
@@ -78,7 +79,7 @@ fn weight(dx: f32, dy: f32, axes: &[[f32; 2]]) -> f32 {
     weight
 }
 
-/// An offset between two coordinates of the unit torus, the short way round.
+/// Wraps a coordinate difference on the unit torus to the shorter way round.
 fn wrapped(offset: f32) -> f32 {
     if offset > 0.5 {
         offset - 1.0
@@ -93,7 +94,7 @@ fn wrapped(offset: f32) -> f32 {
 mod tests {
     use super::*;
 
-    /// Four points of a square grid on the torus, each with its four neighbors half the torus away.
+    /// Returns four points of a square grid on the torus, each with four neighbors half a torus away.
     fn grid() -> Naive {
         let mut naive = Naive::default();
         let axes = [[0.5, 0.0], [0.0, 0.5], [-0.5, 0.0], [0.0, -0.5]];
@@ -128,7 +129,7 @@ mod tests {
     fn value_between_two_control_points_is_their_blend() {
         let mut row = [0.0; 8];
         grid().row(0.25, &mut row);
-        // Pixel 3 is at 0.4375, which is 3/8 of the axis to the right of the first point, and pixel 0 as far to the left.
+        // Pixel 3 is at 0.4375, at 3/8 of the axis to the right of the first point; pixel 0 is as far to the left.
         let p = 0.375_f32;
         let expected = 1.0 - p * p * (3.0 - 2.0 * p);
         assert!(

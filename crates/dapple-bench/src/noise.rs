@@ -1,6 +1,6 @@
-//! The noise group: gradient noise beside the fastest of the peers.
+//! The noise group: gradient noise beside the fastest peers.
 //!
-//! Confirmed: both sides are as spread out as noise is, and ours within its bounds.
+//! Confirmed: both sides have the spread expected of noise, and ours stays within its bounds.
 
 use crate::harness::{Bench, Done, Side};
 use crate::peers::noise;
@@ -38,7 +38,7 @@ const ONE_POSITION: Case = Case {
 /// Columns and rows of the pictures.
 const SIDE: u32 = 1024;
 
-/// How many positions are asked for in one run.
+/// The number of positions per run.
 const N_POSITIONS: usize = 1 << 16;
 
 /// Measures the rows of the group.
@@ -62,7 +62,7 @@ fn picture(bench: &mut Bench, case: &Case, px_per_cell: u32) -> Result<()> {
     let ours = Side::new(
         Raster::filled([SIDE; 2], 0.0)?,
         |raster: &mut Raster<f32>| {
-            // The raster has the size of the window.
+            // The raster has the size of the window, so this cannot fail.
             let _ = field.render(&window, raster.view_mut());
         },
     );
@@ -89,7 +89,7 @@ fn picture(bench: &mut Bench, case: &Case, px_per_cell: u32) -> Result<()> {
     )
 }
 
-/// Measures one position after another, anywhere in a square of `cells`, beside Perlin noise of `noise-functions`.
+/// Measures single positions, anywhere in a square of `cells`, beside Perlin noise of `noise-functions`.
 pub(crate) fn beside_perlin(
     bench: &mut Bench,
     case: &Case,
@@ -117,7 +117,7 @@ pub(crate) fn beside_perlin(
     })
 }
 
-/// The mean square of values of noise is above 0.01.
+/// Checks that the mean square of noise values is above 0.01.
 pub(crate) fn confirm_spread(values: &[f32]) -> Result<()> {
     let spread = values.iter().map(|value| value * value).sum::<f32>();
     ensure!(
@@ -127,7 +127,7 @@ pub(crate) fn confirm_spread(values: &[f32]) -> Result<()> {
     Ok(())
 }
 
-/// Values are within the bound, and their variance is near the stated one.
+/// Checks that values are within the bound, and that their variance is near the stated one.
 fn confirm(values: &[f32]) -> Result<()> {
     let past = values
         .iter()
@@ -138,7 +138,7 @@ fn confirm(values: &[f32]) -> Result<()> {
         .map(|&value| f64::from(value) * f64::from(value))
         .sum();
     let variance = sum / values.len() as f64;
-    // There are few cells in the coarsest picture.
+    // The coarsest picture has few cells.
     ensure!(
         (0.05..0.15).contains(&variance),
         "the variance is {variance}"

@@ -1,4 +1,5 @@
-//! The peers, each used at its best: what its documentation says of speed is followed, memory is kept between calls.
+//! The peers, each used at its best: advice of its documentation about speed is followed, and memory is kept between
+//! calls.
 //!
 //! * `spade` interpolates inside the convex hull of its points, so a point set of the unit torus is given to it with
 //!   the copies within a margin, and is then defined in the whole unit square. The interpolators keep their buffers.
@@ -36,20 +37,20 @@ impl HasPosition for Site {
     }
 }
 
-/// `spade` with the last used vertex as its hint: for positions near the one before.
+/// `spade` with the last used vertex as its hint, for positions near the previous one.
 pub(crate) type ScanlineSpade = Spade<LastUsedVertexHintGenerator>;
 
-/// `spade` with a hierarchy of triangulations as its hint: for positions anywhere.
+/// `spade` with a hierarchy of triangulations as its hint, for scattered positions.
 pub(crate) type ScatteredSpade = Spade<HierarchyHintGenerator<f64>>;
 
-/// A triangulation of a point set of the unit torus that covers the unit square.
+/// A triangulation of a periodic point set that covers the unit square.
 #[derive(Debug)]
 pub(crate) struct Spade<L: HintGenerator<f64>> {
     triangulation: DelaunayTriangulation<Site, (), (), (), L>,
 }
 
 impl<L: HintGenerator<f64>> Spade<L> {
-    /// Triangulates points with values, and the copies of those within `margin` of the unit square's sides.
+    /// Triangulates points with values, and copies of the points within `margin` of the sides of the unit square.
     ///
     /// # Panics
     ///
@@ -93,7 +94,7 @@ impl<L: HintGenerator<f64>> Spade<L> {
         });
     }
 
-    /// Natural neighbor interpolation at each position.
+    /// Interpolates at each position by natural neighbor interpolation.
     pub(crate) fn natural_neighbor_at(&self, positions: &[DVec2], values: &mut [f32]) {
         let interpolator = self.triangulation.natural_neighbor();
         for (at, value) in positions.iter().zip(values) {
@@ -119,17 +120,17 @@ fn serpentine(side: usize, image: &mut [f32], value_at: impl Fn(Point2<f64>) -> 
     }
 }
 
-/// NaN where a peer has no value.
+/// Returns NaN for a position where a peer has no value.
 fn or_nan(value: Option<f64>) -> f32 {
     value.map_or(f32::NAN, |value| value as f32)
 }
 
-/// Positions as `spade` takes them.
+/// Converts positions to the type of `spade`.
 pub(crate) fn spade_positions(positions: &[DVec2]) -> Vec<Point2<f64>> {
     positions.iter().map(|at| Point2::new(at.x, at.y)).collect()
 }
 
-/// The plain triangulation of a list of positions, which it consumes.
+/// Returns the plain triangulation of a list of positions, which it takes over.
 ///
 /// # Panics
 ///
@@ -138,12 +139,12 @@ pub(crate) fn spade_bulk_load(positions: Vec<Point2<f64>>) -> DelaunayTriangulat
     DelaunayTriangulation::bulk_load(positions).expect("positions of a point set are finite")
 }
 
-/// How many vertices a triangulation has.
+/// Returns the number of vertices of a triangulation.
 pub(crate) fn n_vertices(triangulation: &DelaunayTriangulation<Point2<f64>>) -> usize {
     triangulation.num_vertices()
 }
 
-/// The points of `bluenoise` on a torus of some side, at least one apart.
+/// Returns points of `bluenoise` on a torus with the given side, at least 1 apart.
 pub(crate) fn bluenoise(side: f32, seed: u64) -> Vec<[f32; 2]> {
     let mut noise =
         bluenoise::WrappingBlueNoise::<rand_09::rngs::SmallRng>::from_seed(side, side, 1.0, seed);
@@ -151,7 +152,7 @@ pub(crate) fn bluenoise(side: f32, seed: u64) -> Vec<[f32; 2]> {
     noise.map(|at| [at.x, at.y]).collect()
 }
 
-/// The points of `poisson-diskus` on a unit torus.
+/// Returns points of `poisson-diskus` on the unit torus.
 ///
 /// # Panics
 ///
@@ -162,7 +163,7 @@ pub(crate) fn poisson_diskus(radius: f64, seed: u64) -> Vec<[f64; 2]> {
         .expect("the radius is positive")
 }
 
-/// The points of `fast_poisson` in a unit square, which does not wrap.
+/// Returns points of `fast_poisson` in the unit square, which does not wrap.
 pub(crate) fn fast_poisson(radius: f64, seed: u64) -> Vec<[f64; 2]> {
     fast_poisson::Poisson2D::new()
         .with_dimensions([1.0, 1.0], radius)
@@ -174,7 +175,7 @@ pub(crate) fn fast_poisson(radius: f64, seed: u64) -> Vec<[f64; 2]> {
 mod tests {
     use super::*;
 
-    /// A grid of points with a linear value, except at the torus' seam.
+    /// A grid of points with a linear value, except at the seam of the torus.
     fn grid() -> (Vec<DVec2>, Vec<f32>) {
         let steps = || (0..16).map(|i| (f64::from(i) + 0.5) / 16.0);
         let positions: Vec<DVec2> = steps()
@@ -195,7 +196,7 @@ mod tests {
                 image.iter().all(|value: &f32| value.is_finite()),
                 "the margin covers the square"
             );
-            // The inside of the square is away from the seam, where the values jump.
+            // Only the inside of the square is checked, away from the seam, where the values jump.
             for (index, value) in image
                 .iter()
                 .enumerate()

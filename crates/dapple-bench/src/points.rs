@@ -1,9 +1,9 @@
-//! The points group: maximal Poisson-disk sets of the unit torus beside the crates that make such points.
+//! The points group: maximal Poisson-disk sets of the unit torus beside other crates that make Poisson-disk points.
 //!
-//! All sides get the same radius and are compared by the time for each point that they made, since they do not pack
-//! equally: none of the peers is maximal, `bluenoise` packs more densely than random darts do and the others more
-//! loosely, and `fast_poisson` does not wrap. Confirmed: the number of points is the one known for the method, and no
-//! two points are closer than the radius; ours has no empty circle larger than the radius, either.
+//! All sides get the same radius. They are compared by the time per point made, since they pack differently: no peer is
+//! maximal, `bluenoise` packs more densely than random darts, the others more loosely, and `fast_poisson` does not
+//! wrap. Confirmed: the density is the one known for the method, and no two points are closer than the radius; ours
+//! also leaves no empty circle larger than the radius.
 
 mod alone;
 #[cfg(feature = "peers")]
@@ -21,16 +21,17 @@ pub(crate) fn run(bench: &mut Bench) -> Result<()> {
     alone::run(bench)
 }
 
-/// Checks a set of ours: the density that is known, no two points too close, and no room for another. Counts them.
+/// Checks that our set has the known density, that no two points are too close, and that no more fit. Returns the
+/// number of points.
 fn confirm_maximal(points: &Option<PointSet>, radius: f64) -> Result<usize> {
     let points = points.as_ref().context("no points")?;
-    // 0.697, and less than 1 % off from 100 k points on.
+    // The density is 0.697, with less than 1 % deviation from 100 k points on.
     let n_points = confirm(points, radius, 1e-9, 0.690..=0.704)?;
     let largest = points
         .largest_empty_circle()
         .context("no empty circle")?
         .radius;
-    // What `poisson_disk` promises.
+    // The guarantee of `poisson_disk`.
     ensure!(
         largest <= radius * (1.0 + 1e-6),
         "an empty circle of {largest} has room for a point, with a radius of {radius}"
@@ -38,7 +39,8 @@ fn confirm_maximal(points: &Option<PointSet>, radius: f64) -> Result<usize> {
     Ok(n_points)
 }
 
-/// Checks the density of a set, and that no two points are closer than `radius` less `slack`. Counts them.
+/// Checks the density of a set, and that no two points are closer than `radius` minus `slack`. Returns the number of
+/// points.
 fn confirm(
     points: &PointSet,
     radius: f64,

@@ -1,9 +1,9 @@
 //! The pups group: rasters and single positions of a scalar texture on the unit torus.
 //!
-//! An image is 1000×1000 pixels of the unit square, in memory that is there already. What is set up before (points,
-//! graph, net; the triangulation of the peer) is outside the clock, except in the whole chain. Confirmed: every pixel
-//! of a peer has a value, and ours is the naive evaluation of the paper's formulas up to the rounding of `f32`; that naive
-//! evaluation is itself a peer, on some rows of the image, since all of them would take seconds.
+//! An image is 1000×1000 pixels of the unit square, in memory allocated before. Setup (points, graph, net; the
+//! triangulation of the peer) is outside the clock, except in the row of the whole chain. Confirmed: every pixel of a
+//! peer has a value, and ours equals the naive evaluation of the paper's formulas up to the rounding of `f32`. The
+//! naive evaluation is itself a peer; it runs on some rows of the image, since a whole image would take seconds.
 
 mod alone;
 #[cfg(feature = "peers")]
@@ -30,7 +30,7 @@ pub(crate) fn run(bench: &mut Bench) -> Result<()> {
 /// Columns and rows of the images.
 const SIDE: u32 = 1000;
 
-/// Everything about a texture of about so many control points.
+/// A texture with about a given number of control points, and the structures it is made of.
 struct Scene {
     points: PointSet,
     graph: Graph,
@@ -54,7 +54,7 @@ impl Scene {
         })
     }
 
-    /// The naive evaluation of the same texture.
+    /// Returns the naive evaluation of the same texture.
     fn naive(&self) -> Naive {
         let mut naive = Naive::default();
         for ((point, center), &value) in self.points.iter().zip(&self.values) {
@@ -68,7 +68,7 @@ impl Scene {
         naive
     }
 
-    /// Checks some rows of an image of the unit square beside the naive evaluation.
+    /// Checks some rows of an image of the unit square against the naive evaluation.
     fn confirm(&self, image: &Raster<f32>) -> Result<()> {
         let naive = self.naive();
         let [width, height] = image.size();
@@ -80,11 +80,11 @@ impl Scene {
         Ok(())
     }
 
-    /// Checks that values are those of the naive evaluation up to [`tolerance`](Self::tolerance).
+    /// Checks that values equal the naive evaluation up to [`tolerance`](Self::tolerance).
     fn confirm_values(&self, found: &[f32], expected: &[f32]) -> Result<()> {
         let tolerance = self.tolerance();
         for (index, (found, expected)) in found.iter().zip(expected).enumerate() {
-            // A difference that is not a number fails too.
+            // Written so that a NaN difference fails.
             let near = (found - expected).abs() <= tolerance;
             ensure!(
                 near,
@@ -94,24 +94,23 @@ impl Scene {
         Ok(())
     }
 
-    /// How far apart `f32` may take two evaluations of the same formulas.
+    /// Returns how much two `f32` evaluations of the same formulas may differ.
     ///
-    /// Some 25 products and sums of numbers up to one lose up to 6e-8 each, and not all the same way: 5e-7. An offset
-    /// that is rounded in the unit torus, as the naive evaluation does, is up to 1.2e-7 off; that moves the weight of
-    /// each of about four supports by the steepest slope of equation 1, which is 1.5 over an axis no shorter than the
-    /// radius.
+    /// Some 25 products and sums of numbers up to 1 lose up to 6e-8 each, partly canceling: 5e-7. The naive evaluation
+    /// rounds offsets in the unit torus by up to 1.2e-7. That changes the weight of each of about four supports by at
+    /// most the steepest slope of equation 1, which is 1.5 over an axis no shorter than the radius.
     fn tolerance(&self) -> f32 {
         let radius = sets::radius_of(self.points.len() as u32) as f32;
         5e-7 + 4.0 * 1.2e-7 * 1.5 / radius
     }
 }
 
-/// The window of an image of the unit square.
+/// Returns the window of an image of the unit square.
 fn window(side: u32) -> Result<Window> {
     Ok(Window::unit([side, side])?)
 }
 
-/// An image, black so far.
+/// Returns a black image.
 fn image(side: u32) -> Result<Raster<f32>> {
     Ok(Raster::filled([side, side], 0.0)?)
 }

@@ -1,4 +1,4 @@
-//! The recipe group: baking beside baking more, and nodes beside what they are made of.
+//! The recipe group: baking a part beside baking the whole, and nodes beside what they are made of.
 
 mod maps;
 mod nodes;

@@ -1,4 +1,4 @@
-//! The table of a run as aligned Markdown, and what a run ends with.
+//! The results of a run as aligned Markdown tables, and the exit code of the program.
 
 use crate::machine::Machine;
 use crate::row::{GROUPS, Row};
@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 use std::process::ExitCode;
 
-/// The heads of the columns and whether a column is aligned to the right.
+/// The titles of the columns, and whether a column is aligned to the right.
 const COLUMNS: [(&str, bool); 8] = [
     ("case", false),
     ("peer", false),
@@ -18,7 +18,7 @@ const COLUMNS: [(&str, bool); 8] = [
     ("holds", false),
 ];
 
-/// The page: the machine, then one table for each group with its notes below.
+/// Returns the page: the machine, then one table for each group with its notes below.
 pub(crate) fn markdown(machine: &Machine, filters: &[String], rows: &[Row]) -> String {
     let mut page = String::from("# Results\n\n");
     let command = ["cargo xtask bench".to_owned()]
@@ -44,14 +44,14 @@ pub(crate) fn markdown(machine: &Machine, filters: &[String], rows: &[Row]) -> S
     page
 }
 
-/// How to read the tables.
+/// The text that explains the tables.
 const EXPLANATION: &str = "\
 Times are of the processor, not of the wall, medians of interleaved runs on one thread; `src/harness/two_threads.rs`
 explains the rows on two; beside what papers took, ours is the wall time on two threads. The ratio of times is theirs over ours where the bar is a `≥`, and ours over theirs where it is a `≤`;
 that of distances and angles is always ours over theirs.
 Every row also confirms that both sides did the work: see the modules of the groups.";
 
-/// One group as a table, and the notes of its rows.
+/// Returns one group as a table, followed by the notes of its rows.
 fn table(rows: &[&Row]) -> String {
     let heads = COLUMNS.map(|(head, _)| head.to_owned());
     let lines: Vec<[String; 8]> = rows.iter().map(|row| cells(row)).collect();
@@ -89,7 +89,7 @@ fn table(rows: &[&Row]) -> String {
     text
 }
 
-/// The cells of a row as text.
+/// Returns the cells of a row as text.
 fn cells(row: &Row) -> [String; 8] {
     let sign = if row.at == "most" { '≤' } else { '≥' };
     let must = format!("{sign} {}", row.must);
@@ -106,7 +106,7 @@ fn cells(row: &Row) -> [String; 8] {
     ]
 }
 
-/// One line of a table, its cells padded to the widths of the columns.
+/// Returns one line of a table, its cells padded to the widths of the columns.
 fn line(cells: &[String; 8], widths: &[usize]) -> String {
     let mut text = String::new();
     for ((cell, &width), (_, right)) in cells.iter().zip(widths).zip(COLUMNS) {
@@ -120,7 +120,7 @@ fn line(cells: &[String; 8], widths: &[usize]) -> String {
     text
 }
 
-/// A positive number with three significant digits or all digits before the point.
+/// Formats a positive number with three significant digits, or with all digits before the point.
 pub(crate) fn three_digits(value: f64) -> String {
     let decimals = match value {
         value if value < 10.0 => 2,
@@ -130,7 +130,7 @@ pub(crate) fn three_digits(value: f64) -> String {
     format!("{value:.decimals$}")
 }
 
-/// Failure if `check` was asked for and a row does not hold.
+/// Returns failure if `check` is set and a row does not hold.
 pub(crate) fn exit_code(rows: &[Row], check: bool) -> ExitCode {
     if check && rows.iter().any(|row| !row.holds) {
         ExitCode::FAILURE

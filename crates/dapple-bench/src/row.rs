@@ -1,20 +1,20 @@
-//! One line of the table: what was set side by side, what it took, and whether the bar is met.
+//! One row of a table: the two sides, their measurements, and whether the goal is met.
 
 use serde::Serialize;
 
-/// Which way a ratio is read, and its bar.
+/// The direction of a ratio, and the bar that it must reach.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Must {
-    /// The time of the other side over the time of ours is at least this: ours is that many times faster.
+    /// The time of the other side divided by ours must be at least this: we are that many times faster.
     Faster(f64),
-    /// The time of ours over the time of the other side is at most this: ours costs that many times as much.
+    /// Our time divided by the time of the other side must be at most this.
     CostAtMost(f64),
-    /// What ours has of something good over what the other side has of it is at least this.
+    /// A measure of quality on our side divided by that of the other side must be at least this.
     AtLeast(f64),
 }
 
 impl Must {
-    /// The ratio of two times in this reading.
+    /// Returns the ratio of two times in this direction.
     pub(crate) fn ratio(self, ours: f64, theirs: f64) -> f64 {
         match self {
             Self::Faster(_) => theirs / ours,
@@ -22,7 +22,7 @@ impl Must {
         }
     }
 
-    /// Whether a ratio meets the bar. A ratio that is not a number meets none.
+    /// Returns whether a ratio meets the bar. NaN never does.
     pub(crate) fn holds(self, ratio: f64) -> bool {
         match self {
             Self::Faster(bar) | Self::AtLeast(bar) => ratio >= bar,
@@ -31,28 +31,27 @@ impl Must {
     }
 }
 
-/// What a row sets side by side.
+/// The description of a row: the two sides, the unit and the bar.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Case {
     /// The group, which is also a filter: one of [`GROUPS`].
     pub(crate) group: &'static str,
-    /// The job.
+    /// The name of the job.
     pub(crate) case: &'static str,
-    /// Whom ours is set beside.
+    /// The name of the other side.
     pub(crate) peer: &'static str,
     /// The unit of both times, see [`Unit`].
     pub(crate) unit: Unit,
     /// The bar.
     pub(crate) must: Must,
-    /// What a reader has to know to read the row, or nothing.
+    /// A note that a reader needs to understand the row; empty if there is none.
     pub(crate) note: &'static str,
 }
 
 impl Case {
-    /// Whether one of the filters selects this case, or there is none.
+    /// Returns whether one of the filters selects this case, or there are no filters.
     ///
-    /// The name of a group selects its cases; any other filter selects the cases that have it in their name or in
-    /// their peer's.
+    /// The name of a group selects all its cases; any other filter selects the cases whose name or peer contains it.
     pub(crate) fn is_wanted(&self, filters: &[String]) -> bool {
         let is_group = |filter: &str| GROUPS.contains(&filter);
         filters.is_empty()
@@ -65,7 +64,7 @@ impl Case {
             })
     }
 
-    /// The row of this case from the seconds that one unit of work took each side, or from bytes, distances or angles.
+    /// Returns the row of this case. Both numbers are seconds per unit of work, or bytes, distances or angles.
     pub(crate) fn row(&self, ours: f64, theirs: f64) -> Row {
         let ratio = self.must.ratio(ours, theirs);
         let (must, at) = match self.must {
@@ -93,20 +92,20 @@ pub(crate) const GROUPS: [&str; 10] = [
     "pups", "points", "graph", "worley", "noise", "wavelet", "tile", "mesh", "synth", "recipe",
 ];
 
-/// The unit of a time, or of what else is compared.
+/// The unit of a time or of another measure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Unit {
     /// Nanoseconds for each pixel of the image.
     NsPerPixel,
     /// Nanoseconds for each point of the set that came out.
     NsPerPoint,
-    /// Nanoseconds for each position asked.
+    /// Nanoseconds for each evaluated position.
     #[cfg_attr(
         not(feature = "peers"),
         expect(dead_code, reason = "only rows beside peers ask for positions")
     )]
     NsPerPosition,
-    /// Microseconds for each neighborhood looked for.
+    /// Microseconds for each searched neighborhood.
     UsPerQuery,
     /// Milliseconds for the whole job.
     Ms,
@@ -116,12 +115,12 @@ pub(crate) enum Unit {
     Megabytes,
     /// A distance from 0 to 1, in thousandths.
     Thousandths,
-    /// An angle.
+    /// An angle in degrees.
     Degrees,
 }
 
 impl Unit {
-    /// As it is printed.
+    /// Returns the name of the unit, as printed.
     pub(crate) const fn name(self) -> &'static str {
         match self {
             Self::NsPerPixel => "ns/pixel",
@@ -136,7 +135,7 @@ impl Unit {
         }
     }
 
-    /// How many of this unit one second is, or one byte, a distance of 1, or a degree.
+    /// Returns the factor from a second (or a byte, a distance of 1, a degree) to this unit.
     pub(crate) const fn per_one(self) -> f64 {
         match self {
             Self::NsPerPixel | Self::NsPerPoint | Self::NsPerPosition => 1e9,
@@ -148,7 +147,7 @@ impl Unit {
     }
 }
 
-/// A measured row, as it is printed and written to JSON.
+/// A measured row, as printed and written to JSON.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct Row {
     /// See [`Case::group`].
@@ -159,19 +158,19 @@ pub(crate) struct Row {
     pub(crate) peer: &'static str,
     /// The unit of `ours` and `theirs`.
     pub(crate) unit: &'static str,
-    /// The time of our side.
+    /// The measurement of our side.
     pub(crate) ours: f64,
-    /// The time of the other side.
+    /// The measurement of the other side.
     pub(crate) theirs: f64,
-    /// Theirs over ours where the bar is `least` and times are compared, ours over theirs everywhere else.
+    /// Their time divided by ours if `at` is `least` and times are compared; ours divided by theirs otherwise.
     pub(crate) ratio: f64,
     /// The bar.
     pub(crate) must: f64,
-    /// Whether the ratio is to be at `least` or at `most` the bar.
+    /// The sense of the bar: the ratio must be at `least` or at `most` the bar.
     pub(crate) at: &'static str,
     /// Whether the ratio meets the bar.
     pub(crate) holds: bool,
-    /// What a reader has to know to read the row.
+    /// A note that a reader needs to understand the row.
     pub(crate) note: String,
 }
 

@@ -1,4 +1,4 @@
-//! The inputs that groups share: point sets of the unit torus, values for them, and positions to ask for.
+//! Inputs that several groups share: point sets of the unit torus, values for them, and query positions.
 
 use anyhow::Result;
 use dapple_hash::{Seed, hash1, unit_f32};
@@ -11,20 +11,20 @@ pub(crate) const SEED: Seed = Seed(2013);
 /// The unit torus.
 pub(crate) const UNIT_TORUS: Domain = Domain::torus(DVec2::ZERO, DVec2::ONE);
 
-/// Points times squared radius of a maximal Poisson-disk set of the unit torus.
+/// The number of points times squared radius for a maximal Poisson-disk set of the unit torus.
 pub(crate) const NORMALIZED_DENSITY: f64 = 0.697;
 
-/// The radius at which the unit torus holds about `n_points` maximal Poisson-disk points.
+/// Returns the radius at which the unit torus holds about `n_points` maximal Poisson-disk points.
 pub(crate) fn radius_of(n_points: u32) -> f64 {
     (NORMALIZED_DENSITY / f64::from(n_points)).sqrt()
 }
 
-/// About `n_points` maximal Poisson-disk points of the unit torus.
+/// Returns about `n_points` maximal Poisson-disk points of the unit torus.
 pub(crate) fn poisson_disk(n_points: u32) -> Result<PointSet> {
     poisson_disk_from(SEED, n_points)
 }
 
-/// A Poisson-disk set from a seed.
+/// Returns about `n_points` maximal Poisson-disk points made with a given seed.
 pub(crate) fn poisson_disk_from(seed: Seed, n_points: u32) -> Result<PointSet> {
     Ok(dapple_points::poisson_disk(
         UNIT_TORUS,
@@ -33,7 +33,7 @@ pub(crate) fn poisson_disk_from(seed: Seed, n_points: u32) -> Result<PointSet> {
     )?)
 }
 
-/// A value in [0, 1) for each of `n` points.
+/// Returns a value in [0, 1) for each of `n` points.
 pub(crate) fn values(n: usize) -> Vec<f32> {
     let seed = SEED.child("bench values", 0);
     (0..n as i64)
@@ -41,7 +41,7 @@ pub(crate) fn values(n: usize) -> Vec<f32> {
         .collect()
 }
 
-/// `n` positions anywhere in the unit square.
+/// Returns `n` random positions in the unit square.
 #[cfg(feature = "peers")]
 pub(crate) fn positions(n: usize) -> Vec<DVec2> {
     let seed = SEED.child("bench positions", 0);

@@ -1,8 +1,8 @@
 //! The synth group: textures on surfaces and in the plane, their parts, and how they look.
 //!
-//! The model and the exemplars are files under `../shared/data` beside the workspace where that is, and procedural ones
-//! elsewhere; notes say which. Beside `texture-synthesis`, whose image is flat, has 512×512 pixels and is made once per turn
-//! for all rows, every site or pixel of ours must have a color, and of many pixels of the exemplar.
+//! The model and the exemplars are files under `../shared/data` beside the workspace if they exist, and procedural
+//! otherwise; notes say which. `texture-synthesis` makes a flat image of 512×512 pixels, once per turn for all rows.
+//! Confirmed: every site or pixel of ours has a color, and the colors come from many pixels of the exemplar.
 
 #[cfg(feature = "peers")]
 mod alike;

@@ -1,7 +1,7 @@
 //! The tile group: a large blend map from a stored tile, beside computing it pixel by pixel.
 //!
-//! The map has 4096×4096 pixels, in memory that is there already (the feature map makes its own, which costs a tenth of
-//! its time); the tile has 128×128. Confirmed: every copy of the tile is the tile.
+//! The map has 4096×4096 pixels, in memory allocated before (the feature map allocates its own, which costs a tenth of
+//! its time); the tile has 128×128. Confirmed: every copy in the map equals the tile.
 
 #[cfg(feature = "peers")]
 mod beside_peers;
@@ -15,13 +15,13 @@ use dapple_raster::Raster;
 use dapple_tile::{BlendMap, repeat_into};
 use dapple_wavelet::wavelet_tile;
 
-/// Columns and rows of the map.
+/// Width and height of the map in pixels.
 const MAP: u32 = 4096;
 
-/// Columns and rows of the tile.
+/// Width and height of the tile in pixels.
 const TILE: u32 = 128;
 
-/// What the copies of a tile need in memory, and what a whole map needs.
+/// A note about memory: a stored tile beside a stored map.
 const MEMORY: &str = "the stored tile has 64 KiB, a stored map of this size 64 MiB";
 
 const FEATURES: Case = Case {
@@ -63,19 +63,19 @@ fn feature_map(bench: &mut Bench) -> Result<()> {
     })
 }
 
-/// A seamless tile.
+/// Makes a seamless tile.
 fn tile() -> Result<Raster<f32>> {
     Ok(wavelet_tile([TILE; 2], &[0.3, 0.5, 0.7, 1.0], SEED)?)
 }
 
-/// The map of a tile.
+/// Makes the map of a tile.
 fn map_of(tile: &Raster<f32>) -> Result<Raster<f32>> {
     let mut map = Raster::filled([MAP; 2], 0.0)?;
     repeat_into(tile, [0, 0], map.view_mut());
     Ok(map)
 }
 
-/// Our side: fills a map with copies of a tile.
+/// Returns our side, which fills a map with copies of a tile.
 fn splat(tile: &Raster<f32>) -> Result<Side<'_, Raster<f32>>> {
     Ok(Side::new(map_of(tile)?, move |map: &mut Raster<f32>| {
         repeat_into(tile, [0, 0], map.view_mut());
@@ -84,7 +84,7 @@ fn splat(tile: &Raster<f32>) -> Result<Side<'_, Raster<f32>>> {
     .times(8))
 }
 
-/// Refuses a map that is not made of a tile.
+/// Fails if a map does not consist of copies of the tile.
 fn confirm(tile: &Raster<f32>, map: &Raster<f32>) -> Result<()> {
     for row in 0..MAP {
         let expected = tile.row(row % TILE);

@@ -1,8 +1,8 @@
 //! The wavelet group: halving and doubling rasters, and wavelet noise.
 //!
-//! A raster of white noise is halved and doubled again, with the paper's filters: quadratic, centered, periodic.
-//! Confirmed: what comes out is the same as by the other way, up to the rounding of `f32` and the taps that the other
-//! way leaves out.
+//! A raster of white noise is halved and doubled again with the paper's filters: quadratic, centered, periodic.
+//! Confirmed: the result equals that of the other method, up to the rounding of `f32` and the taps that the other
+//! method leaves out.
 
 mod alone;
 #[cfg(feature = "peers")]
@@ -24,13 +24,13 @@ pub(crate) fn run(bench: &mut Bench) -> Result<()> {
     Ok(())
 }
 
-/// Columns and rows of the raster beside other ways.
+/// Width and height in pixels of the raster for comparisons with other methods.
 const SIDE: u32 = 2048;
 
-/// Both axes repeat.
+/// Periodic borders along both axes.
 const PERIODIC: [Border; 2] = [Border::Periodic; 2];
 
-/// White noise in [0, 1).
+/// Makes white noise in [0, 1).
 fn white_noise(side: u32) -> Result<Raster<f32>> {
     let seed = SEED.child("bench wavelet", 0);
     Ok(Raster::from_fn([side; 2], |column, row| {
@@ -38,15 +38,15 @@ fn white_noise(side: u32) -> Result<Raster<f32>> {
     })?)
 }
 
-/// What our side works on, and in: all of it is there before the clock starts, as the other way's memory is.
+/// The state of our side: inputs and buffers, all allocated before the clock starts, as for the other side.
 pub(crate) struct Halved {
     coarse: Raster<f32>,
     memory: FilterMemory,
-    /// The result.
+    /// The result of the last run.
     fine: Raster<f32>,
 }
 
-/// Our side: halves a raster and doubles it again.
+/// Returns our side, which halves a raster and doubles it again.
 fn down_and_up(raster: &Raster<f32>) -> Result<Side<'_, Halved>> {
     let filter = SplineFilter::default();
     let halved = Halved {
@@ -67,7 +67,7 @@ fn down_and_up(raster: &Raster<f32>) -> Result<Side<'_, Halved>> {
     }))
 }
 
-/// Refuses two rasters that differ by more than `most` anywhere.
+/// Fails if two rasters differ by more than `most` anywhere.
 fn confirm_equal(ours: &[f32], theirs: &[f32], most: f32) -> Result<()> {
     ensure!(ours.len() == theirs.len(), "the sizes differ");
     let off = ours

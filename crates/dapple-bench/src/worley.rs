@@ -1,9 +1,10 @@
 //! The worley group: rasters and scattered positions of Worley's cellular basis.
 //!
-//! A raster has 1024×1024 pixels of the plane, 128×128×128 of space, slice by slice, or 64×64×16×16 of four
-//! dimensions, in memory that is there already; a unit cell has so many pixels along each axis. Ours has three feature
-//! points per cell on average and is exact, and its time includes making them. Confirmed: the values are those of
-//! [`Cellular::value`], or of [`Worley::sample`], bit for bit, none is negative, and their mean is the one known.
+//! A raster has 1024×1024 pixels of the plane, 128×128×128 of space, slice by slice, or 64×64×16×16 of four dimensions,
+//! in memory allocated before. `px_per_cell` is the number of pixels of a unit cell along each axis. Our side has three
+//! feature points per cell on average and is exact, and its time includes making the points. Confirmed: the values
+//! equal those of [`Cellular::value`] or [`Worley::sample`] bit for bit, none is negative, and their mean is the known
+//! one.
 //!
 //! [`Worley::sample`]: dapple_worley::Worley::sample
 
@@ -37,13 +38,13 @@ pub(crate) fn run(bench: &mut Bench) -> Result<()> {
     two_builds::run(bench)
 }
 
-/// The pixels of a raster of the plane.
+/// The size of a raster of the plane, in pixels.
 const PLANE: [u32; 2] = [1024; 2];
 
-/// The pixels of a raster of space.
+/// The size of a raster of space, in pixels.
 const SPACE: [u32; 3] = [128; 3];
 
-/// A combination of distances, and its mean over all positions for three feature points per cell.
+/// A combination of distances and its known mean over all positions, for three feature points per cell.
 #[derive(Clone, Copy, Debug)]
 struct Known {
     combination: Combination,
@@ -69,7 +70,7 @@ const F2_MINUS_F1_IN_SPACE: Known = Known {
     ..F2_MINUS_F1
 };
 
-/// What a raster shows, cut into slices along the first two axes.
+/// A cellular texture and the pixels of its raster, cut into slices along the first two axes.
 struct Grid<const N: usize>
 where
     Axes: Space<N>,
@@ -86,12 +87,13 @@ impl<const N: usize> Grid<N>
 where
     Axes: Space<N>,
 {
-    /// The raster of so many pixels that begins at the origin; a unit cell has `px_per_cell` along each axis.
+    /// Returns a raster of `size` pixels that begins at the origin, with `px_per_cell` pixels per unit cell along each
+    /// axis.
     fn new(known: Known, size: [u32; N], px_per_cell: u32) -> Result<Self> {
         Self::of(&Worley::new(SEED), known, size, px_per_cell)
     }
 
-    /// Grids of a basis.
+    /// Returns a raster of another basis, with the same meaning of `size` and `px_per_cell` as in `new`.
     fn of(worley: &Worley<N>, known: Known, size: [u32; N], px_per_cell: u32) -> Result<Self> {
         let px = f64::from(px_per_cell);
         let extent = DVec2::new(f64::from(size[0]), f64::from(size[1])) / px;
@@ -114,12 +116,12 @@ where
         })
     }
 
-    /// How many pixels the raster has.
+    /// Returns the number of pixels of the raster.
     fn n_pixels(&self) -> usize {
         self.window.n_pixels() * self.slices.len()
     }
 
-    /// Memory for the raster, black so far: the slices one below the other.
+    /// Returns black memory for the raster, with the slices below each other.
     fn image(&self) -> Result<Raster<f32>> {
         let [width, height] = self.window.size;
         Ok(Raster::filled(
@@ -137,17 +139,17 @@ where
             .expect("a band has the window's size");
     }
 
-    /// A side that renders the raster.
+    /// Returns a side that renders the raster.
     fn side(&self) -> Result<Side<'_, Raster<f32>>> {
         Ok(Side::new(self.image()?, |image: &mut Raster<f32>| {
             self.render(image);
         }))
     }
 
-    /// Checks a raster: its values at some pixels, and the range, mean and spread of all.
+    /// Checks a raster: its values at some pixels, and the range, mean and spread of all values.
     fn confirm(&self, image: &Raster<f32>) -> Result<()> {
         let [width, height] = self.window.size;
-        // A prime, so that the pixels fall anywhere in a tile.
+        // The stride is a prime, so that the pixels fall anywhere in a tile.
         for index in (0..self.n_pixels() as u32).step_by(1009) {
             let (column, row) = (index % width, index / width);
             let plane = &self.slices[(row / height) as usize];
@@ -166,8 +168,8 @@ where
             found.n_not_finite == 0 && found.min >= 0.0,
             "differences of sorted distances are not negative: {found:?}"
         );
-        // Three points for each of `n` cells are no more than so many independent values; three times the deviation
-        // of their mean, as a part of it, and the three digits of the known one.
+        // Three points in each of `n` cells count as at most so many independent values. The tolerance is three
+        // relative standard deviations of their mean, plus the rounding of the known mean to three digits.
         let px = f64::from(self.px_per_cell);
         let n_cells: f64 = self.size.iter().map(|&side| f64::from(side) / px).product();
         let stray = 0.01 + 1.5 / n_cells.sqrt();

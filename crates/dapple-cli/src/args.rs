@@ -136,7 +136,7 @@ impl OutputArgs {
     ///
     /// # Errors
     ///
-    /// Those of [`targets`](Self::targets).
+    /// The errors of [`targets`](Self::targets).
     pub(crate) fn target(&self, name: &str, ending: &str) -> Result<Target> {
         Ok(self.targets(name, &[""], ending)?.main)
     }

@@ -203,7 +203,7 @@ fn n_rows(band: &Band) -> u64 {
 ///
 /// # Errors
 ///
-/// Those of [`Format::choose`].
+/// The errors of [`Format::choose`].
 pub(crate) fn format(asked: Option<Format>, target: &Target) -> Result<Format> {
     Format::choose(asked, target, Format::Png16)
 }

@@ -89,8 +89,8 @@ pub(crate) const ALPHA_HINT: &str = "add --alpha drop or --alpha over:COLOR";
 ///
 /// # Errors
 ///
-/// Those of [`image`]; channels that do not fit the kind; a part outside of the image; and, with the hint, transparent
-/// pixels where `alpha` is `None`.
+/// The errors of [`image`]; channels that do not fit the kind; a part outside of the image; and, with the hint,
+/// transparent pixels where `alpha` is `None`.
 pub(crate) fn map(
     path: &Path,
     kind: Kind,
@@ -118,7 +118,7 @@ pub(crate) fn map(
 ///
 /// # Errors
 ///
-/// Those of [`image`]; channels that do not fit the kind; a part outside of the image.
+/// The errors of [`image`]; channels that do not fit the kind; a part outside of the image.
 pub(crate) fn map_with_alpha(
     path: &Path,
     kind: Kind,

@@ -118,7 +118,7 @@ impl<'a> Job<'a> {
     ///
     /// # Errors
     ///
-    /// Those of [`Outputs::claim`], and if the output is a terminal.
+    /// The errors of [`Outputs::claim`], and if the output is a terminal.
     pub(crate) fn claim(&mut self, target: &Target) -> Result<OutputIdx> {
         if *target == Target::Stdout && io::stdout().is_terminal() {
             let error = usage("standard output is a terminal, which cannot show this file");
@@ -131,7 +131,7 @@ impl<'a> Job<'a> {
     ///
     /// # Errors
     ///
-    /// Those of [`Format::choose`], [`claim`](Self::claim) and [`claim_sidecar`](Self::claim_sidecar).
+    /// The errors of [`Format::choose`], [`claim`](Self::claim) and [`claim_sidecar`](Self::claim_sidecar).
     pub(crate) fn claim_images(
         &mut self,
         targets: &Targets,
@@ -150,7 +150,7 @@ impl<'a> Job<'a> {
     ///
     /// # Errors
     ///
-    /// Those of [`Outputs::claim`].
+    /// The errors of [`Outputs::claim`].
     pub(crate) fn claim_text(&mut self, target: &Target) -> Result<OutputIdx> {
         let output = self.claim_in_folder(target)?;
         let record = FileRecord {
@@ -167,7 +167,7 @@ impl<'a> Job<'a> {
     ///
     /// # Errors
     ///
-    /// Those of [`Outputs::claim`], and if no name for it is given.
+    /// The errors of [`Outputs::claim`], and if no name for it is given.
     pub(crate) fn claim_sidecar(&mut self, main: &Target) -> Result<()> {
         let target = match &self.args.json {
             None => {
@@ -191,7 +191,7 @@ impl<'a> Job<'a> {
     ///
     /// # Errors
     ///
-    /// Those of [`Outputs::write`].
+    /// The errors of [`Outputs::write`].
     pub(crate) fn write(&self, output: OutputIdx, bytes: &[u8]) -> Result<()> {
         self.outputs.write(output, bytes)
     }
@@ -200,7 +200,7 @@ impl<'a> Job<'a> {
     ///
     /// # Errors
     ///
-    /// Those of [`encode`] and [`Outputs::write`].
+    /// The errors of [`encode`] and [`Outputs::write`].
     pub(crate) fn write_map(&mut self, output: OutputIdx, map: &Map, format: Format) -> Result<()> {
         format.check(content(map), self.target(output))?;
         self.write(output, &encode(map, format)?)?;
@@ -229,7 +229,7 @@ impl<'a> Job<'a> {
     ///
     /// # Errors
     ///
-    /// Those of [`Outputs::writer`].
+    /// The errors of [`Outputs::writer`].
     pub(crate) fn writer(&self, output: OutputIdx) -> Result<BufWriter<File>> {
         self.outputs.writer(output)
     }
@@ -253,7 +253,7 @@ impl<'a> Job<'a> {
     ///
     /// # Errors
     ///
-    /// Those of [`Format::choose`] and [`write_map`](Self::write_map).
+    /// The errors of [`Format::choose`] and [`write_map`](Self::write_map).
     pub(crate) fn write_image(
         &mut self,
         output: OutputIdx,
@@ -271,7 +271,7 @@ impl<'a> Job<'a> {
     ///
     /// # Errors
     ///
-    /// Those of [`write_image`](Self::write_image).
+    /// The errors of [`write_image`](Self::write_image).
     pub(crate) fn write_with_alpha(
         &mut self,
         output: OutputIdx,
@@ -310,7 +310,7 @@ impl<'a> Job<'a> {
     ///
     /// # Errors
     ///
-    /// Those of [`Outputs::commit`].
+    /// The errors of [`Outputs::commit`].
     pub(crate) fn finish(mut self, options: &impl Serialize, report: Value) -> Result<()> {
         if let Some(sidecar) = self.sidecar {
             for (output, record) in &mut self.files {

@@ -109,7 +109,7 @@ pub fn curvature(
 ///
 /// # Errors
 ///
-/// Those of [`curvature`].
+/// The errors of [`curvature`].
 pub fn curvature_of_part(
     height: &Raster<f32>,
     whole: [u32; 2],

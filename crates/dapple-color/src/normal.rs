@@ -117,7 +117,7 @@ pub fn normal_map(
 ///
 /// # Errors
 ///
-/// Those of [`normal_map`].
+/// The errors of [`normal_map`].
 pub fn normal_map_of_part(
     height: &Raster<f32>,
     whole: [u32; 2],

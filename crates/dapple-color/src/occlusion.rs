@@ -143,7 +143,7 @@ pub fn ambient_occlusion(
 ///
 /// # Errors
 ///
-/// Those of [`ambient_occlusion`], and [`ColorErrorKind::Raster`] if there are no pixels between the margins.
+/// The errors of [`ambient_occlusion`], and [`ColorErrorKind::Raster`] if there are no pixels between the margins.
 pub fn ambient_occlusion_of_part(
     height: &Raster<f32>,
     margin: [u32; 2],

@@ -1,15 +1,15 @@
 //! The pictures in the documentation of the crates: small Markdown files that hold their pictures as data URIs.
 //!
-//! A [`Strip`] is a row of pictures for one option, such as a metric in all its kinds, with the same seed and the same
-//! place, so that only the option differs. `cargo xtask docs-images` writes each as `docs/<name>.md` into the folder of
-//! its crate, where the source includes it as a part of a doc comment. So the pictures are there without a network, and
-//! part of the published package. READMEs cannot hold data URIs: their picture is the file `docs/gallery.png` beside them.
-//! A test compares the files with what is made now, pixel by pixel.
+//! A [`Strip`] is a row of pictures that shows one option, such as a metric in all its kinds. All pictures of a strip
+//! use the same seed and the same window, so that only the option differs. `cargo xtask docs-images` writes each strip
+//! as `docs/<name>.md` into the folder of its crate, where the source includes it in a doc comment. The pictures
+//! therefore need no network and are part of the published package. READMEs cannot hold data URIs: their picture is the
+//! file `docs/gallery.png` beside them. A test compares the files with freshly made pictures, pixel by pixel.
 //!
-//! The source includes strips under `cfg(doc)`: rustdoc shows them, also for a crate that another one depends on, and
-//! editors do not. Where another crate's documentation takes an item in (`#[doc(inline)]`), they are left out.
+//! The source includes strips under `cfg(doc)`: rustdoc shows them, also for a crate that another one depends on, but
+//! editors do not. Strips are left out where the documentation of another crate takes in the item (`#[doc(inline)]`).
 //!
-//! [`DOCUMENTED`] is the table of all of them; each crate has a file with its own.
+//! [`DOCUMENTED`] lists the pictures of all crates; each crate has a file with its own.
 
 mod base64;
 mod color;
@@ -35,26 +35,26 @@ use dapple_image::{Limits, PngImage, Transfer, decode_png, encode_png};
 /// A folder with a README and with documentation, and the pictures in them.
 #[derive(Clone, Copy, Debug)]
 pub struct Documented {
-    /// The folder of the crate, from the root of the workspace; empty for the root itself.
+    /// The path of the folder from the root of the workspace; empty for the root itself.
     pub folder: &'static str,
-    /// The strips of its documentation, `docs/<name>.md`.
+    /// The strips of its documentation, written to `docs/<name>.md`.
     pub strips: &'static [Strip],
-    /// Makes the picture of its README, `docs/gallery.png`.
+    /// Makes the picture of its README, written to `docs/gallery.png`.
     pub banner: fn() -> anyhow::Result<Panel>,
 }
 
-/// A row of pictures that shows one option.
+/// A row of pictures that shows one option in different settings.
 #[derive(Clone, Copy, Debug)]
 pub struct Strip {
-    /// The file, without `.md`.
+    /// The name of the file, without `.md`.
     pub name: &'static str,
-    /// What all pictures of the row have in common; without it, the row has no line of text.
+    /// What all pictures of the row have in common; if it is empty, the row has no line of text.
     pub caption: &'static str,
-    /// Makes the pictures. Their labels say what is what.
+    /// Makes the pictures. Their labels say how they differ.
     pub render: fn() -> anyhow::Result<Vec<Panel>>,
 }
 
-/// Everything that has pictures in its documentation: the workspace, then its crates as the README lists them.
+/// All folders that have pictures in their documentation: the workspace, then its crates in the order of the README.
 pub static DOCUMENTED: &[Documented] = &[
     front::DOCUMENTED,
     color::DOCUMENTED,
@@ -70,24 +70,24 @@ pub static DOCUMENTED: &[Documented] = &[
     synth::DOCUMENTED,
 ];
 
-/// A file in the folder `docs` of a [`Documented`].
+/// A file for the folder `docs` of a [`Documented`].
 #[derive(Clone, Debug)]
 pub struct File {
-    /// Its name, which ends in `.md` or `.png`.
+    /// The name of the file, which ends in `.md` or `.png`.
     pub name: String,
-    /// What is in it.
+    /// The contents of the file.
     pub bytes: Vec<u8>,
 }
 
-/// What a picture begins with in the Markdown.
+/// The prefix of every picture in the Markdown.
 const DATA: &str = "data:image/png;base64,";
 
 impl Documented {
-    /// All files of the folder `docs`, as made now.
+    /// Makes all files of the folder `docs`.
     ///
     /// # Errors
     ///
-    /// What the code of a strip or of the banner reports; or that a strip has no picture.
+    /// If the code of a strip or of the banner fails, or a strip has no picture.
     pub fn files(&self) -> anyhow::Result<Vec<File>> {
         let mut files = vec![File {
             name: "gallery.png".to_owned(),
@@ -104,8 +104,8 @@ impl Documented {
 }
 
 impl File {
-    /// Whether a file that was made before has the same text and the same pixels. How they were packed does not matter: that
-    /// may change with the library that does it.
+    /// Returns whether an older version of the file has the same text and the same pixels. Compression is ignored,
+    /// since it may change with the library that does it.
     #[must_use]
     pub fn shows_the_same_as(&self, before: &[u8]) -> bool {
         if self.name.ends_with(".png") {
@@ -119,7 +119,7 @@ impl File {
 }
 
 impl Strip {
-    /// The strip as Markdown: its pictures, then a line that says what is what from left to right.
+    /// Returns the strip as Markdown: its pictures, then a line that names them from left to right.
     fn markdown(&self) -> anyhow::Result<String> {
         let panels = (self.render)()?;
         ensure!(!panels.is_empty(), "the strip {} is empty", self.name);
@@ -157,12 +157,12 @@ fn png(panel: &Panel) -> anyhow::Result<Vec<u8>> {
     })
 }
 
-/// The picture in a PNG file, if it is one.
+/// Decodes a PNG file, or returns `None` if it is not one.
 fn decode(file: &[u8]) -> Option<PngImage> {
     decode_png(file, &Limits::default()).ok()
 }
 
-/// The text of a strip without its pictures, and those, if they are pictures.
+/// Splits a strip into its text and its pictures, or returns `None` if a picture cannot be decoded.
 fn decode_markdown(markdown: &[u8]) -> Option<(String, Vec<PngImage>)> {
     let mut parts = core::str::from_utf8(markdown).ok()?.split(DATA);
     let mut text = parts.next()?.to_owned();

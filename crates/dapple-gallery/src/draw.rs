@@ -1,7 +1,7 @@
 //! Drawing for figures: points, graphs, lines and contours with smooth edges, in the coordinates of the plane.
 //!
-//! It needs nothing but arithmetic and square roots, so drawings are the same bits everywhere. What lies on a domain
-//! that wraps is drawn wherever the window shows it.
+//! Drawings use only arithmetic and square roots, so they have the same bits on every machine. Shapes on a domain that
+//! wraps are drawn wherever the window shows them.
 
 mod diagram;
 mod enlarged;
@@ -23,7 +23,7 @@ use dapple_points::{Domain, PointSet};
 use dapple_raster::{Raster, RasterError, Texel, Window, glam::DVec2};
 use stencil::Stencil;
 
-/// A raster to draw on. Positions are those of its window, widths are in pixels.
+/// A raster to draw on. Positions are in the coordinates of its window, widths are in pixels.
 #[derive(Clone, Debug)]
 pub struct Canvas<T> {
     window: Window,
@@ -31,7 +31,7 @@ pub struct Canvas<T> {
 }
 
 impl<T: Texel> Canvas<T> {
-    /// An empty canvas: the pixels of `window`, all with the value `background`.
+    /// Returns a canvas with the pixels of `window`, all filled with `background`.
     ///
     /// # Errors
     ///
@@ -43,7 +43,7 @@ impl<T: Texel> Canvas<T> {
         })
     }
 
-    /// A canvas that begins with a picture, whose pixels are those of `window`.
+    /// Returns a canvas that begins with a picture, whose pixels are the pixels of `window`.
     ///
     /// # Errors
     ///
@@ -81,7 +81,7 @@ impl<T: Texel> Canvas<T> {
         stencil.ink(&mut self.raster, ink);
     }
 
-    /// Fills the disk about `center` with the given radius, in pixels.
+    /// Fills a disk with the given center and radius; the radius is in pixels.
     pub fn disk(&mut self, center: DVec2, radius_px: f64, ink: T) {
         self.lines(&[[center; 2]], 2.0 * radius_px, ink);
     }
@@ -106,10 +106,10 @@ impl<T: Texel> Canvas<T> {
         self.lines(&lines, width_px, ink);
     }
 
-    /// Draws the contours of a field, given by its values at the pixels, with the given width, in pixels.
+    /// Draws contours of a field, given by its values at the pixels. The line width is in pixels.
     ///
-    /// The distance from a contour is that to first order, `|value − level| / |gradient|`; where the gradient is zero
-    /// there is no contour.
+    /// The distance to a contour is a first-order estimate, `|value − level| / |gradient|`. There is no contour where
+    /// the gradient is zero.
     ///
     /// # Errors
     ///
@@ -139,13 +139,14 @@ impl<T: Texel> Canvas<T> {
         Ok(())
     }
 
-    /// The pixels.
+    /// Returns the pixels.
     #[must_use]
     pub fn into_raster(self) -> Raster<T> {
         self.raster
     }
 
-    /// The copies of a line of the domain that the window may show, in pixels, `margin_px` pixels wide on both sides.
+    /// Returns the copies of a line that the window may show, on a domain that may wrap. Positions and `margin_px`, the
+    /// margin on both sides, are in pixels.
     fn copies(&self, domain: &Domain, [from, to]: [DVec2; 2], margin_px: f64) -> Vec<[DVec2; 2]> {
         let [shift, size] = [domain.origin, domain.origin + domain.size]
             .map(|corner| self.pixel_from_plane(corner));
@@ -176,14 +177,14 @@ impl<T: Texel> Canvas<T> {
         shifts.map(|shift| line.map(|end| end + shift)).collect()
     }
 
-    /// Where a position is, in pixels from the top left corner.
+    /// Converts a position of the plane to pixels from the top left corner.
     fn pixel_from_plane(&self, position: DVec2) -> DVec2 {
         let [first_x, first_y] = self.window.first.map(|first| first as f64);
         (position - self.window.origin) / self.window.pixel - DVec2::new(first_x, first_y)
     }
 }
 
-/// The change of a field per pixel, from the neighbors on both sides (one side at the edge).
+/// Returns the gradient of a field per pixel, from the neighbors on both sides, or from one side at the edge.
 fn gradient_px(field: &Raster<f32>, column: u32, row: u32) -> DVec2 {
     let [width, height] = field.size();
     let at = |column: u32, row: u32| f64::from(field.row(row)[column as usize]);

@@ -1,4 +1,4 @@
-//! What a figure is: a file that says which figure of which paper it makes, and how.
+//! A figure of a paper: the file that makes it, and its data.
 
 use crate::Panel;
 use crate::lock::{Hash, hash_panels};
@@ -6,28 +6,28 @@ use anyhow::{Context, ensure};
 
 /// A figure: a file under `src/figures/<paper>/` that renders one or several pictures.
 ///
-/// The name and the caption are not repeated here; they come from the file's own name and header.
+/// The name and the caption are not stored here; they come from the name of the file and its header.
 #[derive(Clone, Copy, Debug)]
 pub struct Figure {
-    /// The number of the figure in the paper, such as `"3a"`; `"extra"` if the paper has none like it.
+    /// The number of the figure in the paper, such as `"3a"`, or `"extra"` for a figure that the paper does not have.
     pub number: &'static str,
-    /// What the picture was made with, as the page shows it: pairs of a name and a value. A `recipe` is a built-in one like
+    /// The parameters that the page shows: pairs of a name and a value. The value of `recipe` is a built-in recipe like
     /// the figure, which the page says how to open.
     pub parameters: &'static [(&'static str, &'static str)],
-    /// The file that the figure is in: always `source!()`.
+    /// The source file of the figure: always `source!()`.
     pub source: Source,
     /// Makes the pictures, with `size` pixels along the longer side of each.
     pub render: fn(size: u32) -> anyhow::Result<Vec<Panel>>,
 }
 
-/// A paper and its figures, in the paper's order.
+/// A paper and its figures, in the order of the paper.
 #[derive(Clone, Copy, Debug)]
 pub struct Paper {
     /// The folder of its figures, and the first part of their names.
     pub key: &'static str,
     /// The title of the paper.
     pub title: &'static str,
-    /// Who wrote it, where and when.
+    /// The authors, the publication and the year.
     pub reference: &'static str,
     /// Its figures.
     pub figures: &'static [Figure],
@@ -54,27 +54,28 @@ macro_rules! source {
 pub(crate) use source;
 
 impl Figure {
-    /// The pictures, with `size` pixels along the longer side of each.
+    /// Renders the pictures, with `size` pixels along the longer side of each.
     ///
     /// # Errors
     ///
-    /// What the figure's own code reports, with the name of the figure; or that it made no picture.
+    /// If the code of the figure fails, with the name of the figure as context, or if it made no picture.
     pub fn render(&self, size: u32) -> anyhow::Result<Vec<Panel>> {
         let panels = (self.render)(size).with_context(|| format!("figure {}", self.name()))?;
         ensure!(!panels.is_empty(), "figure {} made no picture", self.name());
         Ok(panels)
     }
 
-    /// The hash of the pictures at `size` pixels: what `figures.lock` holds for [`LOCK_SIZE`](crate::LOCK_SIZE).
+    /// Returns the hash of the pictures at `size` pixels. `figures.lock` holds the hash for
+    /// [`LOCK_SIZE`](crate::LOCK_SIZE).
     ///
     /// # Errors
     ///
-    /// What [`render`](Self::render) refuses.
+    /// If [`render`](Self::render) fails.
     pub fn hash(&self, size: u32) -> anyhow::Result<Hash> {
         Ok(hash_panels(&self.render(size)?))
     }
 
-    /// The name of the figure, from its file: `figures/pups/fig_03a.rs` is `pups-fig-03a`.
+    /// Returns the name of the figure, from its file: `figures/pups/fig_03a.rs` is `pups-fig-03a`.
     #[must_use]
     pub fn name(&self) -> String {
         let stem = self.source.path.trim_end_matches(".rs");
@@ -86,7 +87,7 @@ impl Figure {
         format!("{paper}-{file}").replace('_', "-")
     }
 
-    /// The caption: the first paragraph of the file's `//!` header.
+    /// Returns the caption: the first paragraph of the file's `//!` header.
     #[must_use]
     pub fn caption(&self) -> String {
         let header = self

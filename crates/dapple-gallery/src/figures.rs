@@ -25,7 +25,7 @@ pub fn figures() -> impl Iterator<Item = &'static Figure> {
     PAPERS.iter().flat_map(|paper| paper.figures)
 }
 
-/// The figures whose name contains one of the filters; all of them if there is no filter.
+/// Returns the figures whose name contains one of the filters, or all figures if there is no filter.
 #[must_use]
 pub fn select(filters: &[String]) -> Vec<&'static Figure> {
     figures()

@@ -1,10 +1,10 @@
 //! The figures of the papers, one file each, and the page that shows them.
 //!
-//! A [`Figure`] is a small file under `src/figures/<paper>/fig_<number>.rs`: its header is the caption, its body makes
-//! the pictures with the crates' public interfaces, short enough to learn from. [`PAPERS`] lists them all. The library
-//! renders figures in memory ([`Figure::render`]), hashes them ([`Figure::hash`]), compares the hashes with
-//! `figures.lock` ([`Lock`]) and writes the page as a string ([`page`]); the binary `dapple-gallery`, which
-//! `cargo xtask gallery` runs, puts files where a browser finds them.
+//! A [`Figure`] is a small file under `src/figures/<paper>/fig_<number>.rs`: its header is the caption, and its body
+//! makes the pictures with the public interfaces of the crates, short enough to learn from. [`PAPERS`] lists all
+//! figures. The library renders figures in memory ([`Figure::render`]), hashes them ([`Figure::hash`]), compares the
+//! hashes with `figures.lock` ([`Lock`]) and writes the page as a string ([`page`]). The binary `dapple-gallery`, which
+//! `cargo xtask gallery` runs, writes the files for a browser.
 //!
 //! **A new figure** takes three steps:
 //!

@@ -1,15 +1,15 @@
-//! `figures.lock`: a hash of every figure at one small size, so that no figure changes unnoticed.
+//! The file `figures.lock`: a hash of every figure at one small size, so that no figure changes unnoticed.
 //!
-//! A line is `<hash> <name>`, lines are in the order of the names, and `#` begins a comment. The hash is FNV-1a in 64
-//! bits (Glenn Fowler, Landon Curt Noll and Kiem-Phong Vo; <https://www.rfc-editor.org/rfc/rfc9923>) over, for each
-//! panel: its label in UTF-8 and a zero byte, its width and height (`u32`, little-endian), its number of channels
-//! (one byte), and its pixels as in the 8-bit file.
+//! A line is `<hash> <name>`, lines are sorted by name, and `#` begins a comment. The hash is FNV-1a in 64 bits (Glenn
+//! Fowler, Landon Curt Noll and Kiem-Phong Vo; <https://www.rfc-editor.org/rfc/rfc9923>). It covers for each panel: its
+//! label in UTF-8 and a zero byte, its width and height (`u32`, little-endian), its number of channels (one byte), and
+//! its pixels as in the 8-bit file.
 
 use crate::Panel;
 use core::fmt;
 use std::collections::BTreeMap;
 
-/// The size, in pixels along the longer side, at which figures are hashed.
+/// The size at which figures are hashed, in pixels along the longer side.
 pub const LOCK_SIZE: u32 = 128;
 
 const COMMENT: &str = "# FNV-1a of every figure's 8-bit pixels at 128 px. Accept changes with `cargo xtask gallery --bless`.";
@@ -18,29 +18,29 @@ const COMMENT: &str = "# FNV-1a of every figure's 8-bit pixels at 128 px. Accept
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Hash(pub u64);
 
-/// The hashes of `figures.lock`, by the names of the figures.
+/// The hashes of `figures.lock`, keyed by the names of the figures.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Lock {
     hashes: BTreeMap<String, Hash>,
 }
 
-/// What differs between a lock and the figures as they are now.
+/// A difference between a lock and the figures as they are now.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Change {
-    /// The figure has no line.
+    /// The figure is not in the lock.
     New(String),
-    /// The figure has another hash than its line.
+    /// The figure has a hash other than in the lock.
     Changed(String),
-    /// The line has no figure.
+    /// The lock has a line for a figure that does not exist.
     Gone(String),
 }
 
 impl Lock {
-    /// The lock that a text holds.
+    /// Parses the text of a lock.
     ///
     /// # Errors
     ///
-    /// If a line is not a hash of 16 hexadecimal digits and a name, or if a name comes twice.
+    /// If a line is not a hash of 16 hexadecimal digits and a name, or if a name occurs twice.
     pub fn parse(text: &str) -> anyhow::Result<Self> {
         let mut hashes = BTreeMap::new();
         for line in text.lines().filter(|line| !line.starts_with('#')) {
@@ -55,23 +55,23 @@ impl Lock {
         Ok(Self { hashes })
     }
 
-    /// Records the hash of a figure, in the place of an older one.
+    /// Records the hash of a figure and replaces an older one.
     pub fn insert(&mut self, name: String, hash: Hash) {
         self.hashes.insert(name, hash);
     }
 
-    /// Forgets every figure whose name does not pass.
+    /// Removes every figure whose name `keep` refuses.
     pub fn retain(&mut self, mut keep: impl FnMut(&str) -> bool) {
         self.hashes.retain(|name, _| keep(name));
     }
 
-    /// The hash that is recorded for a figure.
+    /// Returns the recorded hash of a figure.
     #[must_use]
     pub fn get(&self, name: &str) -> Option<Hash> {
         self.hashes.get(name).copied()
     }
 
-    /// What `now` has otherwise than `self`, in the order of the names.
+    /// Returns the changes from `self` to `now`, in the order of the names.
     #[must_use]
     pub fn changes(&self, now: &Self) -> Vec<Change> {
         let gone = self.hashes.keys().filter(|name| now.get(name).is_none());
@@ -89,7 +89,7 @@ impl Lock {
 }
 
 impl Change {
-    /// The name of the figure.
+    /// Returns the name of the figure.
     #[must_use]
     pub fn name(&self) -> &str {
         let (Self::New(name) | Self::Changed(name) | Self::Gone(name)) = self;
@@ -97,7 +97,7 @@ impl Change {
     }
 }
 
-/// The text of `figures.lock`.
+/// Formats the lock as the text of `figures.lock`.
 impl fmt::Display for Lock {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "{COMMENT}")?;
@@ -123,7 +123,7 @@ impl fmt::Display for Change {
     }
 }
 
-/// The hash of some pictures, in their order.
+/// Returns the hash of some pictures, in their order.
 #[must_use]
 pub fn hash_panels(panels: &[Panel]) -> Hash {
     let mut hash = Fnv::default();
@@ -149,7 +149,7 @@ fn parse_line(line: &str) -> Option<(Hash, &str)> {
     Some((Hash(value), name))
 }
 
-/// FNV-1a in 64 bits.
+/// A hasher for FNV-1a in 64 bits.
 struct Fnv(u64);
 
 impl Default for Fnv {
@@ -174,7 +174,7 @@ mod tests {
 
     #[test]
     fn fnv_gives_the_published_values() {
-        // From the test vectors of RFC 9923, and its reference code.
+        // Test vectors from RFC 9923 and its reference code.
         for (text, value) in [
             ("", 0xcbf2_9ce4_8422_2325),
             ("a", 0xaf63_dc4c_8601_ec8c),

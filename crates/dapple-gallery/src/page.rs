@@ -1,20 +1,20 @@
-//! The page: one HTML file beside the pictures that needs nothing else.
+//! The page that shows the figures: one HTML file that needs only the pictures beside it.
 //!
-//! Thumbnails by paper; each leads to the picture in full, with its neighbors on the arrow keys, and pictures that repeat
-//! can be seen tiled. Each figure comes with its source and with the command that renders it. Without scripts the
-//! thumbnails are plain links, and what needs scripts is not there.
+//! It shows thumbnails by paper. A thumbnail leads to the full picture; arrow keys go to its neighbors, and pictures
+//! that repeat can be shown tiled. Each figure comes with its source and with the command that renders it. Without
+//! scripts, thumbnails are plain links, and controls that need scripts are hidden.
 
 use crate::{Figure, PAPERS, Paper};
 use core::time::Duration;
 
-/// A figure that has been rendered, as the page shows it.
+/// A rendered figure, as the page shows it.
 #[derive(Clone, Debug)]
 pub struct Entry {
-    /// The figure.
+    /// The figure that was rendered.
     pub figure: &'static Figure,
-    /// Its pictures.
+    /// The pictures of the figure.
     pub images: Vec<Image>,
-    /// How long it took to make them, without writing the files.
+    /// The time to render the pictures, without writing the files.
     pub time: Duration,
 }
 
@@ -25,15 +25,16 @@ pub struct Image {
     pub file: String,
     /// The label of the panel.
     pub label: String,
-    /// What was measured on the picture, or nothing.
+    /// The measurements on the picture as text; empty if there are none.
     pub note: String,
-    /// Along which axes, x and y, copies of the picture continue each other.
+    /// The axes, x and y, along which copies of the picture continue each other.
     pub repeats: [bool; 2],
-    /// Columns and rows.
+    /// The width and height in pixels.
     pub size: [u32; 2],
 }
 
-/// The page of some figures. `root` leads from the page's folder to the root of the workspace, and may be empty.
+/// Returns the page of some figures. `root` leads from the page's folder to the root of the workspace, and may be
+/// empty.
 #[must_use]
 pub fn html(entries: &[Entry], root: &str) -> String {
     let (mut contents, mut sections) = (String::new(), String::new());
@@ -132,7 +133,8 @@ fn parameter((name, value): (&str, &str)) -> String {
     )
 }
 
-/// The commands that render the figure and open the recipes that are like it, and its source.
+/// Returns the code section of a figure: the command that renders it, commands that open similar recipes, and its
+/// source.
 fn code(figure: &Figure, root: &str) -> String {
     let recipes = figure.parameters.iter().filter(|(name, _)| *name == RECIPE);
     let studio = recipes.map(|(_, recipe)| command(&format!("dapple studio {recipe}")));
@@ -153,7 +155,7 @@ fn command(line: &str) -> String {
     format!("<div class=\"code\"><pre class=\"command\">{line}</pre>{COPY}</div>")
 }
 
-/// The name of a parameter that is a built-in recipe.
+/// The name of a parameter whose value is a built-in recipe.
 const RECIPE: &str = "recipe";
 
 /// The button that copies the text before it.
@@ -167,7 +169,7 @@ fn milliseconds(time: Duration) -> String {
     }
 }
 
-/// A text as it stands in an element or in an attribute in double quotes.
+/// Escapes a text for an HTML element or an attribute in double quotes.
 fn escape(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for character in text.chars() {

@@ -1,4 +1,4 @@
-//! One picture of a figure, and the bytes that stand for it.
+//! One picture of a figure, and its bytes in a file.
 
 use dapple_color::{Code, LinearRgb};
 use dapple_raster::Raster;
@@ -6,13 +6,13 @@ use dapple_raster::Raster;
 /// One picture of a figure.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Panel {
-    /// What tells the picture from the figure's others; empty where there is one.
+    /// The label that tells the picture from the others of the figure; empty if there is only one.
     pub label: String,
-    /// What was measured on the picture, as text in columns; empty where nothing was. The page shows it below, and the
-    /// lock leaves it out.
+    /// The measurements on the picture, as text in columns; empty if there are none. The page shows the note below the
+    /// picture, and the lock ignores it.
     pub note: String,
-    /// Along which axes, x and y, copies of the picture continue each other. The page shows such pictures tiled, and the
-    /// lock leaves it out.
+    /// The axes, x and y, along which copies of the picture continue each other. The page shows such pictures tiled,
+    /// and the lock ignores this field.
     pub repeats: [bool; 2],
     /// The pixels.
     pub picture: Picture,
@@ -21,14 +21,14 @@ pub struct Panel {
 /// The pixels of a panel.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Picture {
-    /// Shades from 0, black, to 1, white, which go to the file as they are (`round(255 · value)`).
+    /// Shades from 0, black, to 1, white, stored in the file without a transfer function (`round(255 · value)`).
     Gray(Raster<f32>),
-    /// Linear color, which becomes sRGB in the file.
+    /// Linear color, converted to sRGB in the file.
     Color(Raster<LinearRgb>),
 }
 
 impl Panel {
-    /// A picture in shades of gray, from 0, black, to 1, white.
+    /// Makes a panel from shades of gray, from 0, black, to 1, white.
     #[must_use]
     pub fn gray(label: impl Into<String>, raster: Raster<f32>) -> Self {
         Self {
@@ -39,7 +39,7 @@ impl Panel {
         }
     }
 
-    /// A picture in linear color.
+    /// Makes a panel from linear color.
     #[must_use]
     pub fn color(label: impl Into<String>, raster: Raster<LinearRgb>) -> Self {
         Self {
@@ -50,7 +50,7 @@ impl Panel {
         }
     }
 
-    /// The same picture with another label.
+    /// Replaces the label.
     #[must_use]
     pub fn with_label(self, label: impl Into<String>) -> Self {
         Self {
@@ -59,7 +59,7 @@ impl Panel {
         }
     }
 
-    /// The same picture with what was measured on it.
+    /// Sets the note about measurements.
     #[must_use]
     pub fn with_note(self, note: impl ToString) -> Self {
         Self {
@@ -68,19 +68,19 @@ impl Panel {
         }
     }
 
-    /// The same picture, whose copies continue each other along both axes.
+    /// Marks the picture as repeating along both axes.
     #[must_use]
     pub fn repeating(self) -> Self {
         self.repeating_along([true; 2])
     }
 
-    /// The same picture, whose copies continue each other along some axes.
+    /// Sets the axes, x and y, along which the picture repeats.
     #[must_use]
     pub fn repeating_along(self, repeats: [bool; 2]) -> Self {
         Self { repeats, ..self }
     }
 
-    /// Columns and rows.
+    /// Returns the width and height in pixels.
     #[must_use]
     pub fn size(&self) -> [u32; 2] {
         match &self.picture {
@@ -89,7 +89,7 @@ impl Panel {
         }
     }
 
-    /// How many bytes a pixel has: 1 or 3.
+    /// Returns the number of bytes per pixel, 1 or 3.
     #[must_use]
     pub fn n_channels(&self) -> u8 {
         match self.picture {
@@ -98,7 +98,7 @@ impl Panel {
         }
     }
 
-    /// The pixels as they are in an 8-bit file, row by row from the top.
+    /// Returns the pixels as in an 8-bit file, row by row from the top.
     #[must_use]
     pub fn bytes(&self) -> Vec<u8> {
         match &self.picture {

@@ -1,10 +1,10 @@
-//! The page in a real browser: a few figures are rendered into a folder, and a Chromium without a window opens the page.
+//! Tests the page in a real browser: renders a few figures into a folder and opens the page in headless Chromium.
 //!
-//! `page/harness.html` uses the page as a reader does and writes down what it found; the pictures of the page, light and
-//! dark, are looked at here. Without a Chromium (on the `PATH`, or named by the variable `CHROMIUM`) the tests say so and
-//! pass.
+//! `page/harness.html` operates the page as a reader would and records what it finds; screenshots of the page, light
+//! and dark, are checked here. Without a Chromium (on the `PATH`, or named by the variable `CHROMIUM`) the tests print
+//! a note and pass.
 //!
-//! What the text of the page holds is tested here as well: to test it in the library would compile all figures again.
+//! The text of the page is tested here as well: a test in the library would compile all figures again.
 #![expect(
     clippy::disallowed_methods,
     reason = "a browser is another program, and reads files"
@@ -23,7 +23,7 @@ use std::process::{Command, Stdio};
 use std::thread::sleep;
 use std::time::Duration;
 
-/// What a browser may be called.
+/// The names that a Chromium may have on the `PATH`.
 const NAMES: [&str; 4] = [
     "chromium",
     "chromium-browser",
@@ -31,7 +31,7 @@ const NAMES: [&str; 4] = [
     "google-chrome-stable",
 ];
 
-/// Figures of one, two and six pictures; with and without periods; of two papers.
+/// Figures of one, two and six pictures, with and without periods, of two papers.
 const FIGURES: [&str; 6] = [
     "pups-fig-01a",
     "pups-fig-02",
@@ -41,7 +41,7 @@ const FIGURES: [&str; 6] = [
     "worley-fig-01",
 ];
 
-/// What the harness checks, by the names of its functions.
+/// The checks of the harness, by the names of its functions.
 const CHECKS: [&str; 8] = [
     "pictures",
     "enlarging",
@@ -53,7 +53,7 @@ const CHECKS: [&str; 8] = [
     "withoutScripts",
 ];
 
-/// How long a browser may take: the first start on a machine takes tens of seconds.
+/// The time limit for a browser in tenths of a second: the first start on a machine takes tens of seconds.
 const TENTHS_MAX: u32 = 1800;
 
 #[test]
@@ -140,20 +140,20 @@ fn page_is_light_or_dark_as_the_system_and_shows_pictures() {
         let n_colors = codes.collect::<BTreeSet<_>>().len();
         assert!(n_colors > 200, "{name}: {n_colors} colors");
     }
-    // The pictures themselves are the same, whatever is around them.
+    // The pictures themselves are equal in both schemes.
     let same = light.zip_map(&dark, |a, b| f32::from(a == b));
     let same = same.expect("the same size").statistics().mean;
     assert!(same > 0.1, "{same} of the pixels are the same");
 }
 
-/// The browser; without one, that is said.
+/// Finds the browser; if there is none, prints a note and returns `None`.
 fn browser() -> Option<PathBuf> {
     let found = match std::env::var_os("CHROMIUM") {
         Some(named) => Some(PathBuf::from(named)),
         None => on_path(),
     };
     if found.is_none() {
-        // Not by a macro, whose text a test that passes keeps to itself.
+        // A macro would print to the captured output, which is hidden for a test that passes.
         let mut stderr = std::io::stderr().lock();
         let _ = writeln!(
             stderr,
@@ -170,7 +170,7 @@ fn on_path() -> Option<PathBuf> {
     let candidates = NAMES
         .iter()
         .flat_map(|name| folders.iter().map(move |folder| folder.join(name)));
-    // Where a package is only announced, a script of the same name says so and fails.
+    // Some systems have a placeholder script of that name, which prints a note and fails.
     let runs = |candidate: &PathBuf| {
         let version = Command::new(candidate).arg("--version").output();
         version.is_ok_and(|version| version.status.success())
@@ -180,7 +180,7 @@ fn on_path() -> Option<PathBuf> {
         .find(|candidate| candidate.is_file() && runs(candidate))
 }
 
-/// A new folder with the page of a few figures.
+/// Renders a few figures and their page into a new folder.
 fn rendered(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("page-{name}"));
     if folder.exists() {
@@ -196,7 +196,7 @@ fn rendered(name: &str) -> PathBuf {
     folder
 }
 
-/// What the browser shows of the page.
+/// Takes a screenshot of the page in the browser.
 fn screenshot(browser: &Path, folder: &Path, scheme: u32) -> Raster<LinearRgb> {
     let file = folder.join(format!("screenshot-{scheme}.png"));
     let arguments = [
@@ -214,7 +214,7 @@ fn screenshot(browser: &Path, folder: &Path, scheme: u32) -> Raster<LinearRgb> {
     image.color().expect("it is in color")
 }
 
-/// Opens a file of the folder in a browser that knows nothing yet, and returns what it printed.
+/// Opens a file of the folder in a browser with a fresh profile, and returns the printed output.
 fn run(browser: &Path, folder: &Path, arguments: &[&str], file: &str) -> String {
     let output = folder.join("output.txt");
     let file = folder.join(file);

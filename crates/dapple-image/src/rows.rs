@@ -109,7 +109,7 @@ impl<W: Write + Seek> RowWriter<W> {
     ///
     /// # Errors
     ///
-    /// Those of [`write_gray`](Self::write_gray).
+    /// The errors of [`write_gray`](Self::write_gray).
     pub fn write_color(&mut self, rows: RasterView<'_, LinearRgb>) -> Result<(), ImageError> {
         self.write(rows)
     }
@@ -118,7 +118,7 @@ impl<W: Write + Seek> RowWriter<W> {
     ///
     /// # Errors
     ///
-    /// Those of [`write_gray`](Self::write_gray).
+    /// The errors of [`write_gray`](Self::write_gray).
     pub fn write_color_alpha(
         &mut self,
         rows: RasterView<'_, LinearRgba>,
@@ -130,7 +130,7 @@ impl<W: Write + Seek> RowWriter<W> {
     ///
     /// # Errors
     ///
-    /// Those of [`write_gray`](Self::write_gray).
+    /// The errors of [`write_gray`](Self::write_gray).
     pub fn write_normals(&mut self, rows: RasterView<'_, Normal>) -> Result<(), ImageError> {
         self.write(rows)
     }
@@ -139,7 +139,7 @@ impl<W: Write + Seek> RowWriter<W> {
     ///
     /// # Errors
     ///
-    /// Those of [`write_gray`](Self::write_gray).
+    /// The errors of [`write_gray`](Self::write_gray).
     pub fn write_packed(&mut self, rows: RasterView<'_, [f32; 3]>) -> Result<(), ImageError> {
         self.write(rows)
     }
@@ -148,7 +148,7 @@ impl<W: Write + Seek> RowWriter<W> {
     ///
     /// # Errors
     ///
-    /// Those of [`write_gray`](Self::write_gray).
+    /// The errors of [`write_gray`](Self::write_gray).
     pub fn write_packed_four(&mut self, rows: RasterView<'_, [f32; 4]>) -> Result<(), ImageError> {
         self.write(rows)
     }

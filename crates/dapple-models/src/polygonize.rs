@@ -54,7 +54,7 @@ pub fn polygonize(solid: &dyn Solid, side: f64) -> Result<Mesh, ModelError> {
 ///
 /// # Errors
 ///
-/// Those of [`polygonize`], and [`ModelErrorKind::Range`] unless 16 to 2^24 triangles are wanted.
+/// The errors of [`polygonize`], and [`ModelErrorKind::Range`] unless 16 to 2^24 triangles are wanted.
 pub fn polygonize_n(solid: &dyn Solid, side: f64, n_triangles: usize) -> Result<Mesh, ModelError> {
     let holds = (16..=TRIANGLES_MAX).contains(&n_triangles);
     let wanted = n_triangles as f64;

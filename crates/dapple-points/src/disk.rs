@@ -71,7 +71,7 @@ pub fn poisson_disk(domain: Domain, radius: f64, seed: Seed) -> Result<PointSet,
 ///
 /// # Errors
 ///
-/// Those of [`poisson_disk`]; [`PointsErrorKind::NoPoints`] for `n_points` of zero.
+/// The errors of [`poisson_disk`]; [`PointsErrorKind::NoPoints`] for `n_points` of zero.
 ///
 /// # Examples
 ///
@@ -132,7 +132,7 @@ const BORDER_DENSITY: f64 = 0.232;
 ///
 /// # Errors
 ///
-/// Those of [`poisson_disk`]; [`PointsErrorKind::TooClose`] if two of the given points are closer than `radius`.
+/// The errors of [`poisson_disk`]; [`PointsErrorKind::TooClose`] if two of the given points are closer than `radius`.
 ///
 /// # Examples
 ///
@@ -165,7 +165,7 @@ impl PoissonDisk {
     ///
     /// # Errors
     ///
-    /// Those of [`poisson_disk`].
+    /// The errors of [`poisson_disk`].
     pub fn new(domain: Domain, radius: f64) -> Result<Self, PointsError> {
         let grid = Grid::new(domain, radius, MAX_POISSON_DISK_POINTS)?;
         let coverage = Coverage::new(&grid, level());

@@ -52,8 +52,8 @@ impl NestedPointSet {
 ///
 /// # Errors
 ///
-/// Those of [`poisson_disk`](crate::poisson_disk) for each radius; [`PointsErrorKind::NotDescending`] if a radius is larger
-/// than the one before.
+/// The errors of [`poisson_disk`](crate::poisson_disk) for each radius; [`PointsErrorKind::NotDescending`] if a radius
+/// is larger than the one before.
 ///
 /// # Examples
 ///

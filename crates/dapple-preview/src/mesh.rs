@@ -46,7 +46,7 @@ impl Mesh {
     ///
     /// # Errors
     ///
-    /// Those of [`smooth`](Self::smooth).
+    /// The errors of [`smooth`](Self::smooth).
     pub fn flat(positions: &[DVec3], triangles: &[[u32; 3]]) -> Result<Self, PreviewError> {
         let mesh = dapple_mesh::Mesh::new(positions.to_vec(), triangles)?;
         Ok(Self {

@@ -1,4 +1,4 @@
-"""The panel "dapple": choose a recipe, a size and a seed, and bake it into a material of the active object."""
+"""The panel "dapple" in Blender: bakes a recipe with a size and a seed into a material of the active object."""
 
 from pathlib import Path
 
@@ -23,7 +23,7 @@ def _builtin(_self, _context):
 
 
 def _changed(settings, _context):
-    """Bakes again when nothing was changed for a while, if the material is to follow."""
+    """Bakes again shortly after the last change, if the material is set to follow changes."""
     if settings.follow and _material_of(bpy.context) is not None:
         if bpy.app.timers.is_registered(_follow):
             bpy.app.timers.unregister(_follow)
@@ -35,7 +35,7 @@ def _follow():
 
 
 class DappleSettings(bpy.types.PropertyGroup):
-    """What the panel holds."""
+    """The settings of the panel."""
 
     recipe: EnumProperty(name="Recipe", items=_builtin, update=_changed)
     path: StringProperty(name="File", subtype="FILE_PATH", update=_changed)
@@ -53,7 +53,7 @@ class DappleSettings(bpy.types.PropertyGroup):
 
 
 def _plan(settings):
-    """The plan that the panel asks for."""
+    """Returns the plan for the settings of the panel."""
     import dapple_textures as dp
 
     name = bpy.path.abspath(settings.path) if settings.recipe == "FILE" else settings.recipe
@@ -64,7 +64,7 @@ def _plan(settings):
 
 
 def _material_of(context):
-    """The material of the active object, if it was baked here."""
+    """Returns the material of the active object if this package baked it."""
     thing = context.active_object
     material = thing and thing.active_material
     return material if material is not None and "dapple_textures" in material else None
@@ -158,14 +158,14 @@ _CLASSES = (DappleSettings, DAPPLE_OT_bake, DAPPLE_OT_import, DAPPLE_PT_panel)
 
 
 def register():
-    """Adds the panel."""
+    """Registers the panel and its operators."""
     for kind in _CLASSES:
         bpy.utils.register_class(kind)
     bpy.types.Scene.dapple = PointerProperty(type=DappleSettings)
 
 
 def unregister():
-    """Takes the panel away."""
+    """Removes the panel and its operators."""
     del bpy.types.Scene.dapple
     for kind in reversed(_CLASSES):
         bpy.utils.unregister_class(kind)

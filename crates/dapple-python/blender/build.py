@@ -1,4 +1,4 @@
-"""Makes the extension: `python build.py WHEEL… [-o ZIP]`, with a wheel of `dapple-textures` for each platform."""
+"""Builds the Blender extension: `python build.py WHEEL… [-o ZIP]`, with a wheel of `dapple-textures` for each platform."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ PLATFORMS = {
 
 
 def platform_of(wheel: Path) -> str:
-    """Blender's name of the platform that a wheel is for."""
+    """Returns Blender's name of the platform of a wheel."""
     tag = wheel.stem.rsplit("-", 1)[-1]
     for pattern, platform in PLATFORMS.items():
         if re.match(pattern, tag):
@@ -30,7 +30,7 @@ def platform_of(wheel: Path) -> str:
 
 
 def build(wheels: list[Path], output: Path) -> None:
-    """Writes the extension with these wheels."""
+    """Writes the extension file with the given wheels."""
     if not wheels:
         raise SystemExit("no wheel is given")
     platforms = sorted({platform_of(wheel) for wheel in wheels})

@@ -20,7 +20,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-#: Packages that a page may do without: its code ends there.
+#: Optional packages: the code of a page stops at the import of one that is missing.
 OPTIONAL = {"bpy", "torch"}
 
 _BLOCK = re.compile(r"^(?:```(?P<kind>python|\{\.sh \.run\})|<!-- python) *\n(?P<code>.*?)^(?:```|-->) *$", re.M | re.S)
@@ -30,18 +30,18 @@ _FILE = re.compile(r"\]\(([\w.-]+\.(?:png|gif|glb|webp))\)")
 
 @dataclass
 class Run:
-    """What became of the code of a page."""
+    """The results of running the code of a page."""
 
-    #: The folder where it ran.
+    #: The folder in which the code ran.
     folder: Path
-    #: What each block has printed.
+    #: The output of each block.
     printed: list[str] = field(default_factory=list)
-    #: The package without which it could not go on.
+    #: The missing package at which the code stopped.
     missing: str | None = None
 
 
 def files_of(text: str) -> set[str]:
-    """The files that a page shows."""
+    """Returns the files that a page shows."""
     return set(_FILE.findall(text))
 
 
@@ -79,7 +79,7 @@ def _run_block(block: re.Match[str], text: str, page: Path, names: dict[str, Any
         if done.returncode:
             raise RuntimeError(f"{page.name}: {block['code']}\n{done.stdout}{done.stderr}")
         return done.stdout
-    # Lines of tracebacks are those of the page.
+    # Line numbers in tracebacks are those of the page.
     line = text.count("\n", 0, block.start("code"))
     code = compile("\n" * line + block["code"], str(page), "exec")
     printed = io.StringIO()
@@ -89,7 +89,7 @@ def _run_block(block: re.Match[str], text: str, page: Path, names: dict[str, Any
 
 
 def _environment() -> dict[str, str]:
-    """The environment of commands: those of this Python, with the package that it has loaded."""
+    """Returns the environment for commands: they find the programs of this Python, with the package that it has loaded."""
     import dapple_textures
 
     path = os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", "")])
@@ -97,7 +97,7 @@ def _environment() -> dict[str, str]:
 
 
 def with_output(text: str, printed: list[str]) -> str:
-    """The text of a page with what its code has printed."""
+    """Returns the text of a page with the output of its code added."""
     blocks = list(_BLOCK.finditer(text))
 
     def output(match: re.Match[str]) -> str:
@@ -117,7 +117,7 @@ _FOLDERS: list[tempfile.TemporaryDirectory[str]] = []
 
 
 def on_files(files: Any, config: Any) -> Any:
-    """Runs all pages, and adds what they have written to the files of the site."""
+    """Runs all pages, and adds the files that they wrote to the site."""
     from mkdocs.structure.files import File
 
     for page in list(files.documentation_pages()):
@@ -132,12 +132,12 @@ def on_files(files: Any, config: Any) -> Any:
 
 
 def on_page_markdown(markdown: str, page: Any, config: Any, files: Any) -> str:
-    """Puts in what the code of a page has printed, and names its files as they are named in the site."""
+    """Adds the output of the code of a page, and renames its files to their names on the site."""
     result = _RUNS.get(page.file.src_uri)
     if result is None:
         return markdown
     for name in files_of(markdown):
-        # What it shows of other pages has its name already.
+        # Files of other pages have their names already.
         if not (result.folder / name).is_file():
             continue
         shown = rf"(?<=\]\(){re.escape(name)}(?=\))"

@@ -1,4 +1,4 @@
-"""Markdown of the docstrings of the package, for the page of its API."""
+"""Makes Markdown from the docstrings of the package, for the API page."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 
 import dapple_textures as dp
 
-#: Where to look first; what is in no group comes last.
+#: The groups of names, in order; names in no group come last.
 GROUPS = {
     "Fields": ["worley", "Worley", "gradient_noise", "wavelet_noise", "constant", "Field", "ColorField", "Features"],
     "Points and graphs": ["Domain", "Points", "poisson_disk", "extend_poisson_disk", "nested_poisson_disk", "jittered_grid", "white_noise", "spectrum", "Spectrum", "EmptyCircle", "delaunay", "gabriel", "yao", "k_nearest", "Graph", "Axes"],
@@ -24,7 +24,7 @@ GROUPS = {
 
 
 def markdown() -> str:
-    """All groups, and then the modules for what is larger than a machine."""
+    """Returns all groups, then the modules for arrays too large for one machine."""
     named = {name for names in GROUPS.values() for name in names}
     rest = [name for name in dp.__all__ if name not in named and not name.startswith("_")]
     textures = [name for name in rest if inspect.isfunction(getattr(dp, name))]
@@ -53,7 +53,7 @@ def _module(name: str) -> list[str]:
 
 
 def entry(name: str, what: Any, level: int = 3) -> str:
-    """What an object is, with its signature and, of classes, its members."""
+    """Describes an object, with its signature and the members of a class."""
     parts = [f"{'#' * level} `{name}`", signature(name, what), text(inspect.getdoc(what) or "")]
     if inspect.isclass(what) and not issubclass(what, Exception):
         members = [(key, value) for key, value in vars(what).items() if not key.startswith("_")]
@@ -72,9 +72,9 @@ def _member(name: str, what: Any) -> str:
 
 
 def signature(name: str, what: Any) -> str:
-    """A block with the call, over several lines where it is long."""
+    """Returns a code block with the call, over several lines if it is long."""
     call = _parameters(what)
-    # What cannot be called has no parameters for Python.
+    # Python knows no parameters of an object that cannot be called.
     if not call or (inspect.isclass(what) and call == "()"):
         return ""
     if len(name + call) > 88:
@@ -100,7 +100,7 @@ def _parameters(what: Any) -> str:
 
 
 def _split(parameters: str) -> list[str]:
-    """Parameters at the commas that are in no brackets."""
+    """Splits parameters at commas outside of brackets."""
     parts, depth, start = [], 0, 0
     for place, letter in enumerate(parameters):
         depth += (letter in "([{") - (letter in ")]}")
@@ -111,7 +111,7 @@ def _split(parameters: str) -> list[str]:
 
 
 def text(docstring: str) -> str:
-    """Markdown of a docstring in NumPy's form."""
+    """Returns a docstring in NumPy's form as Markdown."""
     docstring = docstring.replace("``", "`")
     parts = re.split(r"^(Parameters|Returns|Raises|Examples)\n-+\n", docstring, flags=re.M)
     found = [_indented_code(parts[0].strip())]

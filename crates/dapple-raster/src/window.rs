@@ -58,7 +58,7 @@ impl Window {
     ///
     /// # Errors
     ///
-    /// Those of [`new`](Self::new) for `size`.
+    /// The errors of [`new`](Self::new) for `size`.
     pub fn unit(size: [u32; 2]) -> Result<Self, RasterError> {
         Self::new(DVec2::ZERO, DVec2::ONE, size)
     }

@@ -143,7 +143,7 @@ impl<'a> Bake<'a> {
     ///
     /// # Errors
     ///
-    /// Those of a band, and [`Raster`](crate::RecipeErrorKind::Raster) if a map has more pixels than a raster can have.
+    /// The errors of a band, and [`Raster`](crate::RecipeErrorKind::Raster) if a map has more pixels than a raster can have.
     pub fn whole_maps(self) -> Result<Vec<(MapKind, MapRows)>, RecipeError> {
         let mut whole: Vec<(MapKind, MapRows)> = Vec::new();
         for band in self {

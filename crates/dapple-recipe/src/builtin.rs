@@ -49,7 +49,7 @@ impl Recipe {
     ///
     /// # Errors
     ///
-    /// Those of [`builtin`](Self::builtin).
+    /// The errors of [`builtin`](Self::builtin).
     pub fn builtin_text(name: &str) -> Result<&'static str, RecipeError> {
         let found = BUILTIN.iter().find(|(known, _)| *known == name);
         found.map(|&(_, text)| text).ok_or_else(|| {

@@ -141,7 +141,7 @@ impl Plan {
     ///
     /// # Errors
     ///
-    /// Those of [`new`](Self::new), with other limits.
+    /// The errors of [`new`](Self::new), with other limits.
     pub fn new_within(
         recipe: &Recipe,
         images: &Images,
@@ -156,7 +156,7 @@ impl Plan {
     ///
     /// # Errors
     ///
-    /// Those of [`new_within`](Self::new_within).
+    /// The errors of [`new_within`](Self::new_within).
     ///
     /// # Examples
     ///

@@ -38,7 +38,7 @@ impl Recipe {
     ///
     /// # Errors
     ///
-    /// Those of [`from_toml`](Self::from_toml).
+    /// The errors of [`from_toml`](Self::from_toml).
     pub fn from_json(text: &str) -> Result<Self, RecipeError> {
         check_length(text)?;
         let content: Content = serde_json::from_str(text).map_err(|error| {

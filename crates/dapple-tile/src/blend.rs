@@ -133,7 +133,7 @@ pub fn blend(layers: &[Layer<'_>], how: &Blend) -> Result<Vec<Map>, TileError> {
 ///
 /// # Errors
 ///
-/// Those of [`blend`]; and [`Range`](TileErrorKind::Range) if a mask has a value that is not from 0 to 1.
+/// The errors of [`blend`]; and [`Range`](TileErrorKind::Range) if a mask has a value that is not from 0 to 1.
 ///
 /// # Examples
 ///

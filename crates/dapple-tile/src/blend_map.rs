@@ -116,7 +116,7 @@ impl BlendMap {
     ///
     /// # Errors
     ///
-    /// Those of [`apply`](Self::apply).
+    /// The errors of [`apply`](Self::apply).
     pub fn apply_color(&self, texture: &Raster<LinearRgb>) -> Result<Raster<f32>, TileError> {
         self.apply(&texture.map(|color| color.luminance()))
     }

@@ -96,8 +96,8 @@ impl Disturbance {
     ///
     /// # Errors
     ///
-    /// Those of [`render`](Self::render); [`TileErrorKind::Count`] without maps, and [`TileErrorKind::Raster`] if they differ in
-    /// size.
+    /// The errors of [`render`](Self::render); [`TileErrorKind::Count`] without maps, and [`TileErrorKind::Raster`] if
+    /// they differ in size.
     pub fn render_maps(
         &self,
         maps: &[Map],

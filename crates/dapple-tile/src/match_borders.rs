@@ -97,8 +97,8 @@ impl MatchBorders {
     ///
     /// # Errors
     ///
-    /// Those of [`apply`](Self::apply); [`TileErrorKind::Count`] too for materials without maps, or with more or fewer than the
-    /// first, and [`TileErrorKind::KindMismatch`] for maps of other kinds.
+    /// The errors of [`apply`](Self::apply); [`TileErrorKind::Count`] too for materials without maps, or with more or
+    /// fewer than the first, and [`TileErrorKind::KindMismatch`] for maps of other kinds.
     pub fn apply_maps(&self, tiles: &[Vec<Map>]) -> Result<Vec<Vec<Map>>, TileError> {
         let matched = self.matched(Map::planes_of_all(tiles)?)?;
         let pairs = tiles.iter().zip(matched);
@@ -114,7 +114,7 @@ impl MatchBorders {
     ///
     /// # Errors
     ///
-    /// Those of [`apply_maps`](Self::apply_maps); [`TileErrorKind::Raster`] too if `size` is empty or too large.
+    /// The errors of [`apply_maps`](Self::apply_maps); [`TileErrorKind::Raster`] too if `size` is empty or too large.
     pub fn render(
         &self,
         tiles: &[Vec<Map>],

@@ -155,7 +155,7 @@ impl SeamReport {
     ///
     /// # Errors
     ///
-    /// Those of [`of`](Self::of), and [`NotFinite`](TileErrorKind::NotFinite) for pixels of the source.
+    /// The errors of [`of`](Self::of), and [`NotFinite`](TileErrorKind::NotFinite) for pixels of the source.
     pub fn beside(
         source: &Raster<f32>,
         tile: &Raster<f32>,

@@ -20,7 +20,7 @@ impl SplineFilter {
     ///
     /// # Errors
     ///
-    /// Those of [`project`](Self::project).
+    /// The errors of [`project`](Self::project).
     pub fn analyze(
         &self,
         raster: &Raster<f32>,
@@ -44,7 +44,7 @@ impl SplineFilter {
     ///
     /// # Errors
     ///
-    /// Those of [`up`](Self::up): `Length` if a detail has another size than its level needs.
+    /// The errors of [`up`](Self::up): `Length` if a detail has another size than its level needs.
     pub fn synthesize(
         &self,
         bands: &Bands,

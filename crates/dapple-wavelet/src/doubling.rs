@@ -34,7 +34,7 @@ impl Doubling {
     ///
     /// # Errors
     ///
-    /// Those of [`Halving::new`], and `Length` if `coarse_len` is not the coarse length.
+    /// The errors of [`Halving::new`], and `Length` if `coarse_len` is not the coarse length.
     pub(crate) fn new(
         filter: SplineFilter,
         coarse_len: usize,

@@ -156,7 +156,7 @@ pub(crate) fn shortest(filter: SplineFilter, border: Border) -> usize {
 ///
 /// # Errors
 ///
-/// Those of [`Halving::new`], `NotDivisible` with the whole length and all levels; `Range` for too many levels.
+/// The errors of [`Halving::new`], `NotDivisible` with the whole length and all levels; `Range` for too many levels.
 pub(crate) fn lengths(
     filter: SplineFilter,
     len: usize,

@@ -30,7 +30,7 @@ impl SplineFilter {
     ///
     /// # Errors
     ///
-    /// Those of [`coarse_len`](Self::coarse_len), and `NotFinite`.
+    /// The errors of [`coarse_len`](Self::coarse_len), and `NotFinite`.
     ///
     /// # Examples
     ///
@@ -72,7 +72,7 @@ impl SplineFilter {
     ///
     /// # Errors
     ///
-    /// Those of [`down_line`](Self::down_line), for each level; `Range` for more than 32 levels.
+    /// The errors of [`down_line`](Self::down_line), for each level; `Range` for more than 32 levels.
     pub fn project_line(
         &self,
         fine: &[f64],

@@ -31,7 +31,7 @@ impl SplineFilter {
     ///
     /// # Errors
     ///
-    /// Those of [`down_line`](Self::down_line).
+    /// The errors of [`down_line`](Self::down_line).
     pub fn down(
         &self,
         fine: &Raster<f32>,
@@ -48,7 +48,7 @@ impl SplineFilter {
     ///
     /// # Errors
     ///
-    /// Those of [`down`](Self::down), and `Raster` if `coarse` has another size than half of `fine`, as
+    /// The errors of [`down`](Self::down), and `Raster` if `coarse` has another size than half of `fine`, as
     /// [`coarse_len`](Self::coarse_len) says.
     pub fn down_into(
         &self,
@@ -76,7 +76,7 @@ impl SplineFilter {
     ///
     /// # Errors
     ///
-    /// Those of [`up_line`](Self::up_line).
+    /// The errors of [`up_line`](Self::up_line).
     pub fn up(
         &self,
         coarse: &Raster<f32>,
@@ -98,7 +98,7 @@ impl SplineFilter {
     ///
     /// # Errors
     ///
-    /// Those of [`up`](Self::up).
+    /// The errors of [`up`](Self::up).
     pub fn up_into(
         &self,
         coarse: &Raster<f32>,
@@ -128,8 +128,8 @@ impl SplineFilter {
     ///
     /// # Errors
     ///
-    /// Those of [`down`](Self::down), for each level: `NotFinite` also if a level has made infinite pixels from finite
-    /// ones, which cannot happen up to `f32::MAX / 15^levels`. `Range` for more than 32 levels.
+    /// The errors of [`down`](Self::down), for each level: `NotFinite` also if a level has made infinite pixels from
+    /// finite ones, which cannot happen up to `f32::MAX / 15^levels`. `Range` for more than 32 levels.
     pub fn project(
         &self,
         fine: &Raster<f32>,

@@ -104,7 +104,7 @@ dapple_raster::named! {
 }
 
 dapple_raster::named! {
-    /// What lies past the ends of a line.
+    /// How a line continues past its ends.
     #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
     pub enum Border {
         /// The line repeats. To be halved, its length must be even.

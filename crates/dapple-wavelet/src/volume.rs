@@ -75,7 +75,7 @@ impl SplineFilter {
     ///
     /// # Errors
     ///
-    /// Those of [`down_volume`](Self::down_volume), for each level: `NotFinite` also if a level has made infinite
+    /// The errors of [`down_volume`](Self::down_volume), for each level: `NotFinite` also if a level has made infinite
     /// values from finite ones, which cannot happen up to `f32::MAX / 56^levels`. `Range` for more than 32 levels.
     pub fn project_volume(
         &self,

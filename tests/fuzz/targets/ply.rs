@@ -1,4 +1,4 @@
-//! Gives what libFuzzer makes up to the target `ply` of `tests/hostile`.
+//! Passes the inputs of libFuzzer to the target `ply` of `tests/hostile`.
 #![no_main]
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| dapple_fuzz::targets::ply(bytes));

@@ -1,6 +1,6 @@
-//! Numbers out of bytes.
+//! A source of numbers from the bytes of an input.
 
-/// The bytes that have not been taken. Past their end all is zero.
+/// The bytes that are not yet consumed. After the last byte follow zeros.
 pub(super) struct Bytes<'a>(pub(super) &'a [u8]);
 
 impl Bytes<'_> {
@@ -9,7 +9,7 @@ impl Bytes<'_> {
         byte
     }
 
-    /// Any number, and often one of those on which code depends.
+    /// Returns any number, and often one at which code branches.
     pub(super) fn number(&mut self) -> f64 {
         const SPECIAL: [f64; 16] = [
             0.0,

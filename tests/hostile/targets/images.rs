@@ -1,4 +1,4 @@
-//! PNG, JPEG and OpenEXR.
+//! Targets for PNG, JPEG and OpenEXR.
 
 use super::accepted;
 use dapple::image::{
@@ -13,7 +13,7 @@ const LIMITS: Limits = Limits {
     bytes: 1 << 22,
 };
 
-/// An image within the limits, or a refusal. What is read is the same when it has been written and read again.
+/// Decodes an image: it is within the limits or refused, and stays the same when written and read again.
 pub fn image(bytes: &[u8]) {
     let Some(image) = accepted(decode_image(bytes, &LIMITS)) else {
         return;
@@ -56,7 +56,7 @@ fn png(image: &PngImage) -> Result<Vec<u8>, dapple::image::ImageError> {
 }
 
 fn check_exr(image: &ExrImage) {
-    // Parts may have planes of different sizes, or names that are too long together; these are not written.
+    // Parts may have planes of different sizes, or names that are too long together; such images cannot be written.
     let Some(bytes) = accepted(encode_exr(&image.planes)) else {
         return;
     };

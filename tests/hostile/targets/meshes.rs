@@ -1,4 +1,4 @@
-//! OBJ, PLY, glTF and OFF.
+//! Targets for OBJ, PLY, glTF and OFF.
 
 use super::accepted;
 use dapple::color::{LinearRgb, LinearRgba};
@@ -6,9 +6,9 @@ use dapple::mesh::glam::{DVec2, DVec3};
 use dapple::mesh::{EncodedImage, Mesh, Model, Surface};
 use dapple::mesh_io::{self as io, MeshIoError};
 
-/// A model or a refusal; what is read can be mended, laid out and written, and is the same when it is read again.
+/// Reads OBJ: a model is refused or can be repaired, laid out and written, and stays the same when read again.
 pub fn obj(bytes: &[u8]) {
-    // The file is its own library and texture, too.
+    // The file also serves as its own material library and texture.
     check(
         io::obj::read_with(bytes, &mut |_| Some(bytes.to_vec())),
         |model| {
@@ -22,7 +22,8 @@ pub fn obj(bytes: &[u8]) {
     );
 }
 
-/// As [`obj`], for PLY, binary and as text.
+/// Reads PLY: a model is refused or can be repaired, laid out and written, in binary and as text, and stays the same
+/// when read again.
 pub fn ply(bytes: &[u8]) {
     check(io::ply::read(bytes), |model| {
         io::ply::read(&io::ply::write(model)?)
@@ -32,7 +33,7 @@ pub fn ply(bytes: &[u8]) {
     });
 }
 
-/// As [`obj`], for glTF and GLB.
+/// Reads glTF or GLB: a model is refused or can be repaired, laid out and written, and stays the same when read again.
 pub fn gltf(bytes: &[u8]) {
     check(
         io::gltf::read_with(bytes, &mut |_| Some(bytes.to_vec())),
@@ -40,7 +41,7 @@ pub fn gltf(bytes: &[u8]) {
     );
 }
 
-/// As [`obj`], for OFF, which is not written.
+/// Reads OFF: a model is refused or can be repaired and laid out. OFF cannot be written.
 pub fn off(bytes: &[u8]) {
     check(io::off::read(bytes), |model| Ok(model.clone()));
 }
@@ -51,7 +52,7 @@ fn check(read: Result<Model, MeshIoError>, again: impl Fn(&Model) -> Result<Mode
     };
     model.check().expect("what is read is valid");
     check_mesh(&model.mesh);
-    // A format may not hold all that another does, but what it holds, it keeps.
+    // A format may lose a part of a model of another format, but it must keep its own.
     let once = again(&model).expect("what was read can be written and read");
     let twice = again(&once).expect("it can be written and read again");
     assert_eq!(once, twice, "written and read again");
@@ -77,7 +78,7 @@ fn check_mesh(mesh: &Mesh) {
     assert!(surface.area() > 0.0, "the area is {}", surface.area());
 }
 
-/// A cube with everything that a model may have.
+/// A cube with every kind of data that a model may have.
 fn model() -> Model {
     let corner = |index: u32| DVec3::from([0, 1, 2].map(|axis| f64::from(index >> axis & 1)));
     let faces = [

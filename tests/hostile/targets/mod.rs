@@ -1,7 +1,7 @@
-//! What must hold for any bytes whatsoever: a plain function for each kind of input, and inputs to begin with.
+//! Properties that must hold for any bytes: one function for each kind of input, and seed inputs.
 //!
-//! The test `hostile` gives them changed copies of these inputs, and `tests/fuzz` what libFuzzer makes up. A function
-//! returns, soon and without much memory, or it panics, which is a finding.
+//! The test `hostile` passes changed copies of the seed inputs to the functions, and `tests/fuzz` passes inputs of
+//! libFuzzer. A function returns soon and without much memory; a panic is a finding.
 
 mod bytes;
 mod images;
@@ -16,7 +16,7 @@ pub use recipes::{directions, recipe};
 
 use std::error::Error;
 
-/// A kind of input: its name, what takes it, and inputs to begin with.
+/// A kind of input: its name, the function that checks it, and its seed inputs.
 pub type Target = (&'static str, fn(&[u8]), fn() -> Vec<Vec<u8>>);
 
 /// All kinds of inputs.
@@ -31,7 +31,7 @@ pub const TARGETS: [Target; 8] = [
     ("directions", directions, recipes::direction_seeds),
 ];
 
-/// What was accepted. A refusal says why, in less than a screen.
+/// Returns the value of a successful result. An error must have a text.
 fn accepted<T, E: Error>(result: Result<T, E>) -> Option<T> {
     result
         .map_err(|error| {

@@ -1,4 +1,4 @@
-//! Points on domains of any kind, their statistics and their graphs.
+//! The target for points: domains of any kind, statistics of their points, and their graphs.
 
 use super::accepted;
 use super::bytes::Bytes;
@@ -6,10 +6,10 @@ use dapple::graph::{Direction, delaunay, gabriel, k_nearest, yao};
 use dapple::points::glam::DVec2;
 use dapple::points::{Domain, PointSet, SpectrumOptions, spectrum};
 
-/// The most points: what is done with them may take the square of their number.
+/// The largest number of points, since some steps take time proportional to its square.
 const MOST_POINTS: usize = 32;
 
-/// Points that are accepted have statistics and graphs, or these are refused.
+/// Makes a point set: it is refused, or its statistics and graphs are computed or refused.
 pub fn points(bytes: &[u8]) {
     let mut bytes = Bytes(bytes);
     let choice = bytes.byte();
@@ -44,7 +44,7 @@ pub fn points(bytes: &[u8]) {
         Direction::Symmetric
     };
     let count = u32::from(choice >> 6) * 3;
-    // One graph for each input: on thin domains each may take all the work that it is allowed.
+    // Only one graph per input: on thin domains each graph may use all the work that it is allowed.
     let graph = match choice >> 4 & 3 {
         0 => delaunay(&points),
         1 => gabriel(&points),
@@ -82,7 +82,7 @@ fn check_statistics(points: &PointSet) {
 pub(super) fn seeds() -> Vec<Vec<u8>> {
     let mut seeds = Vec::new();
     for choice in [0x40, 0x53, 0xab, 0x71, 0xe7] {
-        // The origin, and domains that are square, long, and thin.
+        // Points at the origin, and domains that are square, long and thin.
         for size in [[2, 2], [2, 4], [2, 6], [8, 7]] {
             let mut seed = vec![choice, 0, 0, size[0], size[1]];
             let codes = (0..24_u32).map(|index| index.wrapping_mul(0x9e37_79b9));
@@ -90,7 +90,7 @@ pub(super) fn seeds() -> Vec<Vec<u8>> {
             seeds.push(seed);
         }
     }
-    // A lattice, where circles go through many points.
+    // A lattice, where many points lie on the same circle.
     let lattice = (0..16).flat_map(|index| [64, index % 4, 64, index / 4]);
     seeds.push(
         [0x03, 0, 0, 64, 4, 64, 4]

@@ -1,4 +1,4 @@
-//! Recipes, and the lists of points and directions that the command reads.
+//! Targets for recipes, and for the lists of points and directions that the command reads.
 
 use super::accepted;
 use dapple::color::LinearRgb;
@@ -15,8 +15,8 @@ const LIMITS: PlanLimits = PlanLimits {
     pixels: 1 << 12,
 };
 
-/// A recipe or a refusal; what is read is the same when it has been written and read again, and is baked within limits,
-/// or refused.
+/// Reads a recipe: it is refused or stays the same when written and read again, and its bake is within limits or
+/// refused.
 pub fn recipe(bytes: &[u8]) {
     let Ok(text) = core::str::from_utf8(bytes) else {
         return;
@@ -34,7 +34,7 @@ pub fn recipe(bytes: &[u8]) {
     check_bake(&recipe);
 }
 
-/// A list of directions in CSV or JSON, which is also tried as a list of control points.
+/// Reads a list of directions in CSV or JSON, and tries to read it as a list of control points.
 pub fn directions(bytes: &[u8]) {
     let Ok(text) = core::str::from_utf8(bytes) else {
         return;
@@ -53,11 +53,11 @@ pub fn directions(bytes: &[u8]) {
 }
 
 fn check_text(recipe: &Recipe) {
-    // TOML has no seeds past 2^63, and JSON no numbers that are not finite.
+    // TOML has no seeds above 2^63, and JSON has no infinite numbers or NaN.
     if let Some(text) = accepted(recipe.to_toml()) {
         let again = Recipe::from_toml(&text).expect("what was written can be read");
         let second = again.to_toml().expect("what was read can be written");
-        // Reading sorts nodes by their names, once.
+        // The first reading sorts nodes by name, so the length stays the same afterward.
         assert_eq!(text.len(), second.len(), "something was lost in {text}");
         let again = Recipe::from_toml(&second).expect("what was written can be read");
         assert_eq!(again.to_toml().as_ref(), Ok(&second), "TOML again");
@@ -97,7 +97,7 @@ fn check_bake(recipe: &Recipe) {
     }
 }
 
-/// What the examples of nodes in the README stand in: `a` and `b` are numbers, `c` is a color.
+/// A recipe to which the README's examples of nodes are added: `a` and `b` are numbers, `c` is a color.
 const AROUND: &str = r##"
 dapple = 1
 seed = 3

@@ -1,7 +1,7 @@
-//! All generators of the workspace that have a period.
+//! All periodic generators of the workspace.
 //!
-//! The progressions and the ramp of labels are the cow and the giraffe with other options; textures after a reference
-//! image are as uniform as the image, and their seams say nothing.
+//! Left out are progressions and the ramp of labels, which are the cow and the giraffe with other options, and textures
+//! after a reference image, which are only as uniform as the image, so that their seams prove nothing.
 
 use super::{Generator, PERIOD, UNIT};
 use anyhow::Result;
@@ -23,25 +23,26 @@ use dapple_worley::{
     Worley2, Worley3, Worley4,
 };
 
-/// What is made in cells of one unit, or of half a unit in pairs, so that their boundaries may differ from others.
+/// Options for textures made of cells of one unit, or of pairs of half-unit cells, whose boundaries may differ from
+/// other places.
 const CELLS: SeamOptions = SeamOptions {
     axes: [true; 2],
     lattice: [UNIT; 2],
 };
 
-/// The same as a map of a sphere, which goes around along x only.
+/// Options for a map of a sphere, which has cells and repeats along x only.
 const AROUND: SeamOptions = SeamOptions {
     axes: [true, false],
     ..CELLS
 };
 
-/// What is the same everywhere.
+/// Options for textures without a lattice, which are alike everywhere.
 const ANYWHERE: SeamOptions = SeamOptions {
     axes: [true; 2],
     lattice: [1; 2],
 };
 
-/// The generators.
+/// All generators.
 pub(super) const GENERATORS: &[Generator] = &[
     Generator::new("F1", CELLS, f1),
     Generator::new("F2 - F1", CELLS, f2_minus_f1),
@@ -92,7 +93,7 @@ impl Generator {
         }
     }
 
-    /// With twice as many pixels: for edges of patches, which vary more than smooth fields.
+    /// Draws with twice as many pixels, for edges of patches, which vary more than smooth fields.
     const fn twice_as_fine(self) -> Self {
         Self {
             unit: 2 * UNIT,
@@ -103,10 +104,10 @@ impl Generator {
 
 // Worley's cellular basis.
 
-/// Over how much distance the nearest points are taken together, in cells.
+/// The distance over which the nearest points are smoothed, in cells.
 const SMOOTH: f32 = 0.25;
 
-/// The basis of the plane, with a period.
+/// Returns the basis of the plane, with a period.
 fn worley(seed: Seed) -> Result<Worley2> {
     Ok(Worley2::new(seed).with_period([Some(PERIOD); 2])?)
 }
@@ -210,7 +211,7 @@ fn cell_values(seed: Seed, window: &Window) -> Result<Raster<f32>> {
     Ok(Raster::from_window(window, value)?)
 }
 
-/// A map of the unit sphere by azimuth and polar angle, with a square cell for every unit.
+/// Draws a map of the unit sphere by azimuth and polar angle, with a square cell for every unit.
 fn radial(seed: Seed, window: &Window) -> Result<Raster<f32>> {
     let cells = RadialCells {
         around: PERIOD,
@@ -240,7 +241,7 @@ fn placed_points(seed: Seed, window: &Window) -> Result<Raster<f32>> {
 
 // Partition-of-unity parametrics.
 
-/// The torus that control points lie on.
+/// Returns the torus of the control points.
 fn domain() -> Domain {
     Domain::torus(DVec2::ZERO, DVec2::splat(f64::from(PERIOD)))
 }
@@ -345,10 +346,10 @@ fn ridged_noise(seed: Seed, window: &Window) -> Result<Raster<f32>> {
 
 // Wavelets.
 
-/// The bands of wavelet noise; the first has two cells to a unit.
+/// The weights of the bands of wavelet noise; the first band has two cells per unit.
 const WEIGHTS: [f32; 2] = [1.0, 0.5];
 
-/// The window in cells of wavelet noise, of which there are `2 * PERIOD` in a period.
+/// Converts a window from units to cells of wavelet noise, of which a period has `2 * PERIOD`.
 fn in_half_units(window: &Window) -> Result<Window> {
     let extent = DVec2::new(f64::from(window.size[0]), f64::from(window.size[1]));
     Ok(Window::new(
@@ -370,7 +371,7 @@ fn wavelet_noise_in_space(seed: Seed, window: &Window) -> Result<Raster<f32>> {
     Ok(raster)
 }
 
-/// Three bands, and so a lattice of 2^3 pixels.
+/// Draws a tile of three bands, whose lattice has 2^3 pixels.
 fn tile_of_wavelets(seed: Seed, window: &Window) -> Result<Raster<f32>> {
     let tile = wavelet_tile([PERIOD * UNIT; 2], &[0.5, 1.0, 1.0], seed)?;
     Ok(tile.crop([0; 2], window.size)?)

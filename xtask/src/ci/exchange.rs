@@ -1,15 +1,15 @@
-//! The step `exchange`: materials for other programs, given to the programs that judge them.
+//! The step `exchange`: bakes materials for other programs and lets these programs check them.
 //!
-//! A plane of glTF goes to Khronos' validator, a document of MaterialX to the library of its authors, an array to NumPy. Each
-//! is tried where it is at hand, and said to be skipped where it is not: node with the package `gltf-validator`, and Python
-//! with `MaterialX` and `numpy`. The environment variables `NODE_PATH` and `PYTHON` say where they are, if not in the usual
-//! places.
+//! A glTF plane goes to Khronos' validator, a MaterialX document to the MaterialX library, and an array to NumPy. Each
+//! check runs if its program is installed, and is reported as skipped otherwise. They need Node with the package
+//! `gltf-validator`, and Python with `MaterialX` and `numpy`. The environment variables `NODE_PATH` and `PYTHON` name
+//! them if they are not in the usual places.
 
 use anyhow::Context;
 use std::path::{Path, PathBuf};
 use xshell::{Cmd, Shell, cmd};
 
-/// Validates a GLB file: errors and warnings fail.
+/// A script that validates a GLB file; errors and warnings fail.
 const VALIDATE_GLB: &str = "
 const { validateBytes } = require('gltf-validator');
 const bytes = new Uint8Array(require('fs').readFileSync(process.argv[1]));
@@ -22,7 +22,7 @@ validateBytes(bytes, options).then(report => {
 });
 ";
 
-/// Validates a MaterialX document, and makes a shader of its material.
+/// A script that validates a MaterialX document and generates a shader for its material.
 const VALIDATE_MTLX: &str = "
 import sys, MaterialX as mx
 from MaterialX import PyMaterialXGenShader as shader, PyMaterialXGenGlsl as glsl
@@ -49,7 +49,7 @@ assert 'NG_srgb_texture_to_lin_rec709_color3(base_color_out' in source
 print('MaterialX: valid, with a shader of', len(source.splitlines()), 'lines')
 ";
 
-/// Reads an array.
+/// A script that reads a NumPy array.
 const READ_NPY: &str = "
 import sys, numpy
 array = numpy.load(sys.argv[1], allow_pickle=False)
@@ -58,19 +58,19 @@ assert array.flags['C_CONTIGUOUS'] and numpy.isfinite(array).all() and array.std
 print('NumPy:', array.shape, array.dtype)
 ";
 
-/// A program that judges a file.
+/// A program that checks a file.
 struct Judge {
-    /// What has to be there, for the message.
+    /// The requirements of the program, for the message.
     needs: &'static str,
-    /// What is put before the code on the command line.
+    /// The program and its arguments before the code.
     program: Vec<String>,
-    /// Whether it is there: code that fails otherwise.
+    /// Code that fails if the program is not installed.
     probe: &'static str,
     code: &'static str,
     file: &'static str,
 }
 
-/// Bakes a material for each judge that is there, and asks it.
+/// Bakes a material for each judge that is installed, and runs its check.
 pub(super) fn exchange(shell: &Shell) -> anyhow::Result<()> {
     let python = std::env::var("PYTHON").unwrap_or_else(|_| "python3".to_owned());
     let python = || vec![python.clone(), "-c".to_owned()];
@@ -117,7 +117,7 @@ pub(super) fn exchange(shell: &Shell) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// The command as the tests of the workspace use it: it is there after them, and is not built a second time with other
+/// Returns the path of the command `dapple` that the workspace tests build, so that it is not built again with other
 /// features.
 fn command_of_tests(shell: &Shell) -> anyhow::Result<PathBuf> {
     cmd!(shell, "cargo test --quiet --workspace --no-run")

@@ -1,22 +1,22 @@
-//! The step `fuzz`: libFuzzer, for some seconds on each target of `tests/fuzz`.
+//! The step `fuzz`: runs libFuzzer for some seconds on each target of `tests/fuzz`.
 //!
-//! It needs nightly Rust and cargo-fuzz, and neither is installed here: where one is missing, the step says so and is
-//! skipped. What libFuzzer found and what it learned stays in `target/fuzz`.
+//! It needs nightly Rust and cargo-fuzz and does not install them; without either, the step says so and is skipped.
+//! Crashes that libFuzzer found and the inputs that it learned stay in `target/fuzz`.
 
 use anyhow::Context;
 use std::path::Path;
 use xshell::{Shell, cmd};
 
-/// How long each target runs, in seconds.
+/// The running time of each target, in seconds.
 const SECONDS: &str = "10";
 
-/// How long one input may take, in seconds; most take less than a thousandth of that.
+/// The time limit of one input, in seconds; most take less than a thousandth of it.
 const SECONDS_OF_AN_INPUT: &str = "10";
 
-/// How much memory one input may take, in MiB.
+/// The memory limit of one input, in MiB.
 const MEMORY: &str = "2048";
 
-/// Runs every fuzz target, and stops at the first that finds something.
+/// Runs every fuzz target, and stops at the first crash.
 pub(super) fn fuzz(shell: &Shell) -> anyhow::Result<()> {
     if let Some(missing) = missing(shell) {
         crate::say(&format!("skipped: {missing}"));
@@ -24,7 +24,7 @@ pub(super) fn fuzz(shell: &Shell) -> anyhow::Result<()> {
     }
     let folder = shell.current_dir().join("target/fuzz");
     let seeds = folder.join("seeds");
-    // As a part of the whole workspace, so that what its tests have built is used again.
+    // Built with the whole workspace, so that the test builds are reused.
     let write_seeds = "inputs_are_written";
     cmd!(
         shell,
@@ -38,13 +38,13 @@ pub(super) fn fuzz(shell: &Shell) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// What is missing, as a sentence.
+/// Returns a sentence that names the missing tool, if there is one.
 fn missing(shell: &Shell) -> Option<&'static str> {
     let works = |command: xshell::Cmd<'_>| {
         let output = command.quiet().ignore_status().ignore_stderr().output();
         output.is_ok_and(|output| output.status.success())
     };
-    // Only where rustup is, `+nightly` names a toolchain, and rustup may not fetch it.
+    // Only rustup understands `+nightly`; it must not download the toolchain.
     if !works(cmd!(shell, "cargo +nightly --version").env("RUSTUP_AUTO_INSTALL", "0")) {
         return Some("there is no nightly Rust");
     }
@@ -54,7 +54,7 @@ fn missing(shell: &Shell) -> Option<&'static str> {
     None
 }
 
-/// The names of the targets: a file for each.
+/// Returns the names of the targets, one for each file.
 fn targets(shell: &Shell) -> anyhow::Result<Vec<String>> {
     let files = shell.read_dir("tests/fuzz/targets")?;
     let stem = |path: &std::path::PathBuf| Some(path.file_stem()?.to_str()?.to_owned());
@@ -72,7 +72,7 @@ fn run(shell: &Shell, folder: &Path, target: &str) -> anyhow::Result<()> {
     shell.create_dir(&findings)?;
     let prefix = format!("-artifact_prefix={}/{target}-", findings.display());
     let built = folder.join("build");
-    // Without a sanitizer of addresses: nothing of ours is unsafe, and it takes half of the time.
+    // The address sanitizer is off: the crates have no unsafe code of their own, and it would take half of the time.
     let fuzz = cmd!(
         shell,
         "cargo +nightly fuzz run --fuzz-dir tests/fuzz --target-dir {built} --sanitizer none {target} {learned} {seeds}"

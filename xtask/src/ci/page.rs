@@ -1,6 +1,6 @@
-//! The step `page`: the page of the studio, checked, built, and used in a Chromium against the command.
+//! The step `page`: checks and builds the page of the studio, and tests it in a Chromium against the command.
 //!
-//! It needs Node 20 or newer, and the registry of its packages. Where one is missing the step says so and is skipped; with
+//! It needs Node 20 or newer, and access to the npm registry. Without these the step says so and is skipped; with
 //! `DAPPLE_NO_SKIP=1` it fails.
 
 use super::{skip, works};

@@ -1,9 +1,10 @@
-//! The step `python`: the package of `crates/dapple-python`, built as a wheel, installed and tested.
+//! The step `python`: builds the package of `crates/dapple-python` as a wheel, installs it and tests it.
 //!
-//! It needs Python 3.11 or newer, and the Python index for what the tests use. Where one is missing, the step says so, with
-//! pip's own words, and is skipped; with `DAPPLE_NO_SKIP=1` it fails, as do tests that skip what they need not. Blender's
-//! module `bpy` wants an older NumPy than others, so its tests and its page have an environment of their own, and are skipped
-//! where no index has it for this Python. All of it lies in `target/python`.
+//! It needs Python 3.11 or newer, and a Python package index for the packages that the tests use. Without these the
+//! step prints the error of pip and is skipped; with `DAPPLE_NO_SKIP=1` it fails, and so do tests that would skip
+//! optional packages. Blender's module `bpy` needs an older NumPy than other packages, so its tests and its
+//! documentation page have a separate environment; they are skipped if the index has no `bpy` for this Python. All
+//! files lie in `target/python`.
 
 use super::{skip, works};
 use anyhow::{Context, bail};
@@ -37,11 +38,11 @@ pub(super) fn python(shell: &Shell) -> anyhow::Result<()> {
     let with_extras = format!("{wheel}[test,docs]");
     let (pip, python) = (main.join("pip"), main.join("python"));
     cmd!(shell, "{pip} install --quiet {with_extras}").run()?;
-    // An earlier wheel has the same version.
+    // An earlier wheel has the same version, so the installation is forced.
     let again = ["--quiet", "--force-reinstall", "--no-deps"];
     cmd!(shell, "{pip} install {again...} {wheel}").run()?;
     let tests = cmd!(shell, "{python} -m pytest -q -rs").env("PATH", with_first(&main)?);
-    // The command that the tests of the workspace built: the package has its bits.
+    // The command from the workspace tests, whose bits the package must reproduce.
     let command = root.join("target/debug/dapple");
     if shell.path_exists(&command) {
         tests.env("DAPPLE", command).run()?;
@@ -56,7 +57,7 @@ pub(super) fn python(shell: &Shell) -> anyhow::Result<()> {
     let wants = ["bpy==4.5.*", "pytest", "trimesh", "pillow"];
     let blender = match environment(shell, &folder.join("blender"), &wants) {
         Ok(blender) => blender,
-        // Blender is there for one Python only, which others need not have.
+        // Each version of Blender's module supports a single version of Python.
         Err(error) => {
             crate::say(&format!("skipped: the tests in Blender: {error:#}"));
             return Ok(());
@@ -68,11 +69,11 @@ pub(super) fn python(shell: &Shell) -> anyhow::Result<()> {
     Ok(cmd!(shell, "{python} -m pytest -q -rs -k blender {files...}").run()?)
 }
 
-/// The folder of the programs of an environment with some packages.
+/// Creates a virtual environment with some packages; returns the folder of its programs.
 ///
 /// # Errors
 ///
-/// What Python or pip says, if they cannot be had.
+/// The error output of Python or pip, if the environment or a package cannot be installed.
 fn environment(shell: &Shell, folder: &Path, packages: &[&str]) -> anyhow::Result<PathBuf> {
     let bin = folder.join(if cfg!(windows) { "Scripts" } else { "bin" });
     let pip = bin.join("pip");
@@ -84,7 +85,7 @@ fn environment(shell: &Shell, folder: &Path, packages: &[&str]) -> anyhow::Resul
     Ok(bin)
 }
 
-/// Runs a command whose words on standard error are those of its error.
+/// Runs a command; its standard error becomes the text of the error if it fails.
 fn run(command: Cmd<'_>) -> anyhow::Result<()> {
     let done = command.quiet().ignore_status().output()?;
     if !done.status.success() {
@@ -93,7 +94,7 @@ fn run(command: Cmd<'_>) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Builds the wheel, the only file of its folder.
+/// Builds the wheel and returns its path; it is the only file of its folder.
 fn wheel(shell: &Shell, bin: &Path, folder: &Path) -> anyhow::Result<PathBuf> {
     shell.remove_path(folder)?;
     let maturin = bin.join("maturin");
@@ -106,7 +107,7 @@ fn wheel(shell: &Shell, bin: &Path, folder: &Path) -> anyhow::Result<PathBuf> {
     files.into_iter().next().context("maturin made no wheel")
 }
 
-/// The search path with a folder in front.
+/// Returns the search path (`PATH`) with a folder in front.
 fn with_first(folder: &Path) -> anyhow::Result<std::ffi::OsString> {
     let path = std::env::var_os("PATH").unwrap_or_default();
     let folders = [folder.to_owned()].into_iter();

@@ -1,4 +1,4 @@
-//! Rules about what must agree with the crates: ARCHITECTURE.md and figures.lock.
+//! Rules about documents that must agree with the crates: ARCHITECTURE.md and figures.lock.
 
 use super::workspace::Workspace;
 use std::collections::BTreeSet;
@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 const FIGURES: &str = "crates/dapple-gallery/src/figures/";
 const LOCK: &str = "crates/dapple-gallery/figures.lock";
 
-/// The code map is worth nothing if a crate is not on it.
+/// Every crate must be on the code map.
 pub(super) fn architecture(workspace: &Workspace) -> Vec<String> {
     let named = |name: &str| workspace.architecture.contains(&format!("`{name}`"));
     let missing = workspace
@@ -18,8 +18,8 @@ pub(super) fn architecture(workspace: &Workspace) -> Vec<String> {
         .collect()
 }
 
-/// A figure is a file `figures/<paper>/fig_<number>.rs`, and has a line `<hash> <paper>-fig-<number>` in figures.lock; and
-/// the other way round. Lines are sorted.
+/// Every figure is a file `figures/<paper>/fig_<number>.rs` with a line `<hash> <paper>-fig-<number>` in figures.lock,
+/// and every line has a file. Lines are sorted.
 pub(super) fn figures(workspace: &Workspace) -> Vec<String> {
     let lines = workspace
         .figures_lock
@@ -50,7 +50,8 @@ pub(super) fn figures(workspace: &Workspace) -> Vec<String> {
     found
 }
 
-/// `figures/pups/fig_03a.rs` is `pups-fig-03a`; other files beside it are no figures.
+/// Returns the name of a figure: `figures/pups/fig_03a.rs` is `pups-fig-03a`. Other files of the folder are not
+/// figures.
 fn figure_name(path: &str) -> Option<String> {
     let (paper, file) = path
         .strip_prefix(FIGURES)?

@@ -1,4 +1,4 @@
-//! Rules about crates: where they lie, which they use, which lints they take.
+//! Rules about crates: their folders, their dependencies, their lints and their packages.
 
 use super::workspace::Workspace;
 
@@ -18,7 +18,7 @@ pub(super) fn folders(workspace: &Workspace) -> Vec<String> {
         .collect()
 }
 
-/// Every crate has a layer, and what it uses of ours has a strictly lower one. Tests may use anything.
+/// Every crate has a layer, and its dependencies in the workspace have strictly lower layers. Tests may use any crate.
 pub(super) fn layers(workspace: &Workspace) -> Vec<String> {
     let mut found = Vec::new();
     for member in &workspace.members {
@@ -47,7 +47,7 @@ pub(super) fn layers(workspace: &Workspace) -> Vec<String> {
     found
 }
 
-/// `xtask` starts at once because it builds nothing of ours, and nobody uses it.
+/// `xtask` uses no crate of the workspace, so that it starts quickly, and no crate uses `xtask`.
 pub(super) fn xtask_alone(workspace: &Workspace) -> Vec<String> {
     let is_member = |name: &String| workspace.members.iter().any(|member| member.name == *name);
     let mut found = Vec::new();
@@ -64,7 +64,7 @@ pub(super) fn xtask_alone(workspace: &Workspace) -> Vec<String> {
     found
 }
 
-/// Without `[lints] workspace = true` a crate silently has no lints at all.
+/// Every crate has `[lints] workspace = true`; without it, a crate silently has no lints at all.
 pub(super) fn lints(workspace: &Workspace) -> Vec<String> {
     let without = workspace.members.iter().filter(|member| {
         let mut lines = member.manifest.lines().map(str::trim);
@@ -81,7 +81,7 @@ pub(super) fn lints(workspace: &Workspace) -> Vec<String> {
         .collect()
 }
 
-/// What a package needs in a registry: words to be found by, documentation of all features, and the license texts.
+/// Every published package has keywords and categories, documentation of all features, the license texts and a README.
 pub(super) fn packages(workspace: &Workspace) -> Vec<String> {
     let mut found = Vec::new();
     for member in workspace.members.iter().filter(|member| member.published) {

@@ -1,14 +1,14 @@
-//! Rules about source files: headers, lengths, escapes, references.
+//! Rules about source files: headers, lengths, escapes from lints and tests, references.
 
 use super::workspace::{Text, Workspace};
 
-/// The most lines that a file may have; aim at half of it.
+/// The largest number of lines of a file; aim at half of it.
 const LINES_MAX: usize = 600;
 
-/// Crates between these layers are libraries that hold algorithms; below are the foundations, above the programs.
+/// The layers of algorithm libraries. Layers below are foundations, layers above are programs.
 const ALGORITHM_LAYERS: core::ops::RangeInclusive<u64> = 1..=4;
 
-/// Every file says in its first line what it is.
+/// The first line of every file says what the file is.
 pub(super) fn headers(workspace: &Workspace) -> Vec<String> {
     let silent = workspace
         .sources
@@ -19,7 +19,7 @@ pub(super) fn headers(workspace: &Workspace) -> Vec<String> {
         .collect()
 }
 
-/// No file is too long to be read; files of nothing but numbers, `tables.rs` and `data.rs`, may be.
+/// No file is too long to read, except files of pure data, `tables.rs` and `data.rs`.
 pub(super) fn lengths(workspace: &Workspace) -> Vec<String> {
     let long = workspace.sources.iter().filter(|source| {
         let is_table = ["/tables.rs", "/data.rs"]
@@ -37,7 +37,7 @@ pub(super) fn lengths(workspace: &Workspace) -> Vec<String> {
     .collect()
 }
 
-/// A lint is expected with a reason, not allowed; a test is not ignored; nothing is left to be done.
+/// Lints are expected with a reason, never allowed; tests are not ignored; no placeholder stands for missing code.
 pub(super) fn escapes(workspace: &Workspace) -> Vec<String> {
     let mut found = Vec::new();
     for source in &workspace.sources {
@@ -64,8 +64,8 @@ fn escape(line: &str) -> Option<&'static str> {
     }
 }
 
-/// A file whose values are pinned by a `value_stability_*` test holds an algorithm, and an algorithm in a library says
-/// in a header where it comes from: its own header, or that of the module it is part of.
+/// A library file whose values are pinned by a `value_stability_*` test holds an algorithm. Its header, or that of the
+/// module it belongs to, names the source of the algorithm.
 pub(super) fn references(workspace: &Workspace) -> Vec<String> {
     let algorithms = workspace.sources.iter().filter(|source| {
         is_of_library(workspace, source) && source.text.contains("fn value_stability_")
@@ -92,7 +92,8 @@ fn is_of_library(workspace: &Workspace, source: &Text) -> bool {
     layer.is_some_and(|layer| ALGORITHM_LAYERS.contains(layer))
 }
 
-/// The file and the modules that it is part of: `src/a/b.rs`, `src/a.rs`; and `src/lib.rs` for what tests a whole crate.
+/// Returns the file and the modules that it is part of: `src/a/b.rs`, then `src/a.rs`; and `src/lib.rs` for tests of a
+/// whole crate.
 fn modules(source: &Text) -> impl Iterator<Item = String> {
     let parent = |path: &String| match path.rsplit_once('/')? {
         (src, "tests.rs") if src.ends_with("/src") => Some(format!("{src}/lib.rs")),

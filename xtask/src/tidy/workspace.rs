@@ -1,4 +1,4 @@
-//! The workspace as the rules see it: what `cargo metadata` knows, and the texts.
+//! The workspace as the rules see it: data from `cargo metadata`, and the texts of files.
 
 use anyhow::{Context, anyhow};
 use serde_json::Value;
@@ -6,51 +6,51 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use xshell::{Shell, cmd};
 
-/// The members of the workspace and the texts that rules are about.
+/// The members of the workspace and the texts that the rules check.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Workspace {
-    /// The packages.
+    /// The packages, one for each member.
     pub(crate) members: Vec<Member>,
-    /// The layers, from `[workspace.metadata.layers]`.
+    /// The layers by crate name, from `[workspace.metadata.layers]`.
     pub(crate) layers: BTreeMap<String, u64>,
     /// Every `.rs` file of the members.
     pub(crate) sources: Vec<Text>,
-    /// `ARCHITECTURE.md`.
+    /// The text of `ARCHITECTURE.md`.
     pub(crate) architecture: String,
-    /// `crates/dapple-gallery/figures.lock`.
+    /// The text of `crates/dapple-gallery/figures.lock`.
     pub(crate) figures_lock: String,
 }
 
 /// A package of the workspace.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Member {
-    /// Its name.
+    /// The name of the package.
     pub(crate) name: String,
-    /// Its folder from the root, with forward slashes.
+    /// The path of its folder from the root, with forward slashes.
     pub(crate) folder: String,
     /// The text of its manifest.
     pub(crate) manifest: String,
-    /// The names of what it needs in a normal or a build script's build, ours and others'.
+    /// The names of its normal and build dependencies, inside and outside the workspace.
     pub(crate) dependencies: Vec<String>,
     /// The names of its features.
     pub(crate) features: Vec<String>,
-    /// Whether it is meant for a registry.
+    /// Whether the package is meant for a registry.
     pub(crate) published: bool,
-    /// The names of the files that lie directly in its folder, sorted.
+    /// The names of the files directly in its folder, sorted.
     pub(crate) files: Vec<String>,
 }
 
-/// A text file.
+/// A text file of the workspace.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Text {
     /// The path from the root, with forward slashes.
     pub(crate) path: String,
-    /// What is in it.
+    /// The contents of the file.
     pub(crate) text: String,
 }
 
 impl Workspace {
-    /// The workspace in the shell's current folder. Files that are not there are empty texts.
+    /// Reads the workspace in the shell's current folder. Missing files become empty texts.
     pub(crate) fn read(shell: &Shell) -> anyhow::Result<Self> {
         let json = cmd!(
             shell,
@@ -100,7 +100,7 @@ fn member(shell: &Shell, package: &Value) -> anyhow::Result<Member> {
     })
 }
 
-/// The names of what lies directly in a folder, sorted.
+/// Returns the names of the files and folders directly in a folder, sorted.
 fn files(shell: &Shell, folder: &Path) -> anyhow::Result<Vec<String>> {
     let paths = shell.read_dir(folder)?;
     let name = |path: &PathBuf| Some(path.file_name()?.to_string_lossy().into_owned());
@@ -119,7 +119,7 @@ fn layers(metadata: &Value) -> anyhow::Result<BTreeMap<String, u64>> {
     table.iter().map(layer).collect()
 }
 
-/// Every `.rs` file below a folder, sorted by path.
+/// Returns every `.rs` file below a folder, sorted by path.
 fn sources(shell: &Shell, folder: &str) -> anyhow::Result<Vec<Text>> {
     let mut found = Vec::new();
     let mut folders = vec![shell.current_dir().join(folder)];
@@ -148,7 +148,7 @@ fn read_if_there(shell: &Shell, path: &str) -> anyhow::Result<String> {
     }
 }
 
-/// A path as the rules write it.
+/// Returns a path relative to the root, with forward slashes.
 fn from_root(shell: &Shell, path: &Path) -> String {
     let root = shell.current_dir();
     path.strip_prefix(&root)

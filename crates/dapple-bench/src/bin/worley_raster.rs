@@ -1,7 +1,7 @@
-//! Renders F2 − F1 over and over: `worley_raster SEED SIDE PX_PER_CELL RUNS`.
+//! Renders F2 − F1 repeatedly: `worley_raster SEED SIDE PX_PER_CELL RUNS`.
 //!
-//! The benchmark `dapple-bench` builds this for any processor and for this one, and runs both. It prints the seconds of
-//! processor time of every run, then a hash of the bits of the raster.
+//! The benchmark `dapple-bench` builds this program once for any processor and once for the current one, and runs both.
+//! It prints the processor time of every run in seconds, then a hash of the bits of the raster.
 
 #![forbid(unsafe_code)]
 #![expect(clippy::print_stdout, reason = "what it prints is what it is for")]
@@ -41,7 +41,7 @@ fn main() -> Result<()> {
         black_box(&mut image);
         done.map(|()| start.elapsed().as_secs_f64())
     };
-    // One run first, as in the benchmark itself, so that memory is mapped.
+    // One warm-up run, as in the benchmark itself, so that memory is mapped.
     let seconds: Result<Vec<f64>, _> = ThreadPoolBuilder::new()
         .num_threads(1)
         .build()?

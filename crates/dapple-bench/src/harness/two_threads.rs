@@ -1,17 +1,18 @@
-//! How a row on two threads is measured.
+//! The measurement of a row on two threads.
 //!
-//! Processor time cannot tell whether two threads ran at the same time, so the run on two threads is timed by the wall.
-//! On a machine that others use, a wall time is nearly always too long and never too short; its least value over many
-//! runs comes near the true one. The row divides the least *processor* time of a run on one thread by the least *wall*
-//! time of a run on two. What other programs do to the wall can only make that ratio smaller, so that a row which
-//! holds can be believed, and one that does not may want a quieter machine: runs go on, in turns, until the time of
-//! the row is used up. A job takes at least [`LEAST_JOB_S`] on one thread, so that waking threads does not count. Both
-//! results must have the same bits.
+//! Processor time cannot tell whether two threads ran at the same time, so the run on two threads is timed by the wall
+//! clock. On a machine that others use, a wall time is nearly always too long and never too short; its least value over
+//! many runs comes near the true one. The row divides the least *processor* time of a run on one thread by the least
+//! *wall* time of a run on two. Other programs can only make that ratio smaller. A row that holds can therefore be
+//! trusted, and a row that fails may need a quieter machine; runs go on, in turns, until the time of the row is used
+//! up. A job takes at least [`LEAST_JOB_S`] on one thread, so that the time to wake threads is negligible. Both results
+//! must have the same bits.
 //!
-//! The note of the row helps to judge one that does not hold. It has the processor time of both threads together, as
-//! a part of that of one: 1.00 means that dividing the work costs nothing. It has the busier thread's part: what
-//! would remain of the wall time where nobody disturbs and no thread waits for the other. And it has what two loops
-//! reached, turn by turn beside the row, that share nothing and touch no memory: the machine, as it is, gives no more.
+//! The note of the row helps to judge a failure. It has three numbers. The first is the processor time of both threads
+//! together, divided by that of one thread: 1.00 means that dividing the work costs nothing. The second is the share of
+//! the busier thread: the wall time that would remain without other programs and without waiting. The third is the
+//! speedup of two loops that share nothing and touch no memory, measured turn by turn beside the row: the machine
+//! cannot do better.
 
 use super::{Bench, in_case};
 use crate::report::three_digits;
@@ -21,15 +22,15 @@ use cpu_time::ThreadTime;
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
-/// The least time of a job on one thread in a row on two threads, in seconds.
+/// The least time of a job on one thread, in seconds, in a row on two threads.
 pub(crate) const LEAST_JOB_S: f64 = 0.1;
 
 /// The least number of turns of a row on two threads.
 const LEAST_TURNS: u32 = 3;
 
 impl Bench {
-    /// Measures a job on one and on two threads for about `budget`, and keeps the row; `same` compares two results
-    /// bit for bit.
+    /// Measures a job on one and on two threads for about `budget`, and adds the row; `same` compares two results bit
+    /// for bit.
     pub(crate) fn two_threads<S: Send>(
         &mut self,
         case: &Case,
@@ -73,14 +74,14 @@ impl Bench {
         Ok(())
     }
 
-    /// Runs a job on two threads: its seconds by the wall, and what it made.
+    /// Runs a job on two threads; returns its wall time in seconds, and its result.
     pub(crate) fn on_two<T: Send>(&self, job: impl FnOnce() -> T + Send) -> (f64, T) {
         let start = now();
         let made = black_box(self.two.install(job));
         (start.elapsed().as_secs_f64(), made)
     }
 
-    /// One job on one thread, then another on two.
+    /// Runs one job on one thread, then another on two, and returns their times.
     fn turn_of_two(&self, on_one: impl FnOnce() + Send, on_two: impl FnOnce() + Send) -> Best {
         let one = self.one.install(|| {
             let start = ThreadTime::now();
@@ -108,16 +109,16 @@ impl Bench {
     }
 }
 
-/// Times of a job on one and on two threads in seconds, each the least so far.
+/// The least times so far of a job on one and on two threads, in seconds.
 #[derive(Clone, Copy, Debug)]
 struct Best {
     /// Processor time on one thread.
     one: f64,
     /// Wall time on two.
     wall: f64,
-    /// Processor time of both of two threads.
+    /// Processor time of two threads together.
     both: f64,
-    /// Processor time of the one that worked longer.
+    /// Processor time of the busier of two threads.
     busier: f64,
 }
 
@@ -134,7 +135,7 @@ impl Default for Best {
 }
 
 impl Best {
-    /// Takes what is less.
+    /// Keeps the lesser of each pair of times.
     fn keep(&mut self, turn: &Self) {
         self.one = self.one.min(turn.one);
         self.wall = self.wall.min(turn.wall);
@@ -143,7 +144,7 @@ impl Best {
     }
 }
 
-/// Two pieces of work of some 50 ms each that share nothing and touch no memory: what two threads do best.
+/// Runs two loops of some 50 ms each that share nothing and touch no memory: the best case for two threads.
 fn two_loops() {
     let work =
         || (0..black_box(12_000_000_u64)).fold(1, |sum, i| black_box(sum * 16_807 + i) % 1_000_003);

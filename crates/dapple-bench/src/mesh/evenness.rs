@@ -1,6 +1,6 @@
-//! How even repelled points are, beside those of a hexagonal lattice: the distances to nearest neighbors.
+//! The evenness of repelled points beside that of a hexagonal lattice, by the distances to nearest neighbors.
 //!
-//! The points are those of the default hierarchy on the procedural animal, 262,144 of them. The worst of the levels counts.
+//! The points are the default hierarchy on the procedural animal, 262,144 points. The worst of the levels counts.
 
 use crate::harness::Bench;
 use crate::row::{Case, Must, Unit};

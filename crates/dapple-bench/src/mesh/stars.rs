@@ -1,11 +1,12 @@
-//! Stars beside those of `spade`.
+//! Our stars (the Delaunay neighbors of each site) beside those of `spade`.
 //!
-//! Both sides get positions, normals and a spacing, look the sites around every site up with our grid, project them to its
-//! tangent plane, find its star, and join all stars to a graph. `spade` gets as few as make a star complete: within 1.8
-//! spacings, or 2.8 or 4 where that is too near. It triangulates them all at once and tells who is around the center.
+//! Both sides get positions, normals and a spacing. They look up the sites around every site with our grid, project
+//! them to its tangent plane, find its star, and join all stars into a graph. `spade` gets as few sites as a complete
+//! star needs: within 1.8 spacings, or 2.8 or 4 where a smaller radius is not enough. It triangulates them all at once
+//! and returns the neighbors of the center.
 //!
-//! Confirmed: both have the same neighbors. Where even 4 spacings leave an empty circle that is too large, at sharp bends,
-//! ours connects by a rule of its own; those sites are not compared.
+//! Confirmed: both find the same neighbors. At sharp bends even 4 spacings can leave an empty circle that is too large.
+//! There our side connects sites by a rule of its own, and these sites are not compared.
 
 use crate::harness::{Bench, Done, Side};
 use crate::row::{Case, Must, Unit};
@@ -28,10 +29,10 @@ const STARS: Case = Case {
     note: "both look the sites around each site up with our grid, project them, and join the stars to a graph",
 };
 
-/// How far to look for neighbors, in spacings: the next one where empty circles are larger.
+/// The radii of the search for neighbors, in spacings; the next one is tried while empty circles are larger.
 const REACHES: [f64; 3] = [1.8, 2.8, 2.0 * STAR_RADIUS];
 
-/// A site in the tangent plane of another one, as a vertex of `spade`.
+/// A site projected to the tangent plane of another one, as a vertex of `spade`.
 #[derive(Clone, Copy)]
 struct Near {
     at: Point2<f64>,
@@ -46,11 +47,11 @@ impl HasPosition for Near {
     }
 }
 
-/// All stars of `spade`.
+/// The stars that `spade` found, as a graph.
 #[derive(Default)]
 struct Theirs {
     graph: SiteGraph,
-    /// Whether empty circles at a site are too large for ours.
+    /// Whether a site has empty circles that are too large for our method.
     open: Vec<bool>,
 }
 
@@ -73,7 +74,7 @@ pub(super) fn run(bench: &mut Bench) -> Result<()> {
     });
     bench.beside(&STARS, 5, ours, theirs, |ours, theirs| {
         let neighbors = |site| theirs.graph.neighbors(site);
-        // An edge is there if either end has it, so a site counts only if all around it have whole stars.
+        // Either end can contribute an edge, so a site is compared only if all sites around it have complete stars.
         let is_open = |site: &SiteIdx| theirs.open[site.index()];
         let counts = |site: &SiteIdx| !is_open(site) && !neighbors(*site).iter().any(is_open);
         let compared: Vec<SiteIdx> = sites.iter().filter(counts).collect();
@@ -105,7 +106,7 @@ impl Theirs {
     }
 }
 
-/// The neighbors of a site, and whether an empty circle between them is too large.
+/// Returns the neighbors of a site, and whether an empty circle between them is too large.
 fn star(sites: &Sites, grid: &SiteGrid, center: SiteIdx, spacing: f64) -> (Vec<u32>, bool) {
     let mut around = Vec::new();
     for reach in REACHES.map(|reach| reach * spacing) {
@@ -131,7 +132,8 @@ fn star(sites: &Sites, grid: &SiteGrid, center: SiteIdx, spacing: f64) -> (Vec<u
     (around, true)
 }
 
-/// The sites of the same sheet within a distance, projected so that they keep their distance in space.
+/// Returns the sites of the same sheet within a distance, projected so that their distance to the center stays as in
+/// space.
 fn within(sites: &Sites, grid: &SiteGrid, center: SiteIdx, reach: f64) -> Vec<Near> {
     let [position, normal] =
         [sites.positions(), sites.normals()].map(|of: &[DVec3]| of[center.index()]);

@@ -1,6 +1,6 @@
-//! `texture-synthesis` with its defaults, on one thread, where its result is always the same.
+//! The crate `texture-synthesis` with its defaults, on one thread, where its result is deterministic.
 //!
-//! It starts a thread of its own, so that its time is the processor time of this process, in which nothing else runs.
+//! It starts its own thread, so it is timed by the processor time of this process, in which nothing else runs.
 
 use anyhow::Result;
 use cpu_time::ProcessTime;
@@ -10,7 +10,7 @@ use std::hint::black_box;
 use texture_synthesis::image::{DynamicImage, Rgba, RgbaImage};
 use texture_synthesis::{Dims, Example, Session};
 
-/// Makes a flat square image that looks like an exemplar; the seconds of processor time that took.
+/// Makes a flat square image that looks like an exemplar; returns the processor time in seconds and the image.
 pub(crate) fn synthesize(
     exemplar: &Raster<LinearRgb>,
     side: u32,

@@ -1,4 +1,5 @@
-//! The spline projection by `rustfft`: lines are transformed, their frequencies mixed, and transformed back.
+//! The spline projection by `rustfft`: lines are transformed, their frequencies are mixed, and the result is
+//! transformed back.
 //!
 //! Projecting a line adds to each frequency its alias half the sampling rate away: with `H` the transform of the
 //! refinement filter and `B` that of the Gram filter on the coarse line, frequency `k` becomes
@@ -11,7 +12,7 @@ use rustfft::{Fft, FftPlanner};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-/// The projection of square rasters, with its memory.
+/// The projection of square rasters, with its buffers.
 pub(crate) struct FourierProjection {
     side: usize,
     forward: Arc<dyn Fft<f32>>,
@@ -22,12 +23,12 @@ pub(crate) struct FourierProjection {
     line: Vec<Complex<f32>>,
     scratch: Vec<Complex<f32>>,
     transposed: Vec<f32>,
-    /// The result.
+    /// The result of the last run.
     pub(crate) fine: Vec<f32>,
 }
 
 impl FourierProjection {
-    /// The projection for a raster of `side × side` pixels, `side` even.
+    /// Returns the projection for rasters of `side × side` pixels; `side` must be even.
     pub(crate) fn new(side: usize) -> Self {
         let mut planner = FftPlanner::new();
         let (forward, backward) = (
@@ -90,13 +91,13 @@ impl FourierProjection {
     }
 }
 
-/// The transform of `[1, 3, 3, 1] / 4` on pixels −1 to 2.
+/// Returns the transform of `[1, 3, 3, 1] / 4` on pixels −1 to 2.
 fn refinement(angle: f64) -> Complex<f64> {
     let tap = |weight: f64, at: f64| Complex::from_polar(weight, -angle * at);
     tap(0.25, -1.0) + tap(0.75, 0.0) + tap(0.75, 1.0) + tap(0.25, 2.0)
 }
 
-/// The transform of `[1, 26, 66, 26, 1] / 120`.
+/// Returns the transform of `[1, 26, 66, 26, 1] / 120`.
 #[expect(
     clippy::disallowed_methods,
     reason = "a peer's table, which no value of ours depends on"
@@ -105,7 +106,7 @@ fn gram(angle: f64) -> f64 {
     (66.0 + 52.0 * angle.cos() + 2.0 * (2.0 * angle).cos()) / 120.0
 }
 
-/// Transposes a square raster, in blocks that stay in the cache.
+/// Transposes a square raster in blocks that fit in the cache.
 fn transpose(from: &[f32], to: &mut [f32], side: usize) {
     const BLOCK: usize = 16;
     for top in (0..side).step_by(BLOCK) {
@@ -141,7 +142,7 @@ mod tests {
         ];
         for (at, &value) in fourier.fine.iter().enumerate() {
             let expected: f32 = line[at / 8] * line[at % 8];
-            // A transform of 8 values in f32.
+            // The error of an `f32` transform of 8 values.
             assert!(
                 (value - expected).abs() < 1e-6,
                 "{value} and not {expected}"

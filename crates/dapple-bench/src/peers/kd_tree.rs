@@ -1,32 +1,34 @@
-//! `kiddo`, which its documentation does not mean for hundreds of dimensions: points are the rows in a few directions.
+//! The k-d tree of `kiddo`, which is not meant for hundreds of dimensions: it holds the rows projected to a few
+//! directions.
 //!
-//! Along orthogonal unit directions no distance is longer than the whole one. So the nearest of the few nearest there gives a
-//! radius, within which the tree then lists all that can be nearer; those are compared as they are. That is exact up to
-//! the rounding of the directions, for which the radius is a thousandth longer.
+//! A projection to orthogonal unit directions never lengthens a distance. Therefore the best of the few nearest
+//! projected points gives a radius; the tree lists all points within it, and the nearest row is among them. These rows
+//! are compared in full. The result is exact up to the rounding of the directions; the radius is enlarged by a
+//! thousandth for it.
 //!
-//! The directions are the principal ones of the rows, by orthogonal iteration.
+//! The directions are the principal directions of the rows, found by orthogonal iteration.
 
 use anyhow::{Result, anyhow};
 use dapple_synth::distance_sq;
 use kiddo::{ImmutableKdTree, SquaredEuclidean};
 use std::num::NonZero;
 
-/// Most rows that directions are found from.
+/// The largest number of rows from which directions are computed.
 const MOST_ROWS: usize = 4096;
 
-/// Iterations: the directions need not be the very best.
+/// The number of iterations; the directions need not be exact.
 const N_ITERATIONS: usize = 60;
 
-/// How many of the nearest points give the radius.
+/// The number of nearest projected points that give the radius.
 const FIRST: NonZero<usize> = NonZero::new(4).unwrap();
 
-/// A few orthogonal unit vectors: for each dimension, its part along each of them.
+/// A few orthogonal unit vectors, stored by dimension: each dimension has its component along every vector.
 pub(crate) struct Directions<const N: usize> {
     mean: Vec<f32>,
     parts: Vec<[f32; N]>,
 }
 
-/// A tree of rows.
+/// A tree of projected rows.
 pub(crate) struct KdTree<'a, const N: usize> {
     dims: usize,
     rows: &'a [f32],
@@ -50,7 +52,7 @@ impl<'a, const N: usize> KdTree<'a, N> {
         })
     }
 
-    /// The nearest row; of several at one distance the first.
+    /// Returns the nearest row; the first of several at the same distance.
     pub(crate) fn nearest(&self, query: &[f32]) -> u32 {
         let at = self.directions.along(query);
         let mut best = (f32::INFINITY, u32::MAX);
@@ -81,7 +83,7 @@ impl<'a, const N: usize> KdTree<'a, N> {
 }
 
 impl<const N: usize> Directions<N> {
-    /// Those in which rows differ most.
+    /// Returns the directions along which rows differ most.
     pub(crate) fn principal(dims: usize, rows: &[f32]) -> Self {
         let n_rows = rows.len() / dims;
         let sample: Vec<&[f32]> = rows
@@ -116,7 +118,7 @@ impl<const N: usize> Directions<N> {
         }
     }
 
-    /// How far a row is along each direction.
+    /// Projects a row to the directions.
     #[inline]
     fn along(&self, row: &[f32]) -> [f32; N] {
         let mut sums = [0.0; N];
@@ -129,9 +131,9 @@ impl<const N: usize> Directions<N> {
     }
 }
 
-/// The eigenvectors of the largest eigenvalues, nearly.
+/// Returns approximate eigenvectors of the largest eigenvalues.
 fn iterate<const N: usize>(dims: usize, matrix: &[f64]) -> Vec<Vec<f64>> {
-    // To begin with, lines of the matrix, which no two directions share.
+    // Start with lines of the matrix, which are all different.
     let mut vectors: Vec<Vec<f64>> = (0..N)
         .map(|index| matrix[index * dims / N * dims..][..dims].to_vec())
         .collect();
@@ -142,13 +144,13 @@ fn iterate<const N: usize>(dims: usize, matrix: &[f64]) -> Vec<Vec<f64>> {
             *vector = matrix.chunks_exact(dims).map(dot).collect();
         }
     }
-    // Twice, for what rounding leaves after the first time.
+    // The second time removes what rounding left after the first.
     orthonormalize(&mut vectors);
     orthonormalize(&mut vectors);
     vectors
 }
 
-/// Makes vectors orthogonal, one after the other, with the length 1.
+/// Makes vectors orthogonal, one after the other, and of length 1.
 fn orthonormalize(vectors: &mut [Vec<f64>]) {
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     for index in 0..vectors.len() {
@@ -208,7 +210,7 @@ mod tests {
                     .map(|parts| parts[a] * parts[b])
                     .sum();
                 let expected = if a == b { 1.0 } else { 0.0 };
-                // Parts are rounded to f32.
+                // Components are rounded to `f32`.
                 assert!((dot - expected).abs() < 1e-5, "{a} and {b}: {dot}");
             }
         }

@@ -14,13 +14,13 @@
 use noise_functions::{CellDistance, Noise as _, Perlin};
 use simdnoise::{Cell2ReturnType, CellReturnType, NoiseBuilder};
 
-/// A grid as `simdnoise` returns it: the values, their least and their largest.
+/// A grid of `simdnoise`: the values, the least value and the largest.
 pub(crate) type Grid = (Vec<f32>, f32, f32);
 
-/// How far the feature points are from the corners of the cells. It does not change the time.
+/// The distance of feature points from the corners of the cells. It does not change the time.
 const JITTER: f32 = 0.45;
 
-/// The cellular noise of `simdnoise` in the plane: squared F1.
+/// Returns cellular noise of `simdnoise` in the plane: squared F1.
 pub(crate) fn simdnoise_f1([width, height]: [usize; 2], frequency: f32) -> Grid {
     NoiseBuilder::cellular_2d(width, height)
         .with_freq(frequency)
@@ -29,7 +29,7 @@ pub(crate) fn simdnoise_f1([width, height]: [usize; 2], frequency: f32) -> Grid 
         .generate()
 }
 
-/// The second cellular noise of `simdnoise` in the plane: squared F1 minus squared F2.
+/// Returns the second cellular noise of `simdnoise` in the plane: squared F1 minus squared F2.
 pub(crate) fn simdnoise_f1_minus_f2([width, height]: [usize; 2], frequency: f32) -> Grid {
     NoiseBuilder::cellular2_2d(width, height)
         .with_freq(frequency)
@@ -38,7 +38,7 @@ pub(crate) fn simdnoise_f1_minus_f2([width, height]: [usize; 2], frequency: f32)
         .generate()
 }
 
-/// The second cellular noise of `simdnoise` in space.
+/// Returns the second cellular noise of `simdnoise` in space: squared F1 minus squared F2.
 pub(crate) fn simdnoise_f1_minus_f2_in_space(
     [width, height, depth]: [usize; 3],
     frequency: f32,
@@ -50,14 +50,14 @@ pub(crate) fn simdnoise_f1_minus_f2_in_space(
         .generate()
 }
 
-/// One octave of the simplex noise of `simdnoise` in the plane.
+/// Returns one octave of simplex noise of `simdnoise` in the plane.
 pub(crate) fn simdnoise_simplex([width, height]: [usize; 2], frequency: f32) -> Grid {
     NoiseBuilder::gradient_2d(width, height)
         .with_freq(frequency)
         .generate()
 }
 
-/// One octave of the simplex noise of `simdnoise` in space.
+/// Returns one octave of simplex noise of `simdnoise` in space.
 pub(crate) fn simdnoise_simplex_in_space(
     [width, height, depth]: [usize; 3],
     frequency: f32,
@@ -67,7 +67,7 @@ pub(crate) fn simdnoise_simplex_in_space(
         .generate()
 }
 
-/// Fills the distances to the nearest feature points of positions in the plane, mapped from [0, 1] to [−1, 1].
+/// Computes the distances to the nearest feature points of positions in the plane, mapped from [0, 1] to [−1, 1].
 pub(crate) fn noise_functions_f1_2(positions: &[[f32; 2]], values: &mut [f32]) {
     let noise = CellDistance::default();
     for (value, &position) in values.iter_mut().zip(positions) {
@@ -75,7 +75,7 @@ pub(crate) fn noise_functions_f1_2(positions: &[[f32; 2]], values: &mut [f32]) {
     }
 }
 
-/// Fills the distances to the nearest feature points of positions in space, mapped from [0, 1] to [−1, 1].
+/// Computes the distances to the nearest feature points of positions in space, mapped from [0, 1] to [−1, 1].
 pub(crate) fn noise_functions_f1_3(positions: &[[f32; 3]], values: &mut [f32]) {
     let noise = CellDistance::default();
     for (value, &position) in values.iter_mut().zip(positions) {
@@ -83,15 +83,15 @@ pub(crate) fn noise_functions_f1_3(positions: &[[f32; 3]], values: &mut [f32]) {
     }
 }
 
-/// Fills one octave of Perlin noise at positions in the plane, from −1 to 1.
+/// Computes one octave of Perlin noise at positions in the plane, from −1 to 1.
 pub(crate) fn noise_functions_perlin(positions: &[[f32; 2]], values: &mut [f32]) {
     for (value, &position) in values.iter_mut().zip(positions) {
         *value = Perlin.sample2(position);
     }
 }
 
-/// Fills a raster of fractal Perlin noise, pixel by pixel: `octaves` octaves, each twice as fine and half as strong as
-/// the one before, the first with cells of `px_per_cell` pixels.
+/// Fills a raster with fractal Perlin noise, pixel by pixel. Each of the `octaves` octaves has half the feature size
+/// and half the amplitude of the previous one; the first has cells of `px_per_cell` pixels.
 pub(crate) fn noise_functions_fbm(side: usize, octaves: u32, px_per_cell: f32, values: &mut [f32]) {
     let noise = Perlin.fbm(octaves, 0.5, 2.0);
     for (row, values) in values.chunks_exact_mut(side).enumerate() {
@@ -121,8 +121,8 @@ mod tests {
 
     #[test]
     fn frequency_is_in_cells_per_pixel() {
-        // The feature points of neighboring cells are at most 2 · 0.45 nearer or farther than the cells' corners, so F1
-        // along 64 cells has some 64 valleys, and no more than one per cell.
+        // Feature points of neighboring cells are nearer or farther than the corners of the cells by at most 2 · 0.45.
+        // So F1 along 64 cells has some 64 valleys, at most one per cell.
         let (values, ..) = simdnoise_f1([64 * 16, 1], 1.0 / 16.0);
         let valleys = values
             .windows(3)

@@ -1,4 +1,4 @@
-//! Ours beside ourselves: rows that need no other crate.
+//! Rows that compare our own methods with each other and need no other crate.
 
 use super::{confirm, confirm_maximal};
 use crate::harness::{Bench, Done, Side};
@@ -35,7 +35,7 @@ pub(super) fn run(bench: &mut Bench) -> Result<()> {
     two_threads(bench)
 }
 
-/// A side that makes a set of the unit torus and keeps it.
+/// Returns a side that makes a point set of the unit torus and keeps it.
 pub(super) fn maximal(radius: f64) -> Side<'static, Option<PointSet>> {
     Side::new(None, move |points| {
         *points = poisson_disk(UNIT_TORUS, radius, SEED).ok();
@@ -70,7 +70,8 @@ fn variable(bench: &mut Bench) -> Result<()> {
     .prepared(|points| *points = None);
     bench.beside(&VARIABLE, 15, ours, maximal(radius), |ours, theirs| {
         let ours = ours.as_ref().context("no points")?;
-        // As dense as the fixed radius, within the 3 % that the method promises; its smallest distance is the ramp's.
+        // As dense as with a fixed radius, within the 3 % that the method promises; the least distance is the least
+        // radius of the ramp.
         let n_ours = confirm(ours, radius, 1.0, 0.676..=0.718)?;
         confirm(ours, least, 1e-9, 0.0..=1.0)?;
         Ok(Done {
@@ -83,7 +84,7 @@ fn variable(bench: &mut Bench) -> Result<()> {
 fn two_threads(bench: &mut Bench) -> Result<()> {
     let radius = sets::radius_of(1_000_000);
     let job = |points: &mut Option<PointSet>| *points = poisson_disk(UNIT_TORUS, radius, SEED).ok();
-    // Sets without a point do not count as the same; coordinates are never NaN or −0.
+    // Two failed runs do not count as equal; coordinates are never NaN or −0.
     let same = |one: &Option<PointSet>, two: &Option<PointSet>| one.is_some() && one == two;
     bench.two_threads(
         &TWO_THREADS,

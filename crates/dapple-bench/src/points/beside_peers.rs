@@ -1,4 +1,4 @@
-//! Ours beside the crates that make Poisson-disk points.
+//! Our sets beside other crates that make Poisson-disk points.
 
 use super::alone::maximal;
 use super::{confirm, confirm_maximal};
@@ -58,26 +58,26 @@ pub(super) fn run(bench: &mut Bench) -> Result<()> {
     row(bench, &FAST_POISSON_1M, 1, &fast_poisson(1_000_000))
 }
 
-/// A peer that makes positions of type `P`, and what is known of them.
+/// A peer that makes positions of type `P`, with its known properties.
 struct Peer<P> {
-    /// The radius on the unit torus, which ours is given.
+    /// The radius on the unit torus, which our side gets as well.
     radius: f64,
     /// Makes the points.
     make: Box<dyn Fn() -> Vec<P> + Sync>,
-    /// The position of what it makes.
+    /// Returns the position of a made point.
     position: fn(&P) -> DVec2,
-    /// Where its points lie.
+    /// The domain of its points.
     domain: Domain,
-    /// The radius in that domain.
+    /// The radius in units of its domain.
     own_radius: f64,
-    /// How much closer two points may be, relative to the radius.
+    /// How much closer than the radius two points may be, relative to the radius.
     slack: f64,
-    /// Points times squared radius over area.
+    /// The expected density: the number of points times squared radius over area.
     density: RangeInclusive<f64>,
 }
 
 impl<P> Peer<P> {
-    /// Checks what the peer made, and counts it.
+    /// Checks the points of the peer; returns their number.
     fn confirm(&self, made: &[P]) -> Result<usize> {
         let points = PointSet::new(self.domain, made.iter().map(self.position).collect())?;
         confirm(&points, self.own_radius, self.slack, self.density.clone())
@@ -97,7 +97,7 @@ fn row<P: Send>(bench: &mut Bench, case: &Case, turns: u32, peer: &Peer<P>) -> R
     })
 }
 
-/// `bluenoise` works on a torus of any side in single precision; its radius is one here.
+/// The crate `bluenoise`, which works on a torus of any side in single precision; its radius here is 1.
 fn bluenoise(n_points: u32) -> Peer<[f32; 2]> {
     let radius = sets::radius_of(n_points);
     let side = (1.0 / radius) as f32;
@@ -107,7 +107,7 @@ fn bluenoise(n_points: u32) -> Peer<[f32; 2]> {
         position: |at| DVec2::new(f64::from(at[0]), f64::from(at[1])),
         domain: Domain::torus(DVec2::ZERO, DVec2::splat(f64::from(side))),
         own_radius: 1.0,
-        // Its coordinates go up to 1200, where neighbors are 1.2e-4 apart.
+        // Coordinates go up to 1200, where neighboring `f32` values are 1.2e-4 apart.
         slack: 3e-4,
         density: 0.78..=0.82,
     }
@@ -121,13 +121,13 @@ fn diskus(n_points: u32) -> Peer<[f64; 2]> {
         position: |at| DVec2::from_array(*at),
         domain: UNIT_TORUS,
         own_radius: radius,
-        // Rounding of positions up to one, beside radii down to 8e-4.
+        // Rounding of positions up to 1, compared with radii down to 8e-4.
         slack: 1e-9,
         density: BRIDSON,
     }
 }
 
-/// `fast_poisson` does not wrap; the border lets a few more points in.
+/// The crate `fast_poisson`, which does not wrap; the border admits a few more points.
 fn fast_poisson(n_points: u32) -> Peer<[f64; 2]> {
     let radius = sets::radius_of(n_points);
     Peer {
@@ -137,7 +137,7 @@ fn fast_poisson(n_points: u32) -> Peer<[f64; 2]> {
     }
 }
 
-/// Points times squared radius of Bridson's algorithm with 30 tries for each point.
+/// The number of points times squared radius for Bridson's algorithm with 30 tries per point.
 const BRIDSON: RangeInclusive<f64> = 0.610..=0.640;
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! Ours beside ourselves and beside the naive evaluation: rows that need no other crate.
+//! Rows that compare our method with itself and with the naive evaluation, and need no other crate.
 
 use super::{SIDE, Scene, image, window};
 use crate::harness::{Bench, Done, Side};
@@ -54,7 +54,7 @@ const TWO_THREADS: Case = Case {
 /// Columns and rows of the image on two threads: large enough for a job of at least 100 ms.
 const TWO_THREADS_SIDE: u32 = 8192;
 
-/// Every this many rows, the naive evaluation is measured.
+/// The naive evaluation runs on every row whose number is a multiple of this.
 const NAIVE_STRIDE: usize = 25;
 
 pub(super) fn run(bench: &mut Bench) -> Result<()> {
@@ -65,7 +65,7 @@ pub(super) fn run(bench: &mut Bench) -> Result<()> {
     two_threads(bench)
 }
 
-/// A side that renders a texture into one image.
+/// Returns a side that renders a texture into one image.
 pub(super) fn raster<'a>(
     texture: &'a Texture,
     window: &'a Window,

@@ -1,4 +1,4 @@
-//! Ours beside the interpolators of `spade`.
+//! Our textures beside the interpolators of `spade`.
 
 use super::alone::raster;
 use super::{SIDE, Scene, image, window};
@@ -49,7 +49,7 @@ const POSITIONS_40K: Case = Case {
     ..POSITIONS_700
 };
 
-/// How many positions are asked for in one run, all over the square.
+/// The number of positions per run, scattered over the square.
 const N_POSITIONS: usize = 1 << 17;
 
 pub(super) fn run(bench: &mut Bench) -> Result<()> {
@@ -68,8 +68,8 @@ pub(super) fn run(bench: &mut Bench) -> Result<()> {
     one_position(bench, &POSITIONS_40K, 40_000, 9)
 }
 
-/// How far beyond the square `spade` has copies of points: more than four radii of 700 points, so that every pixel has
-/// all of its natural neighbors.
+/// The margin around the square in which `spade` has copies of points: more than four radii of 700 points, so that
+/// every pixel has all of its natural neighbors.
 const MARGIN: f64 = 0.15;
 
 fn beside_raster(
@@ -95,7 +95,7 @@ fn beside_raster(
     )
 }
 
-/// Checks that a peer has a value in [0, 1] at every position, and not the same one.
+/// Checks that a peer has a value in [0, 1] at every position, and not the same value everywhere.
 fn has_values(values: &[f32]) -> Result<()> {
     // Means of numbers in [0, 1] stay there up to the rounding of the weights; NaN is in no range.
     let bad = values
@@ -142,7 +142,7 @@ fn whole_chain(bench: &mut Bench, spade: &ScanlineSpade) -> Result<()> {
     )
 }
 
-/// Everything from the seed to the pixels.
+/// Runs the whole chain from a seed to the pixels.
 fn seed_to_image(seed: Seed, window: &Window, image: &mut Raster<f32>) -> Result<PointSet> {
     let points = sets::poisson_disk_from(seed, 700)?;
     let texture = Pups::delaunay(&points)?.texture(sets::values(points.len()))?;

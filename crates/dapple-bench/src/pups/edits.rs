@@ -1,7 +1,7 @@
-//! One edit of a control point, with the drawing of what it changed, beside the whole texture made and drawn anew.
+//! One edit of a control point and a redraw of the changed parts, beside a texture that is made and drawn from scratch.
 //!
-//! Edits take turns: a point moves by a part of the mean distance, a point is added, and that one is removed. Confirmed: the
-//! image that edits have kept up to date has the bits of the image made anew.
+//! Edits take turns: a point moves by a fraction of the mean distance, a point is added, and that point is removed.
+//! Confirmed: the image kept up to date by edits has the same bits as an image made from scratch.
 
 use super::{SIDE, image, window};
 use crate::harness::{Bench, Done, Side};
@@ -74,7 +74,7 @@ impl Edited {
         })
     }
 
-    /// The next edit.
+    /// Applies the next edit and returns what it changed.
     fn edit(&mut self) -> Result<Vec<Changed>, PupsError> {
         self.n_edits += 1;
         let random = |lane| {
@@ -103,7 +103,7 @@ impl Edited {
         }
     }
 
-    /// Draws what has changed.
+    /// Redraws the changed parts of the image.
     fn draw(&mut self, changed: &[Changed]) -> Result<(), PupsError> {
         for window in self.pups.windows(changed, &self.window) {
             let mut part = Raster::filled(window.size, 0.0)?;
@@ -118,7 +118,7 @@ impl Edited {
     }
 }
 
-/// The image of a texture that is made anew.
+/// Makes a texture from scratch and returns its image.
 fn anew(options: &ControlPoints, window: &Window) -> Result<Raster<f32>> {
     let mut image = image(SIDE)?;
     match control_points(options, sets::SEED)? {

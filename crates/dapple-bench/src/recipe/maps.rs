@@ -1,6 +1,6 @@
-//! Each map of each built-in recipe alone, and its height with a margin, beside all of its maps.
+//! Each map of each built-in recipe alone, and its height with a margin, beside a bake of all its maps.
 //!
-//! A part can cost more than the whole only where it goes a way of its own; the two rows have the costliest parts.
+//! A part can cost more than the whole only if it takes a separate path; the two rows have the costliest parts.
 
 use crate::harness::Bench;
 use crate::row::{Case, Must, Unit};
@@ -25,10 +25,10 @@ const MARGIN: Case = Case {
 /// Columns and rows of the tile.
 const SIDE: u32 = 256;
 
-/// The widest margin.
+/// The widest margin, in pixels.
 const WIDEST: u32 = 16;
 
-/// Runs of each job, of which the fastest counts.
+/// The number of runs of each job, of which the fastest counts.
 const RUNS: u32 = 3;
 
 pub(super) fn run(bench: &mut Bench) -> Result<()> {
@@ -57,9 +57,9 @@ pub(super) fn run(bench: &mut Bench) -> Result<()> {
     Ok(())
 }
 
-/// The job that costs the most beside another.
+/// The job with the largest time relative to a reference job.
 struct Costliest {
-    /// Seconds of the job, and of the other.
+    /// The times of the job and of the reference, in seconds.
     times: [f64; 2],
     what: String,
 }
@@ -82,7 +82,7 @@ impl Costliest {
     }
 }
 
-/// The least processor time of a job on one thread, in seconds.
+/// Returns the least processor time of a job on one thread, in seconds.
 fn fastest(bench: &Bench, job: impl Fn() -> Result<(), RecipeError> + Sync) -> Result<f64> {
     let mut least = f64::INFINITY;
     for _ in 0..RUNS {
@@ -102,7 +102,7 @@ fn bake(plan: &Plan, maps: &[MapKind]) -> Result<(), RecipeError> {
     Bake::new(plan, &options)?.try_for_each(|band| band.map(drop))
 }
 
-/// The height of the tile and of so many pixels about it.
+/// Renders the height of the tile with a margin of the given number of pixels.
 fn height(plan: &Plan, pixels: u32) -> Result<(), RecipeError> {
     let first = [-i64::from(pixels); 2];
     let window = plan

@@ -1,4 +1,4 @@
-//! Nodes at frequencies that are no power of two, and under a warp.
+//! Nodes at frequencies that are not powers of two, and nodes under a warp.
 
 use crate::harness::{Bench, Done, Side};
 use crate::row::{Case, Must, Unit};
@@ -38,7 +38,7 @@ const WAVELET: Case = Case {
     ..WORLEY
 };
 
-/// The nodes, without their frequency.
+/// The nodes in TOML, without their frequency.
 const NODES: [(&Case, &str); 5] = [
     (&WORLEY, "worley = { value = \"f2_minus_f1\""),
     (&OCTAVES, "worley = { value = \"f1\", octaves = {}"),
@@ -56,10 +56,10 @@ const WARPED: Case = Case {
 /// Columns and rows of the tile.
 const SIDE: u32 = 1024;
 
-/// Turns of a row.
+/// The number of turns of a row.
 const TURNS: u32 = 21;
 
-/// How far the warp goes, in units of the plane; shifts are this times the coordinates of the position.
+/// The amplitude of the warp, in units of the plane; positions shift by this number times their coordinates.
 const AMOUNT: f64 = 0.37;
 
 pub(super) fn run(bench: &mut Bench) -> Result<()> {
@@ -77,13 +77,13 @@ pub(super) fn run(bench: &mut Bench) -> Result<()> {
     warped(bench)
 }
 
-/// A node of a recipe that has little else.
+/// A recipe for one node, prepared to render.
 struct Single {
     plan: Plan,
     field: NodeField,
 }
 
-/// The node of this name.
+/// Returns the node with this name.
 fn single(nodes: &str, name: &str) -> Result<Single> {
     let text = format!("dapple = 1\n{nodes}\n[material]\nheight = 0.5\n");
     let recipe = Recipe::from_toml(&text).context(text)?;
@@ -92,7 +92,7 @@ fn single(nodes: &str, name: &str) -> Result<Single> {
     Ok(Single { plan, field })
 }
 
-/// A side that renders a node.
+/// Returns a side that renders a node.
 fn side(node: &Single) -> Result<Side<'_, Raster<f32>>> {
     let window = node.plan.window([SIDE; 2])?;
     let image = Raster::filled(window.size, 0.0)?;
@@ -103,7 +103,7 @@ fn side(node: &Single) -> Result<Side<'_, Raster<f32>>> {
     }))
 }
 
-/// Checks an image beside single positions.
+/// Checks an image against evaluations at single positions.
 fn confirm(node: &Single, image: &Raster<f32>) -> Result<usize> {
     let window = node.plan.window([SIDE; 2])?;
     for index in (0..SIDE * SIDE).step_by(1009) {
@@ -156,7 +156,7 @@ fn warped(bench: &mut Bench) -> Result<()> {
         for (value, found) in image.pixels().iter().zip(features).step_by(61) {
             let distances = found.map(|feature| feature.distance);
             let expected = Combination::F2_MINUS_F1.of(&distances);
-            // F2 − F1 and −F1 + F2 are rounded alike.
+            // F2 − F1 and −F1 + F2 are rounded in the same way.
             ensure!(*value == expected, "{value} under the warp, not {expected}");
         }
         Ok(Done::both(confirm(&ours, image)?))

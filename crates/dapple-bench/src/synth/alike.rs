@@ -1,8 +1,9 @@
-//! How alike textures are to their exemplars, ours beside those of `texture-synthesis`.
+//! The likeness of textures to their exemplars, ours beside `texture-synthesis`.
 //!
-//! Sliced Wasserstein distances of colors and of 5×5 patches to the exemplar (`Likeness`), of images of 256×256 pixels, with
-//! the default options of both. Not times: a smaller number is a better likeness. Bricks are drawn; the other three are
-//! photographs where those are, and drawings elsewhere.
+//! Measured are sliced Wasserstein distances (`Likeness`) between images of 256×256 pixels and their exemplars, for
+//! colors and for 5×5 patches, with the default options of both sides. These are not times: a smaller number is a
+//! better likeness. Bricks are always drawn; the other three exemplars are photographs if the files exist, and drawings
+//! otherwise.
 
 use super::drawings::{self, Drawing};
 use super::scene::{Picture, picture};
@@ -28,7 +29,7 @@ const PATCHES: Case = Case {
     ..COLORS
 };
 
-/// An exemplar: its photograph and a drawing for where that is not, and its two rows.
+/// An exemplar: a photograph, a drawing that replaces it if the file is missing, and its two rows.
 struct Subject {
     file: &'static str,
     drawing: Drawing,
@@ -81,10 +82,10 @@ const SUBJECTS: [Subject; 4] = [
     },
 ];
 
-/// Columns and rows of an exemplar.
+/// Width and height of an exemplar in pixels.
 const EXEMPLAR: u32 = 128;
 
-/// Columns and rows of an image.
+/// Width and height of a made image in pixels.
 const SIDE: u32 = 256;
 
 pub(super) fn run(bench: &mut Bench) -> Result<()> {
@@ -120,7 +121,7 @@ impl Subject {
     }
 }
 
-/// How alike an image of ours and one of the peer are to an exemplar.
+/// Returns the likeness to an exemplar of our image and of the peer's.
 fn likenesses(picture: &Picture) -> Result<[Likeness; 2]> {
     let exemplar = picture.exemplar()?;
     let ours = synthesize_plane(&exemplar, [SIDE; 2], [Edges::Cut; 2], &Options::default())?;

@@ -1,6 +1,6 @@
-//! Ours beside `texture-synthesis` making one flat image of 512×512 pixels of the same exemplar.
+//! Our synthesis beside `texture-synthesis`, which makes one flat image of 512×512 pixels of the same exemplar.
 //!
-//! Both on one thread, processor times, medians of turns. The peer makes one image in every turn for all rows.
+//! Both run on one thread; times are medians of processor times. The peer makes one image in every turn for all rows.
 
 use super::scene::{self, N_SITES, exact, leaves, model, synthesizer};
 use super::whole;
@@ -47,17 +47,17 @@ const LARGE: Case = Case {
     ..EXACT
 };
 
-/// The bar is what a prototype with the same search reached.
+/// The bar is the result of a prototype with the same search.
 const LARGE_EXACT: Case = Case {
     case: "synthesis, 262,144 sites, 4 levels, 256² exemplar, exact search",
     must: Must::CostAtMost(1.3),
     ..EXACT
 };
 
-/// Columns and rows of the flat image.
+/// Width and height of the flat image in pixels.
 const SIDE: u32 = 512;
 
-/// A row's job: makes something and counts it.
+/// The job of a row: makes something and counts it.
 type Job<'a> = Box<dyn Fn() -> Result<usize> + Sync + 'a>;
 
 pub(super) fn run(bench: &mut Bench) -> Result<()> {
@@ -123,7 +123,7 @@ fn large(bench: &mut Bench) -> Result<()> {
     beside(bench, 3, &picture, rows.into(), &note)
 }
 
-/// Measures all wanted rows beside the flat image.
+/// Measures all selected rows beside the flat image.
 fn beside(
     bench: &mut Bench,
     turns: u32,
@@ -161,7 +161,7 @@ fn beside(
     Ok(())
 }
 
-/// The number of pixels of a texture; refuses one that is of few pixels of the exemplar.
+/// Returns the number of pixels of a texture; fails if the texture uses few pixels of the exemplar.
 fn count_plane(texture: &PlaneTexture) -> Result<usize> {
     let mut sources = texture.sources().pixels().to_vec();
     let n_pixels = sources.len();

@@ -1,4 +1,4 @@
-//! Drawn exemplars, which every clone has: of the kinds that the paper's are of, and with as few lines as will do.
+//! Drawn exemplars, which need no files: of the same kinds as the exemplars of the paper, in short code.
 //!
 //! All repeat. Positions go from 0 to 1 along both axes, v down; colors are sRGB codes from 0 to 255.
 
@@ -12,10 +12,10 @@ use glam::DVec2;
 /// Samples along the side of a pixel.
 const N_SAMPLES: u32 = 4;
 
-/// What is drawn at a position.
+/// A drawing: the color at a position.
 pub(super) type Drawing = fn(DVec2) -> [f64; 3];
 
-/// A square picture, rounded to the codes of a file.
+/// Draws a square picture, rounded to the codes of a file.
 pub(super) fn draw(drawing: Drawing, side: u32) -> Result<Raster<LinearRgb>> {
     let n_samples = side * N_SAMPLES;
     let place = |index: u32| (f64::from(index) + 0.5) / f64::from(n_samples);
@@ -58,7 +58,7 @@ pub(super) fn suckers(at: DVec2) -> [f64; 3] {
 /// Rows of round scales, each over the one below it.
 pub(super) fn scales(at: DVec2) -> [f64; 3] {
     let [across, down] = [8.0, 12.0];
-    // The rows above lie on top of those below: the first whose scale reaches down to here is seen.
+    // The rows above lie on top of those below: the first row whose scale reaches this far down is visible.
     let row = (at.y * down).floor() as i64;
     for row in row - 1..=row + 1 {
         let shift = 0.5 * row.rem_euclid(2) as f64;
@@ -75,7 +75,7 @@ pub(super) fn scales(at: DVec2) -> [f64; 3] {
     [25.0, 40.0, 25.0]
 }
 
-/// Strands that go over and under each other.
+/// Strands woven over and under each other.
 pub(super) fn weave(at: DVec2) -> [f64; 3] {
     let scaled = at * 8.0;
     let cell = scaled.floor();
@@ -86,7 +86,7 @@ pub(super) fn weave(at: DVec2) -> [f64; 3] {
     } else {
         [place.x, place.y, cell.x]
     };
-    // Each strand has a shade of its own, or all copies of two strands would be the same.
+    // Each strand has its own shade, or all copies of two strands would be the same.
     let strand = roll([(strand as i64).rem_euclid(8), i64::from(over)], 10);
     let shade = (0.7 + 0.4 * strand) * (1.0 - 3.2 * across * across) * (1.0 - 1.2 * along * along);
     let color = if over {
@@ -100,7 +100,7 @@ pub(super) fn weave(at: DVec2) -> [f64; 3] {
     color.map(|code| code * shade)
 }
 
-/// Lines of letters that nobody can read.
+/// Lines of illegible letters.
 pub(super) fn text(at: DVec2) -> [f64; 3] {
     let scaled = at * DVec2::new(22.0, 14.0);
     let letter = scaled.floor();
@@ -108,10 +108,10 @@ pub(super) fn text(at: DVec2) -> [f64; 3] {
         (letter.x as i64).rem_euclid(22),
         (letter.y as i64).rem_euclid(14),
     ];
-    // Three by five places, and a gap to the right and below.
+    // A letter has three by five places, with a gap to the right and below.
     let place = ((scaled - letter) * DVec2::new(4.0, 6.0)).floor();
     let inside = place.x < 3.0 && place.y < 5.0;
-    // One of 24 letters; one in six is a space.
+    // There are 24 letters; about one cell in six is a space.
     let kind = (roll(cell, 1) * 29.0) as i64;
     let stroke = roll([kind, (place.x + 3.0 * place.y) as i64], 2) < 0.5;
     if inside && kind < 24 && stroke {
@@ -136,7 +136,7 @@ pub(super) fn puzzle(at: DVec2) -> [f64; 3] {
     color.map(|code| code * (0.85 + 0.3 * near.gap.min(0.5)))
 }
 
-/// A wall of bricks in running bond, each of another color, with some roughness.
+/// A wall of bricks in running bond, each with its own color and some roughness.
 #[cfg(feature = "peers")]
 pub(super) fn bricks(at: DVec2) -> [f64; 3] {
     let scaled = at * DVec2::new(4.0, 8.0);
@@ -154,17 +154,17 @@ pub(super) fn bricks(at: DVec2) -> [f64; 3] {
     color.map(|code| code * light)
 }
 
-/// The nearest of some jittered points.
+/// The nearest of some jittered points to a position.
 struct Nearest {
-    /// Its cell, the same in every copy of the picture.
+    /// The cell of the point, the same in every copy of the picture.
     cell: [i64; 2],
-    /// How far it is, in cells.
+    /// The distance to the point, in cells.
     distance: f64,
-    /// How much farther the second one is.
+    /// How much farther the second nearest point is, in cells.
     gap: f64,
 }
 
-/// The nearest of `n` times `n` points, each in the middle of its cell but for `jitter`.
+/// Returns the nearest of `n` times `n` points, each displaced by up to `jitter` from the middle of its cell.
 fn nearest(at: DVec2, n: i64, jitter: f64) -> Nearest {
     let scaled = at * n as f64;
     let mut found: [(f64, [i64; 2]); 2] = [(f64::INFINITY, [0; 2]); 2];
@@ -189,12 +189,12 @@ fn nearest(at: DVec2, n: i64, jitter: f64) -> Nearest {
     }
 }
 
-/// A number from 0 to 1 for a cell.
+/// Returns a random number from 0 to 1 for a cell.
 fn roll(cell: [i64; 2], index: u32) -> f64 {
     unit_f64(hash2(SEED.child("bench drawings", 0), cell, index))
 }
 
-/// One period of a wave from -1 to 1, of two parabolas.
+/// One period of a wave from -1 to 1, made of two parabolas.
 fn wave(at: f64) -> f64 {
     let part = at - at.floor();
     if part < 0.5 {
@@ -204,7 +204,7 @@ fn wave(at: f64) -> f64 {
     }
 }
 
-/// A color between two.
+/// Mixes two colors.
 fn mix(a: [f64; 3], b: [f64; 3], part: f64) -> [f64; 3] {
     let part = part.clamp(0.0, 1.0);
     [0, 1, 2].map(|channel| a[channel] + (b[channel] - a[channel]) * part)
@@ -227,7 +227,7 @@ mod tests {
     fn drawings_repeat() {
         for (name, drawing) in DRAWINGS {
             for step in 0..100 {
-                // None of these lies where rounding could take it over an edge of what is drawn.
+                // These positions stay away from edges, where rounding could change the color.
                 let at = DVec2::new(0.0371, 0.0213) * f64::from(step) + 0.0017;
                 let at = at - at.floor();
                 let [here, there] = [at, at + 1.0].map(drawing);

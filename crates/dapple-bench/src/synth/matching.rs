@@ -1,10 +1,10 @@
-//! The matcher on recorded neighborhoods, beside comparing with all candidates and beside a k-d tree.
+//! The matcher on recorded neighborhoods, beside a comparison with all candidates and beside a k-d tree.
 //!
-//! The queries are the neighborhoods of the last pass, F(7,0) and F(3,1), on a tile of 320×320 pixels that all passes but
-//! that one have made: 102,400, each of 171 numbers. Exemplars of 64² and 256² pixels have 3364 and 62,500 candidates.
+//! The queries are the neighborhoods of the last pass, F(7,0) and F(3,1), on a tile of 320×320 pixels that all earlier
+//! passes made: 102,400 queries of 171 numbers each. Exemplars of 64² and 256² pixels have 3364 and 62,500 candidates.
 //!
-//! Confirmed: every query has the same row as by brute force, by the same distance, with ties by index. What is slow is
-//! timed on a part of the queries, spread evenly.
+//! Confirmed: every query finds the same row as brute force with the same distance function; ties go to the lower
+//! index. Slow methods are timed on a part of the queries, spread evenly.
 
 #[cfg(feature = "peers")]
 mod beside_kiddo;
@@ -36,12 +36,12 @@ const PLAIN_LARGE: Case = Case {
     ..PLAIN_SMALL
 };
 
-/// An exemplar and how its queries are used.
+/// An exemplar size, and how the queries are timed.
 struct Setting {
-    /// The side of the exemplar.
+    /// The side of the exemplar in pixels.
     side: u32,
     plain: Case,
-    /// One query in so many is timed with ours, with a peer, and with the plain loop.
+    /// The strides of the timed queries: for our side, for a peer, and for the plain loop.
     timed: [usize; 3],
 }
 
@@ -58,10 +58,10 @@ const SETTINGS: [Setting; 2] = [
     },
 ];
 
-/// Columns and rows of the tile whose neighborhoods are the queries.
+/// Width and height in pixels of the tile whose neighborhoods are the queries.
 const TILE: u32 = 320;
 
-/// Queries that pass by a block of rows while it is in the cache.
+/// The number of queries that are compared with a block of rows while it is in the cache.
 const CONFIRMED_AT_ONCE: usize = 512;
 
 pub(super) fn run(bench: &mut Bench) -> Result<()> {
@@ -101,7 +101,7 @@ fn beside_plain(bench: &mut Bench, setting: &Setting, recorded: &Recorded) -> Re
     )
 }
 
-/// Candidates, queries, and what searches.
+/// The recorded candidates and queries, with the matcher.
 struct Recorded {
     dims: usize,
     rows: Vec<f32>,
@@ -109,7 +109,7 @@ struct Recorded {
     matcher: Matcher,
 }
 
-/// What our side works with.
+/// The state of our side: the matcher's memory and the rows found.
 #[derive(Default)]
 struct Found {
     memory: MatcherMemory,
@@ -141,12 +141,12 @@ impl Recorded {
         })
     }
 
-    /// One query in so many.
+    /// Iterates over every `every`-th query.
     fn queries(&self, every: usize) -> impl Iterator<Item = &[f32]> {
         self.queries.chunks_exact(self.dims).step_by(every)
     }
 
-    /// Our side.
+    /// Returns our side, which matches every `every`-th query.
     fn ours(&self, every: usize) -> Side<'_, Found> {
         Side::new(Found::default(), move |state: &mut Found| {
             state.found.clear();
@@ -161,7 +161,7 @@ impl Recorded {
         })
     }
 
-    /// The row that is nearest by comparing with all of them, term by term.
+    /// Returns the nearest row by comparing all rows term by term.
     fn plain_loop(&self, query: &[f32]) -> u32 {
         let (mut least, mut nearest) = (f32::INFINITY, 0);
         for (index, row) in self.rows.chunks_exact(self.dims).enumerate() {
@@ -176,7 +176,7 @@ impl Recorded {
         nearest
     }
 
-    /// Refuses a query that has another row than by brute force, the first of those that are nearest.
+    /// Fails if a query finds another row than brute force, which returns the first of the nearest rows.
     fn confirm(&self) -> Result<()> {
         let brute_force = BruteForce::new(self.dims, &self.rows);
         let queries: Vec<&[f32]> = self.queries(1).collect();
@@ -201,13 +201,14 @@ impl Recorded {
         Ok(())
     }
 
-    /// The queries of both sides, of which one in so many was asked; refuses rows that are not as near as ours.
+    /// Returns the numbers of queries of both sides, of which every `ours`-th and `theirs`-th was asked; fails if the
+    /// other side's rows are not as near as ours.
     fn done(&self, [ours, theirs]: [usize; 2], found: &[u32], others: &[u32]) -> Result<Done> {
         let row = |row: u32| &self.rows[row as usize * self.dims..][..self.dims];
         let compared = found.iter().step_by(theirs / ours).zip(others);
         for (query, (&found, &other)) in self.queries(theirs).zip(compared) {
             let [found, other] = [found, other].map(|index| distance_sq(query, row(index)));
-            // The loop sums 171 terms in another order.
+            // The loop sums the 171 terms in another order.
             ensure!((found - other).abs() <= 1e-4 * found, "{found} and {other}");
         }
         Ok(Done {
@@ -217,7 +218,7 @@ impl Recorded {
     }
 }
 
-/// The neighborhoods of an image that a pass compares, one after the other, and the length of each.
+/// Returns the length of a neighborhood, and the neighborhoods of an image that a pass compares, one after the other.
 fn neighborhoods(image: &Exemplar, pass: &Pass) -> Result<(usize, Vec<f32>)> {
     let candidates = Candidates::new(&image.pyramid(2)?, pass, CoarserCenter::Exact)?;
     let rows = (0..candidates.len()).flat_map(|row| candidates.row(row).iter().copied());

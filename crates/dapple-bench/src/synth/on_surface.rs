@@ -1,11 +1,12 @@
-//! How a texture lies on a surface: stripes run along the field, and nothing jumps at the edges of the input mesh.
+//! The orientation and the continuity of a texture on a surface: stripes follow the field, and colors do not jump at
+//! mesh edges.
 //!
-//! The direction of a texture is that of least change, from the structure tensor of the sites around each one: Josef Bigün
-//! and Gösta Granlund, "Optimal Orientation Detection of Linear Symmetry", ICCV 1987.
+//! The direction of a texture is the direction of least change, from the structure tensor of the sites around each
+//! site: Josef Bigün and Gösta Granlund, "Optimal Orientation Detection of Linear Symmetry", ICCV 1987.
 //!
-//! Colors are compared a little to the left and to the right of every edge. How much they may differ follows from
-//! equation 1: a weight changes by at most 1.5 over the radius, and a mean of colors by at most as much as its weights do,
-//! each times how far its color is from the mean.
+//! Colors are compared slightly to the left and to the right of every edge. Equation 1 bounds their difference: a
+//! weight changes by at most 1.5 over the radius, and a mean of colors changes by at most the sum of the weights'
+//! changes, each times the distance of its color from the mean.
 
 use super::scene::{N_SITES, model, synthesizer};
 use crate::harness::{Bench, median};
@@ -33,10 +34,10 @@ const JUMPS: Case = Case {
     ..ORIENTATION
 };
 
-/// How far from an edge colors are compared, in spacings.
+/// The distance from an edge at which colors are compared, in spacings.
 const ASIDE: f64 = 0.01;
 
-/// Colors are sums of about five `f32` from 0 to 1, each rounded by up to 2^-24 a few times.
+/// The rounding of colors: sums of about five `f32` from 0 to 1, each rounded by up to 2^-24 a few times.
 const ROUNDING: f64 = 1e-6;
 
 pub(super) fn run(bench: &mut Bench) -> Result<()> {
@@ -64,7 +65,7 @@ pub(super) fn run(bench: &mut Bench) -> Result<()> {
     Ok(())
 }
 
-/// Upright stripes, seven in 56 pixels: the texture changes along P only.
+/// Makes vertical stripes, seven in 56 pixels: the texture changes only along P.
 fn stripes() -> Result<Exemplar> {
     let image = Raster::from_fn([56, 56], |x, _| {
         let turns = f64::from(x % 8) / 8.0;
@@ -74,16 +75,16 @@ fn stripes() -> Result<Exemplar> {
     Ok(Exemplar::new(&image, Edges::Wrap)?)
 }
 
-/// A surface with stripes.
+/// A surface covered with stripes.
 struct Striped<'a> {
     synthesizer: &'a Synthesizer,
-    /// The code of each site.
+    /// The sRGB code of each site.
     values: Vec<f32>,
 }
 
 impl Striped<'_> {
-    /// The gradient that fits the differences to a site's neighbors best. A sum over edges would lean to one side where
-    /// neighbors are not evenly around.
+    /// Returns the gradient that best fits the differences to the neighbors of a site. A sum over edges would be biased
+    /// where neighbors are unevenly spread.
     fn gradient(&self, site: SiteIdx) -> DVec3 {
         let hierarchy = self.synthesizer.hierarchy();
         let sites = hierarchy.sites();
@@ -97,7 +98,7 @@ impl Striped<'_> {
             normal += DMat2::from_cols(step * step.x, step * step.y);
             sums += step * (value(other) - value(site));
         }
-        // Neighbors on one line say nothing of what is beside it.
+        // If all neighbors lie on a line, the gradient across it is unknown.
         let trace = normal.x_axis.x + normal.y_axis.y;
         if normal.determinant() < 1e-6 * trace * trace {
             return DVec3::ZERO;
@@ -106,7 +107,7 @@ impl Striped<'_> {
         right * gradient.x + down * gradient.y
     }
 
-    /// The angle between the field and the direction of least change, in degrees.
+    /// Returns the angle between the field and the direction of least change, in degrees.
     fn turn(&self, site: SiteIdx, gradients: &[DVec3]) -> f64 {
         let hierarchy = self.synthesizer.hierarchy();
         let (sites, level) = (hierarchy.sites(), &hierarchy.levels()[0]);
@@ -114,7 +115,7 @@ impl Striped<'_> {
         let right = sites.normals()[site.index()].cross(down);
         let center = sites.positions()[site.index()];
         let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);
-        // A ball as wide as a stripe and its gap has an edge in it.
+        // A ball as wide as a stripe and its gap always contains an edge.
         level.grid().visit(center, 4.0 * level.spacing(), |near| {
             let gradient = gradients[near.index()];
             let (x, y) = (gradient.dot(right), gradient.dot(down));
@@ -122,11 +123,11 @@ impl Striped<'_> {
             xy += x * y;
             yy += y * y;
         });
-        // The direction of most change is P where the texture follows the field.
+        // The direction of most change is P if the texture follows the field.
         (0.5 * libm::atan2(2.0 * xy, xx - yy)).abs().to_degrees()
     }
 
-    /// The difference of codes at an edge that is largest beside its bound, and the bound.
+    /// Returns the difference of codes at the edge where it is largest relative to its bound, and that bound.
     fn largest_jump(&self) -> Result<[f64; 2]> {
         let surface = self.synthesizer.surface();
         let (mut largest, mut n_edges) = ([0.0, f64::INFINITY], 0);
@@ -146,7 +147,7 @@ impl Striped<'_> {
         Ok(largest)
     }
 
-    /// How much codes differ to both sides of an edge, and by how much they may.
+    /// Returns the difference of codes between the two sides of an edge, and its bound.
     fn jump(&self, here: FaceEdge, there: FaceIdx) -> Result<[f64; 2]> {
         let (surface, hierarchy) = (self.synthesizer.surface(), self.synthesizer.hierarchy());
         let corners = surface.mesh().corners(here.face);
@@ -166,7 +167,7 @@ impl Striped<'_> {
         Ok([(color - other).abs(), self.bound([here, there], color)])
     }
 
-    /// How much a mean that is `color` at one of two positions may differ at the other one.
+    /// Returns a bound of the change of a mean between two positions, given that the mean is `color` at one of them.
     fn bound(&self, [here, there]: [DVec3; 2], color: f64) -> f64 {
         let hierarchy = self.synthesizer.hierarchy();
         let (sites, level) = (hierarchy.sites(), &hierarchy.levels()[0]);

@@ -1,4 +1,4 @@
-//! The inputs of the group: a model, photographs or drawings of the same kind, and the options of the rows.
+//! The inputs of the group: a model, photographs or drawings of the same kind, and common options.
 
 use super::drawings::{self, Drawing, draw};
 use anyhow::{Result, ensure};
@@ -14,25 +14,25 @@ use glam::DVec3;
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-/// The number of sites of most rows: as many as the flat image has pixels.
+/// The number of sites in most rows: the number of pixels of the flat image.
 pub(super) const N_SITES: usize = 512 * 512;
 
-/// A model as a file in memory.
+/// The file of a model in memory.
 pub(super) struct Model {
     pub(super) obj: Vec<u8>,
     pub(super) directions: Vec<Direction>,
-    /// Which it is.
+    /// A note that says which model it is.
     pub(super) note: &'static str,
 }
 
-/// An exemplar as an image.
+/// The image of an exemplar.
 pub(super) struct Picture {
     pub(super) image: Raster<LinearRgb>,
-    /// Whether it is the photograph or the drawing.
+    /// Whether the image is the photograph rather than the drawing.
     pub(super) is_photograph: bool,
 }
 
-/// The real model where there is one, and a procedural one elsewhere.
+/// Returns the real model if its file exists, and a procedural one otherwise.
 pub(super) fn model() -> Result<Model> {
     let path = data("meshes/spot.obj");
     #[expect(clippy::disallowed_methods, reason = "the model is not of the library")]
@@ -65,7 +65,7 @@ pub(super) fn model() -> Result<Model> {
     })
 }
 
-/// The photograph of leaves, 64 or 256 pixels wide, where there is one, and a drawing elsewhere.
+/// Returns the photograph of leaves, 64 or 256 pixels wide, if its file exists, and a drawing otherwise.
 pub(super) fn leaves(side: u32) -> Result<Picture> {
     picture(
         &format!("exemplars/leaves_cc0_{side}.png"),
@@ -74,7 +74,7 @@ pub(super) fn leaves(side: u32) -> Result<Picture> {
     )
 }
 
-/// A photograph where there is one, and a drawing elsewhere.
+/// Returns a photograph if its file exists, and a drawing otherwise.
 pub(super) fn picture(file: &str, drawing: Drawing, side: u32) -> Result<Picture> {
     let path = data(file);
     if !path.is_file() {
@@ -99,12 +99,12 @@ pub(super) fn picture(file: &str, drawing: Drawing, side: u32) -> Result<Picture
 }
 
 impl Picture {
-    /// For matching; nothing lies past its edges.
+    /// Returns the exemplar for matching; it does not continue past its edges.
     pub(super) fn exemplar(&self) -> Result<Exemplar> {
         Ok(Exemplar::new(&self.image, Edges::Cut)?)
     }
 
-    /// Which exemplar a row has.
+    /// Returns a note that says which exemplar a row has.
     pub(super) fn note(&self) -> &'static str {
         if self.is_photograph {
             "the exemplar is a photograph of leaves"
@@ -114,7 +114,7 @@ impl Picture {
     }
 }
 
-/// The exact search of the paper: the least distance wins.
+/// Returns the options of the paper's exact search: the least distance wins.
 pub(super) fn exact(n_levels: usize) -> Options {
     Options {
         n_levels,
@@ -124,7 +124,7 @@ pub(super) fn exact(n_levels: usize) -> Options {
     }
 }
 
-/// The sites of a model, with their directions and their order.
+/// Returns the sites of a model, with their directions and their order.
 pub(super) fn synthesizer(model: &Model, n_sites: usize, n_levels: usize) -> Result<Synthesizer> {
     let surface = Surface::new(super::whole::read_obj(&model.obj)?)?;
     let sites = HierarchyOptions {
@@ -135,7 +135,8 @@ pub(super) fn synthesizer(model: &Model, n_sites: usize, n_levels: usize) -> Res
     Ok(Synthesizer::new(surface, &model.directions, &sites)?)
 }
 
-/// The number of sites of a texture, each of which must have a color; refuses one that is of few pixels.
+/// Returns the number of sites of a texture; fails if a site has no color, or the texture uses few pixels of the
+/// exemplar.
 pub(super) fn count(texture: &SurfaceTexture) -> Result<usize> {
     let mut sources: Vec<[u32; 2]> = texture.sources(0).collect();
     let n_sites = sources.len();
@@ -151,7 +152,7 @@ pub(super) fn count(texture: &SurfaceTexture) -> Result<usize> {
     Ok(n_sites)
 }
 
-/// A file of the data beside the workspace, which need not be there.
+/// Returns the path of a file of the data beside the workspace, which may not exist.
 fn data(file: &str) -> PathBuf {
     let crate_dir = PathBuf::from(env!("CARGO_MANIFEST_DIR"));
     crate_dir.join("../../../shared/data").join(file)

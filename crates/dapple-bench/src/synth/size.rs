@@ -1,7 +1,7 @@
-//! Four times as many sites: the time and the memory of whole programs.
+//! The time and memory of whole programs with four times as many sites.
 //!
-//! Each size runs in a process of its own, this program with the hidden argument `--synthesize`, on one thread. Linux tells
-//! in a file how much memory a process had at most; elsewhere that row is left out.
+//! Each size runs in a separate process, this program with the hidden argument `--synthesize`, on one thread. Linux
+//! reports the peak memory of a process in a file; on other systems that row is left out.
 
 use super::scene::{N_SITES, count, exact, leaves, model, synthesizer};
 use crate::harness::Bench;
@@ -30,12 +30,12 @@ const MEMORY: Case = Case {
     ..SYNTHESIS
 };
 
-/// What one process took.
+/// The measurements of one process.
 struct Took {
-    /// Seconds of processor time.
+    /// The processor time of the setup, in seconds.
     setup: f64,
     synthesis: f64,
-    /// Bytes; 0 where that is not known.
+    /// The peak memory in bytes; 0 if it is unknown.
     memory: f64,
 }
 
@@ -68,7 +68,7 @@ pub(super) fn run(bench: &mut Bench) -> Result<()> {
     Ok(())
 }
 
-/// Runs this program with [`synthesize_here`].
+/// Runs this program with [`synthesize_here`] in a new process.
 fn in_process(n_sites: usize) -> Result<Took> {
     let program = std::env::current_exe()?;
     let output = Command::new(&program)
@@ -95,7 +95,8 @@ fn in_process(n_sites: usize) -> Result<Took> {
     })
 }
 
-/// Makes a texture of so many sites, and prints the seconds of its setup and of its synthesis, and the most memory.
+/// Synthesizes a texture with `n_sites` sites; prints the seconds of its setup and of its synthesis, and the peak
+/// memory.
 pub(crate) fn synthesize_here(n_sites: usize) -> Result<()> {
     let one = ThreadPoolBuilder::new().num_threads(1).build()?;
     let (setup, synthesis) = one.install(|| -> Result<_> {
@@ -106,7 +107,7 @@ pub(crate) fn synthesize_here(n_sites: usize) -> Result<()> {
         let start = ThreadTime::now();
         let texture = sites.synthesize(&exemplar, &exact(3))?;
         let synthesis = start.elapsed().as_secs_f64();
-        // Before the check, which needs memory of its own.
+        // Read before the check, which needs memory of its own.
         let memory = most_memory();
         ensure!(count(&texture)? == n_sites, "a site is missing");
         Ok((setup, (synthesis, memory)))
@@ -116,14 +117,14 @@ pub(crate) fn synthesize_here(n_sites: usize) -> Result<()> {
     Ok(())
 }
 
-/// The most bytes of memory that this process had at a time.
+/// Returns the peak memory of this process in bytes, if it is known.
 fn most_memory() -> Option<f64> {
     #[expect(clippy::disallowed_methods, reason = "Linux tells it in a file")]
     let text = std::fs::read_to_string("/proc/self/status").ok()?;
     high_water(&text)
 }
 
-/// The `VmHWM` in the text of `/proc/self/status`, in bytes.
+/// Returns the `VmHWM` in the text of `/proc/self/status`, in bytes.
 fn high_water(status: &str) -> Option<f64> {
     let line = status
         .lines()

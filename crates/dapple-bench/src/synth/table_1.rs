@@ -1,8 +1,8 @@
-//! Table 1 of Turk's paper: our times beside its minutes, on models and exemplars of the same sizes.
+//! Table 1 of Turk's paper: our times beside its times in minutes, for models and exemplars of the same sizes.
 //!
-//! `cargo xtask bench "table 1"` makes it. Ours is the wall time of the synthesis on two threads, the lesser of two runs, with
-//! an exact search; what comes before it (points, graph, directions and sweep), which the paper's times may have or not, is
-//! in the note. The models are those of `dapple_models`, the exemplars are drawn.
+//! `cargo xtask bench "table 1"` makes it. Our time is the wall time of the synthesis on two threads with an exact
+//! search, the lesser of two runs. The setup (points, graph, directions and sweep) is in the note, since the paper does
+//! not say whether its times include it. The models come from `dapple_models`, the exemplars are drawn.
 
 use super::drawings::{self, Drawing, draw};
 use super::scene::{count, exact};
@@ -19,7 +19,7 @@ use glam::DVec3;
 pub(super) struct Row {
     case: Case,
     model: fn(usize) -> Result<Mesh, ModelError>,
-    /// Where directions are given, and which.
+    /// Pairs of a position and the direction there.
     directions: &'static [[DVec3; 2]],
     n_sites: usize,
     n_levels: usize,
@@ -88,7 +88,7 @@ const BUNNY: Row = Row {
     ..OCTOPUS
 };
 
-/// The model of the rows of single steps, too.
+/// The row whose model the rows of single steps use as well.
 pub(super) const TORI: Row = Row {
     case: Case {
         case: "table 1: tori, 256,000 sites, 4 levels, 64² exemplar",
@@ -142,7 +142,7 @@ const ELEPHANT: Row = Row {
     ..TORI
 };
 
-/// The triangles of a model: the paper has 10 to 20 thousand.
+/// The number of triangles of a model; the paper has 10 to 20 thousand.
 const N_TRIANGLES: usize = 14_000;
 
 pub(super) fn run(bench: &mut Bench) -> Result<()> {
@@ -155,12 +155,12 @@ pub(super) fn run(bench: &mut Bench) -> Result<()> {
 }
 
 impl Row {
-    /// The surface of the model.
+    /// Returns the surface of the model.
     pub(super) fn surface(&self) -> Result<Surface> {
         Ok(Surface::new((self.model)(N_TRIANGLES)?)?)
     }
 
-    /// How many sites there are.
+    /// Returns the options of the sites.
     pub(super) fn sites(&self) -> HierarchyOptions {
         HierarchyOptions {
             n_sites: self.n_sites,
@@ -169,7 +169,7 @@ impl Row {
         }
     }
 
-    /// Which way the texture runs.
+    /// Returns the directions of the texture.
     pub(super) fn directions(&self) -> Vec<Direction> {
         let directions = self.directions.iter();
         directions

@@ -1,4 +1,4 @@
-//! Two threads beside one.
+//! The synthesis on two threads beside one.
 
 use super::scene::{N_SITES, exact, leaves, model, synthesizer};
 use super::whole;
@@ -22,7 +22,7 @@ const WHOLE: Case = Case {
     ..SYNTHESIS
 };
 
-/// The time of a row, unless three turns take longer.
+/// The time spent on a row, unless three turns take longer.
 const BUDGET: Duration = Duration::from_secs(20);
 
 pub(super) fn run(bench: &mut Bench) -> Result<()> {
@@ -32,7 +32,7 @@ pub(super) fn run(bench: &mut Bench) -> Result<()> {
     let (model, exemplar) = (model()?, leaves(64)?.exemplar()?);
     if bench.wants(&SYNTHESIS) {
         let sites = synthesizer(&model, N_SITES, 3)?;
-        // Checked once, so that a run of the row cannot fail.
+        // Checked here once, so that a run of the row cannot fail.
         sites
             .synthesize(&exemplar, &exact(3))
             .context("synthesis")?;

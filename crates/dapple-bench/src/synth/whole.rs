@@ -1,4 +1,4 @@
-//! The whole run: an OBJ file in memory in, a GLB file with a texture map out.
+//! A whole run, from an OBJ file in memory to a GLB file with a texture map.
 
 use super::scene::{self, Model, N_SITES};
 use anyhow::Result;
@@ -7,19 +7,19 @@ use dapple_mesh::{CREASE, EncodedImage, Mesh};
 use dapple_mesh_io::{gltf, obj};
 use dapple_synth::{Atlas, Exemplar, Options, bake, textured_model};
 
-/// The side of the texture map.
+/// The side of the texture map in texels.
 const MAP_SIDE: u32 = 2048;
 
-/// What a whole run makes.
+/// The result of a whole run.
 #[derive(Debug, PartialEq)]
 pub(super) struct Written {
-    /// The file with the texture map.
+    /// The GLB file with the texture map.
     pub(super) glb: Vec<u8>,
-    /// The part of the map that shows a face.
+    /// The fraction of the map that belongs to a face.
     pub(super) coverage: f64,
 }
 
-/// Reads a model, covers it with a texture, bakes that, and writes the model with the map.
+/// Reads a model, synthesizes a texture on it, bakes the texture, and writes the model with the map.
 pub(super) fn run(model: &Model, exemplar: &Exemplar, options: &Options) -> Result<Written> {
     let synthesizer = scene::synthesizer(model, N_SITES, options.n_levels)?;
     let texture = synthesizer.synthesize(exemplar, options)?;
@@ -38,7 +38,7 @@ pub(super) fn run(model: &Model, exemplar: &Exemplar, options: &Options) -> Resu
     })
 }
 
-/// The mesh of an OBJ file, mended.
+/// Reads the mesh of an OBJ file and repairs it.
 pub(super) fn read_obj(bytes: &[u8]) -> Result<Mesh> {
     let (mesh, _) = obj::read(bytes)?.mesh.repair();
     Ok(mesh)

@@ -1,4 +1,4 @@
-//! Ours beside a Fourier transform, and wavelet noise beside Perlin noise.
+//! Our filters beside a Fourier transform, and wavelet noise beside Perlin noise.
 
 use super::{SIDE, confirm_equal, down_and_up, white_noise};
 use crate::harness::{Bench, Done, Side};
@@ -27,7 +27,7 @@ const NOISE: Case = Case {
     note: "positions anywhere in a tile of 128×128 cells, in random order",
 };
 
-/// Cells along each axis of the noise tile.
+/// The number of cells of the noise tile along each axis.
 const N_CELLS: u32 = 128;
 
 pub(super) fn run(bench: &mut Bench) -> Result<()> {
@@ -43,7 +43,7 @@ pub(super) fn run(bench: &mut Bench) -> Result<()> {
             down_and_up(&raster)?,
             theirs,
             |ours, theirs| {
-                // A transform of 2048 values in f32 loses some 1e-6.
+                // A transform of 2048 values in `f32` has an error of some 1e-6.
                 confirm_equal(ours.fine.pixels(), &theirs.fine, 1e-5)?;
                 Ok(Done::both(raster.pixels().len()))
             },

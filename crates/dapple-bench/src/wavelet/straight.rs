@@ -1,17 +1,18 @@
-//! The other way to halve and double: 32 taps, one after another, in `f32`.
+//! A plain convolution for halving and doubling: 32 taps, one after another, in `f32`.
 //!
-//! The taps are those of the exact filter, cut off after 16 on either side; what is cut off sums up to less than 1e-3.
-//! It is straight, not slow on purpose: rows are taken apart into even and odd pixels with a margin, so that no index
-//! wraps in a loop, and each tap is added to a whole row at a time, which the compiler turns into vector code.
+//! The taps are those of the exact filter, cut off after 16 on either side; the rest sums to less than 1e-3. It is
+//! plain, but not deliberately slow: rows are split into even and odd pixels with a margin, so that no index wraps in a
+//! loop. Each tap is added to a whole row at a time, which the compiler turns into vector code.
 
-/// Taps on either side.
+/// The number of taps on either side.
 const HALF: usize = 16;
 
-/// The filter pair with its memory.
+/// The filter pair with its buffers.
 #[derive(Clone, Debug)]
 pub(crate) struct Straight {
     side: usize,
-    /// `a` of pixel `k + 1` and of `-k`, for `k` from 0: the filter is symmetric about the middle of two pixels.
+    /// The tap `a` of pixels `k + 1` and `-k`, for `k` from 0: the filter is symmetric about the middle between two
+    /// pixels.
     taps: [f32; HALF],
     even: Vec<f32>,
     odd: Vec<f32>,
@@ -19,12 +20,12 @@ pub(crate) struct Straight {
     narrow: Vec<f32>,
     coarse: Vec<f32>,
     tall: Vec<f32>,
-    /// The result.
+    /// The result of the last run.
     pub(crate) fine: Vec<f32>,
 }
 
 impl Straight {
-    /// The filters for a square raster.
+    /// Returns the filters for a square raster.
     pub(crate) fn new(side: usize) -> Self {
         let half = side / 2;
         Self {
@@ -120,16 +121,16 @@ impl Straight {
     }
 }
 
-/// Adds two rows, by their common tap, to a third.
+/// Adds the sum of two rows, times their common tap, to a third row.
 fn add_pairs(out: &mut [f32], after: &[f32], before: &[f32], tap: f32) {
     for ((out, after), before) in out.iter_mut().zip(after).zip(before) {
         *out += tap * (after + before);
     }
 }
 
-/// The taps `a` of pixels 1, 2, … 16, from the inverse Gram filter and `q`.
+/// Returns the taps `a` of pixels 1, 2, … 16, from the inverse Gram filter and `q`.
 fn taps() -> [f32; HALF] {
-    // `g` is the inverse of the Gram matrix, with its two poles.
+    // `g` is the inverse of the Gram matrix, which has two poles.
     let inverse = |n: i32| {
         let pole =
             |scale: f64, pole: f64| (0..n.abs()).fold(scale, |product: f64, _| product * pole);
@@ -139,7 +140,7 @@ fn taps() -> [f32; HALF] {
     let q = [1.0, 29.0, 147.0, 303.0, 303.0, 147.0, 29.0, 1.0].map(|q: f64| q / 960.0);
     std::array::from_fn(|index| {
         let k = index as i32 + 1;
-        // q begins three pixels before the pixel 2j.
+        // `q` begins three pixels before pixel 2j.
         let terms = (-40..=40).filter_map(|n| {
             let at = usize::try_from(k - 2 * n + 3).ok()?;
             Some(inverse(n) * q.get(at)?)
@@ -159,7 +160,7 @@ mod tests {
                 .into_iter()
                 .zip([0.6553403417, 0.0339789750, -0.2437804297, -0.0259359777])
         {
-            // Ten digits are known of the taps; f32 has seven.
+            // The expected taps have ten digits; `f32` has seven.
             assert!(
                 (f64::from(tap) - expected).abs() < 1e-7,
                 "{tap} and not {expected}"
@@ -171,7 +172,7 @@ mod tests {
     fn a_constant_is_kept_up_to_the_taps_that_are_left_out() {
         let mut straight = Straight::new(64);
         straight.run(&[1.0; 64 * 64]);
-        // The tail of the filter after 16 taps sums up to less than 1e-3 on either side and axis.
+        // The taps after the first 16 sum to less than 1e-3 on either side and axis.
         assert!(
             straight.fine.iter().all(|value| (value - 1.0).abs() < 4e-3),
             "a flat picture stays flat"

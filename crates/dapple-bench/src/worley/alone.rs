@@ -1,4 +1,4 @@
-//! Ours beside ourselves: rows that need no other crate.
+//! Rows that compare our own methods with each other and need no other crate.
 
 use super::{F2_MINUS_F1, F2_MINUS_F1_IN_SPACE, Grid, Known, PLANE, SPACE};
 use crate::harness::{Bench, Done};
@@ -33,10 +33,10 @@ const TWO_THREADS: Case = Case {
     ..MANHATTAN
 };
 
-/// Columns and rows of the image on two threads: large enough for a job of at least 100 ms.
+/// Width and height of the image on two threads: large enough for a job of at least 100 ms.
 const TWO_THREADS_SIDE: u32 = 8192;
 
-/// F2 − F1 for the Manhattan metric, whose disks have 2r² rather than πr², hence distances √(π/2) as long.
+/// F2 − F1 for the Manhattan metric. Its disks have the area 2r² instead of πr², so distances are √(π/2) times as long.
 const MANHATTAN_F2_MINUS_F1: Known = Known {
     mean: 0.182,
     ..F2_MINUS_F1

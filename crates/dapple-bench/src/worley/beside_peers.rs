@@ -1,4 +1,4 @@
-//! Rasters of ours beside the grids of other crates.
+//! Our rasters beside the grids of other crates.
 
 use super::{F1, F2_MINUS_F1, F2_MINUS_F1_IN_SPACE, Grid, PLANE, SPACE};
 use crate::harness::{Bench, Done, Side};
@@ -69,7 +69,7 @@ const BESIDE_SIMPLEX_IN_SPACE: Case = Case {
     ..BESIDE_SIMPLEX
 };
 
-/// Turns of a row.
+/// The number of turns of a row.
 const TURNS: u32 = 25;
 
 pub(super) fn run(bench: &mut Bench) -> Result<()> {
@@ -91,24 +91,25 @@ pub(super) fn run(bench: &mut Bench) -> Result<()> {
     )
 }
 
-/// A peer's grids with `N` axes.
+/// A peer that makes grids with `N` axes, and its known properties.
 struct Peer<const N: usize> {
-    /// Makes the grid of so many pixels, with so many cells per pixel.
+    /// Makes the grid; the arguments are its size in pixels and the number of cells per pixel.
     make: fn([usize; N], f32) -> noise::Grid,
-    /// Where its values lie.
+    /// The range of its values.
     range: RangeInclusive<f32>,
-    /// How far apart they are, at least.
+    /// The least difference between the largest and the least value.
     spread: f32,
 }
 
-/// A position is less than 0.45 + 0.71 from its nearest feature point.
+/// Cellular F1: a position is less than 0.45 + 0.71 from its nearest feature point.
 const CELLULAR_F1: Peer<2> = Peer {
     make: noise::simdnoise_f1,
     range: 0.0..=1.4,
     spread: 0.5,
 };
 
-/// The second nearest is less than 0.45 + 1.12 away; a difference may be rounded to the other side of zero.
+/// Cellular F2 − F1: the second nearest point is less than 0.45 + 1.12 away. A small difference may be rounded below
+/// zero.
 const CELLULAR: Peer<2> = Peer {
     make: noise::simdnoise_f1_minus_f2,
     range: -2.5..=1e-5,
@@ -121,7 +122,7 @@ const CELLULAR_IN_SPACE: Peer<3> = Peer {
     spread: 0.5,
 };
 
-/// `simdnoise` does not scale it to [−1, 1].
+/// Simplex noise, which `simdnoise` does not scale to [−1, 1].
 const SIMPLEX: Peer<2> = Peer {
     make: noise::simdnoise_simplex,
     range: -0.04..=0.04,
@@ -146,7 +147,7 @@ where
         *made = (peer.make)(size, frequency);
     })
     .prepared(|made| made.0 = Vec::new());
-    // About as much time for our runs of a turn as for the one of the peer.
+    // As many runs of ours per turn as take about the time of the peer's run.
     let times = match case.must {
         Must::Faster(bar) | Must::AtLeast(bar) => bar,
         Must::CostAtMost(bar) => 1.0 / bar,

@@ -1,8 +1,8 @@
-//! What two processes compare of their rasters, in the program `worley_raster` and in this one.
+//! A hash of rasters, with which the program `worley_raster` and this one compare their results.
 
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 
-/// A hash of the bits of all values.
+/// Returns a hash of the bits of all values.
 pub(crate) fn digest(values: &[f32]) -> u64 {
     let mut hasher = DefaultHasher::new();
     for value in values {

@@ -1,6 +1,6 @@
-//! Everything about the four nearest points beside the distances to two of them.
+//! All data of the four nearest points beside the distances to two of them.
 //!
-//! The band is so small that all of it stays in the cache: what is measured is the search, not the memory.
+//! The band is small enough to stay in the cache, so that the search is measured and not the memory.
 
 use crate::harness::{Bench, Done, Side};
 use crate::row::{Case, Must, Unit};
@@ -20,17 +20,17 @@ const FOUR: Case = Case {
            beside 8",
 };
 
-/// Columns and rows of the band: 640 KiB for all of the four nearest points.
+/// Width and height of the band in pixels: 640 KiB for all data of the four nearest points.
 const BAND: [u32; 2] = [256, 32];
 
-/// Pixels of a unit cell along each axis.
+/// Pixels per unit cell along each axis.
 const PX_PER_CELL: f64 = 64.0;
 
-/// Turns of the row, and runs of each side in a turn.
+/// The number of turns of the row, and the runs of each side in a turn.
 const TURNS: u32 = 101;
 const RUNS: u32 = 5;
 
-/// What the band holds of one of the nearest points.
+/// The data of one of the nearest points at all pixels of the band.
 struct Nearest {
     distance: Raster<f32>,
     vector: Raster<[f32; 2]>,

@@ -1,7 +1,7 @@
-//! Scattered positions of ours beside the fastest function of other crates for one position.
+//! Our evaluation at scattered positions beside the fastest functions of other crates for one position.
 //!
-//! The positions lie anywhere in 1000×1000 or 1000×1000×1000 cells, in random order, so that no two in a row share a
-//! cell; both sides have the same, the peer in single precision.
+//! The positions lie anywhere in 1000×1000 or 1000×1000×1000 cells, in random order, so that consecutive positions do
+//! not share a cell. Both sides get the same positions, the peer in single precision.
 
 use crate::harness::{Bench, Done, Side};
 use crate::peers::noise;
@@ -38,25 +38,25 @@ const JITTERED_IN_SPACE: Case = Case {
     ..JITTERED
 };
 
-/// How many positions are asked for in one run.
+/// The number of positions per run.
 const N_POSITIONS: usize = 1 << 16;
 
-/// Cells along each axis.
+/// The number of cells along each axis.
 const N_CELLS: f64 = 1000.0;
 
-/// Turns of a row.
+/// The number of turns of a row.
 const TURNS: u32 = 41;
 
 pub(super) fn run(bench: &mut Bench) -> Result<()> {
     let (plane, space) = (noise::noise_functions_f1_2, noise::noise_functions_f1_3);
-    // The means of F1: known for three points per cell, and measured for one, with a plain loop over the neighbors.
+    // The means of F1: known for three points per cell, and measured for one with a plain loop over the neighbors.
     poisson::<2>(bench, &F1_AND_F2, 0.282, plane)?;
     poisson::<3>(bench, &F1_AND_F2_IN_SPACE, 0.381, space)?;
     jittered::<2>(bench, &JITTERED, 0.430, plane)?;
     jittered::<3>(bench, &JITTERED_IN_SPACE, 0.519, space)
 }
 
-/// Fills the values of a peer.
+/// A function of a peer that fills in values at positions.
 type Fill<const N: usize> = fn(&[[f32; N]], &mut [f32]);
 
 fn poisson<const N: usize>(bench: &mut Bench, case: &Case, mean: f64, fill: Fill<N>) -> Result<()>
@@ -101,7 +101,7 @@ where
     });
     bench.beside(case, TURNS, ours, theirs, |features, values| {
         confirm(worley, mean, &positions, features)?;
-        // F1 up to 1.5, mapped from [0, 1] to [−1, 1].
+        // F1 up to 1.5, mapped as the peer maps [0, 1] to [−1, 1].
         ensure!(
             values.iter().all(|value| (-1.0..=2.0).contains(value)),
             "a value of the peer is not in its range"
@@ -114,7 +114,7 @@ where
     })
 }
 
-/// Positions anywhere in a cube of [`N_CELLS`].
+/// Returns positions anywhere in a cube of [`N_CELLS`].
 fn positions<const N: usize>() -> Vec<[f64; N]> {
     let seed = SEED.child("bench scattered positions", 0);
     let unit = |index, axis| unit_f64(hash1(seed, [index], axis));
@@ -123,7 +123,7 @@ fn positions<const N: usize>() -> Vec<[f64; N]> {
         .collect()
 }
 
-/// Checks the features of all positions beside those of one position, and the mean of F1.
+/// Checks the features of all positions against single evaluations, and the mean of F1.
 fn confirm<const N: usize, const K: usize>(
     worley: &Worley<N>,
     mean: f64,
@@ -145,7 +145,7 @@ where
         .map(|found| f64::from(found[0].distance))
         .sum();
     let found = sum / features.len() as f64;
-    // A hundredth is six deviations of the mean of so many positions.
+    // A hundredth is six standard deviations of the mean of this many positions.
     ensure!(
         (found / mean - 1.0).abs() <= 0.01,
         "a mean F1 of {found} is not known, {mean} is"

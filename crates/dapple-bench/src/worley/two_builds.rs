@@ -1,8 +1,8 @@
-//! The build for any processor, which picks its instructions at run time, beside a build for this one.
+//! A build for any processor, which chooses its instructions at run time, beside a build for the current processor.
 //!
-//! Both are builds of the program `worley_raster`, each in a target directory of its own under `target/`. They run in
-//! turns as child processes, which print the processor time of every run; the row has the medians of all. Confirmed:
-//! the bits are those of a raster rendered here. The first build of both takes some minutes.
+//! Both are builds of the program `worley_raster`, each in its own target directory under `target/`. They run in turns
+//! as child processes, which print the processor time of every run; the row has the medians of all runs. Confirmed: the
+//! bits are those of a raster rendered in this process. The first build of both takes some minutes.
 
 use super::digest::digest;
 use super::{F2_MINUS_F1, Grid, PLANE};
@@ -28,10 +28,10 @@ const DEFAULT_4: Case = Case {
     ..DEFAULT_64
 };
 
-/// Turns of a row.
+/// The number of turns of a row.
 const TURNS: u32 = 9;
 
-/// Runs of each program in a turn.
+/// The number of runs of each program in a turn.
 const RUNS: u32 = 25;
 
 pub(super) fn run(bench: &mut Bench) -> Result<()> {
@@ -74,7 +74,7 @@ fn row(bench: &mut Bench, case: &Case, programs: &[PathBuf; 2], px_per_cell: u32
     Ok(())
 }
 
-/// Builds the program with these flags into a directory under `target/`.
+/// Builds the program with the given flags into a directory under `target/`.
 fn build(directory: &str, flags: Option<&str>) -> Result<PathBuf> {
     let workspace = Path::new(env!("CARGO_MANIFEST_DIR"))
         .ancestors()
@@ -87,7 +87,7 @@ fn build(directory: &str, flags: Option<&str>) -> Result<PathBuf> {
         .args(["build", "--quiet", "--release", "--package", "dapple-bench"])
         .args(["--bin", "worley_raster", "--target-dir"])
         .arg(&target)
-        // Flags of the build that runs here are not those to measure.
+        // The flags of the current build must not leak into the measured ones.
         .env_remove("CARGO_ENCODED_RUSTFLAGS")
         .env_remove("CARGO_BUILD_TARGET")
         .env_remove("RUSTFLAGS");
@@ -100,7 +100,7 @@ fn build(directory: &str, flags: Option<&str>) -> Result<PathBuf> {
     Ok(target.join("release").join(name))
 }
 
-/// Runs the program, collects the seconds of its runs, and returns the hash of the bits that it rendered.
+/// Runs the program, collects the seconds of its runs, and returns the hash of the rendered bits.
 fn run_program(program: &Path, px_per_cell: u32, seconds: &mut Vec<f64>) -> Result<u64> {
     let arguments = [SEED.0, PLANE[0].into(), px_per_cell.into(), RUNS.into()];
     let output = Command::new(program)

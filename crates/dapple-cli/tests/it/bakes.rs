@@ -1,4 +1,4 @@
-//! Recipes and single fields: files, crops, threads, and being killed.
+//! Tests of baking recipes and single fields: files, crops, threads, and killed processes.
 
 use crate::support::{Folder, ROCK, assert_done, assert_refused, stdout};
 use dapple::image::{Image, Limits, decode_image, read_image};

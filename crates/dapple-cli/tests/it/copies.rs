@@ -33,7 +33,7 @@ fn run(folder: &Folder, line: &str) {
     assert_done(&folder.run(&line.split(' ').collect::<Vec<_>>()), line);
 }
 
-/// The numbers of the only map.
+/// Returns the numbers of the only map.
 fn value(maps: Vec<Map>) -> Raster<f32> {
     match maps.into_iter().next() {
         Some(Map::Value(raster)) => raster,

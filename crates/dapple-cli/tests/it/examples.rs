@@ -1,4 +1,4 @@
-//! The examples of the help run unchanged.
+//! Tests that the examples of the help run unchanged.
 
 #![cfg(unix)]
 
@@ -27,7 +27,7 @@ const SUBCOMMANDS: [&str; 19] = [
     "man",
 ];
 
-/// The lines of a help that are commands; a line that ends with a backslash continues.
+/// Returns the lines of a help text that are commands; a line that ends with a backslash continues.
 fn examples(help: &str) -> Vec<String> {
     let help = help.replace("\\\n", " ");
     let lines = help.lines().map(str::trim);
@@ -37,7 +37,7 @@ fn examples(help: &str) -> Vec<String> {
         .collect()
 }
 
-/// The help of a subcommand, wide enough for every example to be one line.
+/// Returns the help of a subcommand, wide enough for every example to be one line.
 fn help(folder: &Folder, subcommand: &[&str]) -> String {
     let arguments = [subcommand, &["--help"]].concat();
     let output = folder.run(&arguments);

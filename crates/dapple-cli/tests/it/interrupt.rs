@@ -1,4 +1,4 @@
-//! Files after Ctrl-C and after kills.
+//! Tests of the remaining files after Ctrl-C and after kills.
 
 #![cfg(unix)]
 

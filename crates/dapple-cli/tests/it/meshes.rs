@@ -42,7 +42,7 @@ fn cover(folder: &Folder, extra: &[&str], output: &str) -> Model {
     read_model(folder.path(output)).unwrap()
 }
 
-/// The largest difference of corner normals from those of their faces.
+/// Returns the largest difference between normals of corners and normals of their faces.
 fn most_off(model: &Model) -> f64 {
     let normals = model.normals_of_corners().unwrap();
     let faces = (0..).map(FaceIdx).zip(&normals);

@@ -6,7 +6,7 @@ use dapple::mesh_io::gltf;
 use dapple::raster::Raster;
 use std::fs;
 
-/// A recipe in which every map varies and differs from the others.
+/// A recipe whose maps all vary and differ from one another.
 const VARIED: &str = r##"
 dapple = 1
 seed = 5
@@ -53,8 +53,8 @@ fn folder(name: &str) -> Folder {
     folder
 }
 
-/// The channels of a PNG as 16 bits, one after the other; those of 8 bits are multiplied by 257, and gray counts as one
-/// channel.
+/// Returns the channels of a PNG as 16 bits, one after the other. Channels of 8 bits are multiplied by 257, and gray
+/// counts as one channel.
 fn channels(folder: &Folder, name: &str) -> Vec<Vec<u16>> {
     fn split<const N: usize>(raster: &Raster<[u16; N]>) -> Vec<Vec<u16>> {
         let channel = |at: usize| raster.pixels().iter().map(|pixel| pixel[at]).collect();
@@ -72,7 +72,7 @@ fn channels(folder: &Folder, name: &str) -> Vec<Vec<u16>> {
     }
 }
 
-/// The channels of a map, baked on its own.
+/// Returns the channels of a map that is baked alone.
 fn map(folder: &Folder, name: &str, normal_y: &str, format: &str) -> Vec<Vec<u16>> {
     let file = format!("own_{name}_{normal_y}_{format}.png");
     if !folder.path(&file).exists() {
@@ -95,11 +95,11 @@ fn map(folder: &Folder, name: &str, normal_y: &str, format: &str) -> Vec<Vec<u16
     channels(folder, &file)
 }
 
-/// A file without its ending, its format, and its channels.
+/// A file name without its ending, its format, and its channels.
 type File = (&'static str, &'static str, &'static str);
 
-/// The expected files of presets, as their engines document them: the file, the bits, and for each channel its map and
-/// which of its channels. `!` before a map inverts it, and `1` is white.
+/// The expected files of presets, as the engines document them: the file, the bit depth, and for each channel the map
+/// and the index of the channel in it. `!` before a map inverts it, and `1` is white.
 const EXPECTED: [(&str, &str, &[File]); 5] = [
     (
         "unity",

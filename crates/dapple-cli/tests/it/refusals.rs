@@ -1,4 +1,4 @@
-//! Errors: inputs that are missing, empty, folders, unreadable or of another kind; and invalid outputs.
+//! Tests of errors: inputs that are missing, empty, folders, unreadable or of another kind; and invalid outputs.
 
 use crate::support::{Folder, assert_refused, stderr, stdout};
 use std::fs;

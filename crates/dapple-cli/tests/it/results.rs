@@ -1,4 +1,4 @@
-//! Results of the command, compared with those of the libraries.
+//! Compares the results of the command with those of the libraries.
 
 use crate::support::{Folder, assert_done, stderr, stdout};
 use dapple::hash::Seed;

@@ -1,4 +1,4 @@
-//! Shards of a picture: listed, baked by processes that die, and joined.
+//! Tests of shards of a picture: they are listed, baked by processes that die, and joined.
 
 #![cfg(unix)]
 
@@ -32,7 +32,7 @@ fn bytes(folder: &Folder, name: &str) -> Vec<u8> {
     fs::read(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
-/// The number of files in a folder and those in it.
+/// Returns the number of files in a folder and its subfolders.
 fn n_files(folder: &Path) -> usize {
     let entries = fs::read_dir(folder)
         .unwrap()

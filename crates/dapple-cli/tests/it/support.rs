@@ -75,7 +75,7 @@ impl Folder {
         folder
     }
 
-    /// The path of a file in it.
+    /// Returns the path of a file in the folder.
     pub(crate) fn path(&self, name: &str) -> PathBuf {
         self.0.join(name)
     }
@@ -92,7 +92,7 @@ impl Folder {
             .collect()
     }
 
-    /// The command with arguments, in this folder.
+    /// Returns the command with arguments, in this folder.
     pub(crate) fn command<S: AsRef<OsStr>>(&self, arguments: &[S]) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_dapple"));
         command
@@ -155,7 +155,7 @@ pub(crate) fn assert_refused(output: &Output, code: i32, part: &str, what: &str)
     assert!(!message.contains("panicked"), "{what}: {message}");
 }
 
-/// A small model, which is made once, since it takes a while.
+/// Returns a small model, which is made only once, since it takes a while.
 fn model() -> &'static Model {
     static MODEL: OnceLock<Model> = OnceLock::new();
     MODEL.get_or_init(|| dapple_models::ray(300).unwrap().into())

@@ -1,4 +1,4 @@
-//! Baking again at every save.
+//! Tests of baking again at every save.
 
 use crate::support::Folder;
 use dapple::image::{Limits, read_image};
@@ -7,7 +7,7 @@ use std::path::Path;
 use std::process::{Child, Stdio};
 use std::time::{Duration, Instant};
 
-/// The deadline for the bake of a save. It takes some tenths of a second, and more if other tests run.
+/// The time limit for the bake after a save. It takes some tenths of a second, and more if other tests run.
 const DEADLINE: Duration = Duration::from_secs(60);
 
 /// A recipe with a constant height.
@@ -38,7 +38,7 @@ fn holds(path: &Path, size: [u32; 2], gray: f32) -> bool {
             .is_ok_and(|image| image.pixels().iter().all(is_near))
 }
 
-/// Waits for an image, and fails with what is missing.
+/// Waits for an image of one gray; if it does not appear in time, fails with the image found instead.
 #[expect(clippy::disallowed_methods, reason = "another program is waited for")]
 fn wait_for(watching: &mut Watching, path: &Path, gray: f32, what: &str) {
     let start = Instant::now();

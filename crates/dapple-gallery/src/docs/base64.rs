@@ -1,4 +1,4 @@
-//! Base64, the way of a data URI to hold bytes.
+//! Base64, the encoding of bytes in a data URI.
 //!
 //! Reference: S. Josefsson, "The Base16, Base32, and Base64 Data Encodings", RFC 4648, 2006,
 //! <https://www.rfc-editor.org/rfc/rfc4648>, section 4.
@@ -7,7 +7,7 @@ use anyhow::{Context, ensure};
 
 const ALPHABET: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 
-/// Three bytes become four letters of six bits each, from the top; what is missing at the end is `=`.
+/// Encodes bytes: three bytes become four letters of six bits each, from the highest bits down; `=` pads the end.
 pub(super) fn encode(bytes: &[u8]) -> String {
     let mut text = String::new();
     for group in bytes.chunks(3) {
@@ -24,7 +24,7 @@ pub(super) fn encode(bytes: &[u8]) -> String {
     text
 }
 
-/// The bytes of a text that [`encode`] made.
+/// Decodes a text that [`encode`] made.
 pub(super) fn decode(text: &str) -> anyhow::Result<Vec<u8>> {
     ensure!(text.len().is_multiple_of(4), "base64 ends within a group");
     let mut bytes = Vec::new();

@@ -43,7 +43,7 @@ pub(super) const DOCUMENTED: Documented = Documented {
     },
 };
 
-/// Columns and rows of a bar.
+/// The width and height of a bar, in pixels.
 const BAR: [u32; 2] = [192, 20];
 
 /// Pixels along a side of a picture.
@@ -115,7 +115,7 @@ const fn palette(name: &'static str, render: fn() -> anyhow::Result<Vec<Panel>>)
     }
 }
 
-/// The bar of a palette; those of separate colors have no transitions.
+/// Makes the bar of a palette; the categorical palettes get bands without transitions.
 fn of(palette: Palette) -> anyhow::Result<Vec<Panel>> {
     let ramp = match palette {
         Palette::Cow | Palette::Labels => ColorRamp::bands(&palette.colors())?,
@@ -124,7 +124,7 @@ fn of(palette: Palette) -> anyhow::Result<Vec<Panel>> {
     Ok(vec![bar("its colors", &ramp, 1.0)?])
 }
 
-/// A ramp whose stops are not at equal distances.
+/// A ramp whose stops are unevenly spaced.
 fn ramp() -> anyhow::Result<ColorRamp> {
     let stops = [
         (0.0, [20_u8, 24, 60]),
@@ -140,14 +140,14 @@ fn ramp() -> anyhow::Result<ColorRamp> {
     Ok(ColorRamp::new(stops)?)
 }
 
-/// The colors of the values from 0 to `end`, from left to right.
+/// Makes a bar with the colors of the values from 0 to `end`, from left to right.
 fn bar(label: &str, ramp: &ColorRamp, end: f32) -> anyhow::Result<Panel> {
     let value = |column: u32| (column as f32 + 0.5) * end / BAR[0] as f32;
     let colors = Raster::from_fn(BAR, |column, _| ramp.at(value(column)))?;
     Ok(Panel::color(label, colors))
 }
 
-/// A height that repeats.
+/// A height map that repeats, of `side` × `side` pixels.
 fn height(side: u32) -> anyhow::Result<Raster<f32>> {
     let bumps = Worley2::new(Seed(5))
         .with_period([Some(3); 2])?
@@ -157,7 +157,7 @@ fn height(side: u32) -> anyhow::Result<Raster<f32>> {
     Ok(bumps.to_raster(&window)?.map(|value| 1.0 - value))
 }
 
-/// The height in the colors of a palette, no more of them than a gray picture has grays.
+/// A height map colored by a palette, reduced to as many colors as a gray picture has shades.
 fn painted(label: &str, palette: Palette, height: &Raster<f32>) -> Panel {
     let height = height.map(|&value| rounded(value, GRAYS));
     Panel::color(label, palette.ramp().apply(&height))

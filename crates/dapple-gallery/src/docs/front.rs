@@ -1,4 +1,4 @@
-//! The picture of the README of the workspace: some figures in a row, and built-in recipes in light below them.
+//! The picture of the workspace's README: a row of figures, and below it a row of lit built-in recipes.
 
 use super::Documented;
 use super::picture::{below, colored, of_figures, row};
@@ -15,7 +15,7 @@ pub(super) const DOCUMENTED: Documented = Documented {
             ("pups-fig-14", 3),
             ("pups-fig-15", 0),
         ];
-        // By their places among the names of all built-in recipes.
+        // The numbers are places in the list of all built-in recipes.
         let [
             flagstone,
             giraffe,
@@ -40,8 +40,8 @@ pub(super) const DOCUMENTED: Documented = Documented {
     },
 };
 
-/// How many shades each channel has: the whole file is to be small.
+/// The number of shades of each channel, kept low so that the file is small.
 const COLORS: f32 = 16.0;
 
-/// Pixels that a picture of a row is high.
+/// The height of the pictures of a row, in pixels.
 const HEIGHT: u32 = 171;

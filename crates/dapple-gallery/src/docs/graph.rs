@@ -91,7 +91,7 @@ fn points() -> anyhow::Result<PointSet> {
     Ok(poisson_disk(Domain::paper_torus(), 0.26, Seed(3))?)
 }
 
-/// The edges and points of a graph, in the square of its domain.
+/// Draws the edges and points of a graph, in the square of its domain.
 fn edges(label: &str, points: &PointSet, graph: &Graph, side: u32) -> anyhow::Result<Panel> {
     let domain = points.domain();
     let window = Window::new(domain.origin, domain.size, [side; 2])?;

@@ -7,7 +7,7 @@ use crate::figures::surface::stage::lit;
 use crate::figures::surface::subject::{SUBJECTS, Subject};
 use dapple_color::LinearRgb;
 
-/// Triangles of a model: enough for a small picture.
+/// The number of triangles of a model: enough for a small picture.
 const N_TRIANGLES: usize = 3000;
 
 pub(super) const DOCUMENTED: Documented = Documented {

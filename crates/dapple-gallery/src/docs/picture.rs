@@ -1,4 +1,4 @@
-//! What the strips share: pictures with few shades, whose files are small, and pictures in a row.
+//! Helpers that all strips share: pictures with few shades, whose files are small, and pictures in a row.
 
 use crate::draw::shrink;
 use crate::figures::figures;
@@ -11,28 +11,28 @@ use glam::DVec2;
 /// Pixels along a side of a picture.
 pub(super) const SIDE: u32 = 92;
 
-/// Pixels along a side of a picture of dots, lines or areas, which is small in a file.
+/// Pixels along a side of a picture of dots, lines or flat areas, which compresses well.
 pub(super) const LARGE: u32 = 108;
 
-/// Samples along the side of a pixel, where a picture has edges.
+/// Samples along the side of a pixel, for pictures with edges.
 pub(super) const SAMPLES: u32 = 3;
 
-/// How many grays a smooth picture has, in which fewer would be seen as steps.
+/// The number of gray levels of a smooth picture: with fewer, steps would be visible.
 pub(super) const SMOOTH_GRAYS: f32 = 32.0;
 
-/// How many grays other pictures have: few, since a file with all 256 is several times as large.
+/// The number of gray levels of other pictures: a file with all 256 is several times as large.
 pub(super) const GRAYS: f32 = 16.0;
 
-/// How many shades each channel of a picture in color has.
+/// The number of shades of each channel of a color picture.
 pub(super) const COLORS: f32 = 10.0;
 
-/// How many pixels a picture in a README is high.
+/// The height of a picture in a README, in pixels.
 pub(super) const BANNER: u32 = 96;
 
 /// Pixels between the pictures of a row.
 const GAP: u32 = 8;
 
-/// The square of so many units about the origin.
+/// A square window, `units` wide and centered at the origin, with `side` × `side` pixels.
 pub(super) fn square(units: f64, side: u32) -> anyhow::Result<Window> {
     let corner = DVec2::splat(-0.5 * units);
     Ok(Window::new(corner, DVec2::splat(units), [side; 2])?)
@@ -43,25 +43,25 @@ pub(super) fn smooth(label: &str, field: &dyn Field, window: &Window) -> anyhow:
     Ok(shaded(label, &field.to_raster(window)?, SMOOTH_GRAYS))
 }
 
-/// A picture of a field with edges, with values from 0 to 1; the window is that of the picture.
+/// A picture of a field with edges, with values from 0 to 1; `window` is the window of the finished picture.
 pub(super) fn edged(label: &str, field: &dyn Field, window: &Window) -> anyhow::Result<Panel> {
     let fine = field.to_raster(&finer(window)?)?;
     Ok(shaded(label, &shrink(&fine, SAMPLES)?, GRAYS))
 }
 
-/// The window with all samples of its pixels.
+/// The window of all samples, [`SAMPLES`] along each side of a pixel.
 pub(super) fn finer(window: &Window) -> anyhow::Result<Window> {
     let size = window.size.map(|pixels| pixels * SAMPLES);
     let extent = DVec2::from(window.size.map(f64::from)) * window.pixel;
     Ok(Window::new(window.origin, extent, size)?)
 }
 
-/// A gray picture with so many shades.
+/// A gray picture with the given number of shades.
 pub(super) fn shaded(label: &str, raster: &Raster<f32>, shades: f32) -> Panel {
     Panel::gray(label, raster.map(|&value| rounded(value, shades)))
 }
 
-/// A picture in color with so many shades in each channel of sRGB.
+/// A color picture with the given number of shades in each sRGB channel.
 pub(super) fn colored(label: &str, raster: &Raster<LinearRgb>, shades: f32) -> Panel {
     let colors = raster.map(|color| {
         let codes = color
@@ -72,13 +72,14 @@ pub(super) fn colored(label: &str, raster: &Raster<LinearRgb>, shades: f32) -> P
     Panel::color(label, colors)
 }
 
-/// The nearest of so many shades from 0 to 1.
+/// Rounds a value from 0 to 1 to the nearest of `shades` evenly spaced shades.
 pub(super) fn rounded(value: f32, shades: f32) -> f32 {
     let last = shades - 1.0;
     (value.clamp(0.0, 1.0) * last).round() / last
 }
 
-/// Panels of figures, by the names of the figures and the numbers of the panels, from 0, all `height` pixels high.
+/// Returns panels of figures, all `height` pixels high. A place is the name of a figure and the index of its panel,
+/// from 0.
 pub(super) fn of_figures(places: &[(&str, usize)], height: u32) -> anyhow::Result<Vec<Panel>> {
     places
         .iter()
@@ -101,17 +102,17 @@ fn of_figure(name: &str, number: usize, height: u32) -> anyhow::Result<Panel> {
     }
 }
 
-/// Panels of figures in a row, as the picture of a README.
+/// Puts panels of figures in a row: the picture of a README.
 pub(super) fn banner(figures: &[(&str, usize)]) -> anyhow::Result<Panel> {
     banner_of(&of_figures(figures, BANNER)?)
 }
 
-/// Panels in a row, as the picture of a README.
+/// Puts panels in a row: the picture of a README.
 pub(super) fn banner_of(panels: &[Panel]) -> anyhow::Result<Panel> {
     Ok(colored("", &row(panels)?, COLORS))
 }
 
-/// Pictures side by side, with white between them, as high as the lowest of them.
+/// Puts pictures side by side with white gaps, cropped to the height of the lowest.
 pub(super) fn row(panels: &[Panel]) -> anyhow::Result<Raster<LinearRgb>> {
     let height = panels.iter().map(|panel| panel.size()[1]).min();
     let height = height.context("there is no picture for the row")?;
@@ -130,7 +131,7 @@ pub(super) fn row(panels: &[Panel]) -> anyhow::Result<Raster<LinearRgb>> {
     Ok(row)
 }
 
-/// Rows of the same width one below the other, with white between them.
+/// Puts rows of the same width below each other, with white gaps.
 pub(super) fn below(rows: &[Raster<LinearRgb>]) -> anyhow::Result<Raster<LinearRgb>> {
     let width = rows.first().context("there is no row")?.width();
     let mut pixels = Vec::new();

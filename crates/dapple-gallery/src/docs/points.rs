@@ -113,7 +113,7 @@ fn domain() -> Domain {
     Domain::paper_torus()
 }
 
-/// Points whose radius varies from left to right; they wrap from top to bottom.
+/// Points whose radius varies from left to right, and which wrap from top to bottom.
 fn variable() -> anyhow::Result<PointSet> {
     let domain = Domain {
         wrap: [false, true],
@@ -129,7 +129,7 @@ fn variable() -> anyhow::Result<PointSet> {
     Ok(variable_poisson_disk(domain, &radius, &options, SEED)?)
 }
 
-/// Three levels, each with half the radius of the one before.
+/// Draws three nested levels, each with half the radius of the previous one.
 fn nested(finest: f64, side: u32) -> anyhow::Result<Panel> {
     let radii = [4.0 * finest, 2.0 * finest, finest];
     let nested = nested_poisson_disk(domain(), &radii, SEED)?;

@@ -27,7 +27,7 @@ pub(super) const DOCUMENTED: Documented = Documented {
     },
 };
 
-/// How many shades a channel has: more than elsewhere, since light changes smoothly.
+/// The number of shades of each channel: more than elsewhere, since light changes smoothly.
 const COLORS: f32 = 20.0;
 
 const SHAPE: Strip = Strip {
@@ -143,7 +143,7 @@ const MIRROR: Strip = Strip {
     },
 };
 
-/// A picture of what is put into an empty scene with a light and a gray sky.
+/// Renders a scene with a light and a gray sky, to which `fill` adds the objects.
 fn scene<'a>(label: &str, fill: impl FnOnce(Scene<'a>) -> Scene<'a>) -> anyhow::Result<Panel> {
     let sky = Sky {
         nadir: LinearRgb::gray(0.5),
@@ -162,7 +162,7 @@ fn scene<'a>(label: &str, fill: impl FnOnce(Scene<'a>) -> Scene<'a>) -> anyhow::
     Ok(colored(label, &picture, COLORS))
 }
 
-/// Checked boards in space.
+/// A checkerboard in space, in two colors.
 fn boards(surface: &Surface) -> Material {
     let board = (surface.position * 4.0 + 0.01).floor().element_sum() * 0.5;
     let color = if board == board.floor() {

@@ -50,12 +50,12 @@ pub(super) const DOCUMENTED: Documented = Documented {
     },
 };
 
-/// A square of smooth values, so many units wide.
+/// A square of smooth values, `units` wide.
 fn values(label: &str, units: f64, texture: &dyn Field) -> anyhow::Result<Panel> {
     smooth(label, texture, &square(units, SIDE)?)
 }
 
-/// A square of labels, so many units wide.
+/// A square of labels, `units` wide.
 fn labels(label: &str, units: f64, texture: &dyn Field) -> anyhow::Result<Panel> {
     edged(label, texture, &square(units, LARGE)?)
 }

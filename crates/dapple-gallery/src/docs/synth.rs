@@ -59,7 +59,7 @@ const COHERENCE: Strip = Strip {
     },
 };
 
-/// An exemplar of the figures, with 64 pixels along its side, and its image.
+/// Draws an exemplar of the figures with 64 pixels along its side; returns the image and the exemplar made of it.
 fn exemplar(name: &str) -> anyhow::Result<(Raster<LinearRgb>, Exemplar)> {
     let of_figures = EXEMPLARS.iter().find(|exemplar| exemplar.name == name);
     let exemplar = of_figures.with_context(|| format!("no exemplar {name}"))?;
@@ -72,7 +72,7 @@ fn exemplar(name: &str) -> anyhow::Result<(Raster<LinearRgb>, Exemplar)> {
     Ok((image, exemplar))
 }
 
-/// A texture that repeats.
+/// Synthesizes a texture that repeats.
 fn grown(
     label: &str,
     image: &Raster<LinearRgb>,
@@ -85,7 +85,7 @@ fn grown(
     Ok(colored(label, &colors, COLORS))
 }
 
-/// An exemplar in the middle of a white picture that is as high as the others of its row.
+/// Centers an exemplar on a white picture that is as high as the others of its row.
 fn on_white(image: &Raster<LinearRgb>) -> anyhow::Result<Panel> {
     let [width, height] = image.size();
     let above = BANNER.saturating_sub(height) / 2;

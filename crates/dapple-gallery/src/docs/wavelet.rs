@@ -136,7 +136,7 @@ fn picture(side: u32) -> anyhow::Result<Raster<f32>> {
     Ok(cracks.to_raster(&window)?.map(crack))
 }
 
-/// The two finest bands of a picture, twice as strong, about gray.
+/// The two finest bands of a picture, amplified by 2 and shown around middle gray.
 fn details(picture: &Raster<f32>, side: u32) -> anyhow::Result<[Panel; 2]> {
     let bands = SplineFilter::default().analyze(picture, 2, BORDERS)?;
     let panel = |band: usize| -> anyhow::Result<Panel> {
@@ -150,14 +150,14 @@ fn noise(weights: &[f32]) -> anyhow::Result<WaveletNoise2> {
     Ok(WaveletNoise2::new(64, Seed(1))?.with_weights(weights)?)
 }
 
-/// Noise about gray.
+/// Noise shown around middle gray.
 fn signed(label: &str, noise: &WaveletNoise2, side: u32) -> anyhow::Result<Panel> {
     let window = Window::new(DVec2::ZERO, DVec2::splat(CELLS), [side; 2])?;
     let gray = noise.to_raster(&window)?.map(|value| half_gray(*value));
     Ok(shaded(label, &gray, GRAYS))
 }
 
-/// Values that are nearly normal, of variance 1, as shades.
+/// Maps a nearly normal value of variance 1 to a shade.
 fn half_gray(value: f32) -> f32 {
     0.5 + 0.18 * value
 }

@@ -73,21 +73,21 @@ pub(super) const DOCUMENTED: Documented = Documented {
     },
 };
 
-/// How many shades a gray picture has.
+/// The number of shades of a gray picture.
 const SHADES: f32 = 32.0;
 
-/// How many shades a picture with edges has, and each channel of one in color.
+/// The number of shades of a picture with edges, and of each channel of a color picture.
 const SHADES_WITH_EDGES: f32 = 16.0;
 
-/// How many positions a range is measured at.
+/// The number of positions at which a range is measured.
 const N_POSITIONS: u32 = 4000;
 
-/// The basis that most strips show.
+/// The Worley basis that most strips show.
 fn basis() -> Worley2 {
     Worley2::new(Seed(3))
 }
 
-/// A square of so many cells from the origin.
+/// A square window, `cells` wide, with its corner at the origin.
 fn square(cells: f64) -> anyhow::Result<Window> {
     Ok(Window::new(DVec2::ZERO, DVec2::splat(cells), [SIDE; 2])?)
 }
@@ -98,7 +98,7 @@ fn gray(label: &str, cells: f64, value: impl Fn(DVec2) -> f32 + Sync) -> anyhow:
     Ok(shaded(label, &raster, SHADES))
 }
 
-/// A picture of values with edges, from 0 to 1.
+/// A gray picture of values with edges, from 0 to 1.
 fn gray_with_edges(
     label: &str,
     cells: f64,
@@ -108,7 +108,7 @@ fn gray_with_edges(
     Ok(shaded(label, &shrink(&fine, SAMPLES)?, SHADES_WITH_EDGES))
 }
 
-/// A picture of colors with edges.
+/// A color picture with edges.
 fn color_with_edges(
     label: &str,
     cells: f64,
@@ -123,7 +123,7 @@ fn fine(cells: f64) -> anyhow::Result<Window> {
     Ok(Window::new(DVec2::ZERO, DVec2::splat(cells), size)?)
 }
 
-/// The texture with its range as 0 to 1.
+/// Scales a texture so that its measured range becomes 0 to 1.
 fn ranged<const N: usize>(texture: Cellular<N>) -> Result<Cellular<N>, WorleyError>
 where
     Axes: Space<N>,
@@ -145,7 +145,7 @@ fn flat(label: &str, cells: f64, worley: &Worley2) -> anyhow::Result<Panel> {
     })
 }
 
-/// A direction as a color: red grows to the right and green downward, and a vector of nothing is gray.
+/// The color of a direction: red grows to the right and green downward, and the zero vector is gray.
 fn color_of(vector: DVec2, longest: f64) -> LinearRgb {
     let code = |part: f64| (128.0 + 120.0 * (part / longest).clamp(-1.0, 1.0)).round() as u8;
     LinearRgb::from_srgb([code(vector.x), code(vector.y), 128])

@@ -1,15 +1,15 @@
-//! What diagrams have beside points and lines: arrows, broken lines and labels.
+//! Parts of diagrams beside points and lines: arrows, dashed lines and labels.
 
 use super::Canvas;
 use super::letters::strokes;
 use super::stencil::Stencil;
 use dapple_raster::{Texel, glam::DVec2};
 
-/// The width of a letter's strokes over its height.
+/// The stroke width of a letter, as a fraction of its height.
 const STROKE: f64 = 0.14;
 
 impl<T: Texel> Canvas<T> {
-    /// Draws a straight line that ends in a head, with the given width, in pixels.
+    /// Draws a straight line with an arrowhead at its end. The width is in pixels.
     pub fn arrow(&mut self, [from, to]: [DVec2; 2], width_px: f64, ink: T) {
         let back = (from - to).normalize_or_zero() * (5.0 * width_px) * self.window.pixel.abs();
         let aside = 0.5 * back.perp();
@@ -18,7 +18,7 @@ impl<T: Texel> Canvas<T> {
         self.lines(&[[from, to], head[0], head[1]], width_px, ink);
     }
 
-    /// Draws a straight line of `n` dashes, with gaps that are as long as they are and the given width, in pixels.
+    /// Draws a straight line of `n` dashes with gaps of the same length. The width is in pixels.
     pub fn dashes(&mut self, [from, to]: [DVec2; 2], n: u32, width_px: f64, ink: T) {
         let n_parts = f64::from(2 * n.max(1) - 1);
         let part = |index: u32| from.lerp(to, f64::from(index) / n_parts);
@@ -28,9 +28,9 @@ impl<T: Texel> Canvas<T> {
         self.lines(&dashes, width_px, ink);
     }
 
-    /// Writes a line of text that begins at `start`, with capitals `height_px` pixels high that stand on it.
+    /// Writes a line of text from `start` on, the left end of its baseline. Capitals are `height_px` pixels high.
     ///
-    /// There are the letters of English, `Δ` and a few signs; other characters leave a space.
+    /// The alphabet has the English letters, `Δ` and a few signs; any other character leaves a space.
     pub fn text(&mut self, start: DVec2, height_px: f64, text: &str, ink: T) {
         let start = self.pixel_from_plane(start);
         let mut stencil = Stencil::new(self.window.size);

@@ -1,8 +1,9 @@
-//! Pixels that can be seen.
+//! Enlarged pictures, whose pixels become visible squares.
 
 use dapple_raster::{Raster, RasterError};
 
-/// A square raster in another size, each pixel that of the nearest place: enlarged, every pixel becomes a square.
+/// Resizes a square raster to `size` × `size` pixels by taking the nearest pixel; enlarging turns every pixel into a
+/// square.
 ///
 /// # Errors
 ///

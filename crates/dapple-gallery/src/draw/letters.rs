@@ -1,9 +1,9 @@
 //! A small alphabet of strokes, for labels and for text as a picture.
 //!
-//! A letter stands on a grid: `y` is 0 at the top of capitals, 3 at the top of small letters, 9 on the line that they
-//! stand on and 12 at the lowest. It is a list of strokes with a space between; a stroke is a list of grid points, two
-//! digits (to the base 36) each. A plain stroke is straight from point to point; after `~` it is a curve from the first
-//! to the last point that the others pull toward them, and after `@` a closed one.
+//! A letter is drawn on a grid: `y` is 0 at the top of capitals, 3 at the top of small letters, 9 on the baseline and
+//! 12 at the bottom of descenders. It is a list of strokes, separated by spaces. A stroke is a list of grid points with
+//! two digits (in base 36) each. A plain stroke is straight from point to point; after `~` it is a curve from the first
+//! to the last point, with the points between as control points; after `@` it is a closed curve.
 
 use dapple_raster::glam::DVec2;
 
@@ -16,10 +16,11 @@ const GAP: f64 = 2.3;
 /// The width of a space, in grid lines, beside the gap after it.
 const SPACE: f64 = 2.5;
 
-/// How often the corners of a curve are cut.
+/// The number of rounds of corner cutting for a curve.
 const N_CUTS: usize = 3;
 
-/// The straight lines of a text whose capitals are 1 high. It begins at 0 and stands on `y = 0`; `y` points down.
+/// Returns the straight lines of a text whose capitals are 1 high. It begins at `x = 0` with its baseline at `y = 0`;
+/// `y` points down.
 ///
 /// A character that the alphabet lacks leaves a space.
 pub(super) fn strokes(text: &str) -> Vec<[DVec2; 2]> {
@@ -32,7 +33,7 @@ pub(super) fn strokes(text: &str) -> Vec<[DVec2; 2]> {
             let corners = corners(stroke);
             right = corners.iter().fold(right, |right, at| right.max(at.x));
             let place = |at: DVec2| (at + DVec2::new(left, -CAPITAL)) / CAPITAL;
-            // A stroke of one point is a dot.
+            // A stroke of a single point is a dot.
             lines.extend(corners.first().map(|&first| [place(first); 2]));
             lines.extend(corners.windows(2).map(|pair| [pair[0], pair[1]].map(place)));
         }
@@ -41,7 +42,7 @@ pub(super) fn strokes(text: &str) -> Vec<[DVec2; 2]> {
     lines
 }
 
-/// The corners of a stroke, on the grid.
+/// Returns the corners of a stroke, on the grid.
 fn corners(stroke: &str) -> Vec<DVec2> {
     let digits: Vec<_> = stroke
         .chars()
@@ -53,7 +54,7 @@ fn corners(stroke: &str) -> Vec<DVec2> {
         .collect();
     let curve = stroke.starts_with(['~', '@']);
     if stroke.starts_with('@') {
-        // A closed curve begins and ends in the middle of a side.
+        // A closed curve begins and ends at the middle of a side.
         let middle = 0.5 * (points[0] + points[points.len() - 1]);
         points.insert(0, middle);
         points.push(middle);
@@ -64,8 +65,8 @@ fn corners(stroke: &str) -> Vec<DVec2> {
     points
 }
 
-/// A line with its corners cut (Chaikin, An algorithm for high-speed curve generation, 1974), from the same first to
-/// the same last point.
+/// Cuts the corners of a line once and keeps its two ends (Chaikin, An algorithm for high-speed curve generation,
+/// 1974).
 fn cut(points: &[DVec2]) -> Vec<DVec2> {
     let last = points.len().saturating_sub(2);
     let mut finer = vec![points[0]];
@@ -81,7 +82,7 @@ fn cut(points: &[DVec2]) -> Vec<DVec2> {
     finer
 }
 
-/// The strokes of a letter; none for what the alphabet lacks.
+/// Returns the strokes of a letter; empty if the alphabet lacks it.
 const fn glyph(letter: char) -> &'static str {
     match letter {
         'a' => "@03535909 5359",

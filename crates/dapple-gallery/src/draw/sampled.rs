@@ -1,8 +1,8 @@
-//! Pictures that are given as a color for every position.
+//! Pictures from a function that gives a color at every position.
 
 use dapple_raster::{Raster, RasterError, Texel, Window, glam::DVec2};
 
-/// The picture of the unit square, row 0 at `y = 0`: every pixel is the mean of `side` × `side` samples of `value`.
+/// Draws the unit square, row 0 at `y = 0`: every pixel is the mean of `side` × `side` samples of `value`.
 ///
 /// # Errors
 ///
@@ -32,7 +32,7 @@ pub fn sampled<T: Texel + Send>(
     })
 }
 
-/// From 0 at `from` to 1 at `to`, smoothly.
+/// A smooth step from 0 at `from` to 1 at `to`.
 #[must_use]
 pub fn smooth_step(from: f64, to: f64, value: f64) -> f64 {
     let t = ((value - from) / (to - from)).clamp(0.0, 1.0);

@@ -2,14 +2,14 @@
 
 use dapple_raster::{Raster, RasterError};
 
-/// A sheet of `size` pixels with `columns` × `rows` pictures, side by side and row by row, and gaps between them.
+/// Makes a sheet of `size` pixels with a grid of columns × rows pictures, row by row, and gaps between them.
 ///
-/// `picture` makes the one with a number, counted from 0 along the rows, in the size that it is given. Sizes differ by at
+/// `picture` makes the picture with a given index, counted from 0 along the rows, in a given size. Sizes differ by at
 /// most a pixel, so that the sheet is filled.
 ///
 /// # Errors
 ///
-/// If the sheet is too small for its pictures, or what `picture` reports, or if it made a picture of another size.
+/// If the sheet is too small for its pictures, if `picture` fails, or if it makes a picture of another size.
 pub fn sheet<T: Copy>(
     size: [u32; 2],
     grid: [u32; 2],
@@ -28,7 +28,7 @@ pub fn sheet<T: Copy>(
     Ok(sheet)
 }
 
-/// Where a picture of the sheet begins, and how large it is.
+/// Returns the position and the size of a picture of the sheet.
 fn cell(size: [u32; 2], grid: [u32; 2], gap: u32, place: [u32; 2]) -> [[u32; 2]; 2] {
     let edge = |axis: usize, index: u32| {
         let whole = u64::from(size[axis]) + u64::from(gap);

@@ -1,10 +1,10 @@
-//! Smooth edges for pictures that have none: many samples for each pixel.
+//! Smooth edges by supersampling: every pixel is the mean of many samples.
 
 use dapple_raster::{Raster, RasterError, Texel};
 
-/// A raster that is `side` times smaller along each axis: every pixel is the mean of `side` × `side` samples.
+/// Makes a raster `side` times smaller along each axis: every pixel is the mean of `side` × `side` samples.
 ///
-/// Samples that do not fill a pixel, at the right and at the bottom, are left out.
+/// Samples at the right and the bottom that do not fill a whole pixel are left out.
 ///
 /// # Errors
 ///

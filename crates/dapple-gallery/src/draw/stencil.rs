@@ -1,7 +1,7 @@
-//! What part of each pixel a drawing covers.
+//! The fraction of each pixel that a drawing covers.
 //!
-//! Coverage is that of an edge one pixel wide at the distance from the shape. Where shapes overlap the larger coverage
-//! counts, so that lines may cross and end in one another without a blot.
+//! Coverage is computed for an edge one pixel wide, from the distance to the shape. Where shapes overlap the larger
+//! coverage counts, so that lines can cross or join without a blot.
 
 use dapple_raster::{Raster, Texel, glam::DVec2};
 
@@ -13,7 +13,7 @@ pub(super) struct Stencil {
 }
 
 impl Stencil {
-    /// A stencil that covers nothing.
+    /// Returns a stencil that covers nothing.
     pub(super) fn new(size: [u32; 2]) -> Self {
         let n_pixels = size[0] as usize * size[1] as usize;
         Self {
@@ -22,7 +22,7 @@ impl Stencil {
         }
     }
 
-    /// Covers what lies within `reach` of the straight line between two positions, which may be the same.
+    /// Covers all positions within `reach` of the straight line between two positions, which may be equal.
     ///
     /// A line thinner than a pixel keeps its weight by becoming paler.
     pub(super) fn segment(&mut self, [from, to]: [DVec2; 2], reach: f64) {
@@ -39,13 +39,13 @@ impl Stencil {
         }
     }
 
-    /// Covers a part of a pixel.
+    /// Covers a pixel to the given fraction, unless it is already covered more.
     pub(super) fn cover(&mut self, column: u32, row: u32, coverage: f32) {
         let pixel = &mut self.coverage[row as usize * self.size[0] as usize + column as usize];
         *pixel = pixel.max(coverage);
     }
 
-    /// Colors what is covered.
+    /// Blends `ink` into a raster wherever the stencil covers it.
     pub(super) fn ink<T: Texel>(&self, raster: &mut Raster<T>, ink: T) {
         for (pixel, &coverage) in raster.pixels_mut().iter_mut().zip(&self.coverage) {
             if coverage > 0.0 {
@@ -55,7 +55,7 @@ impl Stencil {
     }
 }
 
-/// The first whole pixel from `coordinate` on, within a side of `n` pixels.
+/// Clamps `coordinate` to a side of `n` pixels and rounds it down to a whole pixel.
 fn clamped(coordinate: f64, n: u32) -> u32 {
     coordinate.clamp(0.0, f64::from(n)) as u32
 }

@@ -1,18 +1,18 @@
-//! Noise that several papers' figures share.
+//! Fractal noise for the figures of several papers.
 
 use dapple_points::Domain;
 use dapple_pups::{OctavesOptions, Spacing, hash::Seed, octaves};
 use dapple_raster::{Field, Raster, Window, Wrap};
 use glam::DVec2;
 
-/// Fractal noise as a tile that repeats after 1 along both axes, from 0 to 1.
+/// A tile of fractal noise that repeats after 1 along both axes, with values from 0 to 1.
 #[derive(Clone, Debug)]
 pub(super) struct FractalNoise {
     tile: Raster<f32>,
 }
 
 impl FractalNoise {
-    /// Octaves of noise, the first with control points that are `spacing` apart.
+    /// Adds up octaves of noise; the control points of the first are `spacing` apart.
     pub(super) fn new(spacing: f64, seed: Seed) -> anyhow::Result<Self> {
         let options = OctavesOptions {
             domain: Domain::torus(DVec2::ZERO, DVec2::ONE),
@@ -28,7 +28,7 @@ impl FractalNoise {
         })
     }
 
-    /// The noise at a position of the plane.
+    /// Returns the noise at a position of the plane.
     pub(super) fn at(&self, position: DVec2) -> f32 {
         self.tile.sample_bilinear(position, [Wrap::Repeat; 2])
     }

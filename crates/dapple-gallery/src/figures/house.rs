@@ -1,4 +1,4 @@
-//! Figures of our own, which no paper has.
+//! Our own figures, which reproduce no paper.
 
 mod fig_01;
 mod fig_02;
@@ -6,7 +6,7 @@ mod lit;
 
 use crate::Paper;
 
-/// The workspace itself, in the place of a paper.
+/// The workspace itself, listed as if it were a paper.
 pub(super) const PAPER: Paper = Paper {
     key: "house",
     title: "The house",

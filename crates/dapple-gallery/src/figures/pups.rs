@@ -30,7 +30,7 @@ use crate::{Panel, Paper};
 use dapple_points::Domain;
 use dapple_raster::{Field, RasterError, Window};
 
-/// The paper, with its figures in its own order.
+/// The paper, with its figures in the order of the paper.
 pub(super) const PAPER: Paper = Paper {
     key: "pups",
     title: "Partition of Unity Parametrics for Texture Synthesis",
@@ -61,12 +61,13 @@ pub(super) const PAPER: Paper = Paper {
     ],
 };
 
-/// A texture on the paper's square `[-1, 1]²`, in shades of gray. The square is a torus, so the picture repeats.
+/// Renders a texture on the paper's square `[-1, 1]²` in shades of gray. The square is a torus, so the picture repeats.
 fn picture(label: impl Into<String>, texture: &dyn Field, size: u32) -> Result<Panel, RasterError> {
     Ok(Panel::gray(label, texture.to_raster(&square(size)?)?).repeating())
 }
 
-/// The same for a texture of labels, whose hard edges are smoothed.
+/// Renders a texture of labels on the paper's square in shades of gray, with its hard edges smoothed. The picture
+/// repeats.
 fn picture_of_labels(
     label: impl Into<String>,
     texture: &dyn Field,
@@ -76,15 +77,15 @@ fn picture_of_labels(
     Ok(Panel::gray(label, shrink(&fine, SIDE)?).repeating())
 }
 
-/// How many samples along each side of a pixel smooth a hard edge.
+/// The number of samples along each side of a pixel that smooth a hard edge.
 const SIDE: u32 = 4;
 
-/// The samples of the paper's square for a picture of `size` pixels.
+/// The window of all samples of the paper's square, for a picture of `size` × `size` pixels.
 fn fine_square(size: u32) -> Result<Window, RasterError> {
     square(size.saturating_mul(SIDE))
 }
 
-/// The pixels of the paper's square.
+/// The window of the paper's square, with `size` × `size` pixels.
 fn square(size: u32) -> Result<Window, RasterError> {
     let square = Domain::paper_torus();
     Window::new(square.origin, square.size, [size; 2])

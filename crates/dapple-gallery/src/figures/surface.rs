@@ -24,7 +24,7 @@ mod wobble;
 
 use crate::Paper;
 
-/// The paper, with its figures in its own order.
+/// The paper, with its figures in the order of the paper.
 pub(super) const PAPER: Paper = Paper {
     key: "surface",
     title: "Texture Synthesis on Surfaces",

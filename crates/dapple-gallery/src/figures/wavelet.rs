@@ -33,7 +33,7 @@ use pebble::pebble;
 use perlin::perlin;
 use stone::stone;
 
-/// The paper, with its figures in its own order.
+/// The paper, with its figures in the order of the paper.
 pub(super) const PAPER: Paper = Paper {
     key: "wavelet",
     title: "Wavelet and Blend maps for texture synthesis",
@@ -51,7 +51,7 @@ pub(super) const PAPER: Paper = Paper {
     ],
 };
 
-/// The paper's blend tile: halved and doubled once, in the phase that leaves less of a step.
+/// The blend tile of the paper: halved and doubled once, in the phase that leaves the smaller step.
 const BLEND_TILE: SplineProject = SplineProject {
     levels: 1,
     phase: Phase::CookDeRose,
@@ -59,12 +59,14 @@ const BLEND_TILE: SplineProject = SplineProject {
     pixels: Pixels::Coefficients,
 };
 
-/// The side of a tile in a figure of `size` pixels: a quarter, as the paper's 128 are of 512, and a multiple of 8.
+/// Returns the side of a tile in a figure of `size` pixels: a quarter of it, as in the paper (128 of 512), and a
+/// multiple of 8.
 fn tile_side(size: u32) -> u32 {
     (size / 32 * 8).max(8)
 }
 
-/// The margin of a cut that makes a tile of `side` pixels, and the cut: an image has to be larger by the margin.
+/// Returns a margin in pixels, and the cut with it that makes a tile of `side` pixels: the image must be larger by the
+/// margin.
 fn cut(side: u32) -> (u32, Method) {
     let margin = side / 4;
     let cut = SoftCut {
@@ -75,12 +77,13 @@ fn cut(side: u32) -> (u32, Method) {
     (margin, Method::SoftCut(cut))
 }
 
-/// The size of a stone or a pebble in a picture `side` pixels wide: a sixth of it, for the larger ones.
+/// Returns the size of a stone or a pebble in a picture `side` pixels wide: a sixth of it, which suits the larger ones.
 fn stone_px(side: u32) -> f64 {
     (0.16 * f64::from(side)).max(1.0)
 }
 
-/// Blend tiles as the paper begins with, by name: of the features of two textures, and of noise. None of them repeats.
+/// Makes the images that the paper's blend tiles begin with, by name: features of two textures, and noise. None of them
+/// repeats.
 fn originals(side: u32) -> anyhow::Result<[(&'static str, Raster<f32>); 4]> {
     let features = |ground: Material| {
         let features = BlendMap::new(stone_px(side)).with_wrap([Wrap::Mirror; 2]);
@@ -94,7 +97,7 @@ fn originals(side: u32) -> anyhow::Result<[(&'static str, Raster<f32>); 4]> {
     ])
 }
 
-/// Pictures in gray that do not repeat, by name: what the methods are compared on.
+/// Makes gray pictures that do not repeat, by name, to compare the methods on.
 fn crops(side: u32) -> anyhow::Result<[(&'static str, Raster<f32>); 4]> {
     let gray = |ground: Material| ground.color.map(|color| color.luminance().sqrt());
     Ok([
@@ -105,7 +108,7 @@ fn crops(side: u32) -> anyhow::Result<[(&'static str, Raster<f32>); 4]> {
     ])
 }
 
-/// The [`SeamReport`] of a tile beside its original, in four short lines, and its verdict.
+/// Returns the [`SeamReport`] of a tile beside its original in four short lines, and a verdict.
 fn report(original: &Raster<f32>, tile: &Raster<f32>) -> anyhow::Result<String> {
     let options = SeamOptions {
         lattice: [1 << BLEND_TILE.levels; 2],
@@ -131,7 +134,7 @@ fn report(original: &Raster<f32>, tile: &Raster<f32>) -> anyhow::Result<String> 
     ))
 }
 
-/// What is wrong with a tile, a line for each fault.
+/// Returns the faults of a tile, a line for each.
 fn verdict(report: &SeamReport) -> String {
     let faults: Vec<_> = report.faults().iter().map(ToString::to_string).collect();
     match faults.as_slice() {
@@ -140,7 +143,7 @@ fn verdict(report: &SeamReport) -> String {
     }
 }
 
-/// A sheet `width` pixels wide with a tile at its upper left and, on the right, two by two copies of it.
+/// Makes a sheet `width` pixels wide with a tile at the upper left and, on the right, two by two copies of it.
 fn beside(tile: &Raster<f32>, width: u32) -> anyhow::Result<Raster<f32>> {
     let map = repeat(tile, tile.size().map(|side| 2 * side))?;
     let left = width.saturating_sub(map.width());
@@ -173,7 +176,7 @@ mod tests {
         ("soil", soil),
     ];
 
-    /// The seam ratio at one pixel, over both axes.
+    /// Returns the seam ratio at one pixel, over both axes.
     fn seam_ratio(raster: &Raster<f32>) -> f64 {
         let report = SeamReport::of(raster, &SeamOptions::default()).unwrap();
         report.seams[0].both.unwrap().ratio
@@ -197,7 +200,7 @@ mod tests {
         for (name, make) in MATERIALS {
             let ratio = |edges| seam_ratio(&make(256, Seed(1), edges).unwrap().height);
             let [repeating, cropped] = [Edges::Repeating, Edges::Cropped].map(ratio);
-            // One column of 256 pixels with features of some ten pixels varies by a fifth or so.
+            // A column of 256 pixels with features of some ten pixels varies by about a fifth.
             assert!((0.5..1.5).contains(&repeating), "{name}: {repeating}");
             assert!(cropped > 1.5, "{name}: {cropped}");
         }
@@ -210,7 +213,7 @@ mod tests {
                 [64, 256].map(|size| make(size, Seed(1), Edges::Cropped).unwrap().gap);
             let large = shrink(&large, 4).unwrap();
             let apart = small.zip_map(&large, |a, b| (a - b).abs()).unwrap();
-            // Samples of edges and their means differ in the pixels on an edge.
+            // Supersampled edges and averaged edges differ in the pixels on an edge.
             let mean = apart.statistics().mean;
             assert!(mean < 0.15, "{name}: {mean}");
         }

@@ -23,7 +23,7 @@ use dapple_raster::{Raster, Window, Wrap};
 use dapple_worley::{Cellular, Plane};
 use glam::{DVec2, DVec3};
 
-/// The paper, with its figures in its own order.
+/// The paper, with its figures in the order of the paper.
 pub(super) const PAPER: Paper = Paper {
     key: "worley",
     title: "A Cellular Texture Basis Function",
@@ -42,10 +42,10 @@ pub(super) const PAPER: Paper = Paper {
     ],
 };
 
-/// How many positions the range of a texture is measured at: the paper's "several thousand".
+/// The number of positions at which the range of a texture is measured; the paper has "several thousand".
 const N_POSITIONS: u32 = 8000;
 
-/// The slice `z = 0.5` through a texture in space, `cells` cells wide, with the texture's range as 0 to 1.
+/// Renders the slice `z = 0.5` of a texture in space, `cells` cells wide, with the texture's range scaled to 0 to 1.
 fn slice(texture: Cellular<3>, cells: f64, size: [u32; 2]) -> anyhow::Result<Raster<f32>> {
     let range = texture.measure_range(Seed(1), N_POSITIONS)?;
     let height = cells * f64::from(size[1]) / f64::from(size[0]);
@@ -57,9 +57,10 @@ fn slice(texture: Cellular<3>, cells: f64, size: [u32; 2]) -> anyhow::Result<Ras
     Ok(raster)
 }
 
-/// A height as a surface of many colors, lit from the upper left: the height goes through a ramp and bends the normals.
+/// Renders a height map as a colored surface, lit from the upper left: the height selects the color and bends the
+/// normals.
 ///
-/// `depth` is how far 0 is below 1, in widths of the picture.
+/// `depth` is the height difference between 0 and 1, in widths of the picture.
 fn relief(height: &Raster<f32>, ramp: &ColorRamp, depth: f64) -> anyhow::Result<Raster<LinearRgb>> {
     let [width, rows] = height.size().map(f64::from);
     let options = NormalOptions {
@@ -79,7 +80,7 @@ fn relief(height: &Raster<f32>, ramp: &ColorRamp, depth: f64) -> anyhow::Result<
     })?)
 }
 
-/// The picture of a scene, three samples along each side of a pixel.
+/// Renders a scene with three samples along each side of a pixel.
 fn photo(scene: &Scene<'_>, size: [u32; 2]) -> anyhow::Result<Panel> {
     Ok(Panel::color("", scene.render(size, Supersampling(3))?))
 }

@@ -77,7 +77,7 @@ impl EditableDelaunay {
     ///
     /// # Errors
     ///
-    /// Those of [`delaunay`].
+    /// The errors of [`delaunay`].
     pub fn new(points: &PointSet) -> Result<Self, GraphError> {
         let graph = delaunay(points)?;
         let of_row = |point| graph.axes(PointIdx(point)).to_vec();
@@ -216,7 +216,7 @@ impl EditableDelaunay {
     ///
     /// # Errors
     ///
-    /// Those of [`insert`](Self::insert), and [`NotThere`](GraphErrorKind::NotThere) if there is no such point.
+    /// The errors of [`insert`](Self::insert), and [`NotThere`](GraphErrorKind::NotThere) if there is no such point.
     pub fn move_to(&mut self, point: PointIdx, position: DVec2) -> Result<Vec<Star>, GraphError> {
         let number = self.number(point)?;
         let (position, site) = self.accepted(position, Some(number))?;

@@ -25,7 +25,7 @@ pub struct Triangle {
 ///
 /// # Errors
 ///
-/// Those of [`delaunay`].
+/// The errors of [`delaunay`].
 ///
 /// # Examples
 ///

@@ -67,8 +67,8 @@ pub fn encode_exr(planes: &[ExrPlane]) -> Result<Vec<u8>, ImageError> {
 ///
 /// # Errors
 ///
-/// Those of [`encode_exr`], and [`ImageErrorKind::Io`] if the file cannot be written; a file that was there before is
-/// then unchanged.
+/// The errors of [`encode_exr`], and [`ImageErrorKind::Io`] if the file cannot be written; a file that was there before
+/// is then unchanged.
 pub fn write_exr(path: impl AsRef<Path>, planes: &[ExrPlane]) -> Result<(), ImageError> {
     let path = path.as_ref();
     let bytes = encode_exr(planes).map_err(|error| error.at(path))?;

@@ -44,8 +44,8 @@ pub fn encode_png<P: PngPixel>(
 ///
 /// # Errors
 ///
-/// Those of [`encode_png`], and [`Io`](crate::ImageErrorKind::Io) if the file cannot be written; a file that was there
-/// before is then unchanged.
+/// The errors of [`encode_png`], and [`Io`](crate::ImageErrorKind::Io) if the file cannot be written; a file that was
+/// there before is then unchanged.
 pub fn write_png<P: PngPixel>(
     path: impl AsRef<Path>,
     pixels: RasterView<'_, P>,

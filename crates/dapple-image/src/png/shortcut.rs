@@ -11,7 +11,7 @@ use std::path::Path;
 ///
 /// # Errors
 ///
-/// Those of [`write_png`](crate::write_png).
+/// The errors of [`write_png`](crate::write_png).
 pub fn write_gray_png(
     path: impl AsRef<Path>,
     values: &Raster<f32>,
@@ -24,7 +24,7 @@ pub fn write_gray_png(
 ///
 /// # Errors
 ///
-/// Those of [`write_png`](crate::write_png).
+/// The errors of [`write_png`](crate::write_png).
 pub fn write_color_png(
     path: impl AsRef<Path>,
     colors: &Raster<LinearRgb>,
@@ -37,7 +37,7 @@ pub fn write_color_png(
 ///
 /// # Errors
 ///
-/// Those of [`write_png`](crate::write_png).
+/// The errors of [`write_png`](crate::write_png).
 pub fn write_color_alpha_png(
     path: impl AsRef<Path>,
     colors: &Raster<LinearRgba>,
@@ -50,7 +50,7 @@ pub fn write_color_alpha_png(
 ///
 /// # Errors
 ///
-/// Those of [`write_png`](crate::write_png).
+/// The errors of [`write_png`](crate::write_png).
 pub fn write_normal_png(
     path: impl AsRef<Path>,
     normals: &Raster<Normal>,

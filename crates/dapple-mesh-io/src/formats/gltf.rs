@@ -96,7 +96,7 @@ pub fn read(bytes: &[u8]) -> Result<Model, MeshIoError> {
 ///
 /// # Errors
 ///
-/// Those of [`read`]. A missing texture is no error.
+/// The errors of [`read`]. A missing texture is no error.
 pub fn read_with(bytes: &[u8], beside: &mut Beside<'_>) -> Result<Model, MeshIoError> {
     let container = Container::read(bytes)?;
     // Other versions have other types in the same places, so the version has to be checked first.

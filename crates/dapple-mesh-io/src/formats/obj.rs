@@ -91,7 +91,7 @@ pub fn read(bytes: &[u8]) -> Result<Model, MeshIoError> {
 ///
 /// # Errors
 ///
-/// Those of [`read`]. In other files, only a `Kd` beyond single precision is an error.
+/// The errors of [`read`]. In other files, only a `Kd` beyond single precision is an error.
 pub fn read_with(bytes: &[u8], beside: &mut Beside<'_>) -> Result<Model, MeshIoError> {
     let mut draft = Draft::default();
     let text = joined(bytes);

@@ -4,7 +4,7 @@
 //! one random place is tried, then each square is cut in four, and so on down to single places. Whatever the
 //! search returns is uniformly random among the free places of the cell, and if it returns none there is none.
 //!
-//! Nothing rounds here: the corners of squares are places, and the distance keeps their order, so a square
+//! No arithmetic here rounds: the corners of squares are places, and the distance keeps their order, so a square
 //! whose farthest corner is covered is covered at every place.
 
 use super::grid::{Cell, FAR, Grid, HALO, LATTICE, STEP};

@@ -1,8 +1,8 @@
 """Procedural textures as NumPy arrays.
 
 Arrays are float32 in C order with the shape (rows, columns[, channels]); colors are linear. Positions, extents and
-origins are written x first; y points down. A texture *is* its seed: the same seed gives the same bits on every machine,
-with any number of threads, and a window is, bit for bit, the crop of the whole.
+origins are written x first; y points down. A seed determines its texture: the same seed gives the same bits on every
+machine and with any number of threads, and a window has the same bits as a crop of the whole.
 """
 
 from __future__ import annotations

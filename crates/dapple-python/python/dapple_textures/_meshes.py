@@ -12,9 +12,9 @@ if TYPE_CHECKING:
 
 
 class MeshFile(NamedTuple):
-    """What a mesh file holds; what it does not have is None."""
+    """The contents of a mesh file; a part that the file lacks is None."""
 
-    #: (n, 3)
+    #: Positions of the vertices, (n, 3).
     vertices: npt.NDArray[np.float64]
     #: The vertices of each face, (m, 3).
     faces: npt.NDArray[np.int64]
@@ -26,12 +26,12 @@ class MeshFile(NamedTuple):
     colors: npt.NDArray[np.float32] | None
     #: The image of the base color, linear.
     texture: npt.NDArray[np.float32] | None
-    #: What the file has and was not read.
+    #: Descriptions of the parts of the file that were not read.
     left_out: list[str]
 
 
 def to_trimesh(model: Model) -> Any:
-    """The model as a ``trimesh.Trimesh``, whose vertices are the corners of faces."""
+    """Returns the model as a ``trimesh.Trimesh`` with one vertex per corner of a face."""
     import io
 
     import trimesh
@@ -42,7 +42,7 @@ def to_trimesh(model: Model) -> Any:
     def image(name: str, content: Literal["color", "normal", "data"]) -> Any:
         pixels = maps[name]
         if content == "color" and pixels.ndim == 2:
-            # Numbers are shown as they are.
+            # Plain numbers are written without the curve of colors.
             pixels, content = np.stack([pixels] * 3, 2), "data"
         return Image.open(io.BytesIO(_native.encode_image(pixels, "png", content=content, depth=8)))
 

@@ -1,4 +1,4 @@
-"""What calls with pictures give that is more than an array."""
+"""Results of picture functions that are more than an array."""
 
 from __future__ import annotations
 
@@ -11,17 +11,17 @@ if TYPE_CHECKING:
 
 
 class SeamReport(NamedTuple):
-    """How well an image repeats, in numbers and as a verdict. ``print`` shows it as a table."""
+    """Measurements of how well an image repeats, and a verdict. ``print`` shows it as a table."""
 
-    #: Whether there is no fault.
+    #: Whether the image has no fault.
     passes: bool
-    #: The channel (empty where there is one only), and what is wrong with it.
+    #: Pairs of a channel (empty if the image has only one) and a description of its fault.
     faults: list[tuple[str, str]]
-    #: Ranks tiles of one source: lower is better.
+    #: A score to rank tiles of one source: lower is better.
     badness: float
     #: All measurements, channel by channel.
     channels: list[dict[str, Any]]
-    #: The tables.
+    #: The report as text, with tables.
     text: str
 
     def __str__(self) -> str:
@@ -29,9 +29,9 @@ class SeamReport(NamedTuple):
 
 
 class Bands(NamedTuple):
-    """The bands of an image, which ``wavelet_synthesize`` adds up again."""
+    """The bands of an image; ``wavelet_synthesize`` adds them up again."""
 
-    #: What is lost each time the image is halved, finest first.
+    #: The detail lost each time the image is halved, finest first.
     details: list[npt.NDArray[np.float32]]
-    #: What is left.
+    #: The halved image that remains.
     coarse: npt.NDArray[np.float32]

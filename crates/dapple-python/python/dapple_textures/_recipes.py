@@ -1,4 +1,4 @@
-"""Recipes and their images from files."""
+"""Reads recipes and their images from files."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ _Path = str | os.PathLike[str]
 
 
 def read_recipe(path_or_name: _Path) -> Recipe:
-    """The recipe of a file, or the built-in one of this name.
+    """Reads a recipe from a file, or returns the built-in recipe of this name.
 
     Parameters
     ----------
-    path_or_name : a file in TOML, or in JSON where its name ends with `.json`; or, where there is no such file, a name of
-        `Recipe.builtin_names()`. A recipe without a name gets that of its file.
+    path_or_name : a file in TOML, or in JSON if its name ends with `.json`. If no such file exists, it is a name from
+        `Recipe.builtin_names()`. A recipe without a name gets the name of its file.
 
     Examples
     --------
@@ -34,14 +34,14 @@ def read_recipe(path_or_name: _Path) -> Recipe:
     >>> dp.read_recipe(path).seed
     9
     """
-    # Here, since it takes longer to import than all else of the package.
+    # Imported here, since it takes longer to import than the rest of the package.
     from pathlib import Path
 
     path = Path(path_or_name)
     name = os.fspath(path_or_name).replace("_", "-")
     is_path = path.suffix != "" or len(path.parts) > 1
     if not path.is_file() and (name in Recipe.builtin_names() or not is_path):
-        # What is in no list is refused with what was perhaps meant.
+        # For an unknown name, the error suggests a similar one.
         return Recipe.builtin(name)
     text = path.read_text(encoding="utf-8")
     recipe = Recipe.from_json(text) if path.suffix.lower() == ".json" else Recipe.from_toml(text)
@@ -49,10 +49,10 @@ def read_recipe(path_or_name: _Path) -> Recipe:
 
 
 def read_recipe_images(recipe: Recipe, folder: _Path) -> dict[str, npt.NDArray[np.float32]]:
-    """The images that a recipe names, from files of a folder, as `Recipe.plan` takes them.
+    """Reads the images that a recipe names from files in a folder, in the form that `Recipe.plan` takes.
 
-    Where a node says what becomes of the alpha of its image, that is done; an image that is partly transparent is refused
-    otherwise, as the command does it.
+    If a node says how to treat the alpha of its image, the image is converted accordingly. Without that, an image that is
+    partly transparent is refused, as by the command `dapple`.
 
     Examples
     --------
@@ -75,7 +75,7 @@ def _image(path: Path, alpha: str | None) -> npt.NDArray[np.float32]:
         hint = 'give its node alpha = "drop" or alpha = "over:#rrggbb"'
         raise refusal("alpha", f"{path} is partly transparent, which is not possible here", hint)
     if alpha == "drop" and image.ndim == 3:
-        # Gray numbers beside alpha stay numbers, without the curve of colors.
+        # A gray image with alpha holds plain numbers, without the curve of colors.
         channels = read_image(path, content="data")
         return channels[..., 0].copy() if channels.shape[2] == 2 else image
     return image

@@ -1,4 +1,4 @@
-"""What can be baked in parts: recipes and fields, as data that any process makes again."""
+"""Sources that can be baked in parts: recipes and fields, as data from which any process can rebuild them."""
 
 from __future__ import annotations
 
@@ -27,38 +27,38 @@ from ._types import refusal
 
 Image = npt.NDArray[np.float32]
 
-#: Recipes and fields that stay ready in a process: those of the frames that it works on. Each holds its images.
+#: The number of prepared recipes and fields that a process keeps, for the frames it works on. Each holds its images.
 _READY = 4
 
 
-#: Images as names, shapes and bytes, which have a hash.
+#: Images as names, shapes and bytes, so that they are hashable.
 Packed = tuple[tuple[str, tuple[int, ...], bytes], ...]
 
 
 class Source(Protocol):
-    """Something that has planes of numbers at the pixels of an array of any size."""
+    """A source of planes of numbers for the pixels of an array of any size."""
 
     def channels(self, plane: str) -> int:
-        """How many numbers a pixel of a plane has."""
+        """Returns the number of channels of a plane."""
 
     def render(
         self, shape: tuple[int, ...], planes: Sequence[str], window: tuple[slice, ...]
     ) -> dict[str, Image]:
-        """The numbers of a window of an array of this shape, for each plane."""
+        """Renders a window of an array of this shape, for each plane."""
 
     def check(self, shape: tuple[int, ...]) -> None:
-        """Refuses the shape of an array that it has no numbers for."""
+        """Raises an error if the source cannot fill an array of this shape."""
 
     def to_data(self) -> dict[str, Any]:
-        """All of it but its images as data that JSON can hold, with the SHA-256 of these."""
+        """Returns the source as data for JSON, with images replaced by their SHA-256."""
 
     def images_by_hash(self) -> dict[str, Image]:
-        """Its images, by their SHA-256."""
+        """Returns the images of the source, by their SHA-256."""
 
 
 @dataclass(frozen=True)
 class RecipeSource:
-    """The maps of a recipe, and of all pictures of a loop in time where the array has a first axis for it."""
+    """The maps of a recipe. If the array has a third axis in front, it holds the pictures of a loop in time."""
 
     recipe: str
     images: Packed
@@ -77,7 +77,7 @@ class RecipeSource:
         return int(info[plane].channels)
 
     def plan(self, time: float) -> Plan:
-        """The plan at a time."""
+        """Returns the plan at a time, from 0 to 1 in the loop."""
         return _plan(self, time)
 
     def render(
@@ -130,7 +130,7 @@ class FieldSource:
         field = _field(self.description)
         values = field.render(shape, extent=self.extent, origin=self.origin, window=window)
         if values.shape[len(shape) :] == (1,):
-            # As a map of one channel has it.
+            # A map of one channel has no axis for channels.
             values = values[..., 0]
         return {plane: values for plane in planes}
 
@@ -151,10 +151,10 @@ def source(
     extent: float | Sequence[float] | None = None,
     origin: float | Sequence[float] | None = None,
 ) -> RecipeSource | FieldSource:
-    """What can be baked in parts, of a recipe, a plan or a field.
+    """Returns the source of a recipe, a plan or a field, which can be baked in parts.
 
-    `extent` and `origin` are those of `Field.render`, and belong to fields alone. A recipe with a node that sees the whole
-    tile is refused, with the way out.
+    `extent` and `origin` are for fields only, with the same meaning as in `Field.render`. A recipe with a node that needs
+    the whole tile is refused, with a hint at the way out.
     """
     if isinstance(what, Recipe):
         what = what.plan()
@@ -172,7 +172,7 @@ def source(
 
 
 def from_data(data: dict[str, Any], images: dict[str, Image]) -> RecipeSource | FieldSource:
-    """The source that data holds, with its images by their SHA-256."""
+    """Rebuilds a source from its data and its images, given by their SHA-256."""
     if "field" in data:
         return FieldSource(data["field"], tuple(data["extent"]), tuple(data["origin"]))
     named = {image["name"]: images[image["hash"]] for image in data["images"]}
@@ -184,7 +184,7 @@ def _packed(images: dict[str, Image]) -> Packed:
 
 
 def sides(value: Any) -> tuple[int, ...]:
-    """Numbers of pixels: one for rows and columns, or one for each axis."""
+    """Returns sizes in pixels, from one number for both rows and columns or one number for each axis."""
     try:
         return (operator.index(value),) * 2
     except TypeError:
@@ -192,13 +192,13 @@ def sides(value: Any) -> tuple[int, ...]:
 
 
 def digest(data: object) -> str:
-    """The SHA-256 of data."""
+    """Returns the SHA-256 of data, written as JSON."""
     text = json.dumps(data, sort_keys=True, separators=(",", ":"))
     return hashlib.sha256(text.encode()).hexdigest()
 
 
 def sha256(values: npt.NDArray[Any]) -> str:
-    """The SHA-256 of the bytes of an array in C order, little-endian."""
+    """Returns the SHA-256 of the bytes of an array in C order, little-endian."""
     values = np.ascontiguousarray(values, dtype=values.dtype.newbyteorder("<"))
     return hashlib.sha256(values.data).hexdigest()
 

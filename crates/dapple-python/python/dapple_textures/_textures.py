@@ -1,6 +1,6 @@
 """The textures of Caron and Mould, "Partition of Unity Parametrics for Texture Synthesis" (2013), one function each.
 
-The options and their defaults are those of the textures in recipes; a test compares them.
+Options and defaults are the same as in recipes; a test compares them.
 """
 
 from __future__ import annotations
@@ -34,16 +34,16 @@ __all__ = [
 
 #: A number, or a ramp of numbers: {"ramp": {"from": [x, y], "to": [x, y], "start": a, "end": b}}.
 Varying: TypeAlias = float | Mapping[str, object]
-#: A smallest distance, {"distance": …}, {"density": …} or {"count": n}.
+#: The smallest distance between points as a number, or {"distance": …}, {"density": …} or {"count": n}.
 Spacing: TypeAlias = float | Mapping[str, object]
 #: How the weight of a control point falls off.
 Weight: TypeAlias = Literal["cubic", "quintic"] | Mapping[str, object]
-#: Where the weights of control points lean.
+#: The directions in which the weights of control points lean.
 Orientations: TypeAlias = Literal["random"] | Mapping[str, object] | None
 
 
 def _net(axis_scale: float, weight: Weight, orientations: Orientations, strength: float, fade: float) -> dict[str, object]:
-    """How control points are weighted, as a recipe says it."""
+    """Returns the options of weights in the form of a recipe."""
     return {
         "axis_scale": axis_scale,
         "weight": weight,
@@ -68,18 +68,18 @@ def noise(
 
     Parameters
     ----------
-    domain : where control points lie; the texture repeats where it wraps. By default the paper's torus, Domain(2,
-        (-1, -1)).
-    spacing : how far apart control points are: the smallest distance, in units of the domain, or {"distance": …},
+    domain : the domain of the control points; the texture repeats along the axes that wrap. By default the paper's torus,
+        Domain(2, (-1, -1)).
+    spacing : the spacing of control points: the smallest distance in units of the domain, or {"distance": …},
         {"density": …} or {"count": n}; a distance or density may be a ramp, as in `poisson_disk`.
-    axis_scale : the length of axes as a multiple of their edges, above 0.5 and at most 16.
-    weight : how the weight of a control point falls off: "cubic", "quintic" or {"oscillating": {"dips": n, "depth":
+    axis_scale : the length of axes as a multiple of the length of their edges, above 0.5 and at most 16.
+    weight : the falloff of the weight of a control point: "cubic", "quintic" or {"oscillating": {"dips": n, "depth":
         d}}.
-    orientations : where weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle":
-        radians}.
+    orientations : the directions in which weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or
+        {"angle": radians}.
     strength : how strongly orientations shift weights, from 0 to below 1.
-    fade : how short the border that an axis leaves on its point's cell is beside its edge when the axis begins to fade, from 0,
-        which is never, to 1. With 0.25 the texture changes smoothly where points move.
+    fade : the length of an axis' border on the cell of its point, as a fraction of the axis' edge, below which the axis
+        fades: from 0, which is never, to 1. With 0.25 the texture changes smoothly while points move.
     seed : int, from 0 to 2**64 - 1.
 
     Examples
@@ -115,24 +115,24 @@ def octaves(
 
     Parameters
     ----------
-    domain : where control points lie; the texture repeats where it wraps. By default the paper's torus, Domain(2,
-        (-1, -1)).
-    spacing : how far apart control points are: the smallest distance, in units of the domain, or {"distance": …},
+    domain : the domain of the control points; the texture repeats along the axes that wrap. By default the paper's torus,
+        Domain(2, (-1, -1)).
+    spacing : the spacing of control points: the smallest distance in units of the domain, or {"distance": …},
         {"density": …} or {"count": n}; a distance or density may be a ramp, as in `poisson_disk`.
-    octaves : how many octaves there are, 1 to 16.
-    lacunarity : by how much the spacing is divided from octave to octave, above 1 and at most 16; 2, 4, 8 or 16 if
-        octaves are rescaled.
-    gain : the amplitude of an octave as a multiple of the one before, above 0 and at most 1.
+    octaves : the number of octaves, 1 to 16.
+    lacunarity : the factor by which the spacing is divided from octave to octave, above 1 and at most 16; 2, 4, 8 or 16
+        if octaves are rescaled.
+    gain : the amplitude of an octave as a multiple of the previous one, above 0 and at most 1.
     source : "separate", each octave with points of its own, or "rescaled", one tile at several scales, which takes
-        less memory; the domain then wraps along both axes.
-    axis_scale : the length of axes as a multiple of their edges, above 0.5 and at most 16.
-    weight : how the weight of a control point falls off: "cubic", "quintic" or {"oscillating": {"dips": n, "depth":
+        less memory; the domain must then wrap along both axes.
+    axis_scale : the length of axes as a multiple of the length of their edges, above 0.5 and at most 16.
+    weight : the falloff of the weight of a control point: "cubic", "quintic" or {"oscillating": {"dips": n, "depth":
         d}}.
-    orientations : where weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle":
-        radians}.
+    orientations : the directions in which weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or
+        {"angle": radians}.
     strength : how strongly orientations shift weights, from 0 to below 1.
-    fade : how short the border that an axis leaves on its point's cell is beside its edge when the axis begins to fade, from 0,
-        which is never, to 1. With 0.25 the texture changes smoothly where points move.
+    fade : the length of an axis' border on the cell of its point, as a fraction of the axis' edge, below which the axis
+        fades: from 0, which is never, to 1. With 0.25 the texture changes smoothly while points move.
     seed : int, from 0 to 2**64 - 1.
 
     Examples
@@ -172,24 +172,24 @@ def turbulence(
 
     Parameters
     ----------
-    domain : where control points lie; the texture repeats where it wraps. By default the paper's torus, Domain(2,
-        (-1, -1)).
-    spacing : how far apart control points are: the smallest distance, in units of the domain, or {"distance": …},
+    domain : the domain of the control points; the texture repeats along the axes that wrap. By default the paper's torus,
+        Domain(2, (-1, -1)).
+    spacing : the spacing of control points: the smallest distance in units of the domain, or {"distance": …},
         {"density": …} or {"count": n}; a distance or density may be a ramp, as in `poisson_disk`.
-    octaves : how many octaves there are, 1 to 16.
-    lacunarity : by how much the spacing is divided from octave to octave, above 1 and at most 16; 2, 4, 8 or 16 if
-        octaves are rescaled.
-    gain : the amplitude of an octave as a multiple of the one before, above 0 and at most 1.
+    octaves : the number of octaves, 1 to 16.
+    lacunarity : the factor by which the spacing is divided from octave to octave, above 1 and at most 16; 2, 4, 8 or 16
+        if octaves are rescaled.
+    gain : the amplitude of an octave as a multiple of the previous one, above 0 and at most 1.
     source : "separate", each octave with points of its own, or "rescaled", one tile at several scales, which takes
-        less memory; the domain then wraps along both axes.
-    axis_scale : the length of axes as a multiple of their edges, above 0.5 and at most 16.
-    weight : how the weight of a control point falls off: "cubic", "quintic" or {"oscillating": {"dips": n, "depth":
+        less memory; the domain must then wrap along both axes.
+    axis_scale : the length of axes as a multiple of the length of their edges, above 0.5 and at most 16.
+    weight : the falloff of the weight of a control point: "cubic", "quintic" or {"oscillating": {"dips": n, "depth":
         d}}.
-    orientations : where weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle":
-        radians}.
+    orientations : the directions in which weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or
+        {"angle": radians}.
     strength : how strongly orientations shift weights, from 0 to below 1.
-    fade : how short the border that an axis leaves on its point's cell is beside its edge when the axis begins to fade, from 0,
-        which is never, to 1. With 0.25 the texture changes smoothly where points move.
+    fade : the length of an axis' border on the cell of its point, as a fraction of the axis' edge, below which the axis
+        fades: from 0, which is never, to 1. With 0.25 the texture changes smoothly while points move.
     seed : int, from 0 to 2**64 - 1.
 
     Examples
@@ -220,24 +220,24 @@ def cells(
     fade: float = 0.0,
     seed: int = 0,
 ) -> Field:
-    """Cells with a random value each, from 0 to below 1: of single control points, or of neighboring ones. Caron and
+    """Cells with a random value each, from 0 to below 1. A cell has one control point or a few neighboring ones. Caron and
     Mould, figure 9.
 
     Parameters
     ----------
-    domain : where control points lie; the texture repeats where it wraps. By default the paper's torus, Domain(2,
-        (-1, -1)).
-    spacing : how far apart control points are: the smallest distance, in units of the domain, or {"distance": …},
+    domain : the domain of the control points; the texture repeats along the axes that wrap. By default the paper's torus,
+        Domain(2, (-1, -1)).
+    spacing : the spacing of control points: the smallest distance in units of the domain, or {"distance": …},
         {"density": …} or {"count": n}; a distance or density may be a ramp, as in `poisson_disk`.
-    points_per_cell : how many control points a cell has, from the least to the most, 1 to 16.
-    axis_scale : the length of axes as a multiple of their edges, above 0.5 and at most 16.
-    weight : how the weight of a control point falls off: "cubic", "quintic" or {"oscillating": {"dips": n, "depth":
+    points_per_cell : the least and the largest number of control points of a cell, 1 to 16.
+    axis_scale : the length of axes as a multiple of the length of their edges, above 0.5 and at most 16.
+    weight : the falloff of the weight of a control point: "cubic", "quintic" or {"oscillating": {"dips": n, "depth":
         d}}.
-    orientations : where weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle":
-        radians}.
+    orientations : the directions in which weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or
+        {"angle": radians}.
     strength : how strongly orientations shift weights, from 0 to below 1.
-    fade : how short the border that an axis leaves on its point's cell is beside its edge when the axis begins to fade, from 0,
-        which is never, to 1. With 0.25 the texture changes smoothly where points move.
+    fade : the length of an axis' border on the cell of its point, as a fraction of the axis' edge, below which the axis
+        fades: from 0, which is never, to 1. With 0.25 the texture changes smoothly while points move.
     seed : int, from 0 to 2**64 - 1.
 
     Examples
@@ -272,22 +272,22 @@ def cellular_noise(
 
     Parameters
     ----------
-    domain : where control points lie; the texture repeats where it wraps. By default the paper's torus, Domain(2,
-        (-1, -1)).
-    spacing : how far apart control points are: the smallest distance, in units of the domain, or {"distance": …},
+    domain : the domain of the control points; the texture repeats along the axes that wrap. By default the paper's torus,
+        Domain(2, (-1, -1)).
+    spacing : the spacing of control points: the smallest distance in units of the domain, or {"distance": …},
         {"density": …} or {"count": n}; a distance or density may be a ramp, as in `poisson_disk`.
-    layers : how many layers there are, 1 to 16.
-    lacunarity : by how much the spacing is divided from layer to layer, above 1 and at most 16.
-    gain : the amplitude of a layer as a multiple of the one before, above 0 and at most 1.
-    points_per_cell : how many control points a cell has, from the least to the most, 1 to 16.
-    axis_scale : the length of axes as a multiple of their edges, above 0.5 and at most 16.
-    weight : how the weight of a control point falls off: "cubic", "quintic" or {"oscillating": {"dips": n, "depth":
+    layers : the number of layers, 1 to 16.
+    lacunarity : the factor by which the spacing is divided from layer to layer, above 1 and at most 16.
+    gain : the amplitude of a layer as a multiple of the previous one, above 0 and at most 1.
+    points_per_cell : the least and the largest number of control points of a cell, 1 to 16.
+    axis_scale : the length of axes as a multiple of the length of their edges, above 0.5 and at most 16.
+    weight : the falloff of the weight of a control point: "cubic", "quintic" or {"oscillating": {"dips": n, "depth":
         d}}.
-    orientations : where weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle":
-        radians}.
+    orientations : the directions in which weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or
+        {"angle": radians}.
     strength : how strongly orientations shift weights, from 0 to below 1.
-    fade : how short the border that an axis leaves on its point's cell is beside its edge when the axis begins to fade, from 0,
-        which is never, to 1. With 0.25 the texture changes smoothly where points move.
+    fade : the length of an axis' border on the cell of its point, as a fraction of the axis' edge, below which the axis
+        fades: from 0, which is never, to 1. With 0.25 the texture changes smoothly while points move.
     seed : int, from 0 to 2**64 - 1.
 
     Examples
@@ -318,23 +318,23 @@ def color_noise(
     fade: float = 0.0,
     seed: int = 0,
 ) -> ColorField:
-    """Random colors of a palette, interpolated; beyond the paper.
+    """Random colors of a palette at control points, interpolated; not in the paper.
 
     Parameters
     ----------
-    domain : where control points lie; the texture repeats where it wraps. By default the paper's torus, Domain(2,
-        (-1, -1)).
-    spacing : how far apart control points are: the smallest distance, in units of the domain, or {"distance": …},
+    domain : the domain of the control points; the texture repeats along the axes that wrap. By default the paper's torus,
+        Domain(2, (-1, -1)).
+    spacing : the spacing of control points: the smallest distance in units of the domain, or {"distance": …},
         {"density": …} or {"count": n}; a distance or density may be a ramp, as in `poisson_disk`.
-    palette : linear RGB colors from 0 to 1, each as probable.
-    axis_scale : the length of axes as a multiple of their edges, above 0.5 and at most 16.
-    weight : how the weight of a control point falls off: "cubic", "quintic" or {"oscillating": {"dips": n, "depth":
+    palette : linear RGB colors from 0 to 1, all equally probable.
+    axis_scale : the length of axes as a multiple of the length of their edges, above 0.5 and at most 16.
+    weight : the falloff of the weight of a control point: "cubic", "quintic" or {"oscillating": {"dips": n, "depth":
         d}}.
-    orientations : where weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle":
-        radians}.
+    orientations : the directions in which weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or
+        {"angle": radians}.
     strength : how strongly orientations shift weights, from 0 to below 1.
-    fade : how short the border that an axis leaves on its point's cell is beside its edge when the axis begins to fade, from 0,
-        which is never, to 1. With 0.25 the texture changes smoothly where points move.
+    fade : the length of an axis' border on the cell of its point, as a fraction of the axis' edge, below which the axis
+        fades: from 0, which is never, to 1. With 0.25 the texture changes smoothly while points move.
     seed : int, from 0 to 2**64 - 1.
 
     Examples
@@ -369,20 +369,20 @@ def cow(
 
     Parameters
     ----------
-    domain : where control points lie; the texture repeats where it wraps. By default the paper's torus, Domain(2,
-        (-1, -1)).
-    spacing : how far apart control points are: the smallest distance, in units of the domain, or {"distance": …},
+    domain : the domain of the control points; the texture repeats along the axes that wrap. By default the paper's torus,
+        Domain(2, (-1, -1)).
+    spacing : the spacing of control points: the smallest distance in units of the domain, or {"distance": …},
         {"density": …} or {"count": n}; a distance or density may be a ramp, as in `poisson_disk`.
-    probability : how probable label 1 is, 0 to 1: a number or a ramp, as in `poisson_disk`.
+    probability : the probability of label 1, 0 to 1: a number or a ramp, as in `poisson_disk`.
     values : the values of the labels 0 and 1.
-    axis_scale : the length of axes as a multiple of their edges, above 0.5 and at most 16.
-    weight : how the weight of a control point falls off: "cubic", "quintic" or {"oscillating": {"dips": n, "depth":
+    axis_scale : the length of axes as a multiple of the length of their edges, above 0.5 and at most 16.
+    weight : the falloff of the weight of a control point: "cubic", "quintic" or {"oscillating": {"dips": n, "depth":
         d}}.
-    orientations : where weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle":
-        radians}.
+    orientations : the directions in which weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or
+        {"angle": radians}.
     strength : how strongly orientations shift weights, from 0 to below 1.
-    fade : how short the border that an axis leaves on its point's cell is beside its edge when the axis begins to fade, from 0,
-        which is never, to 1. With 0.25 the texture changes smoothly where points move.
+    fade : the length of an axis' border on the cell of its point, as a fraction of the axis' edge, below which the axis
+        fades: from 0, which is never, to 1. With 0.25 the texture changes smoothly while points move.
     seed : int, from 0 to 2**64 - 1.
 
     Examples
@@ -415,26 +415,26 @@ def space_giraffe(
     fade: float = 0.0,
     seed: int = 0,
 ) -> Field:
-    """The spots of a giraffe on its ground. Caron and Mould, figure 12.
+    """The coat of a giraffe: spots on a ground. Caron and Mould, figure 12.
 
     Parameters
     ----------
-    domain : where control points lie; the texture repeats where it wraps. By default the paper's torus, Domain(2,
-        (-1, -1)).
-    spacing : how far apart control points are: the smallest distance, in units of the domain, or {"distance": …},
+    domain : the domain of the control points; the texture repeats along the axes that wrap. By default the paper's torus,
+        Domain(2, (-1, -1)).
+    spacing : the spacing of control points: the smallest distance in units of the domain, or {"distance": …},
         {"density": …} or {"count": n}; a distance or density may be a ramp, as in `poisson_disk`.
-    pairs : how many pairs of points stand around the center of a spot, from the least to the most, 3 to 256.
-    spots : "separated", whole spots that never merge, or "literal", the recipe of the paper, where most are in
+    pairs : the least and the largest number of pairs of points around the center of a spot, 3 to 256.
+    spots : "separated", whole spots that never merge, or "literal", the method of the paper, where most spots are in
         pieces.
     values : the values of the ground and of the spots.
-    axis_scale : the length of axes as a multiple of their edges, above 0.5 and at most 16.
-    weight : how the weight of a control point falls off: "cubic", "quintic" or {"oscillating": {"dips": n, "depth":
+    axis_scale : the length of axes as a multiple of the length of their edges, above 0.5 and at most 16.
+    weight : the falloff of the weight of a control point: "cubic", "quintic" or {"oscillating": {"dips": n, "depth":
         d}}.
-    orientations : where weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle":
-        radians}.
+    orientations : the directions in which weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or
+        {"angle": radians}.
     strength : how strongly orientations shift weights, from 0 to below 1.
-    fade : how short the border that an axis leaves on its point's cell is beside its edge when the axis begins to fade, from 0,
-        which is never, to 1. With 0.25 the texture changes smoothly where points move.
+    fade : the length of an axis' border on the cell of its point, as a fraction of the axis' edge, below which the axis
+        fades: from 0, which is never, to 1. With 0.25 the texture changes smoothly while points move.
     seed : int, from 0 to 2**64 - 1.
 
     Examples
@@ -467,18 +467,18 @@ def cow_progression(
 
     Parameters
     ----------
-    domain : where control points lie. By default Domain(2, (-1, -1), wrap=(False, True)); it never wraps along x,
-        along which the texture changes.
-    distances : how far apart points are at the left and at the right, with equal ratios over equal lengths in
+    domain : the domain of the control points. By default Domain(2, (-1, -1), wrap=(False, True)); it never wraps along x,
+        since the texture changes along x.
+    distances : the smallest distance of points at the left and at the right, with equal ratios over equal lengths in
         between.
-    axis_scale : the length of axes as a multiple of their edges, above 0.5 and at most 16.
-    weight : how the weight of a control point falls off: "cubic", "quintic" or {"oscillating": {"dips": n, "depth":
+    axis_scale : the length of axes as a multiple of the length of their edges, above 0.5 and at most 16.
+    weight : the falloff of the weight of a control point: "cubic", "quintic" or {"oscillating": {"dips": n, "depth":
         d}}.
-    orientations : where weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle":
-        radians}.
+    orientations : the directions in which weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or
+        {"angle": radians}.
     strength : how strongly orientations shift weights, from 0 to below 1.
-    fade : how short the border that an axis leaves on its point's cell is beside its edge when the axis begins to fade, from 0,
-        which is never, to 1. With 0.25 the texture changes smoothly where points move.
+    fade : the length of an axis' border on the cell of its point, as a fraction of the axis' edge, below which the axis
+        fades: from 0, which is never, to 1. With 0.25 the texture changes smoothly while points move.
     seed : int, from 0 to 2**64 - 1.
 
     Examples
@@ -510,18 +510,18 @@ def giraffe_progression(
 
     Parameters
     ----------
-    domain : where control points lie. By default Domain(2, (-1, -1), wrap=(False, True)); it never wraps along x,
-        along which the texture changes.
-    distances : how far apart points are at the left and at the right, with equal ratios over equal lengths in
+    domain : the domain of the control points. By default Domain(2, (-1, -1), wrap=(False, True)); it never wraps along x,
+        since the texture changes along x.
+    distances : the smallest distance of points at the left and at the right, with equal ratios over equal lengths in
         between.
-    axis_scale : the length of axes as a multiple of their edges, above 0.5 and at most 16.
-    weight : how the weight of a control point falls off: "cubic", "quintic" or {"oscillating": {"dips": n, "depth":
+    axis_scale : the length of axes as a multiple of the length of their edges, above 0.5 and at most 16.
+    weight : the falloff of the weight of a control point: "cubic", "quintic" or {"oscillating": {"dips": n, "depth":
         d}}.
-    orientations : where weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle":
-        radians}.
+    orientations : the directions in which weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or
+        {"angle": radians}.
     strength : how strongly orientations shift weights, from 0 to below 1.
-    fade : how short the border that an axis leaves on its point's cell is beside its edge when the axis begins to fade, from 0,
-        which is never, to 1. With 0.25 the texture changes smoothly where points move.
+    fade : the length of an axis' border on the cell of its point, as a fraction of the axis' edge, below which the axis
+        fades: from 0, which is never, to 1. With 0.25 the texture changes smoothly while points move.
     seed : int, from 0 to 2**64 - 1.
 
     Examples
@@ -552,19 +552,19 @@ def label_ramp(
 
     Parameters
     ----------
-    domain : where control points lie. By default Domain(2, (-1, -1), wrap=(False, True)); it never wraps along x,
-        along which the texture changes.
-    spacing : how far apart control points are: the smallest distance, in units of the domain, or {"distance": …},
+    domain : the domain of the control points. By default Domain(2, (-1, -1), wrap=(False, True)); it never wraps along x,
+        since the texture changes along x.
+    spacing : the spacing of control points: the smallest distance in units of the domain, or {"distance": …},
         {"density": …} or {"count": n}; a distance or density may be a ramp, as in `poisson_disk`.
-    probabilities : how probable white is at the left and at the right, linear in between.
-    axis_scale : the length of axes as a multiple of their edges, above 0.5 and at most 16.
-    weight : how the weight of a control point falls off: "cubic", "quintic" or {"oscillating": {"dips": n, "depth":
+    probabilities : the probability of white at the left and at the right, linear in between.
+    axis_scale : the length of axes as a multiple of the length of their edges, above 0.5 and at most 16.
+    weight : the falloff of the weight of a control point: "cubic", "quintic" or {"oscillating": {"dips": n, "depth":
         d}}.
-    orientations : where weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle":
-        radians}.
+    orientations : the directions in which weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or
+        {"angle": radians}.
     strength : how strongly orientations shift weights, from 0 to below 1.
-    fade : how short the border that an axis leaves on its point's cell is beside its edge when the axis begins to fade, from 0,
-        which is never, to 1. With 0.25 the texture changes smoothly where points move.
+    fade : the length of an axis' border on the cell of its point, as a fraction of the axis' edge, below which the axis
+        fades: from 0, which is never, to 1. With 0.25 the texture changes smoothly while points move.
     seed : int, from 0 to 2**64 - 1.
 
     Examples
@@ -601,19 +601,19 @@ def reference_texture(
     Parameters
     ----------
     image : a gray image (rows, columns) with values from 0 to 1, which covers the domain.
-    domain : where control points lie; the texture repeats where it wraps. By default the paper's torus, Domain(2,
-        (-1, -1)).
-    spacing : how far apart control points are: the smallest distance, in units of the domain, or {"distance": …},
+    domain : the domain of the control points; the texture repeats along the axes that wrap. By default the paper's torus,
+        Domain(2, (-1, -1)).
+    spacing : the spacing of control points: the smallest distance in units of the domain, or {"distance": …},
         {"density": …} or {"count": n}; a distance or density may be a ramp, as in `poisson_disk`.
     values : the values of the black and of the white group.
-    axis_scale : the length of axes as a multiple of their edges, above 0.5 and at most 16.
-    weight : how the weight of a control point falls off: "cubic", "quintic" or {"oscillating": {"dips": n, "depth":
+    axis_scale : the length of axes as a multiple of the length of their edges, above 0.5 and at most 16.
+    weight : the falloff of the weight of a control point: "cubic", "quintic" or {"oscillating": {"dips": n, "depth":
         d}}.
-    orientations : where weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle":
-        radians}.
+    orientations : the directions in which weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or
+        {"angle": radians}.
     strength : how strongly orientations shift weights, from 0 to below 1.
-    fade : how short the border that an axis leaves on its point's cell is beside its edge when the axis begins to fade, from 0,
-        which is never, to 1. With 0.25 the texture changes smoothly where points move.
+    fade : the length of an axis' border on the cell of its point, as a fraction of the axis' edge, below which the axis
+        fades: from 0, which is never, to 1. With 0.25 the texture changes smoothly while points move.
     seed : int, from 0 to 2**64 - 1.
 
     Examples
@@ -645,26 +645,27 @@ def iterated_reference(
     fade: float = 0.0,
     seed: int = 0,
 ) -> Field:
-    """The last of several rounds of black and white points, the first after an image: edges like a coast. Caron and
-    Mould, figure 14.
+    """Black and white cells with edges like a coast, from several rounds of points. The first round follows an image, and
+    each later round the picture of the previous one. Caron and Mould, figure 14.
 
     Parameters
     ----------
     image : a gray image (rows, columns) with values from 0 to 1, which covers the domain.
-    domain : where control points lie; the texture repeats where it wraps. By default the paper's torus, Domain(2,
-        (-1, -1)).
-    spacing : how far apart control points are: the smallest distance, in units of the domain, or {"distance": …},
+    domain : the domain of the control points; the texture repeats along the axes that wrap. By default the paper's torus,
+        Domain(2, (-1, -1)).
+    spacing : the spacing of control points: the smallest distance in units of the domain, or {"distance": …},
         {"density": …} or {"count": n}; a distance or density may be a ramp, as in `poisson_disk`.
-    iterations : how many rounds there are, 1 to 16, each with twice the points of the one before.
-    points : "fresh", each round with points of its own, or "nested", with those of the one before and as many again.
-    axis_scale : the length of axes as a multiple of their edges, above 0.5 and at most 16.
-    weight : how the weight of a control point falls off: "cubic", "quintic" or {"oscillating": {"dips": n, "depth":
+    iterations : the number of rounds, 1 to 16, each with twice as many points as the previous one.
+    points : "fresh", each round with points of its own, or "nested", each round with the points of the previous one and as
+        many again.
+    axis_scale : the length of axes as a multiple of the length of their edges, above 0.5 and at most 16.
+    weight : the falloff of the weight of a control point: "cubic", "quintic" or {"oscillating": {"dips": n, "depth":
         d}}.
-    orientations : where weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle":
-        radians}.
+    orientations : the directions in which weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or
+        {"angle": radians}.
     strength : how strongly orientations shift weights, from 0 to below 1.
-    fade : how short the border that an axis leaves on its point's cell is beside its edge when the axis begins to fade, from 0,
-        which is never, to 1. With 0.25 the texture changes smoothly where points move.
+    fade : the length of an axis' border on the cell of its point, as a fraction of the axis' edge, below which the axis
+        fades: from 0, which is never, to 1. With 0.25 the texture changes smoothly while points move.
     seed : int, from 0 to 2**64 - 1.
 
     Examples
@@ -694,24 +695,24 @@ def control_points(
     fade: float = 0.0,
     seed: int = 0,
 ) -> Field:
-    """A texture of control points that are given one by one, as a recipe has them; `pups` takes arrays.
+    """A texture of control points that are given one by one, in the form of a recipe; `pups` takes arrays.
 
     Parameters
     ----------
     points : dictionaries with "x", "y", "value" or "label", and, in all or in none, "orientation": [x, y] or
         [x, y, z].
-    domain : where control points lie; the texture repeats where it wraps. By default the paper's torus, Domain(2,
-        (-1, -1)).
+    domain : the domain of the control points; the texture repeats along the axes that wrap. By default the paper's torus,
+        Domain(2, (-1, -1)).
     values : the values of labels, from label 0.
     cells : "mixed", the weighted mean of the values, or "hard", the value of the strongest point.
-    axis_scale : the length of axes as a multiple of their edges, above 0.5 and at most 16.
-    weight : how the weight of a control point falls off: "cubic", "quintic" or {"oscillating": {"dips": n, "depth":
+    axis_scale : the length of axes as a multiple of the length of their edges, above 0.5 and at most 16.
+    weight : the falloff of the weight of a control point: "cubic", "quintic" or {"oscillating": {"dips": n, "depth":
         d}}.
-    orientations : where weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle":
-        radians}.
+    orientations : the directions in which weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or
+        {"angle": radians}.
     strength : how strongly orientations shift weights, from 0 to below 1.
-    fade : how short the border that an axis leaves on its point's cell is beside its edge when the axis begins to fade, from 0,
-        which is never, to 1. With 0.25 the texture changes smoothly where points move.
+    fade : the length of an axis' border on the cell of its point, as a fraction of the axis' edge, below which the axis
+        fades: from 0, which is never, to 1. With 0.25 the texture changes smoothly while points move.
     seed : int, from 0 to 2**64 - 1.
 
     Examples

@@ -1,4 +1,4 @@
-"""What calls give that is more than an array."""
+"""Results of functions that are more than an array."""
 
 from __future__ import annotations
 
@@ -13,18 +13,18 @@ if TYPE_CHECKING:
 
 
 class Features(NamedTuple):
-    """The nearest feature points of positions or of pixels; what was not asked for is None."""
+    """The nearest feature points of positions or of pixels; data that was not requested is None."""
 
-    #: Distances, in cells as the metric measures them: those of "manhattan" are sums along the axes.
+    #: Distances in cells, as the metric measures them; "manhattan" adds up the distances along the axes.
     distance: npt.NDArray[np.float32] | None
-    #: The ways from the feature points to the positions, in cells.
+    #: The vectors from the feature points to the positions, in cells.
     vector: npt.NDArray[np.float64 | np.float32] | None
-    #: What the feature points are known by.
+    #: The identities of the feature points.
     id: npt.NDArray[np.uint64] | None
 
 
 class EmptyCircle(NamedTuple):
-    """A circle without a point inside of it."""
+    """A circle with no point inside."""
 
     #: Its center, (x, y), in the domain.
     center: tuple[float, float]
@@ -33,53 +33,53 @@ class EmptyCircle(NamedTuple):
 
 
 class Spectrum(NamedTuple):
-    """The power spectrum of points, by rings of equal frequency, the lowest first; arrays of one length."""
+    """The power spectrum of points, averaged over rings of equal frequency, lowest first; all arrays have one length."""
 
     #: The middle of each ring, in units of sqrt(n / area).
     frequency: npt.NDArray[np.float64]
     #: The mean power of the frequencies in the ring: 1 for white noise.
     power: npt.NDArray[np.float64]
-    #: The variance of the power over what it is without a preferred direction, which is 1.
+    #: The variance of the power in the ring, scaled so that it is 1 for points without a preferred direction.
     anisotropy: npt.NDArray[np.float64]
-    #: How many frequencies the ring holds.
+    #: The number of frequencies in the ring.
     n_frequencies: npt.NDArray[np.uint32]
 
 
 class Axes(NamedTuple):
-    """The neighbors of points in compressed rows: those of point i are `indices[indptr[i]:indptr[i + 1]]`."""
+    """The neighbors of points in compressed rows: point i has the neighbors `indices[indptr[i]:indptr[i + 1]]`."""
 
-    #: Where the neighbors of each point begin, and at the end where the last ones end.
+    #: The index of the first neighbor of each point, and the total number as the last entry.
     indptr: npt.NDArray[np.int64]
-    #: The neighbors.
+    #: The indices of the neighbors.
     indices: npt.NDArray[np.int64]
-    #: The ways to them, (m, 2), x first.
+    #: The vectors to the neighbors, (m, 2), x first.
     vectors: npt.NDArray[np.float64]
 
 
 class Weights(NamedTuple):
     """The weights of control points at positions, in compressed rows."""
 
-    #: Where the weights of each position begin, and at the end where the last ones end.
+    #: The index of the first weight of each position, and the total number as the last entry.
     indptr: npt.NDArray[np.int64]
-    #: The control points.
+    #: The indices of the control points.
     indices: npt.NDArray[np.int64]
     #: Their weights, which sum to 1 at each position.
     weights: npt.NDArray[np.float32]
 
 
 class MapInfo(NamedTuple):
-    """What a map of a material holds."""
+    """The kind of data in a map of a material."""
 
-    #: Numbers of a pixel: 1 or 3.
+    #: The number of channels of a pixel: 1 or 3.
     channels: int
     #: "linear", for colors with the primaries of sRGB, or "non-color".
     color_space: str
-    #: With which `content` `write_image` writes it.
+    #: The value of `content` with which `write_image` writes the map.
     content: Literal["gray", "color", "normal", "data"]
 
 
 def refusal(kind: str, message: str, hint: str | None = None) -> DappleError:
-    """The error of a limit: its kind, its message, and the way out."""
+    """Returns an error with a kind, a message, and a hint at the way out."""
     error = DappleError(message if hint is None else f"{message}: {hint}")
     error.kind, error.hint = kind, hint
     return error

@@ -1,4 +1,4 @@
-"""What runs in the workers of a Dask cluster. It does not need `dask.array`, which takes half of a worker's memory."""
+"""Code that runs in the workers of a Dask cluster, without `dask.array`, which takes half of a worker's memory."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ from ._types import refusal
 if TYPE_CHECKING:
     from . import _sources, jobs
 
-#: The job that a worker has opened last, and the call that it belongs to.
+#: The job that this worker opened last, and the call that it belongs to.
 _open: tuple[str, jobs.Job] | None = None
 
-#: The process whose threads are set.
+#: The process whose number of threads has been set.
 _prepared: int | None = None
 
 
 def block(
     source: _sources.Source, *, shape: tuple[int, ...], plane: str, version: str, block_info: dict[Any, Any]
 ) -> _sources.Image:
-    """A chunk of a lazy array."""
+    """Renders a chunk of a lazy array."""
     _prepare()
     if version != __version__:
         message = f"the array was made by version {version}, but this worker has {__version__}"
@@ -34,7 +34,7 @@ def block(
 
 
 def bake_shards(store: Any, call: str, indices: list[int]) -> list[jobs.Record]:
-    """Bakes shards of the job of a store; those that are there already take no time."""
+    """Bakes shards of the job in a store; shards that exist already take no time."""
     from .jobs import Job
 
     global _open
@@ -46,9 +46,10 @@ def bake_shards(store: Any, call: str, indices: list[int]) -> list[jobs.Record]:
 
 
 def _prepare() -> None:
-    """Gives the package as many threads as the worker has, where the process is the worker's own and nobody said more.
+    """Sets the threads of the package to the threads of the worker, unless `DAPPLE_THREADS` sets them.
 
-    So the tasks of a machine and their threads together are as many as its workers have.
+    It does so only if the process belongs to the worker alone. The tasks of a machine together then use as many threads as
+    its workers have.
     """
     global _prepared
     if _prepared == os.getpid():

@@ -16,9 +16,9 @@ def dataset(
     pixel: tuple[float, float],
     first: tuple[float, float],
 ) -> xarray.Dataset:
-    """Maps with the coordinates of their pixel centers, in units of the plane.
+    """Returns maps with the coordinates of their pixel centers, in units of the plane.
 
-    `pixel` is the width and height of a pixel, and `first` the column and row of the first one.
+    `pixel` is the width and height of a pixel, and `first` the column and row of the first pixel.
     """
     import xarray
 

@@ -1,8 +1,8 @@
-"""Materials in Blender: the maps of a recipe as a Principled material, and synthesized models with theirs.
+"""Materials in Blender: the maps of a recipe as a Principled material, and synthesized models with their textures.
 
-It runs in Blender's own Python (4.2 and newer), or with the module `bpy`. Colors are sRGB images, all else is "Non-Color";
-images are packed into the file, so that nothing else has to be sent along. The extension in the folder `blender` of the
-sources puts this behind a panel.
+It runs in Blender's own Python (4.2 and newer), or with the module `bpy`. Colors are sRGB images, all other maps are
+"Non-Color". Images are packed into the Blender file, so that the file is complete on its own. The extension in the folder
+`blender` of the sources offers these functions in a panel.
 """
 
 from __future__ import annotations
@@ -20,13 +20,13 @@ import numpy as np
 from ._native import Plan, Recipe, _plan_from_parts, encode_image
 from ._types import refusal
 
-#: The property of a material that holds what it was baked from.
+#: The property of a material that records its recipe and options.
 _PROPERTY = "dapple_textures"
 
 _Depth: TypeAlias = Literal[8, 16]
 _Content: TypeAlias = Literal["gray", "color", "normal", "data"]
 
-#: The maps of a material: bits of PNG, what they hold, and Blender's name of their color space.
+#: The maps of a material: bit depth of the PNG, kind of content, and Blender's name of the color space.
 _IMAGES: dict[str, tuple[_Depth, _Content, str]] = {
     "albedo": (8, "color", "sRGB"),
     "orm": (8, "data", "Non-Color"),
@@ -34,7 +34,7 @@ _IMAGES: dict[str, tuple[_Depth, _Content, str]] = {
     "height": (16, "gray", "Non-Color"),
 }
 
-#: The group that Blender's glTF exporter looks for: occlusion is in no shader, and never darkens the albedo.
+#: The node group that Blender's glTF exporter reads. Occlusion goes only there, so that it never darkens the albedo.
 _GLTF_GROUP = "glTF Material Output"
 
 
@@ -46,19 +46,19 @@ def material(
     displacement: bool = False,
     scale: float = 1.0,
 ) -> Any:
-    """A material whose maps are baked from a recipe: albedo, roughness, metallic, occlusion, normals.
+    """Makes a material whose maps are baked from a recipe: albedo, roughness, metallic, occlusion, normals.
 
-    Where a material was made under this name before, it is baked again, and all objects that have it show the new maps.
-    Materials and images of others stay as they are, and Blender numbers the new ones beside them.
+    If this function made a material of the same name before, that material is baked again, and all its objects show the
+    new maps. Other materials and images stay as they are; Blender adds a number to the new name if it is taken.
 
     Parameters
     ----------
     what : a recipe, or a plan with its images and its time.
     size : pixels of the tile, (rows, columns) or one number.
-    name : the name of the material; that of the recipe by default.
-    displacement : moves the surface by the height, too (Cycles with adaptive subdivision, or EEVEE). The tile is taken to be
-        as wide as the recipe's extent, in Blender's units.
-    scale : copies of the tile across the UV map.
+    name : the name of the material; by default the name of the recipe.
+    displacement : whether to displace the surface by the height as well (Cycles with adaptive subdivision, or EEVEE). The
+        tile is assumed to be as wide as the recipe's extent, in Blender's units.
+    scale : the number of copies of the tile across the UV map.
     """
     import bpy
 
@@ -85,7 +85,7 @@ def bake_into(
     displacement: bool = False,
     scale: float = 1.0,
 ) -> None:
-    """Bakes a recipe into a material, whatever it was before: all of its nodes are made anew. See `material`."""
+    """Bakes a recipe into an existing material and replaces all of its nodes. See `material` for the parameters."""
     import bpy
 
     plan = _opengl(what.plan() if isinstance(what, Recipe) else what)
@@ -94,14 +94,14 @@ def bake_into(
     baked = plan.bake(size, maps)
     low, high = 0.0, 1.0
     if displacement:
-        # A file holds heights from 0 to 1; the displacement undoes it.
+        # A file holds heights from 0 to 1; the displacement node scales them back.
         low, high = min(low, float(baked["height"].min())), max(high, float(baked["height"].max()))
         baked["height"] = (baked["height"] - np.float32(low)) / np.float32(high - low)
     before = _images_of(made)
     images = {kind: _image(bpy, kind, values, *_IMAGES[kind]) for kind, values in baked.items()}
     relief = float(plan.recipe.to_dict()["material"].get("relief", 0.1))
     _shader(bpy, made, images, relief * (high - low), (0.5 - low) / (high - low), scale)
-    # Copies of the material keep what they show.
+    # Copies of the material keep their images.
     for image in before:
         if image.users == 0:
             bpy.data.images.remove(image)
@@ -113,13 +113,13 @@ def bake_into(
 
 
 def baked_from(made: Any) -> Recipe | None:
-    """The recipe that a material was baked from; None of other materials."""
+    """Returns the recipe that a material was baked from, or None for other materials."""
     data = _data_of(made)
     return Recipe(data["recipe"]) if data else None
 
 
 def import_model(model: Any) -> list[Any]:
-    """The objects of a model: one of `synthesize_on`, with its texture and normals, or the path of a GLB file."""
+    """Imports a model of `synthesize_on` with its texture and normals, or a GLB file by path; returns the objects."""
     import bpy
 
     before = set(bpy.data.objects)
@@ -130,7 +130,7 @@ def import_model(model: Any) -> list[Any]:
             path = Path(folder) / "model.glb"
             model.export(path)
             bpy.ops.import_scene.gltf(filepath=str(path))
-            # The file will be gone.
+            # Pack the images, since the file will be deleted.
             for image in bpy.data.images:
                 if image.filepath and Path(bpy.path.abspath(image.filepath)).parent == Path(folder):
                     image.pack()
@@ -138,7 +138,7 @@ def import_model(model: Any) -> list[Any]:
 
 
 def _opengl(plan: Plan) -> Plan:
-    """The plan with normals whose green points up, as Blender has them."""
+    """Returns the plan with normals whose green points up, as Blender expects."""
     _, (recipe, images, time) = plan.__reduce__()
     data = json.loads(recipe)
     data["material"]["normal_y"] = "opengl"
@@ -146,31 +146,31 @@ def _opengl(plan: Plan) -> Plan:
 
 
 def _data_of(made: Any) -> dict[str, Any]:
-    """What a material was baked from; nothing for other materials."""
+    """Returns the recorded data of a baked material; empty for other materials."""
     data = json.loads(made.get(_PROPERTY, "{}"))
     assert isinstance(data, dict)
     return data
 
 
 def _images_of(made: Any) -> set[Any]:
-    """The images of a material that were baked here."""
+    """Returns the images of a material that this module baked."""
     nodes = made.node_tree.nodes if made.node_tree else []
     images = {node.image for node in nodes if node.bl_idname == "ShaderNodeTexImage"}
     return {image for image in images if image is not None and _PROPERTY in image}
 
 
 def _shortened(name: str) -> str:
-    """The beginning of a name, so that the kind of an image has room behind it: Blender's names have 63 bytes."""
+    """Shortens a name so that the kind of an image fits after it: names in Blender have at most 63 bytes."""
     return name.encode()[:48].decode(errors="ignore")
 
 
 def _image(bpy: Any, kind: str, values: Any, depth: _Depth, content: _Content, space: str) -> Any:
-    """A new image of Blender's, packed as PNG."""
+    """Makes a new Blender image, packed as PNG."""
     data = encode_image(values, "png", content=content, depth=depth)
     image = bpy.data.images.new(kind, values.shape[1], values.shape[0], is_data=space != "sRGB")
     image[_PROPERTY] = kind
-    # Blender looks for the file of an image that has none packed, so its source comes first, and the pixels after it. Pixels
-    # that are made in Blender are lost when the file is saved; a packed file is not.
+    # Blender looks for a file as long as nothing is packed, so the source is set first and the data packed afterward.
+    # Generated pixels would be lost when the file is saved; a packed file is not.
     image.filepath_raw = f"//{kind}.png"
     image.source = "FILE"
     image.pack(data=data, data_len=len(data))
@@ -182,7 +182,7 @@ def _image(bpy: Any, kind: str, values: Any, depth: _Depth, content: _Content, s
 
 
 def _shader(bpy: Any, made: Any, images: dict[str, Any], relief: float, middle: float, scale: float) -> None:
-    """The nodes of a material, all of them anew."""
+    """Replaces all nodes of a material."""
     made.use_nodes = True
     tree = made.node_tree
     tree.nodes.clear()
@@ -232,7 +232,7 @@ def _shader(bpy: Any, made: Any, images: dict[str, Any], relief: float, middle: 
 
 
 def _gltf_group(bpy: Any) -> Any:
-    """The group whose input the glTF exporter takes for occlusion."""
+    """Returns the node group whose input the glTF exporter takes as occlusion; makes it if it does not exist."""
     group = bpy.data.node_groups.get(_GLTF_GROUP)
     if group is None:
         group = bpy.data.node_groups.new(_GLTF_GROUP, "ShaderNodeTree")

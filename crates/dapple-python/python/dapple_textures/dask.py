@@ -1,4 +1,4 @@
-"""Recipes and fields on Dask: lazy arrays of any size, and Zarr stores that survive their workers."""
+"""Recipes and fields on Dask: lazy arrays of any size, and bakes to Zarr stores that survive the loss of workers."""
 
 from __future__ import annotations
 
@@ -19,17 +19,17 @@ from . import _sources, _workers, jobs
 from ._native import ColorField, Field, Plan, Recipe, __version__
 from ._types import refusal
 
-#: Tasks that are in the hands of the scheduler for each thread of the workers, and at least: enough that none waits, and
-#: few enough that a job of any length takes little memory there.
+#: The number of tasks submitted to the scheduler per thread of the workers, and its minimum: enough that no worker waits,
+#: and few enough that a job of any length takes little memory there.
 _AHEAD, _LEAST = 4, 64
 
-#: The pixels of a task, at least: what takes longer than to hand it over.
+#: The least number of pixels of a task, so that its work takes longer than its submission.
 _TASK = 1 << 20
 
-#: How often a task is begun again after its workers died.
+#: How often a task is restarted after its worker died.
 _ATTEMPTS = 10
 
-#: After how many seconds without a finished task it is looked whether the scheduler and new workers are there.
+#: The seconds without a finished task after which the scheduler and new workers are checked.
 _PATIENCE = 1.0
 
 
@@ -42,7 +42,7 @@ def bake(
     extent: float | Sequence[float] | None = None,
     origin: float | Sequence[float] | None = None,
 ) -> da.Array:
-    """A lazy array of any size: a map of a recipe, or the values of a field.
+    """Returns a lazy array of any size: a map of a recipe, or the values of a field.
 
     Parameters
     ----------
@@ -50,9 +50,9 @@ def bake(
     shape : (rows, columns); (frames, rows, columns) of a recipe is a loop in time, and (depth, rows, columns) of a field
         of three axes a volume. A number is both rows and columns.
     plane : the map of a recipe, "height" by default. Normals, colors and ORM have a last axis of 3 channels.
-    chunks : the shape of a chunk; a number is both rows and columns, and 1 along further axes. Also what Dask takes, such
-        as "auto" and -1 for a whole axis.
-    extent, origin : those of `Field.render`, for fields alone.
+    chunks : the shape of a chunk; a number is both rows and columns, with 1 along further axes. Other values of Dask also
+        work, such as "auto", and -1 for a whole axis.
+    extent, origin : as in `Field.render`, for fields only.
     """
     source = _sources.source(what, extent=extent, origin=origin)
     plane = plane or ("value" if isinstance(source, _sources.FieldSource) else "height")
@@ -67,7 +67,7 @@ def bake(
     sides = da.core.normalize_chunks((*chunks, *last), shape=(*shape, *last), dtype=np.float32)
     return da.map_blocks(
         _workers.block,
-        # One object for all chunks, so that it is sent to a worker once.
+        # All chunks share one object, so that it is sent to a worker only once.
         delayed(source, name=f"dapple-source-{_sources.digest(source.to_data())}", pure=True),
         shape=shape,
         plane=plane,
@@ -81,15 +81,15 @@ def bake(
 
 @dataclass(frozen=True)
 class Report:
-    """What became of a job."""
+    """The result of baking a job."""
 
-    #: The job, whose arrays are whole now.
+    #: The job, whose arrays are now complete.
     job: jobs.Job
-    #: The shards that were baked; the others were there before.
+    #: The number of shards that were baked; the others existed before.
     baked: int
-    #: How often a task was begun again after its workers died.
+    #: How often a task was restarted after its worker died.
     restarted: int
-    #: The hashes of shards; those that a worker wrote just before it died are not among them.
+    #: The hashes of the baked shards, except shards that a worker wrote just before it died.
     records: list[jobs.Record] = field(repr=False)
 
 
@@ -107,12 +107,12 @@ def bake_to_zarr(
     resume: bool = True,
     client: Client | None = None,
 ) -> Report:
-    """Bakes into a Zarr store on all workers of a cluster, however large the arrays are.
+    """Bakes arrays of any size into a Zarr store, on all workers of a cluster.
 
-    A worker writes a shard and gives back its hash, so nothing is lost with a worker but the shards that it was at, which
-    another one begins again. After the whole cluster died, the same call goes on where it ended. The arguments are those
-    of `jobs.create`; with `resume=False` a job of which shards are there is refused. `client` is the current client by
-    default, and workers may come and go.
+    A worker writes a shard and returns its hash. If a worker dies, only its unfinished shards are lost, and another worker
+    bakes them again. After the loss of the whole cluster, the same call continues where it stopped. The other arguments
+    are those of `jobs.create`; with `resume=False` a job that has shards already is refused. `client` is the current
+    client by default, and workers may come and go.
     """
     client = client or get_client()
     jobs.check_shared(store)
@@ -134,19 +134,19 @@ def bake_to_zarr(
 
 
 class _Run:
-    """The shards of a job on their way through a cluster."""
+    """One run of a job on a cluster, with the tasks that are under way."""
 
     def __init__(self, client: Client, job: jobs.Job) -> None:
         self.client, self.job = client, job
         self.records: list[jobs.Record] = []
         self.restarted = 0
-        # Workers open the job once for each call: what is in its place may be another one the next time.
+        # Workers open the job once for each call: at the next call the same place may hold another job.
         self._call = uuid.uuid4().hex
         self._begun: dict[Any, tuple[Future[Any], list[int], int]] = {}
         self._done: queue.SimpleQueue[Future[Any]] = queue.SimpleQueue()
 
     def bake(self, missing: list[int]) -> None:
-        """Bakes shards on all workers that there are, or come."""
+        """Bakes shards on all current workers, and on workers that join later."""
         tasks = _tasks(self.job, missing)
         try:
             self._fill(tasks)
@@ -163,7 +163,7 @@ class _Run:
             self._begun.clear()
 
     def _fill(self, tasks: Iterator[list[int]]) -> None:
-        """Hands over as many tasks as workers are to have."""
+        """Submits tasks until the workers have enough."""
         threads = sum(self.client.nthreads().values()) if self.client.status == "running" else 0
         for indices in islice(tasks, max(0, max(_LEAST, threads * _AHEAD) - len(self._begun))):
             self._submit(indices, 0)
@@ -174,7 +174,7 @@ class _Run:
         future.add_done_callback(self._done.put)
 
     def _end(self, done: Future[Any]) -> None:
-        """Takes what a task gave, or begins it again where it was lost with its worker."""
+        """Takes the result of a task, or restarts the task if it was lost with its worker."""
         if done.key not in self._begun:
             return
         _, indices, attempt = self._begun.pop(done.key)
@@ -182,7 +182,7 @@ class _Run:
             try:
                 records = done.result(timeout=_PATIENCE * 10)
             except TimeoutError:
-                # The result went with its worker, but the shards did not: they are found.
+                # The result was lost with its worker, but the shards are in the store and will be found.
                 records = []
             self.records += [record for record in records if record.hashes]
             return
@@ -197,13 +197,13 @@ class _Run:
         self._submit(indices, attempt + 1)
 
     def _look(self) -> None:
-        """Refuses to wait for a scheduler that is gone."""
+        """Raises an error if the scheduler is gone."""
         if self.client.status not in ("running", "connecting"):
             raise refusal("cluster", "the scheduler is gone", "call again: finished shards stay")
 
 
 def _tasks(job: jobs.Job, missing: list[int]) -> Iterator[list[int]]:
-    """The shards that are baked by one task each: several where they are small, since a task costs some milliseconds."""
+    """Groups shards into tasks: several small shards per task, since each task has an overhead of some milliseconds."""
     together = max(1, _TASK // math.prod(job.shard))
     together = min(together, max(1, len(missing) // _LEAST))
     remaining = iter(missing)

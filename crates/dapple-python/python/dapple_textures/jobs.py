@@ -1,14 +1,14 @@
-"""Pictures that outgrow one machine: a list of shards in a Zarr store, and "bake this shard".
+"""Bakes pictures that are too large for one machine, shard by shard, into a Zarr store.
 
-A window is, bit for bit, the crop of the whole. So any number of processes on any number of machines bake the shards of
-one store, in any order, and may die while they do: a shard is written whole or not at all, and one that is there is not
-baked again. The store holds the recipe, so its place is all that a worker needs:
+A window has the same bits as a crop of the whole. So any number of processes on any number of machines can bake the
+shards of one store in any order. They may also crash: a shard is written completely or not at all, and a shard that
+exists is not baked again. The store holds the recipe, so a worker only needs the path of the store:
 
     python -m dapple_textures.jobs create rock.zarr rock.toml --size 200000 --maps height,normal --shard 2048
     python -m dapple_textures.jobs bake rock.zarr --part $SLURM_ARRAY_TASK_ID/$SLURM_ARRAY_TASK_COUNT
     python -m dapple_textures.jobs status rock.zarr
 
-This needs `zarr` 3 and no engine; `dapple_textures.dask` does the same on a Dask cluster.
+This needs `zarr` 3 and no other scheduler; `dapple_textures.dask` does the same on a Dask cluster.
 """
 
 from __future__ import annotations
@@ -38,29 +38,29 @@ from ._types import refusal
 #: The attribute of the store that holds the job.
 _ATTRIBUTE = "dapple_textures"
 
-#: The group of the images of its recipe.
+#: The group in the store that holds the images of the recipe.
 _IMAGES = "images"
 
 
 @dataclass(frozen=True)
 class Record:
-    """What became of a shard."""
+    """The result of baking a shard."""
 
-    #: Its number, from 0.
+    #: The number of the shard, from 0.
     index: int
-    #: The SHA-256 of the numbers of each plane that was baked; a plane that was there already is not among them.
+    #: The SHA-256 of the numbers of each baked plane; planes that existed already are left out.
     hashes: dict[str, str]
 
 
 class Job:
-    """The shards of an array of any size, in a Zarr store: made by `create`, or opened where it was made.
+    """The shards of an array of any size in a Zarr store. `create` makes a job, and `Job(store)` opens it again.
 
-    `len` of it is the number of shards. It can be pickled.
+    `len(job)` is the number of shards. A job can be pickled.
     """
 
     def __init__(self, store: Any) -> None:
-        """Opens the job of a store: a path, the address of an object store, or a Zarr store."""
-        #: Where it lies; paths are absolute, so that they hold in the folder of any process.
+        """Opens the job in a store: a path, the address of an object store, or a Zarr store."""
+        #: The place of the store; paths are absolute, so that they are valid in any working directory.
         self.store = place_of(store)
         group = zarr.open_group(self.store, mode="r+")
         data = group.attrs.get(_ATTRIBUTE)
@@ -71,17 +71,17 @@ class Job:
             raise refusal("version", message, "use one version on all machines")
         self._group = group
         self._arrays: dict[str, zarr.Array[Any]] = {}
-        #: The SHA-256 of all that the job is made of.
+        #: The SHA-256 of the description of the job.
         self.hash = _sources.digest(data)
-        #: What is baked.
+        #: The recipe or field to bake.
         self.source = _sources.from_data(data["source"], _read_images(group, data["source"]))
-        #: The planes that are made.
+        #: The names of the planes to bake.
         self.planes: tuple[str, ...] = tuple(data["planes"])
-        #: The shape of the whole, without channels.
+        #: The shape of the whole array, without channels.
         self.shape: tuple[int, ...] = tuple(data["shape"])
         #: The shape of a shard, without channels.
         self.shard: tuple[int, ...] = tuple(data["shard"])
-        #: How many shards there are along each axis.
+        #: The number of shards along each axis.
         self.grid: tuple[int, ...] = _grid(self.shape, self.shard)
 
     def __reduce__(self) -> tuple[type[Job], tuple[Any]]:
@@ -92,27 +92,27 @@ class Job:
         return math.prod(self.grid)
 
     def window(self, index: int) -> tuple[slice, ...]:
-        """Where a shard lies."""
+        """Returns the window of a shard in the whole array."""
         return _window(self.shape, self.shard, self._place(index))
 
     def array(self, plane: str) -> zarr.Array[Any]:
-        """A plane as a Zarr array; what is not baked yet is NaN."""
+        """Returns a plane as a Zarr array; values that are not baked yet are NaN."""
         if plane not in self._arrays:
             array = self._group[plane]
             assert isinstance(array, zarr.Array)
-            # A metallic of 0 everywhere is written, too: what is not there is not baked.
+            # Chunks of zeros (such as a metallic of 0) are written as well, since a missing chunk means "not baked".
             self._arrays[plane] = array.with_config({"write_empty_chunks": True})
         return self._arrays[plane]
 
     def missing(self) -> list[int]:
-        """The shards of which a plane is not there yet, in their order."""
+        """Returns the numbers of the shards that lack a plane, in ascending order."""
         missing: set[int] = set()
         for plane in self.planes:
             missing |= self._missing(plane)
         return sorted(missing)
 
     def bake(self, index: int) -> Record:
-        """Bakes what is not there of a shard, and writes it."""
+        """Bakes and writes the missing planes of a shard."""
         place = self._place(index)
         planes = [plane for plane in self.planes if not self._is_there(plane, place)]
         if not planes:
@@ -126,21 +126,21 @@ class Job:
         return Record(index, hashes)
 
     def bake_all(self, indices: Iterable[int] | None = None) -> Iterator[Record]:
-        """Bakes shards one after the other: by default all that are missing."""
+        """Bakes shards one after the other, by default all missing ones."""
         for index in self.missing() if indices is None else indices:
             yield self.bake(index)
 
     def part(self, number: int, count: int) -> range:
-        """The shards of part `number` (from 0) where `count` workers share all of them evenly."""
+        """Returns the shards of part `number` (from 0) if `count` workers share all shards evenly."""
         if not 0 <= number < count:
             raise refusal("range", f"the part is {number}, but it must be from 0 to {count - 1}")
         return range(number, len(self), count)
 
     def openjd(self, *, parts: int | None = None, python: str = "python") -> dict[str, Any]:
-        """An Open Job Description template (2023-09) whose tasks bake the shards: for OpenJD farms such as Deadline Cloud.
+        """Returns an Open Job Description template (2023-09) whose tasks bake the shards.
 
-        `parts` is the number of tasks, by default one for each shard, but no more than 1024, which farms take. The place of the store is written as
-        it is from any folder.
+        It is for farms such as Deadline Cloud. `parts` is the number of tasks: by default one for each shard, but at most
+        1024, which is a common limit of farms. The template holds the absolute path or the address of the store.
         """
         check_shared(self.store)
         parts = min(len(self), 1024) if parts is None else parts
@@ -223,7 +223,7 @@ def create(
     extent: float | Sequence[float] | None = None,
     origin: float | Sequence[float] | None = None,
 ) -> Job:
-    """Makes the arrays of a job in a store, or opens the job where the same one was made before.
+    """Makes the arrays of a job in a store, or opens the job if the store already holds the same one.
 
     Parameters
     ----------
@@ -232,10 +232,11 @@ def create(
         of three axes a volume. A number is both rows and columns.
     planes : the names of the maps.
     store : a path, the address of an object store (with fsspec), or a Zarr store.
-    shard : the shape of what a worker writes as one file or object; of further axes it is 1.
-    chunk : the shape of what a reader loads at once; the whole shard by default. It must divide the shard.
-    compressors : those of Zarr; by default Zarr's own.
-    extent, origin : those of `Field.render`, for fields alone.
+    shard : the shape of the part that a worker writes as one file or object; a number is both rows and columns, with 1
+        along further axes.
+    chunk : the shape of the part that a reader loads at once; by default the whole shard. It must divide the shard.
+    compressors : compressors of Zarr; by default Zarr's own choice.
+    extent, origin : as in `Field.render`, for fields only.
     """
     source = _sources.source(what, extent=extent, origin=origin)
     planes = (planes,) if isinstance(planes, str) else tuple(planes)
@@ -258,7 +259,7 @@ def create(
         "layout": {"chunk": list(chunk), "compressors": repr(compressors)},
     }
     store = place_of(store)
-    # As it is read again.
+    # The form that it has when it is read from JSON.
     data = json.loads(json.dumps(data))
     group = _group(store, data)
     before = group.attrs.get(_ATTRIBUTE)
@@ -291,9 +292,9 @@ def create(
 
 
 def _group(store: Any, data: dict[str, Any]) -> zarr.Group:
-    """The group of a store, made with the description of a job where there is none.
+    """Opens the group of a store, or makes it with the description of a job if it does not exist.
 
-    Others may make it at this moment. Its description goes with it in one file, so that whoever is last writes the same.
+    Another process may make it at the same moment. The group and the description are one file, so both write the same.
     """
     try:
         return zarr.open_group(store, mode="r+")
@@ -306,7 +307,7 @@ def _group(store: Any, data: dict[str, Any]) -> zarr.Group:
 
 
 def place_of(store: Any) -> Any:
-    """A store that other processes reach, too: an absolute path, the address of an object store, or a Zarr store."""
+    """Returns the store in a form that is valid in any folder; paths become absolute."""
     if isinstance(store, LocalStore):
         store = store.root
     if isinstance(store, os.PathLike) or (isinstance(store, str) and "://" not in store):
@@ -317,14 +318,14 @@ def place_of(store: Any) -> Any:
 
 
 def check_shared(store: Any) -> None:
-    """Refuses a store that lies in the memory of this process, where no other writes."""
+    """Raises an error for a store in the memory of this process, which other processes cannot reach."""
     if isinstance(store, (dict, MemoryStore)) or str(store).startswith("memory://"):
         message = "the store lies in the memory of this process, and others do not see it"
         raise refusal("store", message, "give a path, or the address of an object store")
 
 
 def _read_images(group: zarr.Group, source: dict[str, Any]) -> dict[str, _sources.Image]:
-    """The images of a job, by their SHA-256."""
+    """Reads the images of a job, by their SHA-256."""
     images = {}
     for image in source.get("images", ()):
         name = f"{_IMAGES}/{image['hash']}"
@@ -342,7 +343,7 @@ def _axes(count: int, source: object) -> tuple[str, ...]:
 
 
 def shard_sides(side: Any, shape: Sequence[int]) -> tuple[int, ...]:
-    """The sides of a part of an array: a number is both rows and columns, and 1 along further axes."""
+    """Returns the sides of a part of an array; a number is both rows and columns, with 1 along further axes."""
     sides = _sources.sides(side)
     try:
         operator.index(side)
@@ -367,21 +368,21 @@ def _window(
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """The command `python -m dapple_textures.jobs`."""
+    """Runs the command `python -m dapple_textures.jobs`."""
     parser = argparse.ArgumentParser(prog="python -m dapple_textures.jobs", description=__doc__.split("\n\n")[0])
     commands = parser.add_subparsers(dest="command", required=True)
     make = commands.add_parser("create", help="make the arrays of a job")
     make.add_argument("store")
     make.add_argument("recipe", help="a file in TOML or JSON, or the name of a built-in recipe")
-    make.add_argument("--size", required=True, help="COLUMNSxROWS of the whole, or one number for both")
-    make.add_argument("--maps", default="height", help="with commas between them")
-    make.add_argument("--frames", type=int, help="pictures of a loop in time")
+    make.add_argument("--size", required=True, help="size of the whole as COLUMNSxROWS, or one number for both")
+    make.add_argument("--maps", default="height", help="names of maps, separated by commas (height)")
+    make.add_argument("--frames", type=int, help="number of pictures of a loop in time")
     make.add_argument("--shard", type=int, default=2048)
     make.add_argument("--chunk", type=int)
     bake = commands.add_parser("bake", help="bake shards that are missing")
     bake.add_argument("store")
-    bake.add_argument("--part", help="K/N: the K-th of N parts of all shards, from 0; all by default")
-    status = commands.add_parser("status", help="say what is missing")
+    bake.add_argument("--part", help="K/N bakes part K (from 0) of N equal parts; by default all shards")
+    status = commands.add_parser("status", help="print how many shards are missing")
     status.add_argument("store")
     options = parser.parse_args(arguments)
     try:

@@ -148,7 +148,7 @@ pub trait FieldExt: Field + Sized {
     ///
     /// # Errors
     ///
-    /// Those of [`Fractal::new`].
+    /// The errors of [`Fractal::new`].
     #[doc(alias = "fBm")]
     fn fbm(self, octaves: u32, gain: f64, lacunarity: f64) -> Result<Fractal<Self>, RasterError>
     where
@@ -162,7 +162,7 @@ pub trait FieldExt: Field + Sized {
     ///
     /// # Errors
     ///
-    /// Those of [`Fractal::new`].
+    /// The errors of [`Fractal::new`].
     fn ridged(self, octaves: u32, gain: f64, lacunarity: f64) -> Result<Fractal<Self>, RasterError>
     where
         Self: Clone,
@@ -175,7 +175,7 @@ pub trait FieldExt: Field + Sized {
     ///
     /// # Errors
     ///
-    /// Those of [`Fractal::new`].
+    /// The errors of [`Fractal::new`].
     #[doc(alias = "turbulence")]
     fn billow(self, octaves: u32, gain: f64, lacunarity: f64) -> Result<Fractal<Self>, RasterError>
     where

@@ -182,7 +182,7 @@ impl Recipe {
     ///
     /// # Errors
     ///
-    /// Those of [`Plan::new_within`](crate::Plan::new_within) that the node has by itself.
+    /// The errors of [`Plan::new_within`](crate::Plan::new_within) that the node has by itself.
     ///
     /// # Examples
     ///

@@ -73,7 +73,7 @@ impl NodeColors {
     ///
     /// # Errors
     ///
-    /// Those of the node and its inputs, such as a blend with weights below 0.
+    /// The errors of the node and its inputs, such as a blend with weights below 0.
     pub fn sample(&self, position: DVec2) -> Result<LinearRgb, RecipeError> {
         let values = one(&self.steps, Places::Positions(&[position]), self.step)?;
         // There is a value for each position.

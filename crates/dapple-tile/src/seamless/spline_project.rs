@@ -126,7 +126,7 @@ impl SplineProject {
     ///
     /// # Errors
     ///
-    /// Those of [`coarse`](Self::coarse); and if the small tile has another size than `size` has after halving.
+    /// The errors of [`coarse`](Self::coarse); and if the small tile has another size than `size` has after halving.
     pub fn refine(
         &self,
         coarse: &Raster<f32>,

@@ -1,4 +1,4 @@
-//! Equal bits: windows, sampling methods, SIMD levels and threads.
+//! Tests that windows, sampling methods, SIMD levels and numbers of threads give equal bits.
 
 use super::doors::reach_of;
 use super::oracle::{METRICS, SCATTERS, position, vectors};
@@ -245,7 +245,7 @@ fn many_positions_equal_single_ones_bit_for_bit() -> Result<(), WorleyError> {
     many_equal_single_ones::<4, 3>(&Worley::<4>::new(Seed(4)), 1e3)
 }
 
-/// The feature points within `reach` cells, nearest first. Their vectors are exact and are rounded once, to `f32`.
+/// Returns the feature points within `reach` cells, nearest first. Their vectors are exact, then rounded once to `f32`.
 fn nearest_of_all<const N: usize>(
     worley: &Worley<N>,
     at: [f64; N],

@@ -1,4 +1,4 @@
-//! Random values of cells.
+//! Tests of random values of cells.
 
 use dapple_hash::Seed;
 use dapple_raster::{Field, Window, glam::DVec2};

@@ -1,4 +1,4 @@
-//! One position by every sampling method, compared with the oracle.
+//! Tests every sampling method at single positions against the oracle.
 
 use super::oracle::brute_force;
 use dapple_raster::{Raster, Window};
@@ -17,8 +17,8 @@ pub(super) const RANKS: [Combination; 4] = [
 /// The size of a pixel, in cells.
 const PIXEL: f64 = 1.0 / 64.0;
 
-/// The four nearest points of a position, which all sampling methods agree on: one position, many positions, a window
-/// of features, and windows of values.
+/// Returns the four nearest points of a position. All sampling methods must agree on them: one position, many
+/// positions, a window of features, and windows of values.
 ///
 /// The position is a multiple of 2^-21 below 2^31, or of 2^-7, so that the window can have it as a pixel center.
 pub(super) fn sample_by_every_door<const N: usize>(
@@ -64,7 +64,7 @@ where
     Ok(expected)
 }
 
-/// A window of 5 × 3 pixels about a position.
+/// Returns a window of 5 × 3 pixels around a position.
 fn window_about<const N: usize>(at: [f64; N]) -> (Plane<N>, Window)
 where
     Axes: Space<N>,
@@ -81,7 +81,7 @@ where
     (Plane::slice(origin.into()), window)
 }
 
-/// The four nearest points of one of the pixels of a window.
+/// Returns the four nearest points of one of the pixels of a window.
 fn render_features<const N: usize>(
     worley: &Worley<N>,
     plane: &Plane<N>,
@@ -110,7 +110,7 @@ where
     }))
 }
 
-/// Checks four features beside those of the oracle, which looks at all cells within `reach`.
+/// Checks four features against the oracle, which looks at all cells within `reach`.
 pub(super) fn agrees_with_oracle<const N: usize>(
     worley: &Worley<N>,
     at: [f64; N],
@@ -143,7 +143,7 @@ pub(super) fn agrees_with_oracle<const N: usize>(
     }
 }
 
-/// Checks that the vector from a feature point begins at a point with its id, exactly.
+/// Checks that the vector from a feature point begins exactly at a point with its id.
 fn leads_to_its_point<const N: usize>(
     worley: &Worley<N>,
     at: [f64; N],
@@ -174,8 +174,8 @@ fn leads_to_its_point<const N: usize>(
     );
 }
 
-/// The distance to which the oracle must look so that it misses one of the five nearest points at most once in 10^7
-/// times: up to there 30 points are expected, in the metric with the smallest balls.
+/// Returns the distance to which the oracle must look so that it misses one of the five nearest points at most once in
+/// 10^7 times. Within this distance 30 points are expected, in the metric with the smallest balls.
 pub(super) fn reach_of<const N: usize>(worley: &Worley<N>) -> Result<i64, WorleyError>
 where
     Axes: Space<N>,

@@ -1,4 +1,4 @@
-//! Positions are rounded down to whole steps of a cell.
+//! Tests that positions are rounded down to whole steps of a cell.
 
 use dapple_hash::Seed;
 use dapple_worley::{RESOLUTION, Worley2};

@@ -1,14 +1,14 @@
-//! Positions at which the own cell and its neighbors are not enough.
+//! Tests of positions for which the own cell and its neighbors are not enough.
 //!
-//! Points further away than one cell are rare, so that pictures seldom show whether they are missed. These tests search
-//! for such positions, fail if they find none, and check them by every sampling method and with the oracle.
+//! Points farther away than one cell are rare, so pictures seldom show whether they are missed. These tests search for
+//! such positions, fail if they find none, and check them by every sampling method and with the oracle.
 
 use super::doors::{agrees_with_oracle, reach_of, sample_by_every_door};
 use super::oracle::position;
 use dapple_hash::Seed;
 use dapple_worley::{Axes, Feature, Metric, Scatter, Space, Vector, Worley, WorleyError};
 
-/// The distance of a feature point in cells, along its furthest axis.
+/// Returns the distance of a feature point in cells, along the axis where it is farthest.
 fn cells_away<const N: usize>(at: [f64; N], feature: &Feature<Vector<N>>) -> i64
 where
     Axes: Space<N>,
@@ -18,8 +18,8 @@ where
     (0..N).map(away).max().unwrap_or(0)
 }
 
-/// Looks at `n` positions for points two or more cells away and returns how often each of F1 to F4 was one. The first
-/// 25 positions are checked.
+/// Searches `n` positions for points two or more cells away; returns how often each of F1 to F4 was such a point. The
+/// first 25 positions found are checked.
 fn count_far_points<const N: usize>(
     metric: Metric,
     scatter: Scatter,
@@ -143,8 +143,8 @@ fn points_many_cells_away_are_found_at_the_least_density() -> Result<(), WorleyE
     Ok(())
 }
 
-/// Looks for cells whose only point lies within `corner` of a corner, and checks the opposite corner, so that the own
-/// cell is of no use to the search. Returns how often the fourth point is beyond the neighbors.
+/// Searches for cells whose only point lies within `corner` of a corner, and checks the opposite corner, where the own
+/// cell does not help the search. Returns how often the fourth point is beyond the neighbors.
 fn far_corners_agree<const N: usize>(metric: Metric, corner: f64) -> Result<u32, WorleyError>
 where
     Axes: Space<N>,

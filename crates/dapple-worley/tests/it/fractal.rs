@@ -1,4 +1,4 @@
-//! Fractal sums: sampling methods, oracle, gradients, periods and ranges.
+//! Tests of fractal sums: sampling methods, oracle, gradients, periods and ranges.
 
 use super::oracle::{METRICS, position};
 use dapple_hash::Seed;
@@ -102,7 +102,7 @@ fn fractal_render_equals_value_bit_for_bit_in_space() -> Result<(), WorleyError>
     render_equals_value(&texture.fractal(ODD)?, &oblique)
 }
 
-/// The sum as the paper writes it, in double precision.
+/// Returns the sum as in the paper's formula, in double precision.
 fn naive<const N: usize>(
     seed: Seed,
     texture: &Cellular<N>,
@@ -399,7 +399,7 @@ fn ranges_map_their_ends_to_zero_and_one() -> Result<(), WorleyError> {
     Ok(())
 }
 
-/// Counts how many of some fresh values lie outside of the measured range.
+/// Counts how many of some new values lie outside of the measured range.
 fn covers_most(range: [f32; 2], n: i64, value: impl Fn([f64; 2]) -> f32) -> [i64; 2] {
     let mut outside = [0; 2];
     for index in 0..n {

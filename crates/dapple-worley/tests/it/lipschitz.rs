@@ -1,6 +1,6 @@
-//! No jumps: over any path, F1 to F4 change by at most its length in their metric.
+//! Tests continuity: along any path, F1 to F4 change by at most the path's length in their metric.
 //!
-//! A search that misses points violates this, at the border of the cells it visits.
+//! A search that misses points would violate this at the borders of the cells that it visits.
 
 use super::doors::RANKS;
 use super::oracle::{METRICS, SCATTERS, position};
@@ -9,8 +9,8 @@ use dapple_raster::{Raster, Window};
 use dapple_worley::{Axes, Metric, Plane, RESOLUTION, Space, Vector, Worley, WorleyError};
 use glam::DVec2;
 
-/// The largest change of the difference of two distances by rounding: a key is rounded a few times and its root once,
-/// and powers are good to about 1e-6.
+/// The largest change of the difference of two distances by rounding. A key is rounded a few times and its root once,
+/// and powers are accurate to about 1e-6.
 fn slack(metric: Metric, a: f32, b: f32) -> f32 {
     let relative = match metric {
         Metric::Minkowski(_) => 2e-6,
@@ -102,7 +102,7 @@ fn distances_never_differ_by_more_than_the_way_between_any_two_positions() -> Re
     Ok(())
 }
 
-/// Crosses a border of cells along each axis, by the smallest steps that there are.
+/// Crosses a border of cells along each axis, in the smallest possible steps.
 fn cross<const N: usize>(worley: &Worley<N>, border: i64, index: i64)
 where
     Axes: Space<N>,

@@ -1,5 +1,5 @@
-//! Tests of the basis with its oracle, through its public interface, so that the kernels are compiled once, in the
-//! library.
+//! Tests of the basis against an oracle, through its public interface, so that the kernels are compiled only once, in
+//! the library.
 
 mod bits;
 mod cell_values;

@@ -1,4 +1,4 @@
-//! Textures at many scattered positions beside one position at a time.
+//! Compares textures at many scattered positions with single evaluations.
 
 use super::oracle::{METRICS, SCATTERS, position};
 use dapple_hash::Seed;
@@ -6,7 +6,7 @@ use dapple_raster::Field;
 use dapple_worley::{Combination, OctaveSeeds, Octaves, Worley, Worley2, WorleyError};
 use glam::DVec2;
 
-/// Positions near and far, a few on borders of cells, and some without a place: no whole number of groups.
+/// Positions near and far, some on borders of cells and some out of range; their number is not a multiple of a group.
 fn positions() -> Vec<DVec2> {
     let mut positions: Vec<DVec2> = (0..301)
         .map(|index| position::<2>(Seed(4), index, [3.0, 1e3, 1e9][index as usize % 3]).into())

@@ -1,9 +1,9 @@
-//! F1 to F4 beside all points of a wide neighborhood, sorted.
+//! The oracle: F1 to F4 from all points of a wide neighborhood, sorted.
 
 use dapple_hash::{Seed, hash1, unit_f64};
 use dapple_worley::{Axes, Metric, Scatter, Space, Worley, WorleyError};
 
-/// All feature points within `reach` cells, as distances and ids, nearest first: in double precision.
+/// Returns all feature points within `reach` cells as distances and ids in double precision, nearest first.
 pub(super) fn brute_force<const N: usize>(
     worley: &Worley<N>,
     position: [f64; N],
@@ -20,7 +20,7 @@ where
     found
 }
 
-/// The vectors from all feature points within `reach` cells, and their ids.
+/// Returns the vectors from all feature points within `reach` cells, and their ids.
 pub(super) fn vectors<const N: usize>(
     worley: &Worley<N>,
     position: [f64; N],
@@ -77,7 +77,7 @@ pub(super) const SCATTERS: [Scatter; 6] = [
     Scatter::Jittered { jitter: 0.3 },
 ];
 
-/// All feature points within `reach` cells in the Euclidean metric, as distances and vectors, nearest first.
+/// Returns all feature points within `reach` cells in the Euclidean metric as distances and vectors, nearest first.
 pub(super) fn brute_force_vectors<const N: usize>(
     worley: &Worley<N>,
     position: [f64; N],
@@ -94,7 +94,7 @@ where
     found
 }
 
-/// A position in cells, a multiple of 2^-21, so that nothing is rounded.
+/// Returns a position in cells, a multiple of 2^-21, so that nothing is rounded.
 pub(super) fn position<const N: usize>(seed: Seed, index: i64, spread: f64) -> [f64; N] {
     core::array::from_fn(|axis| {
         let unit = unit_f64(hash1(seed.child("position", axis as u64), [index], 0));

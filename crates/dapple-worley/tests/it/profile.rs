@@ -1,4 +1,4 @@
-//! Profiles for bumps.
+//! Tests of profiles for bumps.
 
 use dapple_worley::Profile;
 

@@ -47,7 +47,7 @@ where
     )
 }
 
-/// Longer periods for a scatter that may leave all cells of a short one empty.
+/// Returns longer periods for a scatter that may leave all cells of a short period empty.
 fn fitting<const N: usize>(worley: &Worley<N>, period: [Option<u32>; N]) -> [Option<u32>; N]
 where
     Axes: Space<N>,
@@ -58,7 +58,7 @@ where
     }
 }
 
-/// Multiples of 2^-21, near and up to 2^29 away, so that nothing is rounded; now and then corners of cells.
+/// Multiples of 2^-21, near and up to 2^29 away, so that nothing is rounded; some are corners of cells.
 fn any_position<const N: usize>() -> impl Strategy<Value = [f64; N]> {
     let cell = prop_oneof![-8_i64..8, -(1_i64 << 29)..1 << 29];
     let steps = prop_oneof![0_i64..1 << 21, Just(0), Just(1 << 20), Just((1 << 21) - 1)];
@@ -127,7 +127,7 @@ fn any_combination() -> impl Strategy<Value = Combination> {
     ]
 }
 
-/// Pixels from 2^-18 to 2^5 cells, now and then none at all, and either way round.
+/// Windows with pixels from 2^-18 to 2^5 cells of either sign, and sometimes of size 0.
 fn any_window() -> impl Strategy<Value = Window> {
     let exponent = prop_oneof![4 => -7.0..0.0, 1 => -18.0..5.0];
     let size = (exponent, any::<bool>(), 0..20).prop_map(|(exponent, is_flipped, zero)| {
@@ -154,7 +154,7 @@ fn any_window() -> impl Strategy<Value = Window> {
         })
 }
 
-/// Mostly planes whose columns go along the first axis, and no others.
+/// Planes; in most, columns go along the first axis only and rows along the others.
 fn any_plane<const N: usize>() -> impl Strategy<Value = Plane<N>>
 where
     Axes: Space<N>,
@@ -223,7 +223,7 @@ where
     Ok(())
 }
 
-/// The ids of all points of the cells from `first` on, as many as a period has; in order.
+/// Returns the sorted ids of all points in the cells from `first` on, as many cells as a period has.
 fn ids_of_a_period<const N: usize>(
     worley: &Worley<N>,
     period: [u32; N],
@@ -247,7 +247,7 @@ where
     ids
 }
 
-/// The points of 3 × 3 cells, as offsets.
+/// Returns the points of 3 × 3 cells, as offsets.
 fn points_about(worley: &Worley<2>, [x, y]: [i64; 2]) -> Vec<[f64; 2]> {
     let cells = (0..9).map(|index| [x + index % 3, y + index / 3]);
     let points = cells.flat_map(|cell| worley.cell_points(cell));

@@ -1,4 +1,4 @@
-//! Cells on a sphere.
+//! Tests of cells on a sphere.
 
 use dapple_hash::{Seed, hash1, unit_f64};
 use dapple_worley::{Combination, Metric, Radial, RadialCells, Worley3, WorleyErrorKind};

@@ -1,9 +1,9 @@
-//! The table of ranges of the named combinations.
+//! Tests of the table of ranges of the named combinations.
 
 use dapple_hash::Seed;
 use dapple_worley::{Axes, Combination, Metric, Space, Worley, WorleyErrorKind};
 
-/// The combinations whose range in the table is not the one that is measured.
+/// The combinations whose range in the table differs from the measured range.
 fn measured_otherwise<const N: usize>() -> Vec<String>
 where
     Axes: Space<N>,

@@ -1,4 +1,4 @@
-//! Options as data: written and read again, they are the same, and their names are those that files hold.
+//! Tests of options as data: they stay the same when written and read again, and their names are those used in files.
 
 use dapple_worley::{Combination, Metric, Octaves, Profile, RadialCells, Scatter};
 use serde::{Serialize, de::DeserializeOwned};

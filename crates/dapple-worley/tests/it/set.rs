@@ -1,4 +1,4 @@
-//! The basis over placed points, compared with a search through all of them.
+//! Compares the basis over placed points with a search through all of them.
 
 use dapple_hash::{Seed, hash1, unit_f64};
 use dapple_worley::{Axes, FeatureSet, Metric, Space, Vector};

@@ -1,4 +1,4 @@
-//! Pictures in which points are culled, and slices that are filled together.
+//! Tests of pictures in which points are culled, and of slices that are filled together.
 
 use dapple_hash::Seed;
 use dapple_raster::{Field, Raster, RasterErrorKind, Window};
@@ -8,8 +8,8 @@ use dapple_worley::{
 };
 use glam::{DVec2, DVec3, DVec4};
 
-/// A position that is about equally far from its two nearest points: on the way from `at` to a place with another
-/// nearest point.
+/// Returns a position that is about equally far from its two nearest points. It lies between `at` and a place with
+/// another nearest point.
 pub(super) fn middle_ground<const N: usize>(worley: &Worley<N>, at: [f64; N]) -> [f64; N]
 where
     Axes: Space<N>,
@@ -32,7 +32,7 @@ where
     along(at, here)
 }
 
-/// A place at `way` along the first axis, and half as much along the second.
+/// Returns a place at `way` along the first axis, and half as much along the second.
 fn along<const N: usize>(mut at: [f64; N], way: f64) -> [f64; N] {
     at[0] += way;
     at[1] += way / 2.0;
@@ -64,7 +64,7 @@ where
     Ok(())
 }
 
-/// Windows about places where a hair decides which point is nearer, from a whole cell down to a few steps.
+/// Windows around places where a tiny difference decides which point is nearer, from a whole cell down to a few steps.
 fn hairs_are_split_right<const N: usize>() -> Result<(), WorleyError>
 where
     Axes: Space<N>,
@@ -104,7 +104,7 @@ fn hairs_are_split_right_in_space() -> Result<(), WorleyError> {
     hairs_are_split_right::<3>()
 }
 
-/// More planes than are filled together: near to one another and not, turned, and twice the same.
+/// More planes than are filled together: some close to one another, some not, turned ones, and one plane twice.
 fn planes() -> Vec<Plane<3>> {
     let slice = |x: f64, z: f64| Plane::slice(DVec3::new(x, 0.5, z));
     let mut planes: Vec<_> = (0..18)
@@ -154,7 +154,7 @@ fn slices_are_pictures_of_their_planes_bit_for_bit() -> Result<(), WorleyError> 
     Ok(())
 }
 
-/// Slices downward along the third axis, then upward along the fourth, near enough to share their candidates.
+/// Slices descending along the third axis, then ascending along the fourth, close enough to share their candidates.
 #[test]
 fn slices_of_four_dimensions_equal_values_bit_for_bit() -> Result<(), WorleyError> {
     let slice = |z: f64, w: f64| Plane::slice(DVec4::new(0.5, -2.0, z, w));
@@ -214,7 +214,7 @@ fn slices_of_another_size_are_refused_before_anything_is_drawn() -> Result<(), W
     Ok(())
 }
 
-/// Extreme planes and windows, compared with their values one by one.
+/// Compares extreme planes and windows with single values.
 #[test]
 fn odd_planes_and_windows_hold_what_values_are() -> Result<(), WorleyError> {
     let up = |v: DVec3| Plane {
@@ -267,7 +267,7 @@ fn values_of_nothing_have_the_same_bits_in_pictures() -> Result<(), WorleyError>
     Ok(())
 }
 
-/// Where one point is the nearest in a whole tile, its features are found in the tile, as the others are.
+/// If one point is the nearest in a whole tile, its features are still found in the tile, as for other points.
 #[test]
 fn features_of_f1_alone_are_those_of_samples() -> Result<(), WorleyError> {
     let worley = Worley2::new(Seed(4));

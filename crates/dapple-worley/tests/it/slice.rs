@@ -1,4 +1,4 @@
-//! Slices of spaces as fields.
+//! Tests of slices of spaces as fields.
 
 use dapple_hash::Seed;
 use dapple_raster::{Field, Window, glam::DVec2};

@@ -1,7 +1,7 @@
-//! Pinned values of the crate, which no change may move by accident.
+//! Pinned values of the crate, which must not change by accident.
 //!
-//! Each test writes its numbers as lines of text, floating-point numbers as their bits. To pin them anew, take the
-//! lines that a failing test shows.
+//! Each test writes its numbers as lines of text, floating-point numbers as their bits. To pin new values, copy the
+//! lines that a failing test prints.
 
 use super::oracle::{METRICS, SCATTERS};
 use dapple_hash::Seed;

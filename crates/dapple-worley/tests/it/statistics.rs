@@ -1,7 +1,6 @@
-//! The feature points are as random as they should be, and their distances as large.
+//! Tests that feature points are as random as intended, and that their distances have the expected means.
 //!
-//! Seeds are fixed, so every test always passes or always fails. The bounds are those that true randomness exceeds one
-//! time in 10^4.
+//! Seeds are fixed, so every test always passes or always fails. True randomness exceeds the bounds one time in 10^4.
 
 use dapple_hash::{Seed, hash1, unit_f64};
 use dapple_worley::{Axes, Metric, Scatter, Space, Vector, Worley, WorleyError};
@@ -17,7 +16,7 @@ fn chi_square_bound(freedom: f64) -> f64 {
     freedom * root * root * root
 }
 
-/// Checks counts that should be in proportion to `weights`.
+/// Checks that counts are in proportion to `weights`.
 fn follows(what: &str, counts: &[u32], weights: &[f64]) {
     let n: u32 = counts.iter().sum();
     let all: f64 = weights.iter().sum();
@@ -61,7 +60,7 @@ fn histogram2(n_bins: usize, values: impl IntoIterator<Item = [f64; 2]>) -> Vec<
     counts
 }
 
-/// The offsets of the points of the cells of a cube about the origin, cell by cell.
+/// Returns the offsets of the points in the cells of a cube around the origin, cell by cell.
 fn cells<const N: usize>(worley: &Worley<N>, side: i64) -> Vec<Vec<[f64; N]>>
 where
     Axes: Space<N>,
@@ -201,7 +200,7 @@ fn neighboring_cells_do_not_depend_on_each_other() {
     }
 }
 
-/// The probabilities of the counts from 0 on; the last one is that of all larger counts together.
+/// The probabilities of the counts from 0 on; the last entry is the probability of all larger counts together.
 fn poisson(mean: f64, len: usize) -> Vec<f64> {
     let mut probabilities = Vec::new();
     let mut probability = libm::exp(-mean);
@@ -213,7 +212,8 @@ fn poisson(mean: f64, len: usize) -> Vec<f64> {
     probabilities
 }
 
-/// Checks how many cells have the least number of points, one more, and so on; the last weight is that of all others.
+/// Checks how many cells have the least number of points, one more, and so on; the last weight is for all larger
+/// numbers.
 fn counts_follow<const N: usize>(
     side: i64,
     scatter: Scatter,
@@ -288,7 +288,7 @@ fn anywhere<const N: usize>(index: i64) -> [f64; N] {
     core::array::from_fn(|axis| (unit(axis) - 0.5) * f64::from(1 << 21))
 }
 
-/// The means of F1 to F4, and the standard errors of these.
+/// Returns the means of F1 to F4 and their standard errors.
 fn means<const N: usize>(worley: &Worley<N>, n: i64) -> [[f64; 2]; 4]
 where
     Axes: Space<N>,
@@ -330,7 +330,7 @@ fn mean_distances_at_the_default_density_are_those_measured() {
     means_are_those_measured::<4>(5000, [0.459, 0.575, 0.646, 0.700]);
 }
 
-/// The volume of the ball with the radius 1.
+/// The volume of the unit ball.
 fn unit_ball(metric: Metric, n_axes: usize) -> f64 {
     use core::f64::consts::PI;
     let n = n_axes as f64;

@@ -1,4 +1,4 @@
-//! Any number of threads gives the same bits.
+//! Tests that any number of threads gives the same bits.
 
 use super::oracle::METRICS;
 use dapple_hash::Seed;
@@ -6,7 +6,7 @@ use dapple_raster::{Raster, Window};
 use dapple_worley::{Combination, FeatureView, Octaves, Plane, Worley, WorleyError};
 use glam::DVec2;
 
-/// What a number of threads makes of each of several pictures, the first of which is that of one thread.
+/// Checks that 1, 2 and 7 threads make the same picture.
 fn is_the_same_with_any_number_of_threads<T: PartialEq + Send>(
     what: &str,
     picture: impl Fn() -> T + Sync,

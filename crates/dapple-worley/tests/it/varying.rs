@@ -1,4 +1,4 @@
-//! A density that varies in space.
+//! Tests of a density that varies in space.
 
 use super::doors::{RANKS, agrees_with_oracle, sample_by_every_door};
 use super::oracle::{METRICS, position};
@@ -7,7 +7,7 @@ use dapple_raster::{Raster, Window};
 use dapple_worley::{Axes, Plane, Scatter, Space, Vector, Worley, WorleyError};
 use glam::DVec2;
 
-/// From the least density to the largest and back, several times within 40 cells, and cut off at both ends.
+/// Varies from the least density to the largest and back, several times within 40 cells, and is clamped at both ends.
 fn waves<const N: usize>(at: [f64; N]) -> f64 {
     let sum: f64 = at.iter().sum();
     let wave = 1.0 - (sum / 20.0 - (sum / 20.0).round()).abs() * 4.0;

@@ -1,4 +1,4 @@
-//! Ours beside `kiddo`: the better of two numbers of directions counts.
+//! Our matcher beside `kiddo`, with the better of two numbers of directions.
 
 use super::{PLAIN_SMALL, Recorded, Setting};
 use crate::harness::{Bench, Side};
@@ -12,7 +12,7 @@ const KIDDO: Case = Case {
     ..PLAIN_SMALL
 };
 
-/// The rows of a setting, with 8 and 16 directions.
+/// Returns the rows of a setting, with 8 and with 16 directions.
 pub(super) fn cases(setting: &Setting) -> [Case; 2] {
     ["kiddo, 8 directions", "kiddo, 16 directions"].map(|peer| Case {
         case: setting.plain.case,

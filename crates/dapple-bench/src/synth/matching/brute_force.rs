@@ -1,31 +1,31 @@
-//! Whether a row is the nearest of all: every row is compared with every query, without what the matcher does.
+//! A check of nearest rows: every row is compared with every query, independently of the matcher.
 //!
-//! A row is dropped as soon as the terms so far are more than the whole distance of the row found; what is left, which is
-//! little, is compared by `distance_sq` itself. Sixteen rows at once are compared term by term, so that the compiler can
-//! make registers of them, and blocks of rows stay in the cache while all queries pass by.
+//! A row is dropped as soon as its partial sum exceeds the whole distance of the row found. The few rows that remain
+//! are compared by `distance_sq` itself. Sixteen rows at a time are compared term by term, so that the compiler uses
+//! vector registers, and blocks of rows stay in the cache while all queries are compared with them.
 
 use dapple_synth::distance_sq;
 
-/// Rows that are compared at once.
+/// The number of rows that are compared at once.
 const LANES: usize = 16;
 
-/// Groups of rows in a block: 176 KB of rows of 171 numbers.
+/// The number of groups of rows in a block: 176 KB for rows of 171 numbers.
 const BLOCK: usize = 16;
 
-/// Every so many terms are a part, after which rows can be dropped.
+/// The number of parts of a sum; rows can be dropped after each part.
 const PARTS: usize = 16;
 
-/// Sums of up to 1000 terms in `f32` differ by less than this between two orders: each term is rounded at most 1003
-/// times by 2^-24.
+/// Sums of up to 1000 terms in `f32` in two different orders differ by less than this factor: each term is rounded at
+/// most 1003 times by 2^-24.
 const MARGIN: f32 = 1.0 - 1.3e-4;
 
-/// Rows to compare with.
+/// The rows to compare with.
 pub(super) struct BruteForce<'a> {
     dims: usize,
     rows: &'a [f32],
-    /// For each group of rows, their numbers in the order of `terms`; infinite past the last row.
+    /// The numbers of each group of rows, in the order of `terms`; infinite past the last row.
     groups: Vec<[f32; LANES]>,
-    /// The numbers of a row: every sixteenth, so that the first part is from everywhere in the neighborhood.
+    /// The order of the terms, in steps of sixteen, so that the first terms come from all over the neighborhood.
     terms: Vec<usize>,
 }
 
@@ -51,7 +51,7 @@ impl<'a> BruteForce<'a> {
         }
     }
 
-    /// How many of some queries have a nearer row than the one found, or one that is as near and comes before it.
+    /// Returns how many queries have a row that is nearer than the one found, or as near with a lower index.
     pub(super) fn n_wrong(&self, queries: &[&[f32]], found: &[u32]) -> usize {
         let limits: Vec<f32> = queries
             .iter()
@@ -77,7 +77,7 @@ impl<'a> BruteForce<'a> {
         is_wrong.into_iter().filter(|&is_wrong| is_wrong).count()
     }
 
-    /// Whether a row is nearer than the one found, or as near and before it.
+    /// Returns whether a row is nearer than the one found, or as near with a lower index.
     fn is_before(&self, query: &[f32], row: u32, (limit, found): (f32, u32)) -> bool {
         let distance_sq = distance_sq(query, self.row(row));
         distance_sq < limit || distance_sq == limit && row < found
@@ -87,13 +87,13 @@ impl<'a> BruteForce<'a> {
         &self.rows[row as usize * self.dims..][..self.dims]
     }
 
-    /// The numbers of a query in the order of `terms`.
+    /// Returns the numbers of a query in the order of `terms`.
     fn sorted(&self, query: &[f32]) -> Vec<f32> {
         self.terms.iter().map(|&term| query[term]).collect()
     }
 }
 
-/// The squared distances of a group of rows; nothing if a part of them is enough to exceed the limit in all rows.
+/// Returns the squared distances of a group of rows, or `None` if partial sums exceed the limit in all rows.
 fn compare(query: &[f32], rows: &[[f32; LANES]], limit: f32) -> Option<[f32; LANES]> {
     let mut sums = [0.0_f32; LANES];
     let part = query.len().div_ceil(PARTS).max(1);
@@ -128,7 +128,7 @@ mod tests {
     use super::*;
     use dapple_hash::{Seed, hash1};
 
-    /// Numbers of few values, so that many rows are equally near.
+    /// Numbers with few distinct values, so that many rows are equally near.
     fn numbers(seed: u64, count: usize) -> Vec<f32> {
         let number = |index: usize| (hash1(Seed(seed), [index as i64], 0) % 4) as f32;
         (0..count).map(number).collect()

@@ -205,7 +205,7 @@ impl Reader {
     ///
     /// # Errors
     ///
-    /// Those of [`read`](Self::read); and if it is partly transparent and alpha is kept.
+    /// The errors of [`read`](Self::read); and if it is partly transparent and alpha is kept.
     pub(in crate::commands) fn read_opaque(&mut self, path: &Path, kind: Kind) -> Result<Loaded> {
         let loaded = self.read(path, kind)?;
         if loaded.alpha.is_some() {

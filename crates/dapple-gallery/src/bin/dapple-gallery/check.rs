@@ -1,4 +1,4 @@
-//! `--check` and `--bless`: the figures as they are now, beside `figures.lock`.
+//! The options `--check` and `--bless`, which compare the figures with `figures.lock` or rewrite it.
 #![expect(clippy::disallowed_methods, reason = "the lock is a file")]
 
 use crate::{say, with_progress};
@@ -9,7 +9,8 @@ use std::fs;
 use std::io::ErrorKind;
 use std::path::Path;
 
-/// Fails if one of `selected` has another hash than its line, or a line is missing or left over.
+/// Renders `selected` and fails if the hash of a figure differs from its line in the lock, or a line is missing or left
+/// over.
 pub(crate) fn check(selected: &[&'static Figure], path: &Path) -> anyhow::Result<()> {
     let old = read(path)?;
     let changes = old.changes(&updated(&old, selected)?);
@@ -28,7 +29,7 @@ pub(crate) fn check(selected: &[&'static Figure], path: &Path) -> anyhow::Result
     )
 }
 
-/// Writes the hashes of `selected` into the lock, drops lines without a figure, and says what changed.
+/// Writes the hashes of `selected` into the lock, drops lines of figures that are gone, and prints what changed.
 pub(crate) fn bless(selected: &[&'static Figure], path: &Path) -> anyhow::Result<()> {
     let old = read(path)?;
     let new = updated(&old, selected)?;
@@ -42,7 +43,7 @@ pub(crate) fn bless(selected: &[&'static Figure], path: &Path) -> anyhow::Result
     fs::write(path, new.to_string()).with_context(|| format!("cannot write {}", path.display()))
 }
 
-/// The old lock with the hashes of `selected` as they are now, and without the lines that have no figure.
+/// Returns the old lock with fresh hashes of `selected`, and without the lines of figures that are gone.
 fn updated(old: &Lock, selected: &[&'static Figure]) -> anyhow::Result<Lock> {
     let mut lock = old.clone();
     let names: Vec<String> = figures().map(Figure::name).collect();
@@ -53,7 +54,7 @@ fn updated(old: &Lock, selected: &[&'static Figure]) -> anyhow::Result<Lock> {
     Ok(lock)
 }
 
-/// The lock; an empty one if there is no file yet.
+/// Reads the lock; it is empty if the file does not exist yet.
 fn read(path: &Path) -> anyhow::Result<Lock> {
     match fs::read_to_string(path) {
         Ok(text) => Lock::parse(&text),

@@ -9,7 +9,7 @@ use std::fmt::Display;
 use std::path::PathBuf;
 use std::str::FromStr;
 
-/// What `--help` prints.
+/// The text that `--help` prints.
 pub(crate) const HELP: &str = "\
 Renders every figure, or those whose name contains one of the filters, with a page to look at them.
 
@@ -40,7 +40,7 @@ A mesh and an exemplar of your own:
       --levels N          how many levels the points have: 4 for large features (3)
       --coherence auto|K  how much worse a match may be that continues its neighbors; 0 as in the paper (auto)";
 
-/// The options with two dashes.
+/// The names of all options that begin with two dashes.
 const OPTIONS: [&str; 18] = [
     "size",
     "full",
@@ -62,7 +62,7 @@ const OPTIONS: [&str; 18] = [
     "coherence",
 ];
 
-/// Options, and those which they cannot be used with.
+/// Each of these options with the options that it cannot be combined with.
 const CONFLICTS: [(&str, &[&str]); 7] = [
     ("full", &["size"]),
     ("check", &["bless", "out", "open", "size"]),
@@ -73,7 +73,7 @@ const CONFLICTS: [(&str, &[&str]); 7] = [
     ("docs", &["list", "bless", "out", "open", "size", "ranges"]),
 ];
 
-/// The options that say more about `--mesh`.
+/// The options that need `--mesh`.
 const OF_MESH: [&str; 6] = [
     "exemplar",
     "tiles",
@@ -83,28 +83,28 @@ const OF_MESH: [&str; 6] = [
     "coherence",
 ];
 
-/// The pixels of a picture without `--size`, and with `--full`.
+/// The longer side of a picture in pixels, without `--size` and with `--full`.
 const SIZE: u32 = 512;
 const FULL_SIZE: u32 = 1024;
 
-/// The points and levels of a mesh of the user's own, if nothing else was said.
+/// The default numbers of points and levels for a mesh given with `--mesh`.
 const POINTS: usize = 262_144;
 const LEVELS: usize = 3;
 
-/// A command line that was read: a task, and the figures that it is for.
+/// A parsed command line: a task, and the figures that it is for.
 #[derive(Debug, PartialEq)]
 pub(crate) struct Command {
-    /// What the gallery does.
+    /// The task to run.
     pub(crate) task: Task,
-    /// Parts of the names of figures; without any, all figures.
+    /// Parts of figure names that select figures; an empty list selects all.
     pub(crate) filter: Vec<String>,
     /// Pixels along the longer side of a picture.
     pub(crate) size: u32,
-    /// Where the pictures go, if that was said.
+    /// The folder for the pictures, if one was given.
     pub(crate) out: Option<PathBuf>,
 }
 
-/// What the gallery can do.
+/// A task of the gallery.
 #[derive(Debug, PartialEq)]
 pub(crate) enum Task {
     /// Write the pictures and the page.
@@ -112,7 +112,7 @@ pub(crate) enum Task {
         /// Open the page in the browser.
         open: bool,
     },
-    /// Render a mesh of the user's own.
+    /// Render a mesh that the user brought.
     Own(OwnArguments),
     /// Compare the figures with the lock.
     Check,
@@ -124,7 +124,7 @@ pub(crate) enum Task {
     Ranges,
     /// Rewrite or compare the pictures in the documentation.
     Docs {
-        /// Compare them.
+        /// Compare the pictures with the files instead of writing them.
         check: bool,
     },
     /// Print the help.
@@ -133,7 +133,7 @@ pub(crate) enum Task {
     Version,
 }
 
-/// The options as they are typed, before they are held against each other.
+/// The options as typed, before conflicts between them are checked.
 #[derive(Default)]
 struct Typed {
     names: Vec<&'static str>,
@@ -148,7 +148,7 @@ struct Typed {
     coherence: Option<Coherence>,
 }
 
-/// The command that some arguments ask for.
+/// Parses the arguments into a command.
 pub(crate) fn parse(mut parser: Parser) -> Result<Command> {
     let mut typed = Typed::default();
     while let Some(argument) = parser.next()? {
@@ -177,7 +177,7 @@ impl Typed {
         self.names.contains(&name)
     }
 
-    /// Reads the value of the option `name`, if it is one that has a value.
+    /// Reads the value of the option `name` if that option takes one.
     fn read_value(&mut self, name: &str, parser: &mut Parser) -> Result<()> {
         let mut path = || Ok::<_, lexopt::Error>(Some(PathBuf::from(parser.value()?)));
         match name {
@@ -199,7 +199,7 @@ impl Typed {
         Ok(())
     }
 
-    /// Fails where two options exclude each other, or one is missing that another needs.
+    /// Fails if two options exclude each other, or an option is missing that another one needs.
     fn refuse_conflicts(&self) -> Result<()> {
         for (name, others) in CONFLICTS {
             if let Some(other) = others
@@ -265,7 +265,7 @@ impl Typed {
     }
 }
 
-/// The option that is typed as `name`.
+/// Returns the known option that is typed as `name`.
 fn option(name: &str) -> Result<&'static str> {
     let known = OPTIONS.into_iter().find(|option| *option == name);
     known.ok_or_else(|| unknown(&format!("--{name}")))
@@ -275,7 +275,7 @@ fn unknown(typed: &str) -> anyhow::Error {
     anyhow!("there is no option `{typed}`; see `cargo xtask gallery --help`")
 }
 
-/// The value that follows the option `name`.
+/// Parses the value that follows the option `name`.
 fn value<T: FromStr<Err: Display>>(name: &str, parser: &mut Parser) -> Result<T> {
     let text = text(parser.value()?)?;
     let value = text.parse();

@@ -1,4 +1,4 @@
-//! `--docs`: the pictures in the documentation of the crates and in their READMEs.
+//! The option `--docs`: writes or checks the pictures in the documentation of the crates and in their READMEs.
 #![expect(
     clippy::disallowed_methods,
     reason = "the pictures are files beside the source"
@@ -10,7 +10,8 @@ use dapple_gallery::docs::{DOCUMENTED, Documented};
 use std::fs;
 use std::path::PathBuf;
 
-/// Writes every picture that is not as made now into the folder `docs` of its crate, and says how large all of them are.
+/// Writes every picture that has changed into the folder `docs` of its crate, and prints the total size of all
+/// pictures.
 pub(crate) fn write() -> anyhow::Result<()> {
     for documented in DOCUMENTED {
         let folder = folder(documented);
@@ -19,7 +20,7 @@ pub(crate) fn write() -> anyhow::Result<()> {
         let files = documented.files()?;
         for file in &files {
             let path = folder.join(&file.name);
-            // Another build may compress the same pixels to other bytes.
+            // Another build may compress the same pixels to different bytes.
             if !file.shows_the_same_as(&fs::read(&path).unwrap_or_default()) {
                 fs::write(&path, &file.bytes)
                     .with_context(|| format!("cannot write {}", path.display()))?;
@@ -35,7 +36,7 @@ pub(crate) fn write() -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Fails if a picture is not as made now.
+/// Fails if a picture on disk differs from a fresh one.
 pub(crate) fn check() -> anyhow::Result<()> {
     let mut old = Vec::new();
     for documented in DOCUMENTED {

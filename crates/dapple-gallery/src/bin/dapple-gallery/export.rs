@@ -1,4 +1,4 @@
-//! The pictures as PNG files, and the page beside them.
+//! Writes the pictures as PNG files, with the page beside them.
 #![expect(
     clippy::disallowed_methods,
     reason = "files are written here, and the page says how long a figure took"
@@ -65,7 +65,7 @@ fn write_png(path: &Path, panel: &Panel) -> anyhow::Result<()> {
     .with_context(|| format!("cannot write {}", path.display()))
 }
 
-/// The way from the folder `out` to the root of the workspace, as a link has it: `../../`.
+/// Returns the relative path from the folder `out` to the root of the workspace, as used in links: `../../`.
 fn relative_root(out: &Path) -> anyhow::Result<String> {
     let [out, root] = [out, root()].map(|path| {
         path.canonicalize()
@@ -85,7 +85,7 @@ fn relative_root(out: &Path) -> anyhow::Result<String> {
     Ok(up + &down.collect::<String>())
 }
 
-/// Opens a file with what the system has for it.
+/// Opens a file with the default program of the system.
 pub(crate) fn open(page: &Path) -> anyhow::Result<()> {
     let opener = match std::env::consts::OS {
         "windows" => "explorer",
@@ -95,7 +95,7 @@ pub(crate) fn open(page: &Path) -> anyhow::Result<()> {
     let status = Command::new(opener).arg(page).status();
     let status =
         status.with_context(|| format!("cannot run `{opener}` to open {}", page.display()))?;
-    // `explorer` reports failure even where it opened the page.
+    // `explorer` reports failure even when it opened the page.
     ensure!(
         status.success() || opener == "explorer",
         "`{opener}` could not open {}",

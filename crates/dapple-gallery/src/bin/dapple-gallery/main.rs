@@ -53,7 +53,7 @@ fn perform(command: &Command) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// The figures that the filters select, at least one.
+/// Returns the figures that the filters select; fails if there are none.
 fn selected(command: &Command) -> anyhow::Result<Vec<&'static Figure>> {
     let figures = select(&command.filter);
     ensure!(
@@ -73,7 +73,7 @@ fn lock_path() -> PathBuf {
     root().join("crates/dapple-gallery/figures.lock")
 }
 
-/// Figures one after the other, each with a line on the terminal before it is drawn; no lines where there is no terminal.
+/// Iterates over the figures and prints a progress line for each before it is drawn, if standard error is a terminal.
 fn with_progress<'a>(figures: &'a [&'static Figure]) -> impl Iterator<Item = &'static Figure> + 'a {
     let is_shown = stderr().is_terminal();
     (1..).zip(figures).map(move |(number, figure)| {

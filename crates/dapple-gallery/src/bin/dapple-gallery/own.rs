@@ -1,4 +1,4 @@
-//! A mesh and an exemplar of the user's own.
+//! Renders a mesh and an exemplar that the user brought (`--mesh`).
 #![expect(clippy::disallowed_methods, reason = "files are read and written here")]
 
 use crate::say;
@@ -10,22 +10,22 @@ use dapple_synth::{Coherence, Direction, Edges, HierarchyOptions};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// A mesh, the exemplar of its texture, and how that is made.
+/// The arguments of `--mesh`: a mesh, the exemplar of its texture, and the options of the synthesis.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct OwnArguments {
-    /// The file of the mesh, of any format that is read.
+    /// The file of the mesh, in any supported format.
     pub(crate) mesh: PathBuf,
     /// The image (PNG, JPEG) that the texture is synthesized from.
     pub(crate) exemplar: PathBuf,
-    /// The exemplar tiles.
+    /// Whether the exemplar tiles.
     pub(crate) tiles: bool,
-    /// The file with directions of the texture's down, as lines `x,y,z,dx,dy,dz`; without any it runs along -y.
+    /// A file of directions for the texture's down, as lines `x,y,z,dx,dy,dz`; without it, down is -y everywhere.
     pub(crate) directions: Option<PathBuf>,
-    /// How many points get a color.
+    /// The number of points that get a color.
     pub(crate) points: usize,
-    /// How many levels the points have: 4 for large features.
+    /// The number of levels of points: 4 for large features.
     pub(crate) levels: usize,
-    /// How much worse a match may be that continues its neighbors; 0 as in the paper.
+    /// How much worse a match may be if it continues its neighbors; 0 as in the paper.
     pub(crate) coherence: Coherence,
 }
 

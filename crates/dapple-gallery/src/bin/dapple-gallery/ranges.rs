@@ -3,7 +3,7 @@
 use dapple_worley::{Axes, Combination, Metric, Space, Worley, WorleyError, hash::Seed};
 use std::fmt::Write as _;
 
-/// The table as `crates/dapple-worley/src/ranges.rs` has it: metrics, numbers of axes, combinations.
+/// Returns the table as it stands in `crates/dapple-worley/src/ranges.rs`: metrics, numbers of axes, combinations.
 pub(crate) fn table() -> anyhow::Result<String> {
     let mut text = String::from("[\n");
     for metric in [Metric::Euclidean, Metric::Manhattan, Metric::Chebyshev] {
@@ -14,7 +14,7 @@ pub(crate) fn table() -> anyhow::Result<String> {
     Ok(text)
 }
 
-/// The ranges with `N` axes.
+/// Returns the row of a metric: the ranges of all combinations with `N` axes.
 fn row<const N: usize>(metric: Metric) -> Result<String, WorleyError>
 where
     Axes: Space<N>,

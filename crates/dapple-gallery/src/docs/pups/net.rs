@@ -13,10 +13,10 @@ use dapple_pups::{
 use dapple_raster::Raster;
 use glam::{DVec2, DVec3};
 
-/// Units of the domain along a side: a few control points.
+/// Units of the domain along a side: room for a few control points.
 const UNITS: f64 = 1.4;
 
-/// How far apart the control points are.
+/// The distance between control points.
 const DISTANCE: f64 = 0.3;
 
 pub(super) const PUPS: Strip = Strip {

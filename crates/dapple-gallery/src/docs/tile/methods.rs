@@ -11,13 +11,13 @@ use dapple_tile::{
 use dapple_wavelet::{WaveletNoise2, hash::Seed};
 use glam::DVec2;
 
-/// Pixels along the side of a tile, of which a picture shows two by two.
+/// Pixels along the side of a tile; a picture shows two by two of them.
 const TILE: u32 = 48;
 
-/// The margin that some methods take off.
+/// The margin that some methods cut off, in pixels.
 const MARGIN: u32 = 12;
 
-/// What all strips of a method say.
+/// The caption of all strips about a method.
 const CAPTION: &str = "Two by two copies";
 
 pub(super) const PERIODIC: Strip = Strip {
@@ -119,7 +119,7 @@ pub(super) const CROSSFADE: Strip = Strip {
     },
 };
 
-/// Two by two copies of the crop, and of what each method makes of it.
+/// Makes pictures of two by two copies: of the crop, then of the result of each method.
 fn beside(crop: &Raster<f32>, methods: &[(&str, Method)]) -> anyhow::Result<Vec<Panel>> {
     let copies = |label: &str, tile: &Raster<f32>| -> anyhow::Result<Panel> {
         let map = repeat(tile, [2 * TILE; 2])?;

@@ -1,4 +1,4 @@
-//! Copies of a tile that differ inside.
+//! Maps whose copies of a tile differ inside.
 
 use super::pebbles;
 use crate::docs::Strip;
@@ -10,7 +10,7 @@ use dapple_worley::hash::Seed;
 /// Pixels along the side of a tile.
 const TILE: u32 = 40;
 
-/// Pixels along the side of a picture: three tiles.
+/// Pixels along the sides of a picture, which is three tiles wide.
 const MAP: [u32; 2] = [3 * TILE; 2];
 
 pub(super) const DISTURBANCE: Strip = Strip {
@@ -61,7 +61,7 @@ pub(super) const CORNER_TILES: Strip = Strip {
     },
 };
 
-/// Two tiles of unlike cells.
+/// Two tiles with different cells.
 fn tiles() -> anyhow::Result<[Raster<f32>; 2]> {
     Ok([
         pebbles(3, TILE, true, Seed(8))?,

@@ -1,4 +1,4 @@
-//! What the nearest feature point and its Voronoi cell give, and profiles.
+//! Strips about the nearest feature point, its Voronoi cell, and profiles.
 
 use super::{basis, color_of, color_with_edges, gray, gray_with_edges};
 use crate::docs::Strip;
@@ -8,7 +8,7 @@ use dapple_worley::{Combination, Profile};
 /// Cells along a side.
 const CELLS: f64 = 2.5;
 
-/// F1 is above it nearly nowhere.
+/// A value that F1 almost never exceeds.
 const F1_MAX: f32 = 0.6;
 
 pub(super) const FEATURE: Strip = Strip {
@@ -91,7 +91,7 @@ pub(super) const SMOOTH_F1: Strip = Strip {
         for radius in [0.1, 0.3] {
             let label = format!("smooth with radius {radius}");
             panels.push(gray(&label, CELLS, |at| {
-                // Only a radius that is out of its range is refused.
+                // The only error is a radius outside its range.
                 worley.smooth_f1(at, radius).unwrap_or(f32::NAN) / F1_MAX
             })?);
         }

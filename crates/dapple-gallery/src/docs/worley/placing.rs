@@ -8,10 +8,10 @@ use dapple_raster::Raster;
 use dapple_worley::{Combination, FeatureSet, Metric, Radial, RadialCells, Worley3, hash::Seed};
 use glam::{DVec2, DVec3};
 
-/// What is not on the sphere.
+/// The value of pixels outside the sphere.
 const OUTSIDE: f32 = 1.0;
 
-/// How many shades a globe has: more than other pictures with edges, since its light changes slowly.
+/// The number of shades of a globe: more than in other pictures with edges, since its shading changes slowly.
 const SHADES: f32 = 22.0;
 
 fn radial(metric: Metric, around: u32, polar: f64, radial: f64) -> anyhow::Result<Radial> {
@@ -25,7 +25,7 @@ fn radial(metric: Metric, around: u32, polar: f64, radial: f64) -> anyhow::Resul
     Ok(Radial::new(texture, cells)?)
 }
 
-/// A picture of what is smooth on a disk.
+/// A smooth picture of a disk.
 fn disk(label: &str, value: impl Fn(DVec2) -> f32 + Sync) -> anyhow::Result<Panel> {
     let samples = Raster::from_window(&fine(2.0)?, value)?;
     Ok(shaded(label, &shrink(&samples, SAMPLES)?, SHADES))

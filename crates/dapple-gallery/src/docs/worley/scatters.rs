@@ -1,4 +1,4 @@
-//! How feature points are spread: seeds, densities, jitter, periods.
+//! Strips about the scatter of feature points: seeds, densities, jitter, periods.
 
 use super::{SIDE, basis, flat, gray_with_edges};
 use crate::Panel;
@@ -9,10 +9,10 @@ use glam::DVec2;
 /// Cells along a side.
 const CELLS: f64 = 4.0;
 
-/// Densities that are shown.
+/// The densities to show.
 const DENSITIES: [f64; 3] = [1.0, 3.0, 8.0];
 
-/// The scatters of some values.
+/// Draws one scatter for each of the given values.
 fn scattered(
     what: &str,
     values: [f64; 3],

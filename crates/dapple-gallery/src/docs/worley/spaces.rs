@@ -1,4 +1,4 @@
-//! Two, three and four axes, and planes through them.
+//! Strips about textures with two, three and four axes, and planes through them.
 
 use super::{SHADES, SIDE, basis, gray, ranged, shaded, square};
 use crate::Panel;

@@ -1,14 +1,14 @@
-//! A baked material in light, seen straight from above, so that the picture repeats as the maps do.
+//! A baked material lit and seen straight from above, so that the picture repeats as the maps do.
 
 use dapple_color::{LinearRgb, Normal};
 use dapple_raster::Raster;
 use dapple_recipe::{Bake, BakeOptions, Images, MapKind, MapRows, Plan, Recipe};
 use glam::DVec3;
 
-/// What is reflected straight back by what is no metal.
+/// The reflectance of a dielectric (anything but metal) at normal incidence.
 const DIELECTRIC: f32 = 0.04;
 
-/// A recipe without images, `size` pixels along its longer side.
+/// Bakes and lights a recipe that needs no images, `size` pixels along its longer side.
 pub(super) fn lit(recipe: &Recipe, size: u32) -> anyhow::Result<Raster<LinearRgb>> {
     let plan = Plan::new(recipe, &Images::new(), 0.0)?;
     let sides = plan.extent() / plan.extent().max_element() * f64::from(size);
@@ -18,7 +18,7 @@ pub(super) fn lit(recipe: &Recipe, size: u32) -> anyhow::Result<Raster<LinearRgb
     Ok(surface.zip_map(&albedo, |&(normal, orm), &color| shaded(normal, orm, color))?)
 }
 
-/// The normals, the occlusion with roughness and metallic, and the colors of the whole tile.
+/// The maps of a whole tile: normals; occlusion, roughness and metallic; colors.
 type Maps = (Raster<Normal>, Raster<[f32; 3]>, Raster<LinearRgb>);
 
 fn maps(plan: &Plan, size: [u32; 2]) -> anyhow::Result<Maps> {
@@ -39,7 +39,8 @@ fn maps(plan: &Plan, size: [u32; 2]) -> anyhow::Result<Maps> {
     }
 }
 
-/// The light that comes from a point: scattered by what is no metal, and mirrored, more blurred on what is rough.
+/// The light that a point reflects: diffuse unless it is metal, plus a reflection that is blurrier where the surface is
+/// rough.
 fn shaded(normal: Normal, [free, roughness, metallic]: [f32; 3], color: LinearRgb) -> LinearRgb {
     let normal = DVec3::from_array(normal.to_array().map(f64::from));
     let toward = DVec3::new(-0.5, 0.6, 0.75).normalize();
@@ -50,7 +51,7 @@ fn shaded(normal: Normal, [free, roughness, metallic]: [f32; 3], color: LinearRg
     let gloss = 1.0 - roughness.clamp(0.05, 1.0);
     let exponent = libm::exp2f(1.0 + 8.0 * gloss);
     let highlight = 0.1 * exponent * libm::powf(normal.dot(half).max(0.0) as f32, exponent);
-    // What is seen in the mirror of the normal; from above the eye is at Z.
+    // The direction of the mirror reflection; the eye is above, at Z.
     let mirrored = 2.0 * normal.z * normal - DVec3::Z;
     let sky = (0.6 + 0.4 * (mirrored.y - mirrored.x).clamp(-1.0, 1.0)) as f32;
     let straight = LinearRgb::gray(DIELECTRIC).lerp(color, metallic);

@@ -6,7 +6,7 @@ use glam::DVec2;
 /// How wide the gray edges are, in units of the plane.
 const EDGE: f64 = 0.1;
 
-/// The intensities of the flower, from 0 to 1.
+/// Draws the flower, with intensities from 0 to 1.
 pub(crate) fn flower(window: &Window) -> Result<Raster<f32>, RasterError> {
     Raster::from_window(window, |position| {
         let radius = position.length();
@@ -15,12 +15,12 @@ pub(crate) fn flower(window: &Window) -> Result<Raster<f32>, RasterError> {
     })
 }
 
-/// From 0 outside to 1 inside, given how far inside of an edge a position is.
+/// A soft edge: 0 outside to 1 inside, for a position that is `inside` units inside of the edge.
 fn soft(inside: f64) -> f64 {
     (inside / EDGE + 0.5).clamp(0.0, 1.0)
 }
 
-/// The cosine of five times the angle from straight up, as a polynomial in the cosine of the angle.
+/// Returns the cosine of five times the angle from straight up, as a polynomial in the cosine of the angle.
 fn five_waves(position: DVec2) -> f64 {
     let cos = -position.normalize_or_zero().y;
     ((16.0 * cos * cos - 20.0) * cos * cos + 5.0) * cos

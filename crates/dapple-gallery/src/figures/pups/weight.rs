@@ -1,4 +1,4 @@
-//! A control point whose weight is drawn: equations 1, 2 and 4.
+//! A control point whose weight is drawn, for the figures about equations 1, 2 and 4.
 
 use dapple_graph::{Graph, delaunay};
 use dapple_points::{Domain, PointIdx, PointSet, poisson_disk};
@@ -6,7 +6,7 @@ use dapple_pups::{Pups, PupsError, PupsOptions, hash::Seed};
 use dapple_raster::{RasterError, Window};
 use glam::DVec2;
 
-/// Points with the axes of one of them, the one nearest to the middle.
+/// A point set and one of its points, the one nearest to the middle, with its axes.
 pub(super) struct Star {
     pub(super) points: PointSet,
     pub(super) graph: Graph,
@@ -27,7 +27,7 @@ impl Star {
         })
     }
 
-    /// The square about the point that its axes fit into.
+    /// Returns a square window around the point that its axes fit into.
     pub(super) fn window(&self, size: u32) -> Result<Window, RasterError> {
         let center = self.points.position(self.center);
         let axes = self.graph.axes(self.center).iter();
@@ -36,7 +36,7 @@ impl Star {
         Window::new(center - half, 2.0 * half, [size; 2])
     }
 
-    /// The weights of the points.
+    /// Returns the parametrics of all points, whose weights are drawn.
     pub(super) fn pups(&self, options: PupsOptions) -> Result<Pups, PupsError> {
         Pups::new(&self.points, &self.graph, options)
     }

@@ -9,10 +9,11 @@ use dapple_points::hash::{CellHash, Seed, unit_f64};
 use dapple_raster::Raster;
 use glam::DVec2;
 
-/// Bricks along a row, and rows: an even number, since every other row is shifted by half a brick.
+/// The numbers of bricks along a row and of rows. The rows are even in number, since every other one is shifted by half
+/// a brick.
 const N_BRICKS: [i64; 2] = [4, 8];
 
-/// The height of a brick with its mortar is 1; a brick is twice as long.
+/// The length of a brick with its mortar, in heights of a brick with its mortar.
 const LENGTH: f64 = 2.0;
 
 /// Half the width of the mortar, in heights of a brick.
@@ -24,7 +25,7 @@ const CORNER: f64 = 0.12;
 /// Samples along the side of a pixel.
 const N_SAMPLES: u32 = 4;
 
-/// Bricks, `size` pixels wide and high.
+/// Draws bricks, `size` pixels wide and high.
 pub(super) fn bricks(size: u32) -> anyhow::Result<Raster<LinearRgb>> {
     let clay = ColorRamp::from_hex(&[
         "#6e2a20", "#a5452e", "#8a3a34", "#c0694a", "#b5503a", "#d59468", "#7c4038",
@@ -36,7 +37,7 @@ pub(super) fn bricks(size: u32) -> anyhow::Result<Raster<LinearRgb>> {
         let roll = |index: u32| unit_f64(CellHash::new(Seed(2), brick).at(index));
         let rough = f64::from(noise.at(at)) - 0.5;
         let inside = depth(place) + 0.05 * rough;
-        // The upper edge of a brick has the light, and the lower one has none.
+        // The upper edge of a brick is lit, the lower edge is not.
         let edge = 1.0 - smooth_step(0.0, 0.14, inside);
         let light = 1.0 + 0.7 * rough - 0.5 * edge * place.y;
         let color = clay.at(roll(0) as f32) * (light * (0.8 + 0.4 * roll(1))) as f32;
@@ -45,7 +46,7 @@ pub(super) fn bricks(size: u32) -> anyhow::Result<Raster<LinearRgb>> {
     })?)
 }
 
-/// The brick of a position, and the way to it from the brick's center, in heights of a brick.
+/// Returns the brick at a position, and the vector to the position from the brick's center, in heights of a brick.
 fn brick(at: DVec2) -> ([i64; 2], DVec2) {
     let row = (at.y * N_BRICKS[1] as f64).floor();
     let shift = 0.5 * (row as i64).rem_euclid(2) as f64;
@@ -62,7 +63,7 @@ fn brick(at: DVec2) -> ([i64; 2], DVec2) {
     )
 }
 
-/// How far inside a brick with round corners a place is, in heights of a brick; below zero in the mortar.
+/// Returns how far a place is inside a brick with round corners, in heights of a brick; negative in the mortar.
 fn depth(place: DVec2) -> f64 {
     let half = DVec2::new(0.5 * LENGTH, 0.5) - DVec2::splat(MORTAR + CORNER);
     let past = place.abs() - half;

@@ -14,7 +14,7 @@ const N_SQUARES: f64 = 6.0;
 /// Samples along the side of a pixel.
 const N_SAMPLES: u32 = 8;
 
-/// How the upright lines sway.
+/// The waves that bend the vertical lines.
 const ACROSS: [Wave; 3] = [
     Wave {
         periods: [1, 5],
@@ -33,7 +33,7 @@ const ACROSS: [Wave; 3] = [
     },
 ];
 
-/// How the level lines sway.
+/// The waves that bend the horizontal lines.
 const DOWN: [Wave; 3] = [
     Wave {
         periods: [5, -1],
@@ -52,7 +52,7 @@ const DOWN: [Wave; 3] = [
     },
 ];
 
-/// The wiggly checker, `size` pixels wide and high.
+/// Draws the wiggly checker, `size` pixels wide and high.
 pub(super) fn checker(size: u32) -> anyhow::Result<Raster<LinearRgb>> {
     let [dark, light] = [LinearRgb::gray(0.004), LinearRgb::gray(0.92)];
     Ok(sampled([size; 2], N_SAMPLES, |at| {

@@ -1,31 +1,31 @@
-//! The list of all exemplars: the images from which textures are synthesized, drawn by procedures.
+//! The exemplars: the images from which textures are synthesized, all drawn by procedures.
 //!
-//! The paper's own images are not at hand; these are of the same character and of the same size. Features scale with
-//! the size; at 16 pixels all but the text can still be told apart.
+//! The images of the paper are not available; these have the same character and the same size. Features scale with the
+//! size; at 16 pixels all exemplars but the text can still be told apart.
 
 use super::{bricks, checker, hooks, letter, puzzle, scales, stripes, suckers, text};
 use dapple_color::LinearRgb;
 use dapple_raster::Raster;
 
-/// An image to synthesize from.
+/// An exemplar: an image to synthesize from.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Exemplar {
-    /// What it shows.
+    /// A name for what the image shows.
     pub(crate) name: &'static str,
-    /// Its width and height where it is used, in pixels.
+    /// The width and height of the image in its figure, in pixels.
     pub(crate) side: u32,
-    /// Whether opposite sides fit.
+    /// Whether opposite sides fit together.
     pub(crate) edges: Edges,
-    /// Draws it, with as many pixels along each side as it is told.
+    /// Draws the image, with `size` pixels along each side.
     pub(crate) draw: fn(size: u32) -> anyhow::Result<Raster<LinearRgb>>,
 }
 
-/// What meets where two copies of an exemplar lie side by side.
+/// How two copies of an exemplar meet when they lie side by side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Edges {
     /// The image repeats exactly.
     Repeating,
-    /// It does not.
+    /// Opposite sides do not fit.
     Cropped,
 }
 

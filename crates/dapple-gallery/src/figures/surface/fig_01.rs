@@ -25,7 +25,7 @@ pub(super) const FIGURE: Figure = Figure {
     render,
 };
 
-/// The radius of a point in spacings of its level: they do not touch.
+/// The radius of a drawn point in spacings of its level, small enough that points do not touch.
 const RADIUS: f64 = 0.45;
 
 const VIEW: View = View {
@@ -63,7 +63,8 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     (0..3).rev().map(panel).collect()
 }
 
-/// The color of the point of a level that is drawn at a position, darker toward its edge; dark gray between them.
+/// Returns the color at a position for the points of a level: the color of the point there, darker toward its edge, or
+/// dark gray between points.
 fn point_color(
     hierarchy: &Hierarchy,
     texture: &SurfaceTexture,

@@ -23,11 +23,11 @@ pub(super) const FIGURE: Figure = Figure {
     render,
 };
 
-/// The length of a drawn vector, in units of the mesh, and half its width.
+/// The length and half the width of a vector that the user gave, in units of the mesh.
 const DIRECTION: [f64; 2] = [0.3, 0.02];
-/// The same for the vectors of the field, in spacings of the level that they are drawn for.
+/// The length and half the width of a vector of the field, in spacings of the level that is drawn.
 const FIELD: [f64; 2] = [0.8, 0.1];
-/// How far the sweep goes in one cycle of colors, in units of the mesh.
+/// The distance along the sweep that one cycle of colors covers, in units of the mesh.
 const CYCLE: f64 = 0.35;
 
 fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
@@ -76,13 +76,13 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     ])
 }
 
-/// Whether a place relative to the start of a vector is in the arrow of that direction, `length` long and twice `half_width`
-/// wide.
+/// Returns whether a place lies in an arrow. `from` is the place relative to the start of the arrow; the arrow is
+/// `length` long and twice `half_width` wide.
 fn is_arrow(from: DVec3, vector: DVec3, [length, half_width]: [f64; 2]) -> bool {
     let vector = vector.normalize_or(DVec3::X);
     let along = from.dot(vector) / length;
     let aside = (from - vector * (along * length)).length();
-    // The head is the last third.
+    // The last third of the arrow is its head.
     let width = if along < 0.66 {
         half_width
     } else {
@@ -91,7 +91,7 @@ fn is_arrow(from: DVec3, vector: DVec3, [length, half_width]: [f64; 2]) -> bool 
     (0.0..1.0).contains(&along) && aside < width
 }
 
-/// Whether a position is in the arrow of a site of the coarsest level but one.
+/// Returns whether a position lies in the arrow of a site of the coarsest level but one.
 fn is_field(synthesizer: &Synthesizer, position: DVec3) -> bool {
     let (hierarchy, level) = (
         synthesizer.hierarchy(),
@@ -101,15 +101,15 @@ fn is_field(synthesizer: &Synthesizer, position: DVec3) -> bool {
     let mut hit = false;
     level.grid().visit(position, size[0], |site| {
         let vector = synthesizer.orientation().vectors()[site.index()];
-        // The arrow's middle is at its site.
+        // Each arrow is centered at its site.
         let start = hierarchy.sites().positions()[site.index()] - vector * (0.5 * size[0]);
         hit |= is_arrow(position - start, vector, size);
     });
     hit
 }
 
-/// The sweep distance at a position: that of the nearest site, and how far the position is ahead of it. Mixing several would
-/// blur the lines where the distance jumps.
+/// Returns the sweep distance at a position: the distance of the nearest site, plus how far the position is ahead of
+/// it. A mean over several sites would blur the lines where the distance jumps.
 fn distance(synthesizer: &Synthesizer, position: DVec3) -> f64 {
     let (hierarchy, level) = (
         synthesizer.hierarchy(),
@@ -127,7 +127,7 @@ fn distance(synthesizer: &Synthesizer, position: DVec3) -> f64 {
     nearest.1
 }
 
-/// The colors of a cycle, which ends as it begins.
+/// Returns a ramp for the colors of a cycle, which ends with the color that it begins with.
 fn cycle() -> Result<ColorRamp, ColorError> {
     ColorRamp::from_hex(&[
         "#1b2a6b", "#2f9bd0", "#f4f0c8", "#e8743b", "#7a1b4b", "#1b2a6b",

@@ -21,7 +21,7 @@ pub(super) const FIGURE: Figure = Figure {
 const SIDE: u32 = 5;
 
 fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
-    // Half a pixel of the neighborhood remains free on all sides.
+    // Half a neighborhood pixel of margin is left on all sides.
     let reach = 0.5 * f64::from(SIDE + 1);
     let window = Window::new(DVec2::splat(-reach), DVec2::splat(2.0 * reach), [size; 2])?;
     let pixel = f64::from(size) / 512.0;
@@ -40,7 +40,7 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     Ok(panels)
 }
 
-/// The corners of a pixel.
+/// Returns the corners of a pixel.
 fn square(center: DVec2) -> [DVec2; 4] {
     [[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]].map(|corner| center + DVec2::from(corner))
 }

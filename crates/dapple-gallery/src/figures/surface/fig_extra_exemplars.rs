@@ -16,7 +16,7 @@ pub(super) const FIGURE: Figure = Figure {
 
 fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     let panel = |exemplar: &super::exemplar::Exemplar| {
-        // A small figure shows the same image with fewer pixels.
+        // A small figure draws the same image with fewer pixels.
         let side = exemplar.side.min(size);
         let (edges, repeats) = match exemplar.edges {
             Edges::Repeating => ("repeats", true),

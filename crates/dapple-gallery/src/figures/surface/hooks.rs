@@ -10,10 +10,10 @@ use glam::{DVec2, DVec3};
 /// Hooks along a side of the image; there is one at each point of a square lattice.
 const N_HOOKS: i64 = 3;
 
-/// The radius of the wire. Lengths are half a diagonal of the lattice, the distance between strands.
+/// The radius of the wire. The unit of all lengths is half a diagonal of the lattice, the distance between strands.
 const WIRE: f64 = 0.19;
 
-/// The middle of the wire: how far along the strand, how far toward the next strand, and how high.
+/// The center line of the wire: positions along the strand, toward the next strand, and up.
 const PATH: [[f64; 3]; 8] = [
     [-1.00, 0.00, -0.10],
     [0.20, 0.00, 0.00],
@@ -25,7 +25,7 @@ const PATH: [[f64; 3]; 8] = [
     [1.24, 0.50, -0.40],
 ];
 
-/// Straight lines that a bend of the wire is made of.
+/// The number of straight lines in a bend of the wire.
 const N_LINES: u32 = 6;
 
 /// Samples along the side of a pixel.
@@ -33,13 +33,13 @@ const N_SAMPLES: u32 = 4;
 
 /// One hook.
 struct Wire {
-    /// The middle of the wire as short lines: straight between the corners of its path, round about them.
+    /// The center line of the wire as short lines: straight along its path, rounded at the corners.
     lines: Vec<[DVec3; 2]>,
-    /// What it covers, along and across its strand.
+    /// The box that the hook covers, along and across its strand.
     bounds: [DVec2; 2],
 }
 
-/// Woven hooks, `size` pixels wide and high.
+/// Draws woven hooks, `size` pixels wide and high.
 pub(super) fn hooks(size: u32) -> anyhow::Result<Raster<LinearRgb>> {
     let wire = Wire::new();
     let metal = ColorRamp::from_hex(&["#3a1c08", "#a8641c", "#e9b44c", "#fff0c0"])?;
@@ -74,7 +74,7 @@ impl Wire {
     }
 }
 
-/// The normal of what lies highest at a position of the lattice; none between the wires.
+/// Returns the normal of the highest wire at a position of the lattice, or `None` between wires.
 fn highest(wire: &Wire, at: DVec2) -> Option<DVec3> {
     let mut top = (f64::NEG_INFINITY, None);
     let cell = at.floor();
@@ -98,11 +98,11 @@ fn highest(wire: &Wire, at: DVec2) -> Option<DVec3> {
     top.1
 }
 
-/// The height and the normal of a piece of wire with round ends, at a position along and across its strand.
+/// Returns the height and the normal of a piece of wire with round ends, at a position along and across its strand.
 fn surface([from, to]: [DVec3; 2], at: DVec2) -> Option<(f64, DVec3)> {
     let length = (to - from).length();
     let axis = (to - from).normalize_or_zero();
-    // Where the upright line through the position leaves the endless wire.
+    // Where the vertical line through the position leaves the wire, as if the wire were endless.
     let reach = at.extend(0.0) - from;
     let start = reach - reach.dot(axis) * axis;
     let climb = DVec3::Z - axis.z * axis;
@@ -121,19 +121,19 @@ fn surface([from, to]: [DVec3; 2], at: DVec2) -> Option<(f64, DVec3)> {
     Some((height, to_image(aside + height * DVec3::Z)))
 }
 
-/// The larger `h` with `square · h² + 2 · half · h + rest = WIRE²`.
+/// Solves `square · h² + 2 · half · h + rest = WIRE²` and returns the larger `h`.
 fn later_root(square: f64, half: f64, rest: f64) -> Option<f64> {
     let inside = half * half - square * (rest - WIRE * WIRE);
     (inside >= 0.0 && square > 0.0).then(|| (inside.sqrt() - half) / square)
 }
 
-/// A normal along and across the strand, and up, as it is in the image.
+/// Converts a normal from axes along and across the strand to the axes of the image.
 fn to_image(radius: DVec3) -> DVec3 {
     let turned = DVec2::new(radius.x - radius.y, radius.x + radius.y);
     (turned * core::f64::consts::FRAC_1_SQRT_2).extend(radius.z) / WIRE
 }
 
-/// The light from the upper left on a wire, from 0 to 1.
+/// Returns the brightness of a wire lit from the upper left, from 0 to 1.
 fn light(normal: DVec3) -> f64 {
     let toward = DVec3::new(-0.45, -0.6, 0.66);
     let shine = 0.9 * normal.dot(toward).max(0.0);

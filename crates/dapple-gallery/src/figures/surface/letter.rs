@@ -1,13 +1,13 @@
 //! A single letter F, dark on light: it shows which way is up and whether anything is mirrored.
 //!
-//! It repeats, since its border is plain.
+//! It repeats, since its border has a single color.
 
 use crate::draw::Canvas;
 use dapple_color::LinearRgb;
 use dapple_raster::{Raster, Window};
 use glam::DVec2;
 
-/// The letter, `size` pixels wide and high.
+/// Draws the letter, `size` pixels wide and high.
 pub(super) fn letter(size: u32) -> anyhow::Result<Raster<LinearRgb>> {
     let [ink, paper] = [[150_u8, 30, 30], [240, 236, 220]].map(LinearRgb::from_srgb);
     let mut canvas = Canvas::new(&Window::unit([size; 2])?, paper)?;

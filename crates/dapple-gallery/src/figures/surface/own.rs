@@ -1,4 +1,4 @@
-//! A mesh and an exemplar of the user's own, as figure 5 shows its models.
+//! Renders a mesh and an exemplar that the user brought, in the way of figure 5.
 
 use super::stage::{View, lit};
 use super::textured::{Job, Textured};
@@ -11,20 +11,20 @@ use dapple_synth::mesh::{CREASE, EncodedImage, Mesh, Model};
 use dapple_synth::{Coherence, Direction, Edges, HierarchyOptions, textured_model};
 use glam::DVec3;
 
-/// What is to be put on what, and how.
+/// A mesh, an exemplar, and the options of the synthesis.
 #[derive(Clone, Debug)]
 pub struct Own {
-    /// The mesh; what can be mended about it is.
+    /// The mesh. It is repaired as far as possible.
     pub mesh: Mesh,
     /// The exemplar.
     pub image: Raster<LinearRgb>,
     /// Whether the exemplar tiles.
     pub edges: Edges,
-    /// Directions of the texture; without any, its down is the mesh's -y.
+    /// Directions of the texture's down; if there are none, down is -y of the mesh.
     pub directions: Vec<Direction>,
-    /// The points and their levels.
+    /// The numbers of points and levels.
     pub sites: HierarchyOptions,
-    /// How much worse a match may be that continues its neighbors.
+    /// How much worse a match may be if it continues its neighbors.
     pub coherence: Coherence,
     /// The side of the texture map in texels.
     pub map_side: u32,
@@ -33,20 +33,20 @@ pub struct Own {
 /// Pictures of a textured mesh, and the mesh with its texture map.
 #[derive(Clone, Debug)]
 pub struct OwnTextured {
-    /// The mesh from four sides.
+    /// Pictures of the mesh from four sides.
     pub panels: Vec<Panel>,
     /// The mesh with its texture map, for a file.
     pub model: Model,
-    /// What was mended, as text; empty if nothing was.
+    /// The list of repairs as text; empty if there were none.
     pub mended: String,
 }
 
 impl Own {
-    /// Makes the texture, and pictures of `size` pixels.
+    /// Makes the texture, then pictures of `size` pixels.
     ///
     /// # Errors
     ///
-    /// What the crates refuse: a mesh without a face that has an area, an exemplar that is too small, and so on.
+    /// If an input is refused, such as a mesh whose faces all have no area, or an exemplar that is too small.
     pub fn render(self, size: u32) -> Result<OwnTextured> {
         let (mesh, repair) = self.mesh.repair();
         let mended = if repair.before == repair.after {
@@ -79,7 +79,7 @@ impl Own {
     }
 }
 
-/// Views from four sides, from a little above, so far away that all of the mesh is seen.
+/// Returns views from four sides, a little from above, far enough away to show all of the mesh.
 fn views(mesh: &Mesh) -> [(&'static str, View); 4] {
     let positions = mesh.positions().iter().copied();
     let low = positions.clone().fold(DVec3::INFINITY, DVec3::min);
@@ -99,7 +99,7 @@ fn views(mesh: &Mesh) -> [(&'static str, View); 4] {
     ]
 }
 
-/// The mesh with its map as an embedded PNG.
+/// Returns the mesh with its texture map as an embedded PNG.
 fn model(textured: &Textured) -> Result<Model> {
     let codes = textured.map.map(|color| color.to_srgb::<u8>());
     let png = encode_png(codes.view(), Transfer::Srgb)?;

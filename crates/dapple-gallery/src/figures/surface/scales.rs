@@ -1,7 +1,7 @@
-//! Rows of overlapping scales, as of a fish, whose free ends point down.
+//! Rows of overlapping fish scales, whose free ends point down.
 //!
-//! It does **not** repeat: the scales become narrower to the right and higher to the bottom, the rows bend, and the hue
-//! goes from the upper left to the lower right.
+//! It does **not** repeat: scales become narrower to the right and taller to the bottom, the rows bend, and the hue
+//! changes from the upper left to the lower right.
 
 use crate::draw::{sampled, smooth_step};
 use dapple_color::{ColorRamp, LinearRgb};
@@ -9,31 +9,31 @@ use dapple_points::hash::{CellHash, Seed, unit_f64};
 use dapple_raster::Raster;
 use glam::DVec2;
 
-/// How far a scale hangs down, in rows.
+/// The length of a scale, in rows.
 const REACH: f64 = 1.6;
 
-/// Where the round end of a scale begins, in rows below its root.
+/// The distance from the root of a scale to where its round end begins, in rows.
 const SHOULDER: f64 = 0.5;
 
-/// Half the width of a scale, in widths from one to the next: neighbors in a row overlap a little.
+/// Half the width of a scale, in spacings of a row: neighbors overlap a little.
 const HALF: f64 = 0.53;
 
 /// Samples along the side of a pixel.
 const N_SAMPLES: u32 = 5;
 
-/// A position on a scale.
+/// A position on a scale, with its shading.
 struct OnScale {
-    /// The row and the place in it.
+    /// The row of the scale and its place in the row.
     scale: [i64; 2],
-    /// From the middle line, −1 to 1, and from the root, 0 to 1.
+    /// The position from the middle line, −1 to 1, and from the root, 0 to 1.
     at: DVec2,
-    /// From 0 in the middle to 1 on the rim.
+    /// The closeness to the rim: 0 in the middle, 1 on the rim.
     rim: f64,
-    /// How deep the position is in the shadow of the scales above it, from 0 to 1.
+    /// The strength of the shadow of the scales above, from 0 to 1.
     shadow: f64,
 }
 
-/// Scales, `size` pixels wide and high.
+/// Draws scales, `size` pixels wide and high.
 pub(super) fn scales(size: u32) -> anyhow::Result<Raster<LinearRgb>> {
     let hues = ColorRamp::from_hex(&["#17525c", "#2f8a78", "#9fb15a", "#d9a441", "#c06a35"])?;
     Ok(sampled([size; 2], N_SAMPLES, |at| {
@@ -45,20 +45,20 @@ pub(super) fn scales(size: u32) -> anyhow::Result<Raster<LinearRgb>> {
     })?)
 }
 
-/// Where a position of the image is among the scales: in scales across and rows down.
+/// Converts a position of the image to scales across and rows down.
 fn rows(at: DVec2) -> DVec2 {
     let across = 6.3 * at.x * (1.0 + 0.22 * at.x) + 0.3 * at.y;
     let bend = 0.5 * at.x * (1.0 - at.x);
     DVec2::new(across + 0.37, at.y * (10.3 - 1.9 * at.y) + bend + 0.21)
 }
 
-/// The scale that is seen at a position: the one of the highest row that reaches it.
+/// Returns the visible scale at a position, from the highest row that reaches it.
 fn on_scale(at: DVec2) -> OnScale {
     let mut shadow = 0.0_f64;
     let lowest = at.y.floor();
     let mut row = lowest - 1.0;
     loop {
-        // Every other row is shifted by half a scale.
+        // Every other row is offset by half a scale.
         let shift = 0.5 * (row as i64).rem_euclid(2) as f64;
         let place = (at.x - shift).round();
         let aside = (at.x - shift - place) / HALF;
@@ -78,7 +78,7 @@ fn on_scale(at: DVec2) -> OnScale {
     }
 }
 
-/// The light on a scale: it is bent across, shines near its end and has a thin dark rim.
+/// Returns the light on a scale, which is curved across, shines near its end and has a thin dark rim.
 fn light(scale: &OnScale) -> f64 {
     let OnScale { at, rim, .. } = *scale;
     let bulge = 0.75 + 0.45 * smooth_step(0.1, 0.9, at.y) - 0.22 * at.x;

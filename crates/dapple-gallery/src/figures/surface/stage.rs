@@ -8,17 +8,17 @@ use dapple_preview::{
 use dapple_raster::Raster;
 use glam::DVec3;
 
-/// Where a mesh is seen from.
+/// A view of a mesh: the eye, its target, and the field of view.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct View {
     pub(crate) eye: DVec3,
     pub(crate) target: DVec3,
-    /// The angle between the top and the bottom of the picture, in radians.
+    /// The vertical field of view, in radians.
     pub(crate) fov: f64,
 }
 
 impl View {
-    /// The far side: from just as far behind the target, below where the eye was above.
+    /// Returns the view of the far side: the same distance from the target, as far below as the eye was above.
     pub(crate) fn opposite(self) -> Self {
         Self {
             eye: self.target * 2.0 - self.eye,
@@ -27,7 +27,7 @@ impl View {
     }
 }
 
-/// A mesh in a plain room, with two lights from above that follow the eye.
+/// Renders a mesh in a plain room, with two lights from above that follow the eye.
 pub(crate) fn lit(
     mesh: &dapple_synth::mesh::Mesh,
     view: &View,

@@ -1,4 +1,4 @@
-//! Straight, even, upright stripes: features whose direction can be measured.
+//! Straight, even, vertical stripes, whose direction on a surface can be measured.
 //!
 //! It repeats. Stripes run along `j`, so on a surface they follow the field of orientations.
 
@@ -6,13 +6,13 @@ use crate::draw::sampled;
 use dapple_color::LinearRgb;
 use dapple_raster::Raster;
 
-/// Dark stripes, and light ones between them.
+/// The number of dark stripes, with light stripes between them.
 const N_STRIPES: f64 = 7.0;
 
 /// Samples along the side of a pixel.
 const N_SAMPLES: u32 = 8;
 
-/// Stripes, `size` pixels wide and high.
+/// Draws stripes, `size` pixels wide and high.
 pub(super) fn stripes(size: u32) -> anyhow::Result<Raster<LinearRgb>> {
     let [dark, light] = [[40_u8, 32, 28], [232, 226, 210]].map(LinearRgb::from_srgb);
     Ok(sampled([size; 2], N_SAMPLES, |at| {

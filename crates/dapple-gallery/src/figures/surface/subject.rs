@@ -1,4 +1,4 @@
-//! The six models of figure 5 with their textures, and how they get them.
+//! The six models of figure 5 and the textures that they get.
 
 use super::exemplar::{EXEMPLARS, Edges};
 use super::stage::View;
@@ -11,31 +11,31 @@ use dapple_synth::mesh::Mesh;
 use dapple_synth::{Coherence, Direction, HierarchyOptions};
 use glam::DVec3;
 
-/// The size of a figure from which on a subject has as many sites as the paper's: that of the page.
+/// The figure size, in pixels, from which on a subject has as many sites as in the paper; it is the size on the page.
 const FULL_SIZE: u32 = 512;
-/// The triangles of a model at full size, of which the paper has 10 to 20 thousand, and the fewest.
+/// The number of triangles of a model at full size (the paper has 10 to 20 thousand), and the least number.
 const TRIANGLES: [f64; 2] = [14_000.0, 2000.0];
-/// The fewest sites.
+/// The least number of sites.
 const SITES_MIN: f64 = 1024.0;
-/// The texels of a texture map's side for a pixel of the figure.
+/// Texels along the side of a texture map, per pixel of the figure.
 const TEXELS: u32 = 4;
 
-/// A model that gets a texture.
+/// A model and the texture that it gets.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Subject {
     pub(crate) name: &'static str,
     pub(crate) model: fn(n_triangles: usize) -> Result<Mesh, ModelError>,
-    /// The name of the exemplar.
+    /// The name of its exemplar.
     exemplar: &'static str,
-    /// Sites of the finest level at full size, and levels: those of table 1.
+    /// The number of sites of the finest level at full size, and the number of levels, from table 1.
     n_sites: usize,
     n_levels: usize,
-    /// Positions, and the directions there that are the texture's down.
+    /// Pairs of a position and the direction of the texture's down there.
     directions: &'static [[DVec3; 2]],
     pub(crate) view: View,
 }
 
-/// The six, in the order of table 1.
+/// The six models, in the order of table 1.
 pub(crate) const SUBJECTS: [Subject; 6] = [RAY, OCTOPUS, BUNNY, TORI, ZEBRA, ELEPHANT];
 
 /// The stingray: its texture spreads from the snout.
@@ -111,7 +111,7 @@ const BUNNY: Subject = Subject {
     },
 };
 
-/// Three blended tori: strands go around their tubes.
+/// Three blended tori: strands of hooks go around their tubes.
 pub(crate) const TORI: Subject = Subject {
     name: "tori",
     model: models::blended_tori,
@@ -175,7 +175,8 @@ const ELEPHANT: Subject = Subject {
 };
 
 impl Subject {
-    /// The sites of the subject in a figure of a size: those of the paper at full size, and fewer as there are fewer pixels.
+    /// Returns the sites for a figure of a size: as many as in the paper at full size, fewer in proportion to the
+    /// pixels below.
     pub(crate) fn sites(&self, size: u32) -> HierarchyOptions {
         HierarchyOptions {
             n_sites: (self.n_sites as f64 * part(size)).max(SITES_MIN) as usize,
@@ -184,7 +185,7 @@ impl Subject {
         }
     }
 
-    /// The directions of the texture.
+    /// Returns the directions of the texture.
     pub(crate) fn directions(&self) -> Vec<Direction> {
         let directions = self.directions.iter();
         directions
@@ -192,7 +193,7 @@ impl Subject {
             .collect()
     }
 
-    /// The exemplar as an image, as large as in table 1.
+    /// Draws the exemplar, as large as in table 1.
     pub(crate) fn image(&self) -> Result<(Raster<LinearRgb>, dapple_synth::Edges)> {
         let exemplar = EXEMPLARS
             .iter()
@@ -206,7 +207,7 @@ impl Subject {
         Ok(((exemplar.draw)(exemplar.side)?, edges))
     }
 
-    /// The model with its texture, for a figure of a size.
+    /// Returns the model with its texture, for a figure of a size.
     pub(super) fn textured(&self, size: u32) -> Result<Textured> {
         let n_triangles = (TRIANGLES[0] * part(size)).max(TRIANGLES[1]);
         let (image, edges) = self.image()?;
@@ -223,7 +224,7 @@ impl Subject {
     }
 }
 
-/// The part of the pixels of a figure of full size.
+/// Returns the fraction of the pixels of a full-size figure.
 fn part(size: u32) -> f64 {
     let side = f64::from(size) / f64::from(FULL_SIZE);
     (side * side).min(1.0)

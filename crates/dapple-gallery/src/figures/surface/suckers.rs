@@ -10,16 +10,16 @@ use dapple_raster::Raster;
 use dapple_worley::{Feature, FeatureSet};
 use glam::DVec2;
 
-/// How far apart suckers are at least, in widths of the image.
+/// The least distance between suckers, in widths of the image.
 const SPACING: f64 = 0.21;
 
-/// The largest radius: suckers do not touch.
+/// The largest radius of a sucker, so that suckers do not touch.
 const RADIUS: f64 = 0.5 * SPACING;
 
 /// Samples along the side of a pixel.
 const N_SAMPLES: u32 = 5;
 
-/// Suckers, `size` pixels wide and high.
+/// Draws suckers, `size` pixels wide and high.
 pub(super) fn suckers(size: u32) -> anyhow::Result<Raster<LinearRgb>> {
     let centers = poisson_disk(Domain::torus(DVec2::ZERO, DVec2::ONE), SPACING, Seed(8))?;
     let centers = FeatureSet::new(centers.positions(), [Some(1.0); 2])?;
@@ -37,13 +37,13 @@ pub(super) fn suckers(size: u32) -> anyhow::Result<Raster<LinearRgb>> {
     })?)
 }
 
-/// The radius of the sucker with an id.
+/// Returns the radius of the sucker with an id.
 fn radius(id: u64) -> f64 {
     let part = unit_f64(CellHash::new(Seed(5), [id as i64]).at(0));
     RADIUS * (0.62 + 0.38 * part)
 }
 
-/// How steeply a sucker rises outward, a part of its radius from the center: up to the rim, and down behind it.
+/// Returns the outward slope of a sucker at a fraction of its radius: it rises to the rim and falls behind it.
 fn slope(part: f64) -> f64 {
     if part < 0.62 {
         4.0 * part * (0.62 - part) / 0.62
@@ -52,7 +52,7 @@ fn slope(part: f64) -> f64 {
     }
 }
 
-/// The light from the upper left on what rises away from a center by `slope`.
+/// Returns the light from the upper left on a surface that rises away from a center by `slope`.
 fn shade(center: &Feature<DVec2>, slope: f64) -> f32 {
     let light = DVec2::new(0.6, 0.8).dot(center.vector.normalize_or_zero());
     (1.0 + 0.35 * slope * light).max(0.0) as f32

@@ -1,13 +1,13 @@
-//! Lines of English, in upright letters, cut out of a page.
+//! Lines of English in upright letters, cropped from a page.
 //!
-//! It does **not** repeat: words are cut off at the right, and the last line at the bottom. Mirrored it would show.
+//! It does **not** repeat: words are cut off at the right, and the last line at the bottom. Mirroring would be obvious.
 
 use crate::draw::Canvas;
 use dapple_color::LinearRgb;
 use dapple_raster::{Raster, Window};
 use glam::DVec2;
 
-/// The text, line by line; lines are longer than the image is wide.
+/// The lines of the text, each longer than the image is wide.
 const LINES: [&str; 14] = [
     "of all the small things that a hand may",
     "copy, a page of words is the one that",
@@ -25,18 +25,18 @@ const LINES: [&str; 14] = [
     "for a page, and so for any other skin of",
 ];
 
-/// How far the lines are shifted to the left, in widths of the image.
+/// The shift of each line to the left, in widths of the image.
 const SHIFTS: [f64; 14] = [
     0.03, -0.01, 0.05, 0.02, -0.02, 0.06, 0.01, 0.04, -0.01, 0.07, 0.03, 0.00, 0.05, 0.02,
 ];
 
-/// Lines along the height of the image.
+/// The number of lines along the height of the image.
 const N_LINES: f64 = 13.4;
 
-/// The height of capitals, in distances between lines.
+/// The height of capitals, in line spacings.
 const CAPITAL: f64 = 0.56;
 
-/// Text, `size` pixels wide and high.
+/// Draws text, `size` pixels wide and high.
 pub(super) fn text(size: u32) -> anyhow::Result<Raster<LinearRgb>> {
     let [ink, paper] = [[22_u8, 20, 26], [238, 230, 212]].map(LinearRgb::from_srgb);
     let mut canvas = Canvas::new(&Window::unit([size; 2])?, paper)?;

@@ -1,4 +1,4 @@
-//! From a mesh and an exemplar to a texture map.
+//! The steps from a mesh and an exemplar to a texture map.
 
 use anyhow::Result;
 use dapple_color::LinearRgb;
@@ -10,7 +10,7 @@ use dapple_synth::{
 };
 use glam::DVec2;
 
-/// What is to be made.
+/// The inputs and options of a texture map.
 #[derive(Clone, Debug)]
 pub(super) struct Job {
     pub(super) mesh: Mesh,
@@ -33,7 +33,7 @@ pub(super) struct Textured {
 }
 
 impl Job {
-    /// Synthesizes the texture and bakes it to a map of right triangles of one size, as the paper does.
+    /// Synthesizes the texture and bakes it to a map of right triangles of one size, as in the paper.
     pub(super) fn run(self) -> Result<Textured> {
         let surface = mesh::Surface::new(self.mesh)?;
         let options = Options {
@@ -57,7 +57,7 @@ impl Job {
 }
 
 impl Textured {
-    /// The color of the texture map where a ray met the model.
+    /// Returns the color of the texture map where a ray met the model.
     pub(super) fn color(&self, surface: &Surface) -> LinearRgb {
         let Some(triangle) = surface.triangle() else {
             return LinearRgb::BLACK;
@@ -69,7 +69,7 @@ impl Textured {
     }
 }
 
-/// A color from its sRGB codes from 0 to 1, rounded to 8 bits as in a file.
+/// Returns the color for sRGB codes from 0 to 1, rounded to 8 bits as in a file.
 pub(super) fn srgb(codes: [f32; 3]) -> LinearRgb {
     LinearRgb::from_srgb(codes.map(|code| (code.clamp(0.0, 1.0) * 255.0 + 0.5) as u8))
 }

@@ -3,18 +3,18 @@
 use core::f64::consts::TAU;
 use glam::DVec2;
 
-/// A wave over the unit square: how often it goes up and down along both axes, how high, and where it begins.
+/// A wave over the unit square: its numbers of periods along both axes, its height and its phase.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Wave {
-    /// Whole periods along x and y.
+    /// The numbers of whole periods along x and y.
     pub(super) periods: [i32; 2],
-    /// From the middle to the crest.
+    /// The height from the middle to the crest.
     pub(super) height: f64,
-    /// From 0 to 1, a period.
+    /// The phase from 0 to 1, in periods.
     pub(super) phase: f64,
 }
 
-/// The sum of some waves at a position: the same in every copy of the unit square.
+/// Returns the sum of some waves at a position: the same in every copy of the unit square.
 pub(super) fn wobble(waves: &[Wave], at: DVec2) -> f64 {
     let height = |wave: &Wave| {
         let [x, y] = wave.periods.map(f64::from);
@@ -40,7 +40,7 @@ mod tests {
             let at = DVec2::new(0.37 * f64::from(step), 0.11 * f64::from(step));
             let here = wobble(&waves, at);
             assert!(here.abs() <= 0.75, "{here} at {at}");
-            // Sines of large arguments lose a few of the last bits.
+            // The sines of large arguments lose a few of their last bits.
             let there = wobble(&waves, at + DVec2::new(3.0, -2.0));
             assert!((here - there).abs() < 1e-12, "{here} and {there} at {at}");
         }

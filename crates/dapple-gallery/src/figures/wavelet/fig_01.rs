@@ -22,7 +22,7 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     let [(_, map), ..] = originals(side)?;
     let half = BLEND_TILE.coarse(&map, [true; 2])?;
     let full = BLEND_TILE.refine(&half, [side; 2], [true; 2])?;
-    // The half-size image in the middle of a white sheet, so that it is seen to be half as large.
+    // The half-size image is centered on a white sheet, to show that it is half as large.
     let margin = side / 4;
     let inside = |at: u32| at.checked_sub(margin).filter(|at| *at < side / 2);
     let sheet = Raster::from_fn([side; 2], |column, row| {

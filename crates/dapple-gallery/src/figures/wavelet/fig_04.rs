@@ -34,7 +34,7 @@ pub(super) const FIGURE: Figure = Figure {
     render,
 };
 
-/// How much of the ground is grass.
+/// The fraction of the ground that grass covers.
 const GRASS: f32 = 0.35;
 
 fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
@@ -71,14 +71,15 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     ])
 }
 
-/// The blend tile of a texture: its features, so many pixels large, halved and doubled once, and then as ranks.
+/// Makes the blend tile of a texture: its features, `feature` pixels large, halved and doubled once, then replaced by
+/// ranks.
 pub(super) fn blend_tile(ground: &Raster<LinearRgb>, feature: f64) -> anyhow::Result<Raster<f32>> {
     let features = BlendMap::new(feature).apply_color(ground)?;
     let tile = Seamless::new(Method::SplineProject(BLEND_TILE)).apply(&features)?;
     Ok(rank_equalize(&tile)?)
 }
 
-/// The ground, tiled, with grass where its blend tile is low.
+/// Tiles the ground, and adds grass where the blend tile of the ground is low.
 fn overgrown(
     ground: &Raster<LinearRgb>,
     feature: f64,
@@ -120,14 +121,14 @@ mod tests {
             ("stone", stone(128, Seed(1), Edges::Repeating).unwrap()),
             ("pebble", pebble(128, Seed(1), Edges::Repeating).unwrap()),
         ] {
-            // Where grass of another color gives another picture, there is grass.
+            // A pixel is grass if it changes with the color of the grass.
             let [on_black, on_white] = [0.0, 1.0].map(|gray| {
                 let grass = Raster::filled([128; 2], LinearRgb::gray(gray)).unwrap();
                 overgrown(&ground.color, stone_px(128), &grass).unwrap()
             });
             let grass = on_black.zip_map(&on_white, |a, b| b.g - a.g).unwrap();
             let covered = grass.statistics().mean;
-            // The soft edges of the mask are symmetrical, up to its ends.
+            // The soft edges of the mask are symmetric, except at its ends.
             assert!(
                 (covered - f64::from(GRASS)).abs() < 0.01,
                 "grass covers {covered} of {name}"
@@ -140,8 +141,8 @@ mod tests {
                     .collect();
                 here.iter().sum::<f32>() / here.len() as f32
             };
-            // Without regard to the stones it would be 0.35 in both. Gaps between pebbles are two pixels wide, no wider than
-            // what halving can show.
+            // If grass ignored the stones, both fractions would be 0.35. Gaps between pebbles are two pixels wide, the
+            // least width that survives halving.
             let [in_gaps, on_stones] = [true, false].map(mean_where);
             assert!(
                 in_gaps > 0.6 && on_stones < 0.27,

@@ -33,7 +33,7 @@ pub(super) const FIGURE: Figure = Figure {
 };
 
 fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
-    // A quarter of the tile, and such that two levels fit.
+    // About a quarter of the tile, and a multiple that suits two levels.
     let margin = (tile_side(size) / 16 * 4).max(4);
     let crops = crops(tile_side(size) + margin)?;
     methods(margin)
@@ -57,7 +57,7 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
         .collect()
 }
 
-/// The methods by name, after the crop as it is.
+/// Returns the methods by name; the first entry leaves the crop as it is.
 fn methods(margin: u32) -> [(&'static str, Option<Method>); 12] {
     let project = |levels, phase| SplineProject {
         levels,
@@ -115,7 +115,7 @@ fn methods(margin: u32) -> [(&'static str, Option<Method>); 12] {
     ]
 }
 
-/// What was measured on one tile, as a line of the table.
+/// Measures one tile and returns a line of the table.
 fn line(name: &str, crop: &Raster<f32>, tile: &Raster<f32>) -> anyhow::Result<String> {
     let options = SeamOptions {
         lattice: [4; 2],

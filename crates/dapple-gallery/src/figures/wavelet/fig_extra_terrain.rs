@@ -34,10 +34,10 @@ pub(super) const FIGURE: Figure = Figure {
     render,
 };
 
-/// The size of a crumb of soil as a part of that of a stone.
+/// The size of a crumb of soil, as a fraction of the size of a stone.
 const CRUMB: f64 = 0.4;
 
-/// Textures over the whole terrain, and the blend tiles of those on which others lie.
+/// Textures over the whole terrain, and the blend tiles of stone and soil, on which others lie.
 struct Ground {
     stone: Raster<LinearRgb>,
     grass: Raster<LinearRgb>,
@@ -46,7 +46,7 @@ struct Ground {
     soil_mask: Raster<f32>,
 }
 
-/// The parts of stone, and of grass where no stone is.
+/// The fraction of stone, and the fraction of grass on the ground that is not stone.
 struct Shares {
     stone: Raster<f32>,
     grass: Raster<f32>,
@@ -89,13 +89,13 @@ impl Ground {
         })
     }
 
-    /// All three by their shares.
+    /// Blends stone, grass and soil linearly by their shares.
     fn splatted(&self, shares: &Shares) -> anyhow::Result<Raster<LinearRgb>> {
         let lower = over([&self.grass, &self.soil], &shares.grass, None)?;
         over([&self.stone, &lower], &shares.stone, None)
     }
 
-    /// Grass where the soil is low, and both where the stone is.
+    /// Blends by blend tiles: grass comes first where the soil is low, and both come first where the stone is low.
     fn by_tiles(&self, shares: &Shares) -> anyhow::Result<Raster<LinearRgb>> {
         let lower = over(
             [&self.grass, &self.soil],
@@ -107,7 +107,7 @@ impl Ground {
     }
 }
 
-/// A texture over another, by its share: plainly, or first where a mask is low.
+/// Blends a texture over another by its share: linearly, or first where a mask is low.
 fn over(
     textures: [&Raster<LinearRgb>; 2],
     share: &Raster<f32>,
@@ -132,7 +132,7 @@ fn over(
     }
 }
 
-/// The colors on the slopes of the land. The textures are lit as level ground, which stays as it is.
+/// Shades the colors by the slopes of the land. The textures are lit as level ground, so level ground keeps its colors.
 fn lit(color: &Raster<LinearRgb>, normals: &Raster<Normal>) -> anyhow::Result<Raster<LinearRgb>> {
     let toward = DVec3::new(-0.5, 0.5, 1.0);
     Ok(color.zip_map(normals, |&color, normal| {
@@ -141,7 +141,7 @@ fn lit(color: &Raster<LinearRgb>, normals: &Raster<Normal>) -> anyhow::Result<Ra
     })?)
 }
 
-/// How much stone there is, and how much grass beside it, from how much of the land is lower and how level it is.
+/// Returns the shares of stone and of grass, from the height rank of the land and from how level it is.
 fn shares(land: &Raster<f32>, level: &Raster<f32>) -> anyhow::Result<Shares> {
     let rise = |from: f32, to: f32, value: f32| ((value - from) / (to - from)).clamp(0.0, 1.0);
     let lower = rank_equalize(land)?;
@@ -163,7 +163,7 @@ mod tests {
         let size = 256;
         let mut ground = Ground::new(size).unwrap();
         let flat = |color| Raster::filled([size; 2], color).unwrap();
-        // What is not stone is white, so that the picture is its share.
+        // Everything but stone is white, so that a pixel's brightness is the share that is not stone.
         ground.stone = flat(LinearRgb::BLACK);
         (ground.grass, ground.soil) = (flat(LinearRgb::WHITE), flat(LinearRgb::WHITE));
         let shares = Shares {
@@ -185,7 +185,7 @@ mod tests {
             );
         }
         let [cracks, stones] = [true, false].map(|low| mean_where(&by_tiles, low));
-        // 40 % of the area, in the lower half of the mask.
+        // Grass and soil cover 40 % of the area, all of it in the lower half of the mask.
         assert!(
             cracks > 0.75 && stones < 0.05,
             "{cracks} in cracks, {stones} on stones"

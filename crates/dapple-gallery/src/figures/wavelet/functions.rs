@@ -1,14 +1,14 @@
 //! Perlin's functions of noise: marble, wood grain and clouds.
 //!
-//! Ken Perlin, "An Image Synthesizer", SIGGRAPH 1985. Each takes a map of noise, from 0 to 1 with its mean at 0.5, and
-//! colors it. Where the map has a seam, so has the color. A map that has been tiled n × n goes with stripes and rings
-//! of the whole map.
+//! Ken Perlin, "An Image Synthesizer", SIGGRAPH 1985. Each function colors a map of noise, with values from 0 to 1 and
+//! a mean of 0.5. A seam of the map shows as a seam of the color. On a map of n × n tiles, stripes and rings span the
+//! whole map.
 
 use dapple_color::{ColorRamp, ColorStop, Interpolation, LinearRgb};
 use dapple_raster::{Raster, Wrap};
 use glam::DVec2;
 
-/// Marble: veins across the map, pushed about by the noise. `n_veins` of them cross the upper edge.
+/// Marble: veins across the map, displaced by the noise. `n_veins` of them cross the upper edge.
 pub(super) fn marble(noise: &Raster<f32>, n_veins: u32) -> anyhow::Result<Raster<LinearRgb>> {
     let colors = [
         (0.0, "#3d4450"),
@@ -24,7 +24,7 @@ pub(super) fn marble(noise: &Raster<f32>, n_veins: u32) -> anyhow::Result<Raster
     })
 }
 
-/// Wood: rings about an axis outside of the map, perturbed by the noise, with fibers along it.
+/// Wood: rings around an axis outside the map, perturbed by the noise, with fibers along the axis.
 pub(super) fn wood(noise: &Raster<f32>, n_rings: u32) -> anyhow::Result<Raster<LinearRgb>> {
     let colors = [
         (0.0, "#cda26c"),
@@ -55,7 +55,7 @@ pub(super) fn cloud(noise: &Raster<f32>) -> anyhow::Result<Raster<LinearRgb>> {
     paint(noise, |_, value| colors.at(value as f32))
 }
 
-/// The color of every pixel from its place in the unit square and the noise there.
+/// Colors every pixel from its place in the unit square and the noise there.
 fn paint(
     noise: &Raster<f32>,
     color: impl Fn(DVec2, f64) -> LinearRgb + Sync,
@@ -76,7 +76,7 @@ fn ramp(stops: &[(f32, &str)]) -> anyhow::Result<ColorRamp> {
     Ok(ColorRamp::new(stops?)?)
 }
 
-/// A smooth wave from 0 at whole numbers to 1 halfway between them, in the place of |sin|.
+/// A smooth wave, from 0 at whole numbers to 1 halfway between them; it replaces |sin|.
 fn wave(phase: f64) -> f64 {
     let away = 1.0 - (2.0 * (phase - phase.floor()) - 1.0).abs();
     away * away * (3.0 - 2.0 * away)

@@ -8,25 +8,25 @@ use dapple_points::{hash::Seed, white_noise};
 use dapple_raster::Raster;
 use glam::DVec2;
 
-/// The area that each blade has for itself.
+/// The area of the picture per blade.
 const AREA: f64 = 8.0;
-/// The straight pieces of a blade.
+/// The number of straight pieces of a blade.
 const N_PIECES: u32 = 4;
 /// The depth of the relief.
 const DEPTH: f64 = 7.0;
 
-/// A blade of grass: a curve from the root over a bend to the tip, seen from the root.
+/// A blade of grass: a curve from the root over a bend to the tip, relative to the root.
 struct Blade {
     root: DVec2,
     bend: DVec2,
     tip: DVec2,
     width: f64,
     color: LinearRgb,
-    /// How high it stands among the others, from 0 to 1: higher blades lie over lower ones.
+    /// The height rank among all blades, from 0 to 1: higher blades lie over lower ones.
     rank: f64,
 }
 
-/// A picture of grass, `size` pixels wide.
+/// Draws grass, `size` pixels wide.
 pub(super) fn grass(size: u32, seed: Seed, edges: Edges) -> anyhow::Result<Material> {
     let patch = Patch::new(size, edges)?;
     let noise = patch.noise(70.0, seed.child("noise", 0))?;
@@ -63,7 +63,7 @@ impl Blade {
         place: DVec2,
         greens: &ColorRamp,
     ) -> Self {
-        // Neighbors lean the same way, more or less.
+        // Neighboring blades lean in similar directions.
         let lean = DVec2::new(
             noise.at(place).into(),
             noise.at(place + DVec2::splat(0.4)).into(),
@@ -92,7 +92,7 @@ impl Blade {
         }
     }
 
-    /// Paints the part of the blade between two of its places, which is about straight.
+    /// Paints the nearly straight part of a blade between two places on it.
     fn paint_piece(
         &self,
         patch: &Patch,
@@ -117,7 +117,7 @@ impl Blade {
     }
 
     fn spot(&self, along: f64, across: f64) -> Spot {
-        // A blade is folded along its middle: one half is in the light.
+        // A blade is folded along its middle, and one half is lit.
         let light = 1.0 + 0.35 * across.signum() * smooth_step(0.0, 0.2, across.abs());
         let tone = (0.25 + 0.55 * self.rank) * (0.45 + 0.9 * along) * light;
         Spot {

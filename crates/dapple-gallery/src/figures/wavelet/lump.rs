@@ -1,4 +1,4 @@
-//! Rounded lumps that lie over each other: pebbles, crumbs.
+//! Rounded lumps that lie over each other, for pebbles and crumbs.
 
 use super::patch::{Dice, Patch, Spot};
 use crate::draw::smooth_step;
@@ -8,46 +8,46 @@ use dapple_points::{hash::Seed, poisson_disk};
 use dapple_raster::Raster;
 use glam::DVec2;
 
-/// Lumps of about one size, which lie next to each other.
+/// A layer of lumps of about one size, next to each other.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Layer {
-    /// How far apart their middles are, at least.
+    /// The least distance between the centers of lumps.
     pub(super) spacing: f64,
-    /// Their radii, at least and at most.
+    /// The least and the largest radius.
     pub(super) radius: [f64; 2],
-    /// The height that they lie on, from 0 to 1.
+    /// The height of the ground under the layer, from 0 to 1.
     pub(super) ground: f64,
-    /// How high they are, over their radius, with 1 as the depth of the relief.
+    /// The height of a lump divided by its radius; heights are in depths of the relief.
     pub(super) steepness: f64,
-    /// How much of the places have one, from 0 to 1.
+    /// The fraction of the places that have a lump, from 0 to 1.
     pub(super) share: f64,
-    /// How rough they are, from 0.
+    /// The roughness of the surface, from 0.
     pub(super) roughness: f64,
-    /// How often the noise that roughens them is repeated on the torus, a whole number.
+    /// How often the noise of the roughness repeats across the torus, a whole number.
     pub(super) noise_scale: f64,
-    /// How much longer than wide they are, at most.
+    /// The largest ratio of length to width.
     pub(super) elongation: f64,
-    /// How wide the dark gap around each is.
+    /// The width of the dark gap around each lump.
     pub(super) gap: f64,
-    /// How dark the gap is, from 0 to 1.
+    /// The darkness of the gap, from 0 to 1.
     pub(super) darkness: f64,
 }
 
-/// One lump.
+/// A lump of a layer.
 struct Lump {
     center: DVec2,
     radius: f64,
     /// The longer axis.
     axis: DVec2,
     elongation: f64,
-    /// How the outline departs from an ellipse: two lobes and three.
+    /// The departure of the outline from an ellipse: two lobes and three.
     lobes: [DVec2; 2],
     color: LinearRgb,
     surface: DVec2,
     rank: f64,
 }
 
-/// Lays the lumps of all layers over what is there, the first layer first; `color` gives each one its color.
+/// Lays the lumps of all layers over the spots, in the order of the layers; `color` gives each lump its color.
 pub(super) fn lay(
     layers: &[Layer],
     patch: &Patch,
@@ -63,7 +63,7 @@ pub(super) fn lay(
 }
 
 impl Layer {
-    /// Lays the lumps over what is there; `color` gives each one its color.
+    /// Lays the lumps of the layer over the spots; `color` gives each lump its color.
     fn lay(
         &self,
         patch: &Patch,
@@ -121,7 +121,7 @@ impl Layer {
                 let shadow = 1.0 - smooth_step(-0.3, 1.0, outside_shadow / self.gap);
                 let dark = 1.0 - smooth_step(0.3, 1.0, outside / self.gap);
                 spot.color = spot.color * (1.0 - self.darkness * shadow.max(dark)) as f32;
-                // A lump never ends at something higher, which would be lit as a wall.
+                // A lump must not end at higher ground, which would be lit like a wall.
                 let near = 1.0 - smooth_step(0.0, 0.6, outside / self.gap);
                 spot.height -= (spot.height - self.ground as f32).max(0.0) * near as f32;
                 spot.gap = spot.gap.max(dark as f32);
@@ -133,7 +133,7 @@ impl Layer {
         });
     }
 
-    /// The spot at a part of the way from the middle to the outline.
+    /// Returns the spot at a fraction of the way from the center of a lump to its outline.
     fn body(&self, lump: &Lump, part: f64, lumpy: f64, grain: f64) -> Spot {
         let part = part.clamp(0.0, 1.0);
         let dome = (1.0 - part * part * part).sqrt();
@@ -148,14 +148,14 @@ impl Layer {
 }
 
 impl Lump {
-    /// Half the width and half the height of the ellipse that the outline is about.
+    /// Returns half the width and half the height of the ellipse that the outline follows.
     fn half_size(&self) -> DVec2 {
         let (long, short) = (self.axis * self.elongation, self.axis.perp());
         (long * long + short * short).map(f64::sqrt) * self.radius
     }
 
-    /// How far a place, seen from the center, lies outside of the outline (inside, if negative), about; and how much of
-    /// the way to the outline it is from the center.
+    /// Returns how far a place, relative to the center, lies outside of the outline (negative inside, approximate), and
+    /// its distance from the center as a fraction of the outline's.
     fn outline(&self, at: DVec2) -> (f64, f64) {
         let along = DVec2::new(
             at.dot(self.axis) / self.elongation,

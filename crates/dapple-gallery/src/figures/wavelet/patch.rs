@@ -1,8 +1,8 @@
-//! The square that a material is made on: its pixels, what lies past its borders, and the light on it.
+//! The square that a material is made on: its pixels, the area past its borders, and the light on it.
 //!
-//! Lengths and positions are in parts: 256 parts are the side of the picture, however many pixels it has, so that a
-//! small picture shows the same as a large one. A material is made on a torus. If it is to repeat, the torus is as
-//! large as the picture; if not, the picture is cut out of a torus half as large again.
+//! Lengths and positions are in parts: the side of the picture is 256 parts, however many pixels it has, so that a
+//! small picture shows the same as a large one. A material is made on a torus. If the picture is to repeat, the torus
+//! has its size; otherwise the picture is cut out of a torus half as large again.
 
 use super::super::fractal::FractalNoise;
 use dapple_color::{HeightPlane, LinearRgb, NormalOptions, NormalY, normal_map};
@@ -14,34 +14,34 @@ use glam::{DVec2, DVec3};
 /// The side of a picture, in parts.
 const SIDE: f64 = 256.0;
 
-/// What meets where two copies of a picture lie side by side.
+/// How two copies of a picture meet when they lie side by side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Edges {
-    /// Opposite edges have nothing in common, as in a photograph.
+    /// Opposite edges do not fit, as in a photograph.
     Cropped,
     /// Opposite edges fit: the picture repeats exactly.
     Repeating,
 }
 
-/// A material from above.
+/// A finished material, seen from above.
 #[derive(Clone, Debug)]
 pub(super) struct Material {
-    /// From about 0, the lowest, to about 1, the highest.
+    /// The height, from about 0 at the lowest to about 1 at the highest.
     pub(super) height: Raster<f32>,
-    /// Its color in a soft light from the upper left.
+    /// The color under a soft light from the upper left.
     pub(super) color: Raster<LinearRgb>,
-    /// 1 in the cracks and gaps, 0 on what lies between them.
+    /// A mask of the gaps: 1 in cracks and gaps, 0 elsewhere.
     pub(super) gap: Raster<f32>,
 }
 
-/// What is at one pixel of a material, before there is light.
+/// The properties of a material at one pixel, before lighting.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Spot {
-    /// From 0 to 1.
+    /// The height, from 0 to 1.
     pub(super) height: f32,
-    /// Its color in even light.
+    /// The color under even light.
     pub(super) color: LinearRgb,
-    /// From 0 to 1.
+    /// The gap mask, from 0 to 1.
     pub(super) gap: f32,
 }
 
@@ -49,13 +49,13 @@ pub(super) struct Spot {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Patch {
     size: u32,
-    /// The pixels of the picture and one more all around, so that the light on the last pixel knows its neighbors.
+    /// The pixels of the picture and a border of one pixel, so that lighting knows the neighbors of every pixel.
     window: Window,
     /// The torus of the material.
     pub(super) domain: Domain,
 }
 
-/// Random numbers for one thing, one after another.
+/// A sequence of random numbers for one object.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Dice {
     hash: CellHash,
@@ -63,7 +63,7 @@ pub(super) struct Dice {
 }
 
 impl Patch {
-    /// A patch for a picture of `size` × `size` pixels.
+    /// Returns a patch for a picture of `size` × `size` pixels.
     pub(super) fn new(size: u32, edges: Edges) -> Result<Self, RasterError> {
         let period = match edges {
             Edges::Cropped => 1.5 * SIDE,
@@ -87,14 +87,14 @@ impl Patch {
         self.domain.size.x
     }
 
-    /// Noise on the torus, from 0 to 1, whose coarsest features are about `spacing` parts apart.
+    /// Returns noise on the torus, from 0 to 1, whose coarsest features are about `spacing` parts apart.
     ///
-    /// It is read at a position over the [`period`](Self::period).
+    /// Its positions are divided by the [`period`](Self::period).
     pub(super) fn noise(&self, spacing: f64, seed: Seed) -> anyhow::Result<FractalNoise> {
         FractalNoise::new(spacing / self.period(), seed)
     }
 
-    /// The spots of all pixels.
+    /// Returns the spots of all pixels.
     pub(super) fn spots(
         &self,
         spot: impl Fn(DVec2) -> Spot + Sync,
@@ -102,8 +102,8 @@ impl Patch {
         Raster::from_window(&self.window, spot)
     }
 
-    /// Changes the spots that are in the box that reaches `reach` from `center` on the torus; `paint` is told how far
-    /// they are from it.
+    /// Changes the spots in the box that reaches `reach` from `center` on the torus. `paint` gets their offset from the
+    /// center.
     pub(super) fn paint(
         &self,
         spots: &mut Raster<Spot>,
@@ -128,7 +128,8 @@ impl Patch {
         }
     }
 
-    /// The columns or rows within `reach` of a coordinate or of a repeat of it, each with the way to the repeat.
+    /// Returns the columns or rows within `reach` of a coordinate or of one of its repeats, each with the offset of that
+    /// repeat from the coordinate.
     fn within(&self, coordinate: f64, reach: f64) -> Vec<(u32, f64)> {
         let (pixel, length) = (self.pixel(), f64::from(self.window.size[0]));
         let mut found = Vec::new();
@@ -142,7 +143,7 @@ impl Patch {
         found
     }
 
-    /// The material, with light on a relief that is `depth` parts deep.
+    /// Returns the material, lit as a relief that is `depth` parts deep.
     pub(super) fn finish(&self, spots: &Raster<Spot>, depth: f64) -> anyhow::Result<Material> {
         let options = NormalOptions {
             y: NormalY::OpenGl,
@@ -169,7 +170,7 @@ impl Patch {
 }
 
 impl Spot {
-    /// Covers a part of the spot with another one.
+    /// Blends another spot over this one; `part` is its opacity.
     pub(super) fn cover(&mut self, other: Self, part: f32) {
         self.height += (other.height - self.height) * part;
         self.color = self.color.lerp(other.color, part);
@@ -178,7 +179,7 @@ impl Spot {
 }
 
 impl Dice {
-    /// The dice of the thing with a number.
+    /// Returns the random numbers of the object with an index.
     pub(super) fn new(seed: Seed, index: u32) -> Self {
         Self {
             hash: CellHash::new(seed, [i64::from(index)]),
@@ -186,14 +187,14 @@ impl Dice {
         }
     }
 
-    /// A number from `low` to `high`.
+    /// Returns a random number from `low` to `high`.
     pub(super) fn between(&mut self, low: f64, high: f64) -> f64 {
         let number = unit_f64(self.hash.at(self.n_rolled));
         self.n_rolled += 1;
         low + (high - low) * number
     }
 
-    /// A vector of length 1.
+    /// Returns a random vector of length 1.
     pub(super) fn direction(&mut self) -> DVec2 {
         loop {
             let at = DVec2::new(self.between(-1.0, 1.0), self.between(-1.0, 1.0));

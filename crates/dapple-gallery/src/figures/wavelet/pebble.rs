@@ -8,7 +8,7 @@ use dapple_points::hash::Seed;
 /// The depth of the relief.
 const DEPTH: f64 = 30.0;
 
-/// From the lowest to the highest: small pebbles everywhere, larger ones on top of them.
+/// The layers from the lowest to the highest: small pebbles everywhere, larger ones on top of them.
 const LAYERS: [Layer; 3] = [
     Layer {
         spacing: 9.0,
@@ -48,7 +48,7 @@ const LAYERS: [Layer; 3] = [
     },
 ];
 
-/// A picture of pebbles, `size` pixels wide.
+/// Draws pebbles, `size` pixels wide.
 pub(super) fn pebble(size: u32, seed: Seed, edges: Edges) -> anyhow::Result<Material> {
     let patch = Patch::new(size, edges)?;
     let noise = patch.noise(40.0, seed.child("noise", 0))?;

@@ -1,4 +1,4 @@
-//! Brown soil: rough crumbs of several sizes, the coarser ones on the finer, and a few pale stones.
+//! Brown soil: rough crumbs of several sizes, coarse ones on fine ones, and a few pale stones.
 
 use super::lump::{Layer, lay};
 use super::patch::{Dice, Edges, Material, Patch, Spot};
@@ -8,7 +8,7 @@ use dapple_points::hash::Seed;
 /// The depth of the relief.
 const DEPTH: f64 = 14.0;
 
-/// From the lowest to the highest: fine crumbs everywhere, coarser ones on top of them.
+/// The layers from the lowest to the highest: fine crumbs everywhere, coarser ones on top of them.
 const LAYERS: [Layer; 3] = [
     CRUMBS,
     Layer {
@@ -29,7 +29,7 @@ const LAYERS: [Layer; 3] = [
     },
 ];
 
-/// The fine crumbs.
+/// The layer of fine crumbs.
 const CRUMBS: Layer = Layer {
     spacing: 4.4,
     radius: [1.6, 3.0],
@@ -43,7 +43,7 @@ const CRUMBS: Layer = Layer {
     darkness: 0.4,
 };
 
-/// A picture of soil, `size` pixels wide.
+/// Draws soil, `size` pixels wide.
 pub(super) fn soil(size: u32, seed: Seed, edges: Edges) -> anyhow::Result<Material> {
     let patch = Patch::new(size, edges)?;
     let noise = patch.noise(40.0, seed.child("noise", 0))?;

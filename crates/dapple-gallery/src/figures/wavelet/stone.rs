@@ -1,4 +1,4 @@
-//! Rubble paving: irregular stones with a tone of their own and rounded edges, and dark cracks between them.
+//! Rubble paving: irregular stones with tones of their own and rounded edges, and dark cracks between them.
 //!
 //! The stones are the Voronoi cells of a Poisson-disk set whose radius varies, seen through a warp.
 
@@ -14,18 +14,18 @@ use dapple_worley::FeatureSet;
 use glam::DVec2;
 use std::sync::Arc;
 
-/// How far apart the middles of neighboring stones are: at least, and at most.
+/// The least and the largest distance between the centers of neighboring stones.
 const SPACING: [f64; 2] = [22.0, 42.0];
-/// How far the warp moves the outlines.
+/// The distance by which the warp moves the outlines.
 const WARP: f64 = 22.0;
-/// The width of the cracks, at least and at most.
+/// The least and the largest width of the cracks.
 const CRACK: [f64; 2] = [3.0, 5.5];
-/// How far the rounding of an edge reaches into the stone.
+/// The width of the rounding of an edge, from the edge into the stone.
 const ROUNDING: f64 = 9.0;
 /// The depth of the relief.
 const DEPTH: f64 = 13.0;
 
-/// A picture of stones, `size` pixels wide.
+/// Draws stones, `size` pixels wide.
 pub(super) fn stone(size: u32, seed: Seed, edges: Edges) -> anyhow::Result<Material> {
     let patch = Patch::new(size, edges)?;
     let stones = Stones::new(&patch, seed)?;
@@ -43,14 +43,14 @@ struct Stones {
     dirt: LinearRgb,
 }
 
-/// How one stone looks.
+/// The look of one stone.
 struct Look {
     color: LinearRgb,
-    /// The height of its middle.
+    /// The height of its center.
     height: f64,
-    /// How the height changes per part.
+    /// The slope of its top: the change of height per part.
     tilt: DVec2,
-    /// Where in the noise its surface is.
+    /// The offset of its surface into the noise.
     surface: DVec2,
 }
 
@@ -103,8 +103,8 @@ impl Stones {
         spot
     }
 
-    /// Which stone a position is on, the way there from its middle, and how far it is from the nearest of the lines to
-    /// its neighbors, with corners rounded.
+    /// Returns the stone at a position, the vector from its center to the position, and the distance to the nearest
+    /// border with a neighbor, with corners rounded.
     fn border(&self, at: DVec2) -> (u64, DVec2, f64) {
         let [own] = self.middles.sample::<1>(at);
         let axes = self.neighbors.axes(PointIdx(own.id as u32));
@@ -150,7 +150,7 @@ impl Look {
     }
 }
 
-/// The smaller of two numbers, rounded off where they differ by less than `reach`.
+/// The smaller of two numbers, blended smoothly where they differ by less than `reach`.
 fn smooth_min(a: f64, b: f64, reach: f64) -> f64 {
     let near = (1.0 - (a - b).abs() / reach).max(0.0);
     a.min(b) - 0.25 * reach * near * near

@@ -1,11 +1,11 @@
-//! A creature between a lizard and a gator, made of blended cones; our own, in the place of Richard Payne's Gator.
+//! A creature between a lizard and an alligator, made of blended cones; it stands in for Richard Payne's Gator.
 //!
-//! It looks toward +x, stands on the plane y = 0 and is about 8 units long.
+//! It faces +x, stands on the plane y = 0 and is about 8 units long.
 
 use super::polygonize::Solid;
 use glam::DVec3;
 
-/// What a point of the creature belongs to.
+/// The part of the creature that a point belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Part {
     Hide,
@@ -18,13 +18,13 @@ pub(super) enum Part {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Creature;
 
-/// The middle of the left eye.
+/// The center of the left eye.
 pub(super) const EYE: DVec3 = DVec3::new(1.86, 1.50, 0.27);
 
-/// A cone with round ends: the positions and radii of the ends, as `[x, y, z, radius]`.
+/// A cone with round ends, given by the centers and radii of the ends as `[x, y, z, radius]`.
 type Cone = [[f64; 4]; 2];
 
-/// The parts along the middle.
+/// The cones along the middle of the body.
 const TRUNK: [Cone; 8] = [
     [[-1.30, 0.74, 0.0, 0.50], [0.20, 0.84, 0.0, 0.58]],
     [[0.20, 0.84, 0.0, 0.56], [1.05, 0.98, 0.0, 0.44]],
@@ -37,7 +37,7 @@ const TRUNK: [Cone; 8] = [
     [[-3.80, 0.12, 2.00, 0.08], [-3.40, 0.08, 2.45, 0.03]],
 ];
 
-/// The parts that the creature has on both sides.
+/// The cones that the creature has on both sides.
 const SIDES: [Cone; 18] = [
     // Snout, nostril, cheek, lower jaw, brow.
     [[1.75, 1.16, 0.15, 0.27], [2.95, 1.30, 0.11, 0.15]],
@@ -63,14 +63,14 @@ const SIDES: [Cone; 18] = [
     [[0.10, 1.38, 0.17, 0.07], [0.95, 1.38, 0.14, 0.04]],
 ];
 
-/// The tongue, on both sides of its furrow.
+/// The cones of the tongue, on both sides of its furrow.
 const TONGUE: [Cone; 3] = [
     [[1.90, 0.84, 0.07, 0.11], [2.60, 0.78, 0.07, 0.09]],
     [[2.60, 0.78, 0.07, 0.09], [3.08, 0.66, 0.06, 0.08]],
     [[3.08, 0.66, 0.06, 0.08], [3.36, 0.72, 0.05, 0.06]],
 ];
 
-/// The first and the last tooth of the upper and of the lower jaw, root and tip.
+/// The first and the last tooth of the upper and of the lower jaw, each with its root and tip.
 const TEETH: [[Cone; 2]; 2] = [
     [
         [[2.00, 0.96, 0.30, 0.05], [2.01, 0.82, 0.30, 0.012]],
@@ -82,11 +82,11 @@ const TEETH: [[Cone; 2]; 2] = [
     ],
 ];
 
-/// Teeth in a row.
+/// The number of teeth in a row.
 const N_TEETH: u32 = 6;
 
 impl Creature {
-    /// The part that a point on the surface belongs to.
+    /// Returns the part that a point on the surface belongs to.
     pub(super) fn part(self, position: DVec3) -> Part {
         let at = DVec3::new(position.x, position.y, position.z.abs());
         let parts = [
@@ -147,7 +147,7 @@ fn teeth(at: DVec3) -> f64 {
     nearest
 }
 
-/// The distance to a cone, nearly: that to the nearest point of its middle line, less the radius there.
+/// Returns nearly the distance to a cone: the distance to the nearest point of its axis, minus the radius there.
 fn cone_distance(cone: &Cone, at: DVec3) -> f64 {
     let [[ax, ay, az, a], [bx, by, bz, b]] = *cone;
     let (from, to) = (DVec3::new(ax, ay, az), DVec3::new(bx, by, bz));
@@ -156,9 +156,9 @@ fn cone_distance(cone: &Cone, at: DVec3) -> f64 {
     (reach - along * part).length() - (a + (b - a) * part)
 }
 
-/// The smaller of two distances, rounded where they differ by less than `width`.
+/// The smaller of two distances, blended smoothly where they differ by less than `width`.
 ///
-/// Reference: Inigo Quilez, "Smooth minimum", 2013, <https://iquilezles.org/articles/smin/>: the quadratic one.
+/// Reference: Inigo Quilez, "Smooth minimum", 2013, <https://iquilezles.org/articles/smin/>, the quadratic version.
 fn blend(a: f64, b: f64, width: f64) -> f64 {
     let overlap = (width - (a - b).abs()).max(0.0);
     let smaller = a.min(b);

@@ -30,9 +30,9 @@ pub(super) const FIGURE: Figure = Figure {
     render,
 };
 
-/// How deep the joints are, in cells.
+/// The depth of the joints, in cells.
 const DEPTH: f64 = 0.035;
-/// How high the grain of the stones is, in cells.
+/// The height of the grain of the stones, in cells.
 const GRAIN: f64 = 0.01;
 
 fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
@@ -56,7 +56,7 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
         let at = DVec2::new(surface.position.x, surface.position.z);
         let [first, others @ ..] = worley.sample::<4>(at);
         let (border, across) = nearest_border(&first, &others);
-        // Edges are chipped.
+        // The edges of the stones are chipped.
         let chips = stain.at(at * 2.0) - 0.5;
         let border = border + 0.03 * chips;
         let height = channels.height(border);
@@ -84,7 +84,7 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     Ok(vec![photo(&scene, [size, size * 3 / 4])?])
 }
 
-/// How far the nearest border of the cell is, and its gradient.
+/// Returns the distance to the nearest border of the cell, and its gradient.
 fn nearest_border(first: &Feature<DVec2>, others: &[Feature<DVec2>]) -> (f32, DVec2) {
     let border = |other: &Feature<DVec2>| {
         let way = other.vector - first.vector;

@@ -16,7 +16,7 @@ pub(super) const FIGURE: Figure = Figure {
     render,
 };
 
-/// What each picture shows, from the upper left to the lower right, and the coefficients of F1 to F4.
+/// The label of each picture, from the upper left to the lower right, and its coefficients of F1 to F4.
 const SHEETS: [(&str, [[f32; 4]; 4]); 5] = [
     (
         "F1, F2, F3, F4",

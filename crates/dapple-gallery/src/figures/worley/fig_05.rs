@@ -30,7 +30,7 @@ pub(super) const FIGURE: Figure = Figure {
 
 /// Cells of the hide per unit of the creature, which is about 8 units long.
 const FREQUENCY: f64 = 3.2;
-/// How high the bumps are, in cells.
+/// The height of the bumps, in cells.
 const BUMP: f64 = 0.3;
 
 fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
@@ -59,7 +59,7 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     let grains = FractalNoise::new(0.1, Seed(57))?;
     let sand = |surface: &Surface| {
         let at = DVec2::new(surface.position.x, surface.position.z);
-        // Grains that are finer than a sample of the picture are left out.
+        // Grains finer than a sample of the picture are left out.
         let samples = surface.footprint / surface.incidence / 0.2;
         let grain = (grains.at(at * 0.25) - 0.5) / (1.0 + samples * samples) as f32;
         Material::matte(LinearRgb::new(0.4, 0.32, 0.2) * (1.0 + 0.6 * grain))
@@ -80,14 +80,14 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     Ok(vec![photo(&scene, [size, size * 5 / 8])?])
 }
 
-/// A ramp with dark spots where a feature point is near, and the other two colors between them.
+/// Returns a ramp with dark spots near feature points, and the other two colors between them.
 fn spots([spot, hide, far]: [&str; 3]) -> Result<ColorRamp, ColorError> {
     let [spot, hide, far] = [(0.3, spot), (0.46, hide), (0.9, far)]
         .map(|(position, hex)| LinearRgb::from_hex(hex).map(|color| ColorStop { position, color }));
     ColorRamp::new([spot?, hide?, far?])
 }
 
-/// What the parts of the creature look like.
+/// The textures and colors of the creature's parts.
 struct Look {
     hide: Fractal<3>,
     back: ColorRamp,
@@ -107,7 +107,7 @@ impl Look {
                 Material::matte(color).with_specular(0.35, 40.0)
             }
             Part::Eye => {
-                // A pupil that is a slit.
+                // The pupil is a slit.
                 let pupil = (at.x - EYE.x - 0.03).abs() < 0.022;
                 let color = if pupil {
                     LinearRgb::BLACK
@@ -127,7 +127,7 @@ impl Look {
         let value = self.hide.value(cells);
         let up = ((at.y - 0.1) / 0.9).clamp(0.0, 1.0) as f32;
         let color = self.belly.at(value).lerp(self.back.at(value), up);
-        // The nearer a feature point is, the higher is the hide.
+        // The hide is higher near feature points.
         let bump = self.hide.gradient(cells) * -BUMP;
         Material::matte(color)
             .with_bump(bump)

@@ -21,7 +21,7 @@ pub(super) const FIGURE: Figure = Figure {
     render,
 };
 
-/// The primitive, how many of its cells are in a unit, its colors from low to high, and the depth of its bump.
+/// Each torus: the primitive, its number of cells per unit, its colors from low to high, and the depth of its bumps.
 const TORI: [(Combination, f64, [&str; 4], f64); 4] = [
     (
         Combination::F2_MINUS_F1,
@@ -90,7 +90,7 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     Ok(vec![photo(&scene, [size, size * 5 / 8])?])
 }
 
-/// The fractal version of a primitive, with its measured range as 0 to 1.
+/// Returns the fractal version of a primitive, with its measured range scaled to 0 to 1.
 fn solid(primitive: Combination, seed: Seed) -> anyhow::Result<Fractal<3>> {
     let octaves = Octaves {
         count: 5,

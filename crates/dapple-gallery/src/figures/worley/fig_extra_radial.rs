@@ -26,10 +26,10 @@ pub(super) const FIGURE: Figure = Figure {
     render,
 };
 
-/// Where F1 has a step, and how high a step is.
+/// The values of F1 at which there is a step, and the height of a step.
 const LEVELS: [f32; 3] = [0.2, 0.32, 0.44];
 const STEP: f64 = 0.005;
-/// The middle of the dish, and its radius.
+/// The center of the dish, and its radius.
 const DISH: DVec3 = DVec3::new(-0.12, -0.84, 0.529);
 const DISH_RADIUS: f64 = 0.3;
 
@@ -56,7 +56,7 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
         let mut gray = (0.25 + 0.08 * height) * (0.3 + 0.7 * depth);
         let from_dish = at - DISH;
         if from_dish.length() < DISH_RADIUS {
-            // A bowl as deep as half its radius.
+            // A spherical bowl, half as deep as its radius.
             bump = from_dish * (1.2 / DISH_RADIUS);
             gray = 0.36;
         }

@@ -3,7 +3,8 @@
 use dapple_preview::{Mesh, PreviewError};
 use glam::DVec3;
 
-/// The cross-section of the hull as x and y, from one side over the deck to the other. Nobody sees it from below.
+/// The cross-section of the hull as x and y, from one side over the deck to the other. The underside is left out, since
+/// it is never seen.
 const SECTION: [[f64; 2]; 8] = [
     [2.3, -0.2],
     [2.3, 0.25],
@@ -15,10 +16,10 @@ const SECTION: [[f64; 2]; 8] = [
     [-2.3, -0.2],
 ];
 
-/// Where the hull begins and ends along z. The eye is near the origin, and looks along it.
+/// The extent of the hull along z. The eye is near the origin and looks along the hull.
 const LENGTH: [f64; 2] = [-1.2, -26.0];
 
-/// The blocks of the bridge: the middle of the base of each, and half of its size.
+/// The blocks of the bridge: the center of the base of each, and half of its size.
 const BLOCKS: [[[f64; 3]; 2]; 4] = [
     [[0.0, 0.95, -12.0], [0.75, 0.25, 4.0]],
     [[0.0, 1.45, -12.6], [0.5, 0.3, 2.2]],
@@ -26,29 +27,29 @@ const BLOCKS: [[[f64; 3]; 2]; 4] = [
     [[0.0, 2.55, -13.0], [0.8, 0.17, 0.42]],
 ];
 
-/// How much the panels of the hull and of the bridge rise for each unit of the relief: channels and blocks.
+/// The rise of a panel per unit of the relief: sunken channels on the hull, raised blocks on the bridge.
 const RELIEF: [f64; 2] = [-1.0, 0.5];
 
-/// How wide the border of a panel is that stays flat, so that panels side by side meet.
+/// The width of the flat border of a panel, so that adjacent panels meet.
 const BORDER: f64 = 0.04;
 
-/// A rectangle: a corner, and the edges from there. Seen from outside, the second is to the left of the first.
+/// A rectangular panel: a corner and two edges. Seen from outside, the second edge is to the left of the first.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Panel {
     corner: DVec3,
     edges: [DVec3; 2],
-    /// How much it rises for each unit of the relief.
+    /// The rise per unit of the relief.
     rise: f64,
 }
 
 impl Panel {
-    /// Unit vectors along both edges and out of the panel.
+    /// Returns unit vectors along both edges and out of the panel.
     pub(super) fn axes(&self) -> [DVec3; 3] {
         let [u, v] = self.edges.map(DVec3::normalize);
         [u, v, u.cross(v)]
     }
 
-    /// How far the point at these parts of the edges is from the border.
+    /// Returns the distance from the border, for a point given by its fractions along the edges.
     fn border_distance(&self, parts: [f64; 2]) -> f64 {
         let [u, v] = self.edges.map(DVec3::length);
         let side = |part: f64, length: f64| part.min(1.0 - part) * length;
@@ -56,7 +57,7 @@ impl Panel {
     }
 }
 
-/// All panels: those along the hull, and five of each block.
+/// Returns all panels: the panels along the hull, and five for each block.
 fn panels() -> Vec<Panel> {
     let [front, back] = LENGTH;
     let mut panels = Vec::new();
@@ -89,8 +90,8 @@ fn panels() -> Vec<Panel> {
     panels
 }
 
-/// The hull with the `relief` of a panel at a position on it. A step of the grids is `step` times the distance from the
-/// origin, but no finer than at the distance 1.
+/// Builds the hull; `relief` gives the height of a panel at a position on it. The step of the grids is `step` times the
+/// distance from the origin, and no finer than at the distance 1.
 pub(super) fn hull(step: f64, relief: impl Fn(&Panel, DVec3) -> f64) -> Result<Mesh, PreviewError> {
     let mut positions = Vec::new();
     let mut triangles = Vec::new();
@@ -118,7 +119,7 @@ pub(super) fn hull(step: f64, relief: impl Fn(&Panel, DVec3) -> f64) -> Result<M
     Mesh::flat(&positions, &triangles)
 }
 
-/// The lines of a grid along an edge, as parts of it: the farther from the eye the farther apart.
+/// Returns the grid lines along an edge, as fractions of it, with wider gaps farther from the eye.
 fn lines(corner: DVec3, edge: DVec3, step: f64) -> Vec<f64> {
     let mut lines = vec![0.0];
     let mut part = 0.0;

@@ -1,25 +1,25 @@
-//! Triangles around a solid that is given by its distance function.
+//! Triangulates the surface of a solid that is given by its distance function.
 //!
 //! Reference: Sarah F. F. Gibson, "Constrained Elastic Surface Nets: Generating Smooth Surfaces from Binary Segmented
-//! Data", MICCAI 1998, doi 10.1007/BFb0056277. A cell of a regular grid that the surface passes through has one vertex,
-//! here at the mean of the crossings of its edges and then moved onto the surface, and an edge that the surface crosses
-//! has a quadrilateral between the four cells around it. Blocks of cells that are far from the surface are left out.
+//! Data", MICCAI 1998, doi 10.1007/BFb0056277. Every cell of a regular grid that the surface passes through gets one
+//! vertex, first at the mean of the crossings on its edges and then moved onto the surface. Every edge that the surface
+//! crosses gets a quadrilateral between the four cells around it. Blocks of cells far from the surface are skipped.
 
 use dapple_preview::{Mesh, PreviewError};
 use glam::DVec3;
 use std::collections::BTreeMap;
 
-/// A solid.
+/// A solid given by its distance function.
 pub(super) trait Solid: Sync {
-    /// The distance from the surface, below zero inside. It may be off, but must not grow faster than the true one by
-    /// more than a fifth.
+    /// Returns the distance from the surface, negative inside. It may be approximate, but must not grow faster than the
+    /// true distance by more than a fifth.
     fn distance(&self, position: DVec3) -> f64;
 
-    /// Two corners of a box around the solid, with room to spare.
+    /// Returns two corners of a box around the solid, with some margin.
     fn bounds(&self) -> [DVec3; 2];
 }
 
-/// The surface of a solid, from cells of the given side.
+/// Triangulates the surface of a solid on a grid of cells with the given side.
 pub(super) fn polygonize(solid: &dyn Solid, side: f64) -> Result<Mesh, PreviewError> {
     let mut net = Net::new(solid, side);
     net.add_vertices();
@@ -27,7 +27,7 @@ pub(super) fn polygonize(solid: &dyn Solid, side: f64) -> Result<Mesh, PreviewEr
     Mesh::smooth(&net.positions, &triangles)
 }
 
-/// The cells in a block, along each axis.
+/// The number of cells in a block, along each axis.
 const BLOCK: u32 = 8;
 
 type Cell = [u32; 3];
@@ -61,7 +61,7 @@ impl<'a> Net<'a> {
         }
     }
 
-    /// Where a corner of a cell is, or a point `offset` sides further.
+    /// Returns the position of a corner of a cell, or of a point `offset` cell sides from it.
     fn position(&self, corner: Cell, offset: DVec3) -> DVec3 {
         self.low + (DVec3::from_array(corner.map(f64::from)) + offset) * self.side
     }
@@ -70,7 +70,7 @@ impl<'a> Net<'a> {
         for block in cells([0; 3], self.blocks) {
             let first = block.map(|index| index * BLOCK);
             let middle = self.position(first, DVec3::splat(0.5 * f64::from(BLOCK)));
-            // Half a diagonal of the block, a cell to spare, and a fifth for distances that are off.
+            // Half a diagonal of the block, a cell of margin, and a fifth for approximate distances.
             let reach = 1.2 * 3_f64.sqrt() * (0.5 * f64::from(BLOCK) + 1.0) * self.side;
             if self.solid.distance(middle).abs() <= reach {
                 self.add_block(first);
@@ -110,7 +110,7 @@ impl<'a> Net<'a> {
         }
     }
 
-    /// A point near the surface, moved onto it by a step along the gradient.
+    /// Moves a point near the surface onto it, by a step along the gradient.
     fn on_surface(&self, at: DVec3) -> DVec3 {
         let h = 0.1 * self.side;
         let slope = DVec3::AXES
@@ -120,7 +120,7 @@ impl<'a> Net<'a> {
         at - step.clamp_length_max(0.5 * self.side)
     }
 
-    /// Two triangles for each crossing, counterclockwise from outside.
+    /// Returns two triangles for each crossing, counterclockwise from outside.
     fn triangles(&self) -> Vec<[u32; 3]> {
         let mut triangles = Vec::new();
         for &(cell, axis, inside) in &self.crossings {
@@ -140,7 +140,8 @@ impl<'a> Net<'a> {
     }
 }
 
-/// The mean of the points where the surface crosses the edges of a unit cell, from the distances at its corners.
+/// Returns the mean of the points where the surface crosses the edges of a unit cell, given the distances at its
+/// corners.
 fn middle_of_crossings(corners: &[f64; 8]) -> DVec3 {
     let (mut sum, mut count) = (DVec3::ZERO, 0.0);
     for from in 0..8_usize {
@@ -157,7 +158,7 @@ fn middle_of_crossings(corners: &[f64; 8]) -> DVec3 {
     sum / f64::max(count, 1.0)
 }
 
-/// All cells of a box, x running fastest.
+/// Iterates over all cells of a box, x fastest.
 fn cells(low: Cell, size: Cell) -> impl Iterator<Item = Cell> {
     let range = move |axis: usize| low[axis]..low[axis] + size[axis];
     range(2).flat_map(move |z| range(1).flat_map(move |y| range(0).map(move |x| [x, y, z])))
@@ -190,13 +191,13 @@ mod tests {
             let [a, b, c] = triangle.map(|vertex| net.positions[vertex as usize]);
             volume += a.dot(b.cross(c)) / 6.0;
         }
-        // A closed surface of triangles with corners on the sphere: a little less than the ball.
+        // The corners lie on the sphere, so the volume is a little less than that of the ball.
         let ball = 4.0 / 3.0 * core::f64::consts::PI;
         assert!((0.99..1.0).contains(&(volume / ball)), "{volume}");
         // Euler: V - E + F = 2 with three half edges per triangle.
         assert_eq!(net.positions.len() * 2, triangles.len() + 4, "not a sphere");
         for position in &net.positions {
-            // The second order of a step of at most a cell.
+            // The error is of second order in a step of at most a cell.
             assert!((position.length() - 1.0).abs() < 1e-3, "{position}");
         }
     }

@@ -1,4 +1,4 @@
-//! Exemplars that tile, and those that do not.
+//! Tests of the exemplars: some tile, others do not.
 
 use super::{EXEMPLARS, Edges, Exemplar};
 use dapple_color::LinearRgb;
@@ -8,13 +8,13 @@ fn draw(exemplar: &Exemplar, size: u32) -> Raster<LinearRgb> {
     (exemplar.draw)(size).unwrap()
 }
 
-/// How much the pixels of two lines differ in the mean.
+/// The mean difference between the pixels of two lines.
 fn apart(a: &[LinearRgb], b: &[LinearRgb]) -> f64 {
     let gaps = a.iter().zip(b).flat_map(|(&a, &b)| (a - b).to_array());
     gaps.map(|gap| f64::from(gap.abs())).sum::<f64>() / a.len() as f64
 }
 
-/// How much the last row differs from the first one, over how much any row does.
+/// The difference between the last row and the first, divided by the largest difference between any row and the first.
 fn seam(image: &Raster<LinearRgb>) -> f64 {
     let from_first = |row: u32| apart(image.row(0), image.row(row));
     let largest = (0..image.height())
@@ -26,7 +26,7 @@ fn seam(image: &Raster<LinearRgb>) -> f64 {
 #[test]
 fn exemplars_repeat_where_they_say_so() {
     for exemplar in &EXEMPLARS {
-        // Features are many pixels large at this size, so rows that belong side by side are alike.
+        // Features are many pixels large at this size, so neighboring rows are alike.
         let image = draw(exemplar, 256);
         let turned = Raster::from_fn([256; 2], |column, row| image.row(column)[row as usize]);
         let seams = [seam(&turned.unwrap()), seam(&image)];
@@ -46,7 +46,7 @@ fn exemplars_have_colors_that_a_screen_shows_at_any_size() {
             assert!(shades.deviation > 0.005, "{} is flat", exemplar.name);
             let parts = image.pixels().iter().flat_map(|color| color.to_array());
             let shown = parts.filter(|part| (0.0..=1.0).contains(part)).count();
-            // Highlights may be brighter than a screen, in few places.
+            // A few highlights may be brighter than a screen can show.
             let all = 3 * size as usize * size as usize;
             assert!(shown * 20 > all * 19, "{} is too bright", exemplar.name);
         }

@@ -1,15 +1,16 @@
-//! The squares of the ray, which run together where the sweep begins if the least distance wins everywhere.
+//! Tests that the squares on the ray stay separate: they merge at the start of the sweep if the least distance wins
+//! everywhere.
 
 use super::RAY;
 use dapple_synth::mesh::Surface;
 use dapple_synth::{Coherence, Exemplar, Options, Synthesizer};
 use dapple_worley::hash::Seed;
 
-/// How far around a site there are two colors, in spacings: nearly the width of a square, 10.7. The middle of a square of the
-/// exemplar is at most 8 from its edges.
+/// A radius around a site, in spacings, within which two colors must occur. It is nearly the width of a square, 10.7;
+/// the middle of a square of the exemplar is at most 8 from its edges.
 const RADIUS: f64 = 10.0;
 
-/// The part of the sites that have one color all around.
+/// Returns the fraction of sites that have a single color all around.
 fn part_of_one_color(synthesizer: &Synthesizer, values: &[f32]) -> f64 {
     let hierarchy = synthesizer.hierarchy();
     let level = &hierarchy.levels()[0];
