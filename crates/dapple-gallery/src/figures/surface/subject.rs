@@ -8,7 +8,7 @@ use dapple_color::LinearRgb;
 use dapple_models::{self as models, ModelError};
 use dapple_raster::Raster;
 use dapple_synth::mesh::Mesh;
-use dapple_synth::{Coherence, Direction, HierarchyOptions};
+use dapple_synth::{Coherence, Direction, HierarchyOptions, Sources};
 use glam::DVec3;
 
 /// The size of a figure from which on a subject has as many sites as the paper's: that of the page.
@@ -217,6 +217,8 @@ impl Subject {
             directions: self.directions(),
             sites: self.sites(size),
             coherence: Coherence::Auto,
+            sources: Sources::SubPixel,
+            detail: None,
             map_side: (TEXELS * size).max(512),
         };
         job.run()
