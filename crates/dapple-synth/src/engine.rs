@@ -6,7 +6,7 @@ use crate::ground::Ground;
 use crate::kept::Kept;
 use crate::neighborhood::{Part, Pass, Reads};
 use crate::visit::Visit;
-use crate::{Options, Pyramid, SynthError, SynthErrorKind};
+use crate::{Candidates, Options, Pyramid, SynthError, SynthErrorKind};
 use core::ops::ControlFlow;
 use core::sync::atomic::AtomicU32;
 use dapple_hash::{Seed, hash1};
@@ -36,6 +36,10 @@ pub(crate) fn run<G: Ground>(
     callback: Callback<'_>,
 ) -> Result<Vec<Vec<u32>>, SynthError> {
     let passes = options.passes()?.passes;
+    let seen = match ground.blur() {
+        0.0 => None,
+        blur => Some(pyramid.blurred(blur)),
+    };
     let coherence = options.coherence.factors(&pyramid.levels()[0]);
     let mut levels: Vec<Vec<AtomicU32>> = Vec::new();
     levels.resize_with(pyramid.levels().len(), Vec::new);
@@ -54,7 +58,8 @@ pub(crate) fn run<G: Ground>(
             levels[pass.level] = first.into_iter().map(AtomicU32::new).collect();
         }
         let keep = side_to_keep(pass, passes.get(index + 1));
-        let visit = Visit::new(ground, pyramid, pass, options, coherence)?;
+        let candidates = Candidates::for_options(seen.as_ref().unwrap_or(pyramid), pass, options)?;
+        let visit = Visit::new(ground, pyramid, candidates, pass, options, coherence);
         let mut tell = |done| {
             let progress = Progress {
                 pass: index,

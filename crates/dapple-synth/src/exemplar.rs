@@ -184,6 +184,38 @@ impl Exemplar {
         }
     }
 
+    /// The image with every pixel mixed with those around it.
+    fn blurred(&self, blur: f32) -> Self {
+        let n = self.n_channels;
+        let [width, height] = self.size.map(|side| side as usize);
+        let [wrap_x, wrap_y] = self.grid().wrap;
+        let mixed = |from: &[f32], at: usize, steps: [usize; 2], offset: usize| {
+            let [a, b] = steps.map(|step| from[step * n + offset]);
+            let own = from[at * n + offset];
+            own + blur * ((a - own) + (b - own))
+        };
+        let beside = |at: usize, side: usize, wrap: Wrap| {
+            [-1, 1].map(|step| wrap.index(at as i64 + step, side as u32) as usize)
+        };
+        let mut across = Vec::with_capacity(self.pixels.len());
+        for row in self.pixels.chunks_exact(width * n) {
+            for at in 0..width {
+                let steps = beside(at, width, wrap_x);
+                across.extend((0..n).map(|channel| mixed(row, at, steps, channel)));
+            }
+        }
+        let mut pixels = Vec::with_capacity(self.pixels.len());
+        for at in 0..height {
+            let steps = beside(at, height, wrap_y).map(|row| row * width);
+            let of = |offset| mixed(&across, at * width, steps, offset);
+            pixels.extend((0..width * n).map(of));
+        }
+        Self {
+            pixels,
+            ..self.clone()
+        }
+    }
+
     /// The next coarser level.
     fn halved(&self) -> Self {
         let [width, height] = self.size;
@@ -214,6 +246,18 @@ impl Exemplar {
 }
 
 impl Pyramid {
+    /// The levels, every pixel mixed with the four beside it and those across: along each axis, both neighbors have a part
+    /// of `blur`.
+    pub(crate) fn blurred(&self, blur: f32) -> Self {
+        Self {
+            levels: self
+                .levels
+                .iter()
+                .map(|level| level.blurred(blur))
+                .collect(),
+        }
+    }
+
     /// The levels, the finest first.
     #[must_use]
     pub fn levels(&self) -> &[Exemplar] {

@@ -70,6 +70,12 @@ pub(crate) trait Ground: Sync {
     /// The number of sites of a level.
     fn n_sites(&self, level: usize) -> usize;
 
+    /// How much what [`read`](Self::read) gives is blurred: the part of a pixel that each of the two beside it along an axis
+    /// has.
+    fn blur(&self) -> f32 {
+        0.0
+    }
+
     /// The sites of a level in the order of the sweep.
     fn order(&self, level: usize) -> Vec<u32>;
 

@@ -39,10 +39,9 @@
 //! most alike ([`Schedule`], [`Matcher`]). A [`SurfaceTexture`] has the color and, more than that, the pixel that each
 //! site took.
 //!
-//! So other maps of the exemplar can follow: [`SurfaceTexture::transfer`] copies heights, roughness and normals, which
-//! [`bake_values`] and [`bake_normals`] write to texture maps with the same [`Atlas`] as the colors. What is to be
-//! matched and what is only copied is the caller's choice: see [`Exemplar::from_planes`] and the example of
-//! [`bake_values`]. [`textured_model`] and [`site_model`] make what file formats take, [`displaced_sites`] moves the mesh
+//! So other maps of the exemplar can follow: [`bake_values`] and [`bake_normals`] write heights, roughness and normals to
+//! texture maps with the same [`Atlas`] as [`bake_colors`] does colors. What is to be matched and what only follows is the
+//! caller's choice: see [`Exemplar::from_planes`] and the example of [`bake_values`]. [`textured_model`] and [`site_model`] make what file formats take, [`displaced_sites`] moves the mesh
 //! itself.
 //!
 //! [`Synthesizer`] keeps all that does not depend on the exemplar; it can be used again, reports its progress and can be
@@ -73,6 +72,11 @@
 //!   tends to repeat smooth parts of the exemplar and to blur away structure like bricks.
 //! * Pixels that were used cost more on the coarsest level, and those near an edge of the exemplar are used, too
 //!   ([`Options::evenness`]). The least difference alone leaves out a third of the exemplar and most colors that are rare.
+//! * Sites are from places between the pixels of the exemplar, and texels read the exemplar there ([`Sources`]). Means of the
+//!   colors of sites are softer than it, and edges in them are as jagged as the sites lie. A larger version of the exemplar,
+//!   such as the photograph that it was made from, can be read instead, and gives all its detail.
+//! * On surfaces, where neighborhoods are read between sites, the exemplar is blurred as much before it is compared.
+//!   Otherwise smooth parts of it match best.
 //! * The rows and columns of a neighborhood turn as the field around its site does ([`Axes`]). Straight on, features that
 //!   bend seem to come from one side: stripes around a torus are then off by 3.7 degrees instead of 1.5.
 //!

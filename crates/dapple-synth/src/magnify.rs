@@ -232,3 +232,6 @@ impl<F> Magnified<'_, F> {
         sum.map(|sum| sum / shares)
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -25,6 +25,13 @@ pub(crate) use nearby::{Around, Nearby};
 /// How much farther than on a plane sites may lie from a sample's site and still count, in spacings.
 const REACH_SPARE: f64 = 0.5;
 
+/// The blur of the samples of a square. The weights of equation 1 and pixels that are up to a half off have half of this
+/// variance; the rest is for sources that bend where sites go on with a piece of the exemplar.
+///
+/// Measured on flat textures of leaves, rock and grass of 128 × 128 pixels: of the exemplar's deviation 0.77 to 0.85 remain
+/// without a blur, 0.86 to 0.90 with 0.11, and 0.92 to 0.95 with 0.2; lengths of gradients are then within a tenth of its.
+const BLUR: f32 = 0.2;
+
 /// The sites of a hierarchy, with the directions of the texture.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct MeshGround<'a> {
@@ -33,6 +40,8 @@ pub(crate) struct MeshGround<'a> {
     pub(crate) orientation: &'a Orientation,
     pub(crate) sweep: &'a Sweep,
     pub(crate) axes: Axes,
+    /// Whether the exemplar is blurred as its squares are.
+    pub(crate) is_blurred: bool,
 }
 
 /// The sites around those of a level, on the level itself and on the next coarser one.
@@ -71,6 +80,10 @@ impl Ground for MeshGround<'_> {
 
     fn n_sites(&self, level: usize) -> usize {
         self.hierarchy.levels()[level].n_sites()
+    }
+
+    fn blur(&self) -> f32 {
+        if self.is_blurred { BLUR } else { 0.0 }
     }
 
     fn order(&self, level: usize) -> Vec<u32> {

@@ -114,7 +114,7 @@ impl Synthesizer {
             }));
         }
         let pyramid = exemplar.pyramid(options.n_levels)?;
-        let ground = self.ground(options.axes);
+        let ground = self.ground(options.axes, options.sources == Sources::SubPixel);
         let sources = engine::run(&ground, &pyramid, options, &mut callback)?;
         let places = match options.sources {
             Sources::Pixel => None,
@@ -127,13 +127,14 @@ impl Synthesizer {
     }
 
     /// The surface, its sites and their orientation, on which the texture grows.
-    pub(crate) fn ground(&self, axes: Axes) -> MeshGround<'_> {
+    pub(crate) fn ground(&self, axes: Axes, is_blurred: bool) -> MeshGround<'_> {
         MeshGround {
             surface: &self.surface,
             hierarchy: &self.hierarchy,
             orientation: &self.orientation,
             sweep: &self.sweep,
             axes,
+            is_blurred,
         }
     }
 

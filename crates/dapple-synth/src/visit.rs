@@ -7,7 +7,7 @@ use crate::kept::Kept;
 use crate::matcher::Query;
 use crate::neighborhood::{Pass, Reads, Shape};
 use crate::options::CoherenceFactors;
-use crate::{Candidates, Exemplar, Matcher, MatcherMemory, Options, Pyramid, SynthError};
+use crate::{Candidates, Exemplar, Matcher, MatcherMemory, Options, Pyramid};
 use core::sync::atomic::Ordering;
 
 /// No row.
@@ -76,11 +76,11 @@ impl<'a, G: Ground> Visit<'a, G> {
     pub(crate) fn new(
         ground: &'a G,
         pyramid: &'a Pyramid,
+        candidates: Candidates,
         pass: &Pass,
         options: &Options,
         coherence: CoherenceFactors,
-    ) -> Result<Self, SynthError> {
-        let candidates = Candidates::for_options(pyramid, pass, options)?;
+    ) -> Self {
         let exemplar = &pyramid.levels()[pass.level];
         let same = half_of(pass, Reads::Same);
         // All of it, since its middle says which pixels continue the coarser level.
@@ -96,7 +96,7 @@ impl<'a, G: Ground> Visit<'a, G> {
             None => (coherence.initial, options.evenness),
             Some(_) => (coherence.finer, 0.0),
         };
-        Ok(Self {
+        Self {
             ground,
             prepared: ground.prepare(
                 pass.level,
@@ -122,7 +122,7 @@ impl<'a, G: Ground> Visit<'a, G> {
             terms,
             same,
             coarser,
-        })
+        }
     }
 
     /// Gives a site the pixel of the row that matches, and tells which one that is.

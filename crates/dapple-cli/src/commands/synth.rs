@@ -52,6 +52,11 @@ pub(crate) struct Args {
     #[arg(long, value_name = "NAME=IMAGE")]
     map: Vec<MapArg>,
 
+    /// A larger version of the example, such as the photograph that it was made from: a whole number of times as large. The
+    /// texture shows it instead, with all its detail, and is as much larger in the plane; maps have its size.
+    #[arg(long, value_name = "IMAGE", conflicts_with = "region")]
+    detail: Option<PathBuf>,
+
     /// Use only this part of the example, in pixels.
     #[arg(long, value_name = "X,Y,W,H")]
     region: Option<Region>,
@@ -101,7 +106,7 @@ impl FromStr for MapArg {
     }
 }
 
-/// The input of the synthesis: the example, and the maps that follow it.
+/// The input of the synthesis: what is shown, which is the example or a larger version of it, and the maps that follow.
 struct Input {
     base: Loaded,
     maps: Vec<(String, Loaded)>,
@@ -131,36 +136,66 @@ impl Args {
                 let error = usage(format!("--{option} has no effect without a mesh"));
                 Err(error.hint("add --mesh FILE"))
             }
+            _ if self.detail.is_some() && self.surface.mesh.is_some() && self.matching.paper => {
+                let error = usage("--detail has no effect with --paper on a mesh");
+                Err(error.hint("leave one of them out"))
+            }
             _ => Ok(()),
         }
     }
 
-    /// Reads the example and its maps, which must have its size.
+    /// Reads the example, its larger version, and the maps, which must have the size of what is shown.
     fn read(&self) -> Result<Input> {
-        let base = self.load(&self.exemplar, Kind::ByChannels)?;
-        let mut maps = Vec::new();
-        for MapArg { name, path } in &self.map {
-            let kind = match name.as_str() {
-                "normal" => Kind::Normals,
-                _ => Kind::ByChannels,
-            };
-            let map = self.load(path, kind)?;
-            input::check_size(path, map.map.size(), &self.exemplar, base.map.size())
-                .hint("the maps of an example have its size")?;
-            maps.push((name.clone(), map));
-        }
+        let example = self.load(&self.exemplar, Kind::ByChannels)?;
         let edges = self.matching.edges;
-        let exemplar = match &base.map {
+        let exemplar = match &example.map {
             Map::Color(colors) => Exemplar::new(colors, edges),
             Map::Value(values) => Exemplar::from_planes(&[(values, 1.0)], edges),
             Map::Normal(_) => bail!("normals are no example"),
         };
         let exemplar = exemplar.map_err(advise)?;
+        let (path, base) = match &self.detail {
+            None => (&self.exemplar, example),
+            Some(path) => (path, self.load_detail(path, exemplar.size())?),
+        };
+        let mut maps = Vec::new();
+        for MapArg {
+            name,
+            path: map_path,
+        } in &self.map
+        {
+            let kind = match name.as_str() {
+                "normal" => Kind::Normals,
+                _ => Kind::ByChannels,
+            };
+            let map = self.load(map_path, kind)?;
+            input::check_size(map_path, map.map.size(), path, base.map.size())
+                .hint("the maps of an example have its size")?;
+            maps.push((name.clone(), map));
+        }
         Ok(Input {
             base,
             maps,
             exemplar,
         })
+    }
+
+    /// Reads a version of the example that is a whole number of times as large.
+    fn load_detail(&self, path: &Path, [width, height]: [u32; 2]) -> Result<Loaded> {
+        let detail = self.load(path, Kind::ByChannels)?;
+        let size = detail.map.size();
+        let factor = size[0] / width;
+        if factor > 0 && [width, height].map(|side| side.checked_mul(factor)) == size.map(Some) {
+            return Ok(detail);
+        }
+        let error = usage(format!(
+            "{} has {} × {} pixels, which is not the {width} × {height} of {} times a whole number",
+            input::name(path),
+            size[0],
+            size[1],
+            input::name(&self.exemplar)
+        ));
+        Err(error.hint("make the example from it, by a whole number of pixels for one"))
     }
 
     /// Reads an image, and refuses alpha where there is no room for it.

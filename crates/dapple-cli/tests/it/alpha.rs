@@ -2,7 +2,7 @@
 
 use crate::support::{Folder, assert_done, assert_refused, stdout};
 use dapple::color::{LinearRgb, LinearRgba};
-use dapple::image::{Depth, Image, Limits, read_image, write_color_alpha_png};
+use dapple::image::{Depth, Image, Limits, read_image, write_color_alpha_png, write_color_png};
 use dapple::raster::Raster;
 use std::fs;
 
@@ -174,4 +174,56 @@ fn a_node_of_a_recipe_says_what_becomes_of_the_alpha_of_its_image() {
     // The leaf is as gray as it is opaque: v, or v² and 1 - v of white, for v from 0.3 to 0.7.
     assert!((0.45..0.55).contains(&dropped), "{dropped}");
     assert!((0.7..0.85).contains(&white), "{white}");
+}
+
+#[test]
+fn larger_example_is_shown_with_all_its_pixels() {
+    let folder = folder("detail");
+    // Every second pixel.
+    let leaf = read(&folder, "leaf.png").color_alpha().unwrap();
+    let small = Raster::from_fn([24; 2], |x, y| leaf.row(2 * y)[2 * x as usize].color).unwrap();
+    write_color_png(folder.path("small.png"), &small, Depth::Sixteen).unwrap();
+    let line =
+        "synth small.png --detail leaf.png --map cover=leaf.png --size 20 --levels 2 -o out.png";
+    assert_done(&folder.run(&line.split(' ').collect::<Vec<_>>()), line);
+    let shown = read(&folder, "out.png").color_alpha().unwrap();
+    assert_eq!(shown.size(), [40, 40]);
+    let all: Vec<_> = leaf
+        .pixels()
+        .iter()
+        .map(|pixel| pixel.alpha.to_bits())
+        .collect();
+    assert!(
+        shown
+            .pixels()
+            .iter()
+            .all(|pixel| all.contains(&pixel.alpha.to_bits()))
+    );
+    assert_eq!(
+        shown,
+        read(&folder, "out_cover.png").color_alpha().unwrap(),
+        "a map follows"
+    );
+    for (line, message) in [
+        (
+            "synth leaf.png --detail small.png",
+            "is not the 48 × 48 of leaf.png times a whole number",
+        ),
+        (
+            "synth small.png --detail leaf.png --region 0,0,20,20",
+            "cannot be used with",
+        ),
+        (
+            "synth small.png --detail photo.png --mesh model.obj --paper",
+            "--detail has no effect with --paper",
+        ),
+    ] {
+        let line = [line, "-o no.png"].join(" ");
+        assert_refused(
+            &folder.run(&line.split(' ').collect::<Vec<_>>()),
+            2,
+            message,
+            &line,
+        );
+    }
 }

@@ -4,7 +4,7 @@ use crate::support::{Folder, assert_refused, stderr, stdout};
 use std::fs;
 
 /// Each subcommand that reads a file, with `INPUT` for the file under test. All other inputs exist.
-const READERS: [&str; 19] = [
+const READERS: [&str; 20] = [
     "bake INPUT -o out/ --size 8",
     "pups control --points INPUT --size 8 -o out.png",
     "pups reference --reference INPUT --size 8 -o out.png",
@@ -19,6 +19,7 @@ const READERS: [&str; 19] = [
     "blend rock.png grass.png --tile INPUT -o out.png",
     "blend-map INPUT -o out.png",
     "synth INPUT --size 16 -o out.png",
+    "synth checker.png --detail INPUT --size 16 -o out.png",
     "synth checker.png --map roughness=INPUT --size 16 -o out.png",
     "synth checker.png --mesh INPUT --sites 500 -o out.glb",
     "synth checker.png --mesh model.obj --directions INPUT --sites 500 -o out.glb",

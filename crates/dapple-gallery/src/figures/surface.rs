@@ -9,6 +9,7 @@ mod fig_03;
 mod fig_04;
 mod fig_05;
 mod fig_extra_exemplars;
+mod fig_extra_sharp;
 mod hooks;
 mod letter;
 pub(crate) mod own;
@@ -36,5 +37,6 @@ pub(super) const PAPER: Paper = Paper {
         fig_04::FIGURE,
         fig_05::FIGURE,
         fig_extra_exemplars::FIGURE,
+        fig_extra_sharp::FIGURE,
     ],
 };

@@ -117,7 +117,7 @@ fn go_on(_: Progress) -> ControlFlow<()> {
 #[test]
 fn passes_are_those_of_the_pseudo_code() {
     let case = sphere(300);
-    let ground = case.ground(Axes::Carried);
+    let ground = case.ground(Axes::Carried, false);
     let paper = Schedule::paper(2);
     let part = |shape, side, reads| Part::new(shape, side, reads);
     let other = Schedule {
@@ -166,7 +166,7 @@ fn passes_are_those_of_the_pseudo_code() {
 #[test]
 fn texture_has_the_same_bits_on_any_number_of_threads() {
     let case = sphere(3000);
-    let ground = case.ground(Axes::Carried);
+    let ground = case.ground(Axes::Carried, false);
     let pyramid = pyramid(Edges::Wrap, 2);
     for (coherence, evenness) in [(0.0, 0.0), (1.0, 0.0), (0.0, 2.0), (1.5, 0.5)] {
         let options = Options {
@@ -194,7 +194,7 @@ fn texture_has_the_same_bits_on_any_number_of_threads() {
 #[test]
 fn coherent_texture_has_more_neighbors_that_continue_each_other() {
     let case = sphere(2000);
-    let ground = case.ground(Axes::Carried);
+    let ground = case.ground(Axes::Carried, false);
     let pyramid = pyramid(Edges::Wrap, 2);
     let continued = |coherence: f32| {
         let options = Options {
@@ -238,7 +238,13 @@ fn uses(evenness: f32) -> Vec<usize> {
         ..Options::default()
     };
     let pyramid = pyramid(Edges::Wrap, 2);
-    let levels = run(&case.ground(Axes::Carried), &pyramid, &options, &mut go_on).unwrap();
+    let levels = run(
+        &case.ground(Axes::Carried, false),
+        &pyramid,
+        &options,
+        &mut go_on,
+    )
+    .unwrap();
     let mut uses = vec![0; 64];
     for &source in &levels[1] {
         uses[source as usize] += 1;
@@ -258,7 +264,7 @@ fn evenness_spreads_the_uses() {
 #[test]
 fn callback_hears_of_every_pass_and_can_stop_any() {
     let case = sphere(500);
-    let ground = case.ground(Axes::Carried);
+    let ground = case.ground(Axes::Carried, false);
     let pyramid = pyramid(Edges::Wrap, 2);
     let options = Options {
         n_levels: 2,
@@ -300,7 +306,7 @@ fn callback_hears_of_every_pass_and_can_stop_any() {
 #[test]
 fn value_stability_of_a_texture() {
     let case = sphere(400);
-    let ground = case.ground(Axes::Carried);
+    let ground = case.ground(Axes::Carried, false);
     let pyramid = pyramid(Edges::Wrap, 2);
     let options = Options {
         n_levels: 2,

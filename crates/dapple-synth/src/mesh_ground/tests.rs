@@ -51,7 +51,7 @@ impl Case {
     }
 
     fn ground(&self) -> MeshGround<'_> {
-        self.0.ground(Axes::Carried)
+        self.0.ground(Axes::Carried, false)
     }
 
     /// Walks to one sample, i along P and j along O.

@@ -8,8 +8,9 @@ use crate::Edges;
 use crate::sites::weight;
 use dapple_raster::{Raster, Wrap};
 
-/// How far pixels have a say, in pixels.
-const RADIUS: f64 = 1.5;
+/// How far pixels have a say, in pixels: so far that corners are round, and not so far that a pixel alone among others is
+/// outvoted.
+const RADIUS: f64 = 1.25;
 
 /// A texture, and how many times as large it is to be.
 #[derive(Clone, Copy, Debug)]

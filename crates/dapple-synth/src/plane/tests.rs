@@ -1,6 +1,8 @@
 //! The plane beside the pseudo-code of the paper.
 
-use super::{MAX_PIXELS, PlaneGround, SLANT, synthesize_plane, synthesize_plane_with};
+use super::{
+    MAX_PIXELS, PlaneGround, PlaneTexture, SLANT, synthesize_plane, synthesize_plane_with,
+};
 use crate::ground::Ground;
 use crate::{
     Candidates, CoarserCenter, Coherence, Edges, Exemplar, Likeness, Options, Part, Pass, Pyramid,
@@ -552,5 +554,47 @@ proptest! {
             prop_assert_eq!(texture.sources().size(), size);
             prop_assert!(texture.sources().pixels().iter().all(|[x, y]| *x < tile[0] && *y < tile[1]));
         }
+    }
+}
+
+/// A texture that goes on with one piece of an exemplar of 12 × 9 pixels everywhere.
+fn one_piece() -> PlaneTexture {
+    PlaneTexture {
+        sources: Raster::from_fn([24, 18], |x, y| [(x + 5) % 12, (y + 7) % 9]).unwrap(),
+        wrap: [Wrap::Repeat; 2],
+        exemplar_size: [12, 9],
+        exemplar_edges: Edges::Wrap,
+    }
+}
+
+#[test]
+fn larger_map_is_copied_where_the_texture_goes_on_with_it() {
+    let places = Raster::from_fn([48, 36], |x, y| [x, y]).unwrap();
+    let enlarged = one_piece().transfer(&places).unwrap();
+    let expected = Raster::from_fn([96, 72], |x, y| [(x + 20) % 48, (y + 28) % 36]).unwrap();
+    assert_eq!(enlarged, expected);
+}
+
+#[test]
+fn pixel_alone_among_others_is_rounded_off_in_a_larger_texture() {
+    let mut texture = one_piece();
+    texture.sources.pixels_mut()[5 * 24 + 8] = [2, 2];
+    let places = Raster::from_fn([96, 72], |x, y| [x, y]).unwrap();
+    let enlarged = texture.transfer(&places).unwrap();
+    let plain = one_piece().transfer(&places).unwrap();
+    let others = || {
+        (0..)
+            .zip(enlarged.pixels())
+            .filter(|&(at, place)| plain.pixels()[at] != *place)
+    };
+    // Of a square of 8 × 8 pixels, the corners are of the piece around it.
+    assert!((20..60).contains(&others().count()), "{}", others().count());
+    for (at, &[x, y]) in others() {
+        let [column, row] = [at as u32 % 192, at as u32 / 192];
+        assert_eq!(
+            [column - 8 * 8, row - 5 * 8],
+            [x - 2 * 8, y - 2 * 8],
+            "its own pixel"
+        );
     }
 }

@@ -103,9 +103,10 @@ pub(super) struct MatchArgs {
     #[arg(long, value_name = "N")]
     evenness: Option<f32>,
 
-    /// Match as in Turk's paper: the least difference wins, and neighborhoods go straight on.
+    /// Match as in Turk's paper: the least difference wins, and neighborhoods go straight on; textures of meshes mix the
+    /// colors of sites, and are softer than the example.
     #[arg(long)]
-    paper: bool,
+    pub(super) paper: bool,
 }
 
 /// An angle from 0 to 180 degrees.

@@ -217,6 +217,9 @@ fn claim(args: &Args, mesh: &Path, job: &mut Job<'_>) -> Result<Claimed> {
     if !is_png && !matches!(product, Product::Texture) {
         return Err(usage("textures of models are PNG").hint("add --format png8 or png16"));
     }
+    if matches!(product, Product::Sites(_)) && args.detail.is_some() {
+        return Err(usage("a mesh of sites shows no detail").hint("write .glb or .obj"));
+    }
     if matches!(product, Product::Sites(_)) && !args.map.is_empty() {
         return Err(
             usage("a mesh of sites has colors and no further maps").hint("write .glb or .obj")

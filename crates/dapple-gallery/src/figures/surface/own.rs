@@ -8,7 +8,7 @@ use dapple_color::LinearRgb;
 use dapple_image::{Transfer, encode_png};
 use dapple_raster::Raster;
 use dapple_synth::mesh::{CREASE, EncodedImage, Mesh, Model};
-use dapple_synth::{Coherence, Direction, Edges, HierarchyOptions, textured_model};
+use dapple_synth::{Coherence, Direction, Edges, HierarchyOptions, Sources, textured_model};
 use glam::DVec3;
 
 /// A mesh, an exemplar, and the options of the synthesis.
@@ -63,6 +63,8 @@ impl Own {
             directions: self.directions,
             sites: self.sites,
             coherence: self.coherence,
+            sources: Sources::SubPixel,
+            detail: None,
             map_side: self.map_side,
         };
         let textured = job.run()?;

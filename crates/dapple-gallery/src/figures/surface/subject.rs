@@ -8,7 +8,7 @@ use dapple_color::LinearRgb;
 use dapple_models::{self as models, ModelError};
 use dapple_raster::Raster;
 use dapple_synth::mesh::Mesh;
-use dapple_synth::{Coherence, Direction, HierarchyOptions};
+use dapple_synth::{Coherence, Direction, HierarchyOptions, Sources};
 use glam::DVec3;
 
 /// The figure size, in pixels, from which on a subject has as many sites as in the paper; it is the size on the page.
@@ -218,6 +218,8 @@ impl Subject {
             directions: self.directions(),
             sites: self.sites(size),
             coherence: Coherence::Auto,
+            sources: Sources::SubPixel,
+            detail: None,
             map_side: (TEXELS * size).max(512),
         };
         job.run()

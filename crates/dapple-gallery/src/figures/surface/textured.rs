@@ -6,7 +6,8 @@ use dapple_preview::Surface;
 use dapple_raster::{Raster, Wrap};
 use dapple_synth::mesh::{self, Mesh};
 use dapple_synth::{
-    Atlas, Coherence, Direction, Edges, Exemplar, HierarchyOptions, Options, Synthesizer, bake_colors,
+    Atlas, Coherence, Direction, Edges, Exemplar, HierarchyOptions, Options, Sources, Synthesizer,
+    bake_colors,
 };
 use glam::DVec2;
 
@@ -19,6 +20,9 @@ pub(super) struct Job {
     pub(super) directions: Vec<Direction>,
     pub(super) sites: HierarchyOptions,
     pub(super) coherence: Coherence,
+    pub(super) sources: Sources,
+    /// A larger version of the image that is shown instead.
+    pub(super) detail: Option<Raster<LinearRgb>>,
     /// The side of the texture map in texels.
     pub(super) map_side: u32,
 }
@@ -39,6 +43,7 @@ impl Job {
         let options = Options {
             n_levels: self.sites.n_levels,
             coherence: self.coherence,
+            sources: self.sources,
             ..Options::default()
         };
         let synthesizer = Synthesizer::new(surface, &self.directions, &self.sites)?;
@@ -46,7 +51,8 @@ impl Job {
         let texture = synthesizer.synthesize(&exemplar, &options)?;
         let surface = synthesizer.surface();
         let atlas = Atlas::uniform(surface, self.map_side)?;
-        let map = bake_colors(&synthesizer, &texture, &self.image, &atlas)?;
+        let shown = self.detail.as_ref().unwrap_or(&self.image);
+        let map = bake_colors(&synthesizer, &texture, shown, &atlas)?;
         Ok(Textured {
             map: map.map(|color| LinearRgb::from_srgb(color.to_srgb::<u8>())),
             uvs: atlas.uvs(),
