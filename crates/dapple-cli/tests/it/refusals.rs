@@ -27,13 +27,8 @@ const READERS: [&str; 20] = [
     "info INPUT",
 ];
 
-<<<<<<< HEAD
 /// Invalid command lines that clap does not detect.
-const WRONG: [&str; 33] = [
-=======
-/// Command lines that clap cannot tell to be wrong.
 const WRONG: [&str; 39] = [
->>>>>>> P
     "bake flagstone -o out.png --name rock",
     "bake flagstone --frames 2 -o rock.glb",
     "bake flagstone --frames 2 --maps height -o -",
