@@ -1,4 +1,4 @@
-//! The Delaunay graph beside a search through all pairs and all images, in whole numbers.
+//! Compares the Delaunay graph with a search through all pairs and all images, in whole numbers.
 
 use dapple_graph::glam::DVec2;
 use dapple_graph::points::hash::{Seed, rand_core::Rng};
@@ -8,7 +8,8 @@ use dapple_graph::{Graph, GraphErrorKind, delaunay};
 /// An edge: from, to, and the vector.
 type Edge = (u32, u32, i64, i64);
 
-/// Points on whole numbers, from the origin; below 2^20, so that sums of two products are exact in an `f64`.
+/// Points with whole coordinates, relative to the origin; below 2^20, so that sums of two products are exact in an
+/// `f64`.
 struct Case {
     size: DVec2,
     wrap: [bool; 2],

@@ -1,11 +1,11 @@
-//! Edits of a graph, one by one, beside the graph of the same points made anew.
+//! Compares edits of a graph, one by one, with a new graph of the same points.
 
 use dapple_graph::{EditableDelaunay, GraphErrorKind, PointIdx, PointSet, Star, delaunay};
 use dapple_points::hash::{Seed, rand_core::Rng, unit_f64};
 use dapple_points::{Domain, poisson_disk, white_noise};
 use glam::DVec2;
 
-/// The random numbers of a test.
+/// Random numbers for a test.
 struct Dice(Box<dyn Rng>);
 
 impl Dice {
@@ -22,7 +22,7 @@ impl Dice {
     }
 }
 
-/// Checks an edited graph, and that the returned stars are exactly those that vanished and those that are new.
+/// Checks an edited graph, and that the returned stars are exactly the vanished and the new ones.
 fn check(
     graph: &EditableDelaunay,
     positions: &[DVec2],

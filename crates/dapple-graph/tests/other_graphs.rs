@@ -1,4 +1,4 @@
-//! The graphs besides Delaunay's, each beside a search through all images.
+//! Compares the other graphs than Delaunay's with a search through all images of points.
 
 use dapple_graph::glam::DVec2;
 use dapple_graph::points::hash::{Seed, rand_core::Rng};
@@ -7,7 +7,7 @@ use dapple_graph::{Direction, Graph, GraphErrorKind, delaunay, gabriel, k_neares
 
 type Edge = (u32, u32, i64, i64);
 
-/// Random points on whole numbers.
+/// Random points with whole coordinates.
 fn points(seed: u64, n: usize, wrap: [bool; 2], size: DVec2) -> PointSet {
     let mut stream = Seed(seed).stream();
     let mut positions: Vec<DVec2> = Vec::new();
@@ -26,7 +26,7 @@ fn points(seed: u64, n: usize, wrap: [bool; 2], size: DVec2) -> PointSet {
     PointSet::new(domain, positions).unwrap()
 }
 
-/// All images within six periods but the point itself, by distance, index and angle.
+/// Returns all images within six periods except the point itself, sorted by distance, index and angle.
 fn neighbors(points: &PointSet, from: PointIdx) -> Vec<(u32, DVec2)> {
     let domain = points.domain();
     let reach = domain.wrap.map(|wraps| if wraps { 6 } else { 0 });
@@ -76,7 +76,7 @@ fn edges(graph: &Graph) -> Vec<Edge> {
     edges
 }
 
-/// The edges to those of each point's neighbors that `choose` returns.
+/// Returns the edges from each point to the neighbors that `choose` returns.
 fn oracle(points: &PointSet, choose: impl Fn(Vec<(u32, DVec2)>) -> Vec<(u32, DVec2)>) -> Vec<Edge> {
     let mut edges = Vec::new();
     for (from, _) in points.iter() {

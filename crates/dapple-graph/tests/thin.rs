@@ -1,4 +1,4 @@
-//! Domains of extreme sizes. Domains that wrap and are much thinner than the distance of their points get a graph or an
+//! Tests of domains of extreme sizes. A wrapping domain much thinner than the distance of its points gets a graph or an
 //! error within a short time; tiny and huge domains get the same graphs as others.
 
 use dapple_graph::glam::DVec2;

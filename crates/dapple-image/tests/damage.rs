@@ -1,5 +1,5 @@
-//! Damaged files of every format: an image within the limits or an error, never a panic, and never much memory. A binary
-//! of its own, since it looks at its peak.
+//! Tests of damaged files in every format: they give an image within the limits or an error, without a panic or much
+//! memory. It is a separate binary, since it measures its peak memory.
 
 use dapple_image::{
     Content, Depth, Encoding, ExrPlane, Limits, RowWriter, Transfer, decode_image, encode_exr,
@@ -17,11 +17,11 @@ const LIMITS: Limits = Limits {
     bytes: 1 << 20,
 };
 
-/// The largest additional memory in bytes that reading may take: the codecs' tables and copies come on top of the
-/// limit, but not by orders of magnitude.
+/// The largest additional memory in bytes that reading may take: tables and copies of codecs exceed the limit, but not
+/// by orders of magnitude.
 const MEMORY: u64 = 48 << 20;
 
-/// Complete files, small enough that a change hits something.
+/// Complete files, small enough that a change hits an important part.
 fn files() -> Vec<Vec<u8>> {
     let size = [21, 18];
     let gray = Raster::from_fn(size, |x, y| (x * 5 + y * 7) as f32 / 255.0).unwrap();
@@ -107,7 +107,7 @@ fn apply(change: &Change, bytes: &mut Vec<u8>) {
     }
 }
 
-/// The most memory that this process had so far, where the system says so.
+/// Returns the peak memory of this process so far, if the system reports it.
 #[expect(clippy::disallowed_methods, reason = "the test asks the system")]
 fn peak() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;

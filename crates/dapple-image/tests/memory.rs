@@ -1,5 +1,5 @@
-//! Rows are written to a file in little memory, however many there are. A binary of its own, since it measures its peak
-//! memory.
+//! Tests that rows are written to a file in little memory, however many there are. It is a separate binary, since it
+//! measures its peak memory.
 
 use dapple_image::{Content, Depth, Encoding, RowWriter};
 use dapple_raster::Raster;
@@ -11,8 +11,7 @@ const SIZE: [u32; 2] = [16384, 4096];
 /// The number of rows that are written at a time.
 const BAND: u32 = 100;
 
-/// The most memory in bytes: a band of rows and the band of tiles take 11 MB, and what the program has anyway comes on
-/// top.
+/// The memory limit in bytes: a band of rows and the band of tiles take 11 MB; the rest is for the program itself.
 const LIMIT: u64 = 64 << 20;
 
 /// A sink that only keeps the length of its file.
@@ -44,7 +43,7 @@ impl Seek for Length {
     }
 }
 
-/// The most memory that this process had so far, where the system says so.
+/// Returns the peak memory of this process so far, if the system reports it.
 #[expect(clippy::disallowed_methods, reason = "the test asks the system")]
 fn peak() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
@@ -53,7 +52,7 @@ fn peak() -> Option<u64> {
     Some(number << 10)
 }
 
-/// The length of a file whose rows come in bands.
+/// Returns the length of a file whose rows come in bands.
 fn write(encoding: Encoding) -> u64 {
     let band = Raster::from_fn([SIZE[0], BAND], |x, y| (x * y % 97) as f32 / 96.0).unwrap();
     let mut writer = RowWriter::new(Length::default(), SIZE, Content::Gray, encoding).unwrap();

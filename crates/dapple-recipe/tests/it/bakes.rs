@@ -67,7 +67,7 @@ fn plan(text: &str) -> Plan {
     Plan::new(&recipe, &Images::new(), 0.0).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Bakes all maps; each is the bits of its numbers in rows.
+/// Bakes all maps; each is returned as the bits of its numbers, row by row.
 fn bake(plan: &Plan, options: &BakeOptions) -> Vec<Vec<u32>> {
     let mut maps = vec![Vec::new(); options.maps.len()];
     for band in Bake::new(plan, options).unwrap() {
@@ -109,7 +109,7 @@ fn options(size: [u32; 2]) -> BakeOptions {
     }
 }
 
-/// Part of a map with so many numbers a pixel.
+/// Returns a part of a map with the given number of channels.
 fn crop(map: &[u32], [width, height]: [u32; 2], region: Region) -> Vec<u32> {
     let numbers = map.len() / (width * height) as usize;
     let row = |row: u32| {

@@ -1,4 +1,4 @@
-//! Nodes that combine copies and pieces of others.
+//! Tests of nodes that combine copies and pieces of other nodes.
 
 use dapple_color::LinearRgb;
 use dapple_raster::Raster;
@@ -52,7 +52,7 @@ fn color(maps: Vec<Map>) -> Raster<LinearRgb> {
     }
 }
 
-/// The seed of the node `x`.
+/// Returns the seed of the node `x`.
 fn seed() -> dapple_hash::Seed {
     let text = format!("{TEXTURES}[material]\n");
     Recipe::from_toml(&text).unwrap().seed.child("x", 0)

@@ -18,7 +18,7 @@ fn with(recipe: &Recipe, time: f64, memory: &Memory) -> Plan {
     Plan::new_with_memory(recipe, &Images::new(), time, &PlanLimits::default(), memory).unwrap()
 }
 
-/// The recipe, each time with another number in one of its nodes.
+/// The recipe, with a different number in one of its nodes each time.
 fn changed(text: &str) -> Vec<Recipe> {
     let changes = [
         ("seed = ", "seed = 1"),

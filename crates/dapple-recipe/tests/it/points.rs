@@ -1,4 +1,4 @@
-//! The control points of `pups` nodes as data.
+//! Tests of the control points of `pups` nodes as data.
 
 use dapple_raster::{Field, Raster};
 use dapple_recipe::{
@@ -26,7 +26,7 @@ fn nets(recipe: &Recipe) -> ControlNets {
     nets.unwrap().expect("a node of control points")
 }
 
-/// The bits of the heights.
+/// Returns the bits of the heights.
 fn bits(recipe: &Recipe) -> Vec<u32> {
     let plan = Plan::new(recipe, &images(), 0.0).unwrap();
     let window = plan.window([48, 32]).unwrap();

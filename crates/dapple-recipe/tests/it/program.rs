@@ -1,8 +1,8 @@
-//! The Rust program that a recipe prints.
+//! Tests of the Rust program that a recipe prints.
 
 use dapple_recipe::Recipe;
 
-/// The recipe in the text of a program.
+/// Returns the recipe that a program contains as text.
 fn held(code: &str) -> Recipe {
     let (_, text) = code.split_once("const RECIPE: &str = r").unwrap();
     let marks = &text[..text.find('"').unwrap()];

@@ -3,7 +3,7 @@
 use dapple_raster::{Field, glam::DVec2};
 use dapple_recipe::{Images, Plan, PlanLimits, Recipe, RecipeError, RecipeErrorKind};
 
-/// The error of a recipe of these nodes, whose height is the node `a`.
+/// Returns the error of a recipe with these nodes, whose height is the node `a`.
 fn refusal(nodes: &str) -> RecipeError {
     let text = format!("dapple = 1\n{nodes}\n[material]\nheight = \"a\"\n");
     let recipe = Recipe::from_toml(&text).unwrap_or_else(|error| panic!("{nodes}: {error}"));
@@ -233,7 +233,7 @@ fn nodes_that_draw_by_one_name_see_the_same_points() {
     assert_ne!(at("a"), at("c"), "by their own names");
 }
 
-/// The item of which a recipe of these nodes has too much within the limits, and its node.
+/// Returns the item that exceeds the limits in a recipe with these nodes, and its node.
 fn too_much(nodes: &str, limits: &PlanLimits) -> (&'static str, Option<String>) {
     let text = format!("dapple = 1\n{nodes}\n[material]\n");
     let recipe = Recipe::from_toml(&text).unwrap_or_else(|error| panic!("{nodes}: {error}"));

@@ -1,4 +1,4 @@
-//! Tests of the schema against the reader, by a validator of the keywords that the schema has.
+//! Tests the schema against the reader, with a validator for the keywords that the schema uses.
 
 use dapple_recipe::{Images, KINDS, Plan, PupsNode, Recipe};
 use serde_json::{Map, Value};
@@ -8,7 +8,7 @@ const README: &str = include_str!("../../README.md");
 /// The pattern of a color.
 const HEX: &str = "^#([0-9a-fA-F]{3}|[0-9a-fA-F]{6})$";
 
-/// Why a value does not fit a schema.
+/// The reason why a value does not fit a schema.
 type Misfit = String;
 
 /// Checks a recipe in TOML.
@@ -18,7 +18,7 @@ fn validate(text: &str) -> Result<(), Misfit> {
     fits(&root, &root, &value)
 }
 
-/// Whether a value fits a schema, a part of the root.
+/// Checks whether a value fits a schema, which is a part of the root schema.
 fn fits(root: &Value, schema: &Value, value: &Value) -> Result<(), Misfit> {
     let schema = match schema {
         Value::Bool(true) => return Ok(()),
@@ -148,7 +148,7 @@ fn is_of(rule: &Value, value: &Value) -> bool {
     }
 }
 
-/// The patterns of the schema.
+/// Returns the patterns of the schema.
 fn matches(pattern: &str, text: &str) -> bool {
     let is_hex = |text: &str| {
         let digits = text.strip_prefix('#').unwrap_or_default();
@@ -204,7 +204,7 @@ fn examples_of_the_readme_fit_the_schema() {
     assert_eq!(count, KINDS.len(), "an example of each kind");
 }
 
-/// Whether the reader, or the plan, and the schema refuse a recipe of these lines.
+/// Returns whether a recipe with these lines is refused: by the reader or the plan, and by the schema.
 fn refused(lines: &str) -> [bool; 2] {
     let text = format!("dapple = 1\n{lines}\n");
     let text = if lines.contains("material") {
@@ -308,7 +308,7 @@ fn nets_out_of_range_are_refused_by_the_reader_and_the_schema() {
     }
 }
 
-/// Checks that the reader and the schema accept the one recipe, and refuse the other.
+/// Checks that the reader and the schema accept the first recipe and refuse the second.
 fn assert_range(right: &str, wrong: &str) {
     assert_eq!(
         refused(right),

@@ -1,4 +1,4 @@
-//! Misspellings and the intended words.
+//! Tests of misspelled words and the suggestions for them.
 
 use dapple_recipe::similar_words;
 
