@@ -93,28 +93,23 @@ impl<const N: usize> Detail<N> {
             });
         let [across, down] = [part.x, part.y].map(weights);
         let mut sum = [0.0; N];
-        let (mut low, mut high) = ([f32::INFINITY; N], [f32::NEG_INFINITY; N]);
+        let mut range = [[f32::INFINITY, f32::NEG_INFINITY]; N];
         for (row, down) in rows.into_iter().zip(down) {
             let row = map.row(row);
             for (column, across) in columns.into_iter().zip(across) {
                 let pixel = &row[column as usize];
-                for channel in 0..N {
-                    let value = pixel[channel];
-                    sum[channel] += across * down * value;
-                    low[channel] = if value < low[channel] {
-                        value
-                    } else {
-                        low[channel]
-                    };
-                    high[channel] = if value > high[channel] {
-                        value
-                    } else {
-                        high[channel]
-                    };
+                let parts = sum.iter_mut().zip(&mut range).zip(pixel);
+                for ((sum, [low, high]), &value) in parts {
+                    *sum += across * down * value;
+                    *low = if value < *low { value } else { *low };
+                    *high = if value > *high { value } else { *high };
                 }
             }
         }
-        core::array::from_fn(|channel| sum[channel].max(low[channel]).min(high[channel]))
+        core::array::from_fn(|channel| {
+            let [low, high] = range[channel];
+            sum[channel].max(low).min(high)
+        })
     }
 
     #[inline]

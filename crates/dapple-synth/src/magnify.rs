@@ -12,6 +12,7 @@ use crate::mesh_ground::Around;
 use crate::places::{AGREEMENT, Frame, Places, frames};
 use crate::sites::weight;
 use crate::{Atlas, SynthError, Synthesizer};
+use dapple_mesh::FaceIdx;
 use dapple_raster::Raster;
 use glam::{DVec2, Vec2, Vec3};
 
@@ -27,7 +28,7 @@ const SHARE_LEAST: f32 = 1.0 / 256.0;
 pub(crate) struct Spot {
     /// The place in pixels of the exemplar.
     pub(crate) place: Vec2,
-    /// The side of the texel in pixels of the exemplar.
+    /// The side of the texel in pixels of the exemplar: the root of its area.
     pub(crate) footprint: f32,
     /// The directions in space of the exemplar's columns and rows, of length 1 but for rounding.
     pub(crate) right: Vec3,
@@ -59,22 +60,16 @@ fn footprints(synthesizer: &Synthesizer, atlas: &Atlas) -> Vec<f32> {
     let spacing = synthesizer.hierarchy().levels()[0].spacing();
     let size = DVec2::from(atlas.size().map(f64::from));
     let mesh = synthesizer.surface().mesh();
-    let side = |(corners, uvs): ([glam::DVec3; 3], [DVec2; 3])| {
-        let [a, b, c] = corners;
+    let side = |(face, uvs): (FaceIdx, [DVec2; 3])| {
+        let [a, b, c] = mesh.corners(face);
         let [ua, ub, uc] = uvs.map(|uv| uv * size);
         let texels = (ub - ua).perp_dot(uc - ua).abs();
         let area = (b - a).cross(c - a).length();
         let side = (area / texels).sqrt() / spacing;
+        // Not so for a face without a place, which no texel shows.
         if side.is_finite() { side as f32 } else { 0.0 }
     };
-    let corners = (0..)
-        .map(dapple_mesh::FaceIdx)
-        .map(|face| mesh.corners(face));
-    let faces = atlas.uvs().into_iter();
-    faces
-        .zip(corners.take(mesh.faces().len()))
-        .map(|(uvs, corners)| side((corners, uvs)))
-        .collect()
+    (0..).map(FaceIdx).zip(atlas.uvs()).map(side).collect()
 }
 
 /// The input of all texels.

@@ -94,7 +94,7 @@ impl Places {
 }
 
 impl Frame {
-    /// A way in space as one in the exemplar: what is lost where the surface bends is added again.
+    /// A way in space as one in the exemplar.
     #[inline]
     pub(crate) fn flat(&self, way: Vec3) -> Vec2 {
         Vec2::new(way.dot(self.right), way.dot(self.down))
