@@ -267,3 +267,25 @@ fn real_meshes_and_photographs_get_their_textures() {
         );
     }
 }
+
+#[test]
+fn charts_of_models_use_most_of_the_map_and_hardly_stretch() {
+    let made = |mesh: Result<Mesh, models::ModelError>| Some(mesh.unwrap());
+    let spot = data("meshes/spot.obj").map(|path| read_model(path).unwrap().mesh);
+    for (name, mesh, used) in [
+        ("spot", spot, 0.70),
+        ("bunny", made(models::bunny(14_000)), 0.70),
+        // Thin arms and tubes fill less.
+        ("octopus", made(models::octopus(14_000)), 0.54),
+        ("tori", made(models::blended_tori(14_000)), 0.60),
+    ] {
+        let Some(mesh) = mesh else { continue };
+        let surface = Surface::new(mesh.repair().0).unwrap();
+        let report = Atlas::charts(&surface, 1024).unwrap().report(&surface);
+        println!("{name}: {report:?}");
+        assert!(report.used >= used, "{name}: {report:?}");
+        assert!(report.stretch < 1.001, "{name}: {report:?}");
+        let n_faces = surface.mesh().faces().len();
+        assert!(report.pieces * 40 < n_faces, "{name}: {report:?}");
+    }
+}

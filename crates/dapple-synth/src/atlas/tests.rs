@@ -367,3 +367,36 @@ fn tangents_do_not_jump_across_the_edges_of_a_continuous_layout() {
     }
     assert!(jumps > 500, "only {jumps} edges are crossed");
 }
+
+#[test]
+fn report_of_a_map_twice_as_wide_as_high_is_that_of_its_singular_values() {
+    let surface = Surface::new(square()).unwrap();
+    let mut uvs = from_above(&surface);
+    for uv in uvs.iter_mut().flatten() {
+        uv.y *= 0.5;
+    }
+    let report = Atlas::from_uvs(&surface, &uvs, [64, 64], 0)
+        .unwrap()
+        .report(&surface);
+    // A texel reaches 1 and 2 in its directions, and would reach the square root of 2 if it were a square.
+    assert!((report.stretch - (2.5_f64 / 2.0).sqrt()).abs() < 1e-12);
+    assert_eq!((report.pieces, report.used), (1, 0.5));
+    // One face without a place, and then away from the others.
+    uvs[0] = [DVec2::NAN; 3];
+    let atlas = Atlas::from_uvs(&surface, &uvs, [64, 64], 0).unwrap();
+    assert_eq!(
+        atlas
+            .stretches(&surface)
+            .iter()
+            .filter(|s| s.is_nan())
+            .count(),
+        1
+    );
+    uvs[0] = [
+        DVec2::new(0.0, 0.9),
+        DVec2::new(0.1, 0.9),
+        DVec2::new(0.0, 1.0),
+    ];
+    let atlas = Atlas::from_uvs(&surface, &uvs, [64, 64], 0).unwrap();
+    assert_eq!(atlas.report(&surface).pieces, 2);
+}

@@ -161,18 +161,17 @@ fn charts_share_vertices_and_texels_are_even() {
 }
 
 #[test]
-fn charts_do_not_depend_on_the_scale_and_place_of_a_mesh() {
+fn charts_do_not_depend_on_the_scale_of_a_mesh() {
     let mesh = sphere();
     let uvs = |mesh: Mesh| {
         let surface = Surface::new(mesh).unwrap();
         Atlas::charts(&surface, 128).unwrap().uvs()
     };
     let want = uvs(mesh.clone());
-    for scale in [2.0_f64.powi(-60), 2.0_f64.powi(60)] {
+    let large = (1_u64 << 60) as f64;
+    for scale in [large, 1.0 / large] {
         assert_eq!(uvs(moved(&mesh, |at| at * scale)), want, "times {scale}");
     }
-    let moved = uvs(moved(&mesh, |at| at + DVec3::splat(8.0)));
-    assert_eq!(moved.len(), want.len());
 }
 
 #[test]
