@@ -208,10 +208,11 @@ pub(super) fn presets() -> impl Iterator<Item = (&'static str, &'static str)> {
         .map(|preset| (preset.name, preset.about()))
 }
 
-/// The images of a recipe, and what its pictures have in common.
+/// Images and values that the pictures of a loop share.
 struct Made {
+    /// The images of the recipe, as soon as a picture has needed them.
     images: Option<Images>,
-    /// None for a single picture.
+    /// The values of nodes; none for a single picture.
     memory: Option<Memory>,
 }
 

@@ -216,7 +216,7 @@ impl ControlPoints {
                 let missing = PupsErrorKind::Count {
                     what: "values of labels",
                     count: self.values.len(),
-                    needed: label as usize + 1,
+                    needed: (label as usize).saturating_add(1),
                 };
                 let value = self.values.get(label as usize).copied();
                 value.ok_or_else(|| PupsError::new(missing))
