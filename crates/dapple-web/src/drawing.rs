@@ -12,6 +12,9 @@ const PIECES: [u32; 2] = [1 << 16, 1 << 13];
 /// The milliseconds for which the next piece is made smaller, and those for which it is made larger.
 const PIECE_MS: [f64; 2] = [32.0, 8.0];
 
+/// The pixels that are sent at a time: parts of a picture that is shown smaller should be few, since each is scaled alone.
+const SENT_PIXELS: usize = 1 << 18;
+
 /// How large pieces are, which follows from how long the last ones took.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Pace {
@@ -48,6 +51,8 @@ pub(crate) struct Drawing {
     start: f64,
     next: Next,
     told: Told,
+    /// Parts of maps that are not sent yet.
+    pending: RefCell<Vec<Picture>>,
 }
 
 /// The next piece.
@@ -85,6 +90,7 @@ impl Drawing {
                 Next::Rows(0)
             },
             told: Told::default(),
+            pending: RefCell::default(),
             job,
             start,
         }
@@ -177,7 +183,7 @@ impl World for Place<'_> {
     fn put(&self, output: Output) {
         let output = match output {
             Output::Reply(reply) => self.reply(reply).map(Output::Reply),
-            Output::Picture(picture) => Some(Output::Picture(self.picture(picture))),
+            Output::Picture(picture) => self.picture(picture).map(Output::Picture),
         };
         if let Some(output) = output {
             (self.put.borrow_mut())(output);
@@ -208,13 +214,31 @@ impl Place<'_> {
         Some(reply)
     }
 
-    /// A picture of which it is known whether it is the last part of its map.
-    fn picture(&self, mut picture: Picture) -> Picture {
-        if let Next::Rows(_) = self.drawing.next {
-            let area = area_of(&self.drawing.job.view);
-            picture.is_last &= picture.first[1] + picture.size[1] == area.first[1] + area.size[1];
+    /// The part of a map that is to be sent, if it is large enough or the last one.
+    fn picture(&self, mut picture: Picture) -> Option<Picture> {
+        if !matches!(self.drawing.next, Next::Rows(_)) {
+            return Some(picture);
         }
-        picture
+        let area = area_of(&self.drawing.job.view);
+        picture.is_last &= picture.first[1] + picture.size[1] == area.first[1] + area.size[1];
+        let mut pending = self.drawing.pending.borrow_mut();
+        let place = pending
+            .iter()
+            .position(|above| above.shown == picture.shown);
+        let joined = match place.map(|place| pending.swap_remove(place)) {
+            None => picture,
+            Some(mut above) => {
+                above.size[1] += picture.size[1];
+                above.pixels.extend(picture.pixels);
+                above.is_last = picture.is_last;
+                above
+            }
+        };
+        if joined.is_last || joined.pixels.len() >= 4 * SENT_PIXELS {
+            return Some(joined);
+        }
+        pending.push(joined);
+        None
     }
 }
 

@@ -11,7 +11,7 @@ use std::cell::RefCell;
 use std::collections::VecDeque;
 
 /// The most bytes of values of nodes that are kept.
-const MEMORY: usize = 1 << 27;
+const MEMORY: usize = 1 << 28;
 
 /// What is to be given to the page.
 #[derive(Clone, Debug, PartialEq, Eq)]

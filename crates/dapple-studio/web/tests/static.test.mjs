@@ -6,7 +6,7 @@ import { mkdtempSync, readFileSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { extname, join } from 'node:path';
 import { after, before, describe, test } from 'node:test';
-import { dapple, endBrowser, hash, open, settled, skipStatic, STATIC, text } from './harness.mjs';
+import { dapple, endBrowser, hash, open, select, settled, skipStatic, STATIC, text } from './harness.mjs';
 
 const TYPES = { '.html': 'text/html', '.js': 'text/javascript', '.css': 'text/css', '.svg': 'image/svg+xml', '.wasm': 'application/wasm' };
 
@@ -42,8 +42,7 @@ describe('the page without a server', { skip: skipStatic, timeout: 240_000 }, ()
     const page = await open(`${address}#flagstone`);
     await settled(page);
     const before = await hash(page, 'height');
-    await page.locator('.svelte-flow__node[data-id=grain]').focus();
-    await page.keyboard.press('Enter');
+    await select(page, 'grain');
     const knob = page.locator('[data-path="nodes.grain.noise.gain"] input[type=range]');
     const box = await knob.boundingBox();
     await page.mouse.move(box.x + box.width * 0.6, box.y + box.height / 2);

@@ -46,7 +46,7 @@ describe('the studio in WebAssembly', { skip: skipStatic, timeout: 240_000 }, ()
     });
   }
 
-  test('pictures come in pieces that make the whole, after a draft', () => {
+  test('pictures come after a draft, each once', () => {
     opened({ builtin: 'flagstone' });
     door.send({ ...VIEW, size: [512, 512], maps: ['height', 'albedo'] });
     const made = door.finish();
@@ -54,8 +54,7 @@ describe('the studio in WebAssembly', { skip: skipStatic, timeout: 240_000 }, ()
     assert.equal(kinds.filter((type) => type === 'began').length, 1);
     assert.deepEqual(made.filter(({ type }) => type === 'rendered').map(({ draft }) => draft), [true, false]);
     const pictures = made.filter(({ type, draft }) => type === 'picture' && !draft);
-    assert.ok(pictures.length > 2);
-    assert.deepEqual(pictures.map(({ last }) => last), [...Array(pictures.length - 2).fill(false), true, true]);
+    assert.deepEqual(pictures.map(({ map, last }) => [map, last]), [[0, true], [4, true]]);
     const whole = Buffer.concat(pictures.filter(({ map }) => map === 0).map(({ pixels }) => pixels));
     assert.equal(whole.length, 512 * 512 * 4);
     door.send({ ...VIEW, size: [512, 512], node: 'grain' });

@@ -80,7 +80,7 @@ fn pieces_make_the_picture_that_is_drawn_at_once_after_a_draft() {
         &mut page,
         &json!({ "type": "open", "builtin": "flagstone" }),
     );
-    hear(&mut page, &view(512, &["height"]));
+    hear(&mut page, &view(1024, &["height"]));
     let made = made(&mut page);
     assert_eq!(of_type(&made, "began").len(), 1);
     assert_eq!(of_type(&made, "graph").len(), 1);
@@ -101,6 +101,7 @@ fn pieces_make_the_picture_that_is_drawn_at_once_after_a_draft() {
     session.open(Recipe::builtin_text("flagstone").unwrap(), None);
     let mut job = session.job().unwrap();
     job.view = View {
+        size: [1024; 2],
         maps: vec!["height".to_owned()],
         draft: false,
         paused: false,
