@@ -134,7 +134,7 @@ const UNLIKE: [(&str, &str); 7] = [
     ("copies photo.png checker.png --size 64 -o out.png", CHECKER),
     (
         "copies photo.png checker.png --size 64 -o out.png",
-        "one size",
+        "32 × 32 pixels, but",
     ),
     (
         "synth photo.png --map cover=checker.png --size 16 -o out.png",
