@@ -56,7 +56,8 @@ impl Atlas {
     /// use dapple_synth::mesh::{Mesh, Surface, glam::DVec3};
     /// use dapple_synth::Atlas;
     ///
-    /// let roof = Mesh::new(vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::ONE], &[[0, 1, 2], [2, 1, 3]])?;
+    /// let ridge = DVec3::new(1.0, 1.0, 0.3);
+    /// let roof = Mesh::new(vec![DVec3::ZERO, DVec3::X, DVec3::Y, ridge], &[[0, 1, 2], [2, 1, 3]])?;
     /// let surface = Surface::new(roof)?;
     /// let report = Atlas::charts(&surface, 64)?.report(&surface);
     /// assert_eq!(report.pieces, 1);

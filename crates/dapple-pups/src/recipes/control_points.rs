@@ -102,7 +102,11 @@ pub struct ControlPoint {
     /// The value of the texture there; not given beside a label.
     #[cfg_attr(
         feature = "serde",
-        serde(default, skip_serializing_if = "Option::is_none")
+        serde(
+            default,
+            skip_serializing_if = "Option::is_none",
+            deserialize_with = "number"
+        )
     )]
     pub value: Option<f32>,
     /// The place of its value in the `values` of labels, from 0.
@@ -122,6 +126,12 @@ pub struct ControlPoint {
         schemars(with = "Option<crate::schema::Direction>")
     )]
     pub orientation: Option<DVec3>,
+}
+
+/// Reads a number. `null` is refused: JSON has it where a number is not finite.
+#[cfg(feature = "serde")]
+fn number<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<Option<f32>, D::Error> {
+    <f32 as serde::Deserialize>::deserialize(deserializer).map(Some)
 }
 
 impl Default for ControlPoints {

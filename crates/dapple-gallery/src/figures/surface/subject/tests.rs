@@ -1,9 +1,9 @@
 //! Tests that the squares on the ray stay separate: they merge at the start of the sweep if the least distance wins
-//! everywhere.
+//! everywhere, and the exemplar is sharper than what it is compared with.
 
 use super::RAY;
 use dapple_synth::mesh::Surface;
-use dapple_synth::{Coherence, Exemplar, Options, Synthesizer};
+use dapple_synth::{Coherence, Exemplar, Options, Sources, Synthesizer};
 use dapple_worley::hash::Seed;
 
 /// A radius around a site, in spacings, within which two colors must occur. It is nearly the width of a square, 10.7;
@@ -33,16 +33,21 @@ fn squares_of_the_ray_do_not_run_together() {
     let ray = Synthesizer::new(surface, &RAY.directions(), &RAY.sites(512)).unwrap();
     let (image, edges) = RAY.image().unwrap();
     let exemplar = Exemplar::new(&image, edges).unwrap();
-    let [auto, least] = [Coherence::Auto, Coherence::Factor(0.0)].map(|coherence| {
-        let options = Options {
-            seed: Seed(1),
-            coherence,
-            ..Options::default()
-        };
+    let default = Options {
+        seed: Seed(1),
+        ..Options::default()
+    };
+    // The exemplar as it is, not blurred as much as neighborhoods are, and the least distance.
+    let literal = Options {
+        coherence: Coherence::Factor(0.0),
+        sources: Sources::Pixel,
+        ..default.clone()
+    };
+    let [auto, least] = [default, literal].map(|options| {
         let texture = ray.synthesize(&exemplar, &options).unwrap();
         part_of_one_color(&ray, texture.values(0))
     });
-    println!("of one color: {auto} with auto, {least} with 0");
+    println!("of one color: {auto} by default, {least} with the least distance");
     assert!(
         auto < 0.001,
         "{auto} of the sites are in areas of one color"
