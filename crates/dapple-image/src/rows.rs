@@ -67,8 +67,8 @@ impl<W: Write + Seek> RowWriter<W> {
     ///
     /// # Errors
     ///
-    /// [`ImageErrorKind::Empty`] if the image has no pixel, [`ImageErrorKind::TooLarge`] if a side is longer than 2^31
-    /// - 1 pixels in PNG or 2^30 - 2 in OpenEXR, [`ImageErrorKind::TooManyBytes`] if a row of PNG takes more than 2^30
+    /// [`ImageErrorKind::Empty`] if the image has no pixel, [`ImageErrorKind::TooLarge`] if a side is longer than
+    /// `2^31 - 1` pixels in PNG or `2^30 - 2` in OpenEXR, [`ImageErrorKind::TooManyBytes`] if a row of PNG takes more than 2^30
     /// bytes, [`ImageErrorKind::Unsupported`] if there are too many tiles for OpenEXR, [`ImageErrorKind::Channels`] if
     /// the content of raw heights is not gray, [`ImageErrorKind::Io`] if the sink fails.
     pub fn new(

@@ -15,8 +15,8 @@ use std::sync::Arc;
 
 /// A function with a value at every position: of the plane, of space, or of space and time.
 ///
-/// Fields are made by `worley`, `gradient_noise`, `wavelet_noise`, `pups` and others, and can be composed: `a + b`, `a
-/// * 0.5`, `a.warp(x, y, 0.1)`. A field is defined by its description: it can be pickled, compared and used as a key,
+/// Fields are made by `worley`, `gradient_noise`, `wavelet_noise`, `pups` and others, and can be composed: `a + b`,
+/// `a * 0.5`, `a.warp(x, y, 0.1)`. A field is defined by its description: it can be pickled, compared and used as a key,
 /// and the same description has the same bits on every machine.
 #[pyclass(frozen, subclass, module = "dapple_textures")]
 pub(crate) struct Field {

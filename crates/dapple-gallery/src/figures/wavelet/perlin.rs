@@ -14,8 +14,8 @@ const ORIGIN: DVec2 = DVec2::new(11.37, 5.71);
 
 /// Makes a tile of Perlin noise from 0 to 1, `size` pixels wide, with `cells` lattice cells of the first octave across.
 ///
-/// Each octave has twice the frequency and half the amplitude of the previous one. The sum, from −1 to 1, becomes `0.5
-/// + 0.8 · sum`, clamped; it rarely exceeds ±0.6.
+/// Each octave has twice the frequency and half the amplitude of the previous one. The sum, from −1 to 1, becomes
+/// `0.5 + 0.8 · sum`, clamped; it rarely exceeds ±0.6.
 pub(super) fn perlin(
     size: u32,
     cells: f64,
