@@ -9,7 +9,11 @@ use std::cell::RefCell;
 fn page() -> Page {
     let mut page = Page::new(|| 0.0);
     let hello = messages(&made(&mut page)).remove(0);
-    assert_eq!([&hello["type"], &hello["mode"]], ["hello", "static"]);
+    assert_eq!(
+        [&hello["type"], &hello["mode"]],
+        ["hello", "static"],
+        "the first message"
+    );
     page
 }
 
@@ -39,11 +43,11 @@ fn of_type(made: &[Made], name: &str) -> Vec<Value> {
 
 /// The pictures without drafts: the flags of each and its pixels.
 fn pictures(made: &[Made]) -> Vec<(u8, &[u8])> {
-    let picture = |made| match made {
-        &Made::Picture(ref bytes) if bytes[30] & 1 == 0 => Some((bytes[30], &bytes[32..])),
+    let pictures = made.iter().filter_map(|made| match made {
+        Made::Picture(bytes) if bytes[30] & 1 == 0 => Some((bytes[30], &bytes[32..])),
         _ => None,
-    };
-    made.iter().filter_map(picture).collect()
+    });
+    pictures.collect()
 }
 
 fn view(side: u32, maps: &[&str]) -> Value {
