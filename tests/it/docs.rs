@@ -6,7 +6,7 @@
     reason = "the pictures are files beside the source"
 )]
 
-use dapple_gallery::docs::{DOCUMENTED, Documented};
+use dapple_gallery::docs::{Documented, documented};
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -21,14 +21,14 @@ fn folder(documented: &Documented, name: &str) -> PathBuf {
 
 /// Iterates over the crates without the workspace itself, whose folder `docs` may have other files.
 fn crates() -> impl Iterator<Item = &'static Documented> {
-    DOCUMENTED
+    documented()
         .iter()
         .filter(|documented| !documented.folder.is_empty())
 }
 
 #[test]
 fn docs_pictures_are_as_made_now() {
-    for documented in DOCUMENTED {
+    for documented in documented() {
         let folder = folder(documented, "docs");
         let files = documented.files().expect("the pictures are made");
         let old: Vec<_> = files
@@ -87,7 +87,7 @@ fn docs_pictures_are_all_shown_by_the_source() {
 
 #[test]
 fn docs_pictures_of_readmes_are_shown_by_them() {
-    for documented in DOCUMENTED {
+    for documented in documented() {
         let readme = fs::read_to_string(folder(documented, "README.md")).expect("a README");
         let shown = readme
             .lines()

@@ -1,7 +1,7 @@
 //! Checks the statements of the README about the workspace.
 #![expect(clippy::disallowed_methods, reason = "the workspace is made of files")]
 
-use dapple_gallery::PAPERS;
+use dapple_gallery::papers;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -57,7 +57,7 @@ fn readme_links_lead_to_files() {
 
 #[test]
 fn papers_of_the_gallery_have_figures_under_their_own_key() {
-    for paper in PAPERS {
+    for paper in papers() {
         for figure in paper.figures {
             let name = figure.name();
             assert!(

@@ -86,7 +86,7 @@ pub(crate) struct Done {
 }
 
 impl Done {
-    /// The same amount for both sides.
+    /// An amount of work that both sides do.
     pub(crate) const fn both(n: usize) -> Self {
         Self { ours: n, theirs: n }
     }

@@ -55,10 +55,7 @@ impl Layers {
     /// The kind of image, which determines how it is written.
     pub(crate) fn content(&self) -> Content {
         match self {
-            Self::Map(MapKind::Normal) => Content::Normal,
-            Self::Map(MapKind::Albedo) => Content::Color,
-            Self::Map(MapKind::Orm) => Content::Packed,
-            Self::Map(_) => Content::Gray,
+            Self::Map(kind) => kind.content(),
             Self::Rgba(_) => Content::PackedFour,
         }
     }
@@ -143,12 +140,7 @@ impl LayerRows<'_> {
     ) -> Result<(), ImageError> {
         match self {
             Self::Rgba(rows) => writer.write_packed_four(rows.view()),
-            Self::Map(rows) => match rows.as_ref() {
-                MapRows::Gray(rows) => writer.write_gray(rows.view()),
-                MapRows::Color(rows) => writer.write_color(rows.view()),
-                MapRows::Normal(rows) => writer.write_normals(rows.view()),
-                MapRows::Packed(rows) => writer.write_packed(rows.view()),
-            },
+            Self::Map(rows) => rows.write(writer),
         }
     }
 

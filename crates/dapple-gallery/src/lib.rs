@@ -1,7 +1,7 @@
 //! The figures of the papers, one file each, and the page that shows them.
 //!
 //! A [`Figure`] is a small file under `src/figures/<paper>/fig_<number>.rs`: its header is the caption, and its body
-//! makes the pictures with the public interfaces of the crates, short enough to learn from. [`PAPERS`] lists all
+//! makes the pictures with the public interfaces of the crates, short enough to learn from. [`papers`] lists all
 //! figures. The library renders figures in memory ([`Figure::render`]), hashes them ([`Figure::hash`]), compares the
 //! hashes with `figures.lock` ([`Lock`]) and writes the page as a string ([`page`]). The binary `dapple-gallery`, which
 //! `cargo xtask gallery` runs, writes the files for a browser.
@@ -37,6 +37,6 @@ pub mod lock;
 pub mod page;
 
 pub use figure::{Figure, Paper, Source};
-pub use figures::{Own, OwnTextured, PAPERS, figures, select};
+pub use figures::{Own, OwnTextured, figures, papers, select};
 pub use lock::{LOCK_SIZE, Lock};
 pub use panel::{Panel, Picture};

@@ -4,7 +4,7 @@
 //! that repeat can be shown tiled. Each figure comes with its source and with the command that renders it. Without
 //! scripts, thumbnails are plain links, and controls that need scripts are hidden.
 
-use crate::{Figure, PAPERS, Paper};
+use crate::{Figure, Paper, papers};
 use core::time::Duration;
 
 /// A rendered figure, as the page shows it.
@@ -38,7 +38,7 @@ pub struct Image {
 #[must_use]
 pub fn html(entries: &[Entry], root: &str) -> String {
     let (mut contents, mut sections) = (String::new(), String::new());
-    for paper in PAPERS {
+    for paper in papers() {
         let of_paper = |entry: &&Entry| entry.figure.name().starts_with(&format!("{}-", paper.key));
         let figures: Vec<_> = entries
             .iter()

@@ -176,6 +176,3 @@ fn straight(multiplied: [f32; 3], alpha: f32) -> LinearRgba {
         alpha,
     }
 }
-
-#[cfg(all(test, feature = "exr"))]
-mod tests;

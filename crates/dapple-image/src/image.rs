@@ -145,18 +145,3 @@ pub(crate) fn transparent(needed: &'static str) -> ImageError {
         needed,
     })
 }
-
-#[cfg(all(test, not(any(feature = "png", feature = "jpeg", feature = "exr"))))]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_format_whose_codec_is_left_out_is_named() {
-        for (signature, format) in LEFT_OUT {
-            let error = decode_image(signature, &Limits::default()).unwrap_err();
-            assert!(error.to_string().starts_with(format), "{error}");
-        }
-        let error = decode_image(b"GIF89a", &Limits::default()).unwrap_err();
-        assert_eq!(error.kind(), &ImageErrorKind::UnknownFormat);
-    }
-}

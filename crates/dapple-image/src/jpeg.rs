@@ -161,6 +161,3 @@ fn refusal(error: DecodeErrors) -> ImageError {
         _ => ImageError::damaged("JPEG", error.to_string()),
     }
 }
-
-#[cfg(test)]
-mod tests;

@@ -71,6 +71,3 @@ pub use error::{ImageError, ImageErrorKind};
 pub use file::replace;
 pub use limits::Limits;
 pub use rows::RowWriter;
-
-#[cfg(all(test, feature = "png", feature = "exr"))]
-mod tests;

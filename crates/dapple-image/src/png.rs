@@ -24,7 +24,7 @@ pub use pixel::PngPixel;
 #[cfg(feature = "png")]
 pub use shortcut::{write_color_alpha_png, write_color_png, write_gray_png, write_normal_png};
 #[cfg(feature = "png")]
-pub(crate) use stream::PngStream;
+pub(crate) use stream::{PngStream, Samples};
 
 /// The `gAMA` of sRGB, 0.45455 times 100 000, by the specification.
 #[cfg(feature = "png")]
@@ -39,6 +39,3 @@ pub enum Transfer {
     /// Colors under the sRGB curve. The file has a chunk that declares it.
     Srgb,
 }
-
-#[cfg(all(test, feature = "png"))]
-mod tests;

@@ -16,39 +16,38 @@ const ALIGNMENT: usize = 64;
 /// The length of the part before the text of the header: the magic string, the version 1.0, and the length of the text.
 const PREAMBLE: usize = 10;
 
-/// A file of plain numbers that is being written into `sink`.
-pub(crate) struct RawStream<W> {
-    sink: W,
+/// A file of plain numbers that is being written into a sink.
+pub(crate) struct RawStream {
     /// The bytes of a row.
     bytes: Vec<u8>,
 }
 
-impl<W: Write> RawStream<W> {
+impl RawStream {
     /// Begins a NumPy array of `f32` with the shape (height, width), or (height, width, channels) for several channels.
-    pub(crate) fn npy(mut sink: W, size: [u32; 2], n_channels: usize) -> Result<Self, ImageError> {
+    pub(crate) fn npy(
+        sink: &mut dyn Write,
+        size: [u32; 2],
+        n_channels: usize,
+    ) -> Result<Self, ImageError> {
         check_side(size, u32::MAX, "a NumPy array")?;
         sink.write_all(&npy_header(size, n_channels))
             .map_err(failure)?;
-        Ok(Self::headless(sink))
+        Ok(Self { bytes: Vec::new() })
     }
 
     /// Begins a file of heights as codes of 16 bits, without a header.
-    pub(crate) fn r16(sink: W, size: [u32; 2]) -> Result<Self, ImageError> {
+    pub(crate) fn r16(size: [u32; 2]) -> Result<Self, ImageError> {
         check_side(size, u32::MAX, "raw heights")?;
-        Ok(Self::headless(sink))
-    }
-
-    fn headless(sink: W) -> Self {
-        let bytes = Vec::new();
-        Self { sink, bytes }
+        Ok(Self { bytes: Vec::new() })
     }
 
     /// Writes rows as `f32`.
     pub(crate) fn write_numbers<T: Pixel>(
         &mut self,
+        sink: &mut dyn Write,
         rows: RasterView<'_, T>,
     ) -> Result<(), ImageError> {
-        self.write_rows(rows, |value, bytes| {
+        self.write_rows(sink, rows, |value, bytes| {
             for number in value.numbers().as_ref() {
                 bytes.extend(number.to_le_bytes());
             }
@@ -58,23 +57,19 @@ impl<W: Write> RawStream<W> {
     /// Writes rows as codes of 16 bits.
     pub(crate) fn write_codes<T: Pixel>(
         &mut self,
+        sink: &mut dyn Write,
         rows: RasterView<'_, T>,
     ) -> Result<(), ImageError> {
-        self.write_rows(rows, |value, bytes| {
+        self.write_rows(sink, rows, |value, bytes| {
             for &number in value.numbers().as_ref() {
                 bytes.extend(u16::from_unit(number).to_le_bytes());
             }
         })
     }
 
-    /// Ends the file.
-    pub(crate) fn finish(mut self) -> Result<W, ImageError> {
-        self.sink.flush().map_err(failure)?;
-        Ok(self.sink)
-    }
-
     fn write_rows<T>(
         &mut self,
+        sink: &mut dyn Write,
         rows: RasterView<'_, T>,
         put: impl Fn(&T, &mut Vec<u8>),
     ) -> Result<(), ImageError> {
@@ -83,7 +78,7 @@ impl<W: Write> RawStream<W> {
             for value in row {
                 put(value, &mut self.bytes);
             }
-            self.sink.write_all(&self.bytes).map_err(failure)?;
+            sink.write_all(&self.bytes).map_err(failure)?;
         }
         Ok(())
     }
@@ -109,6 +104,3 @@ fn npy_header([width, height]: [u32; 2], n_channels: usize) -> Vec<u8> {
 fn failure(error: std::io::Error) -> ImageError {
     ImageError::new(ImageErrorKind::Io).because(error)
 }
-
-#[cfg(all(test, feature = "png"))]
-mod tests;

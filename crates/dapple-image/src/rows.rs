@@ -6,7 +6,7 @@ use crate::content::Pixel;
 #[cfg(feature = "exr")]
 use crate::exr::TileStream;
 #[cfg(feature = "png")]
-use crate::png::PngStream;
+use crate::png::{PngStream, Samples};
 use crate::raw::RawStream;
 use crate::{Content, Encoding, ImageError, ImageErrorKind};
 use core::fmt;
@@ -41,25 +41,47 @@ use std::io::{Seek, Write};
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub struct RowWriter<W: Write + Seek> {
+    sink: W,
+    rows: Rows,
+}
+
+/// What a file is written to.
+pub(crate) trait Sink: Write + Seek {}
+
+impl<W: Write + Seek> Sink for W {}
+
+/// An image that is being written into a sink. It does not know the type of the sink, so that the formats are compiled in
+/// this crate and not in those that write images.
+struct Rows {
     content: Content,
     size: [u32; 2],
     /// The number of rows written so far.
     rows: u32,
     /// Whether writing a row failed, so that the file can never be complete.
     is_broken: bool,
-    file: File<W>,
+    file: File,
 }
 
 /// The state of the file for each encoding.
-enum File<W: Write + Seek> {
+enum File {
     #[cfg(feature = "png")]
-    Eight(Box<PngStream<W>>),
+    Eight(Box<PngStream>),
     #[cfg(feature = "png")]
-    Sixteen(Box<PngStream<W>>),
+    Sixteen(Box<PngStream>),
     #[cfg(feature = "exr")]
-    Exr(Box<TileStream<W>>),
-    Npy(RawStream<W>),
-    R16(RawStream<W>),
+    Exr(Box<TileStream>),
+    Npy(RawStream),
+    R16(RawStream),
+}
+
+/// Rows of each content.
+enum Band<'a> {
+    Gray(RasterView<'a, f32>),
+    Color(RasterView<'a, LinearRgb>),
+    ColorAlpha(RasterView<'a, LinearRgba>),
+    Normal(RasterView<'a, Normal>),
+    Packed(RasterView<'a, [f32; 3]>),
+    PackedFour(RasterView<'a, [f32; 4]>),
 }
 
 impl<W: Write + Seek> RowWriter<W> {
@@ -72,7 +94,88 @@ impl<W: Write + Seek> RowWriter<W> {
     /// bytes, [`ImageErrorKind::Unsupported`] if there are too many tiles for OpenEXR, [`ImageErrorKind::Channels`] if
     /// the content of raw heights is not gray, [`ImageErrorKind::Io`] if the sink fails.
     pub fn new(
-        sink: W,
+        mut sink: W,
+        size: [u32; 2],
+        content: Content,
+        encoding: Encoding,
+    ) -> Result<Self, ImageError> {
+        let rows = Rows::new(&mut sink, size, content, encoding)?;
+        Ok(Self { sink, rows })
+    }
+
+    /// Writes the next rows of an image of [`Content::Gray`].
+    ///
+    /// # Errors
+    ///
+    /// [`ImageErrorKind::RowWidth`] if the rows do not have the width of the image, [`ImageErrorKind::TooManyRows`] if
+    /// there are more than are missing, [`ImageErrorKind::Channels`] if the image has another content; then no row is
+    /// written, and writing may continue. [`ImageErrorKind::Io`] if the sink fails, and on each later call.
+    pub fn write_gray(&mut self, rows: RasterView<'_, f32>) -> Result<(), ImageError> {
+        self.rows.write(&mut self.sink, Band::Gray(rows))
+    }
+
+    /// Writes the next rows of an image of [`Content::Color`].
+    ///
+    /// # Errors
+    ///
+    /// The errors of [`write_gray`](Self::write_gray).
+    pub fn write_color(&mut self, rows: RasterView<'_, LinearRgb>) -> Result<(), ImageError> {
+        self.rows.write(&mut self.sink, Band::Color(rows))
+    }
+
+    /// Writes the next rows of an image of [`Content::ColorAlpha`].
+    ///
+    /// # Errors
+    ///
+    /// The errors of [`write_gray`](Self::write_gray).
+    pub fn write_color_alpha(
+        &mut self,
+        rows: RasterView<'_, LinearRgba>,
+    ) -> Result<(), ImageError> {
+        self.rows.write(&mut self.sink, Band::ColorAlpha(rows))
+    }
+
+    /// Writes the next rows of an image of [`Content::Normal`].
+    ///
+    /// # Errors
+    ///
+    /// The errors of [`write_gray`](Self::write_gray).
+    pub fn write_normals(&mut self, rows: RasterView<'_, Normal>) -> Result<(), ImageError> {
+        self.rows.write(&mut self.sink, Band::Normal(rows))
+    }
+
+    /// Writes the next rows of an image of [`Content::Packed`].
+    ///
+    /// # Errors
+    ///
+    /// The errors of [`write_gray`](Self::write_gray).
+    pub fn write_packed(&mut self, rows: RasterView<'_, [f32; 3]>) -> Result<(), ImageError> {
+        self.rows.write(&mut self.sink, Band::Packed(rows))
+    }
+
+    /// Writes the next rows of an image of [`Content::PackedFour`].
+    ///
+    /// # Errors
+    ///
+    /// The errors of [`write_gray`](Self::write_gray).
+    pub fn write_packed_four(&mut self, rows: RasterView<'_, [f32; 4]>) -> Result<(), ImageError> {
+        self.rows.write(&mut self.sink, Band::PackedFour(rows))
+    }
+
+    /// Ends the file and returns the sink.
+    ///
+    /// # Errors
+    ///
+    /// [`ImageErrorKind::MissingRows`] if rows are missing, [`ImageErrorKind::Io`] if the sink fails or failed before.
+    pub fn finish(mut self) -> Result<W, ImageError> {
+        self.rows.finish(&mut self.sink)?;
+        Ok(self.sink)
+    }
+}
+
+impl Rows {
+    fn new(
+        sink: &mut dyn Sink,
         size: [u32; 2],
         content: Content,
         encoding: Encoding,
@@ -94,71 +197,43 @@ impl<W: Write + Seek> RowWriter<W> {
         })
     }
 
-    /// Writes the next rows of an image of [`Content::Gray`].
-    ///
-    /// # Errors
-    ///
-    /// [`ImageErrorKind::RowWidth`] if the rows do not have the width of the image, [`ImageErrorKind::TooManyRows`] if
-    /// there are more than are missing, [`ImageErrorKind::Channels`] if the image has another content; then no row is
-    /// written, and writing may continue. [`ImageErrorKind::Io`] if the sink fails, and on each later call.
-    pub fn write_gray(&mut self, rows: RasterView<'_, f32>) -> Result<(), ImageError> {
-        self.write(rows)
+    fn write(&mut self, sink: &mut dyn Sink, band: Band<'_>) -> Result<(), ImageError> {
+        match band {
+            Band::Gray(rows) => self.write_rows(sink, rows),
+            Band::Color(rows) => self.write_rows(sink, rows),
+            Band::ColorAlpha(rows) => self.write_rows(sink, rows),
+            Band::Normal(rows) => self.write_rows(sink, rows),
+            Band::Packed(rows) => self.write_rows(sink, rows),
+            Band::PackedFour(rows) => self.write_rows(sink, rows),
+        }
     }
 
-    /// Writes the next rows of an image of [`Content::Color`].
-    ///
-    /// # Errors
-    ///
-    /// The errors of [`write_gray`](Self::write_gray).
-    pub fn write_color(&mut self, rows: RasterView<'_, LinearRgb>) -> Result<(), ImageError> {
-        self.write(rows)
-    }
-
-    /// Writes the next rows of an image of [`Content::ColorAlpha`].
-    ///
-    /// # Errors
-    ///
-    /// The errors of [`write_gray`](Self::write_gray).
-    pub fn write_color_alpha(
+    fn write_rows<T: Pixel>(
         &mut self,
-        rows: RasterView<'_, LinearRgba>,
+        sink: &mut dyn Sink,
+        rows: RasterView<'_, T>,
     ) -> Result<(), ImageError> {
-        self.write(rows)
+        self.check_whole()?;
+        let [_, height] = rows.size();
+        self.check_rows::<T>(rows.size())?;
+        // Remains true after an early return.
+        self.is_broken = true;
+        match &mut self.file {
+            #[cfg(feature = "png")]
+            File::Eight(stream) => stream.write_rows(sink, rows, T::eight)?,
+            #[cfg(feature = "png")]
+            File::Sixteen(stream) => stream.write_rows(sink, rows, T::sixteen)?,
+            #[cfg(feature = "exr")]
+            File::Exr(stream) => stream.write_rows(sink, rows, T::part)?,
+            File::Npy(stream) => stream.write_numbers(sink, rows)?,
+            File::R16(stream) => stream.write_codes(sink, rows)?,
+        }
+        self.is_broken = false;
+        self.rows += height;
+        Ok(())
     }
 
-    /// Writes the next rows of an image of [`Content::Normal`].
-    ///
-    /// # Errors
-    ///
-    /// The errors of [`write_gray`](Self::write_gray).
-    pub fn write_normals(&mut self, rows: RasterView<'_, Normal>) -> Result<(), ImageError> {
-        self.write(rows)
-    }
-
-    /// Writes the next rows of an image of [`Content::Packed`].
-    ///
-    /// # Errors
-    ///
-    /// The errors of [`write_gray`](Self::write_gray).
-    pub fn write_packed(&mut self, rows: RasterView<'_, [f32; 3]>) -> Result<(), ImageError> {
-        self.write(rows)
-    }
-
-    /// Writes the next rows of an image of [`Content::PackedFour`].
-    ///
-    /// # Errors
-    ///
-    /// The errors of [`write_gray`](Self::write_gray).
-    pub fn write_packed_four(&mut self, rows: RasterView<'_, [f32; 4]>) -> Result<(), ImageError> {
-        self.write(rows)
-    }
-
-    /// Ends the file and returns the sink.
-    ///
-    /// # Errors
-    ///
-    /// [`ImageErrorKind::MissingRows`] if rows are missing, [`ImageErrorKind::Io`] if the sink fails or failed before.
-    pub fn finish(self) -> Result<W, ImageError> {
+    fn finish(self, sink: &mut dyn Sink) -> Result<(), ImageError> {
         self.check_whole()?;
         let [rows, needed] = [self.rows, self.size[1]];
         if rows < needed {
@@ -169,32 +244,13 @@ impl<W: Write + Seek> RowWriter<W> {
         }
         match self.file {
             #[cfg(feature = "png")]
-            File::Eight(stream) | File::Sixteen(stream) => stream.finish(),
+            File::Eight(stream) | File::Sixteen(stream) => stream.finish(sink),
             #[cfg(feature = "exr")]
-            File::Exr(stream) => stream.finish(),
-            File::Npy(stream) | File::R16(stream) => stream.finish(),
+            File::Exr(stream) => stream.finish(sink),
+            File::Npy(_) | File::R16(_) => sink
+                .flush()
+                .map_err(|error| ImageError::new(ImageErrorKind::Io).because(error)),
         }
-    }
-
-    pub(crate) fn write<T: Pixel>(&mut self, rows: RasterView<'_, T>) -> Result<(), ImageError> {
-        self.check_whole()?;
-        let [_, height] = rows.size();
-        self.check_rows::<T>(rows.size())?;
-        // Remains true after an early return.
-        self.is_broken = true;
-        match &mut self.file {
-            #[cfg(feature = "png")]
-            File::Eight(stream) => stream.write_rows(rows, T::eight)?,
-            #[cfg(feature = "png")]
-            File::Sixteen(stream) => stream.write_rows(rows, T::sixteen)?,
-            #[cfg(feature = "exr")]
-            File::Exr(stream) => stream.write_rows(rows, T::part)?,
-            File::Npy(stream) => stream.write_numbers(rows)?,
-            File::R16(stream) => stream.write_codes(rows)?,
-        }
-        self.is_broken = false;
-        self.rows += height;
-        Ok(())
     }
 
     fn check_whole(&self) -> Result<(), ImageError> {
@@ -225,23 +281,32 @@ impl<W: Write + Seek> RowWriter<W> {
     }
 }
 
-impl<W: Write + Seek> File<W> {
-    fn new<T: Pixel>(sink: W, size: [u32; 2], encoding: Encoding) -> Result<Self, ImageError> {
+impl File {
+    fn new<T: Pixel>(
+        sink: &mut dyn Sink,
+        size: [u32; 2],
+        encoding: Encoding,
+    ) -> Result<Self, ImageError> {
         Ok(match encoding {
             #[cfg(feature = "png")]
             Encoding::Png(Depth::Eight) => {
+                let samples = Samples::of::<T::Eight>();
                 let transfer = T::CONTENT.transfer();
-                Self::Eight(PngStream::new::<T::Eight>(sink, size, transfer)?.into())
+                Self::Eight(PngStream::new(sink, size, samples, transfer)?.into())
             }
             #[cfg(feature = "png")]
             Encoding::Png(Depth::Sixteen) => {
+                let samples = Samples::of::<T::Sixteen>();
                 let transfer = T::CONTENT.transfer();
-                Self::Sixteen(PngStream::new::<T::Sixteen>(sink, size, transfer)?.into())
+                Self::Sixteen(PngStream::new(sink, size, samples, transfer)?.into())
             }
             #[cfg(feature = "exr")]
             Encoding::Exr => Self::Exr(TileStream::new(sink, size, T::CONTENT.planes())?.into()),
-            Encoding::Npy => Self::Npy(RawStream::npy(sink, size, T::CONTENT.planes().len())?),
-            Encoding::R16 if T::CONTENT == Content::Gray => Self::R16(RawStream::r16(sink, size)?),
+            Encoding::Npy => {
+                let n_channels = T::CONTENT.planes().len();
+                Self::Npy(RawStream::npy(sink, size, n_channels)?)
+            }
+            Encoding::R16 if T::CONTENT == Content::Gray => Self::R16(RawStream::r16(size)?),
             Encoding::R16 => {
                 return Err(ImageError::new(ImageErrorKind::Channels {
                     found: T::CONTENT.name(),
@@ -256,12 +321,9 @@ impl<W: Write + Seek> fmt::Debug for RowWriter<W> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         // The codecs do not implement `Debug`.
         f.debug_struct("RowWriter")
-            .field("content", &self.content)
-            .field("size", &self.size)
-            .field("rows", &self.rows)
+            .field("content", &self.rows.content)
+            .field("size", &self.rows.size)
+            .field("rows", &self.rows.rows)
             .finish_non_exhaustive()
     }
 }
-
-#[cfg(all(test, feature = "png", feature = "exr"))]
-mod tests;

@@ -10,7 +10,7 @@ use glam::DVec3;
 /// Up is +y.
 #[non_exhaustive]
 pub enum Environment<'a> {
-    /// The same color in all directions.
+    /// One color in all directions.
     Constant(LinearRgb),
     /// A sky without a sun.
     Sky(Sky),

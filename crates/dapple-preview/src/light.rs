@@ -50,10 +50,11 @@ pub enum LightSource {
 /// The falloff of a point light with the distance.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Falloff {
-    /// No falloff.
+    /// No falloff: the light is as strong at any distance.
     #[default]
     None,
-    /// Falloff with the square of the distance; the light has its color at this distance, in units of the world.
+    /// Falloff with the square of the distance. The number is the distance, in units of the world, at which the light has its
+    /// color.
     InverseSquare(f64),
 }
 

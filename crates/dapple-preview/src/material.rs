@@ -51,10 +51,10 @@ pub enum Mirror {
     /// No mirror.
     #[default]
     None,
-    /// The same fraction, from 0 to 1, at every angle.
+    /// A fraction, from 0 to 1, that does not depend on the angle.
     Constant(f32),
-    /// Schlick's approximation: this fraction, from 0 to 1, at perpendicular view, rising to 1 at grazing angles. Water
-    /// has 0.02.
+    /// Schlick's approximation. The number is the fraction at perpendicular view, from 0 to 1, which rises to 1 at grazing
+    /// angles; water has 0.02.
     Fresnel(f32),
 }
 

@@ -51,7 +51,16 @@ impl Pups {
     ///
     /// What [`new`](Self::new) refuses, and [`Graph`](crate::PupsErrorKind::Graph) if there is no triangulation.
     pub fn delaunay_with(points: &PointSet, options: PupsOptions) -> Result<Self, PupsError> {
-        let net = Net::new(points, &delaunay(points)?, GraphKind::Delaunay, options)?;
+        Self::of_delaunay(points, &delaunay(points)?, options)
+    }
+
+    /// The net of a graph that is the Delaunay triangulation of `points`.
+    pub(crate) fn of_delaunay(
+        points: &PointSet,
+        graph: &Graph,
+        options: PupsOptions,
+    ) -> Result<Self, PupsError> {
+        let net = Net::new(points, graph, GraphKind::Delaunay, options)?;
         Ok(Self {
             net: Arc::new(net),
             points: Arc::new(points.clone()),

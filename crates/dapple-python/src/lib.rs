@@ -72,7 +72,7 @@ mod _native {
     #[pymodule_export]
     use crate::recipe::{_map_info, _plan_from_parts, Plan, Recipe, ShardList, map_names, shards};
     #[pymodule_export]
-    use crate::synthesis::synthesize;
+    use crate::synthesis::{repair, synthesize};
     #[pymodule_export]
     use crate::threads::{set_threads, threads};
     #[pymodule_export]

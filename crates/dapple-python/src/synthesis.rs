@@ -4,7 +4,7 @@ use crate::arrays;
 use crate::data;
 use crate::error::{Error, Result};
 use crate::grid::size;
-use crate::pictures;
+use crate::pictures::{self, Layout};
 use crate::seed::SeedArgument;
 use crate::tiles::flags;
 use crate::watch;
@@ -139,14 +139,78 @@ pub(crate) fn synthesize<'py>(
     let texture = watch::run(py, progress, |heard| {
         synthesize_plane_with(&exemplar, size, wrap, &options, heard)
     })??;
-    let transferred = maps.iter().map(|map| transfer(&texture, map));
+    followed(py, layout, &maps, &texture, sources)
+}
+
+/// A photograph of a texture in which a part is made again, such as a stain; all around it stays as it is.
+///
+/// Parameters
+/// ----------
+/// image : (rows, columns), or (rows, columns, 3 or 4) in linear light; or a dictionary of maps, of which the first is
+///     matched (color in sRGB, numbers unchanged) and the others follow it.
+/// hole : (rows, columns), at least 0.5 where the image is made again; nothing is taken from there.
+/// seed, edges, levels, coherence, sources, progress : as for `synthesize`. More levels fill larger holes.
+///
+/// Examples
+/// --------
+/// >>> import numpy as np, dapple_textures as dp
+/// >>> checker = np.kron(np.indices((8, 8)).sum(0) % 2, np.ones((8, 8)))
+/// >>> hole = np.zeros((64, 64))
+/// >>> hole[28:36, 20:27] = 1
+/// >>> stained = np.where(hole, 0.5, checker)
+/// >>> bool((dp.repair(stained, hole) == checker).all())
+/// True
+#[pyfunction]
+#[pyo3(signature = (image, hole, *, seed = SeedArgument::default(), edges = "cut", levels = 3, coherence = None, sources = false,
+    progress = None),
+    text_signature = "(image, hole, *, seed=0, edges=\"cut\", levels=3, coherence=None, sources=False, progress=None)")]
+pub(crate) fn repair<'py>(
+    py: Python<'py>,
+    image: &Bound<'py, PyAny>,
+    hole: &Bound<'py, PyAny>,
+    seed: SeedArgument,
+    edges: &str,
+    levels: usize,
+    coherence: Option<Coherence>,
+    sources: bool,
+    progress: Option<&Bound<'py, PyAny>>,
+) -> Result<Bound<'py, PyAny>> {
+    let (layout, maps) = pictures::read("image", image)?;
+    check_sizes(&maps)?;
+    let hole = pictures::numbers("hole", hole)?.map(|&value| value >= 0.5);
+    let usable = hole.map(|is_made| !is_made);
+    let exemplar = self::exemplar(&maps, edges)?.with_mask(&usable)?;
+    let matching = Matching {
+        seed,
+        levels,
+        coherence,
+        evenness: None,
+        axes: None,
+        paper: false,
+    };
+    let options = matching.options()?;
+    let texture = watch::run(py, progress, |heard| {
+        PlaneTexture::identity(&exemplar)?.repair(&exemplar, &hole, &options, heard)
+    })??;
+    followed(py, layout, &maps, &texture, sources)
+}
+
+/// The maps of a texture in the layout of its example, and the sources if they are asked for.
+fn followed<'py>(
+    py: Python<'py>,
+    layout: Layout,
+    maps: &[Map],
+    texture: &PlaneTexture,
+    sources: bool,
+) -> Result<Bound<'py, PyAny>> {
+    let transferred = maps.iter().map(|map| transfer(texture, map));
     let picture = layout.python(py, transferred.collect::<core::result::Result<_, _>>()?)?;
     if !sources {
         return Ok(picture);
     }
     let places = texture.sources().pixels().iter().flatten();
     let places = places.map(|&at| i64::from(at)).collect();
-    let [width, height] = size.map(|side| side as usize);
+    let [width, height] = texture.sources().size().map(|side| side as usize);
     let places = arrays::array(py, places, &[height, width, 2])?;
     Ok((picture, places).into_pyobject(py)?.into_any())
 }

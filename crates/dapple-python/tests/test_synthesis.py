@@ -66,6 +66,25 @@ def test_a_texture_that_wraps_is_a_tile_and_alpha_follows():
     assert not dp.seam_report(dp.synthesize(image, 64, edges="wrap")[..., :3]).passes
 
 
+def test_a_repair_changes_only_the_hole_and_takes_nothing_from_it():
+    hole = np.zeros(CELLS.shape[:2])
+    hole[20:28, 30:36] = 1
+    maps = {name: array.copy() for name, array in MATERIAL.items()}
+    for array in maps.values():
+        array[hole > 0] = 0.125
+    repaired, sources = dp.repair(maps, hole, seed=2, edges="wrap", sources=True)
+    assert not hole[sources[..., 1], sources[..., 0]].any()
+    for name, array in repaired.items():
+        np.testing.assert_array_equal(array, maps[name].astype(np.float32)[sources[..., 1], sources[..., 0]])
+        np.testing.assert_array_equal(array[hole == 0], maps[name].astype(np.float32)[hole == 0])
+    alone = dp.repair(maps["albedo"], hole > 0, seed=2, edges="wrap")
+    np.testing.assert_array_equal(alone, repaired["albedo"])
+    with pytest.raises(dp.DappleError, match="mask|needed"):
+        dp.repair(maps["albedo"], hole[1:])
+    with pytest.raises(dp.DappleError, match="leaves no neighborhood"):
+        dp.repair(maps["albedo"], np.ones_like(hole))
+
+
 def test_options_have_an_effect():
     plain = dp.synthesize(CELLS, 48, levels=2)
     for options in ({"coherence": 5.0}, {"evenness": 0.0}, {"paper": True}, {"levels": 3}, {"edges": "wrap"}):

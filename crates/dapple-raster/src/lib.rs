@@ -23,6 +23,7 @@ mod error;
 mod error_macro;
 mod field;
 mod named;
+mod parts;
 mod raster;
 mod resample;
 mod statistics;
@@ -45,6 +46,7 @@ pub use named::Named;
 #[cfg(feature = "serde")]
 #[doc(hidden)]
 pub use named::read_named;
+pub use parts::Parts;
 pub use raster::Raster;
 pub use resample::Texel;
 #[cfg(feature = "serde")]

@@ -8,6 +8,8 @@
 //! Reference: our own; occlusion, curvature and normals have theirs in `dapple-color`.
 
 mod heights;
+#[cfg(feature = "image")]
+mod image;
 mod maps;
 mod shards;
 

@@ -72,6 +72,19 @@ impl Values {
         }
     }
 
+    /// The values of several sets of positions, which are of one kind, one after the other.
+    pub(crate) fn joined(parts: &[&Self]) -> Self {
+        let n_values = parts.iter().map(|part| part.len()).sum();
+        let mut all = match parts.first() {
+            Some(Self::Colors(_)) => Self::Colors(Vec::with_capacity(n_values)),
+            _ => Self::Numbers(Vec::with_capacity(n_values)),
+        };
+        for part in parts {
+            all.append(part);
+        }
+        all
+    }
+
     /// Appends the values of more positions, which are of the same kind.
     pub(crate) fn append(&mut self, more: &Self) {
         match self {

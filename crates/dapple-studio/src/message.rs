@@ -6,6 +6,7 @@ use crate::{Change, Diagnostic, Graph, Op, Picture, StudioError};
 use dapple::recipe::MapKind;
 use serde::{Deserialize, Serialize};
 use serde_json::Value as Json;
+use std::sync::OnceLock;
 
 /// A message of a page.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -392,9 +393,14 @@ struct Limits {
 }
 
 impl Hello {
-    /// The greeting of this program.
+    /// The greeting of this program, which is made once.
     #[must_use]
     pub fn new() -> Self {
+        static HELLO: OnceLock<Hello> = OnceLock::new();
+        HELLO.get_or_init(Self::made).clone()
+    }
+
+    fn made() -> Self {
         let builtin = |name: &'static str| Named {
             name: name.to_owned(),
             about: dapple::recipe::Recipe::builtin(name)

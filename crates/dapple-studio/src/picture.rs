@@ -70,22 +70,75 @@ const VERSION: u32 = 1;
 const HEADER: usize = 32;
 
 impl Picture {
+    /// A picture in one part, as large as it is wanted, of no generation of the view.
+    pub(crate) fn whole(shown: Shown, size: [u32; 2], pixels: Vec<u8>) -> Self {
+        Self {
+            generation: 0,
+            shown,
+            first: [0; 2],
+            size,
+            scale: 1,
+            is_draft: false,
+            is_last: true,
+            pixels,
+        }
+    }
+
     /// The picture as a message: a header of 32 bytes, then the pixels. Numbers are little-endian.
     #[must_use]
     pub fn to_bytes(&self) -> Vec<u8> {
-        let mut bytes = Vec::with_capacity(HEADER + self.pixels.len());
+        let mut bytes = self.header(0, self.pixels.len());
+        bytes.extend(&self.pixels);
+        bytes
+    }
+
+    /// The picture as a message with one byte for each pixel of a gray map and three for others: alpha is always 255.
+    #[cfg(feature = "server")]
+    pub(crate) fn to_short_bytes(&self) -> Vec<u8> {
+        let n_pixels = self.pixels.len() / 4;
+        let pixels = self.pixels.as_chunks::<4>().0.iter();
+        if self.is_gray() {
+            let mut bytes = self.header(2, n_pixels);
+            bytes.extend(pixels.map(|&[gray, ..]| gray));
+            return bytes;
+        }
+        let mut bytes = self.header(1, 3 * n_pixels);
+        bytes.resize(HEADER + 3 * n_pixels, 0);
+        let places = bytes[HEADER..].as_chunks_mut::<3>().0.iter_mut();
+        for (place, &[red, green, blue, _]) in places.zip(pixels) {
+            *place = [red, green, blue];
+        }
+        bytes
+    }
+
+    /// Whether all pixels are gray, as those of a map of numbers are.
+    #[cfg(feature = "server")]
+    fn is_gray(&self) -> bool {
+        matches!(
+            self.shown,
+            Shown::Map(
+                MapKind::Height
+                    | MapKind::Occlusion
+                    | MapKind::Curvature
+                    | MapKind::Roughness
+                    | MapKind::Metallic
+            )
+        )
+    }
+
+    /// The header, with room for pixels of this format.
+    fn header(&self, format: u16, n_bytes: usize) -> Vec<u8> {
+        let mut bytes = Vec::with_capacity(HEADER + n_bytes);
         let flags = u16::from(self.is_draft) | u16::from(self.is_last) << 1;
         bytes.extend(VERSION.to_le_bytes());
         bytes.extend(self.generation.to_le_bytes());
         bytes.extend(self.shown.code().to_le_bytes());
-        // RGBA with 8 bits is the only format yet.
-        bytes.extend(0_u16.to_le_bytes());
+        bytes.extend(format.to_le_bytes());
         for number in self.first.into_iter().chain(self.size) {
             bytes.extend(number.to_le_bytes());
         }
         bytes.extend(self.scale.to_le_bytes());
         bytes.extend(flags.to_le_bytes());
-        bytes.extend(&self.pixels);
         bytes
     }
 }
@@ -144,7 +197,7 @@ fn range_of(numbers: &Raster<f32>) -> [f32; 2] {
 }
 
 /// The pixels that a thread takes at a time.
-const CHUNK: usize = 1 << 15;
+const CHUNK: usize = 1 << 12;
 
 fn pixels<T: Sync>(raster: &Raster<T>, code: impl Fn(&T) -> [u8; 3] + Sync) -> Vec<u8> {
     let mut bytes = vec![255; 4 * raster.pixels().len()];
@@ -158,4 +211,40 @@ fn pixels<T: Sync>(raster: &Raster<T>, code: impl Fn(&T) -> [u8; 3] + Sync) -> V
         }
     });
     bytes
+}
+
+#[cfg(all(test, feature = "server"))]
+mod tests {
+    use super::{HEADER, MapKind, Picture, Shown};
+
+    #[test]
+    fn short_messages_have_all_bytes_that_differ() {
+        let picture = |shown, pixels: &[u8]| Picture::whole(shown, [2, 1], pixels.to_vec());
+        let cases = [
+            (
+                picture(Shown::Map(MapKind::Height), &[7, 7, 7, 255, 9, 9, 9, 255]),
+                2,
+                &[7, 9][..],
+            ),
+            (
+                picture(Shown::Map(MapKind::Normal), &[1, 2, 3, 255, 4, 5, 6, 255]),
+                1,
+                &[1, 2, 3, 4, 5, 6],
+            ),
+            (
+                picture(Shown::Node, &[8, 8, 8, 255, 4, 5, 6, 255]),
+                1,
+                &[8, 8, 8, 4, 5, 6],
+            ),
+        ];
+        for (picture, format, pixels) in cases {
+            let (long, short) = (picture.to_bytes(), picture.to_short_bytes());
+            assert_eq!(&short[HEADER..], pixels);
+            assert_eq!([short[10], short[11]], [format, 0]);
+            assert_eq!(
+                (&short[..10], &short[12..HEADER]),
+                (&long[..10], &long[12..HEADER])
+            );
+        }
+    }
 }

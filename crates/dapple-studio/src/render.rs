@@ -25,8 +25,11 @@ const THUMBNAIL_SIDE: u32 = 64;
 const MOST_THUMBNAILS: usize = 800;
 /// The pixels that are drawn before it is asked again whether they are still wanted.
 const BAND_PIXELS: u32 = 1 << 15;
-/// The pixels that are sent at a time.
-const SENT_PIXELS: usize = 1 << 18;
+/// The most pixels of a part of a map: a page draws all of its picture anew for each.
+const SENT_PIXELS: usize = 1 << 20;
+/// The milliseconds after which parts are sent that are smaller, and their fewest pixels: where a picture that is shown
+/// smaller is divided shows a little, so that small ones never are.
+const LATE: (f64, usize) = (100.0, 1 << 18);
 
 /// The limits of work of a recipe in the studio.
 pub(crate) const LIMITS: PlanLimits = PlanLimits {
@@ -217,7 +220,8 @@ impl Renderer {
             world.put(Reply::Diagnostics { rev, items }.into());
         }
         pass.thumbnails()?;
-        pass.preview(recipe, &world.images(recipe)?)
+        let planned = self.planned.as_ref();
+        planned.map_or(Ok(()), |planned| pass.preview(recipe, &planned.images))
     }
 
     /// The plan of a job.
@@ -399,19 +403,25 @@ impl Pass<'_> {
         self.check_wanted()?;
         let rows = frame.region.size[1];
         let mut parts: Vec<_> = options.maps.iter().map(|_| (0, Vec::new())).collect();
+        let mut sent = self.world.now();
         for band in Bake::new(self.plan, &options)? {
             // A draft that was begun is shown: else none would be while changes come faster than it is drawn.
             if !is_draft {
                 self.check_wanted()?;
             }
             let band = band?;
+            let now = self.world.now();
+            let (late_ms, late_pixels) = LATE;
+            let is_late = now - sent > late_ms;
+            let most = 4 * if is_late { late_pixels } else { SENT_PIXELS };
             for ((kind, map), (first_row, pixels)) in band.maps.iter().zip(&mut parts) {
                 pixels.extend(rgba(map));
                 let [width, height] = map.size();
                 let end = band.first_row + height;
-                if pixels.len() < 4 * SENT_PIXELS && end < rows {
+                if pixels.len() < most && end < rows {
                     continue;
                 }
+                sent = now;
                 let [left, top] = frame.region.first;
                 self.world.put(Output::Picture(Picture {
                     generation: self.job.generation,
@@ -438,13 +448,10 @@ impl Pass<'_> {
         let (pixels, range) = of_values(&values);
         self.world.put(Output::Picture(Picture {
             generation: self.job.generation,
-            shown: Shown::Node,
             first: frame.region.first,
-            size: frame.region.size,
             scale: frame.scale as u16,
             is_draft,
-            is_last: true,
-            pixels,
+            ..Picture::whole(Shown::Node, frame.region.size, pixels)
         }));
         Ok(NodeTime {
             name: node.to_owned(),
@@ -485,15 +492,10 @@ impl Pass<'_> {
                 ms,
                 range,
             });
+            let shown = Shown::Thumbnail(u16::try_from(index).unwrap_or(u16::MAX));
             self.world.put(Output::Picture(Picture {
                 generation: self.job.generation,
-                shown: Shown::Thumbnail(u16::try_from(index).unwrap_or(u16::MAX)),
-                first: [0; 2],
-                size,
-                scale: 1,
-                is_draft: false,
-                is_last: true,
-                pixels,
+                ..Picture::whole(shown, size, pixels)
             }));
         }
         self.rendered(false, Some(times));
@@ -515,13 +517,7 @@ impl Pass<'_> {
         })?;
         self.world.put(Output::Picture(Picture {
             generation: self.job.generation,
-            shown: Shown::Preview,
-            first: [0; 2],
-            size: picture.size(),
-            scale: 1,
-            is_draft: false,
-            is_last: true,
-            pixels: of_colors(&picture),
+            ..Picture::whole(Shown::Preview, picture.size(), of_colors(&picture))
         }));
         Ok(())
     }
@@ -574,7 +570,11 @@ impl Frame {
 }
 
 /// The maps of these names, each once.
-pub(crate) fn map_kinds(names: &[String]) -> Result<Vec<MapKind>, StudioError> {
+///
+/// # Errors
+///
+/// If there is no map of one of the names.
+pub fn map_kinds(names: &[String]) -> Result<Vec<MapKind>, StudioError> {
     let mut kinds = Vec::new();
     for name in names {
         let kind = MapKind::from_name(name);

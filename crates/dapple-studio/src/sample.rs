@@ -26,16 +26,7 @@ pub fn sample(
     side: u32,
 ) -> Result<Picture, StudioError> {
     let (size, pixels) = lit(recipe, images, side.clamp(1, MOST))?;
-    Ok(Picture {
-        generation: 0,
-        shown,
-        first: [0; 2],
-        size,
-        scale: 1,
-        is_draft: false,
-        is_last: true,
-        pixels,
-    })
+    Ok(Picture::whole(shown, size, pixels))
 }
 
 /// The size and the pixels of a picture whose longer side has so many pixels.

@@ -13,7 +13,7 @@ mod page;
 mod socket;
 mod worker;
 
-use crate::message::{Export, Mode, Named};
+use crate::message::{Export, Hello, Mode, Named};
 use crate::{Lit, Renderer, StudioError};
 use axum::Router;
 use axum::extract::{Request, State};
@@ -29,7 +29,7 @@ use files::Folder;
 use gallery::Gallery;
 use guard::Guard;
 use std::net::Ipv4Addr;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
@@ -43,7 +43,7 @@ pub trait Host: Send + Sync {
     /// # Errors
     ///
     /// If one of them cannot be read.
-    fn images(&self, recipe: &Recipe, folder: &std::path::Path) -> Result<Images, StudioError>;
+    fn images(&self, recipe: &Recipe, folder: &Path) -> Result<Images, StudioError>;
 
     /// The files of a bake, by their names.
     ///
@@ -53,7 +53,7 @@ pub trait Host: Send + Sync {
     fn export(
         &self,
         recipe: &Recipe,
-        folder: &std::path::Path,
+        folder: &Path,
         export: &Export,
     ) -> Result<Vec<ExportedFile>, StudioError>;
 
@@ -170,6 +170,8 @@ async fn run(
         n_pages: AtomicUsize::new(0),
         closed: Notify::new(),
     });
+    // The first greeting is made while the browser begins.
+    drop(std::thread::spawn(Hello::new));
     tell(&url);
     if !no_open {
         // Where no browser can be opened, the address was told.
@@ -189,6 +191,17 @@ async fn run(
 }
 
 impl Shared {
+    /// The folder of the images of a recipe, which names none outside of it.
+    fn of_images(&self, recipe: &Recipe) -> Result<&Path, StudioError> {
+        self.folder.check_images(recipe)?;
+        Ok(self.folder.path())
+    }
+
+    /// The images of a recipe, from its folder alone.
+    fn images(&self, recipe: &Recipe) -> Result<Images, StudioError> {
+        self.host.images(recipe, self.of_images(recipe)?)
+    }
+
     /// Waits until the last page is closed, where the server ends then.
     async fn ended(&self) {
         loop {

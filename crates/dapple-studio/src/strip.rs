@@ -32,16 +32,8 @@ impl Renderer {
     /// Draws a picture of a strip. Changes that the recipe refuses have no picture.
     pub fn draw_variant(&self, variant: &Variant, world: &dyn World) {
         if let Ok((size, pixels)) = self.pixels(variant, world) {
-            world.put(Output::Picture(Picture {
-                generation: 0,
-                shown: Shown::Strip(variant.index),
-                first: [0; 2],
-                size,
-                scale: 1,
-                is_draft: false,
-                is_last: true,
-                pixels,
-            }));
+            let shown = Shown::Strip(variant.index);
+            world.put(Output::Picture(Picture::whole(shown, size, pixels)));
         }
     }
 

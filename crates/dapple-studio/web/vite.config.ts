@@ -31,6 +31,23 @@ function compressed(): Plugin {
   };
 }
 
+/** Loads the page beside its entry, which asks for it later. */
+function preloaded(): Plugin {
+  return {
+    name: 'preloaded',
+    transformIndexHtml: {
+      order: 'post',
+      handler: (_, { bundle = {} }) => {
+        const chunks = Object.values(bundle).filter((file) => file.type === 'chunk');
+        const begin = chunks.find(({ name }) => name === 'begin');
+        const files = begin ? [begin.fileName, ...begin.imports] : [];
+        const later = files.filter((file) => !chunks.some(({ isEntry, fileName }) => isEntry && fileName === file));
+        return later.map((file) => ({ tag: 'link', attrs: { rel: 'modulepreload', href: `./${file}` }, injectTo: 'head' as const }));
+      },
+    },
+  };
+}
+
 /** What the page without a server may load and run. */
 const POLICY = [
   "default-src 'self'",
@@ -56,7 +73,7 @@ function withoutServer(): Plugin {
 }
 
 export default defineConfig(({ mode }) => ({
-  plugins: [svelte(), mode === 'static' ? withoutServer() : compressed()],
+  plugins: [svelte(), ...(mode === 'static' ? [withoutServer()] : [preloaded(), compressed()])],
   // The page without a server may lie in any folder.
   base: './',
   worker: { format: 'es', rollupOptions: { output: { entryFileNames: 'assets/worker.js' } } },

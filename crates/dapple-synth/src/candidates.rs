@@ -20,7 +20,7 @@
 //! interpolation; both readings are there as [`CoarserCenter`].
 
 use crate::error::{SynthError, SynthErrorKind};
-use crate::grid::Grid;
+use crate::grid::{self, Grid};
 use crate::ground::Plain;
 use crate::neighborhood::{Part, Pass, Reads};
 use crate::{Edges, Exemplar, Options, Pyramid};
@@ -56,7 +56,12 @@ pub struct Candidates {
     size: [u32; 2],
     /// The rectangle of the pixels that have rows.
     inner: [Inner; 2],
+    /// For the pixels of the rectangle their rows, or [`NO_ROW`]; nothing if all have one.
+    row_of: Option<Vec<u32>>,
 }
+
+/// In place of the row of a pixel that has none.
+const NO_ROW: u32 = u32::MAX;
 
 /// The columns or the rows that are compared: from `first` to before `end`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -118,8 +123,14 @@ impl Candidates {
             edges: level.edges,
             size: level.size,
             inner,
+            row_of: None,
         };
         candidates.fill(pyramid, pass, center);
+        if candidates.is_empty() {
+            return Err(SynthError::new(SynthErrorKind::Masked {
+                level: pass.level,
+            }));
+        }
         Ok(candidates)
     }
 
@@ -173,8 +184,15 @@ impl Candidates {
         let [columns, lines] = self.inner;
         let within = columns.contains(column) && lines.contains(line);
         // Within the exemplar, which has at most 2^31 pixels.
-        let row = || (line as u32 - lines.first) * columns.len() as u32;
-        within.then(|| row() + (column as u32 - columns.first))
+        let row = || {
+            let row = (line as u32 - lines.first) * columns.len() as u32;
+            row + (column as u32 - columns.first)
+        };
+        let row = within.then(row)?;
+        match &self.row_of {
+            None => Some(row),
+            Some(row_of) => Some(row_of[row as usize]).filter(|&row| row != NO_ROW),
+        }
     }
 
     /// Writes the rows of all pixels in the rectangle.
@@ -187,9 +205,25 @@ impl Candidates {
         let [columns, lines] = self.inner;
         self.pixels.reserve(columns.len() * lines.len());
         self.rows.reserve(columns.len() * lines.len() * self.dims);
+        let has_mask = pyramid.levels[pass.level].usable.is_some();
+        let mut row_of = has_mask.then(Vec::new);
         let mut samples = Vec::new();
         for line in lines.first..lines.end {
             for column in columns.first..columns.end {
+                if let Some(row_of) = &mut row_of {
+                    let is_usable = |part: &PartReader<'_>| {
+                        part.is_usable(halves([column, line], part.reads, center))
+                    };
+                    let is_usable = parts.iter().all(is_usable);
+                    row_of.push(if is_usable {
+                        self.pixels.len() as u32
+                    } else {
+                        NO_ROW
+                    });
+                    if !is_usable {
+                        continue;
+                    }
+                }
                 self.pixels.push(line * self.size[0] + column);
                 for part in &parts {
                     let halves = halves([column, line], part.reads, center);
@@ -197,6 +231,7 @@ impl Candidates {
                 }
             }
         }
+        self.row_of = row_of;
     }
 }
 
@@ -224,6 +259,7 @@ struct PartReader<'a> {
     grid: Grid<Plain<'a>>,
     reads: Reads,
     half: i32,
+    usable: Option<&'a [bool]>,
     /// The root of the part's weight.
     scale: f32,
     /// Where the offsets are in the square.
@@ -233,14 +269,32 @@ struct PartReader<'a> {
 impl<'a> PartReader<'a> {
     fn new(pyramid: &'a Pyramid, level: usize, part: &Part) -> Self {
         let half = part.side as i32 / 2;
-        let place = |[i, j]: [i32; 2]| ((j + half) * (2 * half + 1) + i + half) as usize;
+        let place = |&[i, j]: &[i32; 2]| ((j + half) * (2 * half + 1) + i + half) as usize;
+        let read = &pyramid.levels[level + part.reads.step()];
+        let offsets = part.offsets();
         Self {
-            grid: pyramid.levels[level + part.reads.step()].grid(),
+            grid: read.grid(),
             reads: part.reads,
             half,
+            usable: read.usable.as_deref(),
             scale: part.weight.sqrt(),
-            places: part.offsets().into_iter().map(place).collect(),
+            places: offsets.iter().map(place).collect(),
         }
+    }
+
+    /// Whether textures may have all pixels of the square around a position.
+    fn is_usable(&self, halves: [i64; 2]) -> bool {
+        let Some(usable) = self.usable else {
+            return true;
+        };
+        let Grid { size, wrap, .. } = self.grid;
+        let side = 2 * self.half as usize + 1;
+        let odd = halves.map(|at| at.rem_euclid(2) as usize);
+        let [columns, rows] = grid::square(halves, self.half, size, wrap);
+        rows[..side + odd[1]].iter().all(|row| {
+            let row = &usable[row * size[0] as usize..];
+            columns[..side + odd[0]].iter().all(|&column| row[column])
+        })
     }
 
     /// Appends the values of the part around a position.

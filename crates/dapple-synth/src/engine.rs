@@ -2,11 +2,11 @@
 //!
 //! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, doi 10.1145/383259.383297, section 5.
 
-use crate::ground::Ground;
+use crate::ground::{Ground, UNKNOWN};
 use crate::kept::Kept;
 use crate::neighborhood::{Part, Pass, Reads};
 use crate::visit::Visit;
-use crate::{Candidates, Options, Pyramid, SynthError, SynthErrorKind};
+use crate::{Candidates, Exemplar, Options, Pyramid, SynthError, SynthErrorKind};
 use core::ops::ControlFlow;
 use core::sync::atomic::AtomicU32;
 use dapple_hash::{Seed, hash1};
@@ -47,18 +47,25 @@ pub(crate) fn run<G: Ground>(
     let n_passes = passes.len();
     for (index, pass) in passes.iter().enumerate() {
         let n_sites = ground.n_sites(pass.level);
+        let candidates = Candidates::for_options(seen.as_ref().unwrap_or(pyramid), pass, options)?;
         if levels[pass.level].is_empty() {
+            let start = ground.start(pass.level);
             let reads_itself = pass.parts.iter().any(|part| part.reads == Reads::Same);
-            let first: Vec<u32> = if reads_itself {
-                random_pixels(n_sites, pyramid, pass.level, options.seed)
+            let mut first = if reads_itself || start.is_some() {
+                random_pixels(n_sites, pyramid, &candidates, pass.level, options.seed)
             } else {
                 // Nobody reads them before all are visited.
                 vec![0; n_sites]
             };
+            let known = start.map_or(&[][..], |start| &start.pixels);
+            for (first, &known) in first.iter_mut().zip(known) {
+                if known != UNKNOWN {
+                    *first = known;
+                }
+            }
             levels[pass.level] = first.into_iter().map(AtomicU32::new).collect();
         }
         let keep = side_to_keep(pass, passes.get(index + 1));
-        let candidates = Candidates::for_options(seen.as_ref().unwrap_or(pyramid), pass, options)?;
         let visit = Visit::new(ground, pyramid, candidates, pass, options, coherence);
         let mut tell = |done| {
             let progress = Progress {
@@ -78,14 +85,26 @@ pub(crate) fn run<G: Ground>(
     Ok(levels.into_iter().map(plain).collect())
 }
 
-/// A random pixel for every site of a level.
-fn random_pixels(n_sites: usize, pyramid: &Pyramid, level: usize, seed: Seed) -> Vec<u32> {
-    let size = pyramid.levels()[level].size;
-    let n_pixels = u64::from(size[0]) * u64::from(size[1]);
+/// A random pixel for every site of a level; of an exemplar with a mask, one of the candidates.
+fn random_pixels(
+    n_sites: usize,
+    pyramid: &Pyramid,
+    candidates: &Candidates,
+    level: usize,
+    seed: Seed,
+) -> Vec<u32> {
+    let Exemplar { size, usable, .. } = &pyramid.levels()[level];
+    let among = usable.as_ref().map(|_| &candidates.pixels);
+    let n_pixels = among.map_or(u64::from(size[0]) * u64::from(size[1]), |among| {
+        among.len() as u64
+    });
     let seed = seed.child("first colors", level as u64);
     // The upper 32 bits of a product with a number below 2^32 are spread evenly over that number.
-    let pixel = |site| (((hash1(seed, [site], 0) >> 32) * n_pixels) >> 32) as u32;
-    (0..n_sites as i64).map(pixel).collect()
+    let number = |site| (((hash1(seed, [site], 0) >> 32) * n_pixels) >> 32) as u32;
+    let pixel = |number: u32| among.map_or(number, |among| among[number as usize]);
+    (0..n_sites as i64)
+        .map(|site| pixel(number(site)))
+        .collect()
 }
 
 /// The side of the coarser square of the next pass, if that can be kept from this one: it is on the same level and no

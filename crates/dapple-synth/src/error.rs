@@ -27,6 +27,11 @@ dapple_raster::error! {
             /// The side of the neighborhood.
             side: u32,
         } => "level {level} of the exemplar has {} x {} pixels, too few for a neighborhood of side {side}", size[0], size[1];
+        /// A mask leaves nothing of a level of the exemplar.
+        Masked {
+            /// The level, 0 the finest.
+            level: usize,
+        } => "the mask leaves no neighborhood on level {level} of the exemplar";
         /// A map is no whole number of times as large as the exemplar.
         Detail {
             /// The size of the map in pixels.
@@ -35,6 +40,14 @@ dapple_raster::error! {
             exemplar: [u32; 2],
         } => "a map has {} x {} pixels, which is not the {} x {} of the exemplar times a whole number",
             map[0], map[1], exemplar[0], exemplar[1];
+        /// The source of a pixel is no pixel of the exemplar.
+        Source {
+            /// The column and row of the source.
+            source: [u32; 2],
+            /// The size of the exemplar in pixels.
+            exemplar: [u32; 2],
+        } => "a pixel is from column {} and row {}, but the exemplar has {} x {} pixels",
+            source[0], source[1], exemplar[0], exemplar[1];
         /// A pass reads a coarser level that has no colors yet.
         Unfilled {
             /// Which pass.

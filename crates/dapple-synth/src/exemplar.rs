@@ -35,6 +35,16 @@ dapple_raster::named! {
     }
 }
 
+impl Edges {
+    /// Where places past an edge are read.
+    pub(crate) fn wrap(self) -> Wrap {
+        match self {
+            Self::Cut => Wrap::Mirror,
+            Self::Wrap => Wrap::Repeat,
+        }
+    }
+}
+
 /// An image whose neighborhoods are matched: pixels of one or several channels.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Exemplar {
@@ -43,6 +53,8 @@ pub struct Exemplar {
     pub(crate) edges: Edges,
     /// `n_channels` values for each pixel, row by row.
     pub(crate) pixels: Vec<f32>,
+    /// Whether textures may have each pixel; all of them if nothing is said.
+    pub(crate) usable: Option<Vec<bool>>,
 }
 
 /// A Gaussian pyramid: the exemplar and its smaller versions, the finest first.
@@ -72,6 +84,7 @@ impl Exemplar {
             n_channels: 3,
             edges,
             pixels: image.pixels().iter().flat_map(codes).collect(),
+            usable: None,
         })
     }
 
@@ -122,6 +135,69 @@ impl Exemplar {
             n_channels,
             edges,
             pixels,
+            usable: None,
+        })
+    }
+
+    /// This exemplar without the pixels at which a mask is false: no texture has them, nor any pixel whose neighborhood
+    /// they are in.
+    ///
+    /// # Errors
+    ///
+    /// [`SynthErrorKind::Raster`] for a mask of another size.
+    pub fn with_mask(self, mask: &Raster<bool>) -> Result<Self, SynthError> {
+        mask.check_same_size(self.size)?;
+        let usable = Some(mask.pixels().to_vec());
+        Ok(Self { usable, ..self })
+    }
+
+    /// A smaller exemplar: the means of squares of `factor` pixels along each side, 1 or more. What does not fill a square
+    /// is left out, and a square with a pixel that a mask leaves out is left out, too.
+    ///
+    /// A texture of it shows the larger one with [`PlaneTexture::transfer`](crate::PlaneTexture::transfer), and takes a
+    /// fraction of the time and the memory.
+    ///
+    /// # Errors
+    ///
+    /// [`SynthErrorKind::Range`] for a factor of 0 and one that no square fits.
+    pub fn reduced(&self, factor: u32) -> Result<Self, SynthError> {
+        let side = self.size[0].min(self.size[1]);
+        let holds = (1..=side).contains(&factor);
+        SynthError::check(holds, "factor", factor.into(), "from 1 to the shorter side")?;
+        let n = self.n_channels;
+        let size = self.size.map(|side| side / factor);
+        let [width, columns] = [self.size[0], factor].map(|side| side as usize);
+        let square = |x: u32, y: u32| {
+            let rows = y as usize * columns..(y as usize + 1) * columns;
+            rows.flat_map(move |row| {
+                let first = row * width + x as usize * columns;
+                first..first + columns
+            })
+        };
+        let squares = || (0..size[1]).flat_map(move |y| (0..size[0]).map(move |x| square(x, y)));
+        let area = f64::from(factor) * f64::from(factor);
+        let mut pixels = Vec::with_capacity(size[0] as usize * size[1] as usize * n);
+        for square in squares() {
+            for channel in 0..n {
+                let values = square
+                    .clone()
+                    .map(|at| f64::from(self.pixels[at * n + channel]));
+                pixels.push((values.sum::<f64>() / area) as f32);
+            }
+        }
+        let usable = self.usable.as_ref();
+        let is_usable = |usable: &Vec<bool>| {
+            squares()
+                .map(|mut square| square.all(|at| usable[at]))
+                .collect()
+        };
+        let is_whole = size.map(|side| side * factor) == self.size;
+        Ok(Self {
+            size,
+            n_channels: n,
+            edges: if is_whole { self.edges } else { Edges::Cut },
+            pixels,
+            usable: usable.map(is_usable),
         })
     }
 
@@ -165,15 +241,22 @@ impl Exemplar {
 
     /// The pixels, and what lies past the edges; past a cut that is the mirrored image.
     pub(crate) fn grid(&self) -> Grid<Plain<'_>> {
-        let wrap = match self.edges {
-            Edges::Cut => Wrap::Mirror,
-            Edges::Wrap => Wrap::Repeat,
-        };
         Grid {
             colors: self.plain(),
             size: self.size,
-            wrap: [wrap; 2],
+            wrap: [self.edges.wrap(); 2],
         }
+    }
+
+    /// The number of a pixel, which may lie past an edge where the exemplar wraps.
+    pub(crate) fn pixel_at(&self, place: [i64; 2]) -> Option<usize> {
+        let [width, height] = self.size.map(i64::from);
+        let [column, row] = match self.edges {
+            Edges::Wrap => [place[0].rem_euclid(width), place[1].rem_euclid(height)],
+            Edges::Cut => place,
+        };
+        let is_within = (0..width).contains(&column) && (0..height).contains(&row);
+        is_within.then_some((row * width + column) as usize)
     }
 
     /// The values of the pixels.
@@ -236,11 +319,22 @@ impl Exemplar {
             let taps = taps(at, height, wrap_y).map(|row| &rows[row * row_len..][..row_len]);
             blend(taps, &mut pixels);
         }
+        let usable = self.usable.as_ref().map(|usable| {
+            let is_usable = |x: u32, y: u32| {
+                let columns = taps(x, width, wrap_x);
+                let is_usable =
+                    |row: usize| columns.iter().all(|&x| usable[row * width as usize + x]);
+                taps(y, height, wrap_y).into_iter().all(is_usable)
+            };
+            let row = |y| (0..half[0]).map(move |x| is_usable(x, y));
+            (0..half[1]).flat_map(row).collect()
+        });
         Self {
             size: half,
             n_channels: n,
             edges: if odd { Edges::Cut } else { self.edges },
             pixels,
+            usable,
         }
     }
 }
@@ -280,7 +374,7 @@ fn check_finite(value: f32, pixel: usize, width: u32) -> Result<(), SynthError> 
 }
 
 /// The five places that place `at` of the coarser level is the mean of.
-fn taps(at: u32, side: u32, wrap: Wrap) -> [usize; 5] {
+pub(crate) fn taps(at: u32, side: u32, wrap: Wrap) -> [usize; 5] {
     let center = 2 * i64::from(at);
     [-2, -1, 0, 1, 2].map(|step| wrap.index(center + step, side) as usize)
 }

@@ -4,6 +4,18 @@ use crate::turns::Turns;
 use core::ops::RangeInclusive;
 use core::sync::atomic::{AtomicU32, Ordering};
 
+/// In place of a site, or of the pixel of one that begins with a random one.
+pub(crate) const UNKNOWN: u32 = u32::MAX;
+
+/// What the sites of a level begin with.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Start {
+    /// The pixel of each site, or [`UNKNOWN`].
+    pub(crate) pixels: Vec<u32>,
+    /// Whether each site keeps its pixel.
+    pub(crate) is_kept: Vec<bool>,
+}
+
 /// The colors of sites, or of the pixels of a grid.
 pub(crate) trait Colors: Copy + Sync {
     /// The number of values of each.
@@ -56,7 +68,7 @@ pub(crate) enum Rows {
 pub(crate) struct Samples {
     /// `n_channels` values for each sample.
     pub(crate) values: Vec<f32>,
-    /// The site of the level read that counts most at each sample.
+    /// The site of the level read that counts most at each sample; [`UNKNOWN`] past an edge of a texture that is repaired.
     pub(crate) nearest: Vec<u32>,
 }
 
@@ -76,7 +88,18 @@ pub(crate) trait Ground: Sync {
         0.0
     }
 
-    /// The sites of a level in the order of the sweep.
+    /// What the sites of a level begin with; where there is nothing, random pixels, and all sites are visited.
+    fn start(&self, _level: usize) -> Option<&Start> {
+        None
+    }
+
+    /// Which of the four sites over one of the coarser level a site is: whether its column and its row are odd. Nothing where
+    /// sites do not lie so.
+    fn quarter(&self, _level: usize, _site: u32) -> Option<[i64; 2]> {
+        None
+    }
+
+    /// The sites of a level that are visited, in the order of the sweep.
     fn order(&self, level: usize) -> Vec<u32>;
 
     /// The tables of a pass over a level that reads squares of these halves on the level itself and on the next coarser

@@ -45,7 +45,8 @@
 //! itself.
 //!
 //! [`Synthesizer`] keeps all that does not depend on the exemplar; it can be used again, reports its progress and can be
-//! stopped. The same passes on pixels, for plain images and for tiles, are [`synthesize_plane`].
+//! stopped. The same passes on pixels, for plain images and for tiles, are [`synthesize_plane`]; [`PlaneTexture::repair`] makes a part
+//! of an image again, and [`tile_plane`] a tile of a photograph that does not repeat.
 //!
 //! # The paper's sections
 //!
@@ -157,7 +158,7 @@ pub use matcher::{Match, Matcher, MatcherMemory, distance_sq};
 pub use neighborhood::{Part, Pass, Reads, Schedule, Shape};
 pub use options::{Axes, Coherence, Options, Sources};
 pub use orientation::{Direction, Orientation};
-pub use plane::{PlaneTexture, synthesize_plane, synthesize_plane_with};
+pub use plane::{PlaneTexture, synthesize_plane, synthesize_plane_with, tile_plane};
 pub use sites::{
     Blend, Connected, DOWNSAMPLE_STEPS, DOWNSAMPLE_T, Evenness, Hierarchy, HierarchyOptions,
     INTERPOLATION_RADIUS, Level, LowPass, STAR_RADIUS, SiteGraph, SiteGrid, SiteIdx, SiteTriangles,

@@ -151,6 +151,29 @@ impl Schedule {
         Self { passes }
     }
 
+    /// The passes of a [repair](crate::PlaneTexture::repair): F(7, 0), eight times on the coarsest level, and F(7, 1), then
+    /// F(7, 0) + F(3, 1) twice on each finer one.
+    #[must_use]
+    pub fn repair(n_levels: usize) -> Self {
+        let paper = Self::paper(n_levels).passes.into_iter();
+        let passes = paper.flat_map(|pass| match pass.parts[..] {
+            [
+                Part {
+                    reads: Reads::Coarser,
+                    ..
+                },
+            ] => vec![pass],
+            [_] => {
+                let parts = vec![Part::new(Shape::Full, 7, Reads::Same)];
+                vec![Pass { parts, ..pass }; 8]
+            }
+            _ => vec![pass; 2],
+        });
+        Self {
+            passes: passes.collect(),
+        }
+    }
+
     /// The method without levels, whose pseudo-code is in section 5.1: one pass with one neighborhood.
     #[must_use]
     pub fn single_level(shape: Shape, side: u32) -> Self {

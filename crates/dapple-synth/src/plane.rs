@@ -12,17 +12,21 @@
 //! in slanted lines instead, which change the texture no more than another seed and can be visited on all cores.
 
 mod enlarge;
+mod repair;
+mod tile;
 
 use crate::candidates::halves;
 use crate::detail;
-use crate::engine::{self, Progress};
+use crate::engine::{self, Callback, Progress};
 use crate::grid::{self, Grid};
-use crate::ground::{Colors, Ground, Samples, Square};
+use crate::ground::{Colors, Ground, Samples, Square, Start, UNKNOWN};
 use crate::neighborhood::Reads;
 use crate::turns::Turns;
-use crate::{CoarserCenter, Edges, Exemplar, Options, SynthError};
+use crate::{CoarserCenter, Edges, Exemplar, Options, Pyramid, SynthError, SynthErrorKind};
 use core::ops::ControlFlow;
 use dapple_raster::{Raster, Wrap};
+
+pub use tile::tile_plane;
 
 /// The most pixels of a texture: one takes about 200 bytes on the way.
 const MAX_PIXELS: u64 = 1 << 26;
@@ -34,7 +38,7 @@ const SLANT: u32 = 4;
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlaneTexture {
     sources: Raster<[u32; 2]>,
-    wrap: [Wrap; 2],
+    edges: [Edges; 2],
     exemplar_size: [u32; 2],
     exemplar_edges: Edges,
 }
@@ -92,21 +96,61 @@ pub fn synthesize_plane_with(
 ) -> Result<PlaneTexture, SynthError> {
     let pyramid = exemplar.pyramid(options.n_levels)?;
     let ground = PlaneGround::new(size, edges, options)?;
-    let mut levels = engine::run(&ground, &pyramid, options, &mut callback)?;
-    let width = exemplar.size[0];
-    let sources = levels.swap_remove(0).into_iter();
-    let sources = sources
-        .map(|pixel| [pixel % width, pixel / width])
-        .collect();
-    Ok(PlaneTexture {
-        sources: Raster::from_vec(size, sources)?,
-        wrap: ground.wrap,
-        exemplar_size: exemplar.size,
-        exemplar_edges: exemplar.edges,
-    })
+    PlaneTexture::grown(&ground, &pyramid, options, &mut callback)
 }
 
 impl PlaneTexture {
+    /// Runs the passes of a synthesis.
+    fn grown(
+        ground: &PlaneGround,
+        pyramid: &Pyramid,
+        options: &Options,
+        callback: Callback<'_>,
+    ) -> Result<Self, SynthError> {
+        let mut levels = engine::run(ground, pyramid, options, callback)?;
+        let exemplar = &pyramid.levels()[0];
+        let width = exemplar.size[0];
+        let sources = levels.swap_remove(0).into_iter();
+        let sources = sources
+            .map(|pixel| [pixel % width, pixel / width])
+            .collect();
+        Ok(Self {
+            sources: Raster::from_vec(ground.sizes[0], sources)?,
+            edges: ground.edges,
+            exemplar_size: exemplar.size,
+            exemplar_edges: exemplar.edges,
+        })
+    }
+
+    /// The texture with these [`sources`](Self::sources) in an exemplar of a size: a texture that was made before, for maps
+    /// that it is to show now.
+    ///
+    /// `edges` and `exemplar_edges` say what lies past the edges of the texture and of the exemplar.
+    ///
+    /// # Errors
+    ///
+    /// [`SynthErrorKind::Source`](crate::SynthErrorKind::Source) for a source outside of the exemplar.
+    pub fn from_sources(
+        sources: Raster<[u32; 2]>,
+        edges: [Edges; 2],
+        exemplar_size: [u32; 2],
+        exemplar_edges: Edges,
+    ) -> Result<Self, SynthError> {
+        let is_outside = |source: &[u32; 2]| (0..2).any(|axis| source[axis] >= exemplar_size[axis]);
+        match sources.pixels().iter().find(|source| is_outside(source)) {
+            Some(&source) => Err(SynthError::new(SynthErrorKind::Source {
+                source,
+                exemplar: exemplar_size,
+            })),
+            None => Ok(Self {
+                sources,
+                edges,
+                exemplar_size,
+                exemplar_edges,
+            }),
+        }
+    }
+
     /// The column and row in the exemplar of the pixel that each pixel is from.
     #[must_use]
     pub fn sources(&self) -> &Raster<[u32; 2]> {
@@ -137,7 +181,7 @@ impl PlaneTexture {
         let size = self.sources.size().map(|side| side.saturating_mul(factor));
         let magnified = enlarge::Enlarged {
             sources: &self.sources,
-            wrap: self.wrap,
+            wrap: self.edges.map(Edges::wrap),
             size: self.exemplar_size.map(i64::from),
             edges: self.exemplar_edges,
             factor: i64::from(factor),
@@ -155,8 +199,11 @@ impl PlaneTexture {
 struct PlaneGround {
     /// The sizes of the levels, the finest first.
     sizes: Vec<[u32; 2]>,
+    edges: [Edges; 2],
     wrap: [Wrap; 2],
     center: CoarserCenter,
+    /// What the sites of each level begin with; nothing for random pixels.
+    starts: Vec<Start>,
 }
 
 impl PlaneGround {
@@ -174,12 +221,39 @@ impl PlaneGround {
         let sizes = core::iter::successors(Some(size), halved);
         Ok(Self {
             sizes: sizes.take(options.n_levels).collect(),
-            wrap: edges.map(|edges| match edges {
-                Edges::Cut => Wrap::Mirror,
-                Edges::Wrap => Wrap::Repeat,
-            }),
+            edges,
+            wrap: edges.map(Edges::wrap),
             center: options.center,
+            starts: Vec::new(),
         })
+    }
+
+    /// The site at a column and row, which may lie past an edge that wraps.
+    fn index(&self, level: usize, place: [i64; 2]) -> Option<usize> {
+        let size = self.sizes[level];
+        let mut at = [0; 2];
+        for axis in 0..2 {
+            let side = i64::from(size[axis]);
+            at[axis] = match self.edges[axis] {
+                Edges::Wrap => place[axis].rem_euclid(side),
+                Edges::Cut if (0..side).contains(&place[axis]) => place[axis],
+                Edges::Cut => return None,
+            };
+        }
+        Some((at[1] * i64::from(size[0]) + at[0]) as usize)
+    }
+
+    /// Replaces the sites of a square that lie past an edge that is cut.
+    fn leave_out_mirrored(&self, halves: [i64; 2], square: &Square, nearest: &mut [u32]) {
+        let side = square.side();
+        let [first_x, first_y] = halves.map(|at| at.div_euclid(2) - i64::from(square.half));
+        for (y, row) in (first_y..).zip(nearest.chunks_exact_mut(side)) {
+            for (x, nearest) in (first_x..).zip(row) {
+                if self.index(square.reads, [x, y]).is_none() {
+                    *nearest = UNKNOWN;
+                }
+            }
+        }
     }
 
     /// The column and row of a site.
@@ -199,8 +273,19 @@ impl Ground for PlaneGround {
         width as usize * height as usize
     }
 
+    fn start(&self, level: usize) -> Option<&Start> {
+        self.starts.get(level)
+    }
+
+    fn quarter(&self, level: usize, site: u32) -> Option<[i64; 2]> {
+        Some(self.pixel(level, site).map(|at| i64::from(at % 2)))
+    }
+
     fn order(&self, level: usize) -> Vec<u32> {
         let n_sites = self.n_sites(level) as u32;
+        if let Some(start) = self.start(level) {
+            return repair::order(start, self.sizes[level][0]);
+        }
         if self.wrap[0] != Wrap::Repeat || level + 1 == self.sizes.len() {
             return (0..n_sites).collect();
         }
@@ -233,7 +318,7 @@ impl Ground for PlaneGround {
             latest
         };
         let order = self.order(level);
-        Turns::new(&order, order.len(), |site| site as usize, latest)
+        Turns::new(&order, self.n_sites(level), |site| site as usize, latest)
     }
 
     fn read(
@@ -262,6 +347,9 @@ impl Ground for PlaneGround {
             for (&column, nearest) in columns.iter().zip(nearest) {
                 *nearest = *row as u32 * size[0] + column as u32;
             }
+        }
+        if !self.starts.is_empty() {
+            self.leave_out_mirrored(at, &square, &mut samples.nearest);
         }
     }
 }

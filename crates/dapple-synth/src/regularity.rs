@@ -87,6 +87,7 @@ impl Exemplar {
                 .flat_map(|row| &row[left * self.n_channels..][..len])
                 .copied()
                 .collect(),
+            usable: None,
         }
     }
 }

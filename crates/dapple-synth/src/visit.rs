@@ -2,7 +2,7 @@
 
 mod order;
 
-use crate::ground::{Ground, Painted, Rows, Samples, Square};
+use crate::ground::{Ground, Painted, Rows, Samples, Square, UNKNOWN};
 use crate::kept::Kept;
 use crate::matcher::Query;
 use crate::neighborhood::{Pass, Reads, Shape};
@@ -24,6 +24,8 @@ pub(crate) struct Visit<'a, G: Ground> {
     pyramid: &'a [Exemplar],
     candidates: Candidates,
     matcher: Matcher,
+    /// Whether sites that go on with what is around them keep their pixels.
+    is_repair: bool,
     coherence: f32,
     /// 0 where uses do not count.
     evenness: f32,
@@ -117,6 +119,7 @@ impl<'a, G: Ground> Visit<'a, G> {
                 Matcher::new(candidates.dims, &candidates.rows)
             },
             candidates,
+            is_repair: ground.start(pass.level).is_some(),
             coherence,
             evenness,
             terms,
@@ -128,6 +131,12 @@ impl<'a, G: Ground> Visit<'a, G> {
     /// Gives a site the pixel of the row that matches, and tells which one that is.
     fn visit(&self, site: u32, worker: &mut Worker<G::Memory>, state: &State<'_>) -> u32 {
         self.gather(site, worker, state);
+        if self.is_repair
+            && let Some(pixel) = self.pixel_of_piece(site, worker, state)
+        {
+            state.here.sources[site as usize].store(pixel, Ordering::Relaxed);
+            return NOWHERE;
+        }
         let row = self.best_row(worker, state.factors);
         // Without any row, which finite values do not lead to, the site keeps what it has.
         if let Some(&pixel) = self.candidates.pixels.get(row as usize) {
@@ -135,6 +144,43 @@ impl<'a, G: Ground> Visit<'a, G> {
             state.here.sources[site as usize].store(pixel, Ordering::Relaxed);
         }
         row
+    }
+
+    /// The pixel of a site all of whose neighborhood goes on with one piece of the exemplar: no other fits better.
+    fn pixel_of_piece(
+        &self,
+        site: u32,
+        worker: &Worker<G::Memory>,
+        state: &State<'_>,
+    ) -> Option<u32> {
+        let (reads, samples, painted) = match self.same {
+            Some(_) => (Reads::Same, &worker.same, state.here),
+            None => (Reads::Coarser, &worker.coarser, state.coarser?),
+        };
+        let exemplar = &self.pyramid[self.level + reads.step()];
+        let mut piece = None;
+        for term in self.terms.iter().filter(|term| term.reads == reads) {
+            let nearest = samples.nearest[term.sample];
+            if nearest == UNKNOWN {
+                continue;
+            }
+            let source = painted.source(nearest as usize);
+            let width = exemplar.size[0];
+            let [x, y] = [source % width, source / width].map(i64::from);
+            let [i, j] = term.offset.map(i64::from);
+            let predicted = exemplar.pixel_at([x - i, y - j])?;
+            if *piece.get_or_insert(predicted) != predicted {
+                return None;
+            }
+        }
+        let piece = piece? as u32;
+        if reads == Reads::Same {
+            return (painted.source(site as usize) == piece).then_some(piece);
+        }
+        let quarter = self.ground.quarter(self.level, site)?;
+        let [x, y] = [piece % exemplar.size[0], piece / exemplar.size[0]].map(i64::from);
+        let pixel = [2 * x + quarter[0], 2 * y + quarter[1]];
+        Some(self.pyramid[self.level].pixel_at(pixel)? as u32)
     }
 
     /// Reads the neighborhood of a site, and gathers the rows that continue its neighbors.
@@ -197,7 +243,7 @@ impl<'a, G: Ground> Visit<'a, G> {
                 continue;
             }
             let nearest = samples.nearest[term.sample];
-            if nearest == square.site {
+            if nearest == square.site || nearest == UNKNOWN {
                 continue;
             }
             let source = painted.source(nearest as usize);

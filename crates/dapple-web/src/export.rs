@@ -1,8 +1,8 @@
 //! The files of an export: those of `dapple bake` with the same options, byte for byte.
 
-use dapple_image::{Content, Depth, Encoding, RowWriter};
-use dapple_recipe::{Bake, BakeOptions, Images, MapKind, MapRows, Plan, Recipe};
-use dapple_studio::{Export, FileSize, MAX_SIDE, StudioError};
+use dapple_image::{Depth, Encoding, RowWriter};
+use dapple_recipe::{Bake, BakeOptions, Images, MapKind, Plan, Recipe};
+use dapple_studio::{Export, FileSize, MAX_SIDE, StudioError, map_kinds};
 use std::io::Cursor;
 
 /// The files that a page downloads, and what is in each.
@@ -16,7 +16,7 @@ pub(crate) fn files(
         let message = format!("a side of a picture is at most {MAX_SIDE} pixels");
         return Err(StudioError::new(message));
     }
-    let maps = map_kinds(export)?;
+    let maps = map_kinds(export.maps.as_deref().unwrap_or_default())?;
     let plan = Plan::new(recipe, &Images::new(), 0.0)?;
     let options = BakeOptions {
         size,
@@ -24,18 +24,12 @@ pub(crate) fn files(
         ..BakeOptions::default()
     };
     let writer = |kind: &MapKind| {
-        RowWriter::new(Cursor::new(Vec::new()), size, content(*kind), encoding).map_err(told)
+        RowWriter::new(Cursor::new(Vec::new()), size, kind.content(), encoding).map_err(told)
     };
     let mut writers = maps.iter().map(writer).collect::<Result<Vec<_>, _>>()?;
     for band in Bake::new(&plan, &options)? {
         for ((_, rows), writer) in band?.maps.iter().zip(&mut writers) {
-            let written = match rows {
-                MapRows::Gray(rows) => writer.write_gray(rows.view()),
-                MapRows::Color(rows) => writer.write_color(rows.view()),
-                MapRows::Normal(rows) => writer.write_normals(rows.view()),
-                MapRows::Packed(rows) => writer.write_packed(rows.view()),
-            };
-            written.map_err(told)?;
+            rows.write(writer).map_err(told)?;
         }
     }
     let stem = match recipe.name.as_str() {
@@ -74,23 +68,6 @@ fn encoding(export: &Export) -> Result<(Encoding, &'static str), StudioError> {
             return Err(StudioError::new(message).with_hint("ask for png8, png16 or npy"));
         }
     })
-}
-
-fn map_kinds(export: &Export) -> Result<Vec<MapKind>, StudioError> {
-    let kind = |name: &String| {
-        let kind = MapKind::from_name(name);
-        kind.ok_or_else(|| StudioError::new(format!("there is no map `{name}`")))
-    };
-    export.maps.iter().flatten().map(kind).collect()
-}
-
-fn content(kind: MapKind) -> Content {
-    match kind {
-        MapKind::Normal => Content::Normal,
-        MapKind::Albedo => Content::Color,
-        MapKind::Orm => Content::Packed,
-        _ => Content::Gray,
-    }
 }
 
 fn told(error: dapple_image::ImageError) -> StudioError {

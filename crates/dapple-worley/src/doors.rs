@@ -40,6 +40,8 @@ pub trait Doors<const N: usize>: Sized {
 macro_rules! doors {
     ($($n:literal)*) => {$(
         impl Doors<$n> for Axes {
+            // Inlined elsewhere, the conversion would compile there all that rendering calls.
+            #[inline(never)]
             fn basis(worley: &Worley<$n>) -> &dyn Basis {
                 worley
             }

@@ -5,7 +5,7 @@ use crate::encode::Format;
 use crate::error::{Exit, Hint, usage};
 use crate::input;
 use crate::job::{Context, Job};
-use crate::layers::{LayerRows, Layers};
+use crate::layers::LayerRows;
 use crate::output::{OutputIdx, Target, cannot_be_written};
 use crate::progress::Progress;
 use crate::shards::{List, Task};
@@ -167,7 +167,7 @@ impl Args {
             Target::Path(_) => self.format,
         };
         let format = Format::choose(asked, target, Format::Png16)?;
-        format.check(Layers::Map(kind).content(), target)?;
+        format.check(kind.content(), target)?;
         if kind == MapKind::Normal && format == Format::Npy {
             let error = usage(format!(
                 "{target}: normals in shards are (part + 1) / 2, rounded, and an array has the parts themselves"
@@ -263,7 +263,7 @@ fn finish(writer: RowWriter<BufWriter<File>>) -> Result<()> {
 
 /// The content of an image of a map. Normals are numbers from 0 to 1 in shards, which are coded to the same codes.
 fn content(kind: MapKind) -> Content {
-    match Layers::Map(kind).content() {
+    match kind.content() {
         Content::Normal => Content::Packed,
         content => content,
     }

@@ -5,13 +5,16 @@ mod options;
 mod plane;
 mod surface;
 
-use crate::args::{AlphaArgs, ImageArgs, Region};
+use crate::args::{Alpha, AlphaArgs, ImageArgs, Region};
 use crate::error::{Exit, Hint, usage};
 use crate::input::{self, Kind, Loaded};
 use crate::job::{Context, Job};
 use crate::output::{OutputIdx, Target};
 use crate::progress::Progress;
 use anyhow::{Error, Result, bail};
+use dapple::color::LinearRgb;
+use dapple::raster::Raster;
+use dapple::recipe::ImageAlpha;
 use dapple::synth::{Exemplar, Progress as Steps, SynthError, SynthErrorKind};
 use dapple::tile::Map;
 use options::{MatchArgs, PlaneArgs, SurfaceArgs};
@@ -23,6 +26,9 @@ use std::str::FromStr;
 const EXAMPLES: &str = "\
 Examples:
   dapple synth grass.png --size 256 --wrap both -o meadow.png
+  dapple synth photo.png --repair scratch.png -o clean.png
+  dapple synth grass.png --size 256 --sources meadow_places.exr -o meadow.png
+  dapple synth sand.png --replay places.exr -o desert.png
   dapple synth grass.png --size 300x200 --map normal=grass_normal.png \\
     --seed 7 -o meadow.png
   dapple synth checker.png --mesh model.obj --edges wrap --sites 4000 \\
@@ -60,6 +66,11 @@ pub(crate) struct Args {
     /// Use only this part of the example, in pixels.
     #[arg(long, value_name = "X,Y,W,H")]
     region: Option<Region>,
+
+    /// Use only those pixels of the example at which this image, of its size, is white. Neighborhoods with other pixels are
+    /// not used either.
+    #[arg(long, value_name = "IMAGE")]
+    mask: Option<PathBuf>,
 
     #[command(flatten)]
     #[serde(flatten)]
@@ -106,11 +117,13 @@ impl FromStr for MapArg {
     }
 }
 
-/// The input of the synthesis: what is shown, which is the example or a larger version of it, and the maps that follow.
+/// The input of the synthesis: the exemplar, what is shown, which is the example or a larger version of it, the maps that
+/// follow, and which pixels are made again, if the example is repaired.
 struct Input {
     base: Loaded,
     maps: Vec<(String, Loaded)>,
     exemplar: Exemplar,
+    hole: Option<Raster<bool>>,
 }
 
 /// Synthesizes a texture.
@@ -153,7 +166,23 @@ impl Args {
             Map::Value(values) => Exemplar::from_planes(&[(values, 1.0)], edges),
             Map::Normal(_) => bail!("normals are no example"),
         };
-        let exemplar = exemplar.map_err(advise)?;
+        let mut exemplar = exemplar.map_err(advise)?;
+        let hole = self.plane.repair.as_deref();
+        let hole = hole
+            .map(|path| self.load_mask(path, exemplar.size()))
+            .transpose()?;
+        let mask = self.mask.as_deref();
+        let mask = mask
+            .map(|path| self.load_mask(path, exemplar.size()))
+            .transpose()?;
+        if mask.is_some() || hole.is_some() {
+            let is_usable = |column: u32, row: u32| {
+                let is_white = |mask: &Raster<bool>| mask.row(row)[column as usize];
+                mask.as_ref().is_none_or(is_white) && !hole.as_ref().is_some_and(is_white)
+            };
+            let usable = Raster::from_fn(exemplar.size(), is_usable)?;
+            exemplar = exemplar.with_mask(&usable)?;
+        }
         let (path, base) = match &self.detail {
             None => (&self.exemplar, example),
             Some(path) => (path, self.load_detail(path, exemplar.size())?),
@@ -177,7 +206,21 @@ impl Args {
             base,
             maps,
             exemplar,
+            hole,
         })
+    }
+
+    /// Reads a mask as large as the example: whether its pixels are nearer to white than to black.
+    fn load_mask(&self, path: &Path, size: [u32; 2]) -> Result<Raster<bool>> {
+        let over_black = Alpha::Without(ImageAlpha::Over(LinearRgb::default()));
+        let mask = input::map_with_alpha(path, Kind::ByChannels, self.region, over_black)?.map;
+        input::check_size(path, mask.size(), &self.exemplar, size)
+            .hint("a mask of an example has its size")?;
+        match mask {
+            Map::Value(values) => Ok(values.map(|&value| value >= 0.5)),
+            Map::Color(colors) => Ok(colors.map(|color| color.luminance() >= 0.5)),
+            Map::Normal(_) => bail!("normals are no mask"),
+        }
     }
 
     /// Reads a version of the example that is a whole number of times as large.
@@ -257,6 +300,8 @@ fn advise(error: SynthError) -> Error {
         SynthErrorKind::Range { what, .. } if what.contains("side") => {
             "take a larger --texture-size, a smaller --padding, or a mesh with fewer faces"
         }
+        SynthErrorKind::Source { .. } => "give sources in an example of this size",
+        SynthErrorKind::Masked { .. } => "let the mask leave larger pieces, or take fewer --levels",
         SynthErrorKind::Direction { .. } => "let directions lie along the surface",
         SynthErrorKind::Range { .. } | SynthErrorKind::Count { .. } => {
             return Error::new(error).wrong_value();

@@ -28,7 +28,7 @@ const READERS: [&str; 20] = [
 ];
 
 /// Invalid command lines that clap does not detect.
-const WRONG: [&str; 39] = [
+const WRONG: [&str; 42] = [
     "bake flagstone -o out.png --name rock",
     "bake flagstone --frames 2 -o rock.glb",
     "bake flagstone --frames 2 --maps height -o -",
@@ -65,13 +65,16 @@ const WRONG: [&str; 39] = [
     "blend rock.png grass.png --sharpness 2 -o out.png",
     "synth checker.png --sites 100 -o out.png",
     "synth checker.png --mesh model.obj --size 64 -o out.glb",
+    "synth photo.png --mesh model.obj --repair scratch.png -o out.glb",
+    "synth photo.png --repair scratch.png --size 64 -o out.png",
+    "tile photo.png --seed 3 -o out.png",
     "synth checker.png --mesh model.obj -o out.stl",
     "points white --radius 0.1",
     "points --count 5 -o out.svg",
 ];
 
 /// Command lines with a value that a library rejects, and a part of the message.
-const LIMITS: [(&str, &str); 21] = [
+const LIMITS: [(&str, &str); 22] = [
     ("bake flagston -o out/", "flagstone"),
     (
         "bake flagstone --region 60,0,8,8 --size 64 -o out/",
@@ -117,13 +120,17 @@ const LIMITS: [(&str, &str); 21] = [
         "--feature-size 0: ",
     ),
     ("synth checker.png --levels 6 -o out.png", "--levels"),
+    (
+        "tile photo.png --method synth --margin 40 -o out.png",
+        "--margin",
+    ),
     ("points --radius 3", "--radius 3: "),
     ("points --radius 0", "--radius 0: "),
     ("points nested --radii 0.1,0.2", "radius"),
 ];
 
 /// Command lines whose files do not match, and a part of the message.
-const UNLIKE: [(&str, &str); 7] = [
+const UNLIKE: [(&str, &str); 8] = [
     ("tile photo.png checker.png -o out/", CHECKER),
     ("blend photo.png checker.png -o out.png", CHECKER),
     ("blend photo.png checker.png -o out.png", "hint: --size"),
@@ -140,6 +147,7 @@ const UNLIKE: [(&str, &str); 7] = [
         "synth photo.png --map cover=checker.png --size 16 -o out.png",
         CHECKER,
     ),
+    ("synth photo.png --repair checker.png -o out.png", CHECKER),
 ];
 
 /// The message with both names and sizes.

@@ -417,6 +417,116 @@ fn a_covered_mesh_reads_back_with_its_texture() {
 }
 
 #[test]
+fn a_repair_changes_only_what_is_white_in_its_mask() {
+    let folder = Folder::with_inputs("repair");
+    let repair = |more: &str| {
+        let line = format!("synth photo.png --repair scratch.png --format png8 {more}");
+        folder.run(&line.split(' ').collect::<Vec<_>>())
+    };
+    assert_done(&repair("--map height=height.png -o out.png"), "repair");
+    let pixels = |name: &str| {
+        let image = read_image(folder.path(name), &Limits::default()).unwrap();
+        image.color().unwrap().into_pixels()
+    };
+    let (before, after) = (pixels("photo.png"), pixels("out.png"));
+    let mut n_new = 0;
+    for (at, (before, after)) in before.iter().zip(&after).enumerate() {
+        let is_scratch = (28..36).contains(&(at % 64)) && (20..44).contains(&(at / 64));
+        assert!(is_scratch || before == after, "pixel {at}");
+        n_new += usize::from(before != after);
+    }
+    assert!(n_new > 8 * 24 / 2, "{n_new} pixels are made again");
+    // A mask that leaves nothing out changes nothing, and one that leaves all out is refused.
+    let gray = |name: &str, value| {
+        let plane = Raster::filled([64; 2], value).unwrap();
+        write_gray_png(folder.path(name), &plane, Depth::Eight).unwrap();
+    };
+    gray("white.png", 1.0);
+    gray("black.png", 0.0);
+    assert_done(&repair("--mask white.png -o all.png"), "all of it");
+    assert!(pixels("all.png") == after, "a white mask");
+    let text = stderr(&repair("--mask black.png -o none.png"));
+    assert!(text.contains("the mask leaves no neighborhood"), "{text}");
+}
+
+#[test]
+fn sources_that_were_written_lay_out_another_example_in_the_same_way() {
+    let folder = Folder::with_inputs("sources");
+    let run = |line: &str| folder.run(&line.split(' ').collect::<Vec<_>>());
+    let first = "synth checker.png --size 24 --sources own.exr -o first.png";
+    assert_done(&run(first), first);
+    for (example, out) in [
+        ("checker.png", "again.png"),
+        ("height.png --region 0,0,32,32", "low.png"),
+    ] {
+        let line = format!("synth {example} --replay own.exr -o {out}");
+        assert_done(&run(&line), &line);
+    }
+    let bytes = |name: &str| fs::read(folder.path(name)).unwrap();
+    assert!(bytes("again.png") == bytes("first.png"), "the same texture");
+    let places = read_image(folder.path("own.exr"), &Limits::default()).unwrap();
+    let [height, low] = ["height.png", "low.png"].map(|name| gray(&folder, name));
+    for (place, low) in places.color().unwrap().pixels().iter().zip(low.pixels()) {
+        assert_eq!(
+            height.row(place.g as u32)[place.r as usize],
+            *low,
+            "{place:?}"
+        );
+    }
+    for (line, part) in [
+        (
+            "synth photo.png --replay height.exr -o out.png",
+            "height.exr",
+        ),
+        (
+            "synth photo.png --replay photo.png -o out.png",
+            "has no sources",
+        ),
+        (
+            "synth checker.png --region 0,0,8,8 --replay own.exr -o out.png",
+            "8 x 8",
+        ),
+        (
+            "synth checker.png --sources places.png -o out.png",
+            "OpenEXR",
+        ),
+    ] {
+        let output = run(line);
+        assert_eq!(output.status.code(), Some(2), "{line}");
+        assert!(
+            stderr(&output).contains(part),
+            "{line}: {}",
+            stderr(&output)
+        );
+    }
+}
+
+#[test]
+fn a_synthesized_tile_has_pixels_of_the_photograph_in_all_maps() {
+    let folder = Folder::with_inputs("synthesized");
+    let line = "tile photo.png height.png --method synth --margin 12 --format png16 -o out/";
+    for _ in 0..2 {
+        let line = format!("{line} --force");
+        assert_done(&folder.run(&line.split(' ').collect::<Vec<_>>()), &line);
+    }
+    let read = |name: &str| read_image(folder.path(name), &Limits::default()).unwrap();
+    let [photo, tile] = ["photo.png", "out/photo.png"].map(|name| read(name).color().unwrap());
+    let [height, low] = ["height.png", "out/height.png"].map(|name| read(name).gray().unwrap());
+    assert_eq!(tile.size(), low.size(), "one tile");
+    for side in tile.size() {
+        assert!((32..=58).contains(&side) && side % 4 == 0, "{side}");
+    }
+    // Codes of colors are of one pixel with the height there.
+    let pairs: Vec<_> = photo.pixels().iter().zip(height.pixels()).collect();
+    for pair in tile.pixels().iter().zip(low.pixels()) {
+        let is_pixel = pairs.iter().any(|&(color, height)| {
+            color.to_srgb::<u8>() == pair.0.to_srgb::<u8>() && height == pair.1
+        });
+        assert!(is_pixel, "{pair:?}");
+    }
+}
+
+#[test]
 fn a_gray_photograph_keeps_its_codes_on_a_mesh() {
     let folder = Folder::with_inputs("gray");
     let squares = Raster::from_fn([32; 2], |x, y| [91, 131][((x / 8 + y / 8) % 2) as usize]);

@@ -1,7 +1,9 @@
 //! Test folders with inputs, and running the command in them.
 
 use dapple::color::{LinearRgb, Normal};
-use dapple::image::{Depth, write_color_png, write_gray_exr, write_gray_png, write_normal_png};
+use dapple::image::{
+    Depth, write_color_exr, write_color_png, write_gray_exr, write_gray_png, write_normal_png,
+};
 use dapple::mesh::Model;
 use dapple::mesh_io::write_model;
 use dapple::raster::Raster;
@@ -57,11 +59,17 @@ impl Folder {
         for name in ["height", "mask", "cracks", "rock_height", "grass_height"] {
             write_gray_png(folder.path(&format!("{name}.png")), &gray(), Depth::Sixteen).unwrap();
         }
+        let scratch = |x: u32, y: u32| f32::from((28..36).contains(&x) && (20..44).contains(&y));
+        let scratch = Raster::from_fn([SIDE; 2], scratch).unwrap();
+        write_gray_png(folder.path("scratch.png"), &scratch, Depth::Eight).unwrap();
         for name in ["normal", "rock_normal", "grass_normal"] {
             let flat = Raster::filled([SIDE; 2], Normal::FLAT).unwrap();
             write_normal_png(folder.path(&format!("{name}.png")), &flat, Depth::Eight).unwrap();
         }
         write_gray_exr(folder.path("height.exr"), &gray()).unwrap();
+        let place = |x: u32, y: u32| LinearRgb::new((x % SIDE) as f32, (y % SIDE) as f32, 0.0);
+        let places = Raster::from_fn([SIDE + 9, SIDE], place).unwrap();
+        write_color_exr(folder.path("places.exr"), &places).unwrap();
         // Noise without any structure repeats without a visible seam.
         write_gray_png(folder.path("grain.png"), &noise(), Depth::Eight).unwrap();
         let checker = checker();

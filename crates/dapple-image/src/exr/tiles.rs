@@ -9,6 +9,7 @@
 //! eleven times as long; PIZ gains less and takes longer still. Masks, cells and flat parts are runs.
 
 use crate::limits::check_side;
+use crate::rows::Sink;
 use crate::{ImageError, ImageErrorKind};
 use dapple_raster::{Raster, RasterView};
 use exr::block::chunk::Chunk;
@@ -20,7 +21,7 @@ use exr::meta::attribute::{
 };
 use exr::meta::header::{Header, LayerAttributes};
 use exr::meta::{BlockDescription, MetaData, magic_number};
-use std::io::{Seek, SeekFrom, Write};
+use std::io::SeekFrom;
 
 /// The numbers of columns and rows of a tile.
 const TILE: usize = 64;
@@ -32,9 +33,9 @@ const GROUP: usize = 64;
 /// past half of that.
 const SIDE_LIMIT: u32 = i32::MAX as u32 / 2 - 1;
 
-/// An OpenEXR file that is being written into `sink`.
-pub(crate) struct TileStream<W> {
-    sink: W,
+/// An OpenEXR file that is being written into a sink. It does not own the sink, so that the codec is compiled once for
+/// all.
+pub(crate) struct TileStream {
     band: Band,
     /// The place of the table of tiles in the file.
     table: u64,
@@ -54,9 +55,13 @@ struct Band {
     first_row: usize,
 }
 
-impl<W: Write + Seek> TileStream<W> {
+impl TileStream {
     /// Begins a file of planes, whose names are sorted, in an empty sink. The header is written at once.
-    pub(crate) fn new(mut sink: W, size: [u32; 2], planes: &[&str]) -> Result<Self, ImageError> {
+    pub(crate) fn new(
+        sink: &mut dyn Sink,
+        size: [u32; 2],
+        planes: &[&str],
+    ) -> Result<Self, ImageError> {
         check_side(size, SIDE_LIMIT, "OpenEXR")?;
         let headers = [header(size, planes)];
         let feature = "an OpenEXR image of this size";
@@ -69,7 +74,6 @@ impl<W: Write + Seek> TileStream<W> {
         sink.write_all(&bytes).map_err(failure)?;
         sink.seek(SeekFrom::Start(position)).map_err(failure)?;
         Ok(Self {
-            sink,
             band: Band {
                 headers,
                 values: Vec::new(),
@@ -85,6 +89,7 @@ impl<W: Write + Seek> TileStream<W> {
     /// plane.
     pub(crate) fn write_rows<T>(
         &mut self,
+        sink: &mut dyn Sink,
         rows: RasterView<'_, T>,
         part: impl Fn(&T, usize) -> f32,
     ) -> Result<(), ImageError> {
@@ -94,27 +99,26 @@ impl<W: Write + Seek> TileStream<W> {
                 self.band.values.extend(parts);
             }
             if self.band.is_full() {
-                self.write_band()?;
+                self.write_band(sink)?;
             }
         }
         Ok(())
     }
 
     /// Ends the file, after all of its rows.
-    pub(crate) fn finish(mut self) -> Result<W, ImageError> {
+    pub(crate) fn finish(self, sink: &mut dyn Sink) -> Result<(), ImageError> {
         let table: Vec<u8> = self.places.iter().flat_map(|at| at.to_le_bytes()).collect();
         let mut write = || {
-            self.sink.seek(SeekFrom::Start(self.table))?;
-            self.sink.write_all(&table)?;
-            self.sink.seek(SeekFrom::Start(self.position))?;
-            self.sink.flush()
+            sink.seek(SeekFrom::Start(self.table))?;
+            sink.write_all(&table)?;
+            sink.seek(SeekFrom::Start(self.position))?;
+            sink.flush()
         };
-        write().map_err(failure)?;
-        Ok(self.sink)
+        write().map_err(failure)
     }
 
     /// Writes the tiles of the waiting rows, from left to right.
-    fn write_band(&mut self) -> Result<(), ImageError> {
+    fn write_band(&mut self, sink: &mut dyn Sink) -> Result<(), ImageError> {
         let columns: Vec<usize> = (0..self.band.size().x()).step_by(TILE).collect();
         let mut bytes = Vec::new();
         for group in columns.chunks(GROUP) {
@@ -128,7 +132,7 @@ impl<W: Write + Seek> TileStream<W> {
                     .and_then(|chunk| chunk.write(&mut bytes, 1))
                     .map_err(failure)?;
             }
-            self.sink.write_all(&bytes).map_err(failure)?;
+            sink.write_all(&bytes).map_err(failure)?;
             self.position += bytes.len() as u64;
         }
         self.band.first_row += self.band.height();

@@ -4,7 +4,7 @@
 //! specification recommends. Data has no color chunk at all: a `gAMA` of 1 would make viewers brighten a height map,
 //! while programs that read data use the plain numbers.
 
-use super::stream::PngStream;
+use super::stream::{PngStream, Samples};
 use super::{PngPixel, Transfer};
 use crate::{ImageError, file};
 use dapple_raster::RasterView;
@@ -35,9 +35,11 @@ pub fn encode_png<P: PngPixel>(
     pixels: RasterView<'_, P>,
     transfer: Transfer,
 ) -> Result<Vec<u8>, ImageError> {
-    let mut stream = PngStream::new::<P>(Vec::new(), pixels.size(), transfer)?;
-    stream.write_rows(pixels, |&pixel| pixel)?;
-    stream.finish()
+    let mut bytes = Vec::new();
+    let mut stream = PngStream::new(&mut bytes, pixels.size(), Samples::of::<P>(), transfer)?;
+    stream.write_rows(&mut bytes, pixels, |&pixel| pixel)?;
+    stream.finish(&mut bytes)?;
+    Ok(bytes)
 }
 
 /// Writes a PNG file from pixels of 8 or 16 bits.

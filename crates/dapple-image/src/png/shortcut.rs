@@ -1,7 +1,6 @@
 //! Functions that write rasters as PNG files in one call. Values below 0 and above 1 are clamped, and NaN becomes 0.
 
-use crate::content::Pixel;
-use crate::{Depth, Encoding, ImageError, RowWriter, file};
+use crate::{Content, Depth, Encoding, ImageError, RowWriter, file};
 use dapple_color::{LinearRgb, LinearRgba, Normal};
 use dapple_raster::Raster;
 use std::io::Cursor;
@@ -17,7 +16,10 @@ pub fn write_gray_png(
     values: &Raster<f32>,
     depth: Depth,
 ) -> Result<(), ImageError> {
-    write(path.as_ref(), values, depth)
+    let size = values.size();
+    write(path.as_ref(), size, Content::Gray, depth, |rows| {
+        rows.write_gray(values.view())
+    })
 }
 
 /// Writes colors as an RGB PNG file under the sRGB curve, with the chunk that says so.
@@ -30,7 +32,10 @@ pub fn write_color_png(
     colors: &Raster<LinearRgb>,
     depth: Depth,
 ) -> Result<(), ImageError> {
-    write(path.as_ref(), colors, depth)
+    let size = colors.size();
+    write(path.as_ref(), size, Content::Color, depth, |rows| {
+        rows.write_color(colors.view())
+    })
 }
 
 /// Writes colors with alpha as an RGBA PNG file: color under the sRGB curve, with the chunk that says so, alpha linear.
@@ -43,7 +48,10 @@ pub fn write_color_alpha_png(
     colors: &Raster<LinearRgba>,
     depth: Depth,
 ) -> Result<(), ImageError> {
-    write(path.as_ref(), colors, depth)
+    let size = colors.size();
+    write(path.as_ref(), size, Content::ColorAlpha, depth, |rows| {
+        rows.write_color_alpha(colors.view())
+    })
 }
 
 /// Writes normals as an RGB PNG file: `round((part + 1) / 2 · max)`, linear, without a color chunk.
@@ -56,15 +64,23 @@ pub fn write_normal_png(
     normals: &Raster<Normal>,
     depth: Depth,
 ) -> Result<(), ImageError> {
-    write(path.as_ref(), normals, depth)
+    let size = normals.size();
+    write(path.as_ref(), size, Content::Normal, depth, |rows| {
+        rows.write_normals(normals.view())
+    })
 }
 
-fn write<T: Pixel>(path: &Path, raster: &Raster<T>, depth: Depth) -> Result<(), ImageError> {
+fn write(
+    path: &Path,
+    size: [u32; 2],
+    content: Content,
+    depth: Depth,
+    fill: impl FnOnce(&mut RowWriter<Cursor<Vec<u8>>>) -> Result<(), ImageError>,
+) -> Result<(), ImageError> {
     let encode = || {
         let sink = Cursor::new(Vec::new());
-        let encoding = Encoding::Png(depth);
-        let mut writer = RowWriter::new(sink, raster.size(), T::CONTENT, encoding)?;
-        writer.write(raster.view())?;
+        let mut writer = RowWriter::new(sink, size, content, Encoding::Png(depth))?;
+        fill(&mut writer)?;
         writer.finish()
     };
     let bytes = encode().map_err(|error| error.at(path))?.into_inner();

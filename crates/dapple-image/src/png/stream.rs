@@ -27,41 +27,60 @@ const ROW_LIMIT: u64 = 1 << 30;
 /// The number of bytes of compressed data in a chunk of the file.
 const CHUNK_LENGTH: usize = 1 << 16;
 
-/// A PNG file that is being written into `sink`.
-pub(crate) struct PngStream<W> {
-    sink: W,
+/// A PNG file that is being written into a sink. It does not own the sink, so that the codec is compiled once for all.
+pub(crate) struct PngStream {
     codec: StreamWriter<'static, Pipe>,
     pipe: Pipe,
     /// The samples of a row.
     samples: Vec<u8>,
 }
 
+/// The kind of samples of a file, by the kind of its pixels.
+#[derive(Clone, Copy)]
+pub(crate) struct Samples {
+    /// The number of samples of a pixel: 1 to 4.
+    channels: usize,
+    /// The bits of a sample: 8 or 16.
+    bits: u32,
+}
+
 /// A buffer between the codec and the file, shared by both.
 #[derive(Clone, Default)]
 struct Pipe(Arc<Mutex<Vec<u8>>>);
 
-impl<W: Write> PngStream<W> {
+impl Samples {
+    /// The samples of pixels of type `P`.
+    pub(crate) fn of<P: PngPixel>() -> Self {
+        Self {
+            channels: P::CHANNELS,
+            bits: P::BITS,
+        }
+    }
+}
+
+impl PngStream {
     /// Begins a file of pixels of one kind; the header is written at once.
-    pub(crate) fn new<P: PngPixel>(
-        sink: W,
+    pub(crate) fn new(
+        sink: &mut dyn Write,
         size: [u32; 2],
+        samples: Samples,
         transfer: Transfer,
     ) -> Result<Self, ImageError> {
-        let length = check_size(size, size_of::<P>())?;
+        let length = check_size(size, samples)?;
         let pipe = Pipe::default();
-        let mut stream = Self {
-            sink,
-            codec: codec::<P>(pipe.clone(), size, transfer).map_err(failure)?,
+        let stream = Self {
+            codec: codec(pipe.clone(), size, samples, transfer).map_err(failure)?,
             pipe,
             samples: vec![0; length],
         };
-        stream.pass_on()?;
+        stream.pass_on(sink)?;
         Ok(stream)
     }
 
     /// Writes whole rows of the width of the file, no more than are missing.
     pub(crate) fn write_rows<T, P: PngPixel>(
         &mut self,
+        sink: &mut dyn Write,
         rows: RasterView<'_, T>,
         code: impl Fn(&T) -> P,
     ) -> Result<(), ImageError> {
@@ -72,29 +91,28 @@ impl<W: Write> PngStream<W> {
             {
                 code(value).write_bytes(bytes);
             }
-            self.codec.write_all(&self.samples).map_err(failure)?;
-            self.pass_on()?;
+            self.write_row(sink)?;
         }
         Ok(())
     }
 
     /// Ends the file, after all of its rows.
-    pub(crate) fn finish(self) -> Result<W, ImageError> {
-        let Self {
-            mut sink,
-            codec,
-            pipe,
-            ..
-        } = self;
+    pub(crate) fn finish(self, sink: &mut dyn Write) -> Result<(), ImageError> {
+        let Self { codec, pipe, .. } = self;
         codec.finish().map_err(failure)?;
         sink.write_all(&pipe.bytes()).map_err(failure)?;
-        sink.flush().map_err(failure)?;
-        Ok(sink)
+        sink.flush().map_err(failure)
     }
 
-    fn pass_on(&mut self) -> Result<(), ImageError> {
+    /// Writes the row whose samples are at hand.
+    fn write_row(&mut self, sink: &mut dyn Write) -> Result<(), ImageError> {
+        self.codec.write_all(&self.samples).map_err(failure)?;
+        self.pass_on(sink)
+    }
+
+    fn pass_on(&self, sink: &mut dyn Write) -> Result<(), ImageError> {
         let mut bytes = self.pipe.bytes();
-        self.sink.write_all(&bytes).map_err(failure)?;
+        sink.write_all(&bytes).map_err(failure)?;
         bytes.clear();
         Ok(())
     }
@@ -119,9 +137,10 @@ impl Write for Pipe {
 }
 
 /// The number of bytes of a row, for a size that can be written.
-fn check_size(size: [u32; 2], pixel: usize) -> Result<usize, ImageError> {
+fn check_size(size: [u32; 2], samples: Samples) -> Result<usize, ImageError> {
     check_side(size, SIDE_LIMIT, "PNG")?;
-    let bytes = u64::from(size[0]) * pixel as u64;
+    let pixel = samples.channels as u64 * u64::from(samples.bits / 8);
+    let bytes = u64::from(size[0]) * pixel;
     if bytes > ROW_LIMIT || usize::try_from(bytes * u64::from(size[1])).is_err() {
         let limit = ROW_LIMIT;
         return Err(ImageError::new(ImageErrorKind::TooManyBytes {
@@ -132,18 +151,19 @@ fn check_size(size: [u32; 2], pixel: usize) -> Result<usize, ImageError> {
     Ok(bytes as usize)
 }
 
-fn codec<P: PngPixel>(
+fn codec(
     pipe: Pipe,
     [width, height]: [u32; 2],
+    samples: Samples,
     transfer: Transfer,
 ) -> Result<StreamWriter<'static, Pipe>, EncodingError> {
-    let color = match P::CHANNELS {
+    let color = match samples.channels {
         1 => ColorType::Grayscale,
         2 => ColorType::GrayscaleAlpha,
         3 => ColorType::Rgb,
         _ => ColorType::Rgba,
     };
-    let (depth, level) = match P::BITS {
+    let (depth, level) = match samples.bits {
         u8::BITS => (BitDepth::Eight, 3),
         _ => (BitDepth::Sixteen, 1),
     };

@@ -4,7 +4,6 @@ use crate::{
     LabelTexture, NetOptions, PupsError, PupsField, PupsRecipe, Spacing, grouped_labels,
     own_labels, random_values,
 };
-use dapple_graph::delaunay;
 use dapple_hash::Seed;
 use dapple_points::Domain;
 
@@ -72,9 +71,9 @@ impl CellsOptions {
 /// ```
 pub fn cells(options: &CellsOptions, seed: Seed) -> Result<LabelTexture, PupsError> {
     let points = options
-        .spacing
-        .points(options.domain, seed.child("points", 0))?;
-    let graph = delaunay(&points)?;
+        .net
+        .points(&options.spacing, options.domain, seed.child("points", 0))?;
+    let graph = options.net.delaunay(&points)?;
     let labels = if options.points_per_cell == [1, 1] {
         own_labels(points.len())
     } else {
@@ -82,11 +81,11 @@ pub fn cells(options: &CellsOptions, seed: Seed) -> Result<LabelTexture, PupsErr
     };
     let n_labels = labels.iter().max().map_or(0, |&label| label as usize + 1);
     let values = random_values(n_labels, seed.child("value", 0));
-    LabelTexture::new(
-        options.net.with_graph(&points, &graph, seed)?,
-        labels,
-        values,
-    )
+    let orientation = options.net.orientation(&points, seed)?;
+    let pups = options
+        .net
+        .of_delaunay(&points, &graph, orientation, seed)?;
+    LabelTexture::new(pups, labels, values)
 }
 
 impl PupsRecipe for CellsOptions {

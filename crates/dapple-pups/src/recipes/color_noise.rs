@@ -68,8 +68,8 @@ impl Default for ColorNoiseOptions {
 /// ```
 pub fn color_noise(options: &ColorNoiseOptions, seed: Seed) -> Result<VectorTexture<3>, PupsError> {
     let points = options
-        .spacing
-        .points(options.domain, seed.child("points", 0))?;
+        .net
+        .points(&options.spacing, options.domain, seed.child("points", 0))?;
     let n_colors = u32::try_from(options.palette.len()).unwrap_or(u32::MAX);
     let labels = random_labels(points.len(), n_colors, seed.child("label", 0))?;
     let colors = palette_values(&labels, &options.palette)?;

@@ -4,7 +4,6 @@ use crate::{
     LabelTexture, NetField, NetOptions, Orientation, Orientations, Pups, PupsError, PupsErrorKind,
     PupsField, PupsRecipe, Range, own_labels, range,
 };
-use dapple_graph::delaunay;
 use dapple_hash::Seed;
 use dapple_points::{Domain, PointSet};
 use glam::{DVec2, DVec3};
@@ -162,8 +161,8 @@ pub fn control_points(options: &ControlPoints, seed: Seed) -> Result<PupsField, 
     let pups = match options.orientations()? {
         Some(vectors) => {
             let orientation = Orientation::new(vectors).with_strength(net.strength);
-            let graph = delaunay(&points)?;
-            net.oriented(&points, &graph, Some(orientation), seed)?
+            let graph = net.delaunay(&points)?;
+            net.of_delaunay(&points, &graph, Some(orientation), seed)?
         }
         None => net.pups(&points, seed)?,
     };

@@ -62,8 +62,8 @@ impl Default for CowOptions {
 /// ```
 pub fn cow(options: &CowOptions, seed: Seed) -> Result<LabelTexture, PupsError> {
     let points = options
-        .spacing
-        .points(options.domain, seed.child("points", 0))?;
+        .net
+        .points(&options.spacing, options.domain, seed.child("points", 0))?;
     let labels = biased_labels(&points, &options.probability, seed.child("label", 0))?;
     let pups = options.net.pups(&points, seed)?;
     LabelTexture::new(pups, labels, options.values.to_vec())

@@ -6,10 +6,12 @@ use crate::options::MOVING_FADE;
 use crate::options::is_never;
 #[cfg(feature = "schema")]
 use crate::options::{AXIS_SCALE, FADE, STRENGTH};
-use crate::{AxialWeight, Orientation, Orientations, Pups, PupsError, PupsOptions};
+use crate::{AxialWeight, Orientation, Orientations, Pups, PupsError, PupsOptions, Spacing};
 use dapple_graph::{Graph, delaunay};
 use dapple_hash::Seed;
-use dapple_points::PointSet;
+use dapple_points::{Domain, PointSet};
+use dapple_raster::Parts;
+use std::sync::Arc;
 
 /// How a recipe connects and weights its control points: [`PupsOptions`] before the points are known.
 #[derive(Clone, Debug)]
@@ -48,6 +50,10 @@ pub struct NetOptions {
     /// materials set it.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub time: f64,
+    /// Points, graphs and nets of textures made before. A texture takes over those that it would make itself, bit for bit;
+    /// by default there are none.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pub parts: Parts,
 }
 
 impl Default for NetOptions {
@@ -60,6 +66,7 @@ impl Default for NetOptions {
             fade: 0.0,
             motion: None,
             time: 0.0,
+            parts: Parts::default(),
         }
     }
 }
@@ -80,7 +87,8 @@ impl NetOptions {
     ///
     /// Those of [`with_graph`](Self::with_graph), and [`Graph`](crate::PupsErrorKind::Graph) if there is no triangulation.
     pub fn pups(&self, points: &PointSet, seed: Seed) -> Result<Pups, PupsError> {
-        self.with_graph(points, &delaunay(points)?, seed)
+        let graph = self.delaunay(points)?;
+        self.of_delaunay(points, &graph, self.orientation(points, seed)?, seed)
     }
 
     /// The net of any graph over `points`; if they move, that of the Delaunay triangulation of where they have moved to.
@@ -96,29 +104,93 @@ impl NetOptions {
         graph: &Graph,
         seed: Seed,
     ) -> Result<Pups, PupsError> {
-        let vectors = self
-            .orientations
-            .vectors(points, seed.child("orientation", 0))?;
-        let orientation = vectors.map(|vectors| Orientation {
-            strength: self.strength,
-            vectors,
-        });
-        self.oriented(points, graph, orientation, seed)
+        let orientation = self.orientation(points, seed)?;
+        match self.moved(points, graph, seed)? {
+            Some(moved) => self.net(&moved, &*self.delaunay(&moved)?, orientation),
+            None => Pups::new(points, graph, self.pups_options(orientation)),
+        }
     }
 
-    /// [`with_graph`](Self::with_graph) with these orientations.
-    pub(crate) fn oriented(
+    /// The net of the Delaunay graph of `points`, or of where they have moved to, with these orientations.
+    pub(crate) fn of_delaunay(
         &self,
         points: &PointSet,
         graph: &Graph,
         orientation: Option<Orientation>,
         seed: Seed,
     ) -> Result<Pups, PupsError> {
-        let options = self.pups_options(orientation);
         match self.moved(points, graph, seed)? {
-            Some(moved) => Pups::new(&moved, &delaunay(&moved)?, options),
-            None => Pups::new(points, graph, options),
+            Some(moved) => self.net(&moved, &*self.delaunay(&moved)?, orientation),
+            None => self.net(points, graph, orientation),
         }
+    }
+
+    /// The points with a spacing in a domain.
+    pub(crate) fn points(
+        &self,
+        spacing: &Spacing,
+        domain: Domain,
+        seed: Seed,
+    ) -> Result<Arc<PointSet>, PupsError> {
+        let make = || spacing.points(domain, seed);
+        let Some(spacing) = spacing.description() else {
+            return Ok(Arc::new(make()?));
+        };
+        // Numbers are written such that equal texts have equal bits.
+        let text = format!("{spacing} {domain:?} {seed:?}");
+        let scattered = self.parts.get_or_make(
+            |other: &Scattered| other.text == text,
+            || {
+                let points = Arc::new(make()?);
+                let text = text.clone();
+                Ok::<_, PupsError>(Scattered { text, points })
+            },
+        )?;
+        Ok(scattered.points.clone())
+    }
+
+    /// The Delaunay graph of points.
+    pub(crate) fn delaunay(&self, points: &PointSet) -> Result<Arc<Graph>, PupsError> {
+        let triangulated = self.parts.get_or_make(
+            |other: &Triangulated| is_same(&other.points, points),
+            || {
+                let graph = Arc::new(delaunay(points)?);
+                let points = points.clone();
+                Ok::<_, PupsError>(Triangulated { points, graph })
+            },
+        )?;
+        Ok(triangulated.graph.clone())
+    }
+
+    /// The net of the Delaunay graph of points that do not move any more.
+    fn net(
+        &self,
+        points: &PointSet,
+        graph: &Graph,
+        orientation: Option<Orientation>,
+    ) -> Result<Pups, PupsError> {
+        let options = self.pups_options(orientation);
+        let pups = self.parts.get_or_make(
+            |other: &Pups| {
+                is_same_options(other.options(), &options) && is_same(other.points(), points)
+            },
+            || Pups::of_delaunay(points, graph, options.clone()),
+        )?;
+        Ok(Pups::clone(&pups))
+    }
+
+    /// The orientations of points.
+    pub(crate) fn orientation(
+        &self,
+        points: &PointSet,
+        seed: Seed,
+    ) -> Result<Option<Orientation>, PupsError> {
+        let seed = seed.child("orientation", 0);
+        let vectors = self.orientations.vectors(points, seed)?;
+        Ok(vectors.map(|vectors| Orientation {
+            strength: self.strength,
+            vectors,
+        }))
     }
 
     /// Where the points have moved to, given their Delaunay graph; nothing if they do not move.
@@ -152,6 +224,86 @@ impl NetOptions {
             fade,
             motion: None,
             ..self.clone()
+        }
+    }
+}
+
+/// Points with the text of what they follow from.
+struct Scattered {
+    text: String,
+    points: Arc<PointSet>,
+}
+
+/// The Delaunay graph of points.
+struct Triangulated {
+    points: PointSet,
+    graph: Arc<Graph>,
+}
+
+/// Whether two sets of points have the same bits.
+fn is_same(a: &PointSet, b: &PointSet) -> bool {
+    let pairs = a.positions().iter().zip(b.positions());
+    a == b
+        && pairs
+            .map(|(a, b)| (a.to_array(), b.to_array()))
+            .all(|(a, b)| a.map(f64::to_bits) == b.map(f64::to_bits))
+}
+
+/// Whether nets of equal points have the same bits with two options. Only in orientations the sign of a zero matters.
+fn is_same_options(a: &PupsOptions, b: &PupsOptions) -> bool {
+    a == b && orientation_bits(a).eq(orientation_bits(b))
+}
+
+/// The bits of the orientations, if there are any.
+fn orientation_bits(options: &PupsOptions) -> impl Iterator<Item = u64> {
+    let orientation = options.orientation.iter();
+    let numbers = orientation.flat_map(|orientation| {
+        let vectors = orientation
+            .vectors
+            .iter()
+            .flat_map(|vector| vector.to_array());
+        core::iter::once(orientation.strength).chain(vectors)
+    });
+    numbers.map(f64::to_bits)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::NetOptions;
+    use crate::{Layers, Octave, OctavesOptions, octaves};
+    use dapple_hash::Seed;
+    use dapple_raster::{Field as _, Parts, Window};
+    use glam::DVec2;
+    use std::sync::Arc;
+
+    fn made(gain: f64, axis_scale: f64, parts: &Parts) -> Layers<Octave> {
+        let net = NetOptions {
+            axis_scale,
+            parts: parts.clone(),
+            ..NetOptions::default()
+        };
+        let options = OctavesOptions {
+            gain,
+            net,
+            ..OctavesOptions::default()
+        };
+        octaves(&options, Seed(7)).unwrap()
+    }
+
+    #[test]
+    fn nets_are_taken_over_where_their_bits_do_not_change() {
+        let parts = Parts::keeping();
+        let first = made(0.5, 1.0, &parts);
+        let window = Window::new(DVec2::NEG_ONE, DVec2::splat(2.0), [32; 2]).unwrap();
+        for (gain, axis_scale, is_kept) in [(0.7, 1.0, true), (0.5, 1.25, false)] {
+            let other = made(gain, axis_scale, &parts);
+            for (a, b) in first.layers().iter().zip(other.layers()) {
+                let [a, b] = [a, b].map(|octave| &octave.texture().pups().net);
+                assert_eq!(Arc::ptr_eq(a, b), is_kept);
+            }
+            let alone = made(gain, axis_scale, &Parts::default());
+            let [kept, alone] = [other, alone].map(|octaves| octaves.to_raster(&window).unwrap());
+            assert_eq!(kept, alone);
         }
     }
 }

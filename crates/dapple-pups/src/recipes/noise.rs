@@ -53,8 +53,8 @@ impl Default for NoiseOptions {
 /// ```
 pub fn noise(options: &NoiseOptions, seed: Seed) -> Result<Texture, PupsError> {
     let points = options
-        .spacing
-        .points(options.domain, seed.child("points", 0))?;
+        .net
+        .points(&options.spacing, options.domain, seed.child("points", 0))?;
     let values = random_values(points.len(), seed.child("value", 0));
     options.net.pups(&points, seed)?.texture(values)
 }

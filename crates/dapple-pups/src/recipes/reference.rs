@@ -63,8 +63,8 @@ pub fn reference_texture(
     seed: Seed,
 ) -> Result<LabelTexture, PupsError> {
     let points = options
-        .spacing
-        .points(options.domain, seed.child("points", 0))?;
+        .net
+        .points(&options.spacing, options.domain, seed.child("points", 0))?;
     let labels = reference_labels(&points, image, seed.child("label", 0));
     let pups = options.net.pups(&points, seed)?;
     LabelTexture::new(pups, labels, options.values.to_vec())

@@ -32,11 +32,12 @@ use crate::{
     LabelTexture, NetOptions, PupsError, PupsErrorKind, PupsField, PupsRecipe, Range, Spacing,
     range,
 };
-use dapple_graph::{Graph, delaunay};
+use dapple_graph::Graph;
 use dapple_hash::Seed;
 use dapple_points::{Domain, PointIdx, PointSet};
 use glam::DVec2;
 use spot::Spot;
+use std::sync::Arc;
 
 /// Options of [`space_giraffe`].
 #[derive(Clone, Debug)]
@@ -128,9 +129,15 @@ impl SpaceGiraffeOptions {
     /// The centers and the pairs, and their labels.
     fn control_points(&self, seed: Seed) -> Result<(PointSet, Vec<u32>), PupsError> {
         self.check()?;
-        let mut centers = self.spacing.points(self.domain, seed.child("points", 0))?;
-        if let Some(moved) = self.net.moved(&centers, &delaunay(&centers)?, seed)? {
-            centers = moved;
+        let seed_of_points = seed.child("points", 0);
+        let mut centers = self
+            .net
+            .points(&self.spacing, self.domain, seed_of_points)?;
+        if self.net.motion.is_some() {
+            let graph = self.net.delaunay(&centers)?;
+            if let Some(moved) = self.net.moved(&centers, &graph, seed)? {
+                centers = Arc::new(moved);
+            }
         }
         let spots = self.place_spots(&centers, seed.child("spot", 0))?;
 
@@ -162,7 +169,7 @@ impl SpaceGiraffeOptions {
 
     /// The spot around each center.
     fn place_spots(&self, centers: &PointSet, seed: Seed) -> Result<Vec<Spot>, PupsError> {
-        let graph = delaunay(centers)?;
+        let graph = self.net.delaunay(centers)?;
         let place = |(center, _): (PointIdx, DVec2)| {
             let radius = radius(&graph, center)?;
             let spot = Spot::random(radius, self, seed, center);

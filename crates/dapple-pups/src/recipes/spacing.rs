@@ -110,6 +110,18 @@ impl Spacing {
         })
     }
 
+    /// The spacing as a text from which it follows; none where it varies as a raster or a function does.
+    pub(crate) fn description(&self) -> Option<String> {
+        match self {
+            Self::Distance(varying) | Self::Density(varying) => matches!(
+                varying,
+                Varying::Constant(_) | Varying::Ramp(_) | Varying::GeometricRamp(_)
+            )
+            .then(|| format!("{self:?}")),
+            Self::Count(_) => Some(format!("{self:?}")),
+        }
+    }
+
     /// The spacing with all distances divided by `factor`: `factor²` times as many points.
     #[must_use]
     pub fn finer(&self, factor: f64) -> Self {

@@ -4,7 +4,7 @@ use super::{NodeKind, NodeSeed, wavelet};
 use crate::RecipeError;
 use crate::plan::{Builder, FREQUENCY, Step, Work};
 use dapple_noise::GradientNoise2;
-use dapple_pups::{OctavesOptions, PupsRecipe as _, Range, Spacing, octaves, range};
+use dapple_pups::{NetOptions, OctavesOptions, PupsRecipe as _, Range, Spacing, octaves, range};
 use dapple_raster::{FieldExt, FractalShape};
 use serde::{Deserialize, Serialize};
 
@@ -104,6 +104,10 @@ impl Fractal {
             spacing: Spacing::from(1.0 / self.frequency),
             octaves: self.octaves,
             gain: self.gain,
+            net: NetOptions {
+                parts: plan.parts(),
+                ..NetOptions::default()
+            },
             ..OctavesOptions::default()
         }
     }

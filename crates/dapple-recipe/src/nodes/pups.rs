@@ -84,10 +84,11 @@ impl<T: PupsRecipe<ReferenceImage>> Texture for Referenced<T> {
     }
 }
 
-/// The options with the tile of a plan as their domain, at its time if the points move.
+/// The options with the tile of a plan as their domain and the parts that it keeps, at its time if the points move.
 fn now<T: PupsRecipe<Image>, Image>(options: &T, plan: &Builder<'_>) -> T {
     let mut options = placed(options, plan.domain());
     let net = options.net_mut();
+    net.parts = plan.parts();
     if net.motion.is_some() {
         net.time = plan.time();
     }

@@ -60,8 +60,22 @@ pub(super) fn noise(
     frequency: f64,
     weights: &[f32],
 ) -> Result<dapple_raster::Frequency<WaveletNoise2>, RecipeError> {
-    let noise = WaveletNoise2::of_size(cells(plan, frequency)?, seed)?.with_weights(weights)?;
+    let size = cells(plan, frequency)?;
+    let tile = plan.parts().get_or_make(
+        |tile: &Tile| tile.noise.size() == size && tile.seed == seed,
+        || {
+            let noise = WaveletNoise2::of_size(size, seed)?;
+            Ok::<_, RecipeError>(Tile { noise, seed })
+        },
+    )?;
+    let noise = tile.noise.clone().with_weights(weights)?;
     Ok(noise.frequency(frequency))
+}
+
+/// Wavelet noise of a single band, with the seed that it was made from.
+struct Tile {
+    noise: WaveletNoise2,
+    seed: Seed,
 }
 
 /// The work of generating this noise.

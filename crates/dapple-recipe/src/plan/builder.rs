@@ -9,7 +9,7 @@ use dapple_color::LinearRgb;
 use dapple_hash::Seed;
 use dapple_points::Domain;
 use dapple_pups::{Range, range};
-use dapple_raster::Wrap;
+use dapple_raster::{Parts, Wrap};
 use indexmap::IndexMap;
 use std::cell::Cell;
 use std::fmt::Write as _;
@@ -115,6 +115,12 @@ impl<'a> Builder<'a> {
         self.node = name;
         let work: Work = node.kind().work(self)?;
         self.work.add(&work)
+    }
+
+    /// Parts of steps of earlier plans, if there is a memory.
+    pub(crate) fn parts(&self) -> Parts {
+        let parts = self.memory.map(|memory| memory.parts().clone());
+        parts.unwrap_or_default()
     }
 
     /// The elapsed part of a loop, from 0 to 1.

@@ -134,17 +134,22 @@ pub(super) fn window(
     Ok(join(chunks.into_iter().collect::<Result<_, _>>()?))
 }
 
+/// The number of values from which on those of several steps are joined on several cores.
+const JOINED_VALUES: usize = 1 << 14;
+
 /// Joins the values of all chunks, for each of the steps.
-fn join(chunks: Vec<Vec<Arc<Values>>>) -> Vec<Values> {
-    let mut chunks = chunks.into_iter();
-    let first = chunks.next().unwrap_or_default();
-    let mut all: Vec<Values> = first.into_iter().map(Arc::unwrap_or_clone).collect();
-    for chunk in chunks {
-        for (all, more) in all.iter_mut().zip(&chunk) {
-            all.append(more);
-        }
+fn join(mut chunks: Vec<Vec<Arc<Values>>>) -> Vec<Values> {
+    if chunks.len() == 1 {
+        let only = chunks.swap_remove(0);
+        return only.into_iter().map(Arc::unwrap_or_clone).collect();
     }
-    all
+    let n_steps = chunks.first().map_or(0, Vec::len);
+    let n_values: usize = chunks.iter().flatten().map(|values| values.len()).sum();
+    let least = JOINED_VALUES.div_ceil((n_values / n_steps.max(1)).max(1));
+    parallel::map_at_least(least, n_steps, |step| {
+        let parts: Vec<&Values> = chunks.iter().map(|chunk| &*chunk[step]).collect();
+        Values::joined(&parts)
+    })
 }
 
 fn step(

@@ -2,13 +2,14 @@
 //!
 //! A step is identified by a description of all data from which its values follow: its node, the tile, the seed, the
 //! time, and its inputs. If a later plan has a step with the same description, its fields and its values at the same
-//! pixels are reused. The bits are those of a plan without a memory.
+//! pixels are reused. A step with other options still takes over the parts that these do not change, such as nets of
+//! control points. The bits are those of a plan without a memory.
 
 use super::{Picture, Step};
 use crate::Values;
 use dapple_color::LinearRgb;
 use dapple_pups::VectorTexture;
-use dapple_raster::{Field, Window};
+use dapple_raster::{Field, Parts, Window};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -19,6 +20,8 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 #[derive(Clone)]
 pub struct Memory {
     kept: Arc<Mutex<Kept>>,
+    /// Parts of steps without inputs.
+    parts: Parts,
     max_bytes: usize,
 }
 
@@ -62,7 +65,7 @@ enum Source {
 
 /// The largest number of bytes of descriptions; past it, the memory is cleared.
 const MAX_ID_BYTES: usize = 1 << 26;
-/// The largest age, in plans, of an unused step without inputs. It may be a texture with many points.
+/// The largest age, in plans, of an unused step without inputs and of its parts. It may be a texture with many points.
 const MAX_AGE: u64 = 4;
 /// The largest number of images that are recognized.
 const MAX_PICTURES: usize = 64;
@@ -73,6 +76,7 @@ impl Memory {
     pub fn new(max_bytes: usize) -> Self {
         Self {
             kept: Arc::default(),
+            parts: Parts::keeping(),
             max_bytes,
         }
     }
@@ -91,8 +95,14 @@ impl Memory {
         bytes <= self.max_bytes / 2
     }
 
-    /// Begins a plan, and drops steps that the last plans did not use.
+    /// Parts of steps without inputs, for steps made with other options.
+    pub(super) fn parts(&self) -> &Parts {
+        &self.parts
+    }
+
+    /// Begins a plan, and drops steps and parts of steps that the last plans did not use.
     pub(super) fn begin(&self) {
+        self.parts.begin(MAX_AGE);
         let mut kept = self.lock();
         kept.n_plans += 1;
         let now = kept.n_plans;

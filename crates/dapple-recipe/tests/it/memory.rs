@@ -98,3 +98,56 @@ fn a_full_memory_forgets_what_was_used_longest_ago() {
     plan.node_picture("b", [9, 16], None).unwrap();
     assert_eq!(memory.bytes(), full);
 }
+
+#[test]
+fn textures_with_other_options_have_the_bits_of_a_plan_without_a_memory() {
+    let memory = Memory::new(1 << 20);
+    let changes = [
+        "cells]\nspacing = 0.3",
+        "cells]\nspacing = 0.3\npoints_per_cell = [2, 3]",
+        "cells]\nspacing = 0.3\nnet = { strength = 0.25 }",
+        "cow]\nspacing = 0.3",
+        "cow]\nspacing = 0.3\nprobability = 0.2\nnet = { motion = { radius = 0.2 } }",
+        "cow]\nspacing = 0.3\nnet = { motion = { radius = 0.3 } }",
+        "space_giraffe]\nspacing = 0.5",
+        "space_giraffe]\nspacing = 0.5\npairs = [4, 6]\nnet = { motion = { radius = 0.2 } }",
+        "turbulence]\nspacing = 0.6\ngain = 0.7",
+        "turbulence]\nspacing = 0.6\noctaves = 2\nnet = { axis_scale = 1.5 }",
+        "color_noise]\nspacing = 0.3",
+        "points]\npoints = [{ x = 0.5, y = 1.0, value = 0.2 }, { x = 1.5, y = 0.25, value = 0.75 }]",
+        "points]\npoints = [{ x = 0.5, y = 1.0, value = 0.9 }, { x = 1.5, y = 0.25, value = 0.75 }]",
+        "points]\npoints = [{ x = 0.5, y = 0.5, value = 0.9 }, { x = 1.5, y = 0.25, value = 0.75 }]",
+    ];
+    for _ in 0..2 {
+        for (options, time) in changes
+            .iter()
+            .flat_map(|options| [0.0, 0.25].map(|time| (options, time)))
+        {
+            let text = format!(
+                "dapple = 1\nextent = [2.0, 2.0]\n[nodes.a.pups.{options}\n[material]\nalbedo = \"a\"\n"
+            );
+            let recipe = Recipe::from_toml(&text).unwrap();
+            let plain = Plan::new(&recipe, &Images::new(), time).unwrap();
+            let plan = with(&recipe, time, &memory);
+            assert_eq!(
+                plan.node_picture("a", [24, 24], None).unwrap(),
+                plain.node_picture("a", [24, 24], None).unwrap(),
+                "{options} at {time}"
+            );
+        }
+    }
+}
+
+#[test]
+fn wavelets_with_other_weights_have_the_bits_of_a_plan_without_a_memory() {
+    let memory = Memory::new(1 << 20);
+    for weights in ["[1.0]", "[1.0, 0.5]", "[0.25]"] {
+        let text = format!("dapple = 1\n[nodes.a.wavelet]\nweights = {weights}\n[material]\n");
+        let recipe = Recipe::from_toml(&text).unwrap();
+        let plain = Plan::new(&recipe, &Images::new(), 0.0).unwrap();
+        let plan = with(&recipe, 0.0, &memory);
+        let [kept, plain] =
+            [plan, plain].map(|plan| plan.node_picture("a", [24, 24], None).unwrap());
+        assert_eq!(kept, plain, "{weights}");
+    }
+}

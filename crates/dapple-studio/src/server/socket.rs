@@ -2,9 +2,10 @@
 
 use super::Shared;
 use super::disk::QUIET;
+use super::files::decoded;
 use super::flow::Flow;
 use super::worker::{Sample, Worker};
-use crate::message::{Hello, Mode, Output, Reply, Request};
+use crate::message::{Hello, Mode, Output, Reply, Request, View};
 use crate::{Session, Shown, StudioError};
 use axum::extract::ws::{Message, WebSocket, WebSocketUpgrade};
 use axum::extract::{FromRequestParts as _, Request as HttpRequest};
@@ -29,18 +30,27 @@ pub(super) async fn upgrade(shared: Arc<Shared>, request: HttpRequest) -> Respon
             StatusCode::SERVICE_UNAVAILABLE.into_response()
         }
         Ok(upgrade) => {
+            let view = view_of(parts.uri.query().unwrap_or_default());
             let upgrade = upgrade
                 .max_message_size(MAX_MESSAGE)
                 .max_frame_size(MAX_MESSAGE);
             upgrade.on_upgrade(move |socket| async move {
                 shared.n_pages.fetch_add(1, Ordering::SeqCst);
                 // A page that has gone says so by its socket, and there is nobody to tell.
-                let _ = Page::serve(shared.clone(), socket).await;
+                let _ = Page::serve(shared.clone(), socket, view).await;
                 shared.n_pages.fetch_sub(1, Ordering::SeqCst);
                 shared.closed.notify_one();
             })
         }
     }
+}
+
+/// The view that an address asks for: what a page shows at first, which is drawn while the page is loaded.
+fn view_of(query: &str) -> Option<View> {
+    let text = query
+        .split('&')
+        .find_map(|pair| pair.strip_prefix("view="))?;
+    serde_json::from_str(&decoded(text)?).ok()
 }
 
 /// A page with its socket.
@@ -70,7 +80,11 @@ impl From<StudioError> for Ended {
 }
 
 impl Page {
-    async fn serve(shared: Arc<Shared>, socket: WebSocket) -> Result<(), Ended> {
+    async fn serve(
+        shared: Arc<Shared>,
+        socket: WebSocket,
+        view: Option<View>,
+    ) -> Result<(), Ended> {
         let (sender, mut outputs) = unbounded_channel();
         let mut changes = shared.disk.changes();
         let mut page = Self {
@@ -81,7 +95,7 @@ impl Page {
             shared,
             socket,
         };
-        page.greet().await?;
+        page.greet(view).await?;
         loop {
             tokio::select! {
                 message = page.socket.recv() => match message {
@@ -98,8 +112,8 @@ impl Page {
         }
     }
 
-    /// Says what there is, and opens what the command was given.
-    async fn greet(&mut self) -> Result<(), Ended> {
+    /// Says what there is, and opens what the command was given, to be seen in a view.
+    async fn greet(&mut self, view: Option<View>) -> Result<(), Ended> {
         let options = &self.shared.options;
         let mut hello = Hello::new();
         hello.mode = options.mode;
@@ -108,6 +122,9 @@ impl Page {
         hello.open = options.recipe.clone();
         let first = options.recipe.clone();
         self.say(Reply::Hello(Box::new(hello))).await?;
+        if let Some(view) = view {
+            self.answer(Request::View(view)).await?;
+        }
         if let Some(name) = first {
             let is_builtin = Recipe::builtin_text(&name).is_ok();
             let (builtin, file) = if is_builtin {
@@ -292,7 +309,7 @@ impl Page {
     async fn show(&mut self, picture: &crate::Picture) -> Result<(), Ended> {
         Ok(self
             .socket
-            .send(Message::Binary(picture.to_bytes().into()))
+            .send(Message::Binary(picture.to_short_bytes().into()))
             .await?)
     }
 

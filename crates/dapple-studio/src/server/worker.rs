@@ -199,12 +199,8 @@ impl Inside {
 
     /// Shows a small picture of a recipe. One that cannot be baked has none.
     fn show(&self, sample: &Sample) {
-        let folder = &self.shared.folder;
-        let images = |recipe: &Recipe| {
-            folder.check_images(recipe)?;
-            self.shared.host.images(recipe, folder.path())
-        };
         let Sample { shown, text, side } = sample;
+        let images = |recipe: &Recipe| self.shared.images(recipe);
         let made = self.shared.gallery.of(*shown, text, *side, images);
         if let Ok(picture) = made {
             self.put(Output::Picture(picture));
@@ -214,10 +210,11 @@ impl Inside {
     fn perform(&self, task: &Task) {
         let images = |recipe: &Recipe| self.images(recipe);
         let export = |recipe: &Recipe, export: &Export| {
-            let folder = &self.shared.folder;
-            folder.check_images(recipe)?;
-            let files = self.shared.host.export(recipe, folder.path(), export)?;
-            let (id, files) = self.shared.exports.keep(files);
+            let shared = &self.shared;
+            let files = shared
+                .host
+                .export(recipe, shared.of_images(recipe)?, export)?;
+            let (id, files) = shared.exports.keep(files);
             Ok(Reply::Exported { id, files })
         };
         self.put(task.answer(&images, &export).into());
@@ -229,12 +226,11 @@ impl World for Inside {
         if recipe.image_files().is_empty() {
             return Ok(Images::new());
         }
-        let folder = &self.shared.folder;
-        folder.check_images(recipe)?;
-        let times = folder.image_times(recipe);
+        self.shared.of_images(recipe)?;
+        let times = self.shared.folder.image_times(recipe);
         let mut loaded = self.images.lock().unwrap_or_else(PoisonError::into_inner);
         if loaded.times != times {
-            let images = self.shared.host.images(recipe, folder.path())?;
+            let images = self.shared.images(recipe)?;
             *loaded = Loaded { times, images };
         }
         Ok(loaded.images.clone())

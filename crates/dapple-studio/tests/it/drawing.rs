@@ -1,8 +1,8 @@
 //! What a session draws.
 
 use crate::world::{Page, TestWorld, of_type, split};
-use dapple::image::{Content, Depth, Encoding, Image, Limits, PngPixels, RowWriter, decode_image};
-use dapple::recipe::{Bake, BakeOptions, Images, MapKind, MapRows, Plan, Recipe};
+use dapple::image::{Depth, Encoding, Image, Limits, PngPixels, RowWriter, decode_image};
+use dapple::recipe::{Bake, BakeOptions, Images, MapKind, Plan, Recipe};
 use dapple_studio::{Picture, Request, Shown};
 use serde_json::json;
 use std::io::Cursor;
@@ -24,21 +24,10 @@ fn baked(recipe: &str, kind: MapKind, side: u32) -> Vec<u8> {
         .whole_maps()
         .unwrap()
         .remove(0);
-    let content = match rows {
-        MapRows::Gray(_) => Content::Gray,
-        MapRows::Color(_) => Content::Color,
-        MapRows::Normal(_) => Content::Normal,
-        MapRows::Packed(_) => Content::Packed,
-    };
     let sink = Cursor::new(Vec::new());
-    let mut writer = RowWriter::new(sink, [side; 2], content, Encoding::Png(Depth::Eight)).unwrap();
-    match &rows {
-        MapRows::Gray(rows) => writer.write_gray(rows.view()),
-        MapRows::Color(rows) => writer.write_color(rows.view()),
-        MapRows::Normal(rows) => writer.write_normals(rows.view()),
-        MapRows::Packed(rows) => writer.write_packed(rows.view()),
-    }
-    .unwrap();
+    let coding = Encoding::Png(Depth::Eight);
+    let mut writer = RowWriter::new(sink, [side; 2], kind.content(), coding).unwrap();
+    rows.write(&mut writer).unwrap();
     let bytes = writer.finish().unwrap().into_inner();
     let Image::Png(image) = decode_image(&bytes, &Limits::default()).unwrap() else {
         panic!("it is a PNG file");
@@ -88,18 +77,24 @@ fn pictures_are_those_of_baked_files() {
 
 #[test]
 fn large_pictures_come_in_parts_and_end_with_the_last() {
-    let mut page = Page::open("polka-dots");
-    page.ask(view(768, &["height"], false));
-    let (replies, pictures) = page.draw();
-    assert!(pictures.len() > 1, "{}", pictures.len());
-    let last: Vec<_> = pictures.iter().map(|picture| picture.is_last).collect();
-    assert_eq!(last.iter().filter(|is_last| **is_last).count(), 1);
-    assert_eq!(
-        joined(&pictures, Shown::Map(MapKind::Height)),
-        baked("polka-dots", MapKind::Height, 768)
-    );
-    assert_eq!(of_type(&replies, "began").len(), 1);
-    assert_eq!(of_type(&replies, "rendered").len(), 1);
+    // By their size, and where drawing takes long.
+    for (size, pace, n_parts) in [(1280, 0.0, 2), (1280, 60.0, 6), (512, 60.0, 1)] {
+        let mut page = Page::open("polka-dots");
+        page.ask(view(size, &["height"], false));
+        let world = TestWorld::default();
+        world.pace.set(pace);
+        page.renderer.draw(&page.session.job().unwrap(), &world);
+        let (replies, pictures) = split(world.outputs.into_inner());
+        assert_eq!(pictures.len(), n_parts, "{size} at {pace}");
+        let last: Vec<_> = pictures.iter().map(|picture| picture.is_last).collect();
+        assert_eq!(last.iter().filter(|is_last| **is_last).count(), 1);
+        assert_eq!(
+            joined(&pictures, Shown::Map(MapKind::Height)),
+            baked("polka-dots", MapKind::Height, size)
+        );
+        assert_eq!(of_type(&replies, "began").len(), 1);
+        assert_eq!(of_type(&replies, "rendered").len(), 1);
+    }
 }
 
 #[test]

@@ -136,8 +136,14 @@ impl Server {
 
     /// A page with its greeting.
     fn greeted(&self) -> (Page, Value) {
+        self.greeted_at("")
+    }
+
+    /// A page whose address goes on with some text, and its greeting.
+    fn greeted_at(&self, more: &str) -> (Page, Value) {
+        let (port, token) = (self.port, &self.token);
         let request = tungstenite::http::Request::builder()
-            .uri(format!("ws://127.0.0.1:{}/ws?t={}", self.port, self.token))
+            .uri(format!("ws://127.0.0.1:{port}/ws?t={token}{more}"))
             .header("Host", format!("127.0.0.1:{}", self.port))
             .header("Origin", format!("http://127.0.0.1:{}", self.port))
             .header("Connection", "Upgrade")
@@ -194,6 +200,24 @@ fn refusal(page: &mut Page) -> Value {
             return message;
         }
     }
+}
+
+#[test]
+fn the_view_of_the_address_is_drawn_without_a_message() {
+    let server = Server::new(Some("my.toml"));
+    let view = "&view=%7B%22size%22:[32,32],%22maps%22:[%22height%22],%22paused%22:false%7D";
+    let (mut page, _) = server.greeted_at(view);
+    let picture = until(&mut page, "picture");
+    assert_eq!(picture["size"], json!([32, 32]));
+    assert_eq!(picture["bytes"], 32 + 32 * 32, "a byte for each pixel");
+    // What is no view is as if it were not there.
+    let (mut page, _) = server.greeted_at("&view=%7B%22size%22:0%7D");
+    until(&mut page, "document");
+    say(
+        &mut page,
+        &json!({ "type": "view", "size": [8, 8], "maps": ["height"], "paused": false }),
+    );
+    assert_eq!(until(&mut page, "picture")["size"], json!([8, 8]));
 }
 
 #[test]

@@ -12,7 +12,9 @@ pub(crate) struct TestWorld {
     pub(crate) wanted: Cell<Option<usize>>,
     /// How many more times a job is wanted when it asks.
     pub(crate) patience: Cell<Option<usize>>,
-    ticks: Cell<f64>,
+    /// The milliseconds that pass whenever the time is asked for.
+    pub(crate) pace: Cell<f64>,
+    time: Cell<f64>,
 }
 
 impl World for TestWorld {
@@ -21,8 +23,8 @@ impl World for TestWorld {
     }
 
     fn now(&self) -> f64 {
-        self.ticks.set(self.ticks.get() + 1.0);
-        self.ticks.get()
+        self.time.set(self.time.get() + self.pace.get());
+        self.time.get()
     }
 
     fn is_wanted(&self, _: u32) -> bool {

@@ -1,5 +1,5 @@
 // What is looked at: the kind of view, the maps, the size, the window that is zoomed into, the time.
-import type { Region, View } from './core/protocol';
+import { FIRST, type Region, type View } from './core/protocol';
 import type { Window } from './core/pictures';
 
 /** The kinds of views. */
@@ -26,9 +26,9 @@ const SLOW = 40;
 /** What the page shows of the recipe. */
 export class Looking {
   mode = $state<Mode>('maps');
-  maps = $state<string[]>(['height', 'normal', 'albedo']);
+  maps = $state<string[]>([...FIRST.maps]);
   /** Pixels of the longer side. */
-  size = $state(512);
+  size = $state(FIRST.size[0]);
   /** The window, or null where all is to fit. */
   window = $state.raw<Window | null>(null);
   /** Whether a zoomed view asks for more pixels. */

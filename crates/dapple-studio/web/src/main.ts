@@ -1,5 +1,5 @@
-// Begins the page that `dapple studio` serves.
-import { begin } from './begin';
+// Begins the page that `dapple studio` serves. The way to the server opens while the page is loaded.
 import { Socket, token } from './core/transport';
 
-begin(new Socket(token()));
+const page = import('./begin');
+const socket: Socket = new Socket(token(), page.then(({ begin }) => begin(socket)));

@@ -1,6 +1,6 @@
 // The state of the page: what was told by whatever computes, what is selected, and what a person asked for.
 import type { Editor } from './core/editor';
-import { newGesture, StudioDocument } from './core/document';
+import { Draft, newGesture, StudioDocument, type TextHost } from './core/document';
 import type { Pictures } from './core/pictures';
 import type { Frame, Graph, Hello, Json, Op, Path, Points, Problem, Reply, Request, Seam } from './core/protocol';
 import { MAP } from './core/protocol';
@@ -34,7 +34,7 @@ export class Studio {
   said = $state('');
   /** What was told in the last seconds. */
   noted = $state('');
-  /** Whether the full pictures are those of the text. */
+  /** Whether the full pictures are those of the text, which can be edited. */
   settled = $state(false);
   refusal = $state.raw<{ what: string; message: string; hint: string | null } | null>(null);
   name = $state('');
@@ -55,6 +55,8 @@ export class Studio {
   readonly free: Range = { min: -Infinity, max: Infinity, open: [false, false], integer: false, soft: null, log: false };
   #noting: ReturnType<typeof setTimeout> | undefined;
   #editor: Editor | null = null;
+  /** The text until there is an editor. */
+  readonly #draft = new Draft();
   /** The changes of a widget that is only tried. */
   #tried: Op[] | null = null;
   #listeners = new Set<(message: Reply) => void>();
@@ -64,11 +66,12 @@ export class Studio {
 
   constructor(readonly transport: Transport) {
     const host = {
-      text: () => this.#editor?.text() ?? '',
-      apply: (...given: Parameters<Editor['apply']>) => this.#editor?.apply(...given),
-      reset: (text: string) => this.#editor?.reset(text),
+      text: () => (this.#editor ?? this.#draft).text(),
+      apply: (...given: Parameters<TextHost['apply']>) => (this.#editor ?? this.#draft).apply(...given),
+      reset: (text: string) => (this.#editor ?? this.#draft).reset(text),
     };
     this.document = new StudioDocument(host, (message) => this.send(message));
+    if (transport.first) this.rendering.asked(transport.first);
     transport.onmessage = (message) => this.#receive(message);
     transport.onpicture = (picture) => this.#picture(picture);
     transport.onstate = (state) => {
@@ -113,8 +116,12 @@ export class Studio {
 
   /** Gives the document its editor. */
   attach(editor: Editor): void {
+    this.#draft.replay(editor);
     this.#editor = editor;
     editor.lock(this.reading);
+    editor.problems(this.problems);
+    this.textChanged();
+    this.#settle();
   }
 
   /** Called when the text changed, by whatever. */
@@ -251,7 +258,7 @@ export class Studio {
   }
 
   #settle(): void {
-    this.settled = !this.document.busy && this.rendering.shows(this.document.made);
+    this.settled = this.#editor !== null && !this.document.busy && this.rendering.shows(this.document.made);
   }
 
   #take(message: Reply): void {

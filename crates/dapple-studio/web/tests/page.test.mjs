@@ -19,6 +19,20 @@ describe('the page', { skip, timeout: 240_000 }, () => {
 
   const slider = (page, path) => page.locator(`[data-path="${path}"] input[type=range]`);
 
+  test('the first view is asked for by the address of the socket, and not again', async () => {
+    const page = await open('about:blank');
+    const asked = [];
+    page.on('websocket', (socket) => {
+      asked.push(new URL(socket.url()).searchParams.get('view'));
+      socket.on('framesent', ({ payload }) => JSON.parse(payload).type === 'view' && asked.push(payload));
+    });
+    await page.goto(studio.url);
+    await settled(page);
+    assert.equal(asked.length, 1, asked.join());
+    assert.deepEqual(JSON.parse(asked[0]).maps, ['height', 'normal', 'albedo']);
+    assert.deepEqual(page.wrong, []);
+  });
+
   test('a dragged slider changes pixels and text, and is one step of undo', async () => {
     const page = await open(studio.url);
     await settled(page);

@@ -302,3 +302,50 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn masks_leave_out_the_neighborhoods_that_they_touch() {
+    let mask = Raster::from_fn([40, 36], |x, y| (x, y) != (17, 20) && x + y > 3).unwrap();
+    for edges in [Edges::Cut, Edges::Wrap] {
+        let all = noise([40, 36], edges, 2);
+        let some = all.levels[0].clone().with_mask(&mask).unwrap();
+        let some = some.pyramid(2).unwrap();
+        for pass in &Schedule::paper(2).passes {
+            let center = CoarserCenter::Exact;
+            let all = Candidates::new(&all, pass, center).unwrap();
+            let rows = Candidates::new(&some, pass, center).unwrap();
+            let mut next = 0;
+            for row in 0..all.len() {
+                let at = all.pixel(row).map(i64::from);
+                let is_usable = pass.parts.iter().all(|part| {
+                    let level = pass.level + part.reads.step();
+                    let exemplar = &some.levels[level];
+                    let half = i64::from(part.side / 2);
+                    // On the coarser level what is between two pixels is of both.
+                    let ends = at.map(|at| match part.reads {
+                        Reads::Same => [at - half, at + half],
+                        Reads::Coarser => [at / 2 - half, (at + 1) / 2 + half],
+                    });
+                    let usable = exemplar.usable.as_ref().unwrap();
+                    let wrap = exemplar.grid().wrap;
+                    (ends[1][0]..=ends[1][1]).all(|y| {
+                        let y = wrap[1].index(y, exemplar.size[1]);
+                        (ends[0][0]..=ends[0][1]).all(|x| {
+                            let x = wrap[0].index(x, exemplar.size[0]);
+                            usable[(y * exemplar.size[0] + x) as usize]
+                        })
+                    })
+                });
+                let found = rows.row_of_pixel(at);
+                assert_eq!(found, is_usable.then_some(next), "{edges:?} {at:?}");
+                if is_usable {
+                    assert_eq!(rows.pixel(next as usize), all.pixel(row), "pixel");
+                    assert_eq!(rows.row(next as usize), all.row(row), "values");
+                    next += 1;
+                }
+            }
+            assert_eq!(rows.len(), next as usize, "no other rows");
+            assert!((1..all.len()).contains(&rows.len()), "some");
+        }
+    }
+}

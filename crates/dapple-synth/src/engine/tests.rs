@@ -151,7 +151,9 @@ fn passes_are_those_of_the_pseudo_code() {
             evenness: 0.0,
             ..Options::default()
         };
-        let started = random_pixels(ground.n_sites(1), &pyramid, 1, options.seed);
+        let candidates = Candidates::new(&pyramid, &schedule.passes[0], options.center).unwrap();
+        let n_sites = ground.n_sites(1);
+        let started = random_pixels(n_sites, &pyramid, &candidates, 1, options.seed);
         let started = [Vec::new(), started];
         let expected = pseudo_code(&ground, &pyramid, &schedule.passes, &options, &started);
         let found = run(&ground, &pyramid, &options, &mut go_on).unwrap();

@@ -254,3 +254,69 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn a_mask_leaves_out_every_coarser_pixel_that_is_a_mean_of_what_it_leaves_out() {
+    for edges in [Edges::Cut, Edges::Wrap] {
+        let mask =
+            Raster::from_fn([20, 14], |x, y| (x, y) != (0, 5) && (x, y) != (13, 13)).unwrap();
+        let exemplar = noise([20, 14], 1, edges).with_mask(&mask).unwrap();
+        let pyramid = exemplar.pyramid(3).unwrap();
+        for pair in pyramid.levels().windows(2) {
+            let [finer, coarser] = pair else {
+                unreachable!()
+            };
+            // Of a mean, the weights of what is left out are above zero.
+            let usable = finer.usable.as_ref().unwrap();
+            let marks = usable.iter().map(|&usable| f32::from(!usable)).collect();
+            let marks = Exemplar {
+                n_channels: 1,
+                pixels: marks,
+                ..finer.clone()
+            };
+            for (at, &usable) in (0..).zip(coarser.usable.as_ref().unwrap()) {
+                let place = [at % coarser.size[0], at / coarser.size[0]];
+                assert_eq!(
+                    usable,
+                    naive(&marks, place, 0) == 0.0,
+                    "{edges:?} {place:?}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn reduced_exemplars_are_means_of_squares() {
+    let mask = Raster::from_fn([13, 9], |x, y| (x, y) != (4, 7)).unwrap();
+    let exemplar = noise([13, 9], 2, Edges::Wrap).with_mask(&mask).unwrap();
+    assert_eq!(exemplar.reduced(1).unwrap(), exemplar, "by 1");
+    for factor in [2, 3, 9] {
+        let reduced = exemplar.reduced(factor).unwrap();
+        assert_eq!(reduced.size, [13 / factor, 9 / factor], "size by {factor}");
+        assert_eq!(reduced.edges, Edges::Cut, "a column is left out");
+        for (at, &value) in (0..).zip(&reduced.pixels) {
+            let [x, y] = [at / 2 % reduced.size[0], at / 2 / reduced.size[0]];
+            let (mut sum, mut usable) = (0.0, true);
+            for (i, j) in (0..factor).flat_map(|j| (0..factor).map(move |i| (i, j))) {
+                let pixel = (y * factor + j) * 13 + x * factor + i;
+                sum += f64::from(exemplar.pixels[(pixel * 2 + at % 2) as usize]);
+                usable &= mask.pixels()[pixel as usize];
+            }
+            assert_eq!(
+                value,
+                (sum / f64::from(factor * factor)) as f32,
+                "{factor} {at}"
+            );
+            let is_usable = reduced.usable.as_ref().unwrap()[(at / 2) as usize];
+            assert_eq!(is_usable, usable, "{factor} {at}");
+        }
+    }
+    let whole = noise([8, 12], 1, Edges::Wrap).reduced(4).unwrap();
+    assert_eq!(whole.edges, Edges::Wrap, "nothing is left out");
+    for factor in [0, 10] {
+        let refused = kind(exemplar.reduced(factor));
+        let is_range = matches!(refused, SynthErrorKind::Range { what: "factor", .. });
+        assert!(is_range, "{factor}");
+    }
+}

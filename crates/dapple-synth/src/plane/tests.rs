@@ -561,7 +561,7 @@ proptest! {
 fn one_piece() -> PlaneTexture {
     PlaneTexture {
         sources: Raster::from_fn([24, 18], |x, y| [(x + 5) % 12, (y + 7) % 9]).unwrap(),
-        wrap: [Wrap::Repeat; 2],
+        edges: [Edges::Wrap; 2],
         exemplar_size: [12, 9],
         exemplar_edges: Edges::Wrap,
     }

@@ -110,6 +110,8 @@ impl<G: Ground> Visit<'_, G> {
         let mut kept = Kept::new(n_sites, keep, self.n_channels);
         let side = self.coarser.map_or(0, |half| 2 * half.half as usize + 1);
         let rooms = kept.sites().map(Some).chain(repeat_with(|| None));
+        let start = self.ground.start(self.level);
+        let is_visited = |site: u32| start.is_none_or(|start| !start.is_kept[site as usize]);
         let mut sites = (0..n_sites as u32).zip(rooms);
         for first in (0..n_sites).step_by(STRETCH) {
             let end = n_sites.min(first + STRETCH);
@@ -122,7 +124,7 @@ impl<G: Ground> Visit<'_, G> {
                     if piece.is_empty() {
                         return;
                     }
-                    for (site, room) in piece {
+                    for (site, room) in piece.into_iter().filter(|(site, _)| is_visited(*site)) {
                         self.visit(site, worker, state);
                         if let Some(mut room) = room {
                             room.copy(&worker.coarser, side);

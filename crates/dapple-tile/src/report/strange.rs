@@ -19,8 +19,8 @@ const SIDE: u32 = 8;
 /// The number of squares that are compared in each zone.
 const SQUARES: u32 = 128;
 
-/// The largest number of places of the source that are compared.
-const PLACES: u32 = 1 << 15;
+/// The largest number of places of the source that are compared: all of 256 × 256 pixels.
+const PLACES: u32 = 1 << 16;
 
 /// The part of a side, on the far side of the wrap, where methods lay two pictures over each other.
 const BESIDE: u32 = 5;

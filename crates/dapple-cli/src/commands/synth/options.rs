@@ -34,6 +34,20 @@ pub(super) struct PlaneArgs {
     /// Which sides of the texture fit together: both makes a tile; by default none.
     #[arg(long, value_parser = Word::<Axes>::all())]
     pub(super) wrap: Option<Axes>,
+
+    /// Make only those pixels of the example again at which this image, of its size, is white, such as a scratch or a thing
+    /// that does not belong there. All others stay as they are.
+    #[arg(long, value_name = "IMAGE", conflicts_with_all = ["size", "wrap", "evenness", "paper"])]
+    pub(super) repair: Option<PathBuf>,
+
+    /// Also write where in the example each pixel is from: an OpenEXR image, red the column and green the row.
+    #[arg(long, value_name = "FILE.exr")]
+    pub(super) sources: Option<PathBuf>,
+
+    /// Take pixels of the example from where these sources of another texture say, and match nothing: another example of
+    /// the same size, or its maps, laid out in the same way.
+    #[arg(long, value_name = "FILE.exr", conflicts_with_all = ["size", "repair", "mask", "paper", "coherence", "evenness"])]
+    pub(super) replay: Option<PathBuf>,
 }
 
 /// With a mesh.
@@ -120,7 +134,13 @@ fn angle(text: &str) -> Result<f64, String> {
 impl PlaneArgs {
     /// An option that was given.
     pub(super) fn given(&self) -> Option<&'static str> {
-        let given = [("size", self.size.is_some()), ("wrap", self.wrap.is_some())];
+        let given = [
+            ("size", self.size.is_some()),
+            ("wrap", self.wrap.is_some()),
+            ("repair", self.repair.is_some()),
+            ("sources", self.sources.is_some()),
+            ("replay", self.replay.is_some()),
+        ];
         given
             .into_iter()
             .find_map(|(name, is_given)| is_given.then_some(name))

@@ -2,16 +2,25 @@
 
 use super::{Args, Input, STEPS, advise, shown};
 use crate::encode::{Format, map_raster};
-use crate::error::Exit;
+use crate::error::{Exit, Hint, usage};
+use crate::input;
 use crate::job::{Context, Job};
+use crate::output::{OutputIdx, Target};
 use crate::progress::Progress;
-use anyhow::Result;
+use anyhow::{Context as _, Result};
+use dapple::color::LinearRgb;
+use dapple::image::Image;
+use dapple::raster::Raster;
 use dapple::synth::{PlaneTexture, synthesize_plane_with};
 use dapple::tile::Map;
 use serde_json::Value;
+use std::path::Path;
 
 /// The default size of a texture.
 const SIZE: [u32; 2] = [512; 2];
+
+/// Up to here floating-point numbers of 32 bits have all whole numbers.
+const MOST: f32 = 16_777_216.0;
 
 /// Makes the image, and the maps that follow it.
 pub(super) fn run(args: &Args, context: &Context) -> Result<Exit> {
@@ -20,20 +29,30 @@ pub(super) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let format = Format::choose(args.image.format, &target, Format::Png16)?;
     let output = job.claim(&target)?;
     let map_outputs = args.claim_maps(&target, format.ending(), &mut job)?;
+    let sources = claim_sources(args.plane.sources.as_deref(), &mut job)?;
     job.claim_sidecar(&target)?;
     let Input {
         base,
         maps,
         exemplar,
+        hole,
     } = args.read()?;
     let progress = Progress::bar("synthesizing", STEPS.into(), context);
-    let texture = synthesize_plane_with(
-        &exemplar,
-        args.plane.size.map_or(SIZE, |size| size.0),
-        args.plane.edges(),
-        &args.matching.options(&args.surface),
-        shown(&progress),
-    );
+    let options = args.matching.options(&args.surface);
+    let edges = args.plane.edges();
+    let texture = match (&args.plane.replay, &hole) {
+        (Some(path), _) => {
+            let sources = read_sources(path)?;
+            let example = exemplar.size();
+            PlaneTexture::from_sources(sources, edges, example, exemplar.edges())
+        }
+        (None, Some(hole)) => PlaneTexture::identity(&exemplar)
+            .and_then(|whole| whole.repair(&exemplar, hole, &options, shown(&progress))),
+        (None, None) => {
+            let size = args.plane.size.map_or(SIZE, |size| size.0);
+            synthesize_plane_with(&exemplar, size, edges, &options, shown(&progress))
+        }
+    };
     let texture = texture.map_err(advise)?;
     drop(progress);
     let examples = [&base].into_iter().chain(maps.iter().map(|(_, map)| map));
@@ -43,6 +62,11 @@ pub(super) fn run(args: &Args, context: &Context) -> Result<Exit> {
         let alpha = alpha.transpose()?;
         job.write_with_alpha(output, map, alpha.as_ref(), example.is_deep, &args.image)?;
     }
+    if let Some(output) = sources {
+        let place = |&[column, row]: &[u32; 2]| LinearRgb::new(column as f32, row as f32, 0.0);
+        let places = Map::Color(texture.sources().map(place));
+        job.write_map(output, &places, Format::Exr)?;
+    }
     job.finish(args, Value::Null)?;
     Ok(Exit::Done)
 }
@@ -50,4 +74,33 @@ pub(super) fn run(args: &Args, context: &Context) -> Result<Exit> {
 /// A map of the example, transferred to the texture.
 fn follow(texture: &PlaneTexture, example: &Map) -> Result<Map> {
     Ok(map_raster!(example, raster => texture.transfer(raster)?))
+}
+
+/// Claims the file of the sources.
+fn claim_sources(path: Option<&Path>, job: &mut Job<'_>) -> Result<Option<OutputIdx>> {
+    let Some(path) = path else {
+        return Ok(None);
+    };
+    let target = Target::from(path);
+    if target.ending() != "exr" {
+        let error = usage(format!(
+            "--sources {}: sources are OpenEXR",
+            input::name(path)
+        ));
+        return Err(error.hint("let the name end in .exr"));
+    }
+    job.claim(&target).map(Some)
+}
+
+/// Reads the sources that `--sources` wrote.
+fn read_sources(path: &Path) -> Result<Raster<[u32; 2]>> {
+    let image = input::image(path)?;
+    let places = image.color().with_context(|| input::name(path))?;
+    let is_place = |value: f32| (0.0..=MOST).contains(&value) && value.fract() == 0.0;
+    let is_source = |color: &LinearRgb| is_place(color.r) && is_place(color.g);
+    if !matches!(image, Image::Exr(_)) || !places.pixels().iter().all(is_source) {
+        let error = usage(format!("{} has no sources of pixels", input::name(path)));
+        return Err(error.hint("give a file that synth --sources wrote"));
+    }
+    Ok(places.map(|color| [color.r as u32, color.g as u32]))
 }

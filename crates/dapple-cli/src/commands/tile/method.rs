@@ -1,8 +1,10 @@
 //! The methods of `dapple tile`, and their options.
 
+use crate::args::seed;
 use crate::error::{Hint, usage};
 use crate::words::Word;
 use anyhow::Result;
+use dapple::hash::Seed;
 use dapple::tile::{
     Basis, Crossfade, Feather, Method, Pixels, SoftCut, SplineProject, WrapGradient,
 };
@@ -17,54 +19,83 @@ struct Row {
     /// The options of the method, without `--`.
     options: &'static [&'static str],
     /// Makes the method with its options, for images of a size.
-    make: fn(&MethodArgs, [u32; 2]) -> Method,
+    make: fn(&MethodArgs, [u32; 2]) -> How,
 }
 
 /// All methods.
-const METHODS: [Row; 7] = [
+const METHODS: [Row; 8] = [
     Row {
         name: "periodic",
         about: "The periodic part of the image, of the same size",
         options: &[],
-        make: |_, _| Method::Periodic,
+        make: |_, _| How::Seamless(Method::Periodic),
     },
     Row {
         name: "poisson",
         about: "The image with nearly its gradients and another one across the wrap",
         options: &["wrap-gradient"],
-        make: |args, _| Method::Poisson(args.wrap_gradient.unwrap_or_default()),
+        make: |args, _| How::Seamless(Method::Poisson(args.wrap_gradient.unwrap_or_default())),
     },
     Row {
         name: SOFT_CUT,
         about: "A margin over the opposite side, cut along the line of least difference",
         options: &["margin", "half-width", "crossfade"],
-        make: |args, size| Method::SoftCut(args.soft_cut(size)),
+        make: |args, size| How::Seamless(Method::SoftCut(args.soft_cut(size))),
     },
     Row {
         name: "spline",
         about: "The blend tile of Du, Wang and Meng",
         options: PROJECT_OPTIONS,
-        make: |args, _| Method::SplineProject(args.project()),
+        make: |args, _| How::Seamless(Method::SplineProject(args.project())),
     },
     Row {
         name: "periodic-spline",
         about: "First periodic, then spline",
         options: PROJECT_OPTIONS,
-        make: |args, _| Method::PeriodicThenProject(args.project()),
+        make: |args, _| How::Seamless(Method::PeriodicThenProject(args.project())),
     },
     Row {
         name: "feather",
         about: "A crossfade",
         options: &["margin", "crossfade"],
-        make: |args, _| Method::Feather(args.feather()),
+        make: |args, _| How::Seamless(Method::Feather(args.feather())),
     },
     Row {
         name: "mirror",
         about: "The image beside its mirror image, twice as large",
         options: &[],
-        make: |_, _| Method::Mirror,
+        make: |_, _| How::Seamless(Method::Mirror),
+    },
+    Row {
+        name: SYNTH,
+        about: "The part that repeats best, and a strip along its seam synthesized from the image",
+        options: &["margin", "seed"],
+        make: |args, _| {
+            How::Synth(Resynthesis {
+                margin: args.margin,
+                seed: Seed(args.seed.unwrap_or(0)),
+            })
+        },
     },
 ];
+
+/// How a tile is made.
+pub(super) enum How {
+    /// By one of the methods that change pixels.
+    Seamless(Method),
+    /// By synthesis of a strip.
+    Synth(Resynthesis),
+}
+
+/// Options of a synthesis of the strip along a seam.
+pub(super) struct Resynthesis {
+    /// The width of the strip, in pixels; nothing for 3/16 of the shorter side.
+    pub(super) margin: Option<u32>,
+    pub(super) seed: Seed,
+}
+
+/// The name of the method that takes much longer than all others.
+const SYNTH: &str = "synth";
 
 /// The name of the default method.
 const SOFT_CUT: &str = "soft-cut";
@@ -87,22 +118,22 @@ fn method() -> Word<&'static str> {
 pub(super) struct Candidate {
     /// The name of the method on the command line.
     pub(super) name: String,
-    pub(super) method: Method,
+    pub(super) how: How,
     /// The distance in pixels, along each axis, of boundaries of the tile that are like its wrap.
     pub(super) lattice: [u32; 2],
 }
 
 impl Candidate {
-    fn new(name: String, method: Method) -> Self {
-        let lattice = match method {
-            Method::SplineProject(project) | Method::PeriodicThenProject(project) => {
-                1_u32.checked_shl(project.levels).unwrap_or(1)
-            }
+    fn new(name: String, how: How) -> Self {
+        let lattice = match how {
+            How::Seamless(
+                Method::SplineProject(project) | Method::PeriodicThenProject(project),
+            ) => 1_u32.checked_shl(project.levels).unwrap_or(1),
             _ => 1,
         };
         Self {
             name,
-            method,
+            how,
             lattice: [lattice; 2],
         }
     }
@@ -130,7 +161,7 @@ pub(super) struct MethodArgs {
 
     /// soft-cut, feather: the width of the overlap of the two sides, in pixels, from 1 to half of the side. By default
     /// 32 for soft-cut, or a quarter of the shorter side if that is less; without it, feather mixes the image with
-    /// itself moved by half.
+    /// itself moved by half. synth: the width of the strip that is made; by default 3/16 of the shorter side.
     #[arg(long, value_name = "PX")]
     margin: Option<u32>,
 
@@ -142,6 +173,10 @@ pub(super) struct MethodArgs {
     /// soft-cut, feather with a margin: how the sides are mixed; by default the variance is kept.
     #[arg(long, value_name = "HOW", value_parser = Word::<Crossfade>::all())]
     crossfade: Option<Crossfade>,
+
+    /// synth: where the randomness comes from, any whole number from 0 to 2^64 - 1; by default 0.
+    #[arg(long, value_name = "N", value_parser = seed)]
+    seed: Option<u64>,
 
     /// poisson: the gradient across the wrap; by default zero.
     #[arg(long, value_name = "WHICH", value_parser = Word::<WrapGradient>::all())]
@@ -167,9 +202,9 @@ pub(super) struct MethodArgs {
 impl MethodArgs {
     /// The method with its options for images of a size, or all methods if the best is to be found.
     pub(super) fn candidates(&self, size: [u32; 2]) -> Vec<Candidate> {
-        // Poisson with a zero gradient equals the periodic part.
+        // Poisson with a zero gradient equals the periodic part, and synthesis takes seconds where all others take moments.
         let is_wanted = |row: &&Row| match self.is_auto() {
-            true => row.name != "poisson",
+            true => ![SYNTH, "poisson"].contains(&row.name),
             false => row.name == self.method,
         };
         let wanted = METHODS.iter().filter(is_wanted);
@@ -183,11 +218,11 @@ impl MethodArgs {
         let crossfade = Crossfade::default();
         candidates.push(Candidate::new(
             "poisson --wrap-gradient extrapolate".to_owned(),
-            Method::Poisson(WrapGradient::Extrapolate),
+            How::Seamless(Method::Poisson(WrapGradient::Extrapolate)),
         ));
         candidates.push(Candidate::new(
             format!("feather --margin {margin}"),
-            Method::Feather(Feather::Margin { margin, crossfade }),
+            How::Seamless(Method::Feather(Feather::Margin { margin, crossfade })),
         ));
         candidates
     }
@@ -240,6 +275,7 @@ impl MethodArgs {
     pub(super) fn check_used(&self) -> Result<()> {
         let given = [
             ("margin", self.margin.is_some()),
+            ("seed", self.seed.is_some()),
             ("half-width", self.half_width.is_some()),
             ("crossfade", self.crossfade.is_some()),
             ("wrap-gradient", self.wrap_gradient.is_some()),

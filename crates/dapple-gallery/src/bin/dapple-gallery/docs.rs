@@ -6,14 +6,14 @@
 
 use crate::{root, say};
 use anyhow::{Context, ensure};
-use dapple_gallery::docs::{DOCUMENTED, Documented};
+use dapple_gallery::docs::{Documented, documented};
 use std::fs;
 use std::path::PathBuf;
 
 /// Writes every picture that has changed into the folder `docs` of its crate, and prints the total size of all
 /// pictures.
 pub(crate) fn write() -> anyhow::Result<()> {
-    for documented in DOCUMENTED {
+    for documented in documented() {
         let folder = folder(documented);
         fs::create_dir_all(&folder)
             .with_context(|| format!("cannot make the folder {}", folder.display()))?;
@@ -39,7 +39,7 @@ pub(crate) fn write() -> anyhow::Result<()> {
 /// Fails if a picture on disk differs from a fresh one.
 pub(crate) fn check() -> anyhow::Result<()> {
     let mut old = Vec::new();
-    for documented in DOCUMENTED {
+    for documented in documented() {
         let folder = folder(documented);
         for file in documented.files()? {
             let path = folder.join(&file.name);

@@ -14,6 +14,37 @@ export interface TextHost {
   reset(text: string): void;
 }
 
+/** The text before there is an editor, which is told of all that was done. */
+export class Draft implements TextHost {
+  #text = '';
+  #done: ((editor: TextHost) => void)[] = [];
+
+  text(): string {
+    return this.#text;
+  }
+
+  apply(changes: Change[], gesture: number | null): void {
+    const parts: string[] = [];
+    let at = 0;
+    for (const { from, to, insert } of changes) {
+      parts.push(this.#text.slice(at, from), insert);
+      at = to;
+    }
+    this.#text = parts.join('') + this.#text.slice(at);
+    this.#done.push((editor) => editor.apply(changes, gesture));
+  }
+
+  reset(text: string): void {
+    this.#text = text;
+    this.#done = [(editor) => editor.reset(text)];
+  }
+
+  /** Does in an editor what was done here. */
+  replay(editor: TextHost): void {
+    for (const done of this.#done) done(editor);
+  }
+}
+
 interface Patch {
   ops: Op[];
   gesture: number | null;

@@ -46,6 +46,19 @@ export interface View {
   exact: Exact | null;
 }
 
+/** What a page shows at first: it asks for it before its parts are there. The order is that of `Looking.view`. */
+export const FIRST: View = {
+  size: [512, 512],
+  region: null,
+  maps: ['height', 'normal', 'albedo'],
+  node: null,
+  time: 0,
+  draft: true,
+  thumbnails: true,
+  paused: false,
+  exact: null,
+};
+
 /** What the page asks. */
 export type Request =
   | { type: 'open'; builtin?: string; file?: string; text?: string }
@@ -246,6 +259,10 @@ export interface Frame {
 
 /** Bytes before the pixels of a picture. */
 const HEADER = 32;
+/** Bytes of a pixel in each format: with alpha, without, and gray. */
+const WIDTHS = [4, 3, 1];
+/** An alpha of 255; processors that browsers run on have it in the highest byte. */
+const OPAQUE = 0xff000000;
 
 /** The picture of a binary message. */
 export function frame(bytes: ArrayBuffer): Frame {
@@ -254,7 +271,9 @@ export function frame(bytes: ArrayBuffer): Frame {
   const version = head.getUint32(0, true);
   if (version !== 1) throw new Error(`pictures of version ${version} are not known`);
   const [w, h] = [head.getUint32(20, true), head.getUint32(24, true)];
-  if (bytes.byteLength !== HEADER + w * h * 4) throw new Error(`a picture of ${w} × ${h} has another length`);
+  const format = head.getUint16(10, true);
+  const width = WIDTHS[format];
+  if (width === undefined || bytes.byteLength !== HEADER + w * h * width) throw new Error(`a picture of ${w} × ${h} has another length`);
   const flags = head.getUint16(30, true);
   return {
     generation: head.getUint32(4, true),
@@ -266,6 +285,18 @@ export function frame(bytes: ArrayBuffer): Frame {
     scale: Math.max(1, head.getUint16(28, true)),
     draft: (flags & 1) !== 0,
     last: (flags & 2) !== 0,
-    pixels: new Uint8ClampedArray(bytes, HEADER),
+    pixels: width === 4 ? new Uint8ClampedArray(bytes, HEADER) : widened(new Uint8Array(bytes, HEADER), width),
   };
+}
+
+/** Pixels of one or three bytes as red, green, blue and alpha. */
+function widened(bytes: Uint8Array<ArrayBuffer>, width: number): Uint8ClampedArray<ArrayBuffer> {
+  const pixels = new Uint32Array(bytes.length / width);
+  if (width === 1) for (let i = 0; i < pixels.length; i += 1) pixels[i] = OPAQUE | ((bytes[i] as number) * 0x010101);
+  else {
+    for (let i = 0, at = 0; i < pixels.length; i += 1, at += 3) {
+      pixels[i] = OPAQUE | ((bytes[at + 2] as number) << 16) | ((bytes[at + 1] as number) << 8) | (bytes[at] as number);
+    }
+  }
+  return new Uint8ClampedArray(pixels.buffer);
 }

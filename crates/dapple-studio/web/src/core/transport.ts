@@ -1,10 +1,12 @@
 // What carries messages: here a WebSocket to `dapple studio`, and in wasm.ts a worker with WebAssembly. Nothing else in the
 // page knows which.
-import type { Frame, Reply, Request } from './protocol';
-import { frame } from './protocol';
+import type { Frame, Reply, Request, View } from './protocol';
+import { FIRST, frame } from './protocol';
 
 /** A way to whatever computes. */
 export interface Transport {
+  /** The view that was asked for before there was a page, if one was. */
+  readonly first: View | null;
   send(message: Request): void;
   /** Called with each message. */
   onmessage: (message: Reply) => void;
@@ -31,17 +33,24 @@ export function token(): string {
   return sessionStorage.getItem(kept) ?? '';
 }
 
-/** A socket to the server that the page came from. */
+/** A socket to the server that the page came from. It asks for the first view at once; what arrives waits for the page. */
 export class Socket implements Transport {
+  readonly first = FIRST;
   onmessage: (message: Reply) => void = () => {};
   onpicture: (picture: Frame) => void = () => {};
   onstate: (state: 'open' | 'closed' | 'refused') => void = () => {};
   #socket: WebSocket | null = null;
   #waiting: Request[] = [];
   #closed = false;
+  /** Whether it was open once: a page that comes back asks again for what it shows. */
+  #opened = false;
 
-  constructor(private readonly token: string) {
-    queueMicrotask(() => this.#connect());
+  /** `ready` is over when there is a page, which hears. */
+  constructor(
+    private readonly token: string,
+    private readonly ready: Promise<void>,
+  ) {
+    this.#connect();
   }
 
   send(message: Request): void {
@@ -60,22 +69,26 @@ export class Socket implements Transport {
 
   #connect(): void {
     const scheme = location.protocol === 'https:' ? 'wss' : 'ws';
-    const socket = new WebSocket(`${scheme}://${location.host}/ws?t=${encodeURIComponent(this.token)}`);
+    const view = this.#opened ? '' : `&view=${encodeURIComponent(JSON.stringify(FIRST))}`;
+    const socket = new WebSocket(`${scheme}://${location.host}/ws?t=${encodeURIComponent(this.token)}${view}`);
     let opened = false;
     socket.binaryType = 'arraybuffer';
+    const tell = (then: () => void) => void this.ready.then(then);
     socket.onopen = () => {
-      opened = true;
-      this.onstate('open');
+      opened = this.#opened = true;
+      tell(() => this.onstate('open'));
       for (const message of this.#waiting.splice(0)) socket.send(JSON.stringify(message));
     };
     socket.onmessage = ({ data }: MessageEvent<string | ArrayBuffer>) => {
-      if (typeof data === 'string') this.onmessage(JSON.parse(data) as Reply);
-      else this.onpicture(frame(data));
+      if (typeof data === 'string') {
+        const message = JSON.parse(data) as Reply;
+        tell(() => this.onmessage(message));
+      } else tell(() => this.onpicture(frame(data)));
     };
     socket.onclose = () => {
       this.#waiting = [];
       if (this.#closed) return;
-      this.onstate(opened || this.token !== '' ? 'closed' : 'refused');
+      tell(() => this.onstate(opened || this.token !== '' ? 'closed' : 'refused'));
       setTimeout(() => this.#connect(), AGAIN);
     };
     this.#socket = socket;

@@ -10,6 +10,7 @@ type Sent = ArrayBuffer | { reply: Reply; files: ArrayBuffer[] } | { failed: str
 
 /** The studio in a worker of this page. */
 export class Wasm implements Transport {
+  readonly first = null;
   onmessage: Transport['onmessage'] = () => {};
   onpicture: Transport['onpicture'] = () => {};
   onstate: Transport['onstate'] = () => {};

@@ -1,12 +1,12 @@
 //! Round trips: values to a file and back.
 
-use crate::{
+use dapple_color::{LinearRgb, LinearRgba, Normal};
+use dapple_image::{
     Content, Depth, Encoding, Image, ImageError, ImageErrorKind, Limits, PngImage, PngPixels,
     RowWriter, Transfer, decode_image, encode_png, read_image, write_color_alpha_exr,
     write_color_alpha_png, write_color_exr, write_color_png, write_gray_exr, write_gray_png,
     write_normal_png,
 };
-use dapple_color::{LinearRgb, LinearRgba, Normal};
 use dapple_raster::Raster;
 use std::io::Cursor;
 use std::path::{Path, PathBuf};

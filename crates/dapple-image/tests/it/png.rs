@@ -1,11 +1,13 @@
 //! PNG files against a naive writer, which stores the samples without compression, by the specification alone.
 
-use super::{PngImage, PngPixel, PngPixels, Transfer, decode_png, encode_png};
-use crate::image::PNG_SIGNATURE as SIGNATURE;
-use crate::{ImageErrorKind, Limits};
 use core::slice;
+use dapple_image::{
+    ImageErrorKind, Limits, PngImage, PngPixel, PngPixels, Transfer, decode_png, encode_png,
+};
 use dapple_raster::Raster;
 use proptest::prelude::*;
+
+const SIGNATURE: &[u8] = b"\x89PNG\r\n\x1a\n";
 
 /// The checksum of chunks, CRC-32, bit by bit.
 fn crc(bytes: &[u8]) -> u32 {
@@ -285,7 +287,7 @@ fn every_flipped_bit_gives_an_image_or_an_error() {
 proptest! {
     #[test]
     fn bytes_of_any_kind_do_no_harm(body in proptest::collection::vec(any::<u8>(), 0..200)) {
-        let bytes = [SIGNATURE.as_slice(), &body].concat();
+        let bytes = [SIGNATURE, &body].concat();
         prop_assert!(decode_png(&bytes, &Limits::default()).is_err());
         let refused = decode_png(&body, &Limits::default());
         prop_assert!(refused.is_err());

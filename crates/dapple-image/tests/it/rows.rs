@@ -2,13 +2,12 @@
 //!
 //! Reference: for the bytes of tiles, Academy Software Foundation, "OpenEXR File Layout", <https://openexr.com>.
 
-use super::RowWriter;
-use crate::content::Pixel;
-use crate::{
-    Content, Depth, Encoding, ExrPlane, Image, ImageError, ImageErrorKind, Limits, Transfer,
-    decode_exr, decode_image, encode_png,
-};
+use crate::pixel::Pixel;
 use dapple_color::{LinearRgb, LinearRgba, Normal};
+use dapple_image::{
+    Content, Depth, Encoding, ExrPlane, Image, ImageError, ImageErrorKind, Limits, RowWriter,
+    Transfer, decode_exr, decode_image, encode_png,
+};
 use dapple_raster::Raster;
 use proptest::prelude::*;
 use std::io::{self, Cursor, Seek, SeekFrom, Write};
@@ -47,7 +46,7 @@ fn normals(size: [u32; 2]) -> Raster<Normal> {
 }
 
 /// Encodes an image that is written in bands of these heights, over and over.
-fn encode<T: Pixel + Clone>(image: &Raster<T>, encoding: Encoding, heights: &[u32]) -> Vec<u8> {
+fn encode<T: Pixel>(image: &Raster<T>, encoding: Encoding, heights: &[u32]) -> Vec<u8> {
     let [width, height] = image.size();
     let sink = Cursor::new(Vec::new());
     let mut writer = RowWriter::new(sink, image.size(), T::CONTENT, encoding).unwrap();
@@ -55,7 +54,7 @@ fn encode<T: Pixel + Clone>(image: &Raster<T>, encoding: Encoding, heights: &[u3
     for &band in heights.iter().cycle() {
         let band = band.min(height - row);
         let rows = image.view().crop([0, row], [width, band]).unwrap();
-        writer.write(rows).unwrap();
+        T::write(&mut writer, rows).unwrap();
         row += band;
         if row == height {
             break;
@@ -64,8 +63,11 @@ fn encode<T: Pixel + Clone>(image: &Raster<T>, encoding: Encoding, heights: &[u3
     writer.finish().unwrap().into_inner()
 }
 
-fn check_png<T: Pixel + Clone>(image: &Raster<T>, heights: &[u32]) {
-    let transfer = T::CONTENT.transfer();
+fn check_png<T: Pixel>(image: &Raster<T>, heights: &[u32]) {
+    let transfer = match T::CONTENT {
+        Content::Color | Content::ColorAlpha => Transfer::Srgb,
+        _ => Transfer::Data,
+    };
     let eight = encode_png(image.map(T::eight).view(), transfer).unwrap();
     let sixteen = encode_png(image.map(T::sixteen).view(), transfer).unwrap();
     for (depth, whole) in [(Depth::Eight, eight), (Depth::Sixteen, sixteen)] {
@@ -74,7 +76,7 @@ fn check_png<T: Pixel + Clone>(image: &Raster<T>, heights: &[u32]) {
     }
 }
 
-fn check_exr<T: Pixel + Clone>(image: &Raster<T>, heights: &[u32], planes: &[ExrPlane]) {
+fn check_exr<T: Pixel>(image: &Raster<T>, heights: &[u32], planes: &[ExrPlane]) {
     let bytes = encode(image, Encoding::Exr, heights);
     let mut found = decode_exr(&bytes, &Limits::default()).unwrap().planes;
     found.reverse();
@@ -232,7 +234,7 @@ fn sizes_that_do_not_fit_are_refused() {
             Encoding::Png(_) => 0x7fff_ffff,
             Encoding::Exr => 0x3fff_fffe,
             // Any size that a `u32` has.
-            Encoding::Npy | Encoding::R16 => continue,
+            _ => continue,
         };
         for size in [[limit + 1, 1], [1, limit + 1], [u32::MAX, u32::MAX]] {
             let refused = kind(size, encoding).unwrap_err();

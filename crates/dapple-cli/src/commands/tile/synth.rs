@@ -1,0 +1,77 @@
+//! Tiles whose seam is synthesized.
+
+use super::method::Resynthesis;
+use crate::encode::map_raster;
+use crate::error::Hint;
+use anyhow::{Error, Result};
+use core::ops::ControlFlow;
+use dapple::raster::Raster;
+use dapple::synth::{Edges, Exemplar, Options, SynthError, tile_plane};
+use dapple::tile::Map;
+
+/// The longest side that is matched. Larger images are made smaller for it, and their tiles copy them as they are.
+const MOST: u32 = 512;
+
+/// The shortest side that is matched on one level more.
+const LARGE: u32 = 384;
+
+/// Makes tiles of maps, all with the same sources.
+///
+/// # Errors
+///
+/// Those of the library.
+pub(super) fn tiles(maps: &[Map], axes: [bool; 2], how: &Resynthesis) -> Result<Vec<Map>> {
+    let exemplar = exemplar(maps)?;
+    let [width, height] = exemplar.size();
+    let factor = width.max(height).div_ceil(MOST);
+    let exemplar = exemplar.reduced(factor)?;
+    let size = exemplar.size();
+    let shorter = size[0].min(size[1]);
+    let strip = match how.margin {
+        Some(margin) => margin.div_ceil(factor),
+        None => shorter * 3 / 16,
+    };
+    let options = Options {
+        seed: how.seed,
+        n_levels: if shorter < LARGE { 3 } else { 4 },
+        ..Options::default()
+    };
+    let texture = tile_plane(&exemplar, axes, strip, &options, |_| {
+        ControlFlow::Continue(())
+    });
+    let texture = texture.map_err(advise)?;
+    let size = size.map(|side| side * factor);
+    let tile = |map: &Map| -> Result<Map> {
+        Ok(map_raster!(map, raster => texture.transfer(&raster.crop([0; 2], size)?)?))
+    };
+    maps.iter().map(tile).collect()
+}
+
+/// The exemplar of a material: all channels of its maps, each from about 0 to 1.
+fn exemplar(maps: &[Map]) -> Result<Exemplar> {
+    let mut planes: Vec<Raster<f32>> = Vec::new();
+    for map in maps {
+        match map {
+            Map::Value(values) => planes.push(values.clone()),
+            Map::Color(colors) => {
+                let codes = colors.map(|color| color.to_srgb::<u16>());
+                let code = |code: u16| f32::from(code) / f32::from(u16::MAX);
+                planes.extend([0, 1, 2].map(|channel| codes.map(|codes| code(codes[channel]))));
+            }
+            Map::Normal(normals) => {
+                let part = |part: f32| 0.5 + 0.5 * part;
+                planes.push(normals.map(|normal| part(normal.x)));
+                planes.push(normals.map(|normal| part(normal.y)));
+            }
+        }
+    }
+    let planes: Vec<_> = planes.iter().map(|plane| (plane, 1.0)).collect();
+    Ok(Exemplar::from_planes(&planes, Edges::Cut)?)
+}
+
+/// Adds a hint to errors of sizes.
+fn advise(error: SynthError) -> Error {
+    Error::new(error)
+        .hint("take a larger image, or another --margin")
+        .wrong_value()
+}

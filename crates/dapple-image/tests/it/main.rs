@@ -1,0 +1,23 @@
+//! Tests of the formats, through the public interface, so that the codecs are compiled only once, in the library.
+
+#[cfg(feature = "png")]
+mod arrays;
+#[cfg(feature = "png")]
+mod channels;
+#[cfg(feature = "exr")]
+mod exr;
+mod file;
+#[cfg(feature = "jpeg")]
+mod jpeg;
+#[cfg(not(any(feature = "png", feature = "jpeg", feature = "exr")))]
+mod left_out;
+#[cfg(feature = "jpeg")]
+mod orientation;
+#[cfg(feature = "png")]
+mod pixel;
+#[cfg(feature = "png")]
+mod png;
+#[cfg(all(feature = "png", feature = "exr"))]
+mod round_trips;
+#[cfg(all(feature = "png", feature = "exr"))]
+mod rows;

@@ -1,0 +1,279 @@
+//! Synthesizing a part of a texture again, with everything around it as it was.
+//!
+//! Reference: Sylvain Lefebvre and Hugues Hoppe, "Parallel Controllable Texture Synthesis", SIGGRAPH 2005, DOI
+//! 10.1145/1073204.1073261, for passes that correct pixels far from each other at the same time, and several times.
+//!
+//! A sweep would know only one side of a hole. Here all pixels of a level have a color before any is visited, those in the
+//! hole too, and each compares with all of its neighborhood. What a hole begins with on the coarsest level is the piece of
+//! the exemplar that fits what is around it best; where no piece is as large as the hole, random pixels.
+
+use super::{PlaneGround, PlaneTexture};
+use crate::engine::Progress;
+use crate::exemplar::taps;
+use crate::ground::{Colors as _, Start, UNKNOWN};
+use crate::{Exemplar, Options, Pyramid, Schedule, SynthError};
+use core::ops::ControlFlow;
+use dapple_raster::Raster;
+
+/// The columns and rows between two sites that are visited one after the other: more than a neighborhood of side 7
+/// reaches, so that they do not wait for each other.
+const STRIDE: u32 = 4;
+
+/// The order of the sites of a square: those after one another are far from each other.
+const DITHER: [[u8; STRIDE as usize]; STRIDE as usize] =
+    [[0, 8, 2, 10], [12, 4, 14, 6], [3, 11, 1, 9], [15, 7, 13, 5]];
+
+/// How far around a hole pixels are compared to find what it begins with: as far as a neighborhood reaches.
+const RING: i64 = 3;
+
+impl PlaneTexture {
+    /// The exemplar itself: every pixel is from where it is.
+    ///
+    /// # Errors
+    ///
+    /// [`SynthErrorKind::Raster`](crate::SynthErrorKind::Raster) for an exemplar without pixels.
+    pub fn identity(exemplar: &Exemplar) -> Result<Self, SynthError> {
+        Ok(Self {
+            sources: Raster::from_fn(exemplar.size, |column, row| [column, row])?,
+            edges: [exemplar.edges; 2],
+            exemplar_size: exemplar.size,
+            exemplar_edges: exemplar.edges,
+        })
+    }
+
+    /// Synthesizes the pixels at which a mask is true again; all others stay as they are.
+    ///
+    /// Scratches and things that do not belong to a texture vanish so: the exemplar is the photograph
+    /// [without them](Exemplar::with_mask), and the texture its [`identity`](Self::identity).
+    ///
+    /// Without a schedule in the options it is [`Schedule::repair`]. The sites are visited in an order in which neighbors
+    /// are far apart. [`Options::evenness`] has no effect: a small part need not use all of the exemplar.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`synthesize_plane_with`](crate::synthesize_plane_with), and
+    /// [`SynthErrorKind::Raster`](crate::SynthErrorKind::Raster) for a mask that is not as large as the texture and an
+    /// exemplar that is not as large as the texture's.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use core::ops::ControlFlow;
+    /// use dapple_raster::Raster;
+    /// use dapple_synth::{Edges, Exemplar, Options, PlaneTexture};
+    ///
+    /// // A checker with a spot in it.
+    /// let is_spot = |x: u32, y: u32| x.abs_diff(30) < 4 && y.abs_diff(27) < 4;
+    /// let photo = Raster::from_fn([64, 64], |x, y| match is_spot(x, y) {
+    ///     true => 0.5,
+    ///     false => f32::from((x / 4 + y / 4) % 2 == 0),
+    /// })?;
+    /// let clean = Raster::from_fn([64, 64], |x, y| !is_spot(x, y))?;
+    /// let exemplar = Exemplar::from_planes(&[(&photo, 1.0)], Edges::Cut)?.with_mask(&clean)?;
+    /// let hole = clean.map(|is_clean| !is_clean);
+    /// let options = Options { n_levels: 2, ..Options::default() };
+    /// let repaired = PlaneTexture::identity(&exemplar)?
+    ///     .repair(&exemplar, &hole, &options, |_| ControlFlow::Continue(()))?
+    ///     .transfer(&photo)?;
+    /// assert_eq!(repaired.row(27)[30], f32::from((30 / 4 + 27 / 4) % 2 == 0));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn repair(
+        &self,
+        exemplar: &Exemplar,
+        mask: &Raster<bool>,
+        options: &Options,
+        mut callback: impl FnMut(Progress) -> ControlFlow<()>,
+    ) -> Result<Self, SynthError> {
+        self.sources.check_same_size(mask.size())?;
+        Raster::filled(self.exemplar_size, ())?.check_same_size(exemplar.size)?;
+        let schedule = options.schedule.clone();
+        let options = Options {
+            schedule: Some(schedule.unwrap_or_else(|| Schedule::repair(options.n_levels))),
+            evenness: 0.0,
+            ..options.clone()
+        };
+        let pyramid = exemplar.pyramid(options.n_levels)?;
+        let mut ground = PlaneGround::new(mask.size(), self.edges, &options)?;
+        ground.starts = self.starts(mask, &pyramid, &ground)?;
+        Self::grown(&ground, &pyramid, &options, &mut callback)
+    }
+
+    /// What the sites of each level begin with.
+    fn starts(
+        &self,
+        mask: &Raster<bool>,
+        pyramid: &Pyramid,
+        ground: &PlaneGround,
+    ) -> Result<Vec<Start>, SynthError> {
+        let mut starts = Vec::new();
+        let mut sources = self.sources.clone();
+        let mut is_kept = mask.map(|&is_made| !is_made);
+        for exemplar in pyramid.levels() {
+            if !starts.is_empty() {
+                (sources, is_kept) = coarser(&sources, &is_kept, ground)?;
+            }
+            let usable = exemplar.usable.as_deref();
+            let pixel = |(&[column, row], &is_kept): (&[u32; 2], &bool)| {
+                let pixel = row * exemplar.size[0] + column;
+                let is_usable = is_kept || usable.is_none_or(|usable| usable[pixel as usize]);
+                if is_usable { pixel } else { UNKNOWN }
+            };
+            let sites = sources.pixels().iter().zip(is_kept.pixels());
+            starts.push(Start {
+                pixels: sites.map(pixel).collect(),
+                is_kept: is_kept.pixels().to_vec(),
+            });
+        }
+        if let (Some(start), Some(exemplar)) = (starts.last_mut(), pyramid.levels().last()) {
+            let level = pyramid.levels().len() - 1;
+            for hole in holes(start, ground, level) {
+                hole.fill(start, ground, level, exemplar);
+            }
+        }
+        Ok(starts)
+    }
+}
+
+/// The sources and the sites that are kept on the next coarser level: those all of whose pixels are kept.
+fn coarser(
+    sources: &Raster<[u32; 2]>,
+    is_kept: &Raster<bool>,
+    ground: &PlaneGround,
+) -> Result<(Raster<[u32; 2]>, Raster<bool>), SynthError> {
+    let size = sources.size();
+    let half = size.map(|side| side.div_ceil(2));
+    let halved = |column: u32, row: u32| sources.row(2 * row)[2 * column as usize].map(|at| at / 2);
+    let all_kept = |column, row| {
+        let columns = taps(column, size[0], ground.wrap[0]);
+        let rows = taps(row, size[1], ground.wrap[1]).map(|row| is_kept.row(row as u32));
+        rows.iter().all(|row| columns.iter().all(|&at| row[at]))
+    };
+    Ok((
+        Raster::from_fn(half, halved)?,
+        Raster::from_fn(half, all_kept)?,
+    ))
+}
+
+/// Sites beside each other that begin with nothing, and those around them.
+struct Hole {
+    /// Columns and rows; across an edge that wraps they go on.
+    sites: Vec<[i64; 2]>,
+    ring: Vec<[i64; 2]>,
+}
+
+/// The holes of a level.
+fn holes(start: &Start, ground: &PlaneGround, level: usize) -> Vec<Hole> {
+    let [width, height] = ground.sizes[level].map(i64::from);
+    let mut found = vec![false; start.pixels.len()];
+    let mut holes = Vec::new();
+    for first in 0..start.pixels.len() {
+        if found[first] || start.pixels[first] != UNKNOWN {
+            continue;
+        }
+        found[first] = true;
+        let mut sites = vec![[first as i64 % width, first as i64 / width]];
+        let mut at = 0;
+        while at < sites.len() {
+            for site in square(sites[at], 1) {
+                if let Some(index) = ground.index(level, site)
+                    && !found[index]
+                    && start.pixels[index] == UNKNOWN
+                {
+                    found[index] = true;
+                    sites.push(site);
+                }
+            }
+            at += 1;
+        }
+        let mut in_ring = vec![false; (width * height) as usize];
+        let mut ring = Vec::new();
+        for place in sites.iter().flat_map(|&site| square(site, RING)) {
+            if let Some(index) = ground.index(level, place)
+                && !in_ring[index]
+                && start.pixels[index] != UNKNOWN
+            {
+                in_ring[index] = true;
+                ring.push(place);
+            }
+        }
+        holes.push(Hole { sites, ring });
+    }
+    holes
+}
+
+/// The places at most `reach` columns and rows away.
+fn square([column, row]: [i64; 2], reach: i64) -> impl Iterator<Item = [i64; 2]> {
+    let rows = row - reach..=row + reach;
+    rows.flat_map(move |row| (column - reach..=column + reach).map(move |column| [column, row]))
+}
+
+impl Hole {
+    /// Gives the sites the piece of the exemplar whose surroundings are most like theirs; nothing if none is as large. Of
+    /// several the first row by row.
+    fn fill(&self, start: &mut Start, ground: &PlaneGround, level: usize, exemplar: &Exemplar) {
+        let pixel_of = |[column, row]: [i64; 2]| {
+            let pixel = exemplar.pixel_at([column, row])?;
+            let usable = exemplar.usable.as_ref();
+            usable.is_none_or(|usable| usable[pixel]).then_some(pixel)
+        };
+        let colors = exemplar.plain();
+        let painted: Vec<([i64; 2], &[f32])> = self
+            .ring
+            .iter()
+            .filter_map(|&place| {
+                let site = ground.index(level, place)?;
+                Some((place, colors.of(start.pixels[site] as usize)))
+            })
+            .collect();
+        let [width, height] = exemplar.size.map(i64::from);
+        let [column, row] = self.sites[0];
+        let mut best = (f64::INFINITY, None);
+        for offset in (0..height).flat_map(|y| (0..width).map(move |x| [x - column, y - row])) {
+            let moved = |[column, row]: [i64; 2]| pixel_of([column + offset[0], row + offset[1]]);
+            if !self.sites.iter().all(|&site| moved(site).is_some()) {
+                continue;
+            }
+            let mut distance = 0.0;
+            for (place, color) in &painted {
+                let Some(pixel) = moved(*place) else {
+                    distance = f64::INFINITY;
+                    break;
+                };
+                let other = colors.of(pixel).iter();
+                let squares = other
+                    .zip(*color)
+                    .map(|(a, b)| f64::from(a - b) * f64::from(a - b));
+                distance += squares.sum::<f64>();
+                if distance >= best.0 {
+                    break;
+                }
+            }
+            if distance < best.0 {
+                best = (distance, Some(offset));
+            }
+        }
+        let Some([x, y]) = best.1 else { return };
+        for &[column, row] in &self.sites {
+            let site = ground.index(level, [column, row]);
+            if let (Some(site), Some(pixel)) = (site, pixel_of([column + x, row + y])) {
+                start.pixels[site] = pixel as u32;
+            }
+        }
+    }
+}
+
+/// The sites of a level that are made: one of each square of [`STRIDE`] columns and rows, then the next of each.
+pub(super) fn order(start: &Start, width: u32) -> Vec<u32> {
+    let in_square = |site: u32| {
+        let [column, row] = [site % width, site / width].map(|at| (at % STRIDE) as usize);
+        DITHER[row][column]
+    };
+    let sites = (0..start.is_kept.len() as u32).filter(|&site| !start.is_kept[site as usize]);
+    let mut order: Vec<u32> = sites.collect();
+    order.sort_by_key(|&site| in_square(site));
+    order
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,449 @@
+//! Repairs beside passes that compare everything with everything, and tiles.
+
+use crate::{
+    Candidates, CoarserCenter, Coherence, Edges, Exemplar, Options, Pass, PlaneTexture, Pyramid,
+    Reads, Schedule, SynthErrorKind, distance_sq, synthesize_plane, tile_plane,
+};
+use core::ops::ControlFlow;
+use dapple_hash::{Seed, hash2, unit_f32};
+use dapple_raster::{Raster, Wrap};
+
+/// Soft noise that repeats after `period` pixels.
+fn noise(size: [u32; 2], period: u32) -> Raster<f32> {
+    let value = |x: u32, y: u32| {
+        let cell = [x % period / 2, y % period / 3].map(i64::from);
+        unit_f32((hash2(Seed(5), cell, 0) >> 32) as u32)
+    };
+    Raster::from_fn(size, value).unwrap()
+}
+
+/// The exemplar of a plane without its hole, in which all values are off.
+fn damaged(size: [u32; 2], edges: Edges, hole: &Raster<bool>) -> Exemplar {
+    let plane = noise(size, 64);
+    let plane = plane.zip_map(hole, |&value, &is_off| if is_off { 9.0 } else { value });
+    let mask = hole.map(|&is_off| !is_off);
+    let exemplar = Exemplar::from_planes(&[(&plane.unwrap(), 1.0)], edges).unwrap();
+    exemplar.with_mask(&mask).unwrap()
+}
+
+/// The least difference wins.
+fn least(n_levels: usize) -> Options {
+    Options {
+        n_levels,
+        coherence: Coherence::Factor(0.0),
+        ..Options::default()
+    }
+}
+
+fn repaired(exemplar: &Exemplar, hole: &Raster<bool>, options: &Options) -> PlaneTexture {
+    let whole = PlaneTexture::identity(exemplar).unwrap();
+    let keep_on = |_| ControlFlow::Continue(());
+    whole.repair(exemplar, hole, options, keep_on).unwrap()
+}
+
+/// The sources of a level in the oracle, and whether they are made.
+struct NaiveLevel {
+    size: [u32; 2],
+    sources: Vec<[i64; 2]>,
+    is_made: Vec<bool>,
+}
+
+/// The repair of an exemplar, pixel by pixel.
+struct Naive<'a> {
+    pyramid: &'a Pyramid,
+    wrap: Wrap,
+    levels: Vec<NaiveLevel>,
+}
+
+impl Naive<'_> {
+    fn index(&self, level: usize, place: [i64; 2]) -> usize {
+        let size = self.levels[level].size;
+        let [x, y] = [0, 1].map(|axis| self.wrap.index(place[axis], size[axis]));
+        (y * size[0] + x) as usize
+    }
+
+    fn color(&self, level: usize, halves: [i64; 2]) -> f32 {
+        let read = &self.pyramid.levels()[level];
+        let at = |step: [i64; 2]| {
+            let place = [0, 1].map(|axis| (halves[axis] + step[axis]).div_euclid(2));
+            let [x, y] = self.levels[level].sources[self.index(level, place)];
+            read.pixels()[(y * i64::from(read.size()[0]) + x) as usize]
+        };
+        0.25 * ((at([0, 0]) + at([1, 0])) + (at([0, 1]) + at([1, 1])))
+    }
+
+    /// The source of a site that all sites around it, and itself on its own level, predict.
+    fn piece(&self, pass: &Pass, site: [u32; 2]) -> Option<[i64; 2]> {
+        let part = &pass.parts[0];
+        let level = pass.level + usize::from(part.reads == Reads::Coarser);
+        let [width, height] = self.levels[level].size.map(i64::from);
+        let read = self.pyramid.levels()[level].size().map(i64::from);
+        let middle = site.map(|at| i64::from(at) / if level == pass.level { 1 } else { 2 });
+        let mut predicted = Vec::new();
+        let half = i64::from(part.side / 2);
+        for offset in (-half..=half).flat_map(|j| (-half..=half).map(move |i| [i, j])) {
+            let place = [middle[0] + offset[0], middle[1] + offset[1]];
+            let is_within = (0..width).contains(&place[0]) && (0..height).contains(&place[1]);
+            if is_within || self.wrap == Wrap::Repeat {
+                let source = self.levels[level].sources[self.index(level, place)];
+                let from = [source[0] - offset[0], source[1] - offset[1]];
+                predicted.push(match self.wrap {
+                    Wrap::Repeat => [from[0].rem_euclid(read[0]), from[1].rem_euclid(read[1])],
+                    _ => from,
+                });
+            }
+        }
+        let is_same = predicted.windows(2).all(|pair| pair[0] == pair[1]);
+        let [x, y] = predicted[0];
+        let is_pixel = (0..read[0]).contains(&x) && (0..read[1]).contains(&y);
+        if !is_same || !is_pixel {
+            return None;
+        }
+        Some(match part.reads {
+            Reads::Same => [x, y],
+            Reads::Coarser => [
+                2 * x + i64::from(site[0] % 2),
+                2 * y + i64::from(site[1] % 2),
+            ],
+        })
+    }
+
+    fn visit(&mut self, pass: &Pass) {
+        let candidates = Candidates::new(self.pyramid, pass, CoarserCenter::Exact).unwrap();
+        let [width, height] = self.levels[pass.level].size;
+        for turn in 0..16 {
+            for site in (0..width * height).map(|site| [site % width, site / width]) {
+                // The 4 x 4 matrix of ordered dithering, from its recursion.
+                let [x, y] = site.map(|at| at % 4);
+                let quad = |x: u32, y: u32| 2 * (x ^ y) + y;
+                let index = (site[1] * width + site[0]) as usize;
+                let is_turn = 4 * quad(x % 2, y % 2) + quad(x / 2, y / 2) == turn;
+                if !is_turn || !self.levels[pass.level].is_made[index] {
+                    continue;
+                }
+                if let Some(source) = self.piece(pass, site) {
+                    self.levels[pass.level].sources[index] = source;
+                    continue;
+                }
+                let mut query = Vec::new();
+                for part in &pass.parts {
+                    let (level, scale) = match part.reads {
+                        Reads::Same => (pass.level, 2),
+                        Reads::Coarser => (pass.level + 1, 1),
+                    };
+                    for offset in part.offsets() {
+                        let at = [0, 1].map(|axis| {
+                            scale * i64::from(site[axis]) + 2 * i64::from(offset[axis])
+                        });
+                        query.push(self.color(level, at));
+                    }
+                }
+                let mut best = (f32::INFINITY, 0);
+                for row in 0..candidates.len() {
+                    let distance = distance_sq(&query, candidates.row(row));
+                    if distance < best.0 {
+                        best = (distance, row);
+                    }
+                }
+                let source = candidates.pixel(best.1).map(i64::from);
+                self.levels[pass.level].sources[index] = source;
+            }
+        }
+    }
+}
+
+/// The sources of a repair whose hole is one rectangle on the coarsest level.
+fn naive(exemplar: &Exemplar, hole: &Raster<bool>, n_levels: usize) -> Vec<[u32; 2]> {
+    let pyramid = exemplar.pyramid(n_levels).unwrap();
+    let wrap = match exemplar.edges() {
+        Edges::Cut => Wrap::Mirror,
+        Edges::Wrap => Wrap::Repeat,
+    };
+    let mut levels: Vec<NaiveLevel> = Vec::new();
+    for level in pyramid.levels() {
+        let size = level.size();
+        let places = (0..size[0] * size[1]).map(|at| [at % size[0], at / size[0]]);
+        let is_made = |place: [u32; 2]| match levels.last() {
+            None => hole.row(place[1])[place[0] as usize],
+            Some(finer) => (0..25).any(|tap| {
+                let [x, y] = [tap % 5, tap / 5].map(|tap| i64::from(tap) - 2);
+                let x = wrap.index(2 * i64::from(place[0]) + x, finer.size[0]);
+                let y = wrap.index(2 * i64::from(place[1]) + y, finer.size[1]);
+                finer.is_made[(y * finer.size[0] + x) as usize]
+            }),
+        };
+        levels.push(NaiveLevel {
+            size,
+            is_made: places.clone().map(is_made).collect(),
+            sources: places.map(|place| place.map(i64::from)).collect(),
+        });
+    }
+    fit(&mut levels[n_levels - 1], &pyramid.levels()[n_levels - 1]);
+    let mut naive = Naive {
+        pyramid: &pyramid,
+        wrap,
+        levels,
+    };
+    for pass in &Schedule::repair(n_levels).passes {
+        naive.visit(pass);
+    }
+    let sources = naive.levels[0].sources.iter();
+    sources.map(|source| source.map(|at| at as u32)).collect()
+}
+
+/// Fills a hole in the middle of a level with the piece whose surroundings are nearest.
+fn fit(level: &mut NaiveLevel, exemplar: &Exemplar) {
+    let [width, height] = level.size.map(i64::from);
+    let at = |x: i64, y: i64| (y * width + x) as usize;
+    let sites = (0..width * height).map(|site| [site % width, site / width]);
+    let made: Vec<_> = sites
+        .clone()
+        .filter(|&[x, y]| level.is_made[at(x, y)])
+        .collect();
+    let is_near = |&[x, y]: &[i64; 2]| {
+        let near = |site: &[i64; 2]| (site[0] - x).abs().max((site[1] - y).abs()) <= 3;
+        !level.is_made[at(x, y)] && made.iter().any(near)
+    };
+    let ring: Vec<_> = sites.filter(is_near).collect();
+    let mut best = (f64::INFINITY, [0; 2]);
+    for y in -height..height {
+        for x in -width..width {
+            let moved = made
+                .iter()
+                .chain(&ring)
+                .map(|site| [site[0] + x, site[1] + y]);
+            let mut moved = moved.map(|[x, y]| match exemplar.edges() {
+                Edges::Cut => [x, y],
+                Edges::Wrap => [x.rem_euclid(width), y.rem_euclid(height)],
+            });
+            let is_usable = |[x, y]: [i64; 2]| {
+                let is_within = (0..width).contains(&x) && (0..height).contains(&y);
+                is_within && !level.is_made[at(x, y)]
+            };
+            if !moved.clone().all(is_usable) {
+                continue;
+            }
+            let mut sum = 0.0;
+            for (to, [x, y]) in moved.by_ref().skip(made.len()).zip(&ring) {
+                let step = exemplar.pixels()[at(to[0], to[1])] - exemplar.pixels()[at(*x, *y)];
+                sum += f64::from(step) * f64::from(step);
+            }
+            if sum < best.0 {
+                best = (sum, [x, y]);
+            }
+        }
+    }
+    assert!(best.0 < f64::INFINITY, "a piece fits");
+    for [x, y] in made {
+        let place = [x + best.1[0], y + best.1[1]];
+        level.sources[at(x, y)] = match exemplar.edges() {
+            Edges::Cut => place,
+            Edges::Wrap => [place[0].rem_euclid(width), place[1].rem_euclid(height)],
+        };
+    }
+}
+
+#[test]
+fn repairs_equal_passes_that_compare_everything() {
+    for (size, n_levels, edges) in [
+        ([30, 26], 1, Edges::Cut),
+        ([48, 44], 2, Edges::Cut),
+        ([48, 44], 2, Edges::Wrap),
+    ] {
+        let is_off = |x: u32, y: u32| (18..22).contains(&x) && (16..21).contains(&y);
+        let hole = Raster::from_fn(size, is_off).unwrap();
+        let exemplar = damaged(size, edges, &hole);
+        let texture = repaired(&exemplar, &hole, &least(n_levels));
+        let expected = naive(&exemplar, &hole, n_levels);
+        assert!(texture.sources().pixels() == expected, "{size:?} {edges:?}");
+    }
+}
+
+#[test]
+fn only_the_hole_changes_and_nothing_is_from_it() {
+    // Two holes, one of them across an edge.
+    let is_off = |x: u32, y: u32| x.abs_diff(31) < 5 && y.abs_diff(40) < 4 || x < 3 && y > 60;
+    let hole = Raster::from_fn([72, 80], is_off).unwrap();
+    for edges in [Edges::Cut, Edges::Wrap] {
+        let exemplar = damaged([72, 80], edges, &hole);
+        let texture = repaired(&exemplar, &hole, &Options::default());
+        for (at, &[x, y]) in texture.sources().pixels().iter().enumerate() {
+            let place = [at as u32 % 72, at as u32 / 72];
+            let is_off = hole.row(place[1])[place[0] as usize];
+            assert!(is_off || place == [x, y], "{place:?} is kept");
+            assert!(!hole.row(y)[x as usize], "{place:?} is not from the hole");
+        }
+    }
+}
+
+#[test]
+fn repairs_do_not_depend_on_threads() {
+    let hole = Raster::from_fn([60, 60], |x, y| x.abs_diff(30) + y.abs_diff(30) < 14).unwrap();
+    let exemplar = damaged([60, 60], Edges::Wrap, &hole);
+    let with = |n_threads| {
+        let pool = rayon::ThreadPoolBuilder::new();
+        let pool = pool.num_threads(n_threads).build().unwrap();
+        pool.install(|| repaired(&exemplar, &hole, &Options::default()))
+    };
+    let one = with(1);
+    assert!(with(2) == one && with(7) == one, "1, 2 and 7 threads");
+}
+
+#[test]
+fn what_is_larger_than_all_else_begins_with_random_pixels() {
+    // Three quarters of the image: no piece is as large.
+    let hole = Raster::from_fn([64, 64], |x, _| x >= 24).unwrap();
+    let exemplar = damaged([64, 64], Edges::Cut, &hole);
+    let options = least(1);
+    let first = repaired(&exemplar, &hole, &options);
+    assert_eq!(first, repaired(&exemplar, &hole, &options), "again");
+    let seed = Seed(1);
+    let other = repaired(&exemplar, &hole, &Options { seed, ..options });
+    assert!(first != other, "another seed");
+    let sources = first.sources().pixels();
+    assert!(sources.iter().all(|&[x, _]| x < 24), "from what is left");
+}
+
+#[test]
+fn a_texture_made_before_shows_other_maps() {
+    let plane = noise([40, 32], 64);
+    let exemplar = Exemplar::from_planes(&[(&plane, 1.0)], Edges::Cut).unwrap();
+    let edges = [Edges::Wrap, Edges::Cut];
+    let made = synthesize_plane(&exemplar, [24, 20], edges, &Options::default()).unwrap();
+    let sources = made.sources().clone();
+    let again = PlaneTexture::from_sources(sources, edges, [40, 32], Edges::Cut).unwrap();
+    assert!(again == made, "the same texture");
+    let places = Raster::from_fn([40, 32], |x, y| [x, y]).unwrap();
+    assert!(
+        again.transfer(&places).unwrap() == *made.sources(),
+        "places"
+    );
+    let outside = Raster::filled([2, 2], [3, 32]).unwrap();
+    let refused = PlaneTexture::from_sources(outside, edges, [40, 32], Edges::Cut);
+    let expected = SynthErrorKind::Source {
+        source: [3, 32],
+        exemplar: [40, 32],
+    };
+    assert_eq!(refused.unwrap_err().kind(), &expected);
+}
+
+#[test]
+fn masks_and_exemplars_of_other_sizes_are_refused() {
+    let hole = Raster::from_fn([40, 40], |x, y| x == 20 && y == 20).unwrap();
+    let exemplar = damaged([40, 40], Edges::Cut, &hole);
+    let whole = PlaneTexture::identity(&exemplar).unwrap();
+    let refused = |exemplar: &Exemplar, hole: &Raster<bool>| {
+        let keep_on = |_| ControlFlow::Continue(());
+        let result = whole.repair(exemplar, hole, &Options::default(), keep_on);
+        result.unwrap_err().kind().clone()
+    };
+    let small = Raster::filled([40, 39], true).unwrap();
+    let other = damaged([40, 39], Edges::Cut, &small);
+    assert!(
+        matches!(refused(&exemplar, &small), SynthErrorKind::Raster(_)),
+        "mask"
+    );
+    assert!(
+        matches!(refused(&other, &hole), SynthErrorKind::Raster(_)),
+        "exemplar"
+    );
+    assert!(
+        exemplar.clone().with_mask(&small).is_err(),
+        "mask of an exemplar"
+    );
+    let nothing = Raster::filled([40, 40], false).unwrap();
+    let without = exemplar.clone().with_mask(&nothing).unwrap();
+    let expected = SynthErrorKind::Masked { level: 2 };
+    assert_eq!(refused(&without, &hole), expected, "all is left out");
+    let stop = |_| ControlFlow::Break(());
+    let stopped = whole.repair(&exemplar, &hole, &Options::default(), stop);
+    assert_eq!(
+        stopped.unwrap_err().kind(),
+        &SynthErrorKind::Cancelled,
+        "stopped"
+    );
+}
+
+fn tile(plane: &Raster<f32>, axes: [bool; 2], width: u32) -> PlaneTexture {
+    let exemplar = Exemplar::from_planes(&[(plane, 1.0)], Edges::Cut).unwrap();
+    let keep_on = |_| ControlFlow::Continue(());
+    tile_plane(&exemplar, axes, width, &Options::default(), keep_on).unwrap()
+}
+
+#[test]
+fn tiles_of_what_repeats_repeat_it() {
+    // After 24 pixels, of which twice and three times lie between half and all of it less half of the strip.
+    let plane = noise([90, 60], 24);
+    let both = tile(&plane, [true; 2], 12);
+    assert_eq!(both.sources().size(), [72, 48], "the largest that repeats");
+    let across = tile(&plane, [true, false], 12);
+    assert_eq!(across.sources().size(), [72, 60], "one axis");
+    // Where an axis does not repeat, rows near its edges are compared with mirrored ones: 3 on the coarsest level, and
+    // as many more as a pixel of it has.
+    for (texture, edge) in [(both, 0), (across, 16)] {
+        let made = texture.transfer(&plane).unwrap();
+        for row in edge..made.height() - edge {
+            let expected = &plane.row(row)[..made.width() as usize];
+            assert!(
+                made.row(row) == expected,
+                "the seam is not seen in row {row}"
+            );
+        }
+    }
+}
+
+#[test]
+fn tiles_change_only_a_strip_along_the_seam() {
+    let plane = noise([64, 56], 64);
+    let texture = tile(&plane, [true; 2], 10);
+    let [width, height] = texture.sources().size();
+    assert_eq!([width % 4, height % 4], [0; 2], "halves of halves");
+    assert!(
+        (32..=59).contains(&width) && (28..=51).contains(&height),
+        "sides"
+    );
+    let seams = [(64 - width) / 2, (56 - height) / 2];
+    let mut n_made = 0;
+    for y in 0..height {
+        for x in 0..width {
+            let around = |at: u32, seam: u32, side: u32| {
+                let past = (at + side - seam) % side;
+                past.min(side - 1 - past)
+            };
+            let near = around(x, seams[0], width).min(around(y, seams[1], height));
+            let source = texture.sources().row(y)[x as usize];
+            let shown = [
+                if x < seams[0] { x + width } else { x },
+                if y < seams[1] { y + height } else { y },
+            ];
+            assert!(near < 5 || source == shown, "{x} {y}: {source:?}");
+            n_made += u32::from(source != shown);
+        }
+    }
+    assert!(n_made > 0, "the seam is closed");
+}
+
+#[test]
+fn strips_that_are_too_wide_or_too_narrow_are_refused() {
+    let plane = noise([40, 40], 64);
+    let exemplar = Exemplar::from_planes(&[(&plane, 1.0)], Edges::Cut).unwrap();
+    for width in [0, 1, 21, u32::MAX] {
+        let keep_on = |_| ControlFlow::Continue(());
+        let made = tile_plane(&exemplar, [true; 2], width, &Options::default(), keep_on);
+        let kind = made.unwrap_err().kind().clone();
+        let what = "width of a strip";
+        assert!(
+            matches!(kind, SynthErrorKind::Range { what: name, .. } if name == what),
+            "{width}"
+        );
+    }
+    let small = Exemplar::from_planes(&[(&noise([40, 15], 64), 1.0)], Edges::Cut).unwrap();
+    let keep_on = |_| ControlFlow::Continue(());
+    let made = tile_plane(&small, [false, true], 4, &Options::default(), keep_on);
+    let kind = made.unwrap_err().kind().clone();
+    let what = "side of the exemplar";
+    assert!(
+        matches!(kind, SynthErrorKind::Range { what: name, .. } if name == what),
+        "15 rows"
+    );
+}
