@@ -8,8 +8,10 @@ use crate::pictures::{self, Layout};
 use crate::seed::SeedArgument;
 use crate::tiles::flags;
 use crate::watch;
+use dapple::raster::Raster;
 use dapple::synth::{
-    Axes, Edges, Exemplar, Options, PlaneTexture, SynthError, synthesize_plane_with,
+    Axes, Edges, Exemplar, Options, PlaneTexture, SynthError, synthesize_plane_guided,
+    synthesize_plane_with,
 };
 use dapple::tile::Map;
 use pyo3::prelude::*;
@@ -92,6 +94,10 @@ pub(crate) fn exemplar(maps: &[Map], edges: &str) -> Result<Exemplar> {
 ///     higher copies larger pieces.
 /// evenness : how evenly the example is used, 0 to 1000; 1 by default.
 /// paper : match as in the paper: the smallest difference wins.
+/// mask : (rows, columns) of the example, at least 0.5 where it is used; nowhere else is anything taken from.
+/// guides : a list of (of_example, of_texture, weight): numbers in the sizes of the example and of the texture; parts of the
+///     example go where both are alike. With weight 1 a guide counts as much as one channel; with 3 one of zeros and ones is
+///     obeyed nearly everywhere. With guides, `evenness` has no effect.
 /// sources : return (texture, sources): for every pixel the (column, row) of its source in the example, (rows, columns,
 ///     2).
 /// progress : called with the part of the work done, from 0 to 1. Ctrl-C stops the call.
@@ -105,9 +111,9 @@ pub(crate) fn exemplar(maps: &[Map], edges: &str) -> Result<Exemplar> {
 /// True
 #[pyfunction]
 #[pyo3(signature = (exemplar, size, *, seed = SeedArgument::default(), wrap = None, edges = "cut", levels = 3, coherence = None,
-    evenness = None, paper = false, sources = false, progress = None),
+    evenness = None, paper = false, mask = None, guides = Vec::new(), sources = false, progress = None),
     text_signature = "(exemplar, size, *, seed=0, wrap=False, edges=\"cut\", levels=3, coherence=None, evenness=None, \
-    paper=False, sources=False, progress=None)")]
+    paper=False, mask=None, guides=(), sources=False, progress=None)")]
 pub(crate) fn synthesize<'py>(
     py: Python<'py>,
     exemplar: &Bound<'py, PyAny>,
@@ -119,13 +125,20 @@ pub(crate) fn synthesize<'py>(
     coherence: Option<Coherence>,
     evenness: Option<f32>,
     paper: bool,
+    mask: Option<&Bound<'py, PyAny>>,
+    guides: Vec<(Bound<'py, PyAny>, Bound<'py, PyAny>, f32)>,
     sources: bool,
     progress: Option<&Bound<'py, PyAny>>,
 ) -> Result<Bound<'py, PyAny>> {
     let (layout, maps) = pictures::read("exemplar", exemplar)?;
     check_sizes(&maps)?;
-    let exemplar = self::exemplar(&maps, edges)?;
+    let mut exemplar = self::exemplar(&maps, edges)?;
+    if let Some(mask) = mask {
+        exemplar =
+            exemplar.with_mask(&pictures::numbers("mask", mask)?.map(|&value| value >= 0.5))?;
+    }
     let size = self::size(size)?;
+    let (exemplar, targets) = guided(exemplar, size, &guides)?;
     let matching = Matching {
         seed,
         levels,
@@ -136,10 +149,33 @@ pub(crate) fn synthesize<'py>(
     };
     let options = matching.options()?;
     let wrap = flags(wrap, false)?.map(|wraps| if wraps { Edges::Wrap } else { Edges::Cut });
-    let texture = watch::run(py, progress, |heard| {
-        synthesize_plane_with(&exemplar, size, wrap, &options, heard)
+    let targets: Vec<_> = targets.iter().collect();
+    let texture = watch::run(py, progress, |heard| match targets[..] {
+        [] => synthesize_plane_with(&exemplar, size, wrap, &options, heard),
+        _ => synthesize_plane_guided(&exemplar, &targets, wrap, &options, heard),
     })??;
     followed(py, layout, &maps, &texture, sources)
+}
+
+/// An exemplar with its guides, and those of a texture of a size.
+fn guided(
+    exemplar: Exemplar,
+    size: [u32; 2],
+    guides: &[(Bound<'_, PyAny>, Bound<'_, PyAny>, f32)],
+) -> Result<(Exemplar, Vec<Raster<f32>>)> {
+    let mut planes = Vec::new();
+    let mut targets = Vec::new();
+    for (of_example, of_texture, weight) in guides {
+        planes.push((pictures::numbers("guides", of_example)?, *weight));
+        let target = pictures::numbers("guides", of_texture)?;
+        target.check_same_size(size).map_err(SynthError::from)?;
+        targets.push(target);
+    }
+    let planes: Vec<_> = planes
+        .iter()
+        .map(|(plane, weight)| (plane, *weight))
+        .collect();
+    Ok((exemplar.with_guides(&planes)?, targets))
 }
 
 /// A photograph of a texture in which a part is made again, such as a stain; all around it stays as it is.

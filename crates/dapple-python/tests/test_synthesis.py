@@ -124,7 +124,9 @@ def test_progress_is_told_and_what_it_raises_comes_out():
 
 def test_ctrl_c_stops_a_synthesis_and_the_next_call_works():
     script = """
-        import dapple_textures as dp, numpy as np, time
+        import dapple_textures as dp, numpy as np, signal, time
+        # A shell that runs the tests in the background lets them ignore the signal.
+        signal.signal(signal.SIGINT, signal.default_int_handler)
         example = np.random.default_rng(1).random((128, 128, 3))
         begin = time.perf_counter()
         try:
@@ -141,6 +143,30 @@ def test_ctrl_c_stops_a_synthesis_and_the_next_call_works():
     rest = python.communicate()[0]
     watchdog.cancel()
     assert "stopped after" in rest and rest.endswith("(16, 16, 3)\n") and python.returncode == 0
+
+
+def test_guides_say_where_parts_of_the_example_go():
+    rows, columns = np.indices((32, 64))
+    stripes = np.where(columns < 32, rows // 2 % 2, rows // 4 % 2).astype(np.float32)
+    is_wide = (columns >= 32).astype(np.float32)
+    wanted = np.repeat([[1.0], [0.0]], 24, axis=0) * np.ones((1, 40))
+    _, sources = dp.synthesize(stripes, (48, 40), guides=[(is_wide, wanted, 3)], sources=True)
+    assert ((sources[..., 0] >= 32) == wanted.astype(bool)).mean() > 0.95
+    _, sources = dp.synthesize(stripes, 40, mask=is_wide, sources=True)
+    assert sources[..., 0].min() >= 32
+
+
+@pytest.mark.parametrize("guides", [
+    [(np.zeros((32, 64)), np.zeros((40, 41)), 1)],
+    [(np.zeros((32, 63)), np.zeros((40, 40)), 1)],
+    [(np.zeros((32, 64)), np.zeros((40, 40)), 0)],
+    [(np.zeros((32, 64)), np.full((40, 40), np.nan), 1)],
+])
+def test_bad_guides_are_refused(guides):
+    with pytest.raises(dp.DappleError):
+        dp.synthesize(np.zeros((32, 64)), 40, guides=guides)
+    with pytest.raises(dp.DappleError):
+        dp.synthesize(np.zeros((32, 64)), 40, mask=np.ones((32, 65)))
 
 
 def test_a_model_has_the_mesh_its_layout_and_all_maps():

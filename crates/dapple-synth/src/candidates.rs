@@ -4,7 +4,7 @@
 //!
 //! A row has the pixels of a neighborhood in a fixed order: part after part, in each the offsets row by row from the top,
 //! for each all channels. Values are multiplied with the root of the part's weight, so that plain squared distances
-//! between rows are the weighted ones.
+//! between rows are the weighted ones. After the parts come the guides of the pixel in the middle, if there are any.
 //!
 //! Pixels whose neighborhoods reach past an edge are left out, as in the paper. It leaves open what to do on small
 //! levels, where nearly none remains: of 8 × 8 pixels, ten have H(7, 0). Where fewer than [`FEW`] remain, here all pixels
@@ -45,7 +45,7 @@ pub enum CoarserCenter {
 /// All neighborhoods that a pass compares with.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Candidates {
-    /// Values of one neighborhood: offsets times channels, part after part.
+    /// Values of one neighborhood: offsets times channels, part after part; then guides.
     pub(crate) dims: usize,
     /// One row after the other, each value times the root of its part's weight.
     pub(crate) rows: Vec<f32>,
@@ -117,7 +117,7 @@ impl Candidates {
         }
         let n_values = |part: &Part| part.offsets().len() * level.n_channels;
         let mut candidates = Self {
-            dims: pass.parts.iter().map(n_values).sum(),
+            dims: pass.parts.iter().map(n_values).sum::<usize>() + level.n_guides(),
             rows: Vec::new(),
             pixels: Vec::new(),
             edges: level.edges,
@@ -205,8 +205,9 @@ impl Candidates {
         let [columns, lines] = self.inner;
         self.pixels.reserve(columns.len() * lines.len());
         self.rows.reserve(columns.len() * lines.len() * self.dims);
-        let has_mask = pyramid.levels[pass.level].usable.is_some();
-        let mut row_of = has_mask.then(Vec::new);
+        let level = &pyramid.levels[pass.level];
+        let guide_scale = guide_scale(pass);
+        let mut row_of = level.usable.is_some().then(Vec::new);
         let mut samples = Vec::new();
         for line in lines.first..lines.end {
             for column in columns.first..columns.end {
@@ -224,11 +225,14 @@ impl Candidates {
                         continue;
                     }
                 }
-                self.pixels.push(line * self.size[0] + column);
+                let pixel = line * self.size[0] + column;
+                self.pixels.push(pixel);
                 for part in &parts {
                     let halves = halves([column, line], part.reads, center);
                     part.read(halves, &mut samples, &mut self.rows);
                 }
+                let guides = level.guides.of(pixel as usize).iter();
+                self.rows.extend(guides.map(|value| value * guide_scale));
             }
         }
         self.row_of = row_of;
@@ -243,6 +247,12 @@ impl Inner {
     fn contains(self, at: i64) -> bool {
         (i64::from(self.first)..i64::from(self.end)).contains(&at)
     }
+}
+
+/// The factor of guides: the root of the weights of all pixels of a neighborhood.
+pub(crate) fn guide_scale(pass: &Pass) -> f32 {
+    let weight = |part: &Part| part.offsets().len() as f32 * part.weight;
+    pass.parts.iter().map(weight).sum::<f32>().sqrt()
 }
 
 /// Where a pixel lies on the level that is read, in half pixels.

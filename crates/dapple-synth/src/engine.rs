@@ -3,6 +3,7 @@
 //! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, doi 10.1145/383259.383297, section 5.
 
 use crate::ground::{Ground, UNKNOWN};
+use crate::guides::{self, Targets};
 use crate::kept::Kept;
 use crate::neighborhood::{Part, Pass, Reads};
 use crate::visit::Visit;
@@ -36,6 +37,8 @@ pub(crate) fn run<G: Ground>(
     callback: Callback<'_>,
 ) -> Result<Vec<Vec<u32>>, SynthError> {
     let passes = options.passes()?.passes;
+    let n_guides = ground.targets().map_or(0, Targets::len);
+    guides::check_count(n_guides, pyramid.levels()[0].n_guides())?;
     let seen = match ground.blur() {
         0.0 => None,
         blur => Some(pyramid.blurred(blur)),

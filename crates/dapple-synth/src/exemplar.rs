@@ -14,6 +14,7 @@
 use crate::error::{SynthError, SynthErrorKind};
 use crate::grid::Grid;
 use crate::ground::Plain;
+use crate::guides::Guides;
 use dapple_color::LinearRgb;
 use dapple_raster::{Raster, Wrap};
 
@@ -55,6 +56,8 @@ pub struct Exemplar {
     pub(crate) pixels: Vec<f32>,
     /// Whether textures may have each pixel; all of them if nothing is said.
     pub(crate) usable: Option<Vec<bool>>,
+    /// What says which of its pixels go where.
+    pub(crate) guides: Guides,
 }
 
 /// A Gaussian pyramid: the exemplar and its smaller versions, the finest first.
@@ -85,6 +88,7 @@ impl Exemplar {
             edges,
             pixels: image.pixels().iter().flat_map(codes).collect(),
             usable: None,
+            guides: Guides::default(),
         })
     }
 
@@ -105,37 +109,14 @@ impl Exemplar {
                 needed: "at least 1",
             }));
         };
-        let n_channels = planes.len();
-        let mut pixels = vec![0.0; first.pixels().len() * n_channels];
-        for (channel, &(plane, weight)) in planes.iter().enumerate() {
-            first.check_same_size(plane.size())?;
-            let holds = weight > 0.0 && weight.is_finite();
-            SynthError::check(
-                holds,
-                "weight of a plane",
-                weight.into(),
-                "above 0 and finite",
-            )?;
-            let scale = weight.sqrt();
-            for (pixel, &value) in plane.pixels().iter().enumerate() {
-                let scaled = value * scale;
-                check_finite(scaled, pixel, plane.width())?;
-                let holds = scaled.abs() <= MAX_VALUE;
-                SynthError::check(
-                    holds,
-                    "weighted value of a pixel",
-                    scaled.into(),
-                    "from -1e12 to 1e12",
-                )?;
-                pixels[pixel * n_channels + channel] = scaled;
-            }
-        }
+        let (rasters, weights): (Vec<_>, Vec<_>) = planes.iter().copied().unzip();
         Ok(Self {
             size: first.size(),
-            n_channels,
+            n_channels: planes.len(),
             edges,
-            pixels,
+            pixels: interleaved(&rasters, &roots(&weights)?)?,
             usable: None,
+            guides: Guides::default(),
         })
     }
 
@@ -164,7 +145,6 @@ impl Exemplar {
         let side = self.size[0].min(self.size[1]);
         let holds = (1..=side).contains(&factor);
         SynthError::check(holds, "factor", factor.into(), "from 1 to the shorter side")?;
-        let n = self.n_channels;
         let size = self.size.map(|side| side / factor);
         let [width, columns] = [self.size[0], factor].map(|side| side as usize);
         let square = |x: u32, y: u32| {
@@ -176,15 +156,16 @@ impl Exemplar {
         };
         let squares = || (0..size[1]).flat_map(move |y| (0..size[0]).map(move |x| square(x, y)));
         let area = f64::from(factor) * f64::from(factor);
-        let mut pixels = Vec::with_capacity(size[0] as usize * size[1] as usize * n);
-        for square in squares() {
-            for channel in 0..n {
-                let values = square
-                    .clone()
-                    .map(|at| f64::from(self.pixels[at * n + channel]));
-                pixels.push((values.sum::<f64>() / area) as f32);
+        let means = |values: &[f32], n: usize| {
+            let mut means = Vec::with_capacity(size[0] as usize * size[1] as usize * n);
+            for square in squares() {
+                for channel in 0..n {
+                    let values = square.clone().map(|at| f64::from(values[at * n + channel]));
+                    means.push((values.sum::<f64>() / area) as f32);
+                }
             }
-        }
+            means
+        };
         let usable = self.usable.as_ref();
         let is_usable = |usable: &Vec<bool>| {
             squares()
@@ -194,10 +175,14 @@ impl Exemplar {
         let is_whole = size.map(|side| side * factor) == self.size;
         Ok(Self {
             size,
-            n_channels: n,
+            n_channels: self.n_channels,
             edges: if is_whole { self.edges } else { Edges::Cut },
-            pixels,
+            pixels: means(&self.pixels, self.n_channels),
             usable: usable.map(is_usable),
+            guides: Guides {
+                values: means(&self.guides.values, self.n_guides()),
+                roots: self.guides.roots.clone(),
+            },
         })
     }
 
@@ -304,21 +289,8 @@ impl Exemplar {
         let [width, height] = self.size;
         let half = self.size.map(|side| side.div_ceil(2));
         let odd = self.size.iter().any(|side| side % 2 == 1);
-        let n = self.n_channels;
-        let [wrap_x, wrap_y] = self.grid().wrap;
-        let mut rows = Vec::with_capacity(half[0] as usize * height as usize * n);
-        for row in self.pixels.chunks_exact(width as usize * n) {
-            for at in 0..half[0] {
-                let taps = taps(at, width, wrap_x).map(|column| &row[column * n..][..n]);
-                blend(taps, &mut rows);
-            }
-        }
-        let row_len = half[0] as usize * n;
-        let mut pixels = Vec::with_capacity(row_len * half[1] as usize);
-        for at in 0..half[1] {
-            let taps = taps(at, height, wrap_y).map(|row| &rows[row * row_len..][..row_len]);
-            blend(taps, &mut pixels);
-        }
+        let grid = self.grid();
+        let [wrap_x, wrap_y] = grid.wrap;
         let usable = self.usable.as_ref().map(|usable| {
             let is_usable = |x: u32, y: u32| {
                 let columns = taps(x, width, wrap_x);
@@ -331,10 +303,11 @@ impl Exemplar {
         });
         Self {
             size: half,
-            n_channels: n,
+            n_channels: self.n_channels,
             edges: if odd { Edges::Cut } else { self.edges },
-            pixels,
+            pixels: halved(&grid),
             usable,
+            guides: self.guides.halved(self.size, grid.wrap),
         }
     }
 }
@@ -371,6 +344,59 @@ fn check_finite(value: f32, pixel: usize, width: u32) -> Result<(), SynthError> 
         row: pixel / width,
         value,
     }))
+}
+
+/// The roots of weights, which are to be above zero and finite.
+pub(crate) fn roots(weights: &[f32]) -> Result<Vec<f32>, SynthError> {
+    for &weight in weights {
+        let holds = weight > 0.0 && weight.is_finite();
+        let range = "above 0 and finite";
+        SynthError::check(holds, "weight of a plane", weight.into(), range)?;
+    }
+    Ok(weights.iter().map(|weight| weight.sqrt()).collect())
+}
+
+/// Planes of one size times their roots, pixel by pixel.
+pub(crate) fn interleaved(planes: &[&Raster<f32>], roots: &[f32]) -> Result<Vec<f32>, SynthError> {
+    let Some(first) = planes.first() else {
+        return Ok(Vec::new());
+    };
+    let n_channels = planes.len();
+    let mut pixels = vec![0.0; first.pixels().len() * n_channels];
+    for (channel, (plane, root)) in planes.iter().zip(roots).enumerate() {
+        first.check_same_size(plane.size())?;
+        for (pixel, &value) in plane.pixels().iter().enumerate() {
+            let scaled = value * root;
+            check_finite(scaled, pixel, plane.width())?;
+            let holds = scaled.abs() <= MAX_VALUE;
+            let range = "from -1e12 to 1e12";
+            SynthError::check(holds, "weighted value of a pixel", scaled.into(), range)?;
+            pixels[pixel * n_channels + channel] = scaled;
+        }
+    }
+    Ok(pixels)
+}
+
+/// The values of the next coarser level of an image.
+pub(crate) fn halved(image: &Grid<Plain<'_>>) -> Vec<f32> {
+    let Grid { colors, size, wrap } = *image;
+    let n = colors.n_channels;
+    let [width, height] = size;
+    let half = size.map(|side| side.div_ceil(2));
+    let row_len = half[0] as usize * n;
+    let mut rows = Vec::with_capacity(row_len * height as usize);
+    for row in colors.values.chunks_exact((width as usize * n).max(1)) {
+        for at in 0..half[0] {
+            let taps = taps(at, width, wrap[0]).map(|column| &row[column * n..][..n]);
+            blend(taps, &mut rows);
+        }
+    }
+    let mut values = Vec::with_capacity(row_len * half[1] as usize);
+    for at in 0..half[1] {
+        let taps = taps(at, height, wrap[1]).map(|row| &rows[row * row_len..][..row_len]);
+        blend(taps, &mut values);
+    }
+    values
 }
 
 /// The five places that place `at` of the coarser level is the mean of.

@@ -1,5 +1,6 @@
 //! The ground of a texture: sites on several levels, their order, and how neighborhoods are read.
 
+use crate::guides::Targets;
 use crate::turns::Turns;
 use core::ops::RangeInclusive;
 use core::sync::atomic::{AtomicU32, Ordering};
@@ -90,6 +91,11 @@ pub(crate) trait Ground: Sync {
 
     /// What the sites of a level begin with; where there is nothing, random pixels, and all sites are visited.
     fn start(&self, _level: usize) -> Option<&Start> {
+        None
+    }
+
+    /// The guides of the texture, if it has any.
+    fn targets(&self) -> Option<&Targets> {
         None
     }
 

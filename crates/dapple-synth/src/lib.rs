@@ -48,6 +48,9 @@
 //! stopped. The same passes on pixels, for plain images and for tiles, are [`synthesize_plane`]; [`PlaneTexture::repair`] makes a part
 //! of an image again, and [`tile_plane`] a tile of a photograph that does not repeat.
 //!
+//! Guides ([`Exemplar::with_guides`]) say where in a texture which part of the exemplar goes: how light it is, so that the
+//! texture shows a picture; or which of several images, which lie [`SideBySide`].
+//!
 //! # The paper's sections
 //!
 //! | section | what it says | here |
@@ -117,6 +120,7 @@ mod error;
 mod exemplar;
 mod grid;
 mod ground;
+mod guides;
 mod kept;
 mod likeness;
 mod links;
@@ -133,6 +137,7 @@ mod plane;
 mod regularity;
 #[cfg(test)]
 mod shapes;
+mod side_by_side;
 mod sites;
 mod solve;
 mod surface_texture;
@@ -158,7 +163,10 @@ pub use matcher::{Match, Matcher, MatcherMemory, distance_sq};
 pub use neighborhood::{Part, Pass, Reads, Schedule, Shape};
 pub use options::{Axes, Coherence, Options, Sources};
 pub use orientation::{Direction, Orientation};
-pub use plane::{PlaneTexture, synthesize_plane, synthesize_plane_with, tile_plane};
+pub use plane::{
+    PlaneTexture, synthesize_plane, synthesize_plane_guided, synthesize_plane_with, tile_plane,
+};
+pub use side_by_side::SideBySide;
 pub use sites::{
     Blend, Connected, DOWNSAMPLE_STEPS, DOWNSAMPLE_T, Evenness, Hierarchy, HierarchyOptions,
     INTERPOLATION_RADIUS, Level, LowPass, STAR_RADIUS, SiteGraph, SiteGrid, SiteIdx, SiteTriangles,

@@ -11,6 +11,7 @@ mod nearby;
 mod turning;
 
 use crate::ground::{Colors, Ground, Samples, Square};
+use crate::guides::Targets;
 use crate::turns::Turns;
 use crate::{Axes, Hierarchy, INTERPOLATION_RADIUS, Orientation, SiteIdx, Sweep};
 use dapple_mesh::Surface;
@@ -42,6 +43,7 @@ pub(crate) struct MeshGround<'a> {
     pub(crate) axes: Axes,
     /// Whether the exemplar is blurred as its squares are.
     pub(crate) is_blurred: bool,
+    pub(crate) targets: Option<&'a Targets>,
 }
 
 /// The sites around those of a level, on the level itself and on the next coarser one.
@@ -84,6 +86,10 @@ impl Ground for MeshGround<'_> {
 
     fn blur(&self) -> f32 {
         if self.is_blurred { BLUR } else { 0.0 }
+    }
+
+    fn targets(&self) -> Option<&Targets> {
+        self.targets
     }
 
     fn order(&self, level: usize) -> Vec<u32> {

@@ -20,6 +20,7 @@ use crate::detail;
 use crate::engine::{self, Callback, Progress};
 use crate::grid::{self, Grid};
 use crate::ground::{Colors, Ground, Samples, Square, Start, UNKNOWN};
+use crate::guides::Targets;
 use crate::neighborhood::Reads;
 use crate::turns::Turns;
 use crate::{CoarserCenter, Edges, Exemplar, Options, Pyramid, SynthError, SynthErrorKind};
@@ -96,6 +97,63 @@ pub fn synthesize_plane_with(
 ) -> Result<PlaneTexture, SynthError> {
     let pyramid = exemplar.pyramid(options.n_levels)?;
     let ground = PlaneGround::new(size, edges, options)?;
+    PlaneTexture::grown(&ground, &pyramid, options, &mut callback)
+}
+
+/// Synthesizes a texture like [`synthesize_plane_with`], whose guides say where in it which part of the exemplar goes: as
+/// many planes as the exemplar has [guides](Exemplar::with_guides). The texture has their size.
+///
+/// [`Options::evenness`] has no effect.
+///
+/// # Errors
+///
+/// Those of [`synthesize_plane_with`]; [`SynthErrorKind::Count`](crate::SynthErrorKind::Count) for no guide and another
+/// number than the exemplar has, [`SynthErrorKind::Raster`](crate::SynthErrorKind::Raster) for guides of different sizes,
+/// and [`SynthErrorKind::NotFinite`](crate::SynthErrorKind::NotFinite).
+///
+/// # Examples
+///
+/// ```
+/// use core::ops::ControlFlow;
+/// use dapple_raster::Raster;
+/// use dapple_synth::{Edges, Exemplar, Options, synthesize_plane_guided};
+///
+/// // Stripes, narrow on the left and wide on the right; the texture has the wide ones at the top.
+/// let stripes = Raster::from_fn([64, 32], |x, y| match x < 32 {
+///     true => f32::from(y / 2 % 2 == 0),
+///     false => f32::from(y / 4 % 2 == 0),
+/// })?;
+/// let is_wide = Raster::from_fn([64, 32], |x, _| f32::from(x >= 32))?;
+/// let exemplar = Exemplar::from_planes(&[(&stripes, 1.0)], Edges::Cut)?.with_guides(&[(&is_wide, 1.0)])?;
+/// let wanted = Raster::from_fn([48, 48], |_, y| f32::from(y < 24))?;
+/// let texture = synthesize_plane_guided(
+///     &exemplar,
+///     &[&wanted],
+///     [Edges::Cut; 2],
+///     &Options::default(),
+///     |_| ControlFlow::Continue(()),
+/// )?;
+/// assert!(texture.sources().row(12)[24][0] >= 32);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn synthesize_plane_guided(
+    exemplar: &Exemplar,
+    guides: &[&Raster<f32>],
+    edges: [Edges; 2],
+    options: &Options,
+    mut callback: impl FnMut(Progress) -> ControlFlow<()>,
+) -> Result<PlaneTexture, SynthError> {
+    let Some(first) = guides.first() else {
+        return Err(SynthError::new(SynthErrorKind::Count {
+            what: "guides",
+            count: 0,
+            needed: "at least 1",
+        }));
+    };
+    let pyramid = exemplar.pyramid(options.n_levels)?;
+    let mut ground = PlaneGround::new(first.size(), edges, options)?;
+    let targets = Targets::of_plane(exemplar, guides, &ground.sizes, ground.wrap)?;
+    ground.targets = Some(targets);
     PlaneTexture::grown(&ground, &pyramid, options, &mut callback)
 }
 
@@ -204,6 +262,7 @@ struct PlaneGround {
     center: CoarserCenter,
     /// What the sites of each level begin with; nothing for random pixels.
     starts: Vec<Start>,
+    targets: Option<Targets>,
 }
 
 impl PlaneGround {
@@ -225,6 +284,7 @@ impl PlaneGround {
             wrap: edges.map(Edges::wrap),
             center: options.center,
             starts: Vec::new(),
+            targets: None,
         })
     }
 
@@ -275,6 +335,10 @@ impl Ground for PlaneGround {
 
     fn start(&self, level: usize) -> Option<&Start> {
         self.starts.get(level)
+    }
+
+    fn targets(&self) -> Option<&Targets> {
+        self.targets.as_ref()
     }
 
     fn quarter(&self, level: usize, site: u32) -> Option<[i64; 2]> {

@@ -9,6 +9,7 @@
 //!
 //! Reference: our own.
 
+use crate::guides::Guides;
 use crate::{Candidates, CoarserCenter, Edges, Exemplar, Part, Pass, Reads, Shape, distance_sq};
 
 /// The side of the part in the middle of the exemplar that is compared. A side of 128 ranks the exemplars at hand alike, and
@@ -88,6 +89,7 @@ impl Exemplar {
                 .copied()
                 .collect(),
             usable: None,
+            guides: Guides::default(),
         }
     }
 }

@@ -1,6 +1,7 @@
 //! The doors for surfaces: one call for all of it, and what can be used again.
 
 use crate::engine::{self, Progress};
+use crate::guides::Targets;
 use crate::mesh_ground::MeshGround;
 use crate::places::Places;
 use crate::{
@@ -104,6 +105,27 @@ impl Synthesizer {
         &self,
         exemplar: &Exemplar,
         options: &Options,
+        callback: impl FnMut(Progress) -> ControlFlow<()>,
+    ) -> Result<SurfaceTexture, SynthError> {
+        self.synthesize_guided(exemplar, &[], options, callback)
+    }
+
+    /// Synthesizes a texture like [`synthesize_with`](Self::synthesize_with), whose guides say where on the surface which
+    /// part of the exemplar goes: as many columns as the exemplar has [guides](Exemplar::with_guides), each with a value for
+    /// every site of [`hierarchy`](Self::hierarchy).
+    ///
+    /// With guides, [`Options::evenness`] has no effect.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`synthesize_with`](Self::synthesize_with), [`SynthErrorKind::Count`] for another number of guides than the
+    /// exemplar has and a column that has not as many values as there are sites, and [`SynthErrorKind::Range`] for a value
+    /// that is not finite.
+    pub fn synthesize_guided(
+        &self,
+        exemplar: &Exemplar,
+        guides: &[&[f32]],
+        options: &Options,
         mut callback: impl FnMut(Progress) -> ControlFlow<()>,
     ) -> Result<SurfaceTexture, SynthError> {
         if options.n_levels > self.hierarchy.levels().len() {
@@ -114,7 +136,11 @@ impl Synthesizer {
             }));
         }
         let pyramid = exemplar.pyramid(options.n_levels)?;
-        let ground = self.ground(options.axes, options.sources == Sources::SubPixel);
+        let targets = Targets::of_surface(exemplar, guides, &self.hierarchy, options.n_levels)?;
+        let ground = MeshGround {
+            targets: Some(&targets),
+            ..self.ground(options.axes, options.sources == Sources::SubPixel)
+        };
         let sources = engine::run(&ground, &pyramid, options, &mut callback)?;
         let places = match options.sources {
             Sources::Pixel => None,
@@ -135,6 +161,7 @@ impl Synthesizer {
             sweep: &self.sweep,
             axes,
             is_blurred,
+            targets: None,
         }
     }
 

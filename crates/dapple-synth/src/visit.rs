@@ -2,6 +2,7 @@
 
 mod order;
 
+use crate::candidates;
 use crate::ground::{Ground, Painted, Rows, Samples, Square, UNKNOWN};
 use crate::kept::Kept;
 use crate::matcher::Query;
@@ -29,6 +30,8 @@ pub(crate) struct Visit<'a, G: Ground> {
     coherence: f32,
     /// 0 where uses do not count.
     evenness: f32,
+    /// The factor of guides in a query.
+    guide_scale: f32,
     /// Where the values of a query come from.
     terms: Vec<Term>,
     /// The squares that are read on the level itself and on the coarser one.
@@ -95,6 +98,8 @@ impl<'a, G: Ground> Visit<'a, G> {
             [same, coarser].map(|half| half.map_or(0, |half| half.half)),
         );
         let (coherence, evenness) = match coarser {
+            // Where guides say which pixels there are, those are used unevenly.
+            None if exemplar.n_guides() > 0 => (coherence.initial, 0.0),
             None => (coherence.initial, options.evenness),
             Some(_) => (coherence.finer, 0.0),
         };
@@ -122,6 +127,7 @@ impl<'a, G: Ground> Visit<'a, G> {
             is_repair: ground.start(pass.level).is_some(),
             coherence,
             evenness,
+            guide_scale: candidates::guide_scale(pass),
             terms,
             same,
             coarser,
@@ -226,6 +232,10 @@ impl<'a, G: Ground> Visit<'a, G> {
             let at = term.sample * self.n_channels;
             let values = &samples.values[at..at + self.n_channels];
             query.extend(values.iter().map(|value| value * term.root_weight));
+        }
+        if let Some(targets) = self.ground.targets() {
+            let guides = targets.of(self.level, site).iter();
+            query.extend(guides.map(|value| value * self.guide_scale));
         }
     }
 

@@ -13,12 +13,27 @@ const REACH: f64 = 3.5;
 /// The number of columns that are summed at a time: 4 kB of sums stay in the nearest cache.
 const BLOCK: usize = 1024;
 
-/// The raster blurred by a Gaussian of `sigma` pixels. Sigma is finite and at least 0.
-pub(crate) fn blur(
-    raster: &Raster<f32>,
-    sigma: f64,
-    wrap: [Wrap; 2],
-) -> Result<Raster<f32>, TileError> {
+/// A raster blurred by a Gaussian with a standard deviation of `sigma` pixels, from 0 to 65536.
+///
+/// `wrap` says for columns and rows what lies past the edges.
+///
+/// # Errors
+///
+/// [`TileErrorKind::Range`](crate::TileErrorKind::Range) for another `sigma`.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_raster::{Raster, Wrap};
+///
+/// let point = Raster::from_fn([9, 9], |x, y| f32::from(x == 4 && y == 4))?;
+/// let spot = dapple_tile::blur(&point, 1.0, [Wrap::Repeat; 2])?;
+/// assert!((spot.row(4)[4] - 0.159).abs() < 0.001); // 1 / 2π
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn blur(raster: &Raster<f32>, sigma: f64, wrap: [Wrap; 2]) -> Result<Raster<f32>, TileError> {
+    let holds = (0.0..=65536.0).contains(&sigma);
+    TileError::check(holds, "sigma of a blur", sigma, "from 0 to 65536")?;
     let weights = weights(sigma);
     let along_rows = rows(raster.size(), |row, blurred| {
         blur_row(raster.row(row), &weights, wrap[0], blurred);

@@ -79,6 +79,7 @@ pub use corner::CornerTiles;
 pub use crossfade::Crossfade;
 pub use disturb::Disturbance;
 pub use error::{TileError, TileErrorKind};
+pub use gauss::blur;
 pub use map::Map;
 pub use match_borders::{BorderSource, MatchBorders};
 pub use pyramid::Pyramid;

@@ -1,22 +1,20 @@
 //! `dapple synth`: texture from an example, in the plane or on a mesh.
 
 mod corners;
+mod guides;
 mod options;
 mod plane;
+mod reading;
 mod surface;
 
-use crate::args::{Alpha, AlphaArgs, ImageArgs, Region};
+use crate::args::{AlphaArgs, ImageArgs, Region};
 use crate::error::{Exit, Hint, usage};
-use crate::input::{self, Kind, Loaded};
 use crate::job::{Context, Job};
 use crate::output::{OutputIdx, Target};
 use crate::progress::Progress;
-use anyhow::{Error, Result, bail};
-use dapple::color::LinearRgb;
-use dapple::raster::Raster;
-use dapple::recipe::ImageAlpha;
-use dapple::synth::{Exemplar, Progress as Steps, SynthError, SynthErrorKind};
-use dapple::tile::Map;
+use anyhow::{Error, Result};
+use dapple::synth::{Progress as Steps, SynthError, SynthErrorKind};
+use guides::GuideArgs;
 use options::{MatchArgs, PlaneArgs, SurfaceArgs};
 use serde::Serialize;
 use std::ops::ControlFlow;
@@ -29,6 +27,8 @@ Examples:
   dapple synth photo.png --repair scratch.png -o clean.png
   dapple synth grass.png --size 256 --sources meadow_places.exr -o meadow.png
   dapple synth sand.png --replay places.exr -o desert.png
+  dapple synth stones.png --guide photo.png -o mosaic.png
+  dapple synth grass.png --example sand.png --which mask.png -o garden.png
   dapple synth grass.png --size 300x200 --map normal=grass_normal.png \\
     --seed 7 -o meadow.png
   dapple synth checker.png --mesh model.obj --edges wrap --sites 4000 \\
@@ -83,6 +83,10 @@ pub(crate) struct Args {
     surface: SurfaceArgs,
 
     #[command(flatten)]
+    #[serde(flatten)]
+    guides: GuideArgs,
+
+    #[command(flatten)]
     matching: MatchArgs,
 
     #[command(flatten)]
@@ -117,15 +121,6 @@ impl FromStr for MapArg {
     }
 }
 
-/// The input of the synthesis: the exemplar, what is shown, which is the example or a larger version of it, the maps that
-/// follow, and which pixels are made again, if the example is repaired.
-struct Input {
-    base: Loaded,
-    maps: Vec<(String, Loaded)>,
-    exemplar: Exemplar,
-    hole: Option<Raster<bool>>,
-}
-
 /// Synthesizes a texture.
 ///
 /// # Errors
@@ -157,106 +152,9 @@ impl Args {
         }
     }
 
-    /// Reads the example, its larger version, and the maps, which must have the size of what is shown.
-    fn read(&self) -> Result<Input> {
-        let example = self.load(&self.exemplar, Kind::ByChannels)?;
-        let edges = self.matching.edges;
-        let exemplar = match &example.map {
-            Map::Color(colors) => Exemplar::new(colors, edges),
-            Map::Value(values) => Exemplar::from_planes(&[(values, 1.0)], edges),
-            Map::Normal(_) => bail!("normals are no example"),
-        };
-        let mut exemplar = exemplar.map_err(advise)?;
-        let hole = self.plane.repair.as_deref();
-        let hole = hole
-            .map(|path| self.load_mask(path, exemplar.size()))
-            .transpose()?;
-        let mask = self.mask.as_deref();
-        let mask = mask
-            .map(|path| self.load_mask(path, exemplar.size()))
-            .transpose()?;
-        if mask.is_some() || hole.is_some() {
-            let is_usable = |column: u32, row: u32| {
-                let is_white = |mask: &Raster<bool>| mask.row(row)[column as usize];
-                mask.as_ref().is_none_or(is_white) && !hole.as_ref().is_some_and(is_white)
-            };
-            let usable = Raster::from_fn(exemplar.size(), is_usable)?;
-            exemplar = exemplar.with_mask(&usable)?;
-        }
-        let (path, base) = match &self.detail {
-            None => (&self.exemplar, example),
-            Some(path) => (path, self.load_detail(path, exemplar.size())?),
-        };
-        let mut maps = Vec::new();
-        for MapArg {
-            name,
-            path: map_path,
-        } in &self.map
-        {
-            let kind = match name.as_str() {
-                "normal" => Kind::Normals,
-                _ => Kind::ByChannels,
-            };
-            let map = self.load(map_path, kind)?;
-            input::check_size(map_path, map.map.size(), path, base.map.size())
-                .hint("the maps of an example have its size")?;
-            maps.push((name.clone(), map));
-        }
-        Ok(Input {
-            base,
-            maps,
-            exemplar,
-            hole,
-        })
-    }
-
-    /// Reads a mask as large as the example: whether its pixels are nearer to white than to black.
-    fn load_mask(&self, path: &Path, size: [u32; 2]) -> Result<Raster<bool>> {
-        let over_black = Alpha::Without(ImageAlpha::Over(LinearRgb::default()));
-        let mask = input::map_with_alpha(path, Kind::ByChannels, self.region, over_black)?.map;
-        input::check_size(path, mask.size(), &self.exemplar, size)
-            .hint("a mask of an example has its size")?;
-        match mask {
-            Map::Value(values) => Ok(values.map(|&value| value >= 0.5)),
-            Map::Color(colors) => Ok(colors.map(|color| color.luminance() >= 0.5)),
-            Map::Normal(_) => bail!("normals are no mask"),
-        }
-    }
-
-    /// Reads a version of the example that is a whole number of times as large.
-    fn load_detail(&self, path: &Path, [width, height]: [u32; 2]) -> Result<Loaded> {
-        let detail = self.load(path, Kind::ByChannels)?;
-        let size = detail.map.size();
-        let factor = size[0] / width;
-        if factor > 0 && [width, height].map(|side| side.checked_mul(factor)) == size.map(Some) {
-            return Ok(detail);
-        }
-        let error = usage(format!(
-            "{} has {} × {} pixels, which is not the {width} × {height} of {} times a whole number",
-            input::name(path),
-            size[0],
-            size[1],
-            input::name(&self.exemplar)
-        ));
-        Err(error.hint("make the example from it, by a whole number of pixels for one"))
-    }
-
-    /// Reads an image, and refuses alpha where there is no room for it.
-    fn load(&self, path: &Path, kind: Kind) -> Result<Loaded> {
-        let loaded = input::map_with_alpha(path, kind, self.region, self.alpha.alpha)?;
-        if loaded.alpha.is_some() && self.surface.mesh.is_some() {
-            let message = format!(
-                "{} is partly transparent, which a mesh cannot keep",
-                input::name(path)
-            );
-            return Err(usage(message).hint(input::ALPHA_HINT));
-        }
-        Ok(loaded)
-    }
-
     /// The output. In a folder its name is that of a file that goes in.
     fn target(&self, input: &Path, ending: &str) -> Result<Target> {
-        let names = self.map.iter().map(|map| map.name.as_str());
+        let names = self.map_names();
         let parts: Vec<_> = [""].into_iter().chain(names).collect();
         let stem = input.file_stem().unwrap_or_default().to_string_lossy();
         Ok(self.image.files.targets(&stem, &parts, ending)?.main)
@@ -270,10 +168,21 @@ impl Args {
         job: &mut Job<'_>,
     ) -> Result<Vec<OutputIdx>> {
         let mut outputs = Vec::new();
-        for map in &self.map {
-            outputs.push(job.claim(&target.part(&map.name)?.with_ending(ending))?);
+        for name in self.map_names() {
+            outputs.push(job.claim(&target.part(name)?.with_ending(ending))?);
         }
         Ok(outputs)
+    }
+
+    /// The names of the maps, each once, in the order in which they were given.
+    fn map_names(&self) -> Vec<&str> {
+        let mut names = Vec::new();
+        for map in &self.map {
+            if !names.contains(&map.name.as_str()) {
+                names.push(&map.name);
+            }
+        }
+        names
     }
 }
 

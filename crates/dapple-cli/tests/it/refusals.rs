@@ -4,7 +4,7 @@ use crate::support::{Folder, assert_refused, stderr, stdout};
 use std::fs;
 
 /// Each subcommand that reads a file, with `INPUT` for the file under test. All other inputs exist.
-const READERS: [&str; 20] = [
+const READERS: [&str; 24] = [
     "bake INPUT -o out/ --size 8",
     "pups control --points INPUT --size 8 -o out.png",
     "pups reference --reference INPUT --size 8 -o out.png",
@@ -21,6 +21,10 @@ const READERS: [&str; 20] = [
     "synth INPUT --size 16 -o out.png",
     "synth checker.png --detail INPUT --size 16 -o out.png",
     "synth checker.png --map roughness=INPUT --size 16 -o out.png",
+    "synth checker.png --example INPUT --size 16 -o out.png",
+    "synth checker.png --example rock.png --which INPUT -o out.png",
+    "synth checker.png --guide INPUT -o out.png",
+    "synth checker.png --guide photo.png --guide-of INPUT -o out.png",
     "synth checker.png --mesh INPUT --sites 500 -o out.glb",
     "synth checker.png --mesh model.obj --directions INPUT --sites 500 -o out.glb",
     "points variable --density INPUT --count 50 -o out.csv",
@@ -28,7 +32,7 @@ const READERS: [&str; 20] = [
 ];
 
 /// Invalid command lines that clap does not detect.
-const WRONG: [&str; 42] = [
+const WRONG: [&str; 48] = [
     "bake flagstone -o out.png --name rock",
     "bake flagstone --frames 2 -o rock.glb",
     "bake flagstone --frames 2 --maps height -o -",
@@ -67,6 +71,12 @@ const WRONG: [&str; 42] = [
     "synth checker.png --mesh model.obj --size 64 -o out.glb",
     "synth photo.png --mesh model.obj --repair scratch.png -o out.glb",
     "synth photo.png --repair scratch.png --size 64 -o out.png",
+    "synth photo.png --which scratch.png -o out.png",
+    "synth photo.png --guide-weight 2 -o out.png",
+    "synth photo.png --guide rock.png --size 64 -o out.png",
+    "synth photo.png --guide rock.png --guide-blur 65 -o out.png",
+    "synth photo.png --example rock.png --region 0,0,32,32 -o out.png",
+    "synth photo.png --example rock.png --map height=height.png --size 16 -o out.png",
     "tile photo.png --seed 3 -o out.png",
     "synth checker.png --mesh model.obj -o out.stl",
     "points white --radius 0.1",
@@ -74,7 +84,7 @@ const WRONG: [&str; 42] = [
 ];
 
 /// Command lines with a value that a library rejects, and a part of the message.
-const LIMITS: [(&str, &str); 22] = [
+const LIMITS: [(&str, &str); 24] = [
     ("bake flagston -o out/", "flagstone"),
     (
         "bake flagstone --region 60,0,8,8 --size 64 -o out/",
@@ -121,6 +131,14 @@ const LIMITS: [(&str, &str); 22] = [
     ),
     ("synth checker.png --levels 6 -o out.png", "--levels"),
     (
+        "synth photo.png --guide rock.png --guide-weight 0 -o out.png",
+        "weight of a plane",
+    ),
+    (
+        "synth photo.png --guide rock.png --guide-of checker.png -o out.png",
+        "--guide-of",
+    ),
+    (
         "tile photo.png --method synth --margin 40 -o out.png",
         "--margin",
     ),
@@ -130,7 +148,7 @@ const LIMITS: [(&str, &str); 22] = [
 ];
 
 /// Command lines whose files do not match, and a part of the message.
-const UNLIKE: [(&str, &str); 8] = [
+const UNLIKE: [(&str, &str); 9] = [
     ("tile photo.png checker.png -o out/", CHECKER),
     ("blend photo.png checker.png -o out.png", CHECKER),
     ("blend photo.png checker.png -o out.png", "hint: --size"),
@@ -148,6 +166,10 @@ const UNLIKE: [(&str, &str); 8] = [
         CHECKER,
     ),
     ("synth photo.png --repair checker.png -o out.png", CHECKER),
+    (
+        "synth rock.png --example sand.png --which photo.png --guide checker.png -o out.png",
+        CHECKER,
+    ),
 ];
 
 /// The message with both names and sizes.

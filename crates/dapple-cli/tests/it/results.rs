@@ -450,6 +450,83 @@ fn a_repair_changes_only_what_is_white_in_its_mask() {
 }
 
 #[test]
+fn examples_go_where_the_map_of_them_says_with_all_their_maps() {
+    let folder = Folder::with_inputs("which");
+    let write = |name: &str, value: fn(u32, u32) -> f32, size: [u32; 2]| {
+        let plane = Raster::from_fn(size, value).unwrap();
+        write_gray_png(folder.path(name), &plane, Depth::Eight).unwrap();
+    };
+    // Three examples of three grays, whose relief says which they are, too.
+    write("a.png", |x, _| 0.1 * f32::from(x % 2 == 0), [40, 40]);
+    write("b.png", |_, y| 0.4 + 0.1 * f32::from(y % 2 == 0), [48, 36]);
+    write(
+        "c.png",
+        |x, y| 0.8 + 0.1 * f32::from((x + y) % 2 == 0),
+        [36, 48],
+    );
+    write("a_h.png", |_, _| 0.0, [40, 40]);
+    write("b_h.png", |_, _| 0.2, [48, 36]);
+    write("c_h.png", |_, _| 1.0, [36, 48]);
+    write(
+        "which.png",
+        |x, _| [0.0, 0.5, 1.0][(x / 24) as usize],
+        [72, 40],
+    );
+    let line = "synth a.png --example b.png --example c.png --which which.png \
+        --map height=a_h.png --map height=b_h.png --map height=c_h.png -o out.png";
+    let words: Vec<_> = line.split_whitespace().collect();
+    assert_done(&folder.run(&words), line);
+    let (out, heights) = (gray(&folder, "out.png"), gray(&folder, "out_height.png"));
+    for [x, y] in (0..40).flat_map(|y| (0..72).map(move |x| [x, y])) {
+        let example = (x / 24) as usize;
+        let [value, height] = [&out, &heights].map(|image| image.row(y)[x as usize]);
+        let range = [0.0..0.12, 0.38..0.52, 0.78..0.92][example].clone();
+        assert!(range.contains(&value), "{value} in column {x} and row {y}");
+        let expected = [0.0, 0.2, 1.0][example];
+        // Heights are written with 16 bits.
+        assert!(
+            (height - expected).abs() < 1e-4,
+            "{height} in column {x} and row {y}"
+        );
+    }
+}
+
+#[test]
+fn a_texture_is_light_where_its_guide_is() {
+    let folder = Folder::with_inputs("guide");
+    let spot = |x: u32, y: u32| f32::from(x.abs_diff(32) < 12 && y.abs_diff(20) < 10);
+    let spot = Raster::from_fn([64, 48], spot).unwrap();
+    write_gray_png(folder.path("spot.png"), &spot, Depth::Eight).unwrap();
+    let ramp = Raster::from_fn([64, 64], |x, y| {
+        (x as f32 / 64.0 + 0.1 * f32::from(y % 3 == 0)).min(1.0)
+    });
+    write_gray_png(folder.path("ramp.png"), &ramp.unwrap(), Depth::Eight).unwrap();
+    for more in ["", "--guide-of ramp.png --guide-blur 1"] {
+        let line = format!("synth ramp.png --guide spot.png --force -o out.png {more}");
+        let words: Vec<_> = line.split_whitespace().collect();
+        assert_done(&folder.run(&words), &line);
+        let out = gray(&folder, "out.png");
+        assert_eq!(out.size(), [64, 48], "that of the guide");
+        let [mut inside, mut outside] = [(0.0, 0.0); 2];
+        for (value, &is_inside) in out.pixels().iter().zip(spot.pixels()) {
+            let sum = if is_inside == 1.0 {
+                &mut inside
+            } else {
+                &mut outside
+            };
+            *sum = (sum.0 + value, sum.1 + 1.0);
+        }
+        let [inside, outside] = [inside, outside].map(|(sum, n)| sum / n);
+        assert!(inside > outside + 0.3, "{inside} and {outside}");
+    }
+    // The model of the tests has no texture coordinates.
+    let line = "synth ramp.png --guide spot.png --mesh model.obj --sites 500 -o out.glb";
+    let output = folder.run(&line.split(' ').collect::<Vec<_>>());
+    let text = stderr(&output);
+    assert!(text.contains("texture coordinates"), "{text}");
+}
+
+#[test]
 fn sources_that_were_written_lay_out_another_example_in_the_same_way() {
     let folder = Folder::with_inputs("sources");
     let run = |line: &str| folder.run(&line.split(' ').collect::<Vec<_>>());

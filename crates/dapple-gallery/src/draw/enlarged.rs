@@ -2,15 +2,17 @@
 
 use dapple_raster::{Raster, RasterError};
 
-/// Resizes a square raster to `size` × `size` pixels by taking the nearest pixel; enlarging turns every pixel into a
-/// square.
+/// Resizes a raster by taking the nearest pixel, so that its longer side has `size` pixels; enlarging turns every pixel into
+/// a square.
 ///
 /// # Errors
 ///
 /// If `size` is zero.
 pub fn enlarged<T: Copy>(raster: &Raster<T>, size: u32) -> Result<Raster<T>, RasterError> {
-    let nearest = |at: u32| (u64::from(at) * u64::from(raster.width()) / u64::from(size)) as u32;
-    Raster::from_fn([size; 2], |column, row| {
+    let longer = u64::from(raster.width().max(raster.height()));
+    let scaled = |side: u32| (u64::from(side) * u64::from(size)).div_ceil(longer) as u32;
+    let nearest = |at: u32| (u64::from(at) * longer / u64::from(size)) as u32;
+    Raster::from_fn(raster.size().map(scaled), |column, row| {
         raster.row(nearest(row))[nearest(column) as usize]
     })
 }
@@ -26,6 +28,9 @@ mod tests {
         let large = enlarged(&small, 4).unwrap();
         assert_eq!(large.row(1), [1, 1, 2, 2]);
         assert_eq!(large.row(2), [3, 3, 4, 4]);
+        let wide = enlarged(&Raster::from_vec([3, 1], vec![1, 2, 3]).unwrap(), 7).unwrap();
+        assert_eq!(wide.size(), [7, 3]);
+        assert_eq!(wide.row(2), [1, 1, 1, 2, 2, 3, 3]);
         assert!(enlarged(&small, 0).is_err(), "no pixel");
     }
 }

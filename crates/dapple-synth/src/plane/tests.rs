@@ -1,7 +1,8 @@
 //! The plane beside the pseudo-code of the paper.
 
 use super::{
-    MAX_PIXELS, PlaneGround, PlaneTexture, SLANT, synthesize_plane, synthesize_plane_with,
+    MAX_PIXELS, PlaneGround, PlaneTexture, SLANT, synthesize_plane, synthesize_plane_guided,
+    synthesize_plane_with,
 };
 use crate::ground::Ground;
 use crate::{
@@ -37,6 +38,8 @@ struct NaiveLevel {
     wrap: [Wrap; 2],
     colors: Vec<Vec<f32>>,
     sources: Vec<u32>,
+    /// The values of all guides at each site.
+    guides: Vec<Vec<f32>>,
 }
 
 impl NaiveLevel {
@@ -54,8 +57,36 @@ impl NaiveLevel {
     }
 }
 
+/// A guide of the next coarser level: means with the products of the weights 1-4-6-4-1.
+fn coarser_guide(guide: &Raster<f32>, wrap: [Wrap; 2]) -> Raster<f32> {
+    let weights = [1.0, 4.0, 6.0, 4.0, 1.0];
+    let mean = |x: u32, y: u32| {
+        let mut sum = 0.0;
+        for (j, row) in (-2..).zip(weights) {
+            for (i, column) in (-2..).zip(weights) {
+                let [x, y] = [2 * i64::from(x) + i, 2 * i64::from(y) + j];
+                sum += row * column * guide.at(x, y, wrap);
+            }
+        }
+        sum / 256.0
+    };
+    Raster::from_fn(guide.size().map(|side| side.div_ceil(2)), mean).unwrap()
+}
+
 /// The pseudo-code of the paper for any schedule: every site compares with all candidates, in the order of the sweep.
 fn naive(exemplar: &Exemplar, size: [u32; 2], edges: [Edges; 2], options: &Options) -> Vec<u32> {
+    naive_guided(exemplar, &[], size, edges, options)
+}
+
+/// The same with guides, whose weights are 1.
+fn naive_guided(
+    exemplar: &Exemplar,
+    guides: &[&Raster<f32>],
+    size: [u32; 2],
+    edges: [Edges; 2],
+    options: &Options,
+) -> Vec<u32> {
+    let mut guides: Vec<Raster<f32>> = guides.iter().map(|&guide| guide.clone()).collect();
     let pyramid = exemplar.pyramid(options.n_levels).unwrap();
     let wrap = edges.map(|edges| {
         if edges == Edges::Wrap {
@@ -74,11 +105,18 @@ fn naive(exemplar: &Exemplar, size: [u32; 2], edges: [Edges; 2], options: &Optio
             let random = |site| (((hash1(seed, [site], 0) >> 32) * n_pixels) >> 32) as u32;
             let sources: Vec<u32> = (0..n_sites).map(random).collect();
             let colors = sources.iter().map(|&pixel| color_of(read, pixel)).collect();
+            let values = |site| guides.iter().map(|guide| guide.pixels()[site]).collect();
+            let guides_here = (0..n_sites as usize).map(values).collect();
+            guides = guides
+                .iter()
+                .map(|guide| coarser_guide(guide, wrap))
+                .collect();
             NaiveLevel {
                 size,
                 wrap,
                 colors,
                 sources,
+                guides: guides_here,
             }
         })
         .collect();
@@ -120,6 +158,17 @@ fn visit(pyramid: &Pyramid, pass: &Pass, options: &Options, levels: &mut [NaiveL
                 query.extend([0, 1].map(|channel| read.color(place, channel) * part.weight.sqrt()));
             }
         }
+        let site = (y * width + x) as usize;
+        let n_pixels: f32 = pass
+            .parts
+            .iter()
+            .map(|part| part.offsets().len() as f32 * part.weight)
+            .sum();
+        query.extend(
+            levels[level].guides[site]
+                .iter()
+                .map(|guide| guide * n_pixels.sqrt()),
+        );
         let mut best = (f32::INFINITY, 0);
         for row in 0..candidates.len() {
             let distance = distance_sq(&query, candidates.row(row));
@@ -129,7 +178,6 @@ fn visit(pyramid: &Pyramid, pass: &Pass, options: &Options, levels: &mut [NaiveL
         }
         let [column, row] = candidates.pixel(best.1);
         let pixel = row * pyramid.levels()[level].size()[0] + column;
-        let site = (y * width + x) as usize;
         levels[level].sources[site] = pixel;
         levels[level].colors[site] = color_of(&pyramid.levels()[level], pixel);
     }
@@ -165,6 +213,147 @@ fn textures_equal_the_pseudo_code_of_the_paper() {
                 "{size:?} {edges:?} {n_levels} {center:?}"
             );
         }
+    }
+}
+
+/// Guides whose values and coarser values `f32` has exactly.
+fn guides(size: [u32; 2]) -> [Raster<f32>; 2] {
+    let left = Raster::from_fn(size, |x, _| f32::from(x < size[0] / 2)).unwrap();
+    let rows = Raster::from_fn(size, |_, y| f32::from(y as u8 / 4 % 4) / 4.0).unwrap();
+    [left, rows]
+}
+
+/// An exemplar with [`guides`] of the weight 1.
+fn guided_exemplar(size: [u32; 2], edges: Edges) -> Exemplar {
+    let [left, rows] = guides(size);
+    let guides = [(&left, 1.0), (&rows, 1.0)];
+    exemplar(size, edges).with_guides(&guides).unwrap()
+}
+
+#[test]
+fn guided_textures_equal_the_pseudo_code() {
+    for (edges, size) in [
+        ([Edges::Cut; 2], [21, 26]),
+        ([Edges::Wrap, Edges::Cut], [24, 17]),
+    ] {
+        let exemplar = guided_exemplar([30, 28], Edges::Cut);
+        let [left, rows] = guides(size);
+        let targets = [&left, &rows];
+        for options in [
+            paper(2, CoarserCenter::Exact),
+            paper(3, CoarserCenter::Floor),
+        ] {
+            let made = synthesize_plane_guided(&exemplar, &targets, edges, &options, |_| {
+                ControlFlow::Continue(())
+            });
+            let sources = made.unwrap().sources().map(|[x, y]| y * 30 + x);
+            assert!(
+                sources.pixels() == naive_guided(&exemplar, &targets, size, edges, &options),
+                "{edges:?} {size:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn guides_say_where_parts_of_the_exemplar_go() {
+    let exemplar = guided_exemplar([64, 64], Edges::Wrap);
+    // Left and right exchanged, and the rows as they are.
+    let [left, rows] = guides([64, 64]);
+    let right = left.map(|left| 1.0 - left);
+    let made = synthesize_plane_guided(
+        &exemplar,
+        &[&right, &rows],
+        [Edges::Wrap; 2],
+        &Options::default(),
+        |_| ControlFlow::Continue(()),
+    );
+    let sources = made.unwrap();
+    let value = |plane: &Raster<f32>, [x, y]: [u32; 2]| plane.row(y)[x as usize];
+    let mut obeyed = [0, 0];
+    for ([x, y], &source) in (0..64)
+        .flat_map(|y| (0..64).map(move |x| [x, y]))
+        .zip(sources.sources().pixels())
+    {
+        obeyed[0] += u32::from(value(&left, source) == value(&right, [x, y]));
+        obeyed[1] += u32::from(value(&rows, source) == value(&rows, [x, y]));
+    }
+    // But for sites beside the borders of guides, where a piece goes on.
+    assert!(obeyed[0] > 64 * 60, "sides: {obeyed:?}");
+    assert!(obeyed[1] > 64 * 50, "rows: {obeyed:?}");
+}
+
+#[test]
+fn bad_guides_are_refused() {
+    let exemplar = guided_exemplar([30, 28], Edges::Cut);
+    let [left, rows] = guides([20, 20]);
+    let kind = |exemplar: &Exemplar, guides: &[&Raster<f32>]| {
+        let options = Options::default();
+        synthesize_plane_guided(exemplar, guides, [Edges::Cut; 2], &options, |_| {
+            ControlFlow::Continue(())
+        })
+        .unwrap_err()
+        .kind()
+        .clone()
+    };
+    for guides in [&[][..], &[&left], &[&left, &rows, &rows]] {
+        assert!(
+            matches!(kind(&exemplar, guides), SynthErrorKind::Count { count, .. } if count == guides.len()),
+            "{} guides",
+            guides.len()
+        );
+    }
+    let plain = self::exemplar([30, 28], Edges::Cut);
+    assert!(
+        matches!(
+            kind(&plain, &[&left]),
+            SynthErrorKind::Count { count: 1, .. }
+        ),
+        "an exemplar without guides"
+    );
+    let small = rows.crop([0; 2], [19, 20]).unwrap();
+    assert!(
+        matches!(kind(&exemplar, &[&left, &small]), SynthErrorKind::Raster(_)),
+        "two sizes"
+    );
+    let infinite = rows.map(|_| f32::INFINITY);
+    assert!(
+        matches!(
+            kind(&exemplar, &[&left, &infinite]),
+            SynthErrorKind::NotFinite { .. }
+        ),
+        "infinite"
+    );
+    // Without guides of the texture.
+    let plain = synthesize_plane(&exemplar, [20; 2], [Edges::Cut; 2], &Options::default());
+    assert!(
+        matches!(
+            plain.unwrap_err().kind(),
+            SynthErrorKind::Count { count: 0, .. }
+        ),
+        "no guides of the texture"
+    );
+    let identity = PlaneTexture::identity(&exemplar).unwrap();
+    let hole = Raster::from_fn([30, 28], |x, y| x == 9 && y == 9).unwrap();
+    let options = Options {
+        n_levels: 2,
+        ..Options::default()
+    };
+    let repaired = identity.repair(&exemplar, &hole, &options, |_| ControlFlow::Continue(()));
+    assert!(
+        matches!(
+            repaired.unwrap_err().kind(),
+            SynthErrorKind::Count { count: 0, .. }
+        ),
+        "a repair has no guides"
+    );
+    for weight in [0.0, -1.0, f32::NAN, f32::INFINITY] {
+        let plane = Raster::filled([30, 28], 0.5).unwrap();
+        let refused = self::exemplar([30, 28], Edges::Cut).with_guides(&[(&plane, weight)]);
+        assert!(
+            matches!(refused.unwrap_err().kind(), SynthErrorKind::Range { .. }),
+            "{weight}"
+        );
     }
 }
 

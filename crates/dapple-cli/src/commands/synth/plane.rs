@@ -1,6 +1,7 @@
 //! Synthesis of an image.
 
-use super::{Args, Input, STEPS, advise, shown};
+use super::reading::Input;
+use super::{Args, STEPS, advise, shown};
 use crate::encode::{Format, map_raster};
 use crate::error::{Exit, Hint, usage};
 use crate::input;
@@ -11,7 +12,7 @@ use anyhow::{Context as _, Result};
 use dapple::color::LinearRgb;
 use dapple::image::Image;
 use dapple::raster::Raster;
-use dapple::synth::{PlaneTexture, synthesize_plane_with};
+use dapple::synth::{PlaneTexture, synthesize_plane_guided, synthesize_plane_with};
 use dapple::tile::Map;
 use serde_json::Value;
 use std::path::Path;
@@ -36,6 +37,7 @@ pub(super) fn run(args: &Args, context: &Context) -> Result<Exit> {
         maps,
         exemplar,
         hole,
+        guides,
     } = args.read()?;
     let progress = Progress::bar("synthesizing", STEPS.into(), context);
     let options = args.matching.options(&args.surface);
@@ -48,6 +50,10 @@ pub(super) fn run(args: &Args, context: &Context) -> Result<Exit> {
         }
         (None, Some(hole)) => PlaneTexture::identity(&exemplar)
             .and_then(|whole| whole.repair(&exemplar, hole, &options, shown(&progress))),
+        (None, None) if !guides.is_empty() => {
+            let targets: Vec<_> = guides.iter().map(|guide| &guide.target).collect();
+            synthesize_plane_guided(&exemplar, &targets, edges, &options, shown(&progress))
+        }
         (None, None) => {
             let size = args.plane.size.map_or(SIZE, |size| size.0);
             synthesize_plane_with(&exemplar, size, edges, &options, shown(&progress))

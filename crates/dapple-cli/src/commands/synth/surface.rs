@@ -2,7 +2,8 @@
 
 use super::corners::{own_uvs, shading};
 use super::options::AtlasName;
-use super::{Args, Input, STEPS, advise, shown};
+use super::reading::Input;
+use super::{Args, STEPS, advise, guides, shown};
 use crate::encode::{Format, default_format, encode, ramped};
 use crate::error::{Exit, Hint, usage};
 use crate::input;
@@ -78,7 +79,10 @@ pub(super) fn run(args: &Args, mesh: &Path, context: &Context) -> Result<Exit> {
     drop(spinner);
     let progress = Progress::bar("synthesizing", STEPS.into(), context);
     let options = args.matching.options(&args.surface);
-    let texture = synthesizer.synthesize_with(&input.exemplar, &options, shown(&progress));
+    let columns = guides::at_sites(&input.guides, &synthesizer, &model, &repair)?;
+    let columns: Vec<_> = columns.iter().map(Vec::as_slice).collect();
+    let exemplar = &input.exemplar;
+    let texture = synthesizer.synthesize_guided(exemplar, &columns, &options, shown(&progress));
     let texture = texture.map_err(advise)?;
     drop(progress);
     let spinner = Progress::spinner("baking", context);

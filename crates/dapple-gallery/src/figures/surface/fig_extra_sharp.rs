@@ -59,6 +59,8 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
         sources: Sources::SubPixel,
         detail: None,
         map_side: (4 * size).max(512),
+        mask: None,
+        guides: Vec::new(),
     };
     let panels = [
         (

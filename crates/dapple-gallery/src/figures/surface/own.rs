@@ -66,6 +66,8 @@ impl Own {
             sources: Sources::SubPixel,
             detail: None,
             map_side: self.map_side,
+            mask: None,
+            guides: Vec::new(),
         };
         let textured = job.run()?;
         let panel = |(label, view): &(&str, View)| {

@@ -221,6 +221,8 @@ impl Subject {
             sources: Sources::SubPixel,
             detail: None,
             map_side: (TEXELS * size).max(512),
+            mask: None,
+            guides: Vec::new(),
         };
         job.run()
     }

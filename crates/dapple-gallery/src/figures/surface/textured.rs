@@ -1,6 +1,7 @@
 //! The steps from a mesh and an exemplar to a texture map.
 
 use anyhow::Result;
+use core::ops::ControlFlow;
 use dapple_color::LinearRgb;
 use dapple_preview::Surface;
 use dapple_raster::{Raster, Wrap};
@@ -9,7 +10,7 @@ use dapple_synth::{
     Atlas, Coherence, Direction, Edges, Exemplar, HierarchyOptions, Options, Sources, Synthesizer,
     bake_colors,
 };
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 
 /// The inputs and options of a texture map.
 #[derive(Clone, Debug)]
@@ -25,6 +26,18 @@ pub(super) struct Job {
     pub(super) detail: Option<Raster<LinearRgb>>,
     /// The side of the texture map in texels.
     pub(super) map_side: u32,
+    /// Which pixels of the image are used; all if there is none.
+    pub(super) mask: Option<Raster<bool>>,
+    pub(super) guides: Vec<SiteGuide>,
+}
+
+/// What says where on the mesh which pixels of the image go.
+#[derive(Clone, Debug)]
+pub(super) struct SiteGuide {
+    pub(super) example: Raster<f32>,
+    /// Its value at a position.
+    pub(super) at: fn(DVec3) -> f32,
+    pub(super) weight: f32,
 }
 
 /// A mesh with its texture.
@@ -47,8 +60,19 @@ impl Job {
             ..Options::default()
         };
         let synthesizer = Synthesizer::new(surface, &self.directions, &self.sites)?;
-        let exemplar = Exemplar::new(&self.image, self.edges)?;
-        let texture = synthesizer.synthesize(&exemplar, &options)?;
+        let mut exemplar = Exemplar::new(&self.image, self.edges)?;
+        if let Some(mask) = &self.mask {
+            exemplar = exemplar.with_mask(mask)?;
+        }
+        let guides = self.guides.iter();
+        let guides = guides.map(|guide| (&guide.example, guide.weight));
+        let exemplar = exemplar.with_guides(&guides.collect::<Vec<_>>())?;
+        let positions = synthesizer.hierarchy().sites().positions();
+        let column = |guide: &SiteGuide| positions.iter().map(|&at| (guide.at)(at)).collect();
+        let columns: Vec<Vec<f32>> = self.guides.iter().map(column).collect();
+        let columns: Vec<_> = columns.iter().map(Vec::as_slice).collect();
+        let texture = synthesizer
+            .synthesize_guided(&exemplar, &columns, &options, |_| ControlFlow::Continue(()))?;
         let surface = synthesizer.surface();
         let atlas = Atlas::uniform(surface, self.map_side)?;
         let shown = self.detail.as_ref().unwrap_or(&self.image);

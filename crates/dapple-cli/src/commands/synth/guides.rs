@@ -1,0 +1,187 @@
+//! Guides: images that say where in the texture which part of the example goes.
+
+use super::Args;
+use super::corners::own_uvs;
+use super::reading::gray;
+use crate::args::Region;
+use crate::error::Hint;
+use crate::input::{self, Kind, Loaded};
+use anyhow::Result;
+use dapple::mesh::{Model, Repair};
+use dapple::points::glam::DVec2;
+use dapple::raster::{Raster, Wrap};
+use dapple::synth::{SideBySide, Synthesizer};
+use dapple::tile::blur;
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+
+/// What goes where.
+#[derive(clap::Args, Clone, Debug, Serialize)]
+#[command(next_help_heading = "Guides")]
+pub(super) struct GuideArgs {
+    /// Another example beside the first; may be given several times. Every `--map` is then given once for each example, in the
+    /// same order.
+    #[arg(long = "example", value_name = "IMAGE", conflicts_with_all = ["detail", "mask", "repair", "region"])]
+    pub(super) examples: Vec<PathBuf>,
+
+    /// Which example goes where: black is the first, white the last, and grays are those between. A texture in the plane has
+    /// the size of this image; on a mesh it is read at the mesh's own texture coordinates.
+    #[arg(long, value_name = "IMAGE", requires = "examples", conflicts_with_all = ["size", "repair", "replay"])]
+    which: Option<PathBuf>,
+
+    /// A picture that the texture is to look like from afar: light pixels of the example go where it is light. A texture in
+    /// the plane has its size; on a mesh it is read at the mesh's own texture coordinates.
+    #[arg(long, value_name = "IMAGE", conflicts_with_all = ["size", "repair", "replay"])]
+    guide: Option<PathBuf>,
+
+    /// Where in the example there is what --guide says, such as heights in both: an image for each example. By default it is
+    /// how light the example is, and --guide is made as light and as rich in contrast.
+    #[arg(long, value_name = "IMAGE", requires = "guide")]
+    guide_of: Vec<PathBuf>,
+
+    /// How far around a pixel it is averaged how light example and --guide are, in pixels: less follows finer lines, and loses
+    /// more of the example. By default 2, or 0 with --guide-of.
+    #[arg(long, value_name = "PX", requires = "guide", value_parser = blur_range)]
+    guide_blur: Option<f64>,
+
+    /// How much --guide counts beside one channel of the colors around a pixel.
+    #[arg(long, value_name = "N", requires = "guide", default_value_t = 1.0)]
+    guide_weight: f32,
+}
+
+/// How much more a guide that chooses among examples counts than a channel: as all three together.
+const CHOICE_WEIGHT: f32 = 3.0;
+
+/// How far lightness is averaged: over two pixels the grain of an example is gone, and what it shows is not.
+const LIGHTNESS_BLUR: f64 = 2.0;
+
+/// One guide.
+pub(super) struct Guide {
+    /// Its values at the pixels of the example.
+    pub(super) example: Raster<f32>,
+    /// Those of the texture.
+    pub(super) target: Raster<f32>,
+    pub(super) weight: f32,
+}
+
+impl Args {
+    /// Reads the guides, for examples that lie side by side.
+    pub(super) fn read_guides(&self, layout: &SideBySide, example: &Loaded) -> Result<Vec<Guide>> {
+        let mut guides = Vec::new();
+        let args = &self.guides;
+        if let Some(path) = &args.which {
+            let last = args.examples.len();
+            let values = read_gray(path, None)?;
+            for image in 0..=last {
+                let is_chosen =
+                    |&value: &f32| f32::from((value * last as f32).round() == image as f32);
+                guides.push(Guide {
+                    example: layout.membership(image)?,
+                    target: values.map(is_chosen),
+                    weight: CHOICE_WEIGHT,
+                });
+            }
+        }
+        if let Some(path) = &args.guide {
+            let guide = read_gray(path, None)?;
+            if let Some(which) = &args.which {
+                input::check_size(path, guide.size(), which, guides[0].target.size())
+                    .hint("--guide and --which have one size")?;
+            }
+            let sigma = args.guide_blur.unwrap_or(match args.guide_of.len() {
+                0 => LIGHTNESS_BLUR,
+                _ => 0.0,
+            });
+            let blurred = |image: &Raster<f32>| blur(image, sigma, [Wrap::Mirror; 2]);
+            let guide = blurred(&guide)?;
+            let (example, target) = if args.guide_of.is_empty() {
+                let lightness = blurred(&gray(example)?)?;
+                let guide = like(&guide, &lightness, &layout.mask()?);
+                (lightness, guide)
+            } else {
+                let images = args.guide_of.iter();
+                let images = images.map(|path| read_gray(path, self.region));
+                let images: Vec<_> = images.collect::<Result<_>>()?;
+                let images: Vec<_> = images.iter().collect();
+                let joined = layout.join(&images, 0.0);
+                let hint = "give one --guide-of for each example, of its size";
+                (blurred(&joined.wrong_value().hint(hint)?)?, guide)
+            };
+            guides.push(Guide {
+                example,
+                target,
+                weight: args.guide_weight,
+            });
+        }
+        Ok(guides)
+    }
+}
+
+/// A blur from 0 to 64 pixels.
+fn blur_range(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(sigma) if (0.0..=64.0).contains(&sigma) => Ok(sigma),
+        _ => Err(format!("{text:?} is not a number from 0 to 64")),
+    }
+}
+
+/// Reads an image as gray values: colors as how light they are.
+fn read_gray(path: &Path, region: Option<Region>) -> Result<Raster<f32>> {
+    gray(&input::map(
+        path,
+        Kind::ByChannels,
+        region,
+        None,
+        input::ALPHA_HINT,
+    )?)
+}
+
+/// A guide with the mean and the deviation of what it is compared with, where that is used.
+fn like(guide: &Raster<f32>, example: &Raster<f32>, mask: &Raster<bool>) -> Raster<f32> {
+    let pixels = example.pixels().iter().zip(mask.pixels());
+    let used = pixels.filter_map(|(&value, &is_used)| is_used.then_some(value));
+    let [mean, deviation] = moments(used);
+    let [own_mean, own_deviation] = moments(guide.pixels().iter().copied());
+    let scale = if own_deviation > 0.0 {
+        deviation / own_deviation
+    } else {
+        0.0
+    };
+    guide.map(|&value| (mean + (f64::from(value) - own_mean) * scale) as f32)
+}
+
+/// The mean and the standard deviation.
+fn moments(values: impl Iterator<Item = f32> + Clone) -> [f64; 2] {
+    let n = values.clone().count().max(1) as f64;
+    let mean = values.clone().map(f64::from).sum::<f64>() / n;
+    let square = |value: f32| (f64::from(value) - mean) * (f64::from(value) - mean);
+    [mean, (values.map(square).sum::<f64>() / n).sqrt()]
+}
+
+/// The values of a guide at all sites of a mesh, by the mesh's own texture coordinates; the image repeats.
+pub(super) fn at_sites(
+    guides: &[Guide],
+    synthesizer: &Synthesizer,
+    model: &Model,
+    repair: &Repair,
+) -> Result<Vec<Vec<f32>>> {
+    if guides.is_empty() {
+        return Ok(Vec::new());
+    }
+    let surface = synthesizer.surface();
+    let uvs = own_uvs(surface, model, repair)
+        .hint("guides are read at texture coordinates: give the mesh some")?;
+    let points = synthesizer.hierarchy().sites().points();
+    let values = |guide: &Guide| {
+        let size = guide.target.size().map(f64::from);
+        let value = |&point| {
+            let weights = surface.weights(point);
+            let corners = uvs[point.face.index()].iter().zip(weights);
+            let uv = corners.map(|(&uv, weight)| uv * weight).sum::<DVec2>();
+            let [column, row] = [uv.x * size[0], uv.y * size[1]].map(|at| at.floor() as i64);
+            *guide.target.at(column, row, [Wrap::Repeat; 2])
+        };
+        points.iter().map(value).collect()
+    };
+    Ok(guides.iter().map(values).collect())
+}

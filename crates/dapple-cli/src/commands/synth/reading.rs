@@ -1,0 +1,239 @@
+//! The images of a synthesis: examples, their maps, masks and guides.
+
+use super::guides::Guide;
+use super::{Args, MapArg, advise};
+use crate::args::Alpha;
+use crate::error::{Hint, usage};
+use crate::input::{self, Kind, Loaded};
+use anyhow::{Result, bail};
+use dapple::color::{LinearRgb, Normal};
+use dapple::raster::Raster;
+use dapple::recipe::ImageAlpha;
+use dapple::synth::{Edges, Exemplar, SideBySide};
+use dapple::tile::Map;
+use std::path::{Path, PathBuf};
+
+/// The input of the synthesis. Several examples lie side by side in one image.
+pub(super) struct Input {
+    /// What is shown: the example, or a larger version of it.
+    pub(super) base: Loaded,
+    /// The maps that follow, with their names.
+    pub(super) maps: Vec<(String, Loaded)>,
+    pub(super) exemplar: Exemplar,
+    /// The pixels that are made again, if the example is repaired.
+    pub(super) hole: Option<Raster<bool>>,
+    pub(super) guides: Vec<Guide>,
+}
+
+impl Args {
+    /// Reads the examples, the larger version of the one, and the maps, which must have the sizes of what is shown.
+    pub(super) fn read(&self) -> Result<Input> {
+        let paths: Vec<_> = [&self.exemplar]
+            .into_iter()
+            .chain(&self.guides.examples)
+            .collect();
+        let examples = paths.iter().map(|path| self.load(path, Kind::ByChannels));
+        let examples: Vec<_> = examples.collect::<Result<_>>()?;
+        let sizes: Vec<_> = examples.iter().map(|example| example.map.size()).collect();
+        let layout = SideBySide::new(&sizes)?;
+        let example = joined(&layout, examples)?;
+        let edges = match paths.len() {
+            1 => self.matching.edges,
+            _ => Edges::Cut,
+        };
+        let exemplar = match &example.map {
+            Map::Color(colors) => Exemplar::new(colors, edges),
+            Map::Value(values) => Exemplar::from_planes(&[(values, 1.0)], edges),
+            Map::Normal(_) => bail!("normals are no example"),
+        };
+        let mut exemplar = exemplar.map_err(advise)?;
+        let hole = self.plane.repair.as_deref();
+        let hole = hole
+            .map(|path| self.load_mask(path, exemplar.size()))
+            .transpose()?;
+        let mask = match &self.mask {
+            Some(path) => Some(self.load_mask(path, exemplar.size())?),
+            None if paths.len() > 1 => Some(layout.mask()?),
+            None => None,
+        };
+        if mask.is_some() || hole.is_some() {
+            let is_usable = |column: u32, row: u32| {
+                let is_white = |mask: &Raster<bool>| mask.row(row)[column as usize];
+                mask.as_ref().is_none_or(is_white) && !hole.as_ref().is_some_and(is_white)
+            };
+            let usable = Raster::from_fn(exemplar.size(), is_usable)?;
+            exemplar = exemplar.with_mask(&usable)?;
+        }
+        let guides = self.read_guides(&layout, &example)?;
+        let planes: Vec<_> = guides
+            .iter()
+            .map(|guide| (&guide.example, guide.weight))
+            .collect();
+        let exemplar = exemplar.with_guides(&planes).map_err(advise)?;
+        let base = match &self.detail {
+            None => example,
+            Some(path) => self.load_detail(path, exemplar.size())?,
+        };
+        let shown = self.detail.as_ref().map_or(paths, |path| vec![path]);
+        Ok(Input {
+            maps: self.load_maps(&layout, &shown, base.map.size())?,
+            base,
+            exemplar,
+            hole,
+            guides,
+        })
+    }
+
+    /// Reads the maps of what is shown: for each name as many as there are examples, side by side as they are.
+    fn load_maps(
+        &self,
+        layout: &SideBySide,
+        shown: &[&PathBuf],
+        size: [u32; 2],
+    ) -> Result<Vec<(String, Loaded)>> {
+        let mut maps: Vec<(String, Vec<&PathBuf>)> = Vec::new();
+        for MapArg { name, path } in &self.map {
+            match maps.iter_mut().find(|(other, _)| other == name) {
+                Some((_, paths)) => paths.push(path),
+                None => maps.push((name.clone(), vec![path])),
+            }
+        }
+        let mut loaded = Vec::new();
+        for (name, paths) in maps {
+            if paths.len() != shown.len() {
+                let message = format!(
+                    "maps with the name {name}: {}; examples: {}",
+                    paths.len(),
+                    shown.len()
+                );
+                let hint = format!("give --map {name}=IMAGE once for each example, in their order");
+                return Err(usage(message).hint(hint));
+            }
+            let kind = match name.as_str() {
+                "normal" => Kind::Normals,
+                _ => Kind::ByChannels,
+            };
+            let mut images = Vec::new();
+            for (image, (path, example)) in paths.into_iter().zip(shown).enumerate() {
+                let map = self.load(path, kind)?;
+                let size = if shown.len() > 1 {
+                    layout.size_of(image)
+                } else {
+                    size
+                };
+                input::check_size(path, map.map.size(), example, size)
+                    .hint("the maps of an example have its size")?;
+                images.push(map);
+            }
+            loaded.push((name, joined(layout, images)?));
+        }
+        Ok(loaded)
+    }
+
+    /// Reads a mask as large as the example: whether its pixels are nearer to white than to black.
+    fn load_mask(&self, path: &Path, size: [u32; 2]) -> Result<Raster<bool>> {
+        let over_black = Alpha::Without(ImageAlpha::Over(LinearRgb::default()));
+        let mask = input::map_with_alpha(path, Kind::ByChannels, self.region, over_black)?.map;
+        input::check_size(path, mask.size(), &self.exemplar, size)
+            .hint("a mask of an example has its size")?;
+        match mask {
+            Map::Value(values) => Ok(values.map(|&value| value >= 0.5)),
+            Map::Color(colors) => Ok(colors.map(|color| color.luminance() >= 0.5)),
+            Map::Normal(_) => bail!("normals are no mask"),
+        }
+    }
+
+    /// Reads a version of the example that is a whole number of times as large.
+    fn load_detail(&self, path: &Path, [width, height]: [u32; 2]) -> Result<Loaded> {
+        let detail = self.load(path, Kind::ByChannels)?;
+        let size = detail.map.size();
+        let factor = size[0] / width;
+        if factor > 0 && [width, height].map(|side| side.checked_mul(factor)) == size.map(Some) {
+            return Ok(detail);
+        }
+        let error = usage(format!(
+            "{} has {} × {} pixels, which is not the {width} × {height} of {} times a whole number",
+            input::name(path),
+            size[0],
+            size[1],
+            input::name(&self.exemplar)
+        ));
+        Err(error.hint("make the example from it, by a whole number of pixels for one"))
+    }
+
+    /// Reads an image, and refuses alpha where there is no room for it.
+    fn load(&self, path: &Path, kind: Kind) -> Result<Loaded> {
+        let loaded = input::map_with_alpha(path, kind, self.region, self.alpha.alpha)?;
+        if loaded.alpha.is_some() && self.surface.mesh.is_some() {
+            let message = format!(
+                "{} is partly transparent, which a mesh cannot keep",
+                input::name(path)
+            );
+            return Err(usage(message).hint(input::ALPHA_HINT));
+        }
+        Ok(loaded)
+    }
+}
+
+/// How light the pixels of an image are, as sRGB codes from 0 to 1; gray ones as they are.
+pub(super) fn gray(image: &Loaded) -> Result<Raster<f32>> {
+    let code = |color: &LinearRgb| {
+        let [code, ..] = LinearRgb::gray(color.luminance()).to_srgb::<u16>();
+        f32::from(code) / f32::from(u16::MAX)
+    };
+    match &image.map {
+        Map::Value(values) => Ok(values.clone()),
+        Map::Color(colors) => Ok(colors.map(code)),
+        Map::Normal(_) => bail!("normals are not light or dark"),
+    }
+}
+
+/// Images side by side. If some are gray and others colors, all are colors.
+fn joined(layout: &SideBySide, mut images: Vec<Loaded>) -> Result<Loaded> {
+    if images.len() == 1 {
+        return Ok(images.remove(0));
+    }
+    let is_deep = images.iter().any(|image| image.is_deep);
+    let map = if let Some(values) = all(&images, |map| match map {
+        Map::Value(values) => Some(values),
+        _ => None,
+    }) {
+        Map::Value(layout.join(&values, 0.0)?)
+    } else if let Some(normals) = all(&images, |map| match map {
+        Map::Normal(normals) => Some(normals),
+        _ => None,
+    }) {
+        Map::Normal(layout.join(&normals, Normal::FLAT)?)
+    } else {
+        let colors = images.iter().map(|image| match &image.map {
+            Map::Value(values) => values.map(|&value| image.color_of(value)),
+            Map::Color(colors) => colors.clone(),
+            Map::Normal(normals) => normals.map(|_| LinearRgb::default()),
+        });
+        let colors: Vec<_> = colors.collect();
+        let colors: Vec<_> = colors.iter().collect();
+        Map::Color(layout.join(&colors, LinearRgb::default())?)
+    };
+    let alpha = if images.iter().any(|image| image.alpha.is_some()) {
+        let opaque = |image: &Loaded| Raster::filled(image.map.size(), 1.0);
+        let alphas = images.iter().map(|image| match &image.alpha {
+            Some(alpha) => Ok(alpha.clone()),
+            None => opaque(image),
+        });
+        let alphas: Vec<_> = alphas.collect::<Result<_, _>>()?;
+        let alphas: Vec<_> = alphas.iter().collect();
+        Some(layout.join(&alphas, 1.0)?)
+    } else {
+        None
+    };
+    let mut joined = images.swap_remove(0);
+    joined.map = map;
+    joined.alpha = alpha;
+    joined.is_deep = is_deep;
+    Ok(joined)
+}
+
+/// A part of all images, if all have it.
+fn all<'a, T>(images: &'a [Loaded], part: impl Fn(&'a Map) -> Option<&'a T>) -> Option<Vec<&'a T>> {
+    images.iter().map(|image| part(&image.map)).collect()
+}
