@@ -492,6 +492,35 @@ fn examples_go_where_the_map_of_them_says_with_all_their_maps() {
 }
 
 #[test]
+fn examples_go_where_a_map_on_a_mesh_says() {
+    let folder = Folder::with_inputs("which_mesh");
+    let square =
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n";
+    fs::write(folder.path("square.obj"), square).unwrap();
+    let write = |name: &str, size: u32, value: fn(u32, u32) -> f32| {
+        let plane = Raster::from_fn([size; 2], value).unwrap();
+        write_gray_png(folder.path(name), &plane, Depth::Eight).unwrap();
+    };
+    write("dark.png", 40, |x, y| 0.1 * f32::from((x / 2 + y) % 2 == 0));
+    write("light.png", 40, |x, y| {
+        0.9 + 0.1 * f32::from((x / 2 + y) % 2 == 0)
+    });
+    write("which.png", 8, |x, y| f32::from(x >= 4 && y >= 4));
+    let line = "synth dark.png --example light.png --which which.png --mesh square.obj --sites 2000 \
+        --atlas uv --texture-size 64 -o out.png";
+    assert_done(
+        &folder.run(&line.split_whitespace().collect::<Vec<_>>()),
+        line,
+    );
+    let out = gray(&folder, "out.png");
+    let places = (0..64).flat_map(|y| (0..64).map(move |x| [x, y]));
+    let is_obeyed = |&[x, y]: &[u32; 2]| (out.row(y)[x as usize] > 0.5) == (x >= 32 && y >= 32);
+    // But for texels at the border, which is 64 long and has sites at every 1.5 texels.
+    let n_obeyed = places.filter(is_obeyed).count();
+    assert!(n_obeyed > 64 * 64 - 2 * 64, "{n_obeyed} of 4096");
+}
+
+#[test]
 fn a_texture_is_light_where_its_guide_is() {
     let folder = Folder::with_inputs("guide");
     let spot = |x: u32, y: u32| f32::from(x.abs_diff(32) < 12 && y.abs_diff(20) < 10);
