@@ -20,5 +20,6 @@ mod shards;
 #[cfg(feature = "studio")]
 mod studio;
 mod support;
+mod synthesis;
 mod watch;
 mod words;

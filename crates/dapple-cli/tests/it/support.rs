@@ -2,7 +2,8 @@
 
 use dapple::color::{LinearRgb, Normal};
 use dapple::image::{
-    Depth, write_color_exr, write_color_png, write_gray_exr, write_gray_png, write_normal_png,
+    Depth, Limits, read_image, write_color_exr, write_color_png, write_gray_exr, write_gray_png,
+    write_normal_png,
 };
 use dapple::mesh::Model;
 use dapple::mesh_io::write_model;
@@ -199,4 +200,10 @@ fn checker() -> Raster<LinearRgb> {
         _ => LinearRgb::new(0.1, 0.1, 0.3),
     })
     .unwrap()
+}
+
+/// Reads the values of a gray image in a folder.
+pub(crate) fn read_gray(folder: &Folder, name: &str) -> Raster<f32> {
+    let image = read_image(folder.path(name), &Limits::default());
+    image.unwrap().gray().unwrap()
 }

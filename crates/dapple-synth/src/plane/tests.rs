@@ -1,18 +1,19 @@
 //! The plane beside the pseudo-code of the paper.
 
-use super::{
-    MAX_PIXELS, PlaneGround, PlaneTexture, SLANT, synthesize_plane, synthesize_plane_guided,
-    synthesize_plane_with,
-};
+use super::{MAX_PIXELS, PlaneGround, PlaneTexture, synthesize_plane, synthesize_plane_with};
 use crate::ground::Ground;
 use crate::{
-    Candidates, CoarserCenter, Coherence, Edges, Exemplar, Likeness, Options, Part, Pass, Pyramid,
-    Reads, Schedule, Shape, SynthErrorKind, distance_sq,
+    CoarserCenter, Coherence, Edges, Exemplar, Likeness, Options, Part, Pass, Reads, Schedule,
+    Shape, SynthErrorKind,
 };
 use core::ops::ControlFlow;
-use dapple_hash::{Seed, hash1, hash2, unit_f32};
+use dapple_hash::{Seed, hash2, unit_f32};
 use dapple_raster::{Raster, Wrap};
+use naive::naive;
 use proptest::prelude::*;
+
+mod guides;
+mod naive;
 
 /// Soft noise of two channels that wraps.
 fn exemplar(size: [u32; 2], edges: Edges) -> Exemplar {
@@ -29,157 +30,6 @@ fn paper(n_levels: usize, center: CoarserCenter) -> Options {
         n_levels,
         center,
         ..Options::paper()
-    }
-}
-
-/// The colors and sources of a level in the oracle.
-struct NaiveLevel {
-    size: [u32; 2],
-    wrap: [Wrap; 2],
-    colors: Vec<Vec<f32>>,
-    sources: Vec<u32>,
-    /// The values of all guides at each site.
-    guides: Vec<Vec<f32>>,
-}
-
-impl NaiveLevel {
-    /// The color at a place in half pixels: the mean of two or four pixels between them.
-    fn color(&self, halves: [i64; 2], channel: usize) -> f32 {
-        let at = |step: [i64; 2]| {
-            let [x, y] = [0, 1].map(|axis| {
-                let place = (halves[axis] + step[axis]).div_euclid(2);
-                self.wrap[axis].index(place, self.size[axis])
-            });
-            self.colors[(y * self.size[0] + x) as usize][channel]
-        };
-        let sum = (at([0, 0]) + at([1, 0])) + (at([0, 1]) + at([1, 1]));
-        0.25 * sum
-    }
-}
-
-/// A guide of the next coarser level: means with the products of the weights 1-4-6-4-1.
-fn coarser_guide(guide: &Raster<f32>, wrap: [Wrap; 2]) -> Raster<f32> {
-    let weights = [1.0, 4.0, 6.0, 4.0, 1.0];
-    let mean = |x: u32, y: u32| {
-        let mut sum = 0.0;
-        for (j, row) in (-2..).zip(weights) {
-            for (i, column) in (-2..).zip(weights) {
-                let [x, y] = [2 * i64::from(x) + i, 2 * i64::from(y) + j];
-                sum += row * column * guide.at(x, y, wrap);
-            }
-        }
-        sum / 256.0
-    };
-    Raster::from_fn(guide.size().map(|side| side.div_ceil(2)), mean).unwrap()
-}
-
-/// The pseudo-code of the paper for any schedule: every site compares with all candidates, in the order of the sweep.
-fn naive(exemplar: &Exemplar, size: [u32; 2], edges: [Edges; 2], options: &Options) -> Vec<u32> {
-    naive_guided(exemplar, &[], size, edges, options)
-}
-
-/// The same with guides, whose weights are 1.
-fn naive_guided(
-    exemplar: &Exemplar,
-    guides: &[&Raster<f32>],
-    size: [u32; 2],
-    edges: [Edges; 2],
-    options: &Options,
-) -> Vec<u32> {
-    let mut guides: Vec<Raster<f32>> = guides.iter().map(|&guide| guide.clone()).collect();
-    let pyramid = exemplar.pyramid(options.n_levels).unwrap();
-    let wrap = edges.map(|edges| {
-        if edges == Edges::Wrap {
-            Wrap::Repeat
-        } else {
-            Wrap::Mirror
-        }
-    });
-    let mut levels: Vec<NaiveLevel> = (0..options.n_levels)
-        .map(|level| {
-            let size = size.map(|side| side.div_ceil(1 << level));
-            let n_sites = i64::from(size[0] * size[1]);
-            let read = &pyramid.levels()[level];
-            let n_pixels = u64::from(read.size()[0] * read.size()[1]);
-            let seed = options.seed.child("first colors", level as u64);
-            let random = |site| (((hash1(seed, [site], 0) >> 32) * n_pixels) >> 32) as u32;
-            let sources: Vec<u32> = (0..n_sites).map(random).collect();
-            let colors = sources.iter().map(|&pixel| color_of(read, pixel)).collect();
-            let values = |site| guides.iter().map(|guide| guide.pixels()[site]).collect();
-            let guides_here = (0..n_sites as usize).map(values).collect();
-            guides = guides
-                .iter()
-                .map(|guide| coarser_guide(guide, wrap))
-                .collect();
-            NaiveLevel {
-                size,
-                wrap,
-                colors,
-                sources,
-                guides: guides_here,
-            }
-        })
-        .collect();
-    let schedule = options
-        .schedule
-        .clone()
-        .unwrap_or_else(|| Schedule::paper(options.n_levels));
-    for pass in &schedule.passes {
-        visit(&pyramid, pass, options, &mut levels);
-    }
-    levels.swap_remove(0).sources
-}
-
-fn color_of(exemplar: &Exemplar, pixel: u32) -> Vec<f32> {
-    exemplar.pixels()[pixel as usize * 2..][..2].to_vec()
-}
-
-fn visit(pyramid: &Pyramid, pass: &Pass, options: &Options, levels: &mut [NaiveLevel]) {
-    let candidates = Candidates::new(pyramid, pass, options.center).unwrap();
-    let level = pass.level;
-    let [width, height] = levels[level].size;
-    let mut places: Vec<[u32; 2]> = (0..height)
-        .flat_map(|y| (0..width).map(move |x| [x, y]))
-        .collect();
-    if levels[level].wrap[0] == Wrap::Repeat && level + 1 < levels.len() {
-        places.sort_by_key(|[x, y]| x + SLANT * y);
-    }
-    for [x, y] in places {
-        let mut query = Vec::new();
-        for part in &pass.parts {
-            let read = &levels[level + usize::from(part.reads == Reads::Coarser)];
-            let middle = [x, y].map(|at| match (part.reads, options.center) {
-                (Reads::Same, _) => 2 * i64::from(at),
-                (Reads::Coarser, CoarserCenter::Exact) => i64::from(at),
-                (Reads::Coarser, CoarserCenter::Floor) => i64::from(at / 2) * 2,
-            });
-            for [i, j] in part.offsets() {
-                let place = [middle[0] + 2 * i64::from(i), middle[1] + 2 * i64::from(j)];
-                query.extend([0, 1].map(|channel| read.color(place, channel) * part.weight.sqrt()));
-            }
-        }
-        let site = (y * width + x) as usize;
-        let n_pixels: f32 = pass
-            .parts
-            .iter()
-            .map(|part| part.offsets().len() as f32 * part.weight)
-            .sum();
-        query.extend(
-            levels[level].guides[site]
-                .iter()
-                .map(|guide| guide * n_pixels.sqrt()),
-        );
-        let mut best = (f32::INFINITY, 0);
-        for row in 0..candidates.len() {
-            let distance = distance_sq(&query, candidates.row(row));
-            if distance < best.0 {
-                best = (distance, row);
-            }
-        }
-        let [column, row] = candidates.pixel(best.1);
-        let pixel = row * pyramid.levels()[level].size()[0] + column;
-        levels[level].sources[site] = pixel;
-        levels[level].colors[site] = color_of(&pyramid.levels()[level], pixel);
     }
 }
 
@@ -213,147 +63,6 @@ fn textures_equal_the_pseudo_code_of_the_paper() {
                 "{size:?} {edges:?} {n_levels} {center:?}"
             );
         }
-    }
-}
-
-/// Guides whose values and coarser values `f32` has exactly.
-fn guides(size: [u32; 2]) -> [Raster<f32>; 2] {
-    let left = Raster::from_fn(size, |x, _| f32::from(x < size[0] / 2)).unwrap();
-    let rows = Raster::from_fn(size, |_, y| f32::from(y as u8 / 4 % 4) / 4.0).unwrap();
-    [left, rows]
-}
-
-/// An exemplar with [`guides`] of the weight 1.
-fn guided_exemplar(size: [u32; 2], edges: Edges) -> Exemplar {
-    let [left, rows] = guides(size);
-    let guides = [(&left, 1.0), (&rows, 1.0)];
-    exemplar(size, edges).with_guides(&guides).unwrap()
-}
-
-#[test]
-fn guided_textures_equal_the_pseudo_code() {
-    for (edges, size) in [
-        ([Edges::Cut; 2], [21, 26]),
-        ([Edges::Wrap, Edges::Cut], [24, 17]),
-    ] {
-        let exemplar = guided_exemplar([30, 28], Edges::Cut);
-        let [left, rows] = guides(size);
-        let targets = [&left, &rows];
-        for options in [
-            paper(2, CoarserCenter::Exact),
-            paper(3, CoarserCenter::Floor),
-        ] {
-            let made = synthesize_plane_guided(&exemplar, &targets, edges, &options, |_| {
-                ControlFlow::Continue(())
-            });
-            let sources = made.unwrap().sources().map(|[x, y]| y * 30 + x);
-            assert!(
-                sources.pixels() == naive_guided(&exemplar, &targets, size, edges, &options),
-                "{edges:?} {size:?}"
-            );
-        }
-    }
-}
-
-#[test]
-fn guides_say_where_parts_of_the_exemplar_go() {
-    let exemplar = guided_exemplar([64, 64], Edges::Wrap);
-    // Left and right exchanged, and the rows as they are.
-    let [left, rows] = guides([64, 64]);
-    let right = left.map(|left| 1.0 - left);
-    let made = synthesize_plane_guided(
-        &exemplar,
-        &[&right, &rows],
-        [Edges::Wrap; 2],
-        &Options::default(),
-        |_| ControlFlow::Continue(()),
-    );
-    let sources = made.unwrap();
-    let value = |plane: &Raster<f32>, [x, y]: [u32; 2]| plane.row(y)[x as usize];
-    let mut obeyed = [0, 0];
-    for ([x, y], &source) in (0..64)
-        .flat_map(|y| (0..64).map(move |x| [x, y]))
-        .zip(sources.sources().pixels())
-    {
-        obeyed[0] += u32::from(value(&left, source) == value(&right, [x, y]));
-        obeyed[1] += u32::from(value(&rows, source) == value(&rows, [x, y]));
-    }
-    // But for sites beside the borders of guides, where a piece goes on.
-    assert!(obeyed[0] > 64 * 60, "sides: {obeyed:?}");
-    assert!(obeyed[1] > 64 * 50, "rows: {obeyed:?}");
-}
-
-#[test]
-fn bad_guides_are_refused() {
-    let exemplar = guided_exemplar([30, 28], Edges::Cut);
-    let [left, rows] = guides([20, 20]);
-    let kind = |exemplar: &Exemplar, guides: &[&Raster<f32>]| {
-        let options = Options::default();
-        synthesize_plane_guided(exemplar, guides, [Edges::Cut; 2], &options, |_| {
-            ControlFlow::Continue(())
-        })
-        .unwrap_err()
-        .kind()
-        .clone()
-    };
-    for guides in [&[][..], &[&left], &[&left, &rows, &rows]] {
-        assert!(
-            matches!(kind(&exemplar, guides), SynthErrorKind::Count { count, .. } if count == guides.len()),
-            "{} guides",
-            guides.len()
-        );
-    }
-    let plain = self::exemplar([30, 28], Edges::Cut);
-    assert!(
-        matches!(
-            kind(&plain, &[&left]),
-            SynthErrorKind::Count { count: 1, .. }
-        ),
-        "an exemplar without guides"
-    );
-    let small = rows.crop([0; 2], [19, 20]).unwrap();
-    assert!(
-        matches!(kind(&exemplar, &[&left, &small]), SynthErrorKind::Raster(_)),
-        "two sizes"
-    );
-    let infinite = rows.map(|_| f32::INFINITY);
-    assert!(
-        matches!(
-            kind(&exemplar, &[&left, &infinite]),
-            SynthErrorKind::NotFinite { .. }
-        ),
-        "infinite"
-    );
-    // Without guides of the texture.
-    let plain = synthesize_plane(&exemplar, [20; 2], [Edges::Cut; 2], &Options::default());
-    assert!(
-        matches!(
-            plain.unwrap_err().kind(),
-            SynthErrorKind::Count { count: 0, .. }
-        ),
-        "no guides of the texture"
-    );
-    let identity = PlaneTexture::identity(&exemplar).unwrap();
-    let hole = Raster::from_fn([30, 28], |x, y| x == 9 && y == 9).unwrap();
-    let options = Options {
-        n_levels: 2,
-        ..Options::default()
-    };
-    let repaired = identity.repair(&exemplar, &hole, &options, |_| ControlFlow::Continue(()));
-    assert!(
-        matches!(
-            repaired.unwrap_err().kind(),
-            SynthErrorKind::Count { count: 0, .. }
-        ),
-        "a repair has no guides"
-    );
-    for weight in [0.0, -1.0, f32::NAN, f32::INFINITY] {
-        let plane = Raster::filled([30, 28], 0.5).unwrap();
-        let refused = self::exemplar([30, 28], Edges::Cut).with_guides(&[(&plane, weight)]);
-        assert!(
-            matches!(refused.unwrap_err().kind(), SynthErrorKind::Range { .. }),
-            "{weight}"
-        );
     }
 }
 

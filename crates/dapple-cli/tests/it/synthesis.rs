@@ -1,0 +1,200 @@
+//! Tests of `dapple synth`: repairs, sources, examples and guides.
+
+use crate::support::{Folder, assert_done, read_gray, stderr};
+use dapple::image::{Depth, Limits, read_image, write_gray_png};
+use dapple::raster::Raster;
+use std::fs;
+
+#[test]
+fn a_repair_changes_only_what_is_white_in_its_mask() {
+    let folder = Folder::with_inputs("repair");
+    let repair = |more: &str| {
+        let line = format!("synth photo.png --repair scratch.png --format png8 {more}");
+        folder.run(&line.split(' ').collect::<Vec<_>>())
+    };
+    assert_done(&repair("--map height=height.png -o out.png"), "repair");
+    let pixels = |name: &str| {
+        let image = read_image(folder.path(name), &Limits::default()).unwrap();
+        image.color().unwrap().into_pixels()
+    };
+    let (before, after) = (pixels("photo.png"), pixels("out.png"));
+    let mut n_new = 0;
+    for (at, (before, after)) in before.iter().zip(&after).enumerate() {
+        let is_scratch = (28..36).contains(&(at % 64)) && (20..44).contains(&(at / 64));
+        assert!(is_scratch || before == after, "pixel {at}");
+        n_new += usize::from(before != after);
+    }
+    assert!(n_new > 8 * 24 / 2, "{n_new} pixels are made again");
+    // A mask that leaves nothing out changes nothing, and one that leaves all out is refused.
+    let gray = |name: &str, value| {
+        let plane = Raster::filled([64; 2], value).unwrap();
+        write_gray_png(folder.path(name), &plane, Depth::Eight).unwrap();
+    };
+    gray("white.png", 1.0);
+    gray("black.png", 0.0);
+    assert_done(&repair("--mask white.png -o all.png"), "all of it");
+    assert!(pixels("all.png") == after, "a white mask");
+    let text = stderr(&repair("--mask black.png -o none.png"));
+    assert!(text.contains("the mask leaves no neighborhood"), "{text}");
+}
+
+#[test]
+fn examples_go_where_the_map_of_them_says_with_all_their_maps() {
+    let folder = Folder::with_inputs("which");
+    let write = |name: &str, value: fn(u32, u32) -> f32, size: [u32; 2]| {
+        let plane = Raster::from_fn(size, value).unwrap();
+        write_gray_png(folder.path(name), &plane, Depth::Eight).unwrap();
+    };
+    // Three examples of three grays, whose relief says which they are, too.
+    write("a.png", |x, _| 0.1 * f32::from(x % 2 == 0), [40, 40]);
+    write("b.png", |_, y| 0.4 + 0.1 * f32::from(y % 2 == 0), [48, 36]);
+    write(
+        "c.png",
+        |x, y| 0.8 + 0.1 * f32::from((x + y) % 2 == 0),
+        [36, 48],
+    );
+    write("a_h.png", |_, _| 0.0, [40, 40]);
+    write("b_h.png", |_, _| 0.2, [48, 36]);
+    write("c_h.png", |_, _| 1.0, [36, 48]);
+    write(
+        "which.png",
+        |x, _| [0.0, 0.5, 1.0][(x / 24) as usize],
+        [72, 40],
+    );
+    let line = "synth a.png --example b.png --example c.png --which which.png \
+        --map height=a_h.png --map height=b_h.png --map height=c_h.png -o out.png";
+    let words: Vec<_> = line.split_whitespace().collect();
+    assert_done(&folder.run(&words), line);
+    let (out, heights) = (
+        read_gray(&folder, "out.png"),
+        read_gray(&folder, "out_height.png"),
+    );
+    for [x, y] in (0..40).flat_map(|y| (0..72).map(move |x| [x, y])) {
+        let example = (x / 24) as usize;
+        let [value, height] = [&out, &heights].map(|image| image.row(y)[x as usize]);
+        let range = [0.0..0.12, 0.38..0.52, 0.78..0.92][example].clone();
+        assert!(range.contains(&value), "{value} in column {x} and row {y}");
+        let expected = [0.0, 0.2, 1.0][example];
+        // Heights are written with 16 bits.
+        assert!(
+            (height - expected).abs() < 1e-4,
+            "{height} in column {x} and row {y}"
+        );
+    }
+}
+
+#[test]
+fn examples_go_where_a_map_on_a_mesh_says() {
+    let folder = Folder::with_inputs("which_mesh");
+    let square =
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n";
+    fs::write(folder.path("square.obj"), square).unwrap();
+    let write = |name: &str, size: u32, value: fn(u32, u32) -> f32| {
+        let plane = Raster::from_fn([size; 2], value).unwrap();
+        write_gray_png(folder.path(name), &plane, Depth::Eight).unwrap();
+    };
+    write("dark.png", 40, |x, y| 0.1 * f32::from((x / 2 + y) % 2 == 0));
+    write("light.png", 40, |x, y| {
+        0.9 + 0.1 * f32::from((x / 2 + y) % 2 == 0)
+    });
+    write("which.png", 8, |x, y| f32::from(x >= 4 && y >= 4));
+    let line = "synth dark.png --example light.png --which which.png --mesh square.obj --sites 2000 \
+        --atlas uv --texture-size 64 -o out.png";
+    assert_done(
+        &folder.run(&line.split_whitespace().collect::<Vec<_>>()),
+        line,
+    );
+    let out = read_gray(&folder, "out.png");
+    let places = (0..64).flat_map(|y| (0..64).map(move |x| [x, y]));
+    let is_obeyed = |&[x, y]: &[u32; 2]| (out.row(y)[x as usize] > 0.5) == (x >= 32 && y >= 32);
+    // But for texels at the border, which is 64 long and has sites at every 1.5 texels.
+    let n_obeyed = places.filter(is_obeyed).count();
+    assert!(n_obeyed > 64 * 64 - 2 * 64, "{n_obeyed} of 4096");
+}
+
+#[test]
+fn a_texture_is_light_where_its_guide_is() {
+    let folder = Folder::with_inputs("guide");
+    let spot = |x: u32, y: u32| f32::from(x.abs_diff(32) < 12 && y.abs_diff(20) < 10);
+    let spot = Raster::from_fn([64, 48], spot).unwrap();
+    write_gray_png(folder.path("spot.png"), &spot, Depth::Eight).unwrap();
+    let ramp = Raster::from_fn([64, 64], |x, y| {
+        (x as f32 / 64.0 + 0.1 * f32::from(y % 3 == 0)).min(1.0)
+    });
+    write_gray_png(folder.path("ramp.png"), &ramp.unwrap(), Depth::Eight).unwrap();
+    for more in ["", "--guide-of ramp.png --guide-blur 1"] {
+        let line = format!("synth ramp.png --guide spot.png --force -o out.png {more}");
+        let words: Vec<_> = line.split_whitespace().collect();
+        assert_done(&folder.run(&words), &line);
+        let out = read_gray(&folder, "out.png");
+        assert_eq!(out.size(), [64, 48], "that of the guide");
+        let [mut inside, mut outside] = [(0.0, 0.0); 2];
+        for (value, &is_inside) in out.pixels().iter().zip(spot.pixels()) {
+            let sum = if is_inside == 1.0 {
+                &mut inside
+            } else {
+                &mut outside
+            };
+            *sum = (sum.0 + value, sum.1 + 1.0);
+        }
+        let [inside, outside] = [inside, outside].map(|(sum, n)| sum / n);
+        assert!(inside > outside + 0.3, "{inside} and {outside}");
+    }
+    // The model of the tests has no texture coordinates.
+    let line = "synth ramp.png --guide spot.png --mesh model.obj --sites 500 -o out.glb";
+    let output = folder.run(&line.split(' ').collect::<Vec<_>>());
+    let text = stderr(&output);
+    assert!(text.contains("texture coordinates"), "{text}");
+}
+
+#[test]
+fn sources_that_were_written_lay_out_another_example_in_the_same_way() {
+    let folder = Folder::with_inputs("sources");
+    let run = |line: &str| folder.run(&line.split(' ').collect::<Vec<_>>());
+    let first = "synth checker.png --size 24 --sources own.exr -o first.png";
+    assert_done(&run(first), first);
+    for (example, out) in [
+        ("checker.png", "again.png"),
+        ("height.png --region 0,0,32,32", "low.png"),
+    ] {
+        let line = format!("synth {example} --replay own.exr -o {out}");
+        assert_done(&run(&line), &line);
+    }
+    let bytes = |name: &str| fs::read(folder.path(name)).unwrap();
+    assert!(bytes("again.png") == bytes("first.png"), "the same texture");
+    let places = read_image(folder.path("own.exr"), &Limits::default()).unwrap();
+    let [height, low] = ["height.png", "low.png"].map(|name| read_gray(&folder, name));
+    for (place, low) in places.color().unwrap().pixels().iter().zip(low.pixels()) {
+        assert_eq!(
+            height.row(place.g as u32)[place.r as usize],
+            *low,
+            "{place:?}"
+        );
+    }
+    for (line, part) in [
+        (
+            "synth photo.png --replay height.exr -o out.png",
+            "height.exr",
+        ),
+        (
+            "synth photo.png --replay photo.png -o out.png",
+            "has no sources",
+        ),
+        (
+            "synth checker.png --region 0,0,8,8 --replay own.exr -o out.png",
+            "8 x 8",
+        ),
+        (
+            "synth checker.png --sources places.png -o out.png",
+            "OpenEXR",
+        ),
+    ] {
+        let output = run(line);
+        assert_eq!(output.status.code(), Some(2), "{line}");
+        assert!(
+            stderr(&output).contains(part),
+            "{line}: {}",
+            stderr(&output)
+        );
+    }
+}
