@@ -49,13 +49,13 @@ pub(super) struct GuideArgs {
     guide_weight: f32,
 }
 
-/// How much more a guide that chooses among examples counts than a channel: as all three together.
+/// The weight of a guide that chooses among examples: that of three channels together.
 const CHOICE_WEIGHT: f32 = 3.0;
 
 /// How far lightness is averaged: over two pixels the grain of an example is gone, and what it shows is not.
 const LIGHTNESS_BLUR: f64 = 2.0;
 
-/// One guide.
+/// An image that says which part of the example goes where, and what it is compared with.
 pub(super) struct Guide {
     /// Its values at the pixels of the example.
     pub(super) example: Raster<f32>,

@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 
 /// The input of the synthesis. Several examples lie side by side in one image.
 pub(super) struct Input {
-    /// What is shown: the example, or a larger version of it.
+    /// The image that the texture shows: the example, or a larger version of it.
     pub(super) base: Loaded,
     /// The maps that follow, with their names.
     pub(super) maps: Vec<(String, Loaded)>,

@@ -59,7 +59,7 @@ pub(super) fn naive(
     naive_guided(exemplar, &[], size, edges, options)
 }
 
-/// The same with guides, whose weights are 1.
+/// The pseudo-code for a texture with guides, whose weights are 1.
 pub(super) fn naive_guided(
     exemplar: &Exemplar,
     guides: &[&Raster<f32>],
