@@ -4,6 +4,7 @@
 //! size; at 16 pixels all exemplars but the text can still be told apart.
 
 use super::{bricks, checker, hooks, letter, puzzle, scales, stripes, suckers, text};
+use anyhow::Context;
 use dapple_color::LinearRgb;
 use dapple_raster::Raster;
 
@@ -86,6 +87,13 @@ pub(crate) const EXEMPLARS: [Exemplar; 9] = [
         draw: letter::letter,
     },
 ];
+
+/// A square of an exemplar, which is drawn a quarter larger, so that the square does not repeat.
+pub(super) fn cut_out(name: &str, side: u32) -> anyhow::Result<Raster<LinearRgb>> {
+    let exemplar = EXEMPLARS.iter().find(|exemplar| exemplar.name == name);
+    let whole = (exemplar.context("no such exemplar")?.draw)(side * 5 / 4)?;
+    Ok(whole.crop([0; 2], [side; 2])?)
+}
 
 #[cfg(test)]
 mod regularity;

@@ -4,13 +4,12 @@
 //! The lightness of the engraving and of the ball are blurred by two pixels, so that lines count by how dark they are
 //! together.
 
-use super::exemplar::EXEMPLARS;
+use super::exemplar::cut_out;
 use super::stage::{View, lit};
-use super::textured::{Job, SiteGuide};
+use super::textured::{Job, SiteGuide, srgb};
 use crate::draw::enlarged;
 use crate::figure::source;
 use crate::{Figure, Panel};
-use anyhow::Context;
 use core::ops::ControlFlow;
 use dapple_color::LinearRgb;
 use dapple_models::{polygonize_n, solid};
@@ -45,7 +44,7 @@ const VIEW: View = View {
 };
 
 fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
-    let examples = [image("scales")?, image("woven hooks")?];
+    let examples = [cut_out("scales", SIDE)?, cut_out("woven hooks", SIDE)?];
     let layout = SideBySide::new(&examples.each_ref().map(Raster::size))?;
     let both = layout.join(&examples.each_ref(), LinearRgb::WHITE)?;
     let members = [layout.membership(0)?, layout.membership(1)?];
@@ -65,7 +64,7 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     let exemplar = exemplar.with_guides(&[(&soft(&lines)?, 1.0)])?;
     let drawn = guided(&exemplar, &[&soft(&ball)?])?.transfer(&lines)?;
 
-    let gray = |values: &Raster<f32>| values.map(|&value| LinearRgb::from_srgb([byte(value); 3]));
+    let gray = |values: &Raster<f32>| values.map(|&value| srgb([value; 3]));
     Ok(vec![
         Panel::color("two examples", enlarged(&both, size)?),
         Panel::color("which goes where", enlarged(&gray(&which), size)?),
@@ -137,13 +136,6 @@ fn is_above(at: DVec3) -> f32 {
     f32::from(at.y > 0.1 + 0.15 * libm::sin(4.0 * at.x))
 }
 
-/// An exemplar that is drawn larger and cut, so that it does not repeat.
-fn image(name: &str) -> anyhow::Result<Raster<LinearRgb>> {
-    let exemplar = EXEMPLARS.iter().find(|exemplar| exemplar.name == name);
-    let whole = (exemplar.context("no such exemplar")?.draw)(SIDE * 5 / 4)?;
-    Ok(whole.crop([0; 2], [SIDE; 2])?)
-}
-
 /// The lightness of lines that are thin on the left and thick on the right.
 fn engraving(x: u32, y: u32) -> f32 {
     let part = f64::from(x) / f64::from(2 * SIDE);
@@ -162,8 +154,4 @@ fn shaded(x: u32, y: u32) -> f32 {
     }
     let light = -0.45 * x - 0.55 * y + 0.7 * libm::sqrt(0.6 * (1.0 - radius_sq));
     (light / 0.75).clamp(0.05, 1.0) as f32
-}
-
-fn byte(value: f32) -> u8 {
-    (value.clamp(0.0, 1.0) * 255.0 + 0.5) as u8
 }

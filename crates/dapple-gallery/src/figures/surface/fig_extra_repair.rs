@@ -3,11 +3,10 @@
 //!
 //! The tile is as large as the piece of the image that repeats best, and only a strip along its seam is made.
 
-use super::exemplar::EXEMPLARS;
+use super::exemplar::cut_out;
 use crate::draw::enlarged;
 use crate::figure::source;
 use crate::{Figure, Panel};
-use anyhow::Context;
 use core::ops::ControlFlow;
 use dapple_color::LinearRgb;
 use dapple_raster::{Raster, Wrap};
@@ -28,7 +27,7 @@ pub(super) const FIGURE: Figure = Figure {
 const SIDE: u32 = 192;
 
 fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
-    let scales = image("scales")?;
+    let scales = cut_out("scales", SIDE)?;
     let radius = f64::from(SIDE) * 5.0 / 64.0;
     let in_stain = |x: u32, y: u32| {
         let middle = [0.56, 0.45].map(|part| part * f64::from(SIDE));
@@ -49,7 +48,7 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     let identity = PlaneTexture::identity(&exemplar)?;
     let repaired = identity.repair(&exemplar, &stain, &options, keep_on)?;
 
-    let bricks = image("color bricks")?;
+    let bricks = cut_out("color bricks", SIDE)?;
     let exemplar = Exemplar::new(&bricks, Edges::Cut)?;
     let tile = tile_plane(&exemplar, [true; 2], SIDE * 3 / 16, &options, keep_on)?;
     Ok(vec![
@@ -64,13 +63,6 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
             copies(&tile.transfer(&bricks)?, size)?,
         ),
     ])
-}
-
-/// An exemplar that is drawn larger and cut, so that it does not repeat.
-fn image(name: &str) -> anyhow::Result<Raster<LinearRgb>> {
-    let exemplar = EXEMPLARS.iter().find(|exemplar| exemplar.name == name);
-    let whole = (exemplar.context("no such exemplar")?.draw)(SIDE * 5 / 4)?;
-    Ok(whole.crop([0; 2], [SIDE; 2])?)
 }
 
 /// Copies of a tile, one and a half of them along each side, with a seam in the middle.
