@@ -406,7 +406,7 @@ pub(crate) fn taps(at: u32, side: u32, wrap: Wrap) -> [usize; 5] {
 }
 
 /// Appends the means with the weights 1-4-6-4-1 of five slices of one length.
-fn blend([a, b, c, d, e]: [&[f32]; 5], target: &mut Vec<f32>) {
+pub(crate) fn blend([a, b, c, d, e]: [&[f32]; 5], target: &mut Vec<f32>) {
     for i in 0..c.len() {
         target.push(((a[i] + e[i]) + 4.0 * (b[i] + d[i]) + 6.0 * c[i]) / 16.0);
     }

@@ -48,6 +48,10 @@
 //! stopped. The same passes on pixels, for plain images and for tiles, are [`synthesize_plane`]; [`PlaneTexture::repair`] makes a part
 //! of an image again, and [`tile_plane`] a tile of a photograph that does not repeat.
 //!
+//! [`Endless`] textures are made in the plane in another way, after Lefebvre and Hoppe: all pixels of a level at once, from
+//! what is near them. So any window of a texture without ends can be made on its own, in a tenth of the time, and what is
+//! large or regular in an exemplar, such as courses of bricks, goes on.
+//!
 //! Guides ([`Exemplar::with_guides`]) say where in a texture which part of the exemplar goes: how light it is, so that the
 //! texture shows a picture; or which of several images, which lie [`SideBySide`].
 //!
@@ -115,6 +119,7 @@ mod detail;
 mod directions;
 mod displaced;
 mod display;
+mod endless;
 mod engine;
 mod error;
 mod exemplar;
@@ -154,6 +159,7 @@ pub use candidates::{Candidates, CoarserCenter};
 pub use dapple_mesh as mesh;
 pub use displaced::{displaced_mesh, displaced_sites};
 pub use display::{point_model, site_model, textured_model};
+pub use endless::{Endless, EndlessOptions};
 pub use engine::Progress;
 pub use error::{SynthError, SynthErrorKind};
 pub use exemplar::{Edges, Exemplar, Pyramid};

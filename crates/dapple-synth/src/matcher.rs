@@ -17,7 +17,7 @@ mod search;
 mod tests;
 mod tree;
 
-use basis::Basis;
+pub(crate) use basis::Basis;
 use dapple_raster::simd;
 use dapple_raster::simd::dispatch;
 use distance::{LANES, PaddedRows};

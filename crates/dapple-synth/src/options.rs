@@ -10,7 +10,7 @@ const MAX_EVENNESS: f32 = 1000.0;
 
 /// The regularity from which on the least distance wins: between those of the exemplars that look better so, from 0.93,
 /// and of those that look better with a coherence of 2, up to 0.86.
-const REGULAR: f64 = 0.9;
+pub(crate) const REGULAR: f64 = 0.9;
 
 /// Options of a synthesis from an exemplar.
 #[derive(Clone, Debug, PartialEq)]

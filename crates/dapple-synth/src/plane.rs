@@ -252,6 +252,13 @@ impl PlaneTexture {
     }
 }
 
+/// Refuses sizes without pixels and with too many.
+pub(crate) fn check_pixels(size: [u32; 2]) -> Result<(), SynthError> {
+    let n_pixels = u64::from(size[0]) * u64::from(size[1]);
+    let holds = (1..=MAX_PIXELS).contains(&n_pixels);
+    SynthError::check(holds, "number of pixels", n_pixels as f64, "from 1 to 2^26")
+}
+
 /// Pixels on several levels.
 #[derive(Clone, Debug)]
 struct PlaneGround {
@@ -267,9 +274,7 @@ struct PlaneGround {
 
 impl PlaneGround {
     fn new(size: [u32; 2], edges: [Edges; 2], options: &Options) -> Result<Self, SynthError> {
-        let n_pixels = u64::from(size[0]) * u64::from(size[1]);
-        let holds = (1..=MAX_PIXELS).contains(&n_pixels);
-        SynthError::check(holds, "number of pixels", n_pixels as f64, "from 1 to 2^26")?;
+        check_pixels(size)?;
         let halvings = options.n_levels.saturating_sub(1).min(31) as u32;
         for (side, edges) in size.into_iter().zip(edges) {
             let holds = edges == Edges::Cut || side % (1 << halvings) == 0;

@@ -51,11 +51,16 @@ pub(crate) struct Basis {
 impl Basis {
     /// The directions of rows of `dims` finite numbers.
     pub(crate) fn new(dims: usize, rows: &[f32]) -> Self {
+        Self::with_most(MOST, dims, rows)
+    }
+
+    /// The directions of rows, at most `most` and those that fill up a group.
+    pub(crate) fn with_most(most: usize, dims: usize, rows: &[f32]) -> Self {
         let step = (rows.len() / dims).div_ceil(SAMPLE).max(1);
         let sample: Vec<&[f32]> = rows.chunks_exact(dims).step_by(step).collect();
         let mean = mean(dims, &sample);
         let sample = centered(&sample, &mean);
-        let n_directions = MOST.min(dims).next_multiple_of(LANES);
+        let n_directions = most.min(dims).next_multiple_of(LANES);
         let directions = if sample.is_empty() {
             vec![0.0; dims * n_directions]
         } else {
@@ -79,6 +84,11 @@ impl Basis {
     /// The number of directions, a multiple of [`LANES`]. Some of them may be zero.
     pub(crate) fn n_directions(&self) -> usize {
         self.groups.len() / self.mean.len() * LANES
+    }
+
+    /// What [`Self::rotate`] writes to.
+    pub(crate) fn memory(&self) -> Vec<[f32; LANES]> {
+        vec![[0.0; LANES]; self.n_directions() / LANES]
     }
 
     /// Subtracts the mean, in `f32`.

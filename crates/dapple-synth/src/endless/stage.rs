@@ -1,0 +1,373 @@
+//! What an exemplar looks like around each of its pixels, on every level of a texture.
+//!
+//! All levels have the full size of the exemplar: each is the one before it, blurred by the weights 1-4-6-4-1 of pixels as
+//! far apart as those of the texture are on it. So a texture may go on at any pixel of the exemplar on coarse levels, too.
+
+use crate::exemplar::blend;
+use crate::matcher::{Basis, Matcher, MatcherMemory, Query};
+use crate::{Edges, Exemplar, SynthError, SynthErrorKind};
+use dapple_raster::simd::{self, dispatch};
+use dapple_raster::{Wrap, parallel};
+
+/// The numbers that tell what is around a pixel.
+pub(super) const N_FEATURES: usize = 8;
+
+/// The pixels around one whose features are compared, in pixels of the level.
+pub(super) const DIAGONALS: [[i64; 2]; 4] = [[-1, -1], [1, -1], [-1, 1], [1, 1]];
+
+/// How far the windows reach that features tell of, in pixels of the level.
+const HALF: i64 = 2;
+
+/// The squared weights of the columns and the rows of a window.
+const WEIGHTS: [f32; 2 * HALF as usize + 1] = [1.0, 4.0, 6.0, 4.0, 1.0];
+
+/// Pixels that are alike are this part of the shorter side of the exemplar from each other, or farther.
+const APART: f64 = 0.05;
+
+/// The most pixels of a grid: a search among them takes a tenth of a millisecond.
+const GRID: i64 = 1 << 14;
+
+/// Pixels of the grid that are searched together.
+const PIXELS: usize = 2048;
+
+/// The most windows whose principal components are taken.
+const SAMPLE: usize = 4096;
+
+/// In place of the row or the pixel of what has none.
+const NONE: u32 = u32::MAX;
+
+/// An exemplar on one level of a texture.
+#[derive(Clone, Debug)]
+pub(super) struct Stage {
+    size: [u32; 2],
+    wrap: Wrap,
+    /// The pixels of the exemplar between two pixels of the level.
+    pub(super) spacing: i64,
+    /// What is around each pixel: principal components of the window.
+    features: Vec<[f32; N_FEATURES]>,
+    /// Whether textures may have each pixel; all of them if nothing is said.
+    usable: Option<Vec<bool>>,
+    /// The columns and rows between pixels of the grid on which alike ones are searched.
+    pub(super) step: i64,
+    /// For each pixel of the grid the one of the grid that is most like it.
+    similar: Vec<u32>,
+}
+
+/// The levels of an exemplar, the finest first.
+pub(super) fn stages(exemplar: &Exemplar, n_levels: usize) -> Result<Vec<Stage>, SynthError> {
+    let mut pixels = exemplar.pixels.clone();
+    let mut stages = Vec::with_capacity(n_levels);
+    for level in 0..n_levels {
+        let spacing = 1_i64 << level;
+        if level > 0 {
+            pixels = blurred(exemplar, &pixels, spacing / 2);
+        }
+        let n_pixels = i64::from(exemplar.size[0]) * i64::from(exemplar.size[1]);
+        let mut step = spacing;
+        while n_pixels > GRID * step * step {
+            step *= 2;
+        }
+        stages.push(Stage {
+            size: exemplar.size,
+            wrap: exemplar.edges.wrap(),
+            spacing,
+            features: features(exemplar, &pixels, spacing),
+            usable: None,
+            step,
+            similar: Vec::new(),
+        });
+    }
+    // Never more is left out than of the next coarser level, so that the pixels that its texture has are usable.
+    let mut reach = i64::MAX;
+    for (level, stage) in stages.iter_mut().enumerate().rev() {
+        reach = reach.min(HALF * stage.spacing);
+        (stage.usable, reach) = usable(exemplar, level, reach)?;
+        stage.similar = stage.most_similar();
+    }
+    Ok(stages)
+}
+
+/// An image with every pixel mixed with those two and one steps away along both axes.
+fn blurred(exemplar: &Exemplar, pixels: &[f32], step: i64) -> Vec<f32> {
+    let n = exemplar.n_channels;
+    let [width, height] = exemplar.size;
+    let wrap = exemplar.edges.wrap();
+    let taps = |at: usize, side: u32| {
+        [-2, -1, 0, 1, 2].map(|tap| wrap.index(at as i64 + tap * step, side) as usize)
+    };
+    let line = width as usize * n;
+    let rows = parallel::map(height as usize, |row| {
+        let mut mixed = Vec::with_capacity(line);
+        blend(
+            taps(row, height).map(|row| &pixels[row * line..][..line]),
+            &mut mixed,
+        );
+        let mut across = Vec::with_capacity(line);
+        for column in 0..width as usize {
+            blend(
+                taps(column, width).map(|column| &mixed[column * n..][..n]),
+                &mut across,
+            );
+        }
+        across
+    });
+    rows.concat()
+}
+
+/// The principal components of the windows around all pixels.
+fn features(exemplar: &Exemplar, pixels: &[f32], spacing: i64) -> Vec<[f32; N_FEATURES]> {
+    let n = exemplar.n_channels;
+    let [width, height] = exemplar.size;
+    let wrap = exemplar.edges.wrap();
+    let places = |at: usize, side: u32| {
+        let taps = -HALF..=HALF;
+        taps.map(move |tap| wrap.index(at as i64 + tap * spacing, side) as usize)
+    };
+    let window = |column: usize, row: usize, window: &mut Vec<f32>| {
+        window.clear();
+        for (line, down) in places(row, height).zip(WEIGHTS) {
+            for (at, across) in places(column, width).zip(WEIGHTS) {
+                // Both sums of weights are 16.
+                let weight = (down * across).sqrt() / 16.0;
+                let pixel = &pixels[(line * width as usize + at) * n..][..n];
+                window.extend(pixel.iter().map(|value| value * weight));
+            }
+        }
+    };
+    let dims = WEIGHTS.len() * WEIGHTS.len() * n;
+    let n_pixels = width as usize * height as usize;
+    let step = n_pixels.div_ceil(SAMPLE);
+    let sample = parallel::map_at_least(64, n_pixels / step, |at| {
+        let mut values = Vec::with_capacity(dims);
+        window(
+            at * step % width as usize,
+            at * step / width as usize,
+            &mut values,
+        );
+        values
+    });
+    let basis = Basis::with_most(N_FEATURES, dims, &sample.concat());
+    let level = simd::level();
+    let rows = parallel::map(height as usize, |row| {
+        let (mut values, mut centered) = (Vec::new(), Vec::new());
+        let mut rotated = basis.memory();
+        let features = |column| {
+            window(column, row, &mut values);
+            basis.center(&values, &mut centered);
+            dispatch!(level, simd => basis.rotate(simd, &centered, &mut rotated));
+            core::array::from_fn(|i| rotated[0][i])
+        };
+        (0..width as usize).map(features).collect::<Vec<_>>()
+    });
+    rows.concat()
+}
+
+/// The pixels that textures may have, and how far they are from what they may not have: at most `reach`, and less, down to
+/// nothing, where that would leave out more than half.
+fn usable(
+    exemplar: &Exemplar,
+    level: usize,
+    mut reach: i64,
+) -> Result<(Option<Vec<bool>>, i64), SynthError> {
+    if exemplar.edges == Edges::Wrap && exemplar.usable.is_none() {
+        return Ok((None, reach));
+    }
+    let [width, height] = exemplar.size.map(|side| side as usize);
+    let all = match &exemplar.usable {
+        Some(usable) => usable.clone(),
+        None => vec![true; width * height],
+    };
+    let count = |usable: &[bool]| usable.iter().filter(|&&usable| usable).count();
+    let enough = count(&all).div_ceil(2);
+    if enough == 0 {
+        return Err(SynthError::new(SynthErrorKind::Masked { level }));
+    }
+    loop {
+        let rows = all.chunks_exact(width);
+        let across: Vec<bool> = rows
+            .flat_map(|row| inner(exemplar.edges, width, reach, |at| row[at]))
+            .collect();
+        let columns = parallel::map(width, |column| {
+            inner(exemplar.edges, height, reach, |at| {
+                across[at * width + column]
+            })
+        });
+        let usable: Vec<bool> = (0..width * height)
+            .map(|pixel| columns[pixel % width][pixel / width])
+            .collect();
+        if count(&usable) >= enough {
+            return Ok((Some(usable), reach));
+        }
+        reach /= 2;
+    }
+}
+
+/// The places of a line around which something holds everywhere within `reach`.
+fn inner(edges: Edges, side: usize, reach: i64, holds: impl Fn(usize) -> bool) -> Vec<bool> {
+    let side = side as i64;
+    let reach = reach.min(side);
+    let holds_at = |at: i64| match edges {
+        Edges::Wrap => holds(at.rem_euclid(side) as usize),
+        Edges::Cut => (0..side).contains(&at) && holds(at as usize),
+    };
+    let mut run = (-reach..reach).rev().take_while(|&at| holds_at(at)).count() as i64;
+    let mut inner = Vec::with_capacity(side as usize);
+    for at in 0..side {
+        run = if holds_at(at + reach) { run + 1 } else { 0 };
+        inner.push(run > 2 * reach);
+    }
+    inner
+}
+
+impl Stage {
+    /// The pixel at a column and row, of which those past the edges are mirrored or wrapped.
+    #[inline]
+    pub(super) fn features(&self, place: [i64; 2]) -> &[f32; N_FEATURES] {
+        let [column, row] = [0, 1].map(|axis| {
+            let within = (0..i64::from(self.size[axis])).contains(&place[axis]);
+            // The remainder of a division costs more than all else here.
+            match within {
+                true => place[axis] as usize,
+                false => self.wrap.index(place[axis], self.size[axis]) as usize,
+            }
+        });
+        &self.features[row * self.size[0] as usize + column]
+    }
+
+    /// The squared distance of features on the diagonals of a pixel from those on the diagonals of a place.
+    #[inline]
+    pub(super) fn distance_sq(&self, around: &[[f32; N_FEATURES]; 4], place: [i64; 2]) -> f32 {
+        let [column, row] = place;
+        let mut sum = 0.0;
+        for (own, [x, y]) in around.iter().zip(DIAGONALS) {
+            let other = self.features([column + x * self.spacing, row + y * self.spacing]);
+            for (a, b) in own.iter().zip(other) {
+                sum += (a - b) * (a - b);
+            }
+        }
+        sum
+    }
+
+    /// The place of a pixel that is a quarter of one of the next coarser level: beside the place of that, or, where that
+    /// is not usable, the same.
+    pub(super) fn child(&self, parent: [i64; 2], at: [i64; 2]) -> [i64; 2] {
+        // Half of the spacing to either side; rounded down on the finest level.
+        let step = at.map(|at| ((2 * at.rem_euclid(2) - 1) * self.spacing).div_euclid(2));
+        let beside = [parent[0] + step[0], parent[1] + step[1]];
+        self.usable(beside).unwrap_or(parent)
+    }
+
+    /// A place in the exemplar, if textures may go on there.
+    #[inline]
+    pub(super) fn usable(&self, mut place: [i64; 2]) -> Option<[i64; 2]> {
+        for (at, side) in place.iter_mut().zip(self.size) {
+            if !(0..i64::from(side)).contains(at) {
+                if self.wrap != Wrap::Repeat {
+                    return None;
+                }
+                *at = at.rem_euclid(side.into());
+            }
+        }
+        let Some(usable) = &self.usable else {
+            return Some(place);
+        };
+        let [column, row] = place;
+        let pixel = row * i64::from(self.size[0]) + column;
+        usable[pixel as usize].then_some(place)
+    }
+
+    /// The pixels that textures may have.
+    pub(super) fn usable_pixels(&self) -> Vec<u32> {
+        let pixels = 0..self.size[0] * self.size[1];
+        match &self.usable {
+            Some(usable) => pixels.filter(|&pixel| usable[pixel as usize]).collect(),
+            None => pixels.collect(),
+        }
+    }
+
+    /// The place that is to the one most like the grid's nearest as `place` is to that, if it is usable.
+    #[inline]
+    pub(super) fn similar(&self, place: [i64; 2]) -> Option<[i64; 2]> {
+        let [column, row] = place.map(|at| at / self.step);
+        let [width, _] = self.grid();
+        let found = self.similar[(row * width + column) as usize];
+        if found == NONE {
+            return None;
+        }
+        let found = [i64::from(found) % width, i64::from(found) / width];
+        self.usable([0, 1].map(|axis| found[axis] * self.step + place[axis] % self.step))
+    }
+
+    /// The columns and rows of the grid.
+    fn grid(&self) -> [i64; 2] {
+        self.size.map(|side| (i64::from(side) - 1) / self.step + 1)
+    }
+
+    /// The pixel of the grid that is most like each of the grid, not too near to it.
+    fn most_similar(&self) -> Vec<u32> {
+        let [width, height] = self.grid();
+        let place = |at: usize| [at as i64 % width, at as i64 / width].map(|at| at * self.step);
+        let is_usable = |at: &usize| self.usable(place(*at)).is_some();
+        let grid: Vec<usize> = (0..(width * height) as usize).filter(is_usable).collect();
+        let mut row_of = vec![NONE; (width * height) as usize];
+        for (row, &at) in grid.iter().enumerate() {
+            row_of[at] = row as u32;
+        }
+        let values = parallel::map_at_least(64, grid.len(), |row| {
+            let [column, line] = place(grid[row]);
+            let around = |[x, y]: [i64; 2]| [column + x * self.spacing, line + y * self.spacing];
+            DIAGONALS.map(|step| *self.features(around(step)))
+        });
+        let dims = DIAGONALS.len() * N_FEATURES;
+        let matcher = Matcher::with_factors(dims, values.as_flattened().as_flattened());
+        let apart = self.apart();
+        let found = parallel::map(grid.len().div_ceil(PIXELS), |block| {
+            let mut memory = MatcherMemory::default();
+            let mut factors = vec![1.0; grid.len()];
+            let mut hint = None;
+            let rows = block * PIXELS..grid.len().min((block + 1) * PIXELS);
+            let search = |row: usize| {
+                self.mark(&row_of, grid[row], apart, f32::INFINITY, &mut factors);
+                let query = Query {
+                    values: values[row].as_flattened(),
+                    below: f32::INFINITY,
+                    hint,
+                    factors: Some(&factors),
+                };
+                let found = matcher.find(query, &mut memory).map(|found| found.row);
+                self.mark(&row_of, grid[row], apart, 1.0, &mut factors);
+                // What is most like the next one is often beside it.
+                hint = found.map(|row| row + 1);
+                found.map_or(NONE, |row| grid[row as usize] as u32)
+            };
+            rows.map(search).collect::<Vec<u32>>()
+        });
+        let mut similar = vec![NONE; row_of.len()];
+        for (&at, found) in grid.iter().zip(found.concat()) {
+            similar[at] = found;
+        }
+        similar
+    }
+
+    /// How far pixels that are alike are from each other at least, but for rounding, in steps of the grid.
+    pub(super) fn apart(&self) -> i64 {
+        let side = f64::from(self.size[0].min(self.size[1]));
+        ((APART * side) as i64 / self.step).max(1)
+    }
+
+    /// Sets the factors of the pixels of the grid that are at most `apart` of its steps from one.
+    fn mark(&self, row_of: &[u32], at: usize, apart: i64, factor: f32, factors: &mut [f32]) {
+        let [width, height] = self.grid();
+        let [column, line] = [at as i64 % width, at as i64 / width];
+        for y in -apart..=apart {
+            let line = i64::from(self.wrap.index(line + y, height as u32));
+            for x in -apart..=apart {
+                let column = i64::from(self.wrap.index(column + x, width as u32));
+                let row = row_of[(line * width + column) as usize];
+                if x * x + y * y <= apart * apart && row != NONE {
+                    factors[row as usize] = factor;
+                }
+            }
+        }
+    }
+}

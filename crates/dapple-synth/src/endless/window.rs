@@ -1,0 +1,224 @@
+//! The pixels of a window, level by level.
+
+use super::Endless;
+use super::stage::{DIAGONALS, N_FEATURES, Stage};
+use crate::engine::{Callback, Progress};
+use crate::{SynthError, SynthErrorKind};
+use core::ops::Range;
+use dapple_hash::{hash2, unit_f64};
+use dapple_raster::{Raster, parallel};
+
+/// How often a level is corrected.
+pub(super) const N_PASSES: usize = 3;
+
+/// How often, less one at most, a pixel of a regular exemplar is first replaced by the one most like it.
+const MOVES: f64 = 8.0;
+
+/// How far the pixels are that a correction of one pixel reads.
+pub(super) const READS: i64 = 2;
+
+/// The pixels that are corrected at a time: the remainders of columns and rows by 2, in this order.
+pub(super) const QUARTERS: [[i64; 2]; 4] = [[0, 0], [1, 1], [0, 1], [1, 0]];
+
+/// How far the pixels are that the passes over a level depend on.
+const fn reach(n_passes: usize) -> i64 {
+    READS * (QUARTERS.len() * n_passes) as i64
+}
+
+/// A rectangle of the texture on one level, and the places in the exemplar that its pixels are from.
+#[derive(Clone, Debug)]
+struct Area {
+    columns: Range<i64>,
+    rows: Range<i64>,
+    places: Vec<[u32; 2]>,
+}
+
+impl Endless {
+    /// The sources of a window.
+    pub(super) fn sources(
+        &self,
+        [column, row]: [i64; 2],
+        size: [u32; 2],
+        callback: Callback<'_>,
+    ) -> Result<Raster<[u32; 2]>, SynthError> {
+        let [columns, rows] =
+            [(column, size[0]), (row, size[1])].map(|(first, side)| first..first + i64::from(side));
+        // What is to be known of each level, the finest first.
+        let mut needs = vec![[columns.clone(), rows.clone()]];
+        for level in 1..self.stages.len() {
+            let reach = reach(N_PASSES);
+            let parents = |range: Range<i64>| {
+                (range.start - reach).div_euclid(2)..(range.end + reach - 1).div_euclid(2) + 1
+            };
+            needs.push(needs[level - 1].clone().map(parents));
+        }
+        let mut coarser: Option<Area> = None;
+        for (level, stage) in self.stages.iter().enumerate().rev() {
+            let n_passes = if coarser.is_none() {
+                2 * N_PASSES
+            } else {
+                N_PASSES
+            };
+            let reach = reach(n_passes);
+            let [columns, rows] = needs[level]
+                .clone()
+                .map(|range| range.start - reach..range.end + reach);
+            let mut area = Area::new(columns, rows, |at| match &coarser {
+                None => self.random(level, at),
+                Some(coarser) => stage.child(coarser.at(at.map(|at| at.div_euclid(2))), at),
+            });
+            let n_quarters = area.places.len() / QUARTERS.len();
+            for (corrected, &quarter) in (0..n_passes).flat_map(|_| &QUARTERS).enumerate() {
+                let progress = Progress {
+                    pass: self.stages.len() - 1 - level,
+                    n_passes: self.stages.len(),
+                    done: corrected * n_quarters,
+                    n_sites: QUARTERS.len() * n_passes * n_quarters,
+                };
+                if callback(progress).is_break() {
+                    return Err(SynthError::new(SynthErrorKind::Cancelled));
+                }
+                area.correct(stage, quarter);
+            }
+            coarser = Some(area);
+        }
+        let place = |x: u32, y: u32| {
+            let at = [column + i64::from(x), row + i64::from(y)];
+            let place = coarser.as_ref().map_or([0; 2], |area| area.at(at));
+            narrow(place)
+        };
+        Ok(Raster::from_fn(size, place)?)
+    }
+
+    /// The place of a pixel of the coarsest level before it is corrected: any, or where copies of a regular exemplar side by
+    /// side have what is like that.
+    fn random(&self, level: usize, mut at: [i64; 2]) -> [i64; 2] {
+        for (at, period) in at.iter_mut().zip(self.period) {
+            if let Some(period) = period {
+                *at = at.rem_euclid(i64::from(period) >> level);
+            }
+        }
+        let part = unit_f64(hash2(self.seed.child("endless", 0), at, 0));
+        if !self.is_lattice {
+            let pixel = self.coarsest[(part * self.coarsest.len() as f64) as usize];
+            return [pixel % self.size[0], pixel / self.size[0]].map(i64::from);
+        }
+        let stage = &self.stages[level];
+        let mut place = [0, 1].map(|axis| {
+            let side = i64::from(self.size[axis]);
+            (at[axis] * stage.spacing).rem_euclid(side)
+        });
+        for _ in 0..(part * MOVES) as u32 {
+            place = stage.similar(place).unwrap_or(place);
+        }
+        place
+    }
+}
+
+/// A place in the exemplar, which has less than 2^32 columns and rows.
+fn narrow(place: [i64; 2]) -> [u32; 2] {
+    place.map(|at| at as u32)
+}
+
+impl Area {
+    fn new(
+        columns: Range<i64>,
+        rows: Range<i64>,
+        place: impl Fn([i64; 2]) -> [i64; 2] + Sync,
+    ) -> Self {
+        let n_rows = (rows.end - rows.start) as usize;
+        let row = |row: usize| {
+            let row = rows.start + row as i64;
+            let places = columns.clone().map(|column| place([column, row]));
+            places.map(narrow).collect::<Vec<_>>()
+        };
+        Self {
+            places: parallel::map(n_rows, row).concat(),
+            columns,
+            rows,
+        }
+    }
+
+    /// The place of a pixel.
+    #[inline]
+    fn at(&self, [column, row]: [i64; 2]) -> [i64; 2] {
+        let width = self.columns.end - self.columns.start;
+        let place = (row - self.rows.start) * width + column - self.columns.start;
+        self.places[place as usize].map(i64::from)
+    }
+
+    /// Corrects a quarter of the pixels, but those from which not all is here that is read.
+    fn correct(&mut self, stage: &Stage, quarter: [i64; 2]) {
+        let [columns, rows] =
+            [(&self.columns, quarter[0]), (&self.rows, quarter[1])].map(|(range, rest)| {
+                let first = range.start + READS;
+                let first = first + (rest - first).rem_euclid(2);
+                (first..range.end - READS).step_by(2)
+            });
+        let rows: Vec<i64> = rows.collect();
+        let corrected = parallel::map(rows.len(), |row| {
+            let place = |column| self.corrected(stage, [column, rows[row]]);
+            columns.clone().map(place).collect::<Vec<_>>()
+        });
+        let width = self.columns.end - self.columns.start;
+        for (row, places) in rows.into_iter().zip(corrected) {
+            let line = ((row - self.rows.start) * width) as usize;
+            for (column, place) in columns.clone().zip(places) {
+                self.places[line + (column - self.columns.start) as usize] = narrow(place);
+            }
+        }
+    }
+
+    /// The place around which the exemplar looks most like the texture around a pixel. Of equally good ones the first.
+    fn corrected(&self, stage: &Stage, [column, row]: [i64; 2]) -> [i64; 2] {
+        let around = self.around(stage, [column, row]);
+        let mut best = (f32::INFINITY, self.at([column, row]));
+        let mut coherent = [best.1; 9];
+        let mut n_coherent = 0;
+        let mut compare = |place: [i64; 2]| {
+            let distance_sq = stage.distance_sq(&around, place);
+            if distance_sq < best.0 {
+                best = (distance_sq, place);
+            }
+        };
+        for y in -1..=1 {
+            for x in -1..=1 {
+                let [across, down] = self.at([column + x, row + y]);
+                let place = [across - x * stage.spacing, down - y * stage.spacing];
+                if let Some(place) = stage.usable(place)
+                    && !coherent[..n_coherent].contains(&place)
+                {
+                    coherent[n_coherent] = place;
+                    n_coherent += 1;
+                    compare(place);
+                }
+            }
+        }
+        for &place in &coherent[..n_coherent] {
+            if let Some(place) = stage.similar(place) {
+                compare(place);
+            }
+        }
+        best.1
+    }
+
+    /// The features on the diagonals of a pixel: of each the mean of what it has and what two pixels beyond it, one along
+    /// each axis, go on to there.
+    #[inline]
+    fn around(&self, stage: &Stage, [column, row]: [i64; 2]) -> [[f32; N_FEATURES]; 4] {
+        DIAGONALS.map(|[x, y]| {
+            let mut sums = [0.0; N_FEATURES];
+            for [beyond_x, beyond_y] in [[0, 0], [x, 0], [0, y]] {
+                let [across, down] = self.at([column + x + beyond_x, row + y + beyond_y]);
+                let place = [
+                    across - beyond_x * stage.spacing,
+                    down - beyond_y * stage.spacing,
+                ];
+                for (sum, value) in sums.iter_mut().zip(stage.features(place)) {
+                    *sum += value;
+                }
+            }
+            sums.map(|sum| sum / 3.0)
+        })
+    }
+}
