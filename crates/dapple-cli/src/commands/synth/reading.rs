@@ -4,6 +4,7 @@ use super::guides::Guide;
 use super::{Args, MapArg, advise};
 use crate::args::Alpha;
 use crate::error::{Hint, usage};
+use crate::exemplar::exemplar_of;
 use crate::input::{self, Kind, Loaded};
 use anyhow::{Result, bail};
 use dapple::color::{LinearRgb, Normal};
@@ -41,12 +42,7 @@ impl Args {
             1 => self.matching.edges,
             _ => Edges::Cut,
         };
-        let exemplar = match &example.map {
-            Map::Color(colors) => Exemplar::new(colors, edges),
-            Map::Value(values) => Exemplar::from_planes(&[(values, 1.0)], edges),
-            Map::Normal(_) => bail!("normals are no example"),
-        };
-        let mut exemplar = exemplar.map_err(advise)?;
+        let mut exemplar = exemplar_of(&example.map, edges).map_err(advise)?;
         let hole = self.plane.repair.as_deref();
         let hole = hole
             .map(|path| self.load_mask(path, exemplar.size()))
