@@ -61,6 +61,17 @@ impl Loaded {
             LinearRgb::from_srgb([u16::from_unit(value); 3])
         }
     }
+
+    /// The number that a color of a picture stands for where numbers are needed: how light it is, in the codes of the file.
+    pub(crate) fn value_of(&self, color: LinearRgb) -> f32 {
+        let lightness = color.luminance();
+        if self.is_linear {
+            lightness
+        } else {
+            let [code, ..] = LinearRgb::gray(lightness).to_srgb::<u16>();
+            code.to_unit()
+        }
+    }
 }
 
 /// Reads an image; `-` is standard input.

@@ -2,6 +2,7 @@
 
 mod corners;
 mod guides;
+mod material;
 mod options;
 mod plane;
 mod reading;
@@ -33,6 +34,8 @@ Examples:
     --seed 7 -o meadow.png
   dapple synth checker.png --mesh model.obj --edges wrap --sites 4000 \\
     --texture-size 512 -o checkered.glb
+  dapple synth rock.png --map normal=rock_normal.png --map ao=cracks.png \\
+    --map roughness=rock_height.png --mesh model.obj --sites 4000 -o rocky.glb
   dapple synth checker.png --mesh model.obj --sites 4000 \\
     --directions directions.csv -o checkered.ply
   dapple synth checker.png --mesh model.obj --sites 4000 \\
@@ -54,7 +57,8 @@ pub(crate) struct Args {
     exemplar: PathBuf,
 
     /// Another map of the example that follows it, such as normal=FILE or roughness=FILE; may be given several times. It is
-    /// written beside the output as `NAME_MAP`; in GLB and OBJ, normal goes into the material.
+    /// written beside the output as `NAME_MAP`. Into the material of a mesh go normal, and in GLB also roughness, metallic
+    /// and ao.
     #[arg(long, value_name = "NAME=IMAGE")]
     map: Vec<MapArg>,
 
@@ -137,6 +141,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
 impl Args {
     /// Refuses options that have no effect with or without a mesh.
     fn check_used(&self) -> Result<()> {
+        material::check_names(&self.map)?;
         let surface = self.surface.given();
         match (&self.surface.mesh, self.plane.given(), surface) {
             (Some(_), Some(option), _) => Err(usage(format!("--{option} has no effect on a mesh"))),

@@ -1,6 +1,7 @@
 //! The images of a synthesis: examples, their maps, masks and guides.
 
 use super::guides::Guide;
+use super::material::kind_of;
 use super::{Args, MapArg, advise};
 use crate::args::Alpha;
 use crate::error::{Hint, usage};
@@ -9,7 +10,7 @@ use crate::input::{self, Kind, Loaded};
 use anyhow::{Result, bail};
 use dapple::color::{LinearRgb, Normal};
 use dapple::raster::Raster;
-use dapple::recipe::ImageAlpha;
+use dapple::recipe::{ImageAlpha, MapKind};
 use dapple::synth::{Edges, Exemplar, SideBySide};
 use dapple::tile::Map;
 use std::path::{Path, PathBuf};
@@ -105,8 +106,8 @@ impl Args {
                 let hint = format!("give --map {name}=IMAGE once for each example, in their order");
                 return Err(usage(message).hint(hint));
             }
-            let kind = match name.as_str() {
-                "normal" => Kind::Normals,
+            let kind = match kind_of(&name) {
+                Some(MapKind::Normal) => Kind::Normals,
                 _ => Kind::ByChannels,
             };
             let mut images = Vec::new();

@@ -1,6 +1,7 @@
 //! Synthesis on a mesh, and the files that it gives.
 
 use super::corners::{own_uvs, shading};
+use super::material::{MaterialMaps, kind_of};
 use super::options::AtlasName;
 use super::reading::Input;
 use super::{Args, STEPS, advise, guides, shown};
@@ -15,6 +16,7 @@ use dapple::color::{LinearRgba, NormalY};
 use dapple::mesh::{EncodedImage, Mesh, Model, Repair, Surface};
 use dapple::mesh_io::{FORMATS, MaterialPlace, MeshFormat, writable_endings};
 use dapple::points::glam::DVec3;
+use dapple::recipe::MapKind;
 use dapple::synth::{
     Atlas, Direction, SurfaceTexture, Synthesizer, bake_colors, bake_normals, bake_values,
     site_model, textured_model,
@@ -256,7 +258,8 @@ fn names_beside(format: &MeshFormat, path: &Path, args: &Args) -> Result<Vec<Str
     let mut model = Model::from(Mesh::default());
     let image = EncodedImage::new(PNG.to_vec())?;
     model.material.base_color = Some(image.clone());
-    if args.map.iter().any(|map| map.name == "normal") {
+    let is_normal = |name: &str| kind_of(name) == Some(MapKind::Normal);
+    if args.map.iter().any(|map| is_normal(&map.name)) {
         model.material.normal = Some(image);
     }
     let mut files = format.write(&model, &stem(path))?;
@@ -275,27 +278,20 @@ fn write(args: &Args, claimed: &Claimed, covered: &Covered, job: &mut Job<'_>) -
         covered.bake(&covered.input.base.map)?,
         args.image.ramp.as_ref(),
     );
+    let mut maps = MaterialMaps::default();
+    for (output, (name, example)) in claimed.maps.iter().zip(&covered.input.maps) {
+        let map = covered.bake(&example.map)?;
+        if let Product::Model(_) = claimed.product {
+            maps.add(name, &map, example, claimed.format)?;
+        }
+        job.write_image(*output, map, example.is_deep, &args.image)?;
+    }
     if let Product::Model(format) = claimed.product {
         let mut model = model(args, covered, &base)?;
-        for (name, loaded) in &covered.input.maps {
-            if name == "normal" {
-                let normals = covered.bake(&loaded.map)?;
-                model.material.normal = Some(EncodedImage::new(encode(&normals, claimed.format)?)?);
-            }
-        }
-        write_model(format, claimed, &model, job)?;
-    } else {
-        job.write_image(claimed.main, base, is_deep, &args.image)?;
+        maps.put_into(&mut model.material, claimed.format)?;
+        return write_model(format, claimed, &model, job);
     }
-    for (output, (_, loaded)) in claimed.maps.iter().zip(&covered.input.maps) {
-        job.write_image(
-            *output,
-            covered.bake(&loaded.map)?,
-            loaded.is_deep,
-            &args.image,
-        )?;
-    }
-    Ok(())
+    job.write_image(claimed.main, base, is_deep, &args.image)
 }
 
 /// The input mesh with its texture. A gray one becomes a color, which is what models have.
