@@ -32,6 +32,8 @@ Examples:
   dapple synth grass.png --example sand.png --which mask.png -o garden.png
   dapple synth grass.png --size 300x200 --map normal=grass_normal.png \\
     --seed 7 -o meadow.png
+  dapple synth rock.png --size 128 --map height=rock_height.png \\
+    --weight height=0.5 -o cliff.png
   dapple synth checker.png --mesh model.obj --edges wrap --sites 4000 \\
     --texture-size 512 -o checkered.glb
   dapple synth rock.png --map normal=rock_normal.png --map ao=cracks.png \\
@@ -142,6 +144,7 @@ impl Args {
     /// Refuses options that have no effect with or without a mesh.
     fn check_used(&self) -> Result<()> {
         material::check_names(&self.map)?;
+        self.matching.check_weights(&self.map_names())?;
         let surface = self.surface.given();
         match (&self.surface.mesh, self.plane.given(), surface) {
             (Some(_), Some(option), _) => Err(usage(format!("--{option} has no effect on a mesh"))),

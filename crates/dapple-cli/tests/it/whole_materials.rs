@@ -141,3 +141,126 @@ fn a_map_has_one_name() {
     let run = folder.run(&line.split_whitespace().collect::<Vec<_>>());
     assert_refused(&run, 2, "--map ao and --map occlusion are one map", line);
 }
+
+/// A folder with `plain.png`, a gray example in which nothing is to be seen, and `bumps.png`, its height: a checker of two
+/// heights.
+fn bumps(name: &str) -> Folder {
+    let folder = Folder::with_inputs(name);
+    let write = |name: &str, value: fn(u32, u32) -> f32| {
+        let plane = Raster::from_fn([48; 2], value).unwrap();
+        write_gray_png(folder.path(name), &plane, Depth::Eight).unwrap();
+    };
+    write("plain.png", |_, _| 0.5);
+    write("bumps.png", |x, y| {
+        0.2 + 0.6 * f32::from((x / 8 + y / 8) % 2 == 0)
+    });
+    folder
+}
+
+/// How often a value beside another one differs from it, of all pairs in rows.
+fn steps(image: &Raster<f32>) -> f64 {
+    let [width, height] = image.size();
+    let rows = (0..height).map(|y| image.row(y));
+    let pairs = rows.flat_map(|row| row.windows(2));
+    let n_steps = pairs.filter(|pair| (pair[0] - pair[1]).abs() > 0.1).count();
+    n_steps as f64 / f64::from((width - 1) * height)
+}
+
+#[test]
+fn a_map_with_a_weight_is_matched_and_one_without_follows() {
+    let folder = bumps("weights");
+    let grow = |more: &str| {
+        let line = format!(
+            "synth plain.png --map height=bumps.png --size 64 --coherence 0 --seed 3 --force -o out.png {more}"
+        );
+        assert_done(
+            &folder.run(&line.split_whitespace().collect::<Vec<_>>()),
+            &line,
+        );
+        fs::read(folder.path("out_height.png")).unwrap()
+    };
+    let follows = grow("");
+    assert!(
+        follows == grow("--weight height=0"),
+        "a weight of 0 is none"
+    );
+    let of_following = steps(&read_gray(&folder, "out_height.png"));
+    assert!(follows != grow("--weight height=1"));
+    let of_matched = steps(&read_gray(&folder, "out_height.png"));
+    // Where nothing is to be seen all pixels match, and one of them is taken everywhere.
+    assert_eq!(of_following, 0.0);
+    let ratio = of_matched / steps(&read_gray(&folder, "bumps.png"));
+    assert!(
+        (0.8..1.2).contains(&ratio),
+        "{ratio} as many steps as in the example"
+    );
+}
+
+#[test]
+fn a_map_with_a_weight_is_matched_on_a_mesh_and_beside_a_larger_example() {
+    let folder = bumps("weights-mesh");
+    let bumps = read_gray(&folder, "bumps.png");
+    let twice = Raster::from_fn([96; 2], |x, y| bumps.row(y / 2)[(x / 2) as usize]).unwrap();
+    write_gray_png(folder.path("large.png"), &twice, Depth::Eight).unwrap();
+    let cover = |more: &str| {
+        let line = format!(
+            "synth plain.png --mesh model.obj --sites 2000 --texture-size 256 --force -o out.glb {more}"
+        );
+        assert_done(
+            &folder.run(&line.split_whitespace().collect::<Vec<_>>()),
+            &line,
+        );
+        steps(&read_gray(&folder, "out_height.png"))
+    };
+    for map in [
+        "--map height=bumps.png",
+        "--detail large.png --map height=large.png",
+    ] {
+        let follows = cover(map);
+        let matched = cover(&format!("{map} --weight height=1"));
+        assert!(
+            matched > 0.02 && follows == 0.0,
+            "{map}: {matched}, {follows}"
+        );
+    }
+}
+
+#[test]
+fn weights_of_no_map_are_refused() {
+    let folder = bumps("weights-refused");
+    for (more, message) in [
+        ("--weight height=1", "--map"),
+        (
+            "--map height=bumps.png --weight hight=1",
+            "there is no --map hight",
+        ),
+        (
+            "--map height=bumps.png --weight height=1 --weight height=2",
+            "given twice",
+        ),
+        (
+            "--map height=bumps.png --weight height=-1",
+            "is not a weight",
+        ),
+        (
+            "--map height=bumps.png --weight height=nan",
+            "is not a weight",
+        ),
+        (
+            "--map height=bumps.png --weight height=1 --replay places.exr",
+            "cannot be used with",
+        ),
+        (
+            "--map height=bumps.png --weight height=1e30",
+            "weighted value",
+        ),
+    ] {
+        let line = format!("synth plain.png {more} -o out.png");
+        assert_refused(
+            &folder.run(&line.split_whitespace().collect::<Vec<_>>()),
+            2,
+            message,
+            &line,
+        );
+    }
+}

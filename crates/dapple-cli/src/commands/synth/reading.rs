@@ -11,7 +11,7 @@ use anyhow::{Result, bail};
 use dapple::color::{LinearRgb, Normal};
 use dapple::raster::Raster;
 use dapple::recipe::{ImageAlpha, MapKind};
-use dapple::synth::{Edges, Exemplar, SideBySide};
+use dapple::synth::{Edges, Exemplar, SideBySide, SynthError};
 use dapple::tile::Map;
 use std::path::{Path, PathBuf};
 
@@ -72,10 +72,11 @@ impl Args {
             Some(path) => self.load_detail(path, exemplar.size())?,
         };
         let shown = self.detail.as_ref().map_or(paths, |path| vec![path]);
+        let maps = self.load_maps(&layout, &shown, base.map.size())?;
         Ok(Input {
-            maps: self.load_maps(&layout, &shown, base.map.size())?,
+            exemplar: self.with_weighted(exemplar, &maps).map_err(advise)?,
             base,
-            exemplar,
+            maps,
             hole,
             guides,
         })
@@ -125,6 +126,24 @@ impl Args {
             loaded.push((name, joined(layout, images)?));
         }
         Ok(loaded)
+    }
+
+    /// The exemplar with the maps that count in the match.
+    fn with_weighted(
+        &self,
+        mut exemplar: Exemplar,
+        maps: &[(String, Loaded)],
+    ) -> Result<Exemplar, SynthError> {
+        for (name, Loaded { map, .. }) in maps {
+            let weight = self.matching.weight_of(name);
+            if weight > 0.0 {
+                // Beside a larger version of the example, maps have its size.
+                let factor = map.size()[0] / exemplar.size()[0];
+                let map = exemplar_of(map, exemplar.edges())?.reduced(factor)?;
+                exemplar = exemplar.with_channels(&map, weight)?;
+            }
+        }
+        Ok(exemplar)
     }
 
     /// Reads a mask as large as the example: whether its pixels are nearer to white than to black.
