@@ -38,6 +38,7 @@ Examples:
     --texture-size 512 -o checkered.glb
   dapple synth rock.png --map normal=rock_normal.png --map ao=cracks.png \\
     --map roughness=rock_height.png --mesh model.obj --sites 4000 -o rocky.glb
+  dapple synth leaves.png --mesh model.obj --sites 4000 -o hedge.glb
   dapple synth checker.png --mesh model.obj --sites 4000 \\
     --directions directions.csv -o checkered.ply
   dapple synth checker.png --mesh model.obj --sites 4000 \\
@@ -45,6 +46,9 @@ Examples:
 
 The example is best 64 to 256 pixels wide: its features should be a tenth of it or
 less. More sites make the features smaller on the mesh, and take longer.
+
+Where the example is transparent, so is the texture. In GLB its alpha cuts, if more
+pixels of the example are clear than in between, and else it blends.
 
 Directions are lines x,y,z,dx,dy,dz (CSV) or [{\"at\": [x,y,z], \"vector\": [dx,dy,dz]}]
 (JSON): at a place on the mesh, where the down of the example points. One or a few are

@@ -1,11 +1,12 @@
 //! Meshes covered with all maps of a material.
 
 use crate::support::{Folder, assert_done, assert_refused, read_gray};
-use dapple::color::LinearRgb;
+use dapple::color::{LinearRgb, LinearRgba};
 use dapple::image::{
-    Depth, Image, Limits, PngPixels, decode_image, write_color_png, write_gray_png,
+    Depth, Image, Limits, PngPixels, decode_image, write_color_alpha_png, write_color_png,
+    write_gray_png,
 };
-use dapple::mesh::{EncodedImage, Model};
+use dapple::mesh::{AlphaMode, EncodedImage, Model};
 use dapple::mesh_io::read_model;
 use dapple::raster::Raster;
 use std::fs;
@@ -261,6 +262,106 @@ fn weights_of_no_map_are_refused() {
             2,
             message,
             &line,
+        );
+    }
+}
+
+/// A folder with `leaf.png`, which is as opaque as it is gray, and `holes.png`, green with holes that are red.
+fn leaves(name: &str) -> Folder {
+    let folder = Folder::with_inputs(name);
+    let write = |name: &str, pixel: fn(u32, u32) -> LinearRgba| {
+        let pixels = Raster::from_fn([48; 2], pixel).unwrap();
+        write_color_alpha_png(folder.path(name), &pixels, Depth::Sixteen).unwrap();
+    };
+    write("leaf.png", |x, y| {
+        let value = (7 * x + 3 * y * y + x * y) as f32 % 40.0 / 100.0 + 0.3;
+        LinearRgba {
+            color: LinearRgb::gray(value),
+            alpha: value,
+        }
+    });
+    write("holes.png", |x, y| match (x / 8 + y / 8) % 3 {
+        0 => LinearRgba {
+            color: LinearRgb::new(1.0, 0.0, 0.0),
+            alpha: 0.0,
+        },
+        _ => LinearRgba::opaque(LinearRgb::new(0.0, 0.5, 0.1)),
+    });
+    folder
+}
+
+#[test]
+fn alpha_of_the_example_is_that_of_the_material() {
+    let folder = leaves("alpha-model");
+    for (name, mode) in [
+        ("leaf.png", AlphaMode::Blend),
+        ("holes.png", AlphaMode::Mask),
+    ] {
+        let line = format!(
+            "synth {name} --mesh model.obj --sites 2000 --texture-size 256 --force -o out.glb"
+        );
+        assert_done(&folder.run(&line.split(' ').collect::<Vec<_>>()), &line);
+        let material = read_model(folder.path("out.glb")).unwrap().material;
+        assert_eq!(
+            (material.alpha, material.double_sided),
+            (mode, true),
+            "{name}"
+        );
+        let texture = decode_image(material.base_color.unwrap().bytes(), &Limits::default());
+        let pixels = texture.unwrap().color_alpha().unwrap();
+        let shown = pixels.pixels().iter().filter(|pixel| pixel.alpha > 0.05);
+        match mode {
+            AlphaMode::Mask => {
+                let n_clear = pixels
+                    .pixels()
+                    .iter()
+                    .filter(|pixel| pixel.alpha == 0.0)
+                    .count();
+                assert!(
+                    (8_000..40_000).contains(&n_clear),
+                    "{n_clear} of 65536 texels"
+                );
+                // Alpha has 16 bits.
+                assert!(
+                    shown.clone().all(|pixel| pixel.color.r < 0.001),
+                    "red shows nowhere"
+                );
+            }
+            // Where alpha is even, it is as gray as at a pixel.
+            _ => assert!(shown.clone().any(|pixel| pixel.alpha < 0.5)),
+        }
+        assert!(shown.count() > 20_000, "{name}");
+    }
+    // The texture alone is that of the model, and sites have alpha of their own.
+    let line = "synth holes.png --mesh model.obj --sites 2000 --texture-size 256 -o out.png";
+    assert_done(&folder.run(&line.split(' ').collect::<Vec<_>>()), line);
+    let model = read_model(folder.path("out.glb")).unwrap();
+    let texture = model.material.base_color.unwrap();
+    assert!(texture.bytes() == fs::read(folder.path("out.png")).unwrap());
+    let line = "synth holes.png --mesh model.obj --sites 2000 -o out.ply";
+    assert_done(&folder.run(&line.split(' ').collect::<Vec<_>>()), line);
+    let colors = read_model(folder.path("out.ply")).unwrap().colors.unwrap();
+    for color in &colors {
+        assert_eq!(color.alpha == 0.0, color.color.r > 0.5, "{color:?}");
+    }
+    assert!(colors.iter().any(|color| color.alpha == 0.0));
+}
+
+#[test]
+fn an_opaque_example_makes_an_opaque_material() {
+    let folder = leaves("opaque-model");
+    for options in [
+        "checker.png",
+        "holes.png --alpha drop",
+        "holes.png --alpha over:white",
+    ] {
+        let line = format!("synth {options} --mesh model.obj --sites 500 --force -o out.glb");
+        assert_done(&folder.run(&line.split(' ').collect::<Vec<_>>()), &line);
+        let material = read_model(folder.path("out.glb")).unwrap().material;
+        assert_eq!(
+            (material.alpha, material.double_sided),
+            (AlphaMode::Opaque, false),
+            "{options}"
         );
     }
 }

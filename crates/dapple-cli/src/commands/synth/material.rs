@@ -9,7 +9,7 @@ use crate::error::{Hint, usage};
 use crate::input::Loaded;
 use crate::words::with_underscores;
 use anyhow::{Result, bail};
-use dapple::mesh::{EncodedImage, Material};
+use dapple::mesh::{AlphaMode, EncodedImage, Material};
 use dapple::raster::Raster;
 use dapple::recipe::MapKind;
 use dapple::tile::Map;
@@ -93,6 +93,18 @@ impl MaterialMaps {
             }
         }
         Ok(pixels)
+    }
+}
+
+/// What the alpha of an example does on a mesh: it cuts where more pixels are clear than in between, and else it blends.
+pub(super) fn alpha_mode(alpha: &Raster<f32>) -> AlphaMode {
+    let count = |is_it: fn(&&f32) -> bool| alpha.pixels().iter().filter(is_it).count();
+    let n_clear = count(|&&alpha| alpha <= 0.0);
+    let n_between = count(|&&alpha| alpha > 0.0 && alpha < 1.0);
+    if n_clear > n_between {
+        AlphaMode::Mask
+    } else {
+        AlphaMode::Blend
     }
 }
 

@@ -114,6 +114,13 @@ impl Args {
             let mut images = Vec::new();
             for (image, (path, example)) in paths.into_iter().zip(shown).enumerate() {
                 let map = self.load(path, kind)?;
+                if map.alpha.is_some() && self.surface.mesh.is_some() {
+                    let message = format!(
+                        "{} is partly transparent, which maps on a mesh cannot be",
+                        input::name(path)
+                    );
+                    return Err(usage(message).hint(input::ALPHA_HINT));
+                }
                 let size = if shown.len() > 1 {
                     layout.size_of(image)
                 } else {
@@ -177,17 +184,9 @@ impl Args {
         Err(error.hint("make the example from it, by a whole number of pixels for one"))
     }
 
-    /// Reads an image, and refuses alpha where there is no room for it.
+    /// Reads an image.
     fn load(&self, path: &Path, kind: Kind) -> Result<Loaded> {
-        let loaded = input::map_with_alpha(path, kind, self.region, self.alpha.alpha)?;
-        if loaded.alpha.is_some() && self.surface.mesh.is_some() {
-            let message = format!(
-                "{} is partly transparent, which a mesh cannot keep",
-                input::name(path)
-            );
-            return Err(usage(message).hint(input::ALPHA_HINT));
-        }
-        Ok(loaded)
+        input::map_with_alpha(path, kind, self.region, self.alpha.alpha)
     }
 }
 

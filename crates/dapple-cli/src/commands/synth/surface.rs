@@ -1,11 +1,11 @@
 //! Synthesis on a mesh, and the files that it gives.
 
 use super::corners::{own_uvs, shading};
-use super::material::{MaterialMaps, kind_of};
+use super::material::{MaterialMaps, alpha_mode, kind_of};
 use super::options::AtlasName;
 use super::reading::Input;
 use super::{Args, STEPS, advise, guides, shown};
-use crate::encode::{Format, default_format, encode, ramped};
+use crate::encode::{Format, default_format, encode, encode_with_alpha, ramped};
 use crate::error::{Exit, Hint, usage};
 use crate::input;
 use crate::job::{Context, Job, eprintln_if_possible};
@@ -16,10 +16,11 @@ use dapple::color::{LinearRgba, NormalY};
 use dapple::mesh::{EncodedImage, Mesh, Model, Repair, Surface};
 use dapple::mesh_io::{FORMATS, MaterialPlace, MeshFormat, writable_endings};
 use dapple::points::glam::DVec3;
+use dapple::raster::Raster;
 use dapple::recipe::MapKind;
 use dapple::synth::{
-    Atlas, Direction, SurfaceTexture, Synthesizer, bake_colors, bake_normals, bake_values,
-    site_model, textured_model,
+    Atlas, Direction, SurfaceTexture, Synthesizer, bake_colors, bake_colors_alpha, bake_normals,
+    bake_values, site_model, textured_model,
 };
 use dapple::tile::Map;
 use serde_json::json;
@@ -74,7 +75,10 @@ pub(super) fn run(args: &Args, mesh: &Path, context: &Context) -> Result<Exit> {
     };
     let shading = shading(args.surface.crease(), &surface, &model, &repair);
     let laid_out = atlas.as_ref().map(|atlas| atlas.report(&surface));
-    let double_sided = model.material.double_sided || repair.before.back_to_back_faces > 0;
+    // Through what is transparent the inside is seen.
+    let double_sided = model.material.double_sided
+        || repair.before.back_to_back_faces > 0
+        || input.base.alpha.is_some();
     let spinner = Progress::spinner("scattering sites", context);
     let sites = args.surface.sites(&args.matching);
     let synthesizer = Synthesizer::new(surface, &directions(args)?, &sites).map_err(advise)?;
@@ -192,10 +196,23 @@ impl Covered {
         })
     }
 
+    /// The texture that is shown, and its alpha if the example has one.
+    fn bake_base(&self) -> Result<(Map, Option<Raster<f32>>)> {
+        let base = &self.input.base;
+        let (Map::Color(colors), Some(alpha), Some(atlas)) = (&base.map, &base.alpha, &self.atlas)
+        else {
+            return Ok((self.bake(&base.map)?, None));
+        };
+        let pixels = colors.zip_map(alpha, |&color, &alpha| LinearRgba { color, alpha })?;
+        let baked = bake_colors_alpha(&self.synthesizer, &self.texture, &pixels, atlas)?;
+        let alpha = baked.map(|pixel| pixel.alpha);
+        Ok((Map::Color(baked.map(|pixel| pixel.color)), Some(alpha)))
+    }
+
     /// The colors of the sites.
     fn site_colors(&self, args: &Args) -> Result<Vec<LinearRgba>> {
         let map = ramped(self.input.base.map.clone(), args.image.ramp.as_ref());
-        let colors = match &map {
+        let colors: Vec<_> = match &map {
             Map::Color(raster) => self.texture.transfer(raster)?,
             Map::Value(raster) => {
                 let values = self.texture.transfer(raster)?;
@@ -204,7 +221,12 @@ impl Covered {
             }
             Map::Normal(_) => bail!("normals are no colors"),
         };
-        Ok(colors.into_iter().map(LinearRgba::opaque).collect())
+        let Some(alpha) = &self.input.base.alpha else {
+            return Ok(colors.into_iter().map(LinearRgba::opaque).collect());
+        };
+        let pixels = colors.into_iter().zip(self.texture.transfer(alpha)?);
+        let pixel = |(color, alpha)| LinearRgba { color, alpha };
+        Ok(pixels.map(pixel).collect())
     }
 }
 
@@ -274,10 +296,8 @@ fn write(args: &Args, claimed: &Claimed, covered: &Covered, job: &mut Job<'_>) -
         return write_model(format, claimed, &model, job);
     }
     let is_deep = covered.input.base.is_deep;
-    let base = ramped(
-        covered.bake(&covered.input.base.map)?,
-        args.image.ramp.as_ref(),
-    );
+    let (base, alpha) = covered.bake_base()?;
+    let base = ramped(base, args.image.ramp.as_ref());
     let mut maps = MaterialMaps::default();
     for (output, (name, example)) in claimed.maps.iter().zip(&covered.input.maps) {
         let map = covered.bake(&example.map)?;
@@ -287,21 +307,26 @@ fn write(args: &Args, claimed: &Claimed, covered: &Covered, job: &mut Job<'_>) -
         job.write_image(*output, map, example.is_deep, &args.image)?;
     }
     if let Product::Model(format) = claimed.product {
-        let mut model = model(args, covered, &base)?;
+        let mut model = model(args, covered, &base, alpha.as_ref())?;
         maps.put_into(&mut model.material, claimed.format)?;
         return write_model(format, claimed, &model, job);
     }
-    job.write_image(claimed.main, base, is_deep, &args.image)
+    job.write_with_alpha(claimed.main, base, alpha.as_ref(), is_deep, &args.image)
 }
 
 /// The input mesh with its texture. A gray one becomes a color, which is what models have.
-fn model(args: &Args, covered: &Covered, base: &Map) -> Result<Model> {
+fn model(args: &Args, covered: &Covered, base: &Map, alpha: Option<&Raster<f32>>) -> Result<Model> {
+    let example = &covered.input.base;
     let base = match base {
-        Map::Value(values) => Map::Color(values.map(|&value| covered.input.base.color_of(value))),
+        Map::Value(values) => Map::Color(values.map(|&value| example.color_of(value))),
         other => other.clone(),
     };
-    let default = default_format(&base, covered.input.base.is_deep);
-    let png = encode(&base, args.image.format.unwrap_or(default))?;
+    let default = default_format(&base, example.is_deep);
+    let format = args.image.format.unwrap_or(default);
+    let png = match (&base, alpha) {
+        (Map::Color(colors), Some(alpha)) => encode_with_alpha(colors, alpha, format)?,
+        _ => encode(&base, format)?,
+    };
     let Some(atlas) = &covered.atlas else {
         bail!("a mesh of sites has no texture");
     };
@@ -312,6 +337,9 @@ fn model(args: &Args, covered: &Covered, base: &Map) -> Result<Model> {
         EncodedImage::new(png)?,
     )?;
     model.material.double_sided = covered.double_sided;
+    if let Some(alpha) = &example.alpha {
+        model.material.alpha = alpha_mode(alpha);
+    }
     Ok(model)
 }
 
