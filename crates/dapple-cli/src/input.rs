@@ -62,8 +62,22 @@ impl Loaded {
         }
     }
 
-    /// The number that a color of a picture stands for where numbers are needed: how light it is, in the codes of the file.
-    pub(crate) fn value_of(&self, color: LinearRgb) -> f32 {
+    /// The numbers of a map that was made of this image, which has one at each pixel; a picture in color says them by how
+    /// light it is, in the codes of the file.
+    ///
+    /// # Errors
+    ///
+    /// If the map holds normals.
+    pub(crate) fn numbers(&self, map: &Map) -> Result<Raster<f32>> {
+        match map {
+            Map::Value(values) => Ok(values.clone()),
+            Map::Color(colors) => Ok(colors.map(|&color| self.value_of(color))),
+            Map::Normal(_) => Err(anyhow!("normals are no numbers")),
+        }
+    }
+
+    /// How light a color of a picture is, as a gray value of it.
+    fn value_of(&self, color: LinearRgb) -> f32 {
         let lightness = color.luminance();
         if self.is_linear {
             lightness

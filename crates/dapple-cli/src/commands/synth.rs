@@ -1,6 +1,7 @@
 //! `dapple synth`: texture from an example, in the plane or on a mesh.
 
 mod corners;
+mod displace;
 mod guides;
 mod material;
 mod options;
@@ -39,6 +40,8 @@ Examples:
   dapple synth rock.png --map normal=rock_normal.png --map ao=cracks.png \\
     --map roughness=rock_height.png --mesh model.obj --sites 4000 -o rocky.glb
   dapple synth leaves.png --mesh model.obj --sites 4000 -o hedge.glb
+  dapple synth rock.png --map height=rock_height.png --displace 0.05 \\
+    --mesh model.obj --sites 4000 -o rocky.ply
   dapple synth checker.png --mesh model.obj --sites 4000 \\
     --directions directions.csv -o checkered.ply
   dapple synth checker.png --mesh model.obj --sites 4000 \\
@@ -148,6 +151,7 @@ impl Args {
     /// Refuses options that have no effect with or without a mesh.
     fn check_used(&self) -> Result<()> {
         material::check_names(&self.map)?;
+        self.check_displacement()?;
         self.matching.check_weights(&self.map_names())?;
         let surface = self.surface.given();
         match (&self.surface.mesh, self.plane.given(), surface) {

@@ -6,7 +6,7 @@ use dapple::image::{
     Depth, Image, Limits, PngPixels, decode_image, write_color_alpha_png, write_color_png,
     write_gray_png,
 };
-use dapple::mesh::{AlphaMode, EncodedImage, Model};
+use dapple::mesh::{AlphaMode, EncodedImage, Mesh, Model};
 use dapple::mesh_io::read_model;
 use dapple::raster::Raster;
 use std::fs;
@@ -364,4 +364,103 @@ fn an_opaque_example_makes_an_opaque_material() {
             "{options}"
         );
     }
+}
+
+/// How far the vertices of a mesh are from those of another, along its normals and across them.
+fn moved(from: &Mesh, to: &Mesh) -> Vec<[f64; 2]> {
+    let normals = from.vertex_normals();
+    let vertices = from.positions().iter().zip(to.positions()).zip(normals);
+    let parts = vertices.map(|((from, to), normal)| {
+        let along = (*to - *from).dot(normal);
+        [along, (*to - *from - along * normal).length()]
+    });
+    parts.collect()
+}
+
+#[test]
+fn heights_move_the_mesh_of_a_whole_material() {
+    let folder = folder("displaced");
+    let maps = "--map height=rough.png --map metallic=metal.png --map ao=ao.png";
+    cover(&folder, &format!("{maps} -o flat.glb"));
+    cover(&folder, &format!("{maps} --displace 0.1 -o high.glb"));
+    cover(
+        &folder,
+        &format!("{maps} --displace -0.1 --map normal=checker.png -o low.glb"),
+    );
+    let [flat, high, low] =
+        ["flat.glb", "high.glb", "low.glb"].map(|name| read_model(folder.path(name)).unwrap());
+    for other in [&high, &low] {
+        assert!(flat.uvs == other.uvs, "the layout is the same");
+        let [own, moved] = [&flat, other].map(|model| &model.material);
+        assert!(own.base_color == moved.base_color && own.occlusion == moved.occlusion);
+        assert!(moved.metallic_roughness == moved.occlusion && moved.occlusion.is_some());
+    }
+    // Vertices of the input, as repair has left them; the file splits them where pieces of the texture meet.
+    let input = read_model(folder.path("model.obj"))
+        .unwrap()
+        .mesh
+        .repair()
+        .0;
+    let n = input.positions().len();
+    let first = |model: &Model| Mesh::new(model.mesh.positions()[..n].to_vec(), &[]).unwrap();
+    let mut range = [f64::INFINITY, f64::NEG_INFINITY];
+    for (out, inward) in moved(&input, &first(&high))
+        .into_iter()
+        .zip(moved(&input, &first(&low)))
+    {
+        // Heights of 20 to 219 in 255, times the length. Positions have single precision.
+        assert!(
+            (0.1 * 20.0 / 255.0 - 1e-4..0.1 * 219.0 / 255.0 + 1e-4).contains(&out[0]),
+            "{out:?}"
+        );
+        assert!(
+            (out[0] + inward[0]).abs() < 1e-4 && out[1] < 1e-4,
+            "{out:?} {inward:?}"
+        );
+        range = [range[0].min(out[0]), range[1].max(out[0])];
+    }
+    assert!(range[1] - range[0] > 0.02, "{range:?}");
+    // A map of normals is in the frames of the mesh as it was.
+    assert!(low.normals_of_corners() == flat.normals_of_corners());
+    assert!(high.normals_of_corners() != flat.normals_of_corners());
+}
+
+#[test]
+fn heights_move_all_sites_and_are_refused_where_nothing_moves() {
+    let folder = folder("displaced-sites");
+    let run = |more: &str| {
+        let line = format!("synth checker.png --mesh model.obj --edges wrap --sites 600 {more}");
+        folder.run(&line.split_whitespace().collect::<Vec<_>>())
+    };
+    assert_done(&run("-o flat.ply"), "flat");
+    let line = "--map height=rough.png --displace 0.1 -o high.ply";
+    assert_done(&run(line), line);
+    let line = "--map height=rough.png --weight height=1 -o weighted.ply";
+    assert_done(&run(line), line);
+    let [flat, high] = ["flat.ply", "high.ply"].map(|name| read_model(folder.path(name)).unwrap());
+    assert_eq!(flat.colors, high.colors);
+    let ways = flat.mesh.positions().iter().zip(high.mesh.positions());
+    let ways = ways.map(|(from, to)| from.distance(*to));
+    assert!(ways.clone().all(|way| (0.0078..0.0860).contains(&way)));
+    assert!(ways.clone().fold(0.0, f64::max) > ways.fold(1.0, f64::min) + 0.03);
+    for (more, message) in [
+        ("--displace 0.1 -o out.glb", "--displace needs heights"),
+        (
+            "--map height=rough.png --displace nan -o out.glb",
+            "is not a length",
+        ),
+        (
+            "--map height=rough.png --displace 1 --texture-size 128 -o out.png",
+            "no effect on an image",
+        ),
+        (
+            "--map height=rough.png --map ao=ao.png --displace 1 -o out.ply",
+            "no further maps",
+        ),
+    ] {
+        assert_refused(&run(more), 2, message, more);
+    }
+    let line = "synth checker.png --map height=rough.png --displace 1 -o out.png";
+    let run = folder.run(&line.split_whitespace().collect::<Vec<_>>());
+    assert_refused(&run, 2, "--displace has no effect without a mesh", line);
 }

@@ -8,7 +8,7 @@ use crate::encode::{Format, encode, encode_packed};
 use crate::error::{Hint, usage};
 use crate::input::Loaded;
 use crate::words::with_underscores;
-use anyhow::{Result, bail};
+use anyhow::Result;
 use dapple::mesh::{AlphaMode, EncodedImage, Material};
 use dapple::raster::Raster;
 use dapple::recipe::MapKind;
@@ -62,9 +62,9 @@ impl MaterialMaps {
             Some(MapKind::Normal) => {
                 self.normal = Some(EncodedImage::new(encode(map, format)?)?);
             }
-            Some(MapKind::Occlusion) => self.packed[0] = Some(numbers(map, example)?),
-            Some(MapKind::Roughness) => self.packed[1] = Some(numbers(map, example)?),
-            Some(MapKind::Metallic) => self.packed[2] = Some(numbers(map, example)?),
+            Some(MapKind::Occlusion) => self.packed[0] = Some(example.numbers(map)?),
+            Some(MapKind::Roughness) => self.packed[1] = Some(example.numbers(map)?),
+            Some(MapKind::Metallic) => self.packed[2] = Some(example.numbers(map)?),
             _ => {}
         }
         Ok(())
@@ -105,14 +105,5 @@ pub(super) fn alpha_mode(alpha: &Raster<f32>) -> AlphaMode {
         AlphaMode::Mask
     } else {
         AlphaMode::Blend
-    }
-}
-
-/// The numbers of a map that has one at each texel; a picture in color says them by how light it is.
-fn numbers(map: &Map, example: &Loaded) -> Result<Raster<f32>> {
-    match map {
-        Map::Value(values) => Ok(values.clone()),
-        Map::Color(colors) => Ok(colors.map(|&color| example.value_of(color))),
-        Map::Normal(_) => bail!("normals are no numbers"),
     }
 }

@@ -90,6 +90,11 @@ pub(super) struct SurfaceArgs {
     #[arg(long, value_name = "DEGREES", value_parser = angle)]
     crease: Option<f64>,
 
+    /// Move the surface along its normals by the map height times this length, in units of the mesh; inward if it is negative.
+    /// GLB and OBJ move the vertices of the mesh, and show what is coarser than its faces; PLY moves all sites.
+    #[arg(long, value_name = "LENGTH", value_parser = length, allow_negative_numbers = true)]
+    pub(super) displace: Option<f64>,
+
     /// Which way neighborhoods go on over the surface; by default followed.
     #[arg(long, value_name = "HOW", value_parser = Word::<FieldAxes>::all())]
     axes: Option<FieldAxes>,
@@ -134,6 +139,14 @@ pub(super) struct MatchArgs {
     /// colors of sites, and are softer than the example.
     #[arg(long)]
     pub(super) paper: bool,
+}
+
+/// A length, which may be negative.
+fn length(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(length) if length.is_finite() => Ok(length),
+        _ => Err(format!("{text:?} is not a length")),
+    }
 }
 
 /// The weight of a map, which has a name.
@@ -202,6 +215,7 @@ impl SurfaceArgs {
             ("atlas", self.atlas.is_some()),
             ("padding", self.padding.is_some()),
             ("crease", self.crease.is_some()),
+            ("displace", self.displace.is_some()),
             ("axes", self.axes.is_some()),
         ];
         given

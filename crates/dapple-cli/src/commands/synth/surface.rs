@@ -248,7 +248,15 @@ fn claim(args: &Args, mesh: &Path, job: &mut Job<'_>) -> Result<Claimed> {
     if matches!(product, Product::Sites(_)) && args.detail.is_some() {
         return Err(usage("a mesh of sites shows no detail").hint("write .glb or .obj"));
     }
-    if matches!(product, Product::Sites(_)) && !args.map.is_empty() {
+    let is_displaced = args.surface.displace.is_some();
+    if matches!(product, Product::Texture) && is_displaced {
+        return Err(usage("--displace has no effect on an image").hint("write .glb, .obj or .ply"));
+    }
+    let is_used = |name: &str| {
+        args.matching.weight_of(name) > 0.0
+            || is_displaced && kind_of(name) == Some(MapKind::Height)
+    };
+    if matches!(product, Product::Sites(_)) && args.map.iter().any(|map| !is_used(&map.name)) {
         return Err(
             usage("a mesh of sites has colors and no further maps").hint("write .glb or .obj")
         );
@@ -263,7 +271,10 @@ fn claim(args: &Args, mesh: &Path, job: &mut Job<'_>) -> Result<Claimed> {
         }
     }
     // Those that go into the model are files of their own as well, for other programs.
-    let maps = args.claim_maps(&target, format.ending(), job)?;
+    let maps = match product {
+        Product::Sites(_) => Vec::new(),
+        _ => args.claim_maps(&target, format.ending(), job)?,
+    };
     job.claim_sidecar(&target)?;
     Ok(Claimed {
         product,
@@ -292,7 +303,9 @@ fn names_beside(format: &MeshFormat, path: &Path, args: &Args) -> Result<Vec<Str
 /// Bakes and writes everything.
 fn write(args: &Args, claimed: &Claimed, covered: &Covered, job: &mut Job<'_>) -> Result<()> {
     if let Product::Sites(format) = claimed.product {
-        let model = site_model(&covered.synthesizer, covered.site_colors(args)?)?;
+        let (synthesizer, texture) = (&covered.synthesizer, &covered.texture);
+        let mut model = site_model(synthesizer, covered.site_colors(args)?)?;
+        args.displace_sites(&mut model, synthesizer, texture, &covered.input)?;
         return write_model(format, claimed, &model, job);
     }
     let is_deep = covered.input.base.is_deep;
@@ -309,6 +322,8 @@ fn write(args: &Args, claimed: &Claimed, covered: &Covered, job: &mut Job<'_>) -
     if let Product::Model(format) = claimed.product {
         let mut model = model(args, covered, &base, alpha.as_ref())?;
         maps.put_into(&mut model.material, claimed.format)?;
+        let (synthesizer, texture) = (&covered.synthesizer, &covered.texture);
+        args.displace_mesh(&mut model, synthesizer, texture, &covered.input)?;
         return write_model(format, claimed, &model, job);
     }
     job.write_with_alpha(claimed.main, base, alpha.as_ref(), is_deep, &args.image)

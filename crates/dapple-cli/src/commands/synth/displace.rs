@@ -1,0 +1,80 @@
+//! Geometry that the heights of the example move.
+
+use super::material::kind_of;
+use super::reading::Input;
+use super::{Args, advise};
+use crate::error::{Hint, usage};
+use anyhow::Result;
+use dapple::mesh::{CREASE, Model};
+use dapple::raster::Raster;
+use dapple::recipe::MapKind;
+use dapple::synth::{Exemplar, SurfaceTexture, Synthesizer, displaced_mesh, displaced_sites};
+
+impl Args {
+    /// Refuses a displacement without heights.
+    ///
+    /// # Errors
+    ///
+    /// If there is such.
+    pub(super) fn check_displacement(&self) -> Result<()> {
+        let is_height = |name: &str| kind_of(name) == Some(MapKind::Height);
+        if self.surface.displace.is_none() || self.map.iter().any(|map| is_height(&map.name)) {
+            return Ok(());
+        }
+        Err(usage("--displace needs heights").hint("add --map height=FILE"))
+    }
+
+    /// Moves the vertices of the mesh in a model, if that is asked for.
+    ///
+    /// With a map of normals, which already says the slopes, the mesh keeps the normals in whose frames that map is;
+    /// otherwise it has those of its new shape.
+    pub(super) fn displace_mesh(
+        &self,
+        model: &mut Model,
+        synthesizer: &Synthesizer,
+        texture: &SurfaceTexture,
+        input: &Input,
+    ) -> Result<()> {
+        if let Some(length) = self.surface.displace {
+            let heights = heights(texture, input)?;
+            model.mesh = displaced_mesh(synthesizer, &heights, length).map_err(advise)?;
+            if model.material.normal.is_none() {
+                let crease = self.surface.crease().unwrap_or(CREASE);
+                model.corner_normals = Some(model.mesh.corner_normals(crease));
+            }
+        }
+        Ok(())
+    }
+
+    /// Moves the sites in a model of them, if that is asked for; they get the normals of the new shape.
+    pub(super) fn displace_sites(
+        &self,
+        model: &mut Model,
+        synthesizer: &Synthesizer,
+        texture: &SurfaceTexture,
+        input: &Input,
+    ) -> Result<()> {
+        if let Some(length) = self.surface.displace {
+            let heights = heights(texture, input)?;
+            model.mesh = displaced_sites(synthesizer, &heights, length).map_err(advise)?;
+            model.normals = Some(model.mesh.vertex_normals());
+        }
+        Ok(())
+    }
+}
+
+/// The heights of all sites.
+fn heights(texture: &SurfaceTexture, input: &Input) -> Result<Vec<f32>> {
+    let mut maps = input.maps.iter();
+    let found = maps.find(|(name, _)| kind_of(name) == Some(MapKind::Height));
+    let Some((_, height)) = found else {
+        return Err(usage("--displace needs heights").hint("add --map height=FILE"));
+    };
+    let (size, edges) = (input.exemplar.size(), input.exemplar.edges());
+    let values = height.numbers(&height.map)?;
+    // Beside a larger version of the example, maps have its size.
+    let factor = values.size()[0] / size[0];
+    let reduced = Exemplar::from_planes(&[(&values, 1.0)], edges)?.reduced(factor)?;
+    let reduced = Raster::from_vec(size, reduced.pixels().to_vec())?;
+    Ok(texture.transfer(&reduced)?)
+}
