@@ -366,6 +366,28 @@ fn an_opaque_example_makes_an_opaque_material() {
     }
 }
 
+#[test]
+fn normals_of_an_obj_are_one_file() {
+    let folder = folder("obj");
+    cover(
+        &folder,
+        "--map normal=checker.png --map roughness=rough.png -o out.obj",
+    );
+    let material = read_model(folder.path("out.obj")).unwrap().material;
+    let normal = fs::read(folder.path("out_normal.png")).unwrap();
+    assert!(material.normal.unwrap().bytes() == normal);
+    let names = folder.names();
+    let of_output = names.iter().filter(|name| name.starts_with("out"));
+    let expected = [
+        "out.mtl",
+        "out.obj",
+        "out_base_color.png",
+        "out_normal.png",
+        "out_roughness.png",
+    ];
+    assert_eq!(of_output.collect::<Vec<_>>(), expected);
+}
+
 /// How far the vertices of a mesh are from those of another, along its normals and across them.
 fn moved(from: &Mesh, to: &Mesh) -> Vec<[f64; 2]> {
     let normals = from.vertex_normals();

@@ -1,6 +1,6 @@
 //! Geometry that the heights of the example move.
 
-use super::material::kind_of;
+use super::material::is_of;
 use super::reading::Input;
 use super::{Args, advise};
 use crate::error::{Hint, usage};
@@ -17,8 +17,8 @@ impl Args {
     ///
     /// If there is such.
     pub(super) fn check_displacement(&self) -> Result<()> {
-        let is_height = |name: &str| kind_of(name) == Some(MapKind::Height);
-        if self.surface.displace.is_none() || self.map.iter().any(|map| is_height(&map.name)) {
+        let mut names = self.map.iter().map(|map| &map.name);
+        if self.surface.displace.is_none() || names.any(|name| is_of(name, MapKind::Height)) {
             return Ok(());
         }
         Err(usage("--displace needs heights").hint("add --map height=FILE"))
@@ -66,7 +66,7 @@ impl Args {
 /// The heights of all sites.
 fn heights(texture: &SurfaceTexture, input: &Input) -> Result<Vec<f32>> {
     let mut maps = input.maps.iter();
-    let found = maps.find(|(name, _)| kind_of(name) == Some(MapKind::Height));
+    let found = maps.find(|(name, _)| is_of(name, MapKind::Height));
     let Some((_, height)) = found else {
         return Err(usage("--displace needs heights").hint("add --map height=FILE"));
     };

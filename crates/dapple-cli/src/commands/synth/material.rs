@@ -26,8 +26,13 @@ pub(super) struct MaterialMaps {
 }
 
 /// What the map with a name is in a material; nothing if it is of no kind that is known.
-pub(super) fn kind_of(name: &str) -> Option<MapKind> {
+fn kind_of(name: &str) -> Option<MapKind> {
     MapKind::from_name(&with_underscores(name))
+}
+
+/// Whether the map with a name is of a kind.
+pub(super) fn is_of(name: &str, kind: MapKind) -> bool {
+    kind_of(name) == Some(kind)
 }
 
 /// Refuses two names of one map of a material.

@@ -1,7 +1,7 @@
 //! The images of a synthesis: examples, their maps, masks and guides.
 
 use super::guides::Guide;
-use super::material::kind_of;
+use super::material::is_of;
 use super::{Args, MapArg, advise};
 use crate::args::Alpha;
 use crate::error::{Hint, usage};
@@ -107,9 +107,10 @@ impl Args {
                 let hint = format!("give --map {name}=IMAGE once for each example, in their order");
                 return Err(usage(message).hint(hint));
             }
-            let kind = match kind_of(&name) {
-                Some(MapKind::Normal) => Kind::Normals,
-                _ => Kind::ByChannels,
+            let kind = if is_of(&name, MapKind::Normal) {
+                Kind::Normals
+            } else {
+                Kind::ByChannels
             };
             let mut images = Vec::new();
             for (image, (path, example)) in paths.into_iter().zip(shown).enumerate() {

@@ -1,7 +1,7 @@
 //! Synthesis on a mesh, and the files that it gives.
 
 use super::corners::{own_uvs, shading};
-use super::material::{MaterialMaps, alpha_mode, kind_of};
+use super::material::{MaterialMaps, alpha_mode, is_of};
 use super::options::AtlasName;
 use super::reading::Input;
 use super::{Args, STEPS, advise, guides, shown};
@@ -53,7 +53,8 @@ struct Claimed {
     main: OutputIdx,
     /// The files beside that of the mesh, such as material and textures, with their names.
     beside: Vec<(String, OutputIdx)>,
-    maps: Vec<OutputIdx>,
+    /// The files of the maps, but for those that are beside the mesh already.
+    maps: Vec<Option<OutputIdx>>,
     /// The format of textures that are files of their own.
     format: Format,
 }
@@ -253,8 +254,7 @@ fn claim(args: &Args, mesh: &Path, job: &mut Job<'_>) -> Result<Claimed> {
         return Err(usage("--displace has no effect on an image").hint("write .glb, .obj or .ply"));
     }
     let is_used = |name: &str| {
-        args.matching.weight_of(name) > 0.0
-            || is_displaced && kind_of(name) == Some(MapKind::Height)
+        args.matching.weight_of(name) > 0.0 || is_displaced && is_of(name, MapKind::Height)
     };
     if matches!(product, Product::Sites(_)) && args.map.iter().any(|map| !is_used(&map.name)) {
         return Err(
@@ -271,10 +271,19 @@ fn claim(args: &Args, mesh: &Path, job: &mut Job<'_>) -> Result<Claimed> {
         }
     }
     // Those that go into the model are files of their own as well, for other programs.
-    let maps = match product {
-        Product::Sites(_) => Vec::new(),
-        _ => args.claim_maps(&target, format.ending(), job)?,
-    };
+    let mut maps = Vec::new();
+    for name in args.map_names() {
+        let target = target.part(name)?.with_ending(format.ending());
+        let file = target.path().and_then(Path::file_name);
+        // The normals of an OBJ have the name of the map.
+        let is_beside = is_of(name, MapKind::Normal)
+            && beside.iter().any(|(name, _)| file == Some(name.as_ref()));
+        if !is_beside && !matches!(product, Product::Sites(_)) {
+            maps.push(Some(job.claim(&target)?));
+        } else {
+            maps.push(None);
+        }
+    }
     job.claim_sidecar(&target)?;
     Ok(Claimed {
         product,
@@ -291,8 +300,7 @@ fn names_beside(format: &MeshFormat, path: &Path, args: &Args) -> Result<Vec<Str
     let mut model = Model::from(Mesh::default());
     let image = EncodedImage::new(PNG.to_vec())?;
     model.material.base_color = Some(image.clone());
-    let is_normal = |name: &str| kind_of(name) == Some(MapKind::Normal);
-    if args.map.iter().any(|map| is_normal(&map.name)) {
+    if args.map.iter().any(|map| is_of(&map.name, MapKind::Normal)) {
         model.material.normal = Some(image);
     }
     let mut files = format.write(&model, &stem(path))?;
@@ -317,7 +325,9 @@ fn write(args: &Args, claimed: &Claimed, covered: &Covered, job: &mut Job<'_>) -
         if let Product::Model(_) = claimed.product {
             maps.add(name, &map, example, claimed.format)?;
         }
-        job.write_image(*output, map, example.is_deep, &args.image)?;
+        if let Some(output) = *output {
+            job.write_image(output, map, example.is_deep, &args.image)?;
+        }
     }
     if let Product::Model(format) = claimed.product {
         let mut model = model(args, covered, &base, alpha.as_ref())?;
