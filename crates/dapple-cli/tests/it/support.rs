@@ -62,7 +62,7 @@ impl Folder {
         }
         let leaf = |x: u32, y: u32| LinearRgba {
             color: LinearRgb::new(0.1, 0.4, 0.1),
-            alpha: f32::from((x / 8 + y / 8) % 3 > 0),
+            alpha: f32::from(!(x / 8 + y / 8).is_multiple_of(3)),
         };
         let leaves = Raster::from_fn([SIDE; 2], leaf).unwrap();
         write_color_alpha_png(folder.path("leaves.png"), &leaves, Depth::Eight).unwrap();

@@ -14,17 +14,13 @@ use std::fs;
 /// A folder with the maps `ao.png`, `rough.png` and `metal.png` of `checker.png`, all of them different.
 fn folder(name: &str) -> Folder {
     let folder = Folder::with_inputs(name);
-    let maps: [(&str, fn(u32, u32) -> u32); 3] = [
-        ("ao.png", |x, y| 55 + 3 * x + y),
-        ("rough.png", |x, y| 20 + (x * y) % 200),
-        ("metal.png", |x, y| {
-            255 * u32::from((x / 8 + y / 8) % 2 == 0)
-        }),
-    ];
-    for (name, code) in maps {
+    let write = |name: &str, code: fn(u32, u32) -> u32| {
         let plane = Raster::from_fn([32; 2], |x, y| code(x, y) as f32 / 255.0).unwrap();
         write_gray_png(folder.path(name), &plane, Depth::Eight).unwrap();
-    }
+    };
+    write("ao.png", |x, y| 55 + 3 * x + y);
+    write("rough.png", |x, y| 20 + (x * y) % 200);
+    write("metal.png", |x, y| 255 * ((x / 8 + y / 8) % 2));
     folder
 }
 
@@ -51,7 +47,8 @@ fn codes(image: &EncodedImage) -> Vec<[u16; 3]> {
 /// The image with occlusion, roughness and metalness of a model, which has one for all three.
 fn packed(model: &Model) -> Vec<[u16; 3]> {
     let image = model.material.metallic_roughness.as_ref().unwrap();
-    assert_eq!(model.material.occlusion.as_ref(), Some(image));
+    let occlusion = model.material.occlusion.as_ref();
+    assert!(occlusion == Some(image), "one image for all three");
     codes(image)
 }
 
@@ -413,6 +410,10 @@ fn heights_move_the_mesh_of_a_whole_material() {
         ["flat.glb", "high.glb", "low.glb"].map(|name| read_model(folder.path(name)).unwrap());
     for other in [&high, &low] {
         assert!(flat.uvs == other.uvs, "the layout is the same");
+        assert!(
+            flat.mesh.faces() == other.mesh.faces(),
+            "no crease has come to it"
+        );
         let [own, moved] = [&flat, other].map(|model| &model.material);
         assert!(own.base_color == moved.base_color && own.occlusion == moved.occlusion);
         assert!(moved.metallic_roughness == moved.occlusion && moved.occlusion.is_some());

@@ -5,7 +5,8 @@ use super::reading::Input;
 use super::{Args, advise};
 use crate::error::{Hint, usage};
 use anyhow::Result;
-use dapple::mesh::{CREASE, Model};
+use dapple::mesh::{Mesh, Model};
+use dapple::points::glam::{DQuat, DVec3};
 use dapple::raster::Raster;
 use dapple::recipe::MapKind;
 use dapple::synth::{Exemplar, SurfaceTexture, Synthesizer, displaced_mesh, displaced_sites};
@@ -26,8 +27,8 @@ impl Args {
 
     /// Moves the vertices of the mesh in a model, if that is asked for.
     ///
-    /// With a map of normals, which already says the slopes, the mesh keeps the normals in whose frames that map is;
-    /// otherwise it has those of its new shape.
+    /// With a map of normals, which already says the slopes, the mesh keeps the normals in whose frames that map is.
+    /// Otherwise the normals of its corners turn as those of its vertices do, so that it has no other creases than before.
     pub(super) fn displace_mesh(
         &self,
         model: &mut Model,
@@ -37,11 +38,11 @@ impl Args {
     ) -> Result<()> {
         if let Some(length) = self.surface.displace {
             let heights = heights(texture, input)?;
-            model.mesh = displaced_mesh(synthesizer, &heights, length).map_err(advise)?;
-            if model.material.normal.is_none() {
-                let crease = self.surface.crease().unwrap_or(CREASE);
-                model.corner_normals = Some(model.mesh.corner_normals(crease));
+            let mesh = displaced_mesh(synthesizer, &heights, length).map_err(advise)?;
+            if let (None, Some(corners)) = (&model.material.normal, &mut model.corner_normals) {
+                turn(corners, &model.mesh, &mesh);
             }
+            model.mesh = mesh;
         }
         Ok(())
     }
@@ -60,6 +61,24 @@ impl Args {
             model.normals = Some(model.mesh.vertex_normals());
         }
         Ok(())
+    }
+}
+
+/// Turns the normals of corners as those of the vertices turn from one shape of a mesh to another.
+fn turn(corners: &mut [[DVec3; 3]], from: &Mesh, to: &Mesh) {
+    let (before, after) = (from.vertex_normals(), to.vertex_normals());
+    let turn = |(&before, &after): (&DVec3, &DVec3)| {
+        if before.is_normalized() && after.is_normalized() {
+            DQuat::from_rotation_arc(before, after)
+        } else {
+            DQuat::IDENTITY
+        }
+    };
+    let turns: Vec<_> = before.iter().zip(&after).map(turn).collect();
+    for (face, corners) in from.faces().iter().zip(corners) {
+        for (vertex, corner) in face.iter().zip(corners) {
+            *corner = (turns[vertex.index()] * *corner).normalize_or(*corner);
+        }
     }
 }
 
