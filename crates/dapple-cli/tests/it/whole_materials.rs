@@ -1,6 +1,6 @@
 //! Meshes covered with all maps of a material.
 
-use crate::support::{Folder, assert_done, assert_refused, read_gray};
+use crate::support::{Folder, assert_done, assert_refused, read_gray, stdout};
 use dapple::color::{LinearRgb, LinearRgba};
 use dapple::image::{
     Depth, Image, Limits, PngPixels, decode_image, write_color_alpha_png, write_color_png,
@@ -76,6 +76,11 @@ fn maps_of_the_example_are_the_channels_of_the_material() {
         assert!(of_model == own, "{name}");
         assert!(own.iter().max() > own.iter().min(), "{name} is not flat");
     }
+    let info = stdout(&folder.run(&["info", "whole.glb"]));
+    assert!(
+        info.contains("a texture of roughness, a texture of occlusion"),
+        "{info}"
+    );
     let normal = model.material.normal.unwrap();
     assert!(normal.bytes() == fs::read(folder.path("whole_normal.png")).unwrap());
     // The texture is that without maps, and each map is that which is baked alone.
@@ -329,6 +334,8 @@ fn alpha_of_the_example_is_that_of_the_material() {
         }
         assert!(shown.count() > 20_000, "{name}");
     }
+    let info = stdout(&folder.run(&["info", "out.glb"]));
+    assert!(info.contains("alpha that cuts"), "{info}");
     // The texture alone is that of the model, and sites have alpha of their own.
     let line = "synth holes.png --mesh model.obj --sites 2000 --texture-size 256 -o out.png";
     assert_done(&folder.run(&line.split(' ').collect::<Vec<_>>()), line);
