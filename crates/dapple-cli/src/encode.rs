@@ -196,6 +196,14 @@ pub(crate) fn encode_with_alpha(
     Ok(rows.finish()?.into_inner())
 }
 
+/// Encodes three maps of numbers, which are the channels of one image, as the bytes of a file.
+pub(crate) fn encode_packed(pixels: &Raster<[f32; 3]>, format: Format) -> Result<Vec<u8>> {
+    let sink = Cursor::new(Vec::new());
+    let mut rows = RowWriter::new(sink, pixels.size(), Content::Packed, format.encoding())?;
+    rows.write_packed(pixels.view())?;
+    Ok(rows.finish()?.into_inner())
+}
+
 /// The content of an image of a map.
 pub(crate) fn content(map: &Map) -> Content {
     match map {

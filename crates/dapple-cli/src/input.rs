@@ -61,6 +61,31 @@ impl Loaded {
             LinearRgb::from_srgb([u16::from_unit(value); 3])
         }
     }
+
+    /// The numbers of a map that was made of this image, which has one at each pixel; a picture in color says them by how
+    /// light it is, in the codes of the file.
+    ///
+    /// # Errors
+    ///
+    /// If the map holds normals.
+    pub(crate) fn numbers(&self, map: &Map) -> Result<Raster<f32>> {
+        match map {
+            Map::Value(values) => Ok(values.clone()),
+            Map::Color(colors) => Ok(colors.map(|&color| self.value_of(color))),
+            Map::Normal(_) => Err(anyhow!("normals are no numbers")),
+        }
+    }
+
+    /// How light a color of a picture is, as a gray value of it.
+    fn value_of(&self, color: LinearRgb) -> f32 {
+        let lightness = color.luminance();
+        if self.is_linear {
+            lightness
+        } else {
+            let [code, ..] = LinearRgb::gray(lightness).to_srgb::<u16>();
+            code.to_unit()
+        }
+    }
 }
 
 /// Reads an image; `-` is standard input.

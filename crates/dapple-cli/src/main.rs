@@ -15,6 +15,7 @@ mod cli;
 mod commands;
 mod encode;
 mod error;
+mod exemplar;
 mod field;
 mod foresight;
 mod input;

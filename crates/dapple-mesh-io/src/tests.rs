@@ -3,7 +3,7 @@
 use super::*;
 use crate::test_meshes::cube;
 use dapple_color::{LinearRgb, LinearRgba};
-use dapple_mesh::{EncodedImage, Model};
+use dapple_mesh::{AlphaMode, EncodedImage, Model};
 use glam::{DVec2, DVec3};
 use proptest::collection::vec;
 use proptest::prelude::*;
@@ -204,3 +204,23 @@ const WORDS: &[&str] = &[
     "texcoord",
     "end_header",
 ];
+
+#[test]
+fn alpha_that_cuts_or_blends_reads_back_from_gltf() {
+    let back = |model: &Model| {
+        let bytes = gltf::write(model).expect("it is valid");
+        gltf::read(&bytes).expect("it is valid").material.alpha
+    };
+    for alpha in [AlphaMode::Opaque, AlphaMode::Mask, AlphaMode::Blend] {
+        let mut model = model();
+        model.material.alpha = alpha;
+        assert_eq!(back(&model), alpha);
+    }
+    let mut clear = model();
+    clear.material.base_color_factor.alpha = 0.5;
+    assert_eq!(
+        back(&clear),
+        AlphaMode::Blend,
+        "a factor that is not opaque"
+    );
+}

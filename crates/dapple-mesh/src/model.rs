@@ -59,11 +59,26 @@ pub struct Material {
     pub metallic_roughness: Option<EncodedImage>,
     /// Ambient occlusion in red; it may be the image of metalness and roughness, which then holds all three.
     pub occlusion: Option<EncodedImage>,
+    /// What the alpha of the base color does.
+    pub alpha: AlphaMode,
     /// Whether textures may be shown by the coarser levels of a mipmap; true by default. Where pieces of a texture lie
     /// close to each other, those mix pieces that are far apart on the mesh.
     pub mipmaps: bool,
     /// Whether the back of a face is seen, too; false by default.
     pub double_sided: bool,
+}
+
+/// What alpha does, that of the texture of the base color times that of its factor.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum AlphaMode {
+    /// Nothing: all is opaque. A factor that is not opaque blends.
+    #[default]
+    Opaque,
+    /// It cuts: what has an alpha of at least one half is opaque, and the rest is not there.
+    Mask,
+    /// It blends what is there with what lies behind.
+    Blend,
 }
 
 /// The bytes of an image file. They are not decoded; only their first ones are looked at.
@@ -153,6 +168,7 @@ impl Default for Material {
             normal: None,
             metallic_roughness: None,
             occlusion: None,
+            alpha: AlphaMode::Opaque,
             mipmaps: true,
             double_sided: false,
         }

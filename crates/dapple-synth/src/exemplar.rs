@@ -120,6 +120,66 @@ impl Exemplar {
         })
     }
 
+    /// This exemplar with the channels of another of its size beside its own, each with the weight of its squared
+    /// differences: a material whose colors are matched together with its heights, say. The edges, mask and guides are those
+    /// of this one.
+    ///
+    /// # Errors
+    ///
+    /// [`SynthErrorKind::Count`] for one of another size, and [`SynthErrorKind::Range`] for a weight that is not above zero
+    /// and finite, and for values that are, weighted, beyond 10^12.
+    ///
+    /// # Examples
+    ///
+    /// Heights that count half as much as one channel of the colors.
+    ///
+    /// ```
+    /// use dapple_color::LinearRgb;
+    /// use dapple_raster::Raster;
+    /// use dapple_synth::{Edges, Exemplar};
+    ///
+    /// let height = Raster::from_fn([16, 16], |x, y| f32::from((x / 4 + y / 4) % 2 == 0))?;
+    /// let color = height.map(|&height| LinearRgb::gray(0.2 + 0.1 * height));
+    /// let heights = Exemplar::from_planes(&[(&height, 1.0)], Edges::Wrap)?;
+    /// let material = Exemplar::new(&color, Edges::Wrap)?.with_channels(&heights, 0.5)?;
+    /// assert_eq!(material.n_channels(), 4);
+    /// # Ok::<(), dapple_synth::SynthError>(())
+    /// ```
+    pub fn with_channels(self, other: &Self, weight: f32) -> Result<Self, SynthError> {
+        for (axis, what) in [
+            "columns of the added channels",
+            "rows of the added channels",
+        ]
+        .into_iter()
+        .enumerate()
+        {
+            if other.size[axis] != self.size[axis] {
+                return Err(SynthError::new(SynthErrorKind::Count {
+                    what,
+                    count: other.size[axis] as usize,
+                    needed: "as many as the exemplar has",
+                }));
+            }
+        }
+        let root = roots(&[weight])?[0];
+        let counts = [self.n_channels, other.n_channels];
+        let mut pixels = Vec::with_capacity(self.pixels.len() + other.pixels.len());
+        let own = self.pixels.chunks_exact(counts[0].max(1));
+        for (own, beside) in own.zip(other.pixels.chunks_exact(counts[1].max(1))) {
+            pixels.extend_from_slice(own);
+            for value in beside {
+                let scaled = value * root;
+                check_weighted(scaled)?;
+                pixels.push(scaled);
+            }
+        }
+        Ok(Self {
+            n_channels: counts[0] + counts[1],
+            pixels,
+            ..self
+        })
+    }
+
     /// This exemplar without the pixels at which a mask is false: no texture has them, nor any pixel whose neighborhood
     /// they are in.
     ///
@@ -346,6 +406,13 @@ fn check_finite(value: f32, pixel: usize, width: u32) -> Result<(), SynthError> 
     }))
 }
 
+/// Refuses a value, times the root of its weight, whose squares could overflow.
+fn check_weighted(scaled: f32) -> Result<(), SynthError> {
+    let holds = scaled.abs() <= MAX_VALUE;
+    let range = "from -1e12 to 1e12";
+    SynthError::check(holds, "weighted value of a pixel", scaled.into(), range)
+}
+
 /// The roots of weights, which are to be above zero and finite.
 pub(crate) fn roots(weights: &[f32]) -> Result<Vec<f32>, SynthError> {
     for &weight in weights {
@@ -368,9 +435,7 @@ pub(crate) fn interleaved(planes: &[&Raster<f32>], roots: &[f32]) -> Result<Vec<
         for (pixel, &value) in plane.pixels().iter().enumerate() {
             let scaled = value * root;
             check_finite(scaled, pixel, plane.width())?;
-            let holds = scaled.abs() <= MAX_VALUE;
-            let range = "from -1e12 to 1e12";
-            SynthError::check(holds, "weighted value of a pixel", scaled.into(), range)?;
+            check_weighted(scaled)?;
             pixels[pixel * n_channels + channel] = scaled;
         }
     }

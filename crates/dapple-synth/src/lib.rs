@@ -41,7 +41,7 @@
 //!
 //! So other maps of the exemplar can follow: [`bake_values`] and [`bake_normals`] write heights, roughness and normals to
 //! texture maps with the same [`Atlas`] as [`bake_colors`] does colors. What is to be matched and what only follows is the
-//! caller's choice: see [`Exemplar::from_planes`] and the example of [`bake_values`]. [`textured_model`] and [`site_model`] make what file formats take, [`displaced_sites`] moves the mesh
+//! caller's choice: see [`Exemplar::from_planes`], [`Exemplar::with_channels`] and the example of [`bake_values`]. [`textured_model`] and [`site_model`] make what file formats take, [`displaced_sites`] moves the mesh
 //! itself.
 //!
 //! [`Synthesizer`] keeps all that does not depend on the exemplar; it can be used again, reports its progress and can be
@@ -164,7 +164,7 @@ pub use engine::Progress;
 pub use error::{SynthError, SynthErrorKind};
 pub use exemplar::{Edges, Exemplar, Pyramid};
 pub use likeness::Likeness;
-pub use maps::{bake_colors, bake_values};
+pub use maps::{bake_colors, bake_colors_alpha, bake_values};
 pub use matcher::{Match, Matcher, MatcherMemory, distance_sq};
 pub use neighborhood::{Part, Pass, Reads, Schedule, Shape};
 pub use options::{Axes, Coherence, Options, Sources};

@@ -10,7 +10,7 @@
 use crate::detail::Detail;
 use crate::magnify::magnify;
 use crate::{Atlas, SurfaceTexture, SynthError, SynthErrorKind, Synthesizer, bake};
-use dapple_color::{Code, LinearRgb};
+use dapple_color::{Code, LinearRgb, LinearRgba};
 use dapple_raster::Raster;
 
 /// Bakes colors: the exemplar, a map of it, or a version that is a whole number of times as large.
@@ -36,6 +36,46 @@ pub fn bake_colors(
     let codes = map.par_map(|color| color.to_srgb::<u16>().map(code));
     let map = bake_map(synthesizer, texture, codes, atlas)?;
     Ok(map.par_map(|codes| LinearRgb::from_srgb(codes.map(u16::from_unit))))
+}
+
+/// Bakes colors with their alpha, as [`bake_colors`] does those without.
+///
+/// Colors are mixed as far as they are there, so that the color of what is transparent does not show at its edge. Where all
+/// is transparent they are mixed as if it were not. Alpha is clamped to 0 to 1.
+///
+/// # Errors
+///
+/// Those of [`bake_colors`].
+pub fn bake_colors_alpha(
+    synthesizer: &Synthesizer,
+    texture: &SurfaceTexture,
+    map: &Raster<LinearRgba>,
+    atlas: &Atlas,
+) -> Result<Raster<LinearRgba>, SynthError> {
+    for pixel in map.pixels() {
+        for part in pixel.color.to_array() {
+            check_finite("part of a color", part)?;
+        }
+        check_finite("alpha", pixel.alpha)?;
+    }
+    let codes = map.par_map(|pixel| {
+        let code = |code: u16| f32::from(code) / f32::from(u16::MAX);
+        let [r, g, b] = pixel.color.to_srgb::<u16>().map(code);
+        let alpha = pixel.alpha.clamp(0.0, 1.0);
+        [r * alpha, g * alpha, b * alpha, alpha, r, g, b]
+    });
+    let map = bake_map(synthesizer, texture, codes, atlas)?;
+    Ok(map.par_map(|&[r, g, b, alpha, plain @ ..]| {
+        let codes = if alpha > 0.0 {
+            [r / alpha, g / alpha, b / alpha]
+        } else {
+            plain
+        };
+        LinearRgba {
+            color: LinearRgb::from_srgb(codes.map(u16::from_unit)),
+            alpha: alpha.clamp(0.0, 1.0),
+        }
+    }))
 }
 
 /// Bakes values, such as heights or roughness, which are mixed as they are.

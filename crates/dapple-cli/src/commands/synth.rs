@@ -1,7 +1,9 @@
 //! `dapple synth`: texture from an example, in the plane or on a mesh.
 
 mod corners;
+mod displace;
 mod guides;
+mod material;
 mod options;
 mod plane;
 mod reading;
@@ -31,8 +33,15 @@ Examples:
   dapple synth grass.png --example sand.png --which mask.png -o garden.png
   dapple synth grass.png --size 300x200 --map normal=grass_normal.png \\
     --seed 7 -o meadow.png
+  dapple synth rock.png --size 128 --map height=rock_height.png \\
+    --weight height=0.5 -o cliff.png
   dapple synth checker.png --mesh model.obj --edges wrap --sites 4000 \\
     --texture-size 512 -o checkered.glb
+  dapple synth rock.png --map normal=rock_normal.png --map ao=cracks.png \\
+    --map roughness=rock_height.png --mesh model.obj --sites 4000 -o rocky.glb
+  dapple synth leaves.png --mesh model.obj --sites 4000 -o hedge.glb
+  dapple synth rock.png --map height=rock_height.png --displace 0.05 \\
+    --mesh model.obj --sites 4000 -o rocky.ply
   dapple synth checker.png --mesh model.obj --sites 4000 \\
     --directions directions.csv -o checkered.ply
   dapple synth checker.png --mesh model.obj --sites 4000 \\
@@ -40,6 +49,9 @@ Examples:
 
 The example is best 64 to 256 pixels wide: its features should be a tenth of it or
 less. More sites make the features smaller on the mesh, and take longer.
+
+Where the example is transparent, so is the texture. In GLB its alpha cuts, if more
+pixels of the example are clear than in between, and else it blends.
 
 Directions are lines x,y,z,dx,dy,dz (CSV) or [{\"at\": [x,y,z], \"vector\": [dx,dy,dz]}]
 (JSON): at a place on the mesh, where the down of the example points. One or a few are
@@ -54,7 +66,8 @@ pub(crate) struct Args {
     exemplar: PathBuf,
 
     /// Another map of the example that follows it, such as normal=FILE or roughness=FILE; may be given several times. It is
-    /// written beside the output as `NAME_MAP`; in GLB and OBJ, normal goes into the material.
+    /// written beside the output as `NAME_MAP`. Into the material of a mesh go normal, and in GLB also roughness, metallic
+    /// and ao.
     #[arg(long, value_name = "NAME=IMAGE")]
     map: Vec<MapArg>,
 
@@ -137,6 +150,9 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
 impl Args {
     /// Refuses options that have no effect with or without a mesh.
     fn check_used(&self) -> Result<()> {
+        material::check_names(&self.map)?;
+        self.check_displacement()?;
+        self.matching.check_weights(&self.map_names())?;
         let surface = self.surface.given();
         match (&self.surface.mesh, self.plane.given(), surface) {
             (Some(_), Some(option), _) => Err(usage(format!("--{option} has no effect on a mesh"))),

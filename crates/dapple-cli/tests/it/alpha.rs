@@ -102,7 +102,7 @@ fn alpha_is_dropped_or_laid_over_a_color_where_asked() {
 fn alpha_that_has_nowhere_to_go_is_refused_with_the_option() {
     let folder = folder("nowhere");
     for line in [
-        "synth leaf.png --mesh model.obj --sites 500 -o out.glb",
+        "synth checker.png --region 0,0,32,32 --map cover=leaf.png --mesh model.obj --sites 500 -o out.glb",
         "blend rock.png photo.png,weight=leaf.png --size 32 -o out.png",
         "blend rock.png,height=leaf.png photo.png,height=leaf.png --size 32 -o out.png",
     ] {

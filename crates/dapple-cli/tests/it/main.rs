@@ -22,4 +22,5 @@ mod studio;
 mod support;
 mod synthesis;
 mod watch;
+mod whole_materials;
 mod words;

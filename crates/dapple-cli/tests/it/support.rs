@@ -1,9 +1,9 @@
 //! Test folders with inputs, and running the command in them.
 
-use dapple::color::{LinearRgb, Normal};
+use dapple::color::{LinearRgb, LinearRgba, Normal};
 use dapple::image::{
-    Depth, Limits, read_image, write_color_exr, write_color_png, write_gray_exr, write_gray_png,
-    write_normal_png,
+    Depth, Limits, read_image, write_color_alpha_png, write_color_exr, write_color_png,
+    write_gray_exr, write_gray_png, write_normal_png,
 };
 use dapple::mesh::Model;
 use dapple::mesh_io::write_model;
@@ -60,6 +60,12 @@ impl Folder {
         for name in ["height", "mask", "cracks", "rock_height", "grass_height"] {
             write_gray_png(folder.path(&format!("{name}.png")), &gray(), Depth::Sixteen).unwrap();
         }
+        let leaf = |x: u32, y: u32| LinearRgba {
+            color: LinearRgb::new(0.1, 0.4, 0.1),
+            alpha: f32::from(!(x / 8 + y / 8).is_multiple_of(3)),
+        };
+        let leaves = Raster::from_fn([SIDE; 2], leaf).unwrap();
+        write_color_alpha_png(folder.path("leaves.png"), &leaves, Depth::Eight).unwrap();
         let scratch = |x: u32, y: u32| f32::from((28..36).contains(&x) && (20..44).contains(&y));
         let scratch = Raster::from_fn([SIDE; 2], scratch).unwrap();
         write_gray_png(folder.path("scratch.png"), &scratch, Depth::Eight).unwrap();

@@ -8,7 +8,8 @@
 //! one node with the same attributes share their vertices. Where only some primitives have colors or texture
 //! coordinates, the others become white and zero; normals are kept only if all have them. The material is the first
 //! that a primitive has. Textures are copied unchanged if they are PNG or JPEG and use the same texture coordinates as
-//! the base color; their samplers and transforms are left out, as are all properties that [`Material`] lacks.
+//! the base color; their samplers and transforms are left out, as are all properties that [`Material`] lacks, such as a
+//! cutoff of alpha other than one half.
 //!
 //! At a seam of the texture a glTF file has two vertices at one position; [`Mesh::repair`](dapple_mesh::Mesh::repair)
 //! merges them. Texture coordinates belong to corners and are not affected;
@@ -34,7 +35,7 @@ use super::{Beside, MaterialPlace, MeshFormat, Writer, alone};
 use crate::{MeshIoError, MeshIoErrorKind};
 use container::{Container, percent_decoded};
 use dapple_color::LinearRgba;
-use dapple_mesh::{EncodedImage, Material, Model};
+use dapple_mesh::{AlphaMode, EncodedImage, Material, Model};
 use document::{Document, Head, TextureInfo};
 use serde::Deserialize;
 use std::borrow::Cow;
@@ -172,6 +173,11 @@ impl Source<'_> {
             normal: image(material.normal_texture),
             metallic_roughness: image(pbr.and_then(|pbr| pbr.metallic_roughness_texture)),
             occlusion: image(material.occlusion_texture),
+            alpha: match material.alpha_mode.as_deref() {
+                Some("MASK") => AlphaMode::Mask,
+                Some("BLEND") => AlphaMode::Blend,
+                _ => AlphaMode::Opaque,
+            },
             double_sided: material.double_sided,
             ..Material::default()
         }

@@ -56,13 +56,14 @@ impl MapKind {
         Self::Orm,
     ];
 
-    /// The map with a name; `basecolor` and `base_color` are the albedo.
+    /// The map with a name; `basecolor` and `base_color` are the albedo, and `occlusion` is `ao`.
     #[must_use]
     pub fn from_name(name: &str) -> Option<Self> {
-        if let "basecolor" | "base_color" = name {
-            return Some(Self::Albedo);
+        match name {
+            "basecolor" | "base_color" => Some(Self::Albedo),
+            "occlusion" => Some(Self::Occlusion),
+            _ => Self::ALL.into_iter().find(|kind| kind.name() == name),
         }
-        Self::ALL.into_iter().find(|kind| kind.name() == name)
     }
 
     /// The name of the map in file names and on the command line.

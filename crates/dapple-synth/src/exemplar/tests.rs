@@ -320,3 +320,35 @@ fn reduced_exemplars_are_means_of_squares() {
         assert!(is_range, "{factor}");
     }
 }
+
+#[test]
+fn channels_beside_others_are_those_of_planes_with_their_weights() {
+    let plane = |channel: u64| {
+        let value = move |x: u32, y: u32| {
+            unit_f32((hash2(Seed(channel), [x.into(), y.into()], 0) >> 32) as u32)
+        };
+        Raster::from_fn([7, 5], value).unwrap()
+    };
+    let planes = [0, 1, 2].map(plane);
+    let [a, b, c] = [0, 1, 2].map(|at| (&planes[at], 1.0));
+    let one = |planes: &[(&Raster<f32>, f32)]| Exemplar::from_planes(planes, Edges::Wrap).unwrap();
+    let mask = Raster::from_fn([7, 5], |x, _| x > 2).unwrap();
+    let joined = one(&[a]).with_mask(&mask).unwrap();
+    let joined = joined.with_channels(&one(&[b, c]), 0.3).unwrap();
+    let expected = one(&[a, (b.0, 0.3), (c.0, 0.3)]);
+    assert_eq!(joined, expected.with_mask(&mask).unwrap());
+
+    let other = one(&[b, c]);
+    for weight in [0.0, -1.0, f32::NAN, f32::INFINITY] {
+        let refused = kind(one(&[a]).with_channels(&other, weight));
+        assert!(matches!(refused, SynthErrorKind::Range { .. }), "{weight}");
+    }
+    let refused = kind(one(&[a]).with_channels(&other, 1e30));
+    assert!(matches!(refused, SynthErrorKind::Range { .. }), "too large");
+    let other = noise([5, 7], 1, Edges::Wrap);
+    let refused = kind(one(&[a]).with_channels(&other, 1.0));
+    assert!(
+        matches!(refused, SynthErrorKind::Count { count: 5, .. }),
+        "another size"
+    );
+}

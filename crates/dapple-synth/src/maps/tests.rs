@@ -69,6 +69,50 @@ fn colors_are_mixed_in_their_codes_and_stay_what_they_are_where_all_are_alike() 
 }
 
 #[test]
+fn what_is_transparent_lends_no_color_to_its_edge() {
+    let (sphere, atlas) = case();
+    let red = LinearRgb::from_srgb([240_u8, 20, 10]);
+    let pixel = |value: f32| match value > 0.5 {
+        true => LinearRgba::opaque(red),
+        false => LinearRgba {
+            color: LinearRgb::new(0.0, 1.0, 0.0),
+            alpha: 0.0,
+        },
+    };
+    let pixels: Vec<_> = random().into_iter().map(pixel).collect();
+    let alphas: Vec<_> = pixels.iter().map(|pixel| pixel.alpha).collect();
+    let texture = pixel_per_site(N);
+    let map = bake_colors_alpha(&sphere, &texture, &row(&pixels), &atlas).unwrap();
+    let alone = bake_values(&sphere, &texture, &row(&alphas), &atlas).unwrap();
+    let mut n_mixed = 0;
+    for (pixel, &alpha) in map.pixels().iter().zip(alone.pixels()) {
+        assert_eq!(pixel.alpha, alpha);
+        n_mixed += usize::from(alpha > 0.1 && alpha < 0.9);
+        if alpha > 0.01 {
+            assert_eq!(pixel.color.to_srgb::<u8>(), red.to_srgb::<u8>(), "{alpha}");
+        }
+    }
+    assert!(n_mixed > 1000, "{n_mixed} texels");
+
+    // Opaque colors are those that are baked without alpha, up to a rounding of codes.
+    let colors: Vec<_> = random().into_iter().map(LinearRgb::gray).collect();
+    let opaque: Vec<_> = colors.iter().copied().map(LinearRgba::opaque).collect();
+    let with = bake_colors_alpha(&sphere, &texture, &row(&opaque), &atlas).unwrap();
+    let without = bake_colors(&sphere, &texture, &row(&colors), &atlas).unwrap();
+    for (with, without) in with.pixels().iter().zip(without.pixels()) {
+        let [with, without] = [with.color, *without].map(|color| color.to_srgb::<u16>()[0]);
+        assert!(with.abs_diff(without) <= 1, "{with} and {without}");
+    }
+    for bad in [f32::NAN, f32::INFINITY] {
+        let mut pixels = pixels.clone();
+        pixels[5].alpha = bad;
+        let error = bake_colors_alpha(&sphere, &texture, &row(&pixels), &atlas).unwrap_err();
+        let is_alpha = matches!(error.kind(), SynthErrorKind::Range { what: "alpha", .. });
+        assert!(is_alpha, "{error}");
+    }
+}
+
+#[test]
 fn texels_without_a_face_have_the_mean_of_all_sites() {
     let (sphere, atlas) = case();
     let map = bake_values(&sphere, &pixel_per_site(N), &row(&random()), &atlas).unwrap();

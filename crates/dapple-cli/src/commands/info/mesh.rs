@@ -3,7 +3,7 @@
 use super::Findings;
 use crate::input;
 use anyhow::Result;
-use dapple::mesh::{MeshReport, Model, Surface};
+use dapple::mesh::{AlphaMode, MeshReport, Model, Surface};
 use dapple::points::glam::DVec3;
 use serde_json::{Value, json};
 use std::path::Path;
@@ -104,11 +104,14 @@ fn columns(model: &Model) -> Vec<&'static str> {
         ),
         ("two sides", material.double_sided),
         ("a texture of colors", material.base_color.is_some()),
+        ("alpha that cuts", material.alpha == AlphaMode::Mask),
+        ("alpha that blends", material.alpha == AlphaMode::Blend),
         ("a texture of normals", material.normal.is_some()),
         (
             "a texture of roughness",
             material.metallic_roughness.is_some(),
         ),
+        ("a texture of occlusion", material.occlusion.is_some()),
     ];
     let there = all.into_iter().filter(|(_, is_there)| *is_there);
     there.map(|(what, _)| what).collect()

@@ -1,12 +1,15 @@
 //! The options of `dapple synth`.
 
 use crate::args::{Axes, Size, seed};
+use crate::error::{Hint, usage};
 use crate::input::mesh_endings;
 use crate::words::Word;
+use anyhow::Result;
 use dapple::hash::Seed;
 use dapple::synth::{Axes as FieldAxes, Coherence, Edges, HierarchyOptions, Options};
 use serde::Serialize;
 use std::path::PathBuf;
+use std::str::FromStr;
 
 dapple::raster::named! {
     /// How a mesh is laid out in a texture.
@@ -87,6 +90,11 @@ pub(super) struct SurfaceArgs {
     #[arg(long, value_name = "DEGREES", value_parser = angle)]
     crease: Option<f64>,
 
+    /// Move the surface along its normals by the map height times this length, in units of the mesh; inward if it is negative.
+    /// GLB and OBJ move the vertices of the mesh, and show what is coarser than its faces; PLY moves all sites.
+    #[arg(long, value_name = "LENGTH", value_parser = length, allow_negative_numbers = true)]
+    pub(super) displace: Option<f64>,
+
     /// Which way neighborhoods go on over the surface; by default followed.
     #[arg(long, value_name = "HOW", value_parser = Word::<FieldAxes>::all())]
     axes: Option<FieldAxes>,
@@ -108,6 +116,16 @@ pub(super) struct MatchArgs {
     #[arg(long, value_name = "N", default_value_t = 3)]
     levels: usize,
 
+    /// How much a map counts in the match beside one channel of the example, such as height=0.5; once for each map. By default
+    /// 0: a map only follows.
+    #[arg(
+        long,
+        value_name = "NAME=N",
+        requires = "map",
+        conflicts_with = "replay"
+    )]
+    weight: Vec<WeightArg>,
+
     /// How much worse a match may be that continues what lies beside it, at least 0: higher copies larger pieces. By
     /// default auto, which is 2, or 0 on finer levels where the example is regular; 0 with --paper.
     #[arg(long, value_name = "auto|N")]
@@ -121,6 +139,39 @@ pub(super) struct MatchArgs {
     /// colors of sites, and are softer than the example.
     #[arg(long)]
     pub(super) paper: bool,
+}
+
+/// A length, which may be negative.
+fn length(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(length) if length.is_finite() => Ok(length),
+        _ => Err(format!("{text:?} is not a length")),
+    }
+}
+
+/// The weight of a map, which has a name.
+#[derive(Clone, Debug, Serialize)]
+struct WeightArg {
+    name: String,
+    weight: f32,
+}
+
+impl FromStr for WeightArg {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let parts = text.split_once('=');
+        let parts = parts.and_then(|(name, weight)| Some((name, weight.parse::<f32>().ok()?)));
+        match parts {
+            Some((name, weight)) if weight >= 0.0 && weight.is_finite() => Ok(Self {
+                name: name.to_owned(),
+                weight,
+            }),
+            _ => Err(format!(
+                "{text:?} is not a weight: give NAME=N, such as height=0.5, with N at least 0"
+            )),
+        }
+    }
 }
 
 /// An angle from 0 to 180 degrees.
@@ -164,6 +215,7 @@ impl SurfaceArgs {
             ("atlas", self.atlas.is_some()),
             ("padding", self.padding.is_some()),
             ("crease", self.crease.is_some()),
+            ("displace", self.displace.is_some()),
             ("axes", self.axes.is_some()),
         ];
         given
@@ -202,6 +254,31 @@ impl SurfaceArgs {
 }
 
 impl MatchArgs {
+    /// How much the map with a name counts in the match.
+    pub(super) fn weight_of(&self, name: &str) -> f32 {
+        let given = self.weight.iter().find(|weight| weight.name == name);
+        given.map_or(0.0, |given| given.weight)
+    }
+
+    /// Refuses weights of maps that are not there, and two of one map.
+    ///
+    /// # Errors
+    ///
+    /// If there are such, with the name.
+    pub(super) fn check_weights(&self, maps: &[&str]) -> Result<()> {
+        for (at, WeightArg { name, .. }) in self.weight.iter().enumerate() {
+            if !maps.contains(&name.as_str()) {
+                let error = usage(format!("--weight {name}: there is no --map {name}"));
+                return Err(error.hint(format!("maps are {}", maps.join(", "))));
+            }
+            if self.weight[..at].iter().any(|other| other.name == *name) {
+                let error = usage(format!("--weight {name} is given twice"));
+                return Err(error.hint("leave one of them out"));
+            }
+        }
+        Ok(())
+    }
+
     /// The options of the library.
     pub(super) fn options(&self, surface: &SurfaceArgs) -> Options {
         let default = if self.paper {

@@ -1,15 +1,17 @@
 //! The images of a synthesis: examples, their maps, masks and guides.
 
 use super::guides::Guide;
+use super::material::is_of;
 use super::{Args, MapArg, advise};
 use crate::args::Alpha;
 use crate::error::{Hint, usage};
+use crate::exemplar::exemplar_of;
 use crate::input::{self, Kind, Loaded};
 use anyhow::{Result, bail};
 use dapple::color::{LinearRgb, Normal};
 use dapple::raster::Raster;
-use dapple::recipe::ImageAlpha;
-use dapple::synth::{Edges, Exemplar, SideBySide};
+use dapple::recipe::{ImageAlpha, MapKind};
+use dapple::synth::{Edges, Exemplar, SideBySide, SynthError};
 use dapple::tile::Map;
 use std::path::{Path, PathBuf};
 
@@ -41,12 +43,7 @@ impl Args {
             1 => self.matching.edges,
             _ => Edges::Cut,
         };
-        let exemplar = match &example.map {
-            Map::Color(colors) => Exemplar::new(colors, edges),
-            Map::Value(values) => Exemplar::from_planes(&[(values, 1.0)], edges),
-            Map::Normal(_) => bail!("normals are no example"),
-        };
-        let mut exemplar = exemplar.map_err(advise)?;
+        let mut exemplar = exemplar_of(&example.map, edges).map_err(advise)?;
         let hole = self.plane.repair.as_deref();
         let hole = hole
             .map(|path| self.load_mask(path, exemplar.size()))
@@ -75,10 +72,11 @@ impl Args {
             Some(path) => self.load_detail(path, exemplar.size())?,
         };
         let shown = self.detail.as_ref().map_or(paths, |path| vec![path]);
+        let maps = self.load_maps(&layout, &shown, base.map.size())?;
         Ok(Input {
-            maps: self.load_maps(&layout, &shown, base.map.size())?,
+            exemplar: self.with_weighted(exemplar, &maps).map_err(advise)?,
             base,
-            exemplar,
+            maps,
             hole,
             guides,
         })
@@ -109,13 +107,21 @@ impl Args {
                 let hint = format!("give --map {name}=IMAGE once for each example, in their order");
                 return Err(usage(message).hint(hint));
             }
-            let kind = match name.as_str() {
-                "normal" => Kind::Normals,
-                _ => Kind::ByChannels,
+            let kind = if is_of(&name, MapKind::Normal) {
+                Kind::Normals
+            } else {
+                Kind::ByChannels
             };
             let mut images = Vec::new();
             for (image, (path, example)) in paths.into_iter().zip(shown).enumerate() {
                 let map = self.load(path, kind)?;
+                if map.alpha.is_some() && self.surface.mesh.is_some() {
+                    let message = format!(
+                        "{} is partly transparent, which maps on a mesh cannot be",
+                        input::name(path)
+                    );
+                    return Err(usage(message).hint(input::ALPHA_HINT));
+                }
                 let size = if shown.len() > 1 {
                     layout.size_of(image)
                 } else {
@@ -128,6 +134,24 @@ impl Args {
             loaded.push((name, joined(layout, images)?));
         }
         Ok(loaded)
+    }
+
+    /// The exemplar with the maps that count in the match.
+    fn with_weighted(
+        &self,
+        mut exemplar: Exemplar,
+        maps: &[(String, Loaded)],
+    ) -> Result<Exemplar, SynthError> {
+        for (name, Loaded { map, .. }) in maps {
+            let weight = self.matching.weight_of(name);
+            if weight > 0.0 {
+                // Beside a larger version of the example, maps have its size.
+                let factor = map.size()[0] / exemplar.size()[0];
+                let map = exemplar_of(map, exemplar.edges())?.reduced(factor)?;
+                exemplar = exemplar.with_channels(&map, weight)?;
+            }
+        }
+        Ok(exemplar)
     }
 
     /// Reads a mask as large as the example: whether its pixels are nearer to white than to black.
@@ -161,17 +185,9 @@ impl Args {
         Err(error.hint("make the example from it, by a whole number of pixels for one"))
     }
 
-    /// Reads an image, and refuses alpha where there is no room for it.
+    /// Reads an image.
     fn load(&self, path: &Path, kind: Kind) -> Result<Loaded> {
-        let loaded = input::map_with_alpha(path, kind, self.region, self.alpha.alpha)?;
-        if loaded.alpha.is_some() && self.surface.mesh.is_some() {
-            let message = format!(
-                "{} is partly transparent, which a mesh cannot keep",
-                input::name(path)
-            );
-            return Err(usage(message).hint(input::ALPHA_HINT));
-        }
-        Ok(loaded)
+        input::map_with_alpha(path, kind, self.region, self.alpha.alpha)
     }
 }
 

@@ -1,10 +1,11 @@
 //! Synthesis on a mesh, and the files that it gives.
 
 use super::corners::{own_uvs, shading};
+use super::material::{MaterialMaps, alpha_mode, is_of};
 use super::options::AtlasName;
 use super::reading::Input;
 use super::{Args, STEPS, advise, guides, shown};
-use crate::encode::{Format, default_format, encode, ramped};
+use crate::encode::{Format, default_format, encode, encode_with_alpha, ramped};
 use crate::error::{Exit, Hint, usage};
 use crate::input;
 use crate::job::{Context, Job, eprintln_if_possible};
@@ -15,9 +16,11 @@ use dapple::color::{LinearRgba, NormalY};
 use dapple::mesh::{EncodedImage, Mesh, Model, Repair, Surface};
 use dapple::mesh_io::{FORMATS, MaterialPlace, MeshFormat, writable_endings};
 use dapple::points::glam::DVec3;
+use dapple::raster::Raster;
+use dapple::recipe::MapKind;
 use dapple::synth::{
-    Atlas, Direction, SurfaceTexture, Synthesizer, bake_colors, bake_normals, bake_values,
-    site_model, textured_model,
+    Atlas, Direction, SurfaceTexture, Synthesizer, bake_colors, bake_colors_alpha, bake_normals,
+    bake_values, site_model, textured_model,
 };
 use dapple::tile::Map;
 use serde_json::json;
@@ -50,7 +53,8 @@ struct Claimed {
     main: OutputIdx,
     /// The files beside that of the mesh, such as material and textures, with their names.
     beside: Vec<(String, OutputIdx)>,
-    maps: Vec<OutputIdx>,
+    /// The files of the maps, but for those that are beside the mesh already.
+    maps: Vec<Option<OutputIdx>>,
     /// The format of textures that are files of their own.
     format: Format,
 }
@@ -72,7 +76,10 @@ pub(super) fn run(args: &Args, mesh: &Path, context: &Context) -> Result<Exit> {
     };
     let shading = shading(args.surface.crease(), &surface, &model, &repair);
     let laid_out = atlas.as_ref().map(|atlas| atlas.report(&surface));
-    let double_sided = model.material.double_sided || repair.before.back_to_back_faces > 0;
+    // Through what is transparent the inside is seen.
+    let double_sided = model.material.double_sided
+        || repair.before.back_to_back_faces > 0
+        || input.base.alpha.is_some();
     let spinner = Progress::spinner("scattering sites", context);
     let sites = args.surface.sites(&args.matching);
     let synthesizer = Synthesizer::new(surface, &directions(args)?, &sites).map_err(advise)?;
@@ -190,10 +197,23 @@ impl Covered {
         })
     }
 
+    /// The texture that is shown, and its alpha if the example has one.
+    fn bake_base(&self) -> Result<(Map, Option<Raster<f32>>)> {
+        let base = &self.input.base;
+        let (Map::Color(colors), Some(alpha), Some(atlas)) = (&base.map, &base.alpha, &self.atlas)
+        else {
+            return Ok((self.bake(&base.map)?, None));
+        };
+        let pixels = colors.zip_map(alpha, |&color, &alpha| LinearRgba { color, alpha })?;
+        let baked = bake_colors_alpha(&self.synthesizer, &self.texture, &pixels, atlas)?;
+        let alpha = baked.map(|pixel| pixel.alpha);
+        Ok((Map::Color(baked.map(|pixel| pixel.color)), Some(alpha)))
+    }
+
     /// The colors of the sites.
     fn site_colors(&self, args: &Args) -> Result<Vec<LinearRgba>> {
         let map = ramped(self.input.base.map.clone(), args.image.ramp.as_ref());
-        let colors = match &map {
+        let colors: Vec<_> = match &map {
             Map::Color(raster) => self.texture.transfer(raster)?,
             Map::Value(raster) => {
                 let values = self.texture.transfer(raster)?;
@@ -202,7 +222,12 @@ impl Covered {
             }
             Map::Normal(_) => bail!("normals are no colors"),
         };
-        Ok(colors.into_iter().map(LinearRgba::opaque).collect())
+        let Some(alpha) = &self.input.base.alpha else {
+            return Ok(colors.into_iter().map(LinearRgba::opaque).collect());
+        };
+        let pixels = colors.into_iter().zip(self.texture.transfer(alpha)?);
+        let pixel = |(color, alpha)| LinearRgba { color, alpha };
+        Ok(pixels.map(pixel).collect())
     }
 }
 
@@ -224,7 +249,14 @@ fn claim(args: &Args, mesh: &Path, job: &mut Job<'_>) -> Result<Claimed> {
     if matches!(product, Product::Sites(_)) && args.detail.is_some() {
         return Err(usage("a mesh of sites shows no detail").hint("write .glb or .obj"));
     }
-    if matches!(product, Product::Sites(_)) && !args.map.is_empty() {
+    let is_displaced = args.surface.displace.is_some();
+    if matches!(product, Product::Texture) && is_displaced {
+        return Err(usage("--displace has no effect on an image").hint("write .glb, .obj or .ply"));
+    }
+    let is_used = |name: &str| {
+        args.matching.weight_of(name) > 0.0 || is_displaced && is_of(name, MapKind::Height)
+    };
+    if matches!(product, Product::Sites(_)) && args.map.iter().any(|map| !is_used(&map.name)) {
         return Err(
             usage("a mesh of sites has colors and no further maps").hint("write .glb or .obj")
         );
@@ -239,7 +271,19 @@ fn claim(args: &Args, mesh: &Path, job: &mut Job<'_>) -> Result<Claimed> {
         }
     }
     // Those that go into the model are files of their own as well, for other programs.
-    let maps = args.claim_maps(&target, format.ending(), job)?;
+    let mut maps = Vec::new();
+    for name in args.map_names() {
+        let target = target.part(name)?.with_ending(format.ending());
+        let file = target.path().and_then(Path::file_name);
+        // The normals of an OBJ have the name of the map.
+        let is_beside = is_of(name, MapKind::Normal)
+            && beside.iter().any(|(name, _)| file == Some(name.as_ref()));
+        if !is_beside && !matches!(product, Product::Sites(_)) {
+            maps.push(Some(job.claim(&target)?));
+        } else {
+            maps.push(None);
+        }
+    }
     job.claim_sidecar(&target)?;
     Ok(Claimed {
         product,
@@ -256,7 +300,7 @@ fn names_beside(format: &MeshFormat, path: &Path, args: &Args) -> Result<Vec<Str
     let mut model = Model::from(Mesh::default());
     let image = EncodedImage::new(PNG.to_vec())?;
     model.material.base_color = Some(image.clone());
-    if args.map.iter().any(|map| map.name == "normal") {
+    if args.map.iter().any(|map| is_of(&map.name, MapKind::Normal)) {
         model.material.normal = Some(image);
     }
     let mut files = format.write(&model, &stem(path))?;
@@ -267,45 +311,47 @@ fn names_beside(format: &MeshFormat, path: &Path, args: &Args) -> Result<Vec<Str
 /// Bakes and writes everything.
 fn write(args: &Args, claimed: &Claimed, covered: &Covered, job: &mut Job<'_>) -> Result<()> {
     if let Product::Sites(format) = claimed.product {
-        let model = site_model(&covered.synthesizer, covered.site_colors(args)?)?;
+        let (synthesizer, texture) = (&covered.synthesizer, &covered.texture);
+        let mut model = site_model(synthesizer, covered.site_colors(args)?)?;
+        args.displace_sites(&mut model, synthesizer, texture, &covered.input)?;
         return write_model(format, claimed, &model, job);
     }
     let is_deep = covered.input.base.is_deep;
-    let base = ramped(
-        covered.bake(&covered.input.base.map)?,
-        args.image.ramp.as_ref(),
-    );
-    if let Product::Model(format) = claimed.product {
-        let mut model = model(args, covered, &base)?;
-        for (name, loaded) in &covered.input.maps {
-            if name == "normal" {
-                let normals = covered.bake(&loaded.map)?;
-                model.material.normal = Some(EncodedImage::new(encode(&normals, claimed.format)?)?);
-            }
+    let (base, alpha) = covered.bake_base()?;
+    let base = ramped(base, args.image.ramp.as_ref());
+    let mut maps = MaterialMaps::default();
+    for (output, (name, example)) in claimed.maps.iter().zip(&covered.input.maps) {
+        let map = covered.bake(&example.map)?;
+        if let Product::Model(_) = claimed.product {
+            maps.add(name, &map, example, claimed.format)?;
         }
-        write_model(format, claimed, &model, job)?;
-    } else {
-        job.write_image(claimed.main, base, is_deep, &args.image)?;
+        if let Some(output) = *output {
+            job.write_image(output, map, example.is_deep, &args.image)?;
+        }
     }
-    for (output, (_, loaded)) in claimed.maps.iter().zip(&covered.input.maps) {
-        job.write_image(
-            *output,
-            covered.bake(&loaded.map)?,
-            loaded.is_deep,
-            &args.image,
-        )?;
+    if let Product::Model(format) = claimed.product {
+        let mut model = model(args, covered, &base, alpha.as_ref())?;
+        maps.put_into(&mut model.material, claimed.format)?;
+        let (synthesizer, texture) = (&covered.synthesizer, &covered.texture);
+        args.displace_mesh(&mut model, synthesizer, texture, &covered.input)?;
+        return write_model(format, claimed, &model, job);
     }
-    Ok(())
+    job.write_with_alpha(claimed.main, base, alpha.as_ref(), is_deep, &args.image)
 }
 
 /// The input mesh with its texture. A gray one becomes a color, which is what models have.
-fn model(args: &Args, covered: &Covered, base: &Map) -> Result<Model> {
+fn model(args: &Args, covered: &Covered, base: &Map, alpha: Option<&Raster<f32>>) -> Result<Model> {
+    let example = &covered.input.base;
     let base = match base {
-        Map::Value(values) => Map::Color(values.map(|&value| covered.input.base.color_of(value))),
+        Map::Value(values) => Map::Color(values.map(|&value| example.color_of(value))),
         other => other.clone(),
     };
-    let default = default_format(&base, covered.input.base.is_deep);
-    let png = encode(&base, args.image.format.unwrap_or(default))?;
+    let default = default_format(&base, example.is_deep);
+    let format = args.image.format.unwrap_or(default);
+    let png = match (&base, alpha) {
+        (Map::Color(colors), Some(alpha)) => encode_with_alpha(colors, alpha, format)?,
+        _ => encode(&base, format)?,
+    };
     let Some(atlas) = &covered.atlas else {
         bail!("a mesh of sites has no texture");
     };
@@ -316,6 +362,9 @@ fn model(args: &Args, covered: &Covered, base: &Map) -> Result<Model> {
         EncodedImage::new(png)?,
     )?;
     model.material.double_sided = covered.double_sided;
+    if let Some(alpha) = &example.alpha {
+        model.material.alpha = alpha_mode(alpha);
+    }
     Ok(model)
 }
 

@@ -2,10 +2,10 @@
 
 use super::method::Resynthesis;
 use crate::encode::map_raster;
-use crate::error::Hint;
+use crate::error::{Hint, usage};
+use crate::exemplar::exemplar_of;
 use anyhow::{Error, Result};
 use core::ops::ControlFlow;
-use dapple::raster::Raster;
 use dapple::synth::{Edges, Exemplar, Options, SynthError, tile_plane};
 use dapple::tile::Map;
 
@@ -47,26 +47,14 @@ pub(super) fn tiles(maps: &[Map], axes: [bool; 2], how: &Resynthesis) -> Result<
     maps.iter().map(tile).collect()
 }
 
-/// The exemplar of a material: all channels of its maps, each from about 0 to 1.
+/// The exemplar of a material: all channels of its maps.
 fn exemplar(maps: &[Map]) -> Result<Exemplar> {
-    let mut planes: Vec<Raster<f32>> = Vec::new();
-    for map in maps {
-        match map {
-            Map::Value(values) => planes.push(values.clone()),
-            Map::Color(colors) => {
-                let codes = colors.map(|color| color.to_srgb::<u16>());
-                let code = |code: u16| f32::from(code) / f32::from(u16::MAX);
-                planes.extend([0, 1, 2].map(|channel| codes.map(|codes| code(codes[channel]))));
-            }
-            Map::Normal(normals) => {
-                let part = |part: f32| 0.5 + 0.5 * part;
-                planes.push(normals.map(|normal| part(normal.x)));
-                planes.push(normals.map(|normal| part(normal.y)));
-            }
-        }
-    }
-    let planes: Vec<_> = planes.iter().map(|plane| (plane, 1.0)).collect();
-    Ok(Exemplar::from_planes(&planes, Edges::Cut)?)
+    let mut exemplars = maps.iter().map(|map| exemplar_of(map, Edges::Cut));
+    let Some(first) = exemplars.next() else {
+        return Err(usage("missing image"));
+    };
+    let joined = exemplars.try_fold(first?, |all, map| all.with_channels(&map?, 1.0));
+    Ok(joined?)
 }
 
 /// Adds a hint to errors of sizes.

@@ -140,6 +140,7 @@ pub(super) struct Material {
     pub(super) pbr_metallic_roughness: Option<Box<Pbr>>,
     pub(super) normal_texture: Option<TextureInfo>,
     pub(super) occlusion_texture: Option<TextureInfo>,
+    pub(super) alpha_mode: Option<Box<str>>,
     #[serde(default)]
     pub(super) double_sided: bool,
 }

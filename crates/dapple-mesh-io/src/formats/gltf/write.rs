@@ -4,7 +4,7 @@ use super::container::{BIN, JSON, MAGIC};
 use crate::split::with_vertex_normals;
 use crate::{MeshIoError, MeshIoErrorKind};
 use dapple_color::LinearRgba;
-use dapple_mesh::{EncodedImage, Mesh, Model};
+use dapple_mesh::{AlphaMode, EncodedImage, Mesh, Model};
 use glam::DVec3;
 use serde_json::{Map, Value, json};
 
@@ -47,8 +47,8 @@ struct Split {
 /// normals, further vertices follow. Faces have the normals of the model, of unit length, or else those of
 /// [`Mesh::vertex_normals`](dapple_mesh::Mesh::vertex_normals); a zero normal, which glTF does not allow, becomes +z.
 /// Colors are clamped to 0 to 1. Without texture coordinates, textures are left out. The material is rough and not
-/// metallic unless a texture defines both; it has two sides if the model says so or the mesh is open, and blends if its
-/// base color factor is not opaque. Textures that must not be shown by mipmaps have samplers with a minification filter
+/// metallic unless a texture defines both; it has two sides if the model says so or the mesh is open, and blends if it is
+/// opaque but its base color factor is not. Textures that must not be shown by mipmaps have samplers with a minification filter
 /// without them; otherwise viewers may use any number of levels. A model without faces becomes a cloud of points, and
 /// one without vertices an empty scene.
 ///
@@ -167,8 +167,12 @@ fn material(model: &Model, bin: &mut Bin) -> Value {
     if material.double_sided || is_open(&model.mesh) {
         value["doubleSided"] = true.into();
     }
-    if material.base_color_factor.alpha < 1.0 {
-        value["alphaMode"] = "BLEND".into();
+    let is_clear = material.base_color_factor.alpha < 1.0;
+    match material.alpha {
+        AlphaMode::Mask => value["alphaMode"] = "MASK".into(),
+        AlphaMode::Blend => value["alphaMode"] = "BLEND".into(),
+        _ if is_clear => value["alphaMode"] = "BLEND".into(),
+        _ => {}
     }
     value
 }
