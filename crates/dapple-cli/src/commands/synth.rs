@@ -26,6 +26,7 @@ use std::str::FromStr;
 const EXAMPLES: &str = "\
 Examples:
   dapple synth grass.png --size 256 --wrap both -o meadow.png
+  dapple synth grass.png --size 128 --at 4096,-128 -o far.png
   dapple synth photo.png --repair scratch.png -o clean.png
   dapple synth grass.png --size 256 --sources meadow_places.exr -o meadow.png
   dapple synth sand.png --replay places.exr -o desert.png
@@ -152,6 +153,7 @@ impl Args {
     fn check_used(&self) -> Result<()> {
         material::check_names(&self.map)?;
         self.check_displacement()?;
+        self.check_method()?;
         self.matching.check_weights(&self.map_names())?;
         let surface = self.surface.given();
         match (&self.surface.mesh, self.plane.given(), surface) {
@@ -224,6 +226,9 @@ fn advise(error: SynthError) -> Error {
         }
         SynthErrorKind::Range { what, .. } if what.contains("side") => {
             "take a larger --texture-size, a smaller --padding, or a mesh with fewer faces"
+        }
+        SynthErrorKind::Range { what, .. } if *what == "period" => {
+            "take a --size that is a multiple of 2^LEVELS, fewer --levels, or --method sweep"
         }
         SynthErrorKind::Source { .. } => "give sources in an example of this size",
         SynthErrorKind::Masked { .. } => "let the mask leave larger pieces, or take fewer --levels",

@@ -1,9 +1,76 @@
-//! Tests of `dapple synth`: repairs, sources, examples and guides.
+//! Tests of `dapple synth`: windows, methods, repairs, sources, examples and guides.
 
 use crate::support::{Folder, assert_done, read_gray, stderr};
 use dapple::image::{Depth, Limits, read_image, write_gray_png};
 use dapple::raster::Raster;
 use std::fs;
+
+#[test]
+fn windows_of_one_texture_fit_together() {
+    let folder = Folder::with_inputs("windows");
+    let gray = |more: &str| {
+        let line = format!("synth height.png --map more=height.png --force -o out.png {more}");
+        assert_done(&folder.run(&line.split(' ').collect::<Vec<_>>()), &line);
+        let [out, map] = ["out.png", "out_more.png"].map(|name| read_gray(&folder, name));
+        assert!(out == map, "maps follow");
+        out
+    };
+    let whole = gray("--size 96x64 --at -40,1000");
+    let part = gray("--size 16x8 --at -20,1030");
+    let crop = |whole: &Raster<f32>, [left, top]: [u32; 2]| {
+        let value = |x: u32, y: u32| whole.row(top + y)[(left + x) as usize];
+        Raster::from_fn([16, 8], value).unwrap()
+    };
+    assert!(part == crop(&whole, [20, 30]));
+    // A texture that wraps goes on with its beginning.
+    let tile = gray("--size 64 --wrap x");
+    let beside = gray("--size 64 --wrap x --at 64,0");
+    assert!(tile == beside, "the period is the width");
+    assert!(
+        tile != gray("--size 64 --wrap x --at 0,64"),
+        "rows do not repeat"
+    );
+}
+
+#[test]
+fn the_method_is_the_first_that_can() {
+    let folder = Folder::with_inputs("methods");
+    let run = |line: &str| folder.run(&line.split_whitespace().collect::<Vec<_>>());
+    let bytes = |more: &str| {
+        let line = format!("synth checker.png --size 24 --force -o out.png {more}");
+        assert_done(&run(&line), &line);
+        fs::read(folder.path("out.png")).unwrap()
+    };
+    let [endless, sweep] = ["endless", "sweep"].map(|name| bytes(&format!("--method {name}")));
+    assert!(bytes("") == endless, "endless by default");
+    assert!(endless != sweep, "the methods differ");
+    assert!(bytes("--wrap both --levels 3") == bytes("--wrap both --levels 3 --method endless"));
+    // Columns that repeat after 24 have no fourth level.
+    assert!(bytes("--wrap both --levels 4") == bytes("--wrap both --levels 4 --method sweep"));
+    assert!(bytes("--evenness 1") == sweep, "an option of the sweep");
+    for (more, part) in [
+        (
+            "--method endless --coherence 1",
+            "--coherence has no effect",
+        ),
+        ("--at 3,4 --paper", "--paper has no effect"),
+        ("--at 3,4 --guide photo.png", "--guide has no effect"),
+        ("--at 3,4 --method sweep", "--at has no effect"),
+        ("--method sweep --repair scratch.png", "cannot be used with"),
+        ("--at 3,4 --mesh model.obj", "--at has no effect on a mesh"),
+        (
+            "--method endless --size 24 --wrap x --levels 4",
+            "a multiple of 2 to the number of levels",
+        ),
+        ("--at 4503599627370497,0", "from -2^52 to 2^52"),
+    ] {
+        let line = format!("synth checker.png {more} -o none.png");
+        let output = run(&line);
+        assert_eq!(output.status.code(), Some(2), "{line}");
+        let text = stderr(&output);
+        assert!(text.contains(part), "{line}: {text}");
+    }
+}
 
 #[test]
 fn a_repair_changes_only_what_is_white_in_its_mask() {

@@ -2,6 +2,7 @@
 
 use super::Args;
 use super::corners::own_uvs;
+use super::options::first_given;
 use super::reading::gray;
 use crate::args::Region;
 use crate::error::Hint;
@@ -47,6 +48,16 @@ pub(super) struct GuideArgs {
     /// How much --guide counts beside one channel of the colors around a pixel.
     #[arg(long, value_name = "N", requires = "guide", default_value_t = 1.0)]
     guide_weight: f32,
+}
+
+impl GuideArgs {
+    /// An option that was given and asks for a guide.
+    pub(super) fn given(&self) -> Option<&'static str> {
+        first_given(&[
+            ("which", self.which.is_some()),
+            ("guide", self.guide.is_some()),
+        ])
+    }
 }
 
 /// The weight of a guide that chooses among examples: that of three channels together.

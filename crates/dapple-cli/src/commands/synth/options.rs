@@ -1,12 +1,14 @@
 //! The options of `dapple synth`.
 
-use crate::args::{Axes, Size, seed};
+use crate::args::{Axes, Numbers, Size, seed};
 use crate::error::{Hint, usage};
 use crate::input::mesh_endings;
 use crate::words::Word;
 use anyhow::Result;
 use dapple::hash::Seed;
-use dapple::synth::{Axes as FieldAxes, Coherence, Edges, HierarchyOptions, Options};
+use dapple::synth::{
+    Axes as FieldAxes, Coherence, Edges, EndlessOptions, HierarchyOptions, Options,
+};
 use serde::Serialize;
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -26,6 +28,17 @@ dapple::raster::named! {
     }
 }
 
+dapple::raster::named! {
+    /// How a texture in the plane is grown.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub(super) enum MethodName {
+        /// A window of a texture without ends, whose pixels are corrected all at once: fast, and what is large or regular goes on.
+        Endless = "endless",
+        /// Pixel by pixel, row by row, as in Turk's paper.
+        Sweep = "sweep",
+    }
+}
+
 /// Without a mesh.
 #[derive(clap::Args, Clone, Debug, Serialize)]
 #[command(next_help_heading = "In the plane")]
@@ -37,6 +50,16 @@ pub(super) struct PlaneArgs {
     /// Which sides of the texture fit together: both makes a tile; by default none.
     #[arg(long, value_parser = Word::<Axes>::all())]
     pub(super) wrap: Option<Axes>,
+
+    /// How the texture is grown. By default endless, but sweep with options that need it, and where the size along a side that
+    /// wraps is no multiple of 2^LEVELS.
+    #[arg(long, value_parser = Word::<MethodName>::all(), conflicts_with_all = ["repair", "replay"])]
+    pub(super) method: Option<MethodName>,
+
+    /// The column and the row of an endless texture at which the image begins, each from -2^52 to 2^52: windows beside each
+    /// other fit together. By default 0,0.
+    #[arg(long, value_name = "X,Y", allow_hyphen_values = true, conflicts_with_all = ["repair", "replay"])]
+    pub(super) at: Option<Numbers<i64, 2>>,
 
     /// Make only those pixels of the example again at which this image, of its size, is white, such as a scratch or a thing
     /// that does not belong there. All others stay as they are.
@@ -112,9 +135,10 @@ pub(super) struct MatchArgs {
     #[arg(long, value_parser = Word::<Edges>::all(), default_value_t = Edges::Cut)]
     pub(super) edges: Edges,
 
-    /// How many levels there are, each with a quarter of the points of the finer one, 1 to 16: more for larger features.
-    #[arg(long, value_name = "N", default_value_t = 3)]
-    levels: usize,
+    /// How many levels there are, each with a quarter of the points of the finer one, 1 to 16: more for larger features. By
+    /// default 3, or in endless textures as many as the example has room for.
+    #[arg(long, value_name = "N")]
+    levels: Option<u32>,
 
     /// How much a map counts in the match beside one channel of the example, such as height=0.5; once for each map. By default
     /// 0: a map only follows.
@@ -139,6 +163,12 @@ pub(super) struct MatchArgs {
     /// colors of sites, and are softer than the example.
     #[arg(long)]
     pub(super) paper: bool,
+}
+
+/// The name of the first option that was given.
+pub(super) fn first_given(options: &[(&'static str, bool)]) -> Option<&'static str> {
+    let given = options.iter().find(|(_, is_given)| *is_given);
+    given.map(|&(name, _)| name)
 }
 
 /// A length, which may be negative.
@@ -185,16 +215,15 @@ fn angle(text: &str) -> Result<f64, String> {
 impl PlaneArgs {
     /// An option that was given.
     pub(super) fn given(&self) -> Option<&'static str> {
-        let given = [
+        first_given(&[
             ("size", self.size.is_some()),
             ("wrap", self.wrap.is_some()),
+            ("method", self.method.is_some()),
+            ("at", self.at.is_some()),
             ("repair", self.repair.is_some()),
             ("sources", self.sources.is_some()),
             ("replay", self.replay.is_some()),
-        ];
-        given
-            .into_iter()
-            .find_map(|(name, is_given)| is_given.then_some(name))
+        ])
     }
 
     /// Which sides wrap.
@@ -208,7 +237,7 @@ impl PlaneArgs {
 impl SurfaceArgs {
     /// An option that was given and needs a mesh.
     pub(super) fn given(&self) -> Option<&'static str> {
-        let given = [
+        first_given(&[
             ("directions", self.directions.is_some()),
             ("sites", self.sites.is_some()),
             ("texture-size", self.texture_size.is_some()),
@@ -217,10 +246,7 @@ impl SurfaceArgs {
             ("crease", self.crease.is_some()),
             ("displace", self.displace.is_some()),
             ("axes", self.axes.is_some()),
-        ];
-        given
-            .into_iter()
-            .find_map(|(name, is_given)| is_given.then_some(name))
+        ])
     }
 
     /// The side of the texture, in pixels.
@@ -246,7 +272,7 @@ impl SurfaceArgs {
         let default = HierarchyOptions::default();
         HierarchyOptions {
             n_sites: self.sites.unwrap_or(default.n_sites),
-            n_levels: matching.levels,
+            n_levels: matching.n_levels(),
             seed: Seed(matching.seed).child("sites", 0),
             ..default
         }
@@ -279,6 +305,30 @@ impl MatchArgs {
         Ok(())
     }
 
+    /// An option that was given and changes nothing in an endless texture.
+    pub(super) fn given_for_sweeps(&self) -> Option<&'static str> {
+        first_given(&[
+            ("coherence", self.coherence.is_some()),
+            ("evenness", self.evenness.is_some()),
+            ("paper", self.paper),
+        ])
+    }
+
+    /// The levels of a sweep.
+    fn n_levels(&self) -> usize {
+        self.levels
+            .map_or(Options::default().n_levels, |levels| levels as usize)
+    }
+
+    /// The options of an endless texture that repeats after `period`.
+    pub(super) fn endless(&self, period: [Option<u32>; 2]) -> EndlessOptions {
+        EndlessOptions {
+            seed: Seed(self.seed),
+            n_levels: self.levels,
+            period,
+        }
+    }
+
     /// The options of the library.
     pub(super) fn options(&self, surface: &SurfaceArgs) -> Options {
         let default = if self.paper {
@@ -288,7 +338,7 @@ impl MatchArgs {
         };
         Options {
             seed: Seed(self.seed),
-            n_levels: self.levels,
+            n_levels: self.n_levels(),
             // Those of the paper, for as many levels as there are.
             schedule: None,
             coherence: self.coherence.unwrap_or(default.coherence),

@@ -1,5 +1,6 @@
 //! Synthesis of an image.
 
+use super::options::{MethodName, PlaneArgs};
 use super::reading::Input;
 use super::{Args, STEPS, advise, shown};
 use crate::encode::{Format, map_raster};
@@ -12,7 +13,10 @@ use anyhow::{Context as _, Result};
 use dapple::color::LinearRgb;
 use dapple::image::Image;
 use dapple::raster::Raster;
-use dapple::synth::{PlaneTexture, synthesize_plane_guided, synthesize_plane_with};
+use dapple::synth::{
+    Edges, Endless, Exemplar, PlaneTexture, SynthError, SynthErrorKind, synthesize_plane_guided,
+    synthesize_plane_with,
+};
 use dapple::tile::Map;
 use serde_json::Value;
 use std::path::Path;
@@ -54,10 +58,7 @@ pub(super) fn run(args: &Args, context: &Context) -> Result<Exit> {
             let targets: Vec<_> = guides.iter().map(|guide| &guide.target).collect();
             synthesize_plane_guided(&exemplar, &targets, edges, &options, shown(&progress))
         }
-        (None, None) => {
-            let size = args.plane.size.map_or(SIZE, |size| size.0);
-            synthesize_plane_with(&exemplar, size, edges, &options, shown(&progress))
-        }
+        (None, None) => grow(args, &exemplar, &progress),
     };
     let texture = texture.map_err(advise)?;
     drop(progress);
@@ -75,6 +76,67 @@ pub(super) fn run(args: &Args, context: &Context) -> Result<Exit> {
     }
     job.finish(args, Value::Null)?;
     Ok(Exit::Done)
+}
+
+/// Grows a texture by the method that was asked for, or by the first that can.
+fn grow(args: &Args, exemplar: &Exemplar, progress: &Progress) -> Result<PlaneTexture, SynthError> {
+    let size = args.plane.size.map_or(SIZE, |size| size.0);
+    let edges = args.plane.edges();
+    if !args.is_swept() {
+        let period = [0, 1].map(|axis| (edges[axis] == Edges::Wrap).then_some(size[axis]));
+        match Endless::new(exemplar, &args.matching.endless(period)) {
+            Ok(texture) => {
+                let first = args.plane.at.map_or([0, 0], |at| at.0);
+                return texture.window(first, size, shown(progress));
+            }
+            Err(error) if !args.plane.is_endless() && is_of_period(&error) => {}
+            Err(error) => return Err(error),
+        }
+    }
+    let options = args.matching.options(&args.surface);
+    synthesize_plane_with(exemplar, size, edges, &options, shown(progress))
+}
+
+/// Whether a texture cannot repeat after so many pixels.
+fn is_of_period(error: &SynthError) -> bool {
+    matches!(error.kind(), SynthErrorKind::Range { what, .. } if *what == "period")
+}
+
+impl PlaneArgs {
+    /// Whether the texture must be an endless one.
+    pub(super) fn is_endless(&self) -> bool {
+        self.method == Some(MethodName::Endless) || self.at.is_some()
+    }
+}
+
+impl Args {
+    /// An option that was given and changes nothing in an endless texture.
+    fn given_for_sweeps(&self) -> Option<&'static str> {
+        self.matching.given_for_sweeps().or(self.guides.given())
+    }
+
+    /// Whether the texture must be made in a sweep.
+    fn is_swept(&self) -> bool {
+        self.plane.method == Some(MethodName::Sweep) || self.given_for_sweeps().is_some()
+    }
+
+    /// Refuses options that have no effect with the method.
+    pub(super) fn check_method(&self) -> Result<()> {
+        let PlaneArgs { method, at, .. } = &self.plane;
+        if at.is_some() && *method == Some(MethodName::Sweep) {
+            let error = usage("--at has no effect with --method sweep");
+            return Err(error.hint("leave one of them out"));
+        }
+        match self.given_for_sweeps() {
+            Some(option) if self.plane.is_endless() => {
+                let error = usage(format!("--{option} has no effect on an endless texture"));
+                Err(error.hint(format!(
+                    "leave out --{option}, or --method endless and --at"
+                )))
+            }
+            _ => Ok(()),
+        }
+    }
 }
 
 /// A map of the example, transferred to the texture.
