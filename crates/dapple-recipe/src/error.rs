@@ -5,6 +5,7 @@ use core::fmt;
 use dapple_color::ColorError;
 use dapple_pups::{PupsError, Range};
 use dapple_raster::RasterError;
+use dapple_synth::SynthError;
 use dapple_tile::TileError;
 use dapple_wavelet::WaveletError;
 use dapple_worley::WorleyError;
@@ -124,6 +125,8 @@ pub enum RecipeErrorKind {
     Wavelet(WaveletError),
     /// An error of a method for tiles or blends.
     Tile(TileError),
+    /// An error of a synthesis from an example.
+    Synth(SynthError),
     /// An error of a ramp or a map.
     Color(ColorError),
     /// An error of a raster or a window.
@@ -277,6 +280,7 @@ impl fmt::Display for RecipeErrorKind {
             Self::Pups(error) => error.fmt(f),
             Self::Wavelet(error) => error.fmt(f),
             Self::Tile(error) => error.fmt(f),
+            Self::Synth(error) => error.fmt(f),
             Self::Color(error) => error.fmt(f),
             Self::Raster(error) => error.fmt(f),
         }
@@ -290,6 +294,7 @@ impl core::error::Error for RecipeError {
             RecipeErrorKind::Pups(error) => Some(error),
             RecipeErrorKind::Wavelet(error) => Some(error),
             RecipeErrorKind::Tile(error) => Some(error),
+            RecipeErrorKind::Synth(error) => Some(error),
             RecipeErrorKind::Color(error) => Some(error),
             RecipeErrorKind::Raster(error) => Some(error),
             _ => None,
@@ -308,4 +313,4 @@ macro_rules! from {
     };
 }
 
-from!(WorleyError => Worley, PupsError => Pups, WaveletError => Wavelet, TileError => Tile, ColorError => Color, RasterError => Raster);
+from!(WorleyError => Worley, PupsError => Pups, WaveletError => Wavelet, TileError => Tile, SynthError => Synth, ColorError => Color, RasterError => Raster);

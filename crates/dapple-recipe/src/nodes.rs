@@ -22,6 +22,7 @@ mod profile;
 mod pups;
 mod ramp;
 mod seed;
+mod synth;
 mod tile;
 mod warp;
 mod wave;
@@ -48,6 +49,7 @@ pub use profile::ProfileOf;
 pub use pups::{ControlNets, PupsNode, Referenced};
 pub use ramp::Ramped;
 pub use seed::NodeSeed;
+pub use synth::SynthNode;
 pub use tile::Tiled;
 pub use warp::Warp;
 pub use wave::{Wave, Waveform};
@@ -67,8 +69,13 @@ pub(crate) trait NodeKind {
         Vec::new()
     }
 
-    /// The image file that the node reads, and the use of its alpha if the node sets it.
-    fn image(&self) -> Option<(&str, Option<ImageAlpha>)> {
+    /// The image files that the node reads.
+    fn images(&self) -> Vec<&str> {
+        Vec::new()
+    }
+
+    /// The use of their alpha, if the node sets it.
+    fn alpha(&self) -> Option<ImageAlpha> {
         None
     }
 
@@ -91,8 +98,8 @@ macro_rules! nodes {
     ($($(#[$doc:meta])* $name:literal $variant:ident($options:ident),)*) => {
         /// A node of a recipe: a table with one entry, whose name is the kind.
         ///
-        /// Most nodes make a number at every position. Those that make a color are `ramp`, `color`, `image` of a color
-        /// image, and `pups = { color_noise = … }`; `add`, `multiply`, `mix`, `tile`, `disturb`, `match_borders`,
+        /// Most nodes make a number at every position. Those that make a color are `ramp`, `color`, `image` and `synth` of a
+        /// color image, and `pups = { color_noise = … }`; `add`, `multiply`, `mix`, `tile`, `disturb`, `match_borders`,
         /// `corner_tiles`, `warp` and `blend` make a color where they are given one, and take a number beside it as a
         /// gray.
         #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -130,6 +137,8 @@ nodes! {
     "distance" Distance(Distance),
     /// An image file, laid over the tile.
     "image" Image(ImageNode),
+    /// A texture grown from an image of it.
+    "synth" Synth(SynthNode),
     /// One color at every position.
     "color" Color(ColorOf),
     /// The sum of all inputs.
@@ -175,16 +184,16 @@ nodes! {
 }
 
 impl Node {
-    /// The image file in the options of the node, if there is one.
+    /// The image files in the options of the node.
     #[must_use]
-    pub fn image_file(&self) -> Option<&str> {
-        Some(self.kind().image()?.0)
+    pub fn image_files(&self) -> Vec<&str> {
+        self.kind().images()
     }
 
-    /// The use of the alpha of that file, if the node sets it.
+    /// The use of the alpha of these files, if the node sets it.
     #[must_use]
     pub fn image_alpha(&self) -> Option<ImageAlpha> {
-        self.kind().image()?.1
+        self.kind().alpha()
     }
 
     /// The inputs of the node, in a fixed order.

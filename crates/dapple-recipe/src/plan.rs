@@ -44,6 +44,17 @@ pub enum Picture {
     Colors(Arc<Raster<LinearRgb>>),
 }
 
+impl Picture {
+    /// The numbers of columns and rows.
+    #[must_use]
+    pub fn size(&self) -> [u32; 2] {
+        match self {
+            Self::Numbers(numbers) => numbers.size(),
+            Self::Colors(colors) => colors.size(),
+        }
+    }
+}
+
 /// The images of a recipe, by the names in the recipe.
 pub type Images = std::collections::BTreeMap<String, Picture>;
 
@@ -97,10 +108,8 @@ impl Recipe {
     #[must_use]
     pub fn image_files(&self) -> Vec<&str> {
         let mut files = Vec::new();
-        for node in self.nodes.values() {
-            if let Some(file) = node.image_file()
-                && !files.contains(&file)
-            {
+        for file in self.nodes.values().flat_map(Node::image_files) {
+            if !files.contains(&file) {
                 files.push(file);
             }
         }
@@ -113,7 +122,7 @@ impl Recipe {
     ///
     /// [`Conflict`](RecipeErrorKind::Conflict), if two nodes set different uses for one file.
     pub fn image_alpha(&self, file: &str) -> Result<Option<ImageAlpha>, RecipeError> {
-        let of_file = |(_, node): &(&String, &Node)| node.image_file() == Some(file);
+        let of_file = |(_, node): &(&String, &Node)| node.image_files().contains(&file);
         let alphas = self.nodes.iter().filter(of_file);
         let mut alphas = alphas.map(|(name, node)| (name, node.image_alpha()));
         let first = alphas.next().and_then(|(_, alpha)| alpha);

@@ -35,6 +35,7 @@ const LATE: (f64, usize) = (100.0, 1 << 18);
 pub(crate) const LIMITS: PlanLimits = PlanLimits {
     control_points: 1 << 18,
     wavelet_cells: 1 << 22,
+    synthesized_pixels: 1 << 22,
     values: 1024,
     warps: 16,
     pixels: 1 << 27,

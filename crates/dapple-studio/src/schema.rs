@@ -163,7 +163,7 @@ fn requirements(schema: &Json) -> impl Iterator<Item = &str> {
 }
 
 /// The use of each kind of node, and the options of a new one. An input called `?` is to be chosen.
-const GROUPS: [(&str, &str, &str); 28] = [
+const GROUPS: [(&str, &str, &str); 29] = [
     ("worley", "cells and noise", "{}"),
     ("pups", "cells and noise", r#"{"cells":{}}"#),
     ("wavelet", "cells and noise", "{}"),
@@ -171,6 +171,7 @@ const GROUPS: [(&str, &str, &str); 28] = [
     ("coordinate", "position", r#"{"along":[1.0,0.0]}"#),
     ("distance", "position", r#"{"center":[0.5,0.5]}"#),
     ("image", "color and images", r#"{"file":"image.png"}"#),
+    ("synth", "color and images", r#"{"file":"image.png"}"#),
     ("color", "color and images", r##""#c08040""##),
     ("add", "arithmetic", "[0.0,0.0]"),
     ("subtract", "arithmetic", "[0.0,0.0]"),
@@ -269,7 +270,7 @@ mod tests {
             });
             let recipe = Recipe::from_json(&recipe.to_string());
             let recipe = recipe.unwrap_or_else(|error| panic!("{}: {error}", kind.name));
-            if kind.name != "image" {
+            if !["image", "synth"].contains(&kind.name) {
                 Plan::new(&recipe, &Images::new(), 0.0)
                     .unwrap_or_else(|error| panic!("{}: {error}", kind.name));
             }

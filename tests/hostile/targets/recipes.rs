@@ -10,6 +10,7 @@ use std::sync::Arc;
 const LIMITS: PlanLimits = PlanLimits {
     control_points: 1000,
     wavelet_cells: 1 << 12,
+    synthesized_pixels: 1 << 12,
     values: 256,
     warps: 4,
     pixels: 1 << 12,

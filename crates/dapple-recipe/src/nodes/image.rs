@@ -19,8 +19,12 @@ pub struct ImageNode {
 }
 
 impl NodeKind for ImageNode {
-    fn image(&self) -> Option<(&str, Option<ImageAlpha>)> {
-        Some((&self.file, self.alpha))
+    fn images(&self) -> Vec<&str> {
+        vec![&self.file]
+    }
+
+    fn alpha(&self) -> Option<ImageAlpha> {
+        self.alpha
     }
 
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {

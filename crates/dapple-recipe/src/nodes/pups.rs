@@ -229,8 +229,12 @@ impl Recipe {
 }
 
 impl NodeKind for PupsNode {
-    fn image(&self) -> Option<(&str, Option<ImageAlpha>)> {
-        self.texture().image()
+    fn images(&self) -> Vec<&str> {
+        self.image_file().into_iter().collect()
+    }
+
+    fn alpha(&self) -> Option<ImageAlpha> {
+        self.texture().image()?.1
     }
 
     fn work(&self, plan: &Builder<'_>) -> Result<Work, RecipeError> {

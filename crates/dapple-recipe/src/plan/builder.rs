@@ -23,6 +23,8 @@ pub(crate) struct Builder<'a> {
     node: &'a str,
     work: WorkSum<'a>,
     memory: Option<&'a Memory>,
+    /// Parts of steps of this plan, and of earlier ones, if there is a memory.
+    shared_parts: Parts,
     /// Whether the current node has used the time.
     asks_time: Cell<bool>,
     pub(super) steps: Vec<Step>,
@@ -49,6 +51,7 @@ impl<'a> Builder<'a> {
             node: "",
             work: WorkSum::new(limits),
             memory,
+            shared_parts: memory.map_or_else(Parts::keeping, |memory| memory.parts().clone()),
             asks_time: Cell::new(false),
             steps: Vec::new(),
             ids: Vec::new(),
@@ -99,7 +102,7 @@ impl<'a> Builder<'a> {
                 write!(text, "{} ", self.ids.get(*self.names.get(name)?)?).ok()?;
             }
         }
-        if let Some(file) = node.image_file() {
+        for file in node.image_files() {
             write!(text, "image {} ", memory.picture_id(self.images.get(file)?)).ok()?;
         }
         write!(text, "{node:?}").ok()?;
@@ -121,6 +124,11 @@ impl<'a> Builder<'a> {
     pub(crate) fn parts(&self) -> Parts {
         let parts = self.memory.map(|memory| memory.parts().clone());
         parts.unwrap_or_default()
+    }
+
+    /// Parts of steps of this plan, and of earlier ones, if there is a memory.
+    pub(crate) fn shared_parts(&self) -> &Parts {
+        &self.shared_parts
     }
 
     /// The elapsed part of a loop, from 0 to 1.

@@ -29,6 +29,9 @@ pub struct PlanLimits {
     /// The largest number of cells of the tiles of all wavelet noise together; 2^24 by default, such as a tile of 4096
     /// × 4096.
     pub wavelet_cells: u64,
+    /// The largest number of pixels of all textures that are grown from examples together; 2^24 by default, such as 4096 ×
+    /// 4096.
+    pub synthesized_pixels: u64,
     /// The largest number of values that are computed for each pixel: one for each node and for each number or color
     /// that is an input. Nodes under a warp, or under a node that depends on the whole tile, count once more for each
     /// of these. 4096 by default.
@@ -45,6 +48,7 @@ impl Default for PlanLimits {
         Self {
             control_points: 1 << 22,
             wavelet_cells: 1 << 24,
+            synthesized_pixels: 1 << 24,
             values: 4096,
             warps: 32,
             pixels: 1 << 29,
@@ -79,6 +83,8 @@ pub(crate) struct Work {
     pub(crate) control_points: f64,
     /// The number of cells of tiles of wavelet noise.
     pub(crate) wavelet_cells: f64,
+    /// The number of pixels grown from examples.
+    pub(crate) synthesized_pixels: f64,
 }
 
 /// The work of all nodes so far.
@@ -100,11 +106,17 @@ impl<'a> WorkSum<'a> {
         let Self { limits, sum } = self;
         sum.control_points += work.control_points;
         sum.wavelet_cells += work.wavelet_cells;
+        sum.synthesized_pixels += work.synthesized_pixels;
         check("control points", sum.control_points, limits.control_points)?;
         check(
             "cells of wavelet noise",
             sum.wavelet_cells,
             limits.wavelet_cells,
+        )?;
+        check(
+            "pixels grown from examples",
+            sum.synthesized_pixels,
+            limits.synthesized_pixels,
         )
     }
 }

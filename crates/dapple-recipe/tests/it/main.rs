@@ -8,5 +8,6 @@ mod program;
 mod refusals;
 #[cfg(feature = "schema")]
 mod schema;
+mod synth;
 mod text;
 mod words;

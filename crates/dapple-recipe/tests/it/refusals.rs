@@ -349,6 +349,7 @@ fn built_in_recipes_are_far_within_the_limits() {
     let limits = PlanLimits {
         control_points: all.control_points / 16,
         wavelet_cells: all.wavelet_cells / 16,
+        synthesized_pixels: all.synthesized_pixels / 16,
         values: all.values / 16,
         warps: all.warps / 16,
         pixels: all.pixels / 16,

@@ -1,0 +1,145 @@
+//! Textures grown from examples.
+
+use super::{ImageAlpha, NodeKind, NodeSeed};
+use crate::RecipeError;
+use crate::plan::{Builder, Laid, Picture, Step, Work};
+use core::ops::ControlFlow;
+use dapple_pups::{Range, range};
+use dapple_synth::{Edges, Endless, EndlessOptions, Exemplar, PlaneTexture};
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// A texture without repetitions, grown from an image of it, laid over the tile and interpolated between its pixels. Along
+/// axes on which the recipe repeats, it does.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct SynthNode {
+    /// The image file whose pixels the texture shows.
+    pub file: String,
+    /// The image file of the example that is looked at; `file` by default. So maps of one example follow it: `file` has its
+    /// size, or is a whole number of times as large, and size, levels, edges and seed are those of the other nodes.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub example: Option<String>,
+    /// The numbers of pixels of the example across the tile, x first; `[512, 512]` by default. Along axes on which the
+    /// recipe repeats, multiples of 2 to the number of levels.
+    #[serde(default = "size")]
+    #[cfg_attr(feature = "schema", schemars(transform = { SIZE }))]
+    pub size: [u32; 2],
+    /// The number of levels: the more, the larger are the things that look as they do in the example; by default as many
+    /// as it has room for, such as 7 of 256 pixels.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "schema", schemars(transform = { LEVELS }))]
+    pub levels: Option<u32>,
+    /// What lies past the edges of the example; nothing by default.
+    #[serde(default)]
+    #[cfg_attr(
+        feature = "schema",
+        schemars(schema_with = "crate::schema::traced::<Edges>")
+    )]
+    pub edges: Edges,
+    /// The use of the alpha of the images; by default a partly transparent image is an error.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub alpha: Option<ImageAlpha>,
+    /// The name or the seed for its random numbers; its own name by default.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub seed: Option<NodeSeed>,
+}
+
+const SIZE: Range = range!(at least 1);
+const LEVELS: Range = range!(from 1 to 16);
+
+fn size() -> [u32; 2] {
+    [512; 2]
+}
+
+impl NodeKind for SynthNode {
+    fn images(&self) -> Vec<&str> {
+        [&self.file]
+            .into_iter()
+            .chain(&self.example)
+            .map(String::as_str)
+            .collect()
+    }
+
+    fn alpha(&self) -> Option<ImageAlpha> {
+        self.alpha
+    }
+
+    fn work(&self, plan: &Builder<'_>) -> Result<Work, RecipeError> {
+        let [shown, example] = [plan.image(&self.file)?, plan.image(self.example())?];
+        let sides = [0, 1].map(|axis| {
+            let scale = f64::from(shown.size()[axis]) / f64::from(example.size()[axis]);
+            f64::from(self.size[axis]) * scale.max(1.0)
+        });
+        Ok(Work {
+            synthesized_pixels: sides[0] * sides[1],
+            ..Work::default()
+        })
+    }
+
+    fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
+        let repeats = plan.domain().wrap;
+        let options = EndlessOptions {
+            seed: plan.seed(self.seed.as_ref()),
+            n_levels: self.levels,
+            period: [0, 1].map(|axis| repeats[axis].then_some(self.size[axis])),
+        };
+        let example = plan.image(self.example())?;
+        let grown = plan.shared_parts().get_or_make(
+            |grown: &Grown| {
+                let is_alike = grown.options == options && grown.edges == self.edges;
+                is_alike && grown.texture.sources().size() == self.size && grown.example == *example
+            },
+            || Grown::new(example, self.edges, options.clone(), self.size),
+        )?;
+        let picture = match plan.image(&self.file)? {
+            Picture::Numbers(numbers) => {
+                Picture::Numbers(Arc::new(grown.texture.transfer(numbers)?))
+            }
+            Picture::Colors(colors) => Picture::Colors(Arc::new(grown.texture.transfer(colors)?)),
+        };
+        Ok(Step::Image(Laid {
+            picture,
+            extent: plan.domain().size,
+            wrap: plan.wrap(),
+        }))
+    }
+}
+
+impl SynthNode {
+    /// The image file of the example.
+    fn example(&self) -> &str {
+        self.example.as_ref().unwrap_or(&self.file)
+    }
+}
+
+/// A texture, and what it follows from.
+struct Grown {
+    example: Picture,
+    edges: Edges,
+    options: EndlessOptions,
+    texture: PlaneTexture,
+}
+
+impl Grown {
+    fn new(
+        example: &Picture,
+        edges: Edges,
+        options: EndlessOptions,
+        size: [u32; 2],
+    ) -> Result<Self, RecipeError> {
+        let exemplar = match example {
+            Picture::Numbers(numbers) => Exemplar::from_planes(&[(numbers, 1.0)], edges)?,
+            Picture::Colors(colors) => Exemplar::new(colors, edges)?,
+        };
+        let endless = Endless::new(&exemplar, &options)?;
+        let texture = endless.window([0; 2], size, |_| ControlFlow::Continue(()))?;
+        Ok(Self {
+            example: example.clone(),
+            edges,
+            options,
+            texture,
+        })
+    }
+}
