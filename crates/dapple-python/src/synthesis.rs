@@ -10,11 +10,22 @@ use crate::tiles::flags;
 use crate::watch;
 use dapple::raster::Raster;
 use dapple::synth::{
-    Axes, Edges, Exemplar, Options, PlaneTexture, SynthError, synthesize_plane_guided,
-    synthesize_plane_with,
+    Axes, Edges, Endless, EndlessOptions, Exemplar, Options, PlaneTexture, SynthError,
+    SynthErrorKind, synthesize_plane_guided, synthesize_plane_with,
 };
 use dapple::tile::Map;
 use pyo3::prelude::*;
+
+dapple::raster::named! {
+    /// The argument `method`.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    enum Method {
+        /// A window of a texture without ends.
+        Endless = "endless",
+        /// Pixel by pixel, as in the paper.
+        Sweep = "sweep",
+    }
+}
 
 /// The argument `coherence`.
 #[derive(FromPyObject)]
@@ -76,7 +87,7 @@ pub(crate) fn exemplar(maps: &[Map], edges: &str) -> Result<Exemplar> {
     }
 }
 
-/// A texture of any size that looks like an example, after Turk (2001).
+/// A texture of any size that looks like an example, after Lefebvre and Hoppe (2005, 2006) or Turk (2001).
 ///
 /// Every pixel is one of the example's, chosen so that its surroundings in the example match those in the texture.
 ///
@@ -86,10 +97,11 @@ pub(crate) fn exemplar(maps: &[Map], edges: &str) -> Result<Exemplar> {
 ///     of maps, of which the first is matched (color in sRGB, numbers unchanged) and the others follow it.
 /// size : (rows, columns), or a number for both; at most 2**26 pixels.
 /// seed : int, from 0 to 2**64 - 1.
-/// wrap : the axes along which the texture repeats, x first; one for both. These sides are multiples of 2**(levels -
-///     1).
+/// wrap : the axes along which the texture repeats, x first; one for both. These sides are multiples of 2**levels where the
+///     method is `"endless"`, and else of 2**(levels - 1).
 /// edges : the treatment of the edges of the example: `"cut"`, or `"wrap"` if it repeats.
-/// levels : 1 to 16, each with half the resolution: more for larger features.
+/// levels : 1 to 16, each with half the resolution: more for larger features. By default 3, or as many as the example has
+///     room for where the method is `"endless"`.
 /// coherence : the tolerance for a worse match that continues the pixels beside it: `"auto"` or a number of at least 0;
 ///     higher copies larger pieces.
 /// evenness : how evenly the example is used, 0 to 1000; 1 by default.
@@ -100,6 +112,11 @@ pub(crate) fn exemplar(maps: &[Map], edges: &str) -> Result<Exemplar> {
 ///     obeyed nearly everywhere. With guides, `evenness` has no effect.
 /// sources : return (texture, sources): for every pixel the (column, row) of its source in the example, (rows, columns,
 ///     2).
+/// method : `"endless"`, a window of a texture without ends, which is fast and continues what is large or regular; or
+///     `"sweep"`, pixel by pixel. By default `"endless"`, unless `coherence`, `evenness`, `paper` or `guides` are given or a
+///     side that wraps has another length than it needs.
+/// at : the (row, column) of an endless texture at which the result begins, from -2**52 to 2**52: windows beside each other
+///     fit together; by default (0, 0).
 /// progress : called with the part of the work done, from 0 to 1. Ctrl-C stops the call.
 ///
 /// Examples
@@ -110,10 +127,11 @@ pub(crate) fn exemplar(maps: &[Map], edges: &str) -> Result<Exemplar> {
 /// >>> bool((texture == checker[sources[..., 1], sources[..., 0]]).all())
 /// True
 #[pyfunction]
-#[pyo3(signature = (exemplar, size, *, seed = SeedArgument::default(), wrap = None, edges = "cut", levels = 3, coherence = None,
-    evenness = None, paper = false, mask = None, guides = Vec::new(), sources = false, progress = None),
-    text_signature = "(exemplar, size, *, seed=0, wrap=False, edges=\"cut\", levels=3, coherence=None, evenness=None, \
-    paper=False, mask=None, guides=(), sources=False, progress=None)")]
+#[pyo3(signature = (exemplar, size, *, seed = SeedArgument::default(), wrap = None, edges = "cut", levels = None, coherence = None,
+    evenness = None, paper = false, mask = None, guides = Vec::new(), sources = false, method = None, at = None,
+    progress = None),
+    text_signature = "(exemplar, size, *, seed=0, wrap=False, edges=\"cut\", levels=None, coherence=None, evenness=None, \
+    paper=False, mask=None, guides=(), sources=False, method=None, at=None, progress=None)")]
 pub(crate) fn synthesize<'py>(
     py: Python<'py>,
     exemplar: &Bound<'py, PyAny>,
@@ -121,13 +139,15 @@ pub(crate) fn synthesize<'py>(
     seed: SeedArgument,
     wrap: Option<&Bound<'py, PyAny>>,
     edges: &str,
-    levels: usize,
+    levels: Option<u32>,
     coherence: Option<Coherence>,
     evenness: Option<f32>,
     paper: bool,
     mask: Option<&Bound<'py, PyAny>>,
     guides: Vec<(Bound<'py, PyAny>, Bound<'py, PyAny>, f32)>,
     sources: bool,
+    method: Option<&str>,
+    at: Option<[i64; 2]>,
     progress: Option<&Bound<'py, PyAny>>,
 ) -> Result<Bound<'py, PyAny>> {
     let (layout, maps) = pictures::read("exemplar", exemplar)?;
@@ -139,9 +159,12 @@ pub(crate) fn synthesize<'py>(
     }
     let size = self::size(size)?;
     let (exemplar, targets) = guided(exemplar, size, &guides)?;
+    let is_for_sweeps = coherence.is_some() || evenness.is_some() || paper || !targets.is_empty();
+    let method = self::method(method, at, is_for_sweeps)?;
+    let default = Options::default().n_levels;
     let matching = Matching {
         seed,
-        levels,
+        levels: levels.map_or(default, |levels| levels as usize),
         coherence,
         evenness,
         axes: None,
@@ -149,12 +172,59 @@ pub(crate) fn synthesize<'py>(
     };
     let options = matching.options()?;
     let wrap = flags(wrap, false)?.map(|wraps| if wraps { Edges::Wrap } else { Edges::Cut });
+    let endless = EndlessOptions {
+        seed: seed.0,
+        n_levels: levels,
+        period: [0, 1].map(|axis| (wrap[axis] == Edges::Wrap).then_some(size[axis])),
+    };
     let targets: Vec<_> = targets.iter().collect();
-    let texture = watch::run(py, progress, |heard| match targets[..] {
-        [] => synthesize_plane_with(&exemplar, size, wrap, &options, heard),
-        _ => synthesize_plane_guided(&exemplar, &targets, wrap, &options, heard),
+    let texture = watch::run(py, progress, |heard| {
+        if method != Some(Method::Sweep) {
+            match Endless::new(&exemplar, &endless) {
+                Ok(texture) => {
+                    let [row, column] = at.unwrap_or([0, 0]);
+                    return texture.window([column, row], size, heard);
+                }
+                Err(error)
+                    if method.is_none()
+                        && matches!(error.kind(), SynthErrorKind::Period { .. }) => {}
+                Err(error) => return Err(error),
+            }
+        }
+        match targets[..] {
+            [] => synthesize_plane_with(&exemplar, size, wrap, &options, heard),
+            _ => synthesize_plane_guided(&exemplar, &targets, wrap, &options, heard),
+        }
     })??;
     followed(py, layout, &maps, &texture, sources)
+}
+
+/// The method that was asked for, or that options need; nothing if it is the first that can.
+fn method(
+    asked: Option<&str>,
+    at: Option<[i64; 2]>,
+    is_for_sweeps: bool,
+) -> Result<Option<Method>> {
+    let asked = asked.map(|name| data::named("method", name)).transpose()?;
+    let asked = match (asked, at) {
+        (None, Some(_)) => Some(Method::Endless),
+        (Some(Method::Sweep), Some(_)) => {
+            return Err(Error::new(
+                "conflict",
+                "at has no effect with the method sweep",
+            ));
+        }
+        _ => asked,
+    };
+    if is_for_sweeps && asked == Some(Method::Endless) {
+        let message = "coherence, evenness, paper and guides have no effect on an endless texture";
+        return Err(Error::new("conflict", message));
+    }
+    Ok(if is_for_sweeps {
+        Some(Method::Sweep)
+    } else {
+        asked
+    })
 }
 
 /// An exemplar with its guides, and those of a texture of a size.

@@ -86,10 +86,38 @@ def test_a_repair_changes_only_the_hole_and_takes_nothing_from_it():
 
 
 def test_options_have_an_effect():
-    plain = dp.synthesize(CELLS, 48, levels=2)
+    plain = dp.synthesize(CELLS, 48, levels=2, method="sweep")
     for options in ({"coherence": 5.0}, {"evenness": 0.0}, {"paper": True}, {"levels": 3}, {"edges": "wrap"}):
         assert (dp.synthesize(CELLS, 48, **{"levels": 2, **options}) != plain).any(), options
     np.testing.assert_array_equal(dp.synthesize(CELLS, 48, levels=2, coherence="auto", evenness=1), plain)
+
+
+def test_windows_of_one_texture_fit_together():
+    whole = dp.synthesize(MATERIAL, (48, 64), at=(-100, 7), seed=3)
+    part = dp.synthesize(MATERIAL, (10, 20), at=(-70, 17), seed=3)
+    for name, array in part.items():
+        np.testing.assert_array_equal(array, whole[name][30:40, 10:30])
+    tile, beside = (dp.synthesize(CELLS, 64, levels=4, wrap=True, at=at) for at in [(0, 0), (128, -64)])
+    np.testing.assert_array_equal(tile, beside)
+
+
+def test_the_method_is_the_first_that_can():
+    for options in ({}, {"at": (0, 0)}, {"wrap": True, "levels": 4}):
+        plain, endless = (dp.synthesize(CELLS, 48, **options, **more) for more in ({}, {"method": "endless"}))
+        np.testing.assert_array_equal(plain, endless)
+    for options in ({"evenness": 1}, {"wrap": True, "levels": 5}):
+        plain, sweep = (dp.synthesize(CELLS, 48, **options, **more) for more in ({}, {"method": "sweep"}))
+        np.testing.assert_array_equal(plain, sweep)
+    for options, match in [
+        ({"at": (1, 2), "method": "sweep"}, "at has no effect"),
+        ({"at": (1, 2), "coherence": 2}, "have no effect on an endless"),
+        ({"method": "endless", "paper": True}, "have no effect on an endless"),
+        ({"method": "endless", "wrap": True, "levels": 5}, "multiple of 32"),
+        ({"method": "fast"}, "endless, sweep"),
+        ({"at": (2**52 + 1, 0)}, "2\\^52"),
+    ]:
+        with pytest.raises(dp.DappleError, match=match):
+            dp.synthesize(CELLS, 48, **options)
 
 
 @pytest.mark.skipif(COMMAND is None, reason="the command dapple is not on PATH")
@@ -100,6 +128,9 @@ def test_textures_are_those_of_the_command(tmp_path):
     subprocess.run([*run, "--size", "48x40", "--wrap", "both", "-o", tmp_path / "b.png", "--format", "png16"], check=True)
     plane = dp.synthesize(example, (40, 48), seed=7, wrap=True)
     assert (tmp_path / "b.png").read_bytes() == dp.encode_image(plane, depth=16)
+    subprocess.run([*run, "--size", "48x40", "--at", "9,-3", "-o", tmp_path / "f.png", "--format", "png16"], check=True)
+    far = dp.synthesize(example, (40, 48), seed=7, at=(-3, 9))
+    assert (tmp_path / "f.png").read_bytes() == dp.encode_image(far, depth=16)
     trimesh.Trimesh(*TORUS, process=False).export(tmp_path / "torus.ply")
     mesh = ["--mesh", tmp_path / "torus.ply", "--sites", "3000", "--texture-size", "256", "--crease", "30"]
     subprocess.run([*run, *mesh, "-o", tmp_path / "b.glb"], check=True)

@@ -23,7 +23,7 @@ mod window;
 
 use crate::engine::Progress;
 use crate::options::REGULAR;
-use crate::{Edges, Exemplar, PlaneTexture, SynthError};
+use crate::{Edges, Exemplar, PlaneTexture, SynthError, SynthErrorKind};
 use core::ops::ControlFlow;
 use dapple_hash::Seed;
 use stage::Stage;
@@ -112,9 +112,9 @@ impl Endless {
         let holds = (1..=most).contains(&n_levels);
         SynthError::check(holds, "number of levels", n_levels.into(), range)?;
         for period in options.period.into_iter().flatten() {
-            let holds = period > 0 && period % (1 << n_levels) == 0;
-            let range = "a multiple of 2 to the number of levels";
-            SynthError::check(holds, "period", period.into(), range)?;
+            if period == 0 || period % (1 << n_levels) != 0 {
+                return Err(SynthError::new(SynthErrorKind::Period { period, n_levels }));
+            }
         }
         let stages = stage::stages(exemplar, n_levels as usize)?;
         let is_tile = exemplar.edges == Edges::Wrap && exemplar.usable.is_none();

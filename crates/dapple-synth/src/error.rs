@@ -40,6 +40,13 @@ dapple_raster::error! {
             exemplar: [u32; 2],
         } => "a map has {} x {} pixels, which is not the {} x {} of the exemplar times a whole number",
             map[0], map[1], exemplar[0], exemplar[1];
+        /// A texture with so many levels cannot repeat after so many pixels.
+        Period {
+            /// The columns or rows after which it should repeat.
+            period: u32,
+            /// The number of levels, which is at most 16.
+            n_levels: u32,
+        } => "the period is {period}, but with {n_levels} levels it must be a multiple of {}, above 0", 1 << n_levels;
         /// The source of a pixel is no pixel of the exemplar.
         Source {
             /// The column and row of the source.

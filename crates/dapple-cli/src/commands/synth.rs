@@ -227,9 +227,7 @@ fn advise(error: SynthError) -> Error {
         SynthErrorKind::Range { what, .. } if what.contains("side") => {
             "take a larger --texture-size, a smaller --padding, or a mesh with fewer faces"
         }
-        SynthErrorKind::Range { what, .. } if *what == "period" => {
-            "take a --size that is a multiple of 2^LEVELS, fewer --levels, or --method sweep"
-        }
+        SynthErrorKind::Period { .. } => "take another --size, fewer --levels, or --method sweep",
         SynthErrorKind::Source { .. } => "give sources in an example of this size",
         SynthErrorKind::Masked { .. } => "let the mask leave larger pieces, or take fewer --levels",
         SynthErrorKind::Direction { .. } => "let directions lie along the surface",

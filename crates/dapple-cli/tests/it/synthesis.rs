@@ -60,7 +60,7 @@ fn the_method_is_the_first_that_can() {
         ("--at 3,4 --mesh model.obj", "--at has no effect on a mesh"),
         (
             "--method endless --size 24 --wrap x --levels 4",
-            "a multiple of 2 to the number of levels",
+            "with 4 levels it must be a multiple of 16",
         ),
         ("--at 4503599627370497,0", "from -2^52 to 2^52"),
     ] {

@@ -79,6 +79,12 @@ impl NodeKind for SynthNode {
     }
 
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
+        for pixels in self.size {
+            RecipeError::check_in(SIZE, "number of pixels along a side", pixels.into())?;
+        }
+        if let Some(levels) = self.levels {
+            RecipeError::check_in(LEVELS, "number of levels", levels.into())?;
+        }
         let repeats = plan.domain().wrap;
         let options = EndlessOptions {
             seed: plan.seed(self.seed.as_ref()),

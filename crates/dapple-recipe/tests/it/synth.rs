@@ -13,7 +13,7 @@ use std::sync::Arc;
 
 /// Stones of 6 pixels in courses, and their heights.
 fn images() -> Images {
-    let stone = |x: u32, y: u32| (x + 3 * (y / 6 % 2)) % 6 != 0 && y % 6 != 0;
+    let stone = |x: u32, y: u32| (x + 3 * (y / 6 % 2)) % 6 > 0 && y % 6 > 0;
     let colors = Raster::from_fn([48, 36], |x, y| {
         LinearRgb::new(f32::from(stone(x, y)), (x * y % 7) as f32 / 7.0, 0.25)
     });
@@ -144,7 +144,10 @@ fn what_cannot_be_grown_is_refused_with_its_node() {
     let wide = "size = [64, 32], levels = 4, edges = \"wrap\" }";
     for (to, part) in [
         ("size = [64, 50], levels = 4 }", "period is 50"),
-        ("size = [0, 32], levels = 4 }", "period is 0"),
+        (
+            "size = [0, 32], levels = 4 }",
+            "number of pixels along a side is 0",
+        ),
         ("levels = 0 }", "number of levels"),
         ("levels = 9 }", "number of levels"),
     ] {

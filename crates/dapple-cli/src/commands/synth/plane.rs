@@ -89,17 +89,14 @@ fn grow(args: &Args, exemplar: &Exemplar, progress: &Progress) -> Result<PlaneTe
                 let first = args.plane.at.map_or([0, 0], |at| at.0);
                 return texture.window(first, size, shown(progress));
             }
-            Err(error) if !args.plane.is_endless() && is_of_period(&error) => {}
+            Err(error)
+                if !args.plane.is_endless()
+                    && matches!(error.kind(), SynthErrorKind::Period { .. }) => {}
             Err(error) => return Err(error),
         }
     }
     let options = args.matching.options(&args.surface);
     synthesize_plane_with(exemplar, size, edges, &options, shown(progress))
-}
-
-/// Whether a texture cannot repeat after so many pixels.
-fn is_of_period(error: &SynthError) -> bool {
-    matches!(error.kind(), SynthErrorKind::Range { what, .. } if *what == "period")
 }
 
 impl PlaneArgs {
