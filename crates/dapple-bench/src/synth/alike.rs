@@ -11,9 +11,10 @@ use crate::harness::Bench;
 use crate::peers::flat;
 use crate::row::{Case, Must, Unit};
 use anyhow::Result;
+use core::ops::ControlFlow;
 use dapple_color::LinearRgb;
 use dapple_raster::Raster;
-use dapple_synth::{Edges, Exemplar, Likeness, Options, synthesize_plane};
+use dapple_synth::{Edges, Endless, EndlessOptions, Exemplar, Likeness, Options, synthesize_plane};
 
 const COLORS: Case = Case {
     group: "synth",
@@ -24,61 +25,71 @@ const COLORS: Case = Case {
     note: "",
 };
 
-const PATCHES: Case = Case {
-    case: "likeness of patches, bricks",
-    ..COLORS
-};
-
-/// An exemplar: a photograph, a drawing that replaces it if the file is missing, and its two rows.
+/// An exemplar: a photograph, a drawing that replaces it if the file is missing, and its rows: colors and patches of a texture
+/// that was made in a sweep, and of an endless one.
 struct Subject {
     file: &'static str,
     drawing: Drawing,
-    colors: Case,
-    patches: Case,
+    rows: [[Case; 2]; 2],
+}
+
+const fn row(case: &'static str) -> Case {
+    Case { case, ..COLORS }
 }
 
 const SUBJECTS: [Subject; 4] = [
     Subject {
         file: "",
         drawing: drawings::bricks,
-        colors: COLORS,
-        patches: PATCHES,
+        rows: [
+            [COLORS, row("likeness of patches, bricks")],
+            [
+                row("likeness of colors, bricks, endless"),
+                row("likeness of patches, bricks, endless"),
+            ],
+        ],
     },
     Subject {
         file: "exemplars/grass_cc0_128.png",
         drawing: drawings::weave,
-        colors: Case {
-            case: "likeness of colors, grass or else weave",
-            ..COLORS
-        },
-        patches: Case {
-            case: "likeness of patches, grass or else weave",
-            ..PATCHES
-        },
+        rows: [
+            [
+                row("likeness of colors, grass or else weave"),
+                row("likeness of patches, grass or else weave"),
+            ],
+            [
+                row("likeness of colors, grass or else weave, endless"),
+                row("likeness of patches, grass or else weave, endless"),
+            ],
+        ],
     },
     Subject {
         file: "exemplars/leaves_cc0_128.png",
         drawing: drawings::scales,
-        colors: Case {
-            case: "likeness of colors, leaves or else scales",
-            ..COLORS
-        },
-        patches: Case {
-            case: "likeness of patches, leaves or else scales",
-            ..PATCHES
-        },
+        rows: [
+            [
+                row("likeness of colors, leaves or else scales"),
+                row("likeness of patches, leaves or else scales"),
+            ],
+            [
+                row("likeness of colors, leaves or else scales, endless"),
+                row("likeness of patches, leaves or else scales, endless"),
+            ],
+        ],
     },
     Subject {
         file: "exemplars/rock023_cc0_128.png",
         drawing: drawings::puzzle,
-        colors: Case {
-            case: "likeness of colors, rock or else puzzle pieces",
-            ..COLORS
-        },
-        patches: Case {
-            case: "likeness of patches, rock or else puzzle pieces",
-            ..PATCHES
-        },
+        rows: [
+            [
+                row("likeness of colors, rock or else puzzle pieces"),
+                row("likeness of patches, rock or else puzzle pieces"),
+            ],
+            [
+                row("likeness of colors, rock or else puzzle pieces, endless"),
+                row("likeness of patches, rock or else puzzle pieces, endless"),
+            ],
+        ],
     },
 ];
 
@@ -90,41 +101,34 @@ const SIDE: u32 = 256;
 
 pub(super) fn run(bench: &mut Bench) -> Result<()> {
     for subject in &SUBJECTS {
-        let Subject {
-            colors, patches, ..
-        } = subject;
-        if !bench.wants_any(&[*colors, *patches]) {
+        if !bench.wants_any(&subject.rows.concat()) {
             continue;
         }
-        let picture = subject.picture()?;
+        let picture = picture(subject.file, subject.drawing, EXEMPLAR)?;
         let note = if picture.is_photograph {
             "a photograph, 128²; images have 256² pixels"
         } else {
             "a drawing, 128²; images have 256² pixels"
         };
-        let [ours, theirs] = likenesses(&picture)?;
-        for (case, ours, theirs) in [
-            (colors, ours.colors, theirs.colors),
-            (patches, ours.patches, theirs.patches),
-        ] {
-            if bench.wants(case) {
-                bench.measured(&Case { note, ..*case }, ours, theirs);
+        let [ours @ .., theirs] = likenesses(&picture)?;
+        for (rows, ours) in subject.rows.iter().zip(ours) {
+            let pairs = [(ours.colors, theirs.colors), (ours.patches, theirs.patches)];
+            for (case, (ours, theirs)) in rows.iter().zip(pairs) {
+                if bench.wants(case) {
+                    bench.measured(&Case { note, ..*case }, ours, theirs);
+                }
             }
         }
     }
     Ok(())
 }
 
-impl Subject {
-    fn picture(&self) -> Result<Picture> {
-        picture(self.file, self.drawing, EXEMPLAR)
-    }
-}
-
-/// Returns the likeness to an exemplar of our image and of the peer's.
-fn likenesses(picture: &Picture) -> Result<[Likeness; 2]> {
+/// Returns the likeness to an exemplar of our two images, that of a sweep first, and of the peer's.
+fn likenesses(picture: &Picture) -> Result<[Likeness; 3]> {
     let exemplar = picture.exemplar()?;
-    let ours = synthesize_plane(&exemplar, [SIDE; 2], [Edges::Cut; 2], &Options::default())?;
+    let sweep = synthesize_plane(&exemplar, [SIDE; 2], [Edges::Cut; 2], &Options::default())?;
+    let endless = Endless::new(&exemplar, &EndlessOptions::default())?;
+    let endless = endless.window([0; 2], [SIDE; 2], |_| ControlFlow::Continue(()))?;
     let (_, theirs) = flat::synthesize(&picture.image, SIDE)?;
     let likeness = |image: &Raster<LinearRgb>| -> Result<Likeness> {
         Ok(Likeness::new(
@@ -133,7 +137,8 @@ fn likenesses(picture: &Picture) -> Result<[Likeness; 2]> {
         )?)
     };
     Ok([
-        likeness(&ours.transfer(&picture.image)?)?,
+        likeness(&sweep.transfer(&picture.image)?)?,
+        likeness(&endless.transfer(&picture.image)?)?,
         likeness(&theirs)?,
     ])
 }

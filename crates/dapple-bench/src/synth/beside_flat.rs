@@ -8,7 +8,10 @@ use crate::harness::{Bench, median};
 use crate::peers::flat;
 use crate::row::{Case, Must, Unit};
 use anyhow::{Result, ensure};
-use dapple_synth::{Edges, Exemplar, Options, PlaneTexture, synthesize_plane};
+use core::ops::ControlFlow;
+use dapple_synth::{
+    Edges, Endless, EndlessOptions, Exemplar, Options, PlaneTexture, SynthError, synthesize_plane,
+};
 
 const EXACT: Case = Case {
     group: "synth",
@@ -41,6 +44,19 @@ const PLANE_EXACT: Case = Case {
     ..PLANE
 };
 
+const ENDLESS: Case = Case {
+    case: "endless texture, 512×512, 64² exemplar",
+    must: Must::CostAtMost(0.1),
+    ..EXACT
+};
+
+/// The peer is our older method, on the same exemplar.
+const ENDLESS_BESIDE_SWEEP: Case = Case {
+    peer: "plane 512×512, default options",
+    must: Must::CostAtMost(1.2),
+    ..ENDLESS
+};
+
 const LARGE: Case = Case {
     case: "synthesis, 262,144 sites, 4 levels, 256² exemplar, default options",
     must: Must::CostAtMost(1.0),
@@ -61,7 +77,10 @@ const SIDE: u32 = 512;
 type Job<'a> = Box<dyn Fn() -> Result<usize> + Sync + 'a>;
 
 pub(super) fn run(bench: &mut Bench) -> Result<()> {
-    if bench.wants_any(&[EXACT, DEFAULT, WHOLE, PLANE, PLANE_EXACT]) {
+    if bench.wants(&ENDLESS_BESIDE_SWEEP) {
+        beside_sweep(bench)?;
+    }
+    if bench.wants_any(&[EXACT, DEFAULT, WHOLE, PLANE, PLANE_EXACT, ENDLESS]) {
         small(bench)?;
     }
     if bench.wants_any(&[LARGE, LARGE_EXACT]) {
@@ -101,9 +120,46 @@ fn small(bench: &mut Bench) -> Result<()> {
         (WHOLE, whole),
         (PLANE, in_plane(Options::default())),
         (PLANE_EXACT, in_plane(exact(3))),
+        (ENDLESS, Box::new(|| count_plane(&endless(&exemplar)?))),
     ];
     let note = format!("{}; {}", model.note, picture.note());
     beside(bench, 3, &picture, rows.into(), &note)
+}
+
+/// A window of an endless texture, with its preparation.
+pub(super) fn endless(exemplar: &Exemplar) -> Result<PlaneTexture, SynthError> {
+    let texture = Endless::new(exemplar, &EndlessOptions::default())?;
+    texture.window([0; 2], [SIDE; 2], |_| ControlFlow::Continue(()))
+}
+
+fn beside_sweep(bench: &mut Bench) -> Result<()> {
+    let picture = leaves(64)?;
+    let exemplar = picture.exemplar()?;
+    let [mut ours, mut sweeps] = [Vec::new(), Vec::new()];
+    for _ in 0..3 {
+        let (time, made) = bench.on_one(|| count_plane(&endless(&exemplar)?));
+        ensure!(made? == (SIDE * SIDE) as usize, "another number of pixels");
+        ours.push(time);
+        let (time, made) = bench.on_one(|| {
+            let edges = [Edges::Cut; 2];
+            count_plane(&synthesize_plane(
+                &exemplar,
+                [SIDE; 2],
+                edges,
+                &Options::default(),
+            )?)
+        });
+        ensure!(made? == (SIDE * SIDE) as usize, "another number of pixels");
+        sweeps.push(time);
+    }
+    let note = picture.note();
+    bench.measured_with(
+        &ENDLESS_BESIDE_SWEEP,
+        median(&mut ours),
+        median(&mut sweeps),
+        note,
+    );
+    Ok(())
 }
 
 fn large(bench: &mut Bench) -> Result<()> {

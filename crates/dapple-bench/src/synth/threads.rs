@@ -1,5 +1,6 @@
 //! The synthesis on two threads beside one.
 
+use super::beside_flat::endless;
 use super::scene::{N_SITES, exact, leaves, model, synthesizer};
 use super::whole;
 use crate::harness::Bench;
@@ -22,11 +23,17 @@ const WHOLE: Case = Case {
     ..SYNTHESIS
 };
 
+const ENDLESS: Case = Case {
+    case: "endless texture on two threads, 512×512",
+    must: Must::Faster(1.85),
+    ..SYNTHESIS
+};
+
 /// The time spent on a row, unless three turns take longer.
 const BUDGET: Duration = Duration::from_secs(20);
 
 pub(super) fn run(bench: &mut Bench) -> Result<()> {
-    if !bench.wants_any(&[SYNTHESIS, WHOLE]) {
+    if !bench.wants_any(&[SYNTHESIS, WHOLE, ENDLESS]) {
         return Ok(());
     }
     let (model, exemplar) = (model()?, leaves(64)?.exemplar()?);
@@ -44,6 +51,13 @@ pub(super) fn run(bench: &mut Bench) -> Result<()> {
             |one, two| one.is_some() && one == two,
         )?;
     }
+    bench.two_threads(
+        &ENDLESS,
+        BUDGET,
+        [None, None],
+        |made| *made = endless(&exemplar).ok(),
+        |one, two| one.is_some() && one == two,
+    )?;
     bench.two_threads(
         &WHOLE,
         BUDGET,

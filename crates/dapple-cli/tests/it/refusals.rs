@@ -129,7 +129,7 @@ const LIMITS: [(&str, &str); 24] = [
         "blend-map photo.png --feature-size 0 -o out.png",
         "--feature-size 0: ",
     ),
-    ("synth checker.png --levels 6 -o out.png", "--levels"),
+    ("synth checker.png --levels 9 -o out.png", "--levels"),
     (
         "synth photo.png --guide rock.png --guide-weight 0 -o out.png",
         "weight of a plane",

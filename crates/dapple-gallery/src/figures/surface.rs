@@ -9,6 +9,7 @@ mod fig_03;
 mod fig_04;
 mod fig_05;
 mod fig_extra_charts;
+mod fig_extra_endless;
 mod fig_extra_exemplars;
 mod fig_extra_guides;
 mod fig_extra_repair;
@@ -40,6 +41,7 @@ pub(super) const PAPER: Paper = Paper {
         fig_04::FIGURE,
         fig_05::FIGURE,
         fig_extra_charts::FIGURE,
+        fig_extra_endless::FIGURE,
         fig_extra_exemplars::FIGURE,
         fig_extra_guides::FIGURE,
         fig_extra_repair::FIGURE,
