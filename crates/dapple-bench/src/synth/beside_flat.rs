@@ -2,16 +2,13 @@
 //!
 //! Both run on one thread; times are medians of processor times. The peer makes one image in every turn for all rows.
 
-use super::scene::{self, N_SITES, exact, leaves, model, synthesizer};
+use super::scene::{self, N_SITES, SIDE, endless, exact, leaves, model, synthesizer};
 use super::whole;
 use crate::harness::{Bench, median};
 use crate::peers::flat;
 use crate::row::{Case, Must, Unit};
 use anyhow::{Result, ensure};
-use core::ops::ControlFlow;
-use dapple_synth::{
-    Edges, Endless, EndlessOptions, Exemplar, Options, PlaneTexture, SynthError, synthesize_plane,
-};
+use dapple_synth::{Edges, Exemplar, Options, PlaneTexture, synthesize_plane};
 
 const EXACT: Case = Case {
     group: "synth",
@@ -70,9 +67,6 @@ const LARGE_EXACT: Case = Case {
     ..EXACT
 };
 
-/// Width and height of the flat image in pixels.
-const SIDE: u32 = 512;
-
 /// The job of a row: makes something and counts it.
 type Job<'a> = Box<dyn Fn() -> Result<usize> + Sync + 'a>;
 
@@ -126,12 +120,6 @@ fn small(bench: &mut Bench) -> Result<()> {
     beside(bench, 3, &picture, rows.into(), &note)
 }
 
-/// A window of an endless texture, with its preparation.
-pub(super) fn endless(exemplar: &Exemplar) -> Result<PlaneTexture, SynthError> {
-    let texture = Endless::new(exemplar, &EndlessOptions::default())?;
-    texture.window([0; 2], [SIDE; 2], |_| ControlFlow::Continue(()))
-}
-
 fn beside_sweep(bench: &mut Bench) -> Result<()> {
     let picture = leaves(64)?;
     let exemplar = picture.exemplar()?;
@@ -152,7 +140,7 @@ fn beside_sweep(bench: &mut Bench) -> Result<()> {
         ensure!(made? == (SIDE * SIDE) as usize, "another number of pixels");
         sweeps.push(time);
     }
-    let note = picture.note();
+    let note = picture.note().to_owned();
     bench.measured_with(
         &ENDLESS_BESIDE_SWEEP,
         median(&mut ours),

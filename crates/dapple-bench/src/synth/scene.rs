@@ -2,17 +2,22 @@
 
 use super::drawings::{self, Drawing, draw};
 use anyhow::{Result, ensure};
+use core::ops::ControlFlow;
 use dapple_color::LinearRgb;
 use dapple_image::{Limits, read_image};
 use dapple_mesh::Surface;
 use dapple_models::bunny;
 use dapple_raster::Raster;
 use dapple_synth::{
-    Coherence, Direction, Edges, Exemplar, HierarchyOptions, Options, SurfaceTexture, Synthesizer,
+    Coherence, Direction, Edges, Endless, EndlessOptions, Exemplar, HierarchyOptions, Options,
+    PlaneTexture, SurfaceTexture, SynthError, Synthesizer,
 };
 use glam::DVec3;
 use std::fmt::Write as _;
 use std::path::PathBuf;
+
+/// Width and height of flat images in pixels.
+pub(super) const SIDE: u32 = 512;
 
 /// The number of sites in most rows: the number of pixels of the flat image.
 pub(super) const N_SITES: usize = 512 * 512;
@@ -30,6 +35,12 @@ pub(super) struct Picture {
     pub(super) image: Raster<LinearRgb>,
     /// Whether the image is the photograph rather than the drawing.
     pub(super) is_photograph: bool,
+}
+
+/// A window of an endless texture, with its preparation.
+pub(super) fn endless(exemplar: &Exemplar) -> Result<PlaneTexture, SynthError> {
+    let texture = Endless::new(exemplar, &EndlessOptions::default())?;
+    texture.window([0; 2], [SIDE; 2], |_| ControlFlow::Continue(()))
 }
 
 /// Returns the real model if its file exists, and a procedural one otherwise.

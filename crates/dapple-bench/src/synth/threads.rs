@@ -1,7 +1,6 @@
 //! The synthesis on two threads beside one.
 
-use super::beside_flat::endless;
-use super::scene::{N_SITES, exact, leaves, model, synthesizer};
+use super::scene::{N_SITES, endless, exact, leaves, model, synthesizer};
 use super::whole;
 use crate::harness::Bench;
 use crate::row::{Case, Must, Unit};

@@ -1,3 +1,5 @@
+//! Tests of endless textures.
+
 use super::stage::{DIAGONALS, N_FEATURES, Stage};
 use super::window::{N_PASSES, QUARTERS};
 use super::{Endless, EndlessOptions};
