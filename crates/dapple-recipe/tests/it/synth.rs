@@ -13,7 +13,11 @@ use std::sync::Arc;
 
 /// Stones of 6 pixels in courses, and their heights.
 fn images() -> Images {
-    let stone = |x: u32, y: u32| (x + 3 * (y / 6 % 2)) % 6 > 0 && y % 6 > 0;
+    let stone = |x: u32, y: u32| {
+        ![x + 3 * (y / 6 % 2), y]
+            .iter()
+            .any(|at| at.is_multiple_of(6))
+    };
     let colors = Raster::from_fn([48, 36], |x, y| {
         LinearRgb::new(f32::from(stone(x, y)), (x * y % 7) as f32 / 7.0, 0.25)
     });
