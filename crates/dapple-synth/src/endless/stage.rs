@@ -3,6 +3,7 @@
 //! All levels have the full size of the exemplar: each is the one before it, blurred by the weights 1-4-6-4-1 of pixels as
 //! far apart as those of the texture are on it. So a texture may go on at any pixel of the exemplar on coarse levels, too.
 
+use super::evenness::Costs;
 use crate::exemplar::blend;
 use crate::matcher::{Basis, Matcher, MatcherMemory, Query};
 use crate::{Edges, Exemplar, SynthError, SynthErrorKind};
@@ -39,7 +40,7 @@ const NONE: u32 = u32::MAX;
 /// An exemplar on one level of a texture.
 #[derive(Clone, Debug)]
 pub(super) struct Stage {
-    size: [u32; 2],
+    pub(super) size: [u32; 2],
     wrap: Wrap,
     /// The pixels of the exemplar between two pixels of the level.
     pub(super) spacing: i64,
@@ -51,6 +52,8 @@ pub(super) struct Stage {
     pub(super) step: i64,
     /// For each pixel of the grid the one of the grid that is most like it.
     similar: Vec<u32>,
+    /// What it costs in a match to go on in each part of the exemplar.
+    pub(super) costs: Costs,
 }
 
 /// The levels of an exemplar, the finest first.
@@ -75,6 +78,7 @@ pub(super) fn stages(exemplar: &Exemplar, n_levels: usize) -> Result<Vec<Stage>,
             usable: None,
             step,
             similar: Vec::new(),
+            costs: Costs::default(),
         });
     }
     // Never more is left out than of the next coarser level, so that the pixels that its texture has are usable.

@@ -25,11 +25,19 @@ const fn reach(n_passes: usize) -> i64 {
     READS * (QUARTERS.len() * n_passes) as i64
 }
 
+/// How often the level over a coarser one is corrected, or the coarsest.
+fn n_passes(coarser: Option<&Area>) -> usize {
+    match coarser {
+        None => 2 * N_PASSES,
+        Some(_) => N_PASSES,
+    }
+}
+
 /// A rectangle of the texture on one level, and the places in the exemplar that its pixels are from.
 #[derive(Clone, Debug)]
-struct Area {
-    columns: Range<i64>,
-    rows: Range<i64>,
+pub(super) struct Area {
+    pub(super) columns: Range<i64>,
+    pub(super) rows: Range<i64>,
     places: Vec<[u32; 2]>,
 }
 
@@ -54,19 +62,12 @@ impl Endless {
         }
         let mut coarser: Option<Area> = None;
         for (level, stage) in self.stages.iter().enumerate().rev() {
-            let n_passes = if coarser.is_none() {
-                2 * N_PASSES
-            } else {
-                N_PASSES
-            };
+            let n_passes = n_passes(coarser.as_ref());
             let reach = reach(n_passes);
-            let [columns, rows] = needs[level]
+            let around = needs[level]
                 .clone()
                 .map(|range| range.start - reach..range.end + reach);
-            let mut area = Area::new(columns, rows, |at| match &coarser {
-                None => self.random(level, at),
-                Some(coarser) => stage.child(coarser.at(at.map(|at| at.div_euclid(2))), at),
-            });
+            let mut area = self.start(level, coarser.as_ref(), around);
             let n_quarters = area.places.len() / QUARTERS.len();
             for (corrected, &quarter) in (0..n_passes).flat_map(|_| &QUARTERS).enumerate() {
                 let progress = Progress {
@@ -88,6 +89,36 @@ impl Endless {
             narrow(place)
         };
         Ok(Raster::from_fn(size, place)?)
+    }
+
+    /// The pixels of a level before they are corrected.
+    fn start(
+        &self,
+        level: usize,
+        coarser: Option<&Area>,
+        [columns, rows]: [Range<i64>; 2],
+    ) -> Area {
+        Area::new(columns, rows, |at| match coarser {
+            None => self.random(level, at),
+            Some(coarser) => {
+                let parent = coarser.at(at.map(|at| at.div_euclid(2)));
+                self.stages[level].child(parent, at)
+            }
+        })
+    }
+
+    /// The pixels of a level, corrected as far as is here what corrections read.
+    pub(super) fn area(
+        &self,
+        level: usize,
+        coarser: Option<&Area>,
+        ranges: [Range<i64>; 2],
+    ) -> Area {
+        let mut area = self.start(level, coarser, ranges);
+        for &quarter in (0..n_passes(coarser)).flat_map(|_| &QUARTERS) {
+            area.correct(&self.stages[level], quarter);
+        }
+        area
     }
 
     /// The place of a pixel of the coarsest level before it is corrected: any, or where copies of a regular exemplar side by
@@ -141,7 +172,7 @@ impl Area {
 
     /// The place of a pixel.
     #[inline]
-    fn at(&self, [column, row]: [i64; 2]) -> [i64; 2] {
+    pub(super) fn at(&self, [column, row]: [i64; 2]) -> [i64; 2] {
         let width = self.columns.end - self.columns.start;
         let place = (row - self.rows.start) * width + column - self.columns.start;
         self.places[place as usize].map(i64::from)
@@ -176,7 +207,7 @@ impl Area {
         let mut coherent = [best.1; 9];
         let mut n_coherent = 0;
         let mut compare = |place: [i64; 2]| {
-            let distance_sq = stage.distance_sq(&around, place);
+            let distance_sq = stage.distance_sq(&around, place) + stage.costs.of(place);
             if distance_sq < best.0 {
                 best = (distance_sq, place);
             }
@@ -205,7 +236,7 @@ impl Area {
     /// The features on the diagonals of a pixel: of each the mean of what it has and what two pixels beyond it, one along
     /// each axis, go on to there.
     #[inline]
-    fn around(&self, stage: &Stage, [column, row]: [i64; 2]) -> [[f32; N_FEATURES]; 4] {
+    pub(super) fn around(&self, stage: &Stage, [column, row]: [i64; 2]) -> [[f32; N_FEATURES]; 4] {
         DIAGONALS.map(|[x, y]| {
             let mut sums = [0.0; N_FEATURES];
             for [beyond_x, beyond_y] in [[0, 0], [x, 0], [0, y]] {

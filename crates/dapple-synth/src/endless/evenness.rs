@@ -1,0 +1,141 @@
+//! How evenly textures use the parts of an exemplar: what a part costs in a match.
+//!
+//! Corrections alone take what fits many neighborhoods again and again: of a photograph of grass, one that is lighter on one
+//! side, textures have little but the middle. So every part of the exemplar, of which there are up to 16 × 16, has a cost
+//! that is added to the squared distance of its pixels. Costs are found by trials: a piece of the texture is made, the
+//! parts that it has too often become dearer, and those that it has too rarely cheaper; the costs of the most even trial
+//! are kept. They belong to the texture and not to a window, so that windows are crops of larger ones.
+//!
+//! Only levels have costs of which the piece is at least as wide as the exemplar: on finer ones it is too small to show all
+//! parts, and what they have follows from the coarser ones.
+//!
+//! Reference: our own; prices that rise with the demand are those of Bertsekas's auctions for assignment problems.
+
+use super::Endless;
+use super::stage::Stage;
+use super::window::{Area, READS};
+use dapple_raster::parallel;
+
+/// The columns and rows of the piece that a trial makes, in pixels of the level.
+const SIDE: i64 = 64;
+
+/// The trials of a level.
+const N_TRIALS: u32 = 20;
+
+/// The most parts along an axis.
+const MAX_PARTS: i64 = 16;
+
+/// How much a cost changes after the first trial, in mean squared distances, for a part that textures never have.
+const STEP: f32 = 0.8;
+
+/// The trials after which costs change by half as much as after the first.
+const HALF_STEP: f32 = 8.0;
+
+/// What the parts of an exemplar cost; nothing if they are not told apart.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Costs {
+    /// The columns and rows of a part.
+    side: i64,
+    n_columns: i64,
+    of_part: Vec<f32>,
+}
+
+impl Costs {
+    /// Parts of an exemplar that cost nothing.
+    fn new(size: [u32; 2], spacing: i64) -> Self {
+        let size = size.map(i64::from);
+        let side = spacing.max((size[0].max(size[1]) - 1) / MAX_PARTS + 1);
+        let [n_columns, n_rows] = size.map(|n| (n - 1) / side + 1);
+        Self {
+            side,
+            n_columns,
+            of_part: vec![0.0; (n_columns * n_rows) as usize],
+        }
+    }
+
+    /// The part of a place within the exemplar.
+    #[inline]
+    fn part(&self, [column, row]: [i64; 2]) -> usize {
+        (row / self.side * self.n_columns + column / self.side) as usize
+    }
+
+    /// What a place within the exemplar costs.
+    #[inline]
+    pub(super) fn of(&self, place: [i64; 2]) -> f32 {
+        if self.of_part.is_empty() {
+            return 0.0;
+        }
+        self.of_part[self.part(place)]
+    }
+
+    /// The share of each part among some places.
+    pub(super) fn shares(&self, places: impl IntoIterator<Item = [u32; 2]>) -> Vec<f32> {
+        let mut counts = vec![0_u32; self.of_part.len()];
+        let mut n_places = 0;
+        for place in places {
+            counts[self.part(place.map(i64::from))] += 1;
+            n_places += 1;
+        }
+        let share = |count| count as f32 / n_places.max(1) as f32;
+        counts.into_iter().map(share).collect()
+    }
+}
+
+impl Endless {
+    /// Finds out what the parts of the exemplar cost on the coarser levels.
+    pub(super) fn even_out(&mut self) {
+        let mut coarser: Option<Area> = None;
+        for level in (0..self.stages.len()).rev() {
+            let Stage { size, spacing, .. } = self.stages[level];
+            if SIDE * spacing < i64::from(size[0].max(size[1])) {
+                return;
+            }
+            let mut costs = Costs::new(size, spacing);
+            let usable = self.stages[level].usable_pixels();
+            let wanted = costs.shares(
+                usable
+                    .iter()
+                    .map(|pixel| [pixel % size[0], pixel / size[0]]),
+            );
+            let half = SIDE / 2;
+            let mut scale = None;
+            let mut best = (f32::INFINITY, costs.clone(), None);
+            for trial in 0..N_TRIALS {
+                self.stages[level].costs = costs.clone();
+                let made = self.area(level, coarser.as_ref(), [-half..half, -half..half]);
+                let scale = *scale.get_or_insert_with(|| made.mean_sq(&self.stages[level]));
+                let shares = costs.shares(made.inner().map(|at| made.at(at).map(|at| at as u32)));
+                let pairs = || shares.iter().zip(&wanted);
+                let uneven = pairs().map(|(a, b)| (a - b).abs()).sum();
+                if uneven < best.0 {
+                    best = (uneven, costs.clone(), Some(made));
+                }
+                let step = STEP * scale / (1.0 + trial as f32 / HALF_STEP);
+                for (cost, (share, wanted)) in costs.of_part.iter_mut().zip(pairs()) {
+                    if *wanted > 0.0 {
+                        *cost += step * (share - wanted) / (share + wanted);
+                    }
+                }
+            }
+            (_, self.stages[level].costs, coarser) = best;
+        }
+    }
+}
+
+impl Area {
+    /// The pixels around which everything is here that a correction reads.
+    fn inner(&self) -> impl Iterator<Item = [i64; 2]> {
+        let rows = self.rows.start + READS..self.rows.end - READS;
+        let columns = self.columns.start + READS..self.columns.end - READS;
+        rows.flat_map(move |row| columns.clone().map(move |column| [column, row]))
+    }
+
+    /// The mean squared distance of what is around pixels and around their places in the exemplar.
+    fn mean_sq(&self, stage: &Stage) -> f32 {
+        let inner: Vec<[i64; 2]> = self.inner().collect();
+        let distances = parallel::map_at_least(64, inner.len(), |at| {
+            stage.distance_sq(&self.around(stage, inner[at]), self.at(inner[at]))
+        });
+        distances.iter().sum::<f32>() / inner.len() as f32
+    }
+}
