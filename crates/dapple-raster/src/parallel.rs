@@ -4,6 +4,7 @@
 //! threads. This is the only place that uses `rayon`. Its code is large and compiled anew for every closure, so there
 //! is only one closure, which calls the work through a reference.
 
+use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
 
 /// The largest number of pieces for each thread: enough that no thread waits long for another.
@@ -40,23 +41,40 @@ pub fn map_at_least<T: Send>(
     count: usize,
     make: impl Fn(usize) -> T + Sync,
 ) -> Vec<T> {
-    if count > least && n_threads() > 1 {
-        let size = piece(count, least);
-        let pieces: Vec<_> = (0..count.div_ceil(size))
-            .map(|_| Mutex::new(Vec::new()))
-            .collect();
-        for_each(pieces.len(), &|piece| {
-            let first = piece * size;
-            let made: Vec<T> = (first..count.min(first + size)).map(&make).collect();
-            *lock(&pieces[piece]) = made;
-        });
-        let mut all = Vec::with_capacity(count);
-        for piece in pieces {
-            all.append(&mut piece.into_inner().unwrap_or_else(PoisonError::into_inner));
-        }
-        return all;
+    map_parts(least, count, &|part| part.map(&make).collect())
+}
+
+/// The results of `make` for ranges of the numbers below `count`, one after the other; `least` numbers together are
+/// worth a task.
+///
+/// On one thread there is one range: `make` is called in one way only, so that it is compiled once.
+#[inline(never)]
+pub(crate) fn map_parts<T: Send>(
+    least: usize,
+    count: usize,
+    make: &(dyn Fn(Range<usize>) -> Vec<T> + Sync),
+) -> Vec<T> {
+    let size = piece(count, least);
+    if size >= count {
+        return make(0..count);
     }
-    (0..count).map(make).collect()
+    let parts: Vec<_> = (0..count.div_ceil(size))
+        .map(|_| Mutex::new(Vec::new()))
+        .collect();
+    for_each(parts.len(), &|part| {
+        let first = part * size;
+        let made = make(first..count.min(first + size));
+        *lock(&parts[part]) = made;
+    });
+    let parts: Vec<_> = parts
+        .into_iter()
+        .map(|part| part.into_inner().unwrap_or_else(PoisonError::into_inner))
+        .collect();
+    let mut all = Vec::with_capacity(parts.iter().map(Vec::len).sum());
+    for mut part in parts {
+        all.append(&mut part);
+    }
+    all
 }
 
 /// Calls `work` once with each of some items and its number, in any order; each is worth a task of its own.
@@ -134,27 +152,20 @@ pub fn consume_with<T: Send, S: Send>(
     scratch: impl Fn() -> S + Sync,
     work: impl Fn(&mut S, usize, T) + Sync,
 ) {
-    if items.len() > 1 && n_threads() > 1 {
-        let size = piece(items.len(), 1);
-        let mut items: Vec<_> = items.into_iter().map(Some).collect();
-        let pieces: Vec<_> = items.chunks_mut(size).map(Mutex::new).collect();
-        let free = Mutex::new(Vec::new());
-        for_each(pieces.len(), &|piece| {
-            let before = lock(&free).pop();
-            let mut memory = before.unwrap_or_else(&scratch);
-            for (index, item) in (piece * size..).zip(lock(&pieces[piece]).iter_mut()) {
-                if let Some(item) = item.take() {
-                    work(&mut memory, index, item);
-                }
+    let size = piece(items.len(), 1);
+    let mut items: Vec<_> = items.into_iter().map(Some).collect();
+    let pieces: Vec<_> = items.chunks_mut(size).map(Mutex::new).collect();
+    let free = Mutex::new(Vec::new());
+    for_each(pieces.len(), &|piece| {
+        let before = lock(&free).pop();
+        let mut memory = before.unwrap_or_else(&scratch);
+        for (index, item) in (piece * size..).zip(lock(&pieces[piece]).iter_mut()) {
+            if let Some(item) = item.take() {
+                work(&mut memory, index, item);
             }
-            lock(&free).push(memory);
-        });
-        return;
-    }
-    let mut memory = scratch();
-    for (index, item) in items.into_iter().enumerate() {
-        work(&mut memory, index, item);
-    }
+        }
+        lock(&free).push(memory);
+    });
 }
 
 /// Lets all workers work at the same time, each with its number; there are at most [`n_threads`] of them.
@@ -184,9 +195,13 @@ pub fn sort(numbers: &mut [u128]) {
     numbers.sort_unstable();
 }
 
-/// How many of `count` items make one task; never fewer than `least`.
+/// How many of `count` items make one task: never fewer than `least`, and all of them on one thread.
 fn piece(count: usize, least: usize) -> usize {
-    count.div_ceil(PIECES * n_threads()).max(least).max(1)
+    let size = match n_threads() {
+        1 => count,
+        threads => count.div_ceil(PIECES * threads),
+    };
+    size.max(least).max(1)
 }
 
 /// Locks a mutex, whether or not a thread panicked while it held the lock: rayon passes the panic on.

@@ -213,20 +213,16 @@ impl<T: Sync> Raster<T> {
     /// A raster of the same size with every value changed by `change`, on all cores where the feature `rayon` is on.
     #[must_use]
     pub fn par_map<U: Send>(&self, change: impl Fn(&T) -> U + Sync) -> Raster<U> {
-        #[cfg(feature = "rayon")]
-        let data = {
-            use rayon::prelude::*;
-            self.data.par_iter().map(&change).collect()
-        };
-        #[cfg(not(feature = "rayon"))]
-        let data = self.data.iter().map(change).collect();
+        let data = parallel::map_parts(BAND_PIXELS, self.data.len(), &|part| {
+            self.data[part].iter().map(&change).collect()
+        });
         let size = self.size;
         Raster { data, size }
     }
 }
 
-/// The number of pixels in the rows that are made at a time, unless one row has more.
-const BAND_PIXELS: u32 = 4096;
+/// The number of pixels that are made at a time, unless one row has more.
+const BAND_PIXELS: usize = 4096;
 
 impl<T: Send> Raster<T> {
     /// A raster whose values are those of `value` at the pixel centers of `window`, on all cores where the feature
@@ -261,18 +257,12 @@ impl<T: Send> Raster<T> {
         check_size(size)?;
         let width = size[0] as usize;
         // Narrow rows are made several at a time.
-        let n_rows = (BAND_PIXELS / size[0]).max(1);
-        let bands = parallel::map(size[1].div_ceil(n_rows) as usize, |band| {
-            let first = band as u32 * n_rows;
-            let rows = first..size[1].min(first.saturating_add(n_rows));
+        let n_rows = BAND_PIXELS / width;
+        let data = parallel::map_parts(n_rows, size[1] as usize, &|rows| {
             let mut values = Vec::with_capacity(width * rows.len());
-            rows.for_each(|index| values.extend(row(index).into_iter().take(width)));
+            rows.for_each(|index| values.extend(row(index as u32).into_iter().take(width)));
             values
         });
-        let mut data = Vec::with_capacity(width * size[1] as usize);
-        bands
-            .into_iter()
-            .for_each(|mut band| data.append(&mut band));
         Self::from_vec(size, data)
     }
 }

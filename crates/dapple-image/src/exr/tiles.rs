@@ -11,7 +11,7 @@
 use crate::limits::check_side;
 use crate::rows::Sink;
 use crate::{ImageError, ImageErrorKind};
-use dapple_raster::{Raster, RasterView};
+use dapple_raster::{RasterView, parallel};
 use exr::block::chunk::Chunk;
 use exr::block::{BlockIndex, UncompressedBlock};
 use exr::compression::Compression;
@@ -122,11 +122,9 @@ impl TileStream {
         let columns: Vec<usize> = (0..self.band.size().x()).step_by(TILE).collect();
         let mut bytes = Vec::new();
         for group in columns.chunks(GROUP) {
-            let group =
-                Raster::from_vec([group.len() as u32, 1], group.to_vec()).map_err(failure)?;
-            let chunks = group.par_map(|&column| self.band.chunk(column));
+            let chunks = parallel::map(group.len(), |index| self.band.chunk(group[index]));
             bytes.clear();
-            for chunk in chunks.into_pixels() {
+            for chunk in chunks {
                 self.places.push(self.position + bytes.len() as u64);
                 chunk
                     .and_then(|chunk| chunk.write(&mut bytes, 1))
