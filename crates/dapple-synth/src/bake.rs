@@ -27,23 +27,21 @@ pub(crate) struct Group<'a> {
     pub(crate) sites: Around<'a>,
 }
 
-/// A way to get the values of texels from the sites around them.
-pub(crate) trait Paint<const N: usize>: Sync {
-    /// Memory that is kept from group to group.
-    type Memory: Default;
-
-    /// Writes a value for every point of the group.
-    fn paint(&self, group: &Group<'_>, memory: &mut Self::Memory, values: &mut [[f32; N]]);
+/// A way to get the values of texels from the sites around them, with memory that it keeps from group to group.
+pub(crate) trait Paint {
+    /// Writes the channels of every point of the group, one point after the other.
+    fn paint(&mut self, group: &Group<'_>, values: &mut [f32]);
 }
 
 /// Memory of a thread that bakes blocks of texels.
-struct Memory<const N: usize, M> {
+struct Memory<'a> {
     /// The texels of a block by face.
     texels: Vec<(FaceIdx, [u32; 2])>,
     points: Vec<SurfacePoint>,
     nearby: Nearby,
-    values: Vec<[f32; N]>,
-    paint: M,
+    /// The channels of the texels of a face, one texel after the other.
+    values: Vec<f32>,
+    paint: Box<dyn Paint + 'a>,
 }
 
 /// Mixes the values of the finest sites at every texel of an atlas; `background` where there is no face.
@@ -69,58 +67,68 @@ pub fn bake<const N: usize>(
         }));
     }
     let radius = (hierarchy.levels()[0].spacing() * INTERPOLATION_RADIUS) as f32;
-    bake_with(
-        surface,
-        hierarchy,
-        atlas,
-        background,
-        &Mixed { column, radius },
-    )
+    bake_with(surface, hierarchy, atlas, background, &|| {
+        Box::new(Mixed {
+            colors: Plain {
+                values: column,
+                n_channels: N,
+            },
+            radius,
+            lattice: Lattice::default(),
+            samples: Samples::default(),
+            interpolation: Interpolation::default(),
+        })
+    })
 }
 
-/// Paints every texel of an atlas; `background` where there is no face.
-pub(crate) fn bake_with<const N: usize>(
+/// Paints every texel of an atlas, each thread with a `painter` of its own; `background` where there is no face.
+pub(crate) fn bake_with<'a, const N: usize>(
     surface: &Surface,
     hierarchy: &Hierarchy,
     atlas: &Atlas,
     background: [f32; N],
-    paint: &impl Paint<N>,
+    painter: &(dyn Fn() -> Box<dyn Paint + 'a> + Sync),
 ) -> Result<Raster<[f32; N]>, SynthError> {
     let size = atlas.size();
     let baker = Baker {
         surface,
         hierarchy,
         atlas,
-        paint,
+        background: &background,
+        painter,
     };
     let band = |band: usize| {
         let first = band as u32 * BLOCK;
-        baker.bake_rows(first..(first + BLOCK).min(size[1]), background)
+        let values = baker.bake_rows(first..(first + BLOCK).min(size[1]));
+        values.as_chunks::<N>().0.to_vec()
     };
     let bands = parallel::map(size[1].div_ceil(BLOCK) as usize, band);
     Ok(Raster::from_vec(size, bands.concat())?)
 }
 
 /// The input of all blocks.
-struct Baker<'a, P> {
+struct Baker<'a, 'p> {
     surface: &'a Surface,
     hierarchy: &'a Hierarchy,
     atlas: &'a Atlas,
-    paint: &'a P,
+    background: &'a [f32],
+    painter: &'a (dyn Fn() -> Box<dyn Paint + 'p> + Sync),
 }
 
-impl<P> Baker<'_, P> {
-    fn bake_rows<const N: usize>(
-        &self,
-        rows: core::ops::Range<u32>,
-        background: [f32; N],
-    ) -> Vec<[f32; N]>
-    where
-        P: Paint<N>,
-    {
+impl Baker<'_, '_> {
+    /// The channels of some rows, one texel after the other.
+    fn bake_rows(&self, rows: core::ops::Range<u32>) -> Vec<f32> {
         let width = self.atlas.size()[0];
-        let mut values = vec![background; (width * (rows.end - rows.start)) as usize];
-        let mut memory = Memory::<N, P::Memory>::default();
+        let n_channels = self.background.len();
+        let n_texels = width as usize * rows.len();
+        let mut values = self.background.repeat(n_texels);
+        let mut memory = Memory {
+            texels: Vec::new(),
+            points: Vec::new(),
+            nearby: Nearby::default(),
+            values: Vec::new(),
+            paint: (self.painter)(),
+        };
         for first in (0..width).step_by(BLOCK as usize) {
             memory.texels.clear();
             for row in rows.clone() {
@@ -135,8 +143,10 @@ impl<P> Baker<'_, P> {
             let texels = core::mem::take(&mut memory.texels);
             for group in texels.chunk_by(|a, b| a.0 == b.0) {
                 self.bake_group(group, &mut memory);
-                for ((_, [column, row]), value) in group.iter().zip(&memory.values) {
-                    values[((row - rows.start) * width + column) as usize] = *value;
+                let channels = memory.values.chunks_exact(n_channels);
+                for ((_, [column, row]), channels) in group.iter().zip(channels) {
+                    let texel = ((row - rows.start) * width + column) as usize;
+                    values[texel * n_channels..][..n_channels].copy_from_slice(channels);
                 }
             }
             memory.texels = texels;
@@ -145,21 +155,19 @@ impl<P> Baker<'_, P> {
     }
 
     /// Fills `memory.values` with those of some texels of one face.
-    fn bake_group<const N: usize>(
-        &self,
-        group: &[(FaceIdx, [u32; 2])],
-        memory: &mut Memory<N, P::Memory>,
-    ) where
-        P: Paint<N>,
-    {
+    fn bake_group(&self, group: &[(FaceIdx, [u32; 2])], memory: &mut Memory<'_>) {
         let surface = self.surface;
         memory.points.clear();
         let points = group
             .iter()
             .map(|(_, texel)| self.atlas.point(surface, *texel));
         memory.points.extend(points.flatten());
+        memory.values.clear();
+        if memory.points.is_empty() {
+            return;
+        }
         let positions = || memory.points.iter().map(|&point| surface.position(point));
-        let center = positions().sum::<DVec3>() / memory.points.len().max(1) as f64;
+        let center = positions().sum::<DVec3>() / memory.points.len() as f64;
         let far_sq = positions()
             .map(|at| at.distance_squared(center))
             .fold(0.0, f64::max);
@@ -172,54 +180,37 @@ impl<P> Baker<'_, P> {
             center,
             sites: memory.nearby.collect_ball(self.hierarchy, 0, center, reach),
         };
-        memory.values.resize(memory.points.len(), [0.0; N]);
-        self.paint
-            .paint(&group, &mut memory.paint, &mut memory.values);
-    }
-}
-
-impl<const N: usize, M: Default> Default for Memory<N, M> {
-    fn default() -> Self {
-        Self {
-            texels: Vec::new(),
-            points: Vec::new(),
-            nearby: Nearby::default(),
-            values: Vec::new(),
-            paint: M::default(),
-        }
+        let n_values = memory.points.len() * self.background.len();
+        memory.values.resize(n_values, 0.0);
+        memory.paint.paint(&group, &mut memory.values);
     }
 }
 
 /// Means of the values at the sites around: equation 1, in the registers that also read the neighborhoods.
 struct Mixed<'a> {
-    column: &'a [f32],
+    colors: Plain<'a>,
     radius: f32,
+    lattice: Lattice,
+    samples: Samples,
+    interpolation: Interpolation,
 }
 
-impl<const N: usize> Paint<N> for Mixed<'_> {
-    type Memory = (Lattice, Samples, Interpolation);
-
-    fn paint(&self, group: &Group<'_>, memory: &mut Self::Memory, values: &mut [[f32; N]]) {
-        let (lattice, samples, interpolation) = memory;
-        lattice.line_up(group.surface, group.points, group.center);
-        samples.values.resize(group.points.len() * N, 0.0);
-        samples.nearest.resize(group.points.len(), 0);
-        let colors = Plain {
-            values: self.column,
-            n_channels: N,
-        };
-        let target = (colors, &mut *samples);
+impl Paint for Mixed<'_> {
+    fn paint(&mut self, group: &Group<'_>, values: &mut [f32]) {
+        self.lattice
+            .line_up(group.surface, group.points, group.center);
+        self.samples.values.resize(values.len(), 0.0);
+        self.samples.nearest.resize(group.points.len(), 0);
+        let target = (self.colors, &mut self.samples);
         interpolate(
             simd::level(),
-            lattice,
+            &self.lattice,
             group.sites,
             self.radius,
             target,
-            interpolation,
+            &mut self.interpolation,
         );
-        for (value, mixed) in values.iter_mut().zip(samples.values.chunks_exact(N)) {
-            value.copy_from_slice(mixed);
-        }
+        values.copy_from_slice(&self.samples.values);
     }
 }
 

@@ -50,9 +50,14 @@ pub(crate) fn magnify<const N: usize>(
         frames: frames(hierarchy, synthesizer.orientation()),
         footprints: footprints(synthesizer, atlas),
         spacing: spacing as f32,
-        value,
+        value: &|spot, channels| channels.copy_from_slice(&value(spot)),
     };
-    bake_with(surface, hierarchy, atlas, background, &magnified)
+    bake_with(surface, hierarchy, atlas, background, &|| {
+        Box::new(Magnifier {
+            input: &magnified,
+            pieces: Pieces::default(),
+        })
+    })
 }
 
 /// The side of a texel on every face, in spacings: the root of its area.
@@ -73,12 +78,13 @@ fn footprints(synthesizer: &Synthesizer, atlas: &Atlas) -> Vec<f32> {
 }
 
 /// The input of all texels.
-struct Magnified<'a, F> {
+struct Magnified<'a> {
     places: &'a Places,
     frames: Vec<Frame>,
     footprints: Vec<f32>,
     spacing: f32,
-    value: F,
+    /// Writes the channels of a spot.
+    value: &'a (dyn Fn(&Spot, &mut [f32]) + Sync),
 }
 
 /// What a site predicts.
@@ -103,27 +109,35 @@ struct Piece {
 
 /// Memory of a thread.
 #[derive(Debug, Default)]
-pub(crate) struct Pieces {
+struct Pieces {
     predictions: Vec<Prediction>,
     pieces: Vec<Piece>,
+    /// The channels of a piece.
+    channels: Vec<f32>,
 }
 
-impl<const N: usize, F: Fn(&Spot) -> [f32; N] + Sync> Paint<N> for Magnified<'_, F> {
-    type Memory = Pieces;
+/// The input of all texels, with the memory of a thread.
+struct Magnifier<'a> {
+    input: &'a Magnified<'a>,
+    pieces: Pieces,
+}
 
-    fn paint(&self, group: &Group<'_>, memory: &mut Pieces, values: &mut [[f32; N]]) {
-        let footprint = self.footprints[group.face.index()];
-        for (value, &point) in values.iter_mut().zip(group.points) {
+impl Paint for Magnifier<'_> {
+    fn paint(&mut self, group: &Group<'_>, values: &mut [f32]) {
+        let (input, memory) = (self.input, &mut self.pieces);
+        let footprint = input.footprints[group.face.index()];
+        let n_channels = values.len() / group.points.len();
+        for (value, &point) in values.chunks_exact_mut(n_channels).zip(group.points) {
             let at = (group.surface.position(point) - group.center).as_vec3();
             let normal = group.surface.normal(point).as_vec3();
-            self.predict(group.sites, at, normal, &mut memory.predictions);
-            self.gather(memory);
-            *value = self.mix(&memory.pieces, footprint);
+            input.predict(group.sites, at, normal, &mut memory.predictions);
+            input.gather(memory);
+            input.mix(memory, footprint, value);
         }
     }
 }
 
-impl<F> Magnified<'_, F> {
+impl Magnified<'_> {
     /// Lists what sites on the same sheet predict, that of the largest weight first.
     fn predict(
         &self,
@@ -196,16 +210,16 @@ impl<F> Magnified<'_, F> {
         }
     }
 
-    /// The value of the piece with the most weight, or of several at their seam.
-    fn mix<const N: usize>(&self, pieces: &[Piece], footprint: f32) -> [f32; N]
-    where
-        F: Fn(&Spot) -> [f32; N],
-    {
-        let most = pieces
+    /// Writes the channels of the piece with the most weight, or of several at their seam.
+    fn mix(&self, memory: &mut Pieces, footprint: f32, mixed: &mut [f32]) {
+        let most = memory
+            .pieces
             .iter()
             .fold(0.0, |most: f32, piece| most.max(piece.weight));
-        let (mut sum, mut shares) = ([0.0; N], 0.0);
-        for piece in pieces {
+        memory.channels.resize(mixed.len(), 0.0);
+        mixed.fill(0.0);
+        let mut shares = 0.0;
+        for piece in &memory.pieces {
             let part = piece.weight / most;
             let square = part * part;
             let fourth = square * square;
@@ -213,18 +227,19 @@ impl<F> Magnified<'_, F> {
             if share < SHARE_LEAST {
                 continue;
             }
-            let value = (self.value)(&Spot {
+            let spot = Spot {
                 place: piece.place + piece.off / piece.weight,
                 footprint,
                 right: piece.right * (self.spacing / piece.weight),
                 down: piece.down * (self.spacing / piece.weight),
-            });
-            for (sum, value) in sum.iter_mut().zip(value) {
-                *sum += share * value;
+            };
+            (self.value)(&spot, &mut memory.channels);
+            for (sum, channel) in mixed.iter_mut().zip(&memory.channels) {
+                *sum += share * channel;
             }
             shares += share;
         }
-        sum.map(|sum| sum / shares)
+        mixed.iter_mut().for_each(|sum| *sum /= shares);
     }
 }
 
