@@ -1,7 +1,8 @@
 //! Reading and writing of recipes as text: TOML and JSON, with errors that name the line and the nearest valid word.
 
-use crate::{Place, PupsNode, Recipe, RecipeError, RecipeErrorKind, SCHEMA};
+use crate::{Node, Place, PupsNode, Recipe, RecipeError, RecipeErrorKind, SCHEMA};
 use content::Content;
+use erased_serde::Serialize;
 use serde::Deserialize as _;
 use serde_json::Value;
 
@@ -59,7 +60,7 @@ impl Recipe {
     ///
     /// [`Text`](RecipeErrorKind::Text) if it contains a value that cannot be written as data, such as a function.
     pub fn to_toml(&self) -> Result<String, RecipeError> {
-        toml::to_string_pretty(self).map_err(|error| text_error(&error.to_string()))
+        toml::to_string_pretty(data(self)).map_err(|error| text_error(&error.to_string()))
     }
 
     /// Writes the recipe as JSON.
@@ -68,8 +69,19 @@ impl Recipe {
     ///
     /// [`Text`](RecipeErrorKind::Text) if it contains a value that cannot be written as data, such as a function.
     pub fn to_json(&self) -> Result<String, RecipeError> {
-        serde_json::to_string_pretty(self).map_err(|error| text_error(&error.to_string()))
+        serde_json::to_string_pretty(data(self)).map_err(|error| text_error(&error.to_string()))
     }
+}
+
+/// A value that is written to any format through references, so that the writers of the many types of recipes are
+/// compiled once, and not for each format.
+fn data(value: &impl Serialize) -> &dyn Serialize {
+    value
+}
+
+/// Whether a node can be written as data; functions cannot.
+pub(crate) fn is_data(node: &Node) -> bool {
+    serde_json::to_string_pretty(data(node)).is_ok()
 }
 
 fn check_length(text: &str) -> Result<(), RecipeError> {
@@ -90,7 +102,7 @@ impl PupsNode {
     ///
     /// [`Text`](RecipeErrorKind::Text) if it contains a value that cannot be written as data, such as a function.
     pub fn to_json(&self) -> Result<Value, RecipeError> {
-        serde_json::to_value(self).map_err(|error| text_error(&error.to_string()))
+        serde_json::to_value(data(self)).map_err(|error| text_error(&error.to_string()))
     }
 
     /// Converts a value of JSON to a texture.

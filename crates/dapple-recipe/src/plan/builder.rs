@@ -4,6 +4,7 @@ use super::memory::{Memory, StepId};
 use super::step::{Global, Local, Step, Tile};
 use super::work::{Work, WorkSum};
 use super::{Images, Picture, PlanLimits, not_a_number, order};
+use crate::text::is_data;
 use crate::{Input, Node, NodeSeed, Recipe, RecipeError, RecipeErrorKind, Values};
 use dapple_color::LinearRgb;
 use dapple_hash::Seed;
@@ -92,7 +93,9 @@ impl<'a> Builder<'a> {
     /// time; `None` if there is no description.
     fn id_in(&self, memory: &Memory, node: &Node) -> Option<(StepId, bool)> {
         // Options that cannot be written as data, such as functions, cannot be compared.
-        serde_json::to_writer(std::io::sink(), node).ok()?;
+        if !is_data(node) {
+            return None;
+        }
         let Recipe {
             seed, extent, wrap, ..
         } = self.recipe;
