@@ -165,9 +165,22 @@ impl<'de> Deserializer<'de> for &'de Content {
         }
     }
 
+    /// Options are a table. That they are no list is said here, so that no type has a reader for one.
+    fn deserialize_struct<V: Visitor<'de>>(
+        self,
+        _: &'static str,
+        _: &'static [&'static str],
+        visitor: V,
+    ) -> Result<V::Value, Refusal> {
+        match self {
+            Content::Table(table) => visitor.visit_map(Entries { table, next: 0 }),
+            other => Err(Refusal::invalid_type(other.unexpected(), &"a table")),
+        }
+    }
+
     forward_to_deserialize_any! {
         bool i8 i16 i32 i64 u8 u16 u32 u64 f32 f64 char str string bytes byte_buf unit
-        unit_struct seq tuple tuple_struct map struct identifier ignored_any
+        unit_struct seq tuple tuple_struct map identifier ignored_any
     }
 }
 
@@ -280,10 +293,10 @@ impl<'de> VariantAccess<'de> for Variant<'de> {
 
     fn struct_variant<V: Visitor<'de>>(
         self,
-        _: &'static [&'static str],
+        names: &'static [&'static str],
         visitor: V,
     ) -> Result<V::Value, Refusal> {
-        let value = self.value.deserialize_any(visitor);
+        let value = self.value.deserialize_struct("", names, visitor);
         value.map_err(|refusal| self.refusal(refusal))
     }
 }

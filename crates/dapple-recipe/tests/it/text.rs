@@ -56,6 +56,7 @@ fn a_wrong_word_is_told_with_its_line_and_the_nearest_valid_one() {
 fn a_wrong_value_is_told_without_names_of_types() {
     for (wrong, expected) in [
         ("octaves = 3", "a table"),
+        ("octaves = [3]", "a table"),
         ("metric = 3", "a word or a table"),
         ("octaves.gain = \"high\"", "a number"),
         ("octaves.count = -1", "a whole number that is not negative"),
