@@ -311,13 +311,22 @@ impl<'a> Job<'a> {
     /// # Errors
     ///
     /// The errors of [`Outputs::commit`].
-    pub(crate) fn finish(mut self, options: &impl Serialize, report: Value) -> Result<()> {
+    pub(crate) fn finish(self, options: &impl Serialize, report: Value) -> Result<()> {
+        self.finish_with(&|| serde_json::to_value(options), report)
+    }
+
+    /// Moves all files to their places and reports them; `options` are asked for where there is a JSON file.
+    fn finish_with(
+        mut self,
+        options: &dyn Fn() -> serde_json::Result<Value>,
+        report: Value,
+    ) -> Result<()> {
         if let Some(sidecar) = self.sidecar {
             for (output, record) in &mut self.files {
                 let content = self.outputs.content(*output)?;
                 (record.bytes, record.sha256) = (content.bytes, content.sha256);
             }
-            let options = serde_json::to_value(options).context("the JSON file")?;
+            let options = options().context("the JSON file")?;
             let sidecar_content = Sidecar {
                 dapple: env!("CARGO_PKG_VERSION"),
                 command: self.command,
