@@ -2,7 +2,6 @@
 
 use crate::doors::Doors as _;
 use crate::render::{Output, Picture};
-use crate::search::Hit;
 use crate::sink::Tone;
 use crate::{Axes, Cellular, LIMIT, Plane, Space, Worley};
 use dapple_raster::{RasterError, RasterViewMut, Window};
@@ -176,11 +175,7 @@ impl Tone {
     where
         Axes: Space<N>,
     {
-        let vector = |hit: Hit<N>| hit.vector;
-        if self.depth() <= 2 {
-            self.gradient(worley.metric, &worley.hits::<2>(place).map(vector))
-        } else {
-            self.gradient(worley.metric, &worley.hits::<4>(place).map(vector))
-        }
+        let vectors = worley.nearest(self.depth(), place).map(|hit| hit.vector);
+        self.gradient(worley.metric, &vectors)
     }
 }

@@ -11,7 +11,8 @@
 //! ([`splat`]). For the distance to the edge of the Voronoi cell, the cells are drawn one by one ([`edge`]).
 //!
 //! The parts that run in registers are stages with only memory between them, so that each is compiled only for the
-//! parameters it depends on.
+//! parameters it depends on, and once: most for any metric, the inner loops for the usual ones and their usual depths
+//! ([`levels`](crate::levels)).
 
 mod area;
 mod basis;

@@ -3,7 +3,7 @@
 use super::area::Area;
 use super::bins::Bins;
 use super::cull::{PixelBox, PointList};
-use super::flat::{Dominance, FlatPoints};
+use super::flat::{Dominance, FlatPoints, culls_dominated};
 use super::kernel::Candidate;
 use super::planes::{Neighbors, Planes};
 use super::splat::Splat;
@@ -190,7 +190,7 @@ impl Block<'_> {
         }
         let bands = &self.bands[first..];
         let is_single = !matches!(out, Output::Values(..))
-            || !bands[0].picture.basis.metric().is_exact_sum()
+            || !culls_dominated(self.level, bands[0].picture.basis.metric())
             || self.splat(out, self.guess(out)).is_some();
         if is_single {
             return 1;
@@ -264,7 +264,7 @@ impl Block<'_> {
         // The previous picture may have left the points of the same cells.
         if !memory.table.has(&cells, wants_ids) {
             memory.table.wants_ids = wants_ids;
-            basis.fill(self.level, &mut memory.table, cells);
+            memory.table.fill(self.level, basis.lattice(), cells);
         }
         memory.square.wants_numbers = !is_values;
         memory.tile.wants_numbers = !is_values;
@@ -363,7 +363,7 @@ impl Block<'_> {
         match out {
             Output::Values(values, rows) => values.put_one(basis, place, &mut rows[row][column]),
             Output::Gradients(tone, rows) => {
-                let vectors = nearest(tone.n_hits()).map(|hit| hit.vector);
+                let vectors = nearest(tone.depth()).map(|hit| hit.vector);
                 let gradient = tone.gradient(basis.metric(), &vectors);
                 let gradient = place.map_or([f32::NAN; MOST_AXES], |_| gradient);
                 rows[row][column * n..][..n].copy_from_slice(&gradient[..n]);
