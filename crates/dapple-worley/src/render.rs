@@ -96,7 +96,7 @@ impl Output<'_> {
     /// Whether ids are needed.
     fn wants_ids(&self) -> bool {
         match self {
-            Self::Features(features) => features.iter().any(|rows| !rows.id.is_empty()),
+            Self::Features(features) => features.iter().any(FeatureRows::wants_ids),
             _ => false,
         }
     }

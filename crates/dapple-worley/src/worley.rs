@@ -67,8 +67,13 @@ impl<V> Feature<V> {
     #[cfg_attr(doc, doc = include_str!("../docs/cell-value.md"))]
     #[must_use]
     pub fn cell_value(&self) -> f32 {
-        unit_f32((self.id >> 32) as u32)
+        cell_value(self.id)
     }
+}
+
+/// The random number of the feature point with an id, in `[0, 1)`.
+pub(crate) fn cell_value(id: u64) -> f32 {
+    unit_f32((id >> 32) as u32)
 }
 
 /// A feature point of a cell.

@@ -11,8 +11,10 @@ use super::square::{Guess, Plan};
 use super::table::{CellBox, Table};
 use super::track::Lookup;
 use super::{Band, LANES, Output, Picture};
+use crate::features::position;
 use crate::fixed::{MOST_AXES, STEPS};
 use crate::search::{Hit, Name};
+use crate::worley::cell_value;
 use crate::{LIMIT, Metric};
 use core::ops::Range;
 use fearless_simd::Level;
@@ -372,6 +374,7 @@ impl Block<'_> {
             Output::Features(features) => {
                 let hits = nearest(LIMIT);
                 for (hit, features) in hits.iter().zip(features) {
+                    let id = hit.name.map_or(0, Name::id);
                     if let Some(out) = features.distance.get_mut(row) {
                         let distance = || basis.metric().distance(hit.key);
                         out[column] = place.map_or(f32::NAN, |_| distance());
@@ -379,8 +382,18 @@ impl Block<'_> {
                     if let Some(out) = features.vector.get_mut(row) {
                         out[column * n..][..n].copy_from_slice(&hit.vector[..n]);
                     }
+                    if let Some(out) = features.position.get_mut(row) {
+                        for (axis, out) in out[column * n..][..n].iter_mut().enumerate() {
+                            *out = place.map_or(f64::NAN, |place| {
+                                position((place.cell[axis], place.steps[axis]), hit.vector[axis])
+                            });
+                        }
+                    }
                     if let Some(out) = features.id.get_mut(row) {
-                        out[column] = hit.name.map_or(0, Name::id);
+                        out[column] = id;
+                    }
+                    if let Some(out) = features.cell_value.get_mut(row) {
+                        out[column] = place.map_or(f32::NAN, |_| cell_value(id));
                     }
                 }
             }

@@ -422,7 +422,7 @@ impl Block<'_> {
     /// Stores the nearest points of a row of pixels.
     fn put(&self, slice: usize, found: &Found, out: &mut Output<'_>) {
         match out {
-            Output::Features(features) => found.put(features),
+            Output::Features(features) => found.put(&self.bands[slice], features),
             Output::Gradients(tone, rows) => {
                 let metric = self.bands[slice].picture.basis.metric();
                 let n = found.n_axes;

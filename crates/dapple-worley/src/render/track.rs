@@ -3,15 +3,16 @@
 //! Keys hold the number of their candidate in the low bits, as in [`many`](crate::many). If the other bits do not tell
 //! the order of two of the nearest points, the pixel is searched on its own.
 
-use super::LANES;
 use super::flat::FlatPoints;
 use super::kernel::{Candidate, empty, greater, lesser};
 use super::table::Table;
+use super::{Band, LANES};
 use crate::LIMIT;
-use crate::features::FeatureRows;
+use crate::features::{FeatureRows, position};
 use crate::fixed::{MOST_AXES, STEP};
 use crate::many::NOTHING;
 use crate::metric::Measure;
+use crate::worley::cell_value;
 use core::ops::Range;
 use fearless_simd::{f32x16, i32x16, prelude::*, u8x64, u32x16};
 
@@ -292,8 +293,8 @@ fn look_up<S: Simd>(simd: S, table: &[f32], indices: u32x16<S>) -> f32x16<S> {
 }
 
 impl Found {
-    /// Stores the row in memory, except for the unknown pixels.
-    pub(super) fn put(&self, features: &mut [FeatureRows<'_>]) {
+    /// Stores the row of a band in memory, except for the unknown pixels.
+    pub(super) fn put(&self, band: &Band<'_>, features: &mut [FeatureRows<'_>]) {
         let columns = self.columns.clone();
         let n = columns.len();
         for (rank, out) in features.iter_mut().enumerate() {
@@ -304,8 +305,32 @@ impl Found {
                 let out = &mut out[columns.start * self.n_axes..columns.end * self.n_axes];
                 out.copy_from_slice(&self.vectors[rank][..n * self.n_axes]);
             }
+            if let Some(out) = out.position.get_mut(self.row) {
+                let out = &mut out[columns.start * self.n_axes..columns.end * self.n_axes];
+                self.put_positions(band, rank, out);
+            }
             if let Some(out) = out.id.get_mut(self.row) {
                 out[columns.clone()].copy_from_slice(&self.ids[rank][..n]);
+            }
+            if let Some(out) = out.cell_value.get_mut(self.row) {
+                for (out, &id) in out[columns.clone()].iter_mut().zip(&self.ids[rank]) {
+                    *out = cell_value(id);
+                }
+            }
+        }
+    }
+
+    /// Stores the positions of the nearest points with a rank, their components one after the other.
+    fn put_positions(&self, band: &Band<'_>, rank: usize, out: &mut [f64]) {
+        let vectors = self.vectors[rank].chunks(self.n_axes);
+        let pixels = self.columns.clone().zip(out.chunks_mut(self.n_axes));
+        for ((column, out), vector) in pixels.zip(vectors) {
+            for (axis, (out, &way)) in out.iter_mut().zip(vector).enumerate() {
+                let place = match axis {
+                    0 => band.columns.places[column],
+                    _ => band.rows[axis].places[self.row],
+                };
+                *out = position(place, way);
             }
         }
     }
