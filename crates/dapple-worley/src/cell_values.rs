@@ -1,8 +1,9 @@
 //! The random number of the Voronoi cell at each position, as a field.
 
+use crate::worley::cell_value;
 use crate::{FeatureView, Plane, Worley2};
 use dapple_raster::glam::DVec2;
-use dapple_raster::{Field, Raster, RasterError, RasterViewMut, Window};
+use dapple_raster::{Field, RasterError, RasterViewMut, Window};
 
 /// A random number in `[0, 1)` for each Voronoi cell: [`Feature::cell_value`](crate::Feature::cell_value) of the
 /// nearest feature point.
@@ -46,22 +47,13 @@ impl Field for CellValues {
         Ok(())
     }
 
-    fn render(&self, window: &Window, mut out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
-        window.check_size(out.size())?;
-        let mut ids = Raster::filled(window.size, 0)?;
+    fn render(&self, window: &Window, out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
         let nearest = FeatureView {
-            id: Some(ids.view_mut()),
-            distance: Some(out.reborrow()),
+            cell_value: Some(out),
             ..FeatureView::default()
         };
         self.worley
-            .render_features(&Plane::default(), window, [nearest])?;
-        for (row, values) in (0..).zip(out.rows_mut()) {
-            for (distance, &id) in values.iter_mut().zip(ids.row(row)) {
-                *distance = value(*distance, id);
-            }
-        }
-        Ok(())
+            .render_features(&Plane::default(), window, [nearest])
     }
 
     fn period(&self) -> [Option<f64>; 2] {
@@ -74,11 +66,5 @@ fn value(distance: f32, id: u64) -> f32 {
     if distance.is_nan() {
         return f32::NAN;
     }
-    let vector = ();
-    crate::Feature {
-        distance,
-        vector,
-        id,
-    }
-    .cell_value()
+    cell_value(id)
 }

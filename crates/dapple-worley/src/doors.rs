@@ -8,9 +8,8 @@
 use crate::fixed::Place;
 use crate::lattice::Lattice;
 use crate::many::Group;
-use crate::one::nearest;
 use crate::render::Basis;
-use crate::search::{Hit, within};
+use crate::search::{Hit, nearest, within};
 use crate::{Axes, Metric, Worley};
 use fearless_simd::Level;
 
@@ -20,17 +19,10 @@ pub trait Doors<const N: usize>: Sized {
     fn basis(worley: &Worley<N>) -> &dyn Basis;
 
     /// The nearest points of a place, nearest first; at most four.
-    fn nearest(
-        metric: Metric,
-        lattice: &Lattice<N>,
-        level: Level,
-        place: &Place<N>,
-        hits: &mut [Hit<N>],
-    );
+    fn nearest(metric: Metric, lattice: &Lattice, place: &Place<N>, hits: &mut [Hit<N>]);
 
     /// All points of a place whose keys are at most that of `distance`, in no particular order.
-    fn within(metric: Metric, lattice: &Lattice<N>, place: &Place<N>, distance: f32)
-    -> Vec<Hit<N>>;
+    fn within(metric: Metric, lattice: &Lattice, place: &Place<N>, distance: f32) -> Vec<Hit<N>>;
 
     /// Finds the nearest points of the positions of a group; returns a bit for each position for which they are
     /// certain.
@@ -48,17 +40,16 @@ macro_rules! doors {
 
             fn nearest(
                 metric: Metric,
-                lattice: &Lattice<$n>,
-                level: Level,
+                lattice: &Lattice,
                 place: &Place<$n>,
                 hits: &mut [Hit<$n>],
             ) {
-                nearest(metric, lattice, level, place, hits);
+                nearest(lattice, metric, place, hits);
             }
 
             fn within(
                 metric: Metric,
-                lattice: &Lattice<$n>,
+                lattice: &Lattice,
                 place: &Place<$n>,
                 distance: f32,
             ) -> Vec<Hit<$n>> {

@@ -1,8 +1,8 @@
-//! Rendering of the nearest feature points (distances, vectors, ids) and of gradients.
+//! Rendering of the nearest feature points (distances, vectors, positions, ids, random numbers) and of gradients.
 
 use crate::doors::Doors as _;
+use crate::fixed::STEP;
 use crate::render::{Output, Picture};
-use crate::search::Hit;
 use crate::sink::Tone;
 use crate::{Axes, Cellular, LIMIT, Plane, Space, Worley};
 use dapple_raster::{RasterError, RasterViewMut, Window};
@@ -30,8 +30,13 @@ pub struct FeatureView<'a, const N: usize> {
     pub distance: Option<RasterViewMut<'a, f32>>,
     /// The vectors from the feature points to the pixels, in cells.
     pub vector: Option<RasterViewMut<'a, [f32; N]>>,
+    /// The positions of the feature points, in cells.
+    pub position: Option<RasterViewMut<'a, [f64; N]>>,
     /// The ids of the feature points.
     pub id: Option<RasterViewMut<'a, u64>>,
+    /// The random numbers of the feature points, in `[0, 1)`: see [`Feature::cell_value`](crate::Feature::cell_value).
+    /// NaN at a pixel without a place.
+    pub cell_value: Option<RasterViewMut<'a, f32>>,
 }
 
 impl<const N: usize> Default for FeatureView<'_, N> {
@@ -40,7 +45,9 @@ impl<const N: usize> Default for FeatureView<'_, N> {
         Self {
             distance: None,
             vector: None,
+            position: None,
             id: None,
+            cell_value: None,
         }
     }
 }
@@ -51,7 +58,22 @@ pub(crate) struct FeatureRows<'a> {
     pub(crate) distance: Vec<&'a mut [f32]>,
     /// The components of the vectors, one after the other.
     pub(crate) vector: Vec<&'a mut [f32]>,
+    /// The components of the positions, one after the other.
+    pub(crate) position: Vec<&'a mut [f64]>,
     pub(crate) id: Vec<&'a mut [u64]>,
+    pub(crate) cell_value: Vec<&'a mut [f32]>,
+}
+
+impl FeatureRows<'_> {
+    /// Whether ids are needed.
+    pub(crate) fn wants_ids(&self) -> bool {
+        !self.id.is_empty() || !self.cell_value.is_empty()
+    }
+}
+
+/// The coordinate of a feature point in cells along one axis, from that of a pixel and from the vector between them.
+pub(crate) fn position((cell, steps): (i64, i32), way: f32) -> f64 {
+    cell as f64 + f64::from(steps) * f64::from(STEP) - f64::from(way)
 }
 
 impl<const N: usize> Worley<N>
@@ -75,7 +97,9 @@ where
             let sizes = [
                 view.distance.as_ref().map(RasterViewMut::size),
                 view.vector.as_ref().map(RasterViewMut::size),
+                view.position.as_ref().map(RasterViewMut::size),
                 view.id.as_ref().map(RasterViewMut::size),
+                view.cell_value.as_ref().map(RasterViewMut::size),
             ];
             for size in sizes.into_iter().flatten() {
                 window.check_size(size)?;
@@ -88,12 +112,16 @@ where
         for view in &mut views {
             let mut distance = picture.bands(view.distance.take());
             let mut vector = picture.bands(view.vector.take());
+            let mut position = picture.bands(view.position.take());
             let mut id = picture.bands(view.id.take());
+            let mut cell_value = picture.bands(view.cell_value.take());
             for band in &mut bands {
                 band.push(FeatureRows {
                     distance: distance.next().unwrap_or_default(),
                     vector: vector.next().map(flattened).unwrap_or_default(),
+                    position: position.next().map(flattened).unwrap_or_default(),
                     id: id.next().unwrap_or_default(),
+                    cell_value: cell_value.next().unwrap_or_default(),
                 });
             }
         }
@@ -143,7 +171,7 @@ where
 }
 
 /// Rows of vectors as rows of their components.
-pub(crate) fn flattened<const N: usize>(rows: Vec<&mut [[f32; N]]>) -> Vec<&mut [f32]> {
+pub(crate) fn flattened<T, const N: usize>(rows: Vec<&mut [[T; N]]>) -> Vec<&mut [T]> {
     rows.into_iter().map(|row| row.as_flattened_mut()).collect()
 }
 
@@ -176,11 +204,7 @@ impl Tone {
     where
         Axes: Space<N>,
     {
-        let vector = |hit: Hit<N>| hit.vector;
-        if self.depth() <= 2 {
-            self.gradient(worley.metric, &worley.hits::<2>(place).map(vector))
-        } else {
-            self.gradient(worley.metric, &worley.hits::<4>(place).map(vector))
-        }
+        let vectors = worley.nearest(self.depth(), place).map(|hit| hit.vector);
+        self.gradient(worley.metric, &vectors)
     }
 }

@@ -62,6 +62,12 @@ pub(crate) fn split(coordinate: f64) -> Option<(i64, i32)> {
     Some((floor + i64::from(carry), steps - (carry << STEP_BITS)))
 }
 
+/// The components along the axes of a space.
+#[inline(always)]
+pub(crate) fn first_axes<T: Copy, const N: usize>(parts: [T; MOST_AXES]) -> [T; N] {
+    core::array::from_fn(|axis| parts[axis])
+}
+
 /// A number of steps as cells, rounded to `f32` once.
 #[inline(always)]
 pub(crate) fn cells(steps: i64) -> f32 {

@@ -4,7 +4,7 @@
 //! each point is drawn by adding a constant for every point and mixing. Counter `2^31 + i` gives the id of point `i`.
 //! With a period, a cell has the hash of the cell that it repeats.
 
-use crate::fixed::{STEP_BITS, STEPS};
+use crate::fixed::{MOST_AXES, STEP_BITS, STEPS};
 use crate::scatter::{DENSITIES, JITTER_PARTS, Scatter};
 use crate::search::Name;
 use core::fmt;
@@ -21,26 +21,29 @@ pub(crate) const IDS: u32 = 1 << 31;
 
 /// Feature points in unit cells, by seed.
 #[derive(Clone, Debug)]
-pub struct Lattice<const N: usize> {
+pub struct Lattice {
+    /// The number of axes: 2, 3 or 4.
+    pub(crate) n_axes: usize,
     /// The hash state after the seed, with which the hash of every cell begins.
     pub(crate) root: CellHash,
     pub(crate) counts: PoissonCounts,
     /// The density if it varies, which replaces `counts`.
-    pub(crate) density: Option<Density<N>>,
+    pub(crate) density: Option<Density>,
     /// The jitter, in parts of [`JITTER_PARTS`].
     pub(crate) jitter: u32,
-    /// The number of cells after which an axis repeats; 0 if it does not.
-    pub(crate) period: [u32; N],
+    /// The number of cells after which each axis repeats; 0 if it does not.
+    pub(crate) period: [u32; MOST_AXES],
 }
 
-impl<const N: usize> Lattice<N> {
-    pub(crate) fn new(seed: Seed, scatter: Scatter, counts: PoissonCounts) -> Self {
+impl Lattice {
+    pub(crate) fn new(n_axes: usize, seed: Seed, scatter: Scatter, counts: PoissonCounts) -> Self {
         Self {
+            n_axes,
             root: Self::root(seed),
             counts,
             density: None,
             jitter: scatter.jitter(),
-            period: [0; N],
+            period: [0; MOST_AXES],
         }
     }
 
@@ -60,26 +63,23 @@ impl<const N: usize> Lattice<N> {
 
     /// Whether cells beyond `ring` rings only repeat those within.
     pub(crate) fn repeats_within(&self, ring: i64) -> bool {
-        let mut periods = self.period.iter().map(|&period| i64::from(period));
+        let mut periods = self.period[..self.n_axes]
+            .iter()
+            .map(|&period| i64::from(period));
         periods.all(|period| period > 0 && period <= 2 * ring + 1)
     }
 
     #[inline]
-    pub(crate) fn hash(&self, cell: [i64; N]) -> CellHash {
+    pub(crate) fn hash<const N: usize>(&self, cell: [i64; N]) -> CellHash {
         let axes = (0..N).rev();
         axes.fold(self.root, |hash, axis| {
             hash.axis(self.wrap(axis, cell[axis]))
         })
     }
 
-    /// The place of a point in its cell, in steps, from the hash of the cell.
-    pub(crate) fn point(&self, hash: CellHash, index: u32) -> [i32; N] {
-        self.steps(words(hash), index)
-    }
-
     /// The place of a point in its cell, in steps, from the words of the cell.
     #[inline]
-    fn steps(&self, words: [u32; 2], index: u32) -> [i32; N] {
+    fn steps<const N: usize>(&self, words: [u32; 2], index: u32) -> [i32; N] {
         let word = |which: usize| {
             let stride = STRIDES[which].wrapping_mul(index + 1);
             mix32(words[which].wrapping_add(stride))
@@ -89,26 +89,48 @@ impl<const N: usize> Lattice<N> {
 
     /// Calls `each` with every point of a cell: its steps from the cell's lower corner, and its name.
     #[inline]
-    pub(crate) fn visit(&self, cell: [i64; N], mut each: impl FnMut([i32; N], Name)) {
+    pub(crate) fn visit<const N: usize>(&self, cell: [i64; N], each: impl FnMut([i32; N], Name)) {
         let hash = self.hash(cell);
-        let words = words(hash);
-        for index in 0..self.count(cell, words[0]) {
+        self.visit_hashed(cell, hash, words(hash), each);
+    }
+
+    /// Calls `each` with every point of a cell whose hash and words are known.
+    #[inline(always)]
+    pub(crate) fn visit_hashed<const N: usize>(
+        &self,
+        cell: [i64; N],
+        hash: CellHash,
+        words: [u32; 2],
+        mut each: impl FnMut([i32; N], Name),
+    ) {
+        for index in 0..self.count(&cell, words[0]) {
             each(self.steps(words, index), Name { hash, index });
         }
     }
 
     /// The number of points of a cell, from its first word.
     #[inline]
-    pub(crate) fn count(&self, cell: [i64; N], word: u32) -> u32 {
+    pub(crate) fn count(&self, cell: &[i64], word: u32) -> u32 {
         match &self.density {
             None => self.counts.count(word),
             Some(density) => poisson_count(self.density_at(density, cell), word),
         }
     }
 
+    /// The mean number of points per cell, near a cell.
+    pub(crate) fn mean(&self, cell: &[i64]) -> f64 {
+        match &self.density {
+            None => self.counts.mean(),
+            Some(density) => self.density_at(density, cell),
+        }
+    }
+
     /// The density in the middle of a cell, or of the cell that it repeats.
-    pub(crate) fn density_at(&self, density: &Density<N>, cell: [i64; N]) -> f64 {
-        let middle = core::array::from_fn(|axis| self.wrap(axis, cell[axis]) as f64 + 0.5);
+    pub(crate) fn density_at(&self, density: &Density, cell: &[i64]) -> f64 {
+        let mut middle = [0.5; MOST_AXES];
+        for (axis, (middle, &cell)) in middle.iter_mut().zip(cell).enumerate() {
+            *middle += self.wrap(axis, cell) as f64;
+        }
         let density = (density.of)(middle);
         if density.is_nan() {
             return *DENSITIES.start();
@@ -119,12 +141,12 @@ impl<const N: usize> Lattice<N> {
 
 /// A density that varies in space.
 #[derive(Clone)]
-pub(crate) struct Density<const N: usize> {
-    /// Feature points per cell at a position.
-    pub(crate) of: Arc<dyn Fn([f64; N]) -> f64 + Send + Sync>,
+pub(crate) struct Density {
+    /// Feature points per cell at a position, whose coordinates along missing axes do not matter.
+    pub(crate) of: Arc<dyn Fn([f64; MOST_AXES]) -> f64 + Send + Sync>,
 }
 
-impl<const N: usize> fmt::Debug for Density<N> {
+impl fmt::Debug for Density {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str("Density(..)")
     }
@@ -132,7 +154,7 @@ impl<const N: usize> fmt::Debug for Density<N> {
 
 /// The two words of a cell.
 #[inline]
-fn words(hash: CellHash) -> [u32; 2] {
+pub(crate) fn words(hash: CellHash) -> [u32; 2] {
     let bits = hash.at(0);
     [(bits >> 32) as u32, bits as u32]
 }
@@ -148,20 +170,16 @@ pub(crate) struct SixteenCells<S: Simd> {
 
 impl<S: Simd> SixteenCells<S> {
     #[inline(always)]
-    pub(crate) fn new<const N: usize>(
-        simd: S,
-        lattice: &Lattice<N>,
-        hashes: CellHashes<S>,
-    ) -> Self {
+    pub(crate) fn new(simd: S, lattice: &Lattice, hashes: CellHashes<S>) -> Self {
         let [cells] = Self::new_each(simd, lattice, [hashes]);
         cells
     }
 
     /// Several registers of cells at once, as [`new`](Self::new) makes one: their operations run in step.
     #[inline(always)]
-    pub(crate) fn new_each<const N: usize, const C: usize>(
+    pub(crate) fn new_each<const C: usize>(
         simd: S,
-        lattice: &Lattice<N>,
+        lattice: &Lattice,
         hashes: [CellHashes<S>; C],
     ) -> [Self; C] {
         let words = CellHashes::at_each(hashes, [u32x16::splat(simd, 0); C]);
@@ -185,18 +203,47 @@ impl<S: Simd> SixteenCells<S> {
 
     /// The largest number of points of the cells.
     #[inline(always)]
-    pub(crate) fn most<const N: usize>(&self, lattice: &Lattice<N>) -> u32 {
+    pub(crate) fn most(&self, lattice: &Lattice) -> u32 {
         if lattice.counts.thresholds().is_empty() {
             return lattice.counts.least();
         }
         self.counts.reduce_max()
     }
 
+    /// The steps of one point of each cell along the axes of the lattice, from the lower corner of the cell; zero along
+    /// missing axes.
+    #[inline(always)]
+    pub(crate) fn flat_steps(&self, index: u32x16<S>, lattice: &Lattice) -> [u32x16<S>; MOST_AXES] {
+        let words = self.words_of(index);
+        let zero = u32x16::splat(index.simd, 0);
+        match lattice.n_axes {
+            2 => {
+                let [x, y] = steps(words, lattice.jitter);
+                [x, y, zero, zero]
+            }
+            3 => {
+                let [x, y, z] = steps(words, lattice.jitter);
+                [x, y, z, zero]
+            }
+            _ => steps(words, lattice.jitter),
+        }
+    }
+
+    /// The random words of one point of each cell.
+    #[inline(always)]
+    fn words_of(&self, index: u32x16<S>) -> [u32x16<S>; 2] {
+        let mut words = self.words;
+        for which in 0..2 {
+            words[which] += (index + 1) * STRIDES[which];
+        }
+        let [words] = mix32_pairs([words]);
+        words
+    }
+
     /// The steps of one point of each cell, from the lower corner of the cell.
     #[inline(always)]
     pub(crate) fn steps<const N: usize>(&self, index: u32x16<S>, jitter: u32) -> [u32x16<S>; N] {
-        let [point] = Self::steps_each([*self], [index], jitter);
-        point
+        steps(self.words_of(index), jitter)
     }
 
     /// The points of several registers of cells at once, as [`steps`](Self::steps) makes those of one: their operations

@@ -65,10 +65,10 @@ mod voronoi;
 mod doors;
 mod fixed;
 mod lattice;
+mod levels;
 mod search;
 
 mod many;
-mod one;
 mod places;
 mod render;
 mod sink;

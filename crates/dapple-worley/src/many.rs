@@ -8,13 +8,13 @@
 //! at once. The order of two points whose keys agree in the other bits is then unknown. A position with such points, or
 //! one that needs more than the neighbors, is searched again on its own.
 
-use crate::fixed::{STEP, STEPS};
+use crate::fixed::{MOST_AXES, STEP, STEPS};
 use crate::lattice::{IDS, Lattice, SixteenCells};
+use crate::levels::wide;
 use crate::metric::{Exact, Measure as _};
 use crate::places::{LANES, Places, Words, cells_by_distance, digit, load, store};
 use crate::{LIMIT, Metric, Worley};
 use dapple_hash::CellHashes;
-use dapple_raster::simd::dispatch;
 use fearless_simd::{Level, f32x16, i32x16, mask32x16, prelude::*, u32x16, u64x8};
 
 /// The number of positions of a group.
@@ -25,8 +25,8 @@ pub(crate) const NOTHING: u32 = f32::MAX.to_bits();
 
 /// The parameters of a search, and the use of the low bits of a key.
 #[derive(Clone, Copy)]
-struct Search<'a, const N: usize> {
-    lattice: &'a Lattice<N>,
+struct Search<'a> {
+    lattice: &'a Lattice,
     exact: Exact,
     /// The number of bits for the index of a point in its cell; above are the two bits of each axis.
     index_bits: u32,
@@ -39,6 +39,8 @@ struct Search<'a, const N: usize> {
 pub struct Group<const N: usize> {
     /// The number of nearest points to find: 1, 2 or 4.
     depth: usize,
+    /// The number of ranks of `best` before these, which are not in use and stay zero.
+    unused: usize,
     /// The positions, of which only the first `len` are in use.
     pub(crate) positions: [[f64; GROUP]; N],
     pub(crate) len: usize,
@@ -94,8 +96,8 @@ pub(crate) struct Points<const N: usize> {
     pub(crate) ids: [u64; GROUP],
 }
 
-impl<'a, const N: usize> Search<'a, N> {
-    fn new(worley: &'a Worley<N>) -> Self {
+impl<'a> Search<'a> {
+    fn new<const N: usize>(worley: &'a Worley<N>) -> Self {
         let lattice = &worley.lattice;
         let index_bits = u32::BITS - lattice.counts.range().end().leading_zeros();
         Self {
@@ -111,6 +113,7 @@ impl<const N: usize> Group<N> {
     pub(crate) const fn new(depth: usize) -> Self {
         Self {
             depth,
+            unused: 0,
             positions: [[0.0; GROUP]; N],
             len: 0,
             has_place: 0,
@@ -142,23 +145,31 @@ impl<const N: usize> Group<N> {
 
     /// Finds the nearest points of the positions; returns a bit for each position for which they are certain.
     pub(crate) fn search(&mut self, worley: &Worley<N>, level: Level) -> u64 {
-        // Positions with this metric are searched one at a time in any case.
+        // Powers are so slow that lanes gain nothing, and the counts of a varying density are drawn one by one.
         let is_scalar = matches!(worley.metric, Metric::Minkowski(_));
         if is_scalar || worley.lattice.density.is_some() {
             return 0;
         }
         let search = Search::new(worley);
-        let holds = match self.depth {
-            1 => dispatch!(level, simd => self.search_with::<_, 1>(simd, search)),
-            2 => dispatch!(level, simd => self.search_with::<_, 2>(simd, search)),
-            _ => dispatch!(level, simd => self.search_with::<_, LIMIT>(simd, search)),
-        };
-        dispatch!(level, simd => self.finish_with(simd, search));
-        holds
+        let holds = self.search_by_depth(search, level);
+        wide!(level, simd => self.finish_with(simd, search));
+        holds.unwrap_or(0)
+    }
+
+    /// Finds the nearest points with the loop that is compiled for their number.
+    fn search_by_depth(&mut self, search: Search<'_>, level: Level) -> Option<u64> {
+        // Positions of four dimensions are rare, and have one loop.
+        if const { N < MOST_AXES } && self.depth == 1 {
+            return wide!(level, simd => self.search_with::<_, 1>(simd, search));
+        }
+        if const { N < MOST_AXES } && self.depth == 2 {
+            return wide!(level, simd => self.search_with::<_, 2>(simd, search));
+        }
+        wide!(level, simd => self.search_with::<_, LIMIT>(simd, search))
     }
 
     #[inline(always)]
-    fn search_with<S: Simd, const K: usize>(&mut self, simd: S, search: Search<'_, N>) -> u64 {
+    fn search_with<S: Simd, const K: usize>(&mut self, simd: S, search: Search<'_>) -> u64 {
         // Where sixteen lanes need several registers of the processor, these are in step already.
         if const { <S::u32s as SimdBase<S>>::LEN < LANES } {
             return self.search_in_step::<S, K, 1>(simd, search);
@@ -168,7 +179,7 @@ impl<const N: usize> Group<N> {
 
     /// Looks up the ids, distances and vectors of the nearest points.
     #[inline(always)]
-    fn finish_with<S: Simd>(&mut self, simd: S, search: Search<'_, N>) {
+    fn finish_with<S: Simd>(&mut self, simd: S, search: Search<'_>) {
         // The memory has registers past the last position, too; their contents do not matter.
         let registers = 0..self.len.div_ceil(LANES) * self.depth;
         if const { <S::u32s as SimdBase<S>>::LEN < LANES } {
@@ -187,9 +198,10 @@ impl<const N: usize> Group<N> {
     fn search_in_step<S: Simd, const K: usize, const C: usize>(
         &mut self,
         simd: S,
-        search: Search<'_, N>,
+        search: Search<'_>,
     ) -> u64 {
         let n_registers = self.len.div_ceil(LANES);
+        self.unused = K - self.depth;
         self.has_place = 0;
         for register in 0..n_registers {
             self.visit_near::<S, K, C>(simd, search, register);
@@ -211,7 +223,7 @@ impl<const N: usize> Group<N> {
     fn visit_near<S: Simd, const K: usize, const C: usize>(
         &mut self,
         simd: S,
-        search: Search<'_, N>,
+        search: Search<'_>,
         register: usize,
     ) {
         let (places, has_place) = Places::new(simd, &self.positions, register);
@@ -220,7 +232,7 @@ impl<const N: usize> Group<N> {
         self.hash_near::<S, C>(simd, search.lattice, &places);
         let gaps = gaps(simd, search.exact, &places);
         let numbers = u32x16::from_slice(simd, &ASCENDING) + (register * LANES) as u32;
-        let mut found = Found::<S, K>::new(simd);
+        let mut found = Found::<S, K>::new(simd, self.unused);
         for &neighbor in cells_by_distance::<N>() {
             let neighbor = u32::from(neighbor);
             let mut gap = gaps[N - 1][digit(neighbor, N - 1)];
@@ -264,7 +276,7 @@ impl<const N: usize> Group<N> {
     fn hash_near<S: Simd, const C: usize>(
         &mut self,
         simd: S,
-        lattice: &Lattice<N>,
+        lattice: &Lattice,
         places: &Places<S, N>,
     ) {
         let mut cells = [[places.cells[0]; 2]; N];
@@ -298,7 +310,7 @@ impl<const N: usize> Group<N> {
 
     /// Visits up to sixteen cells of the list.
     #[inline(always)]
-    fn visit_far<S: Simd, const K: usize>(&mut self, simd: S, search: Search<'_, N>) {
+    fn visit_far<S: Simd, const K: usize>(&mut self, simd: S, search: Search<'_>) {
         let (visits, n_visits) = self.visits.take();
         let mut cells = [[[0; LANES]; 2]; N];
         let mut steps = [[0; LANES]; N];
@@ -318,7 +330,7 @@ impl<const N: usize> Group<N> {
         let is_there = mask32x16::from_bitmask(simd, u64::MAX >> (64 - n_visits));
         let mut points = SixteenCells::new(simd, search.lattice, cells.hashes);
         points.counts = is_there.select(points.counts, u32x16::splat(simd, 0));
-        let mut found = Found::<S, K>::new(simd);
+        let mut found = Found::<S, K>::new(simd, 0);
         let codes = neighbors << search.index_bits;
         let most = points.most(search.lattice);
         found.look(search, &points, &cells.origins, codes, most);
@@ -354,18 +366,13 @@ impl<const N: usize> Group<N> {
 
     /// A bit for each lane of a register whose nearest points are certain.
     #[inline(always)]
-    fn holds<S: Simd, const K: usize>(
-        &self,
-        simd: S,
-        search: Search<'_, N>,
-        register: usize,
-    ) -> u64 {
+    fn holds<S: Simd, const K: usize>(&self, simd: S, search: Search<'_>, register: usize) -> u64 {
         let mask = search.code_mask;
         let last = load(simd, &self.best[K - 1], register) | mask;
         let places = Places::load(simd, &self.cells, &self.steps, register);
         let border = border(simd, search.exact, &places);
         let mut holds = last.bitcast::<f32x16<S>>().simd_lt(border);
-        for rank in 0..K {
+        for rank in self.unused..K {
             let after = if rank + 1 < K {
                 &self.best[rank + 1]
             } else {
@@ -380,7 +387,7 @@ impl<const N: usize> Group<N> {
     /// Looks up `C` registers of the nearest points, starting with register `first`: first all ranks of the first
     /// register, then of the second, and so on.
     #[inline(always)]
-    fn finish<S: Simd, const C: usize>(&mut self, simd: S, search: Search<'_, N>, first: usize) {
+    fn finish<S: Simd, const C: usize>(&mut self, simd: S, search: Search<'_>, first: usize) {
         let lattice = search.lattice;
         // The depth is a power of two.
         let (shift, ranks) = (self.depth.trailing_zeros(), self.depth - 1);
@@ -389,7 +396,8 @@ impl<const N: usize> Group<N> {
         for i in 0..C {
             let (register, rank) = ((first + i) >> shift, (first + i) & ranks);
             places[i] = Places::load(simd, &self.cells, &self.steps, register);
-            let code = load(simd, &self.best[rank], register) & search.code_mask;
+            let best = load(simd, &self.best[self.unused + rank], register);
+            let code = best & search.code_mask;
             neighbors[i] = code >> search.index_bits;
             index[i] = code & ((1 << search.index_bits) - 1);
         }
@@ -468,6 +476,7 @@ fn place(visit: u32) -> usize {
 
 /// The nearest points of sixteen places.
 struct Found<S: Simd, const K: usize> {
+    /// The smallest keys, after some ranks that are not in use and stay zero.
     best: [u32x16<S>; K],
     /// The smallest key of all other points.
     next: u32x16<S>,
@@ -475,10 +484,16 @@ struct Found<S: Simd, const K: usize> {
 
 impl<S: Simd, const K: usize> Found<S, K> {
     #[inline(always)]
-    fn new(simd: S) -> Self {
+    fn new(simd: S, unused: usize) -> Self {
         let nothing = u32x16::splat(simd, NOTHING);
+        let mut best = [nothing; K];
+        for rank in 0..K - 1 {
+            if rank < unused {
+                best[rank] = u32x16::splat(simd, 0);
+            }
+        }
         Self {
-            best: [nothing; K],
+            best,
             next: nothing,
         }
     }
@@ -488,7 +503,7 @@ impl<S: Simd, const K: usize> Found<S, K> {
     #[inline(always)]
     fn look<const N: usize>(
         &mut self,
-        search: Search<'_, N>,
+        search: Search<'_>,
         points: &SixteenCells<S>,
         origins: &[i32x16<S>; N],
         codes: u32x16<S>,
@@ -566,7 +581,7 @@ fn near_index<const N: usize>(neighbor: u32) -> usize {
 #[inline(always)]
 fn rows<S: Simd, const N: usize>(
     simd: S,
-    lattice: &Lattice<N>,
+    lattice: &Lattice,
     cells: &[[Words<S>; 2]; N],
 ) -> [CellHashes<S>; MOST_NEAR / 2] {
     let mut rows = [CellHashes::splat(simd, lattice.root); MOST_NEAR / 2];

@@ -133,14 +133,19 @@ impl Metric {
     pub(crate) fn key<const N: usize>(self, differences: [f32; N]) -> f32 {
         let mut key = self.term(differences[N - 1]);
         for axis in (0..N - 1).rev() {
-            let term = self.term(differences[axis]);
-            key = match self {
-                Self::Chebyshev if term > key => term,
-                Self::Chebyshev => key,
-                _ => term + key,
-            };
+            key = self.accumulate(self.term(differences[axis]), key);
         }
         key
+    }
+
+    /// Accumulates one more term into a key.
+    #[inline(always)]
+    pub(crate) fn accumulate(self, term: f32, key: f32) -> f32 {
+        match self {
+            Self::Chebyshev if term > key => term,
+            Self::Chebyshev => key,
+            _ => term + key,
+        }
     }
 
     /// The distance for a key.
@@ -160,7 +165,7 @@ impl Metric {
     }
 }
 
-/// The inner loops that render with a metric.
+/// The inner loops that render with a metric where registers are wide.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Kernel {
     /// The loops with [`Squares`].
@@ -169,36 +174,66 @@ pub(crate) enum Kernel {
     Sum,
     /// The loops with [`Longest`].
     Longest,
-    /// The loops with [`Powers`], which are so slow that they are compiled for the lowest SIMD level only.
-    Powers(f32),
+    /// No loops of its own: [`General`] is as fast.
+    General,
 }
 
 impl Metric {
-    /// The inner loops that render with this metric.
+    /// The inner loops that render with this metric where registers are wide.
     #[inline]
     pub(crate) fn kernel(self) -> Kernel {
         match self {
             Self::Euclidean => Kernel::Squares,
             Self::Manhattan => Kernel::Sum,
             Self::Chebyshev => Kernel::Longest,
-            Self::Minkowski(p) => Kernel::Powers(p),
+            // Powers are so slow that wide registers gain nothing.
+            Self::Minkowski(_) => Kernel::General,
         }
     }
 }
 
-/// A metric on registers, for the inner loops.
+/// A metric on registers, for the inner loops; by default any but Minkowski's.
 pub(crate) trait Measure: Copy {
+    /// The metric, which may be known at compile time.
+    fn metric(self) -> Metric;
+
     /// The terms of the differences in several registers.
+    #[inline(always)]
     fn terms<S: Simd, V: SimdFloat<S, Element = f32>, const C: usize>(
         self,
-        differences: [V; C],
-    ) -> [V; C];
+        mut differences: [V; C],
+    ) -> [V; C] {
+        if matches!(self.metric(), Metric::Euclidean) {
+            for i in 0..C {
+                differences[i] *= differences[i];
+            }
+        } else {
+            for i in 0..C {
+                differences[i] = differences[i].abs();
+            }
+        }
+        differences
+    }
 
     /// Accumulates one more term into the keys of a register.
-    fn accumulate<S: Simd, V: SimdFloat<S, Element = f32>>(self, terms: V, keys: V) -> V;
+    #[inline(always)]
+    fn accumulate<S: Simd, V: SimdFloat<S, Element = f32>>(self, terms: V, keys: V) -> V {
+        if matches!(self.metric(), Metric::Chebyshev) {
+            terms.max(keys)
+        } else {
+            terms + keys
+        }
+    }
 
     /// The distances for these keys.
-    fn distances<S: Simd>(self, keys: f32x16<S>) -> f32x16<S>;
+    #[inline(always)]
+    fn distances<S: Simd>(self, keys: f32x16<S>) -> f32x16<S> {
+        if matches!(self.metric(), Metric::Euclidean) {
+            keys.sqrt()
+        } else {
+            keys
+        }
+    }
 
     /// The keys of sixteen vectors.
     #[inline(always)]
@@ -218,38 +253,8 @@ pub(crate) struct Exact(pub(crate) Metric);
 
 impl Measure for Exact {
     #[inline(always)]
-    fn terms<S: Simd, V: SimdFloat<S, Element = f32>, const C: usize>(
-        self,
-        mut differences: [V; C],
-    ) -> [V; C] {
-        if matches!(self.0, Metric::Euclidean) {
-            for i in 0..C {
-                differences[i] *= differences[i];
-            }
-        } else {
-            for i in 0..C {
-                differences[i] = differences[i].abs();
-            }
-        }
-        differences
-    }
-
-    #[inline(always)]
-    fn accumulate<S: Simd, V: SimdFloat<S, Element = f32>>(self, terms: V, keys: V) -> V {
-        if matches!(self.0, Metric::Chebyshev) {
-            terms.max(keys)
-        } else {
-            terms + keys
-        }
-    }
-
-    #[inline(always)]
-    fn distances<S: Simd>(self, keys: f32x16<S>) -> f32x16<S> {
-        if matches!(self.0, Metric::Euclidean) {
-            keys.sqrt()
-        } else {
-            keys
-        }
+    fn metric(self) -> Metric {
+        self.0
     }
 }
 
@@ -259,21 +264,13 @@ pub(crate) struct Additive(pub(crate) Metric);
 
 impl Measure for Additive {
     #[inline(always)]
-    fn terms<S: Simd, V: SimdFloat<S, Element = f32>, const C: usize>(
-        self,
-        differences: [V; C],
-    ) -> [V; C] {
-        Exact(self.0).terms(differences)
+    fn metric(self) -> Metric {
+        self.0
     }
 
     #[inline(always)]
     fn accumulate<S: Simd, V: SimdFloat<S, Element = f32>>(self, terms: V, keys: V) -> V {
         terms + keys
-    }
-
-    #[inline(always)]
-    fn distances<S: Simd>(self, keys: f32x16<S>) -> f32x16<S> {
-        Exact(self.0).distances(keys)
     }
 }
 
@@ -283,21 +280,8 @@ pub(crate) struct Squares;
 
 impl Measure for Squares {
     #[inline(always)]
-    fn terms<S: Simd, V: SimdFloat<S, Element = f32>, const C: usize>(
-        self,
-        differences: [V; C],
-    ) -> [V; C] {
-        Exact(Metric::Euclidean).terms(differences)
-    }
-
-    #[inline(always)]
-    fn accumulate<S: Simd, V: SimdFloat<S, Element = f32>>(self, terms: V, keys: V) -> V {
-        terms + keys
-    }
-
-    #[inline(always)]
-    fn distances<S: Simd>(self, keys: f32x16<S>) -> f32x16<S> {
-        keys.sqrt()
+    fn metric(self) -> Metric {
+        Metric::Euclidean
     }
 }
 
@@ -307,48 +291,41 @@ pub(crate) struct Longest;
 
 impl Measure for Longest {
     #[inline(always)]
-    fn terms<S: Simd, V: SimdFloat<S, Element = f32>, const C: usize>(
-        self,
-        differences: [V; C],
-    ) -> [V; C] {
-        Exact(Metric::Chebyshev).terms(differences)
-    }
-
-    #[inline(always)]
-    fn accumulate<S: Simd, V: SimdFloat<S, Element = f32>>(self, terms: V, keys: V) -> V {
-        terms.max(keys)
-    }
-
-    #[inline(always)]
-    fn distances<S: Simd>(self, keys: f32x16<S>) -> f32x16<S> {
-        keys
+    fn metric(self) -> Metric {
+        Metric::Chebyshev
     }
 }
 
-/// The Minkowski metric with its exponent.
+/// Any metric: Minkowski's goes through memory, lane by lane.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Powers(pub(crate) f32);
+pub(crate) struct General(pub(crate) Metric);
 
-impl Measure for Powers {
+impl Measure for General {
+    #[inline(always)]
+    fn metric(self) -> Metric {
+        self.0
+    }
+
     #[inline(always)]
     fn terms<S: Simd, V: SimdFloat<S, Element = f32>, const C: usize>(
         self,
         mut differences: [V; C],
     ) -> [V; C] {
+        let Metric::Minkowski(p) = self.0 else {
+            return Exact(self.0).terms(differences);
+        };
         for i in 0..C {
-            differences[i] = each_lane(differences[i], self.0, power_each);
+            differences[i] = each_lane(differences[i], p, power_each);
         }
         differences
     }
 
     #[inline(always)]
-    fn accumulate<S: Simd, V: SimdFloat<S, Element = f32>>(self, terms: V, keys: V) -> V {
-        terms + keys
-    }
-
-    #[inline(always)]
     fn distances<S: Simd>(self, keys: f32x16<S>) -> f32x16<S> {
-        each_lane(keys, self.0, root_each)
+        match self.0 {
+            Metric::Minkowski(p) => each_lane(keys, p, root_each),
+            metric => Exact(metric).distances(keys),
+        }
     }
 }
 

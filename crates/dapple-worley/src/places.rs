@@ -102,7 +102,7 @@ impl<S: Simd, const N: usize> Places<S, N> {
 
     /// The coordinates of the cells shifted along an axis, or of the cells that these repeat.
     #[inline(always)]
-    pub(crate) fn shifted(&self, lattice: &Lattice<N>, axis: usize, shift: i32x16<S>) -> Words<S> {
+    pub(crate) fn shifted(&self, lattice: &Lattice, axis: usize, shift: i32x16<S>) -> Words<S> {
         let [low, high] = self.cells[axis];
         let moved = low + shift.bitcast::<u32x16<S>>();
         let sign = (shift >> 31).bitcast::<u32x16<S>>();
@@ -119,7 +119,7 @@ impl<S: Simd, const N: usize> Places<S, N> {
     #[inline(always)]
     pub(crate) fn neighbors_each<const C: usize>(
         simd: S,
-        lattice: &Lattice<N>,
+        lattice: &Lattice,
         places: &[Self; C],
         neighbors: [u32x16<S>; C],
     ) -> [Cells<S, N>; C] {
@@ -223,11 +223,7 @@ fn next<S: Simd>([low, high]: Words<S>) -> Words<S> {
 
 /// The cells that the given cells repeat.
 #[inline(never)]
-fn wrap<S: Simd, const N: usize>(
-    lattice: &Lattice<N>,
-    axis: usize,
-    [mut low, mut high]: Words<S>,
-) -> Words<S> {
+fn wrap<S: Simd>(lattice: &Lattice, axis: usize, [mut low, mut high]: Words<S>) -> Words<S> {
     for lane in 0..LANES {
         let cell = i64::from(high[lane].cast_signed()) << 32 | i64::from(low[lane]);
         let cell = lattice.wrap(axis, cell);

@@ -11,7 +11,8 @@
 //! ([`splat`]). For the distance to the edge of the Voronoi cell, the cells are drawn one by one ([`edge`]).
 //!
 //! The parts that run in registers are stages with only memory between them, so that each is compiled only for the
-//! parameters it depends on.
+//! parameters it depends on, and once: most for any metric, the inner loops for the usual ones and their usual depths
+//! ([`levels`](crate::levels)).
 
 mod area;
 mod basis;
@@ -95,7 +96,7 @@ impl Output<'_> {
     /// Whether ids are needed.
     fn wants_ids(&self) -> bool {
         match self {
-            Self::Features(features) => features.iter().any(|rows| !rows.id.is_empty()),
+            Self::Features(features) => features.iter().any(FeatureRows::wants_ids),
             _ => false,
         }
     }

@@ -1,7 +1,8 @@
-//! The exact search for the nearest feature points of one position.
+//! The exact search for the nearest feature points of one position, by rings of cells.
 //!
 //! Cells are visited in rings of growing size around the position's own; cells of a ring that lie too far away are
-//! skipped, and the search ends when no cell outside can hold a nearer point. Worley visits the 26 neighbors and stops
+//! skipped, and the search ends when no cell outside can hold a nearer point. Points that the caller has placed are
+//! searched in the same way ([`by_rings`]), in rings of bins. Worley visits the 26 neighbors and stops
 //! ("A Cellular Texture Basis Function", SIGGRAPH 1996, <https://doi.org/10.1145/237170.237267>); that misses points
 //! now and then, and more often the higher n is.
 //!
@@ -11,8 +12,9 @@
 //! Of two points at the same distance, the one with the smaller id comes first, so that the result does not depend
 //! on the order in which they were found.
 
-use crate::fixed::{Place, STEPS, cells};
-use crate::lattice::{IDS, Lattice};
+use crate::fixed::{Place, STEP, STEPS, cells};
+use crate::lattice::{IDS, Lattice, words};
+use crate::places::{cells_by_distance, digit};
 use crate::{LIMIT, Metric};
 use core::cmp::Ordering;
 use dapple_hash::CellHash;
@@ -58,62 +60,65 @@ impl<const N: usize> Hit<N> {
     };
 }
 
-/// The hit of a point in the cell that is `shift` cells from the place's own.
-#[inline(always)]
-pub(crate) fn hit<const N: usize>(
-    metric: Metric,
-    place: &Place<N>,
-    shift: [i64; N],
-    steps: [i32; N],
-    name: Name,
-) -> Hit<N> {
-    let mut vector = [0.0; N];
-    for axis in 0..N {
-        let ahead = i64::from(place.steps[axis]) - i64::from(steps[axis]);
-        vector[axis] = cells(ahead - shift[axis] * i64::from(STEPS));
-    }
-    Hit {
-        key: metric.key(vector),
-        vector,
-        name: Some(name),
-    }
-}
-
 /// The largest number of cells that a search goes away. The least density makes a void of that size less likely than
 /// 2^-200 even in two dimensions.
 const LAST_RING: i64 = 96;
 
+/// Finds the `n` nearest points, at most four, in rings of growing size. `visit` adds the points of a ring, and returns a
+/// lower bound of the keys of all points beyond it: infinity, if there are none.
+#[inline(always)]
+pub(crate) fn by_rings<const N: usize>(
+    n: usize,
+    metric: Metric,
+    mut visit: impl FnMut(i64, &mut Ranking<N>) -> f32,
+) -> Ranking<N> {
+    let mut ranking = Ranking::new(n);
+    for ring in 0.. {
+        let border = visit(ring, &mut ranking);
+        if border == f32::INFINITY || ranking.reach * metric.looseness() < border {
+            break;
+        }
+    }
+    ranking
+}
+
 /// The nearest points of a place, nearest first; at most four.
 pub(crate) fn nearest<const N: usize>(
-    lattice: &Lattice<N>,
+    lattice: &Lattice,
     metric: Metric,
     place: &Place<N>,
     hits: &mut [Hit<N>],
 ) {
-    let mut ranking = Ranking::new(hits.len());
     let looseness = metric.looseness();
     let search = Search {
         lattice,
         metric,
         place,
     };
-    for ring in 0..=LAST_RING {
-        search.ring(ring, |shift| {
-            if search.gap(shift) <= ranking.reach() * looseness {
-                search.cell(shift, |hit| ranking.add(hit, Name::id));
-            }
-        });
-        let is_empty = ranking.hits[0].name.is_none() && lattice.repeats_within(ring);
-        if is_empty || ranking.reach() * looseness < search.border(ring) {
-            break;
+    let ranking = by_rings(hits.len(), metric, |ring, ranking| {
+        // The own cell and the ring around it are visited at once.
+        let ring = ring + 1;
+        if ring == 1 {
+            search.neighbors(ranking);
+        } else {
+            search.ring(ring, |shift, gap| {
+                if gap <= ranking.reach * looseness {
+                    search.cell(shift, |hit| ranking.add(hit, Name::id));
+                }
+            });
         }
-    }
+        let is_empty = ranking.hits[0].name.is_none() && lattice.repeats_within(ring);
+        if is_empty || ring == LAST_RING {
+            return f32::INFINITY;
+        }
+        search.border(ring)
+    });
     hits.copy_from_slice(ranking.hits());
 }
 
 /// All points of a place whose keys are at most that of `distance`, in no particular order.
 pub(crate) fn within<const N: usize>(
-    lattice: &Lattice<N>,
+    lattice: &Lattice,
     metric: Metric,
     place: &Place<N>,
     distance: f32,
@@ -126,8 +131,8 @@ pub(crate) fn within<const N: usize>(
         place,
     };
     for ring in 0..=LAST_RING {
-        search.ring(ring, |shift| {
-            if search.gap(shift) <= key {
+        search.ring(ring, |shift, gap| {
+            if gap <= key {
                 search.cell(shift, |hit| {
                     if hit.key <= key {
                         hits.push(hit);
@@ -147,6 +152,8 @@ pub(crate) struct Ranking<const N: usize> {
     hits: [Hit<N>; LIMIT],
     /// The number of points to find.
     len: usize,
+    /// The key from which on further points do not matter.
+    reach: f32,
 }
 
 impl<const N: usize> Ranking<N> {
@@ -154,6 +161,7 @@ impl<const N: usize> Ranking<N> {
         Self {
             hits: [Hit::NONE; LIMIT],
             len,
+            reach: f32::INFINITY,
         }
     }
 
@@ -161,56 +169,194 @@ impl<const N: usize> Ranking<N> {
         &self.hits[..self.len]
     }
 
-    /// The key from which on further points do not matter.
-    #[inline]
-    pub(crate) fn reach(&self) -> f32 {
-        self.hits[self.len - 1].key
-    }
-
     /// Inserts a point in its order.
     #[inline(always)]
     pub(crate) fn add(&mut self, hit: Hit<N>, id: impl Fn(Name) -> u64) {
-        if hit.key <= self.reach() {
+        if hit.key <= self.reach {
             self.insert(hit, id);
         }
     }
 
+    #[inline]
     fn insert(&mut self, hit: Hit<N>, id: impl Fn(Name) -> u64) {
-        let mut at = self.len;
-        while at > 0 && order(&hit, &self.hits[at - 1], &id).is_lt() {
+        let hits = &mut self.hits[..self.len];
+        let mut at = hits.len();
+        while at > 0 && order(&hit, &hits[at - 1], &id).is_lt() {
+            if at < hits.len() {
+                hits[at] = hits[at - 1];
+            }
             at -= 1;
         }
-        if at < self.len {
-            self.hits[at..self.len].rotate_right(1);
-            self.hits[at] = hit;
+        if at < hits.len() {
+            hits[at] = hit;
+            self.reach = hits[hits.len() - 1].key;
         }
     }
 }
 
 /// The order of hits: by key, then by id; repeats of one point, by their vectors.
+#[inline]
 pub(crate) fn order<const N: usize>(a: &Hit<N>, b: &Hit<N>, id: impl Fn(Name) -> u64) -> Ordering {
-    a.key.total_cmp(&b.key).then_with(|| {
-        let [a_id, b_id] = [a, b].map(|hit| hit.name.map(&id));
-        let parts = a.vector.iter().zip(&b.vector);
-        a_id.cmp(&b_id)
-            .then(parts.fold(Ordering::Equal, |order, (a, b)| order.then(b.total_cmp(a))))
-    })
+    match a.key.total_cmp(&b.key) {
+        Ordering::Equal => order_of_equal(a, b, id),
+        order => order,
+    }
+}
+
+/// The order of hits with one key.
+#[cold]
+fn order_of_equal<const N: usize>(a: &Hit<N>, b: &Hit<N>, id: impl Fn(Name) -> u64) -> Ordering {
+    let [a_id, b_id] = [a, b].map(|hit| hit.name.map(&id));
+    let parts = a.vector.iter().zip(&b.vector);
+    a_id.cmp(&b_id)
+        .then(parts.fold(Ordering::Equal, |order, (a, b)| order.then(b.total_cmp(a))))
+}
+
+/// The number of cells that are hashed side by side.
+const BATCH: usize = 4;
+
+/// The own cell of a place and its neighbors: for each axis, the own cell, the nearer and the other neighbor.
+struct Around<const N: usize> {
+    /// The cells, or those that they repeat.
+    cells: [[i64; 3]; N],
+    /// The place, in steps from the lower edges of the cells.
+    origins: [[i32; 3]; N],
+    /// The terms of the distances to the cells.
+    gaps: [[f32; 3]; N],
+    /// The hashes of the cells along the last axis.
+    rows: [CellHash; 3],
+}
+
+impl<const N: usize> Around<N> {
+    #[inline(always)]
+    fn new(search: &Search<'_, N>) -> Self {
+        let Search {
+            lattice,
+            metric,
+            place,
+        } = search;
+        let mut around = Self {
+            cells: [[0; 3]; N],
+            origins: [[0; 3]; N],
+            gaps: [[0.0; 3]; N],
+            rows: [lattice.root; 3],
+        };
+        for axis in 0..N {
+            let below = place.steps[axis];
+            let above = STEPS - below;
+            let nearer = if below < above { -1 } else { 1 };
+            let shifts = [0, nearer, -nearer];
+            let sides = [0, below.min(above), below.max(above)];
+            around.cells[axis] =
+                shifts.map(|shift| lattice.wrap(axis, place.cell[axis] + i64::from(shift)));
+            around.origins[axis] = shifts.map(|shift| below - shift * STEPS);
+            around.gaps[axis] = sides.map(|steps| metric.term(steps as f32 * STEP));
+        }
+        around.rows = around.cells[N - 1].map(|cell| lattice.root.axis(cell));
+        around
+    }
+
+    /// A lower bound of the keys of all points of a neighbor.
+    #[inline(always)]
+    fn gap(&self, metric: Metric, neighbor: u8) -> f32 {
+        let gap = |axis: usize| self.gaps[axis][digit(neighbor.into(), axis)];
+        let mut key = gap(N - 1);
+        for axis in (0..N - 1).rev() {
+            key = metric.accumulate(gap(axis), key);
+        }
+        key
+    }
 }
 
 /// A search by rings.
 struct Search<'a, const N: usize> {
-    lattice: &'a Lattice<N>,
+    lattice: &'a Lattice,
     metric: Metric,
     place: &'a Place<N>,
 }
 
 impl<const N: usize> Search<'_, N> {
-    /// Calls `each` with the cells that are `ring` cells away along their furthest axis.
-    fn ring(&self, ring: i64, mut each: impl FnMut([i64; N])) {
+    /// Adds the points of the own cell of the place and of its neighbors to a ranking, those of the cells that are
+    /// nearest on average first.
+    fn neighbors(&self, ranking: &mut Ranking<N>) {
+        let looseness = self.metric.looseness();
+        let around = Around::new(self);
+        let mut batch = [0; BATCH];
+        let mut n = 0;
+        for &neighbor in cells_by_distance::<N>() {
+            if around.gap(self.metric, neighbor) > ranking.reach * looseness {
+                continue;
+            }
+            batch[n] = neighbor;
+            n += 1;
+            if n == BATCH {
+                self.batch(&around, &batch, ranking);
+                n = 0;
+            }
+        }
+        self.batch(&around, &batch[..n], ranking);
+    }
+
+    /// Adds the points of some neighbors to a ranking. Their hashes are computed first, side by side: the processor does
+    /// not know the number of points of a cell before, and guesses it badly.
+    #[inline]
+    fn batch(&self, around: &Around<N>, neighbors: &[u8], ranking: &mut Ranking<N>) {
+        let looseness = self.metric.looseness();
+        let mut hashes = [(self.lattice.root, [0; 2]); BATCH];
+        for (&neighbor, hashed) in neighbors.iter().zip(&mut hashes) {
+            let mut hash = around.rows[digit(neighbor.into(), N - 1)];
+            for axis in (0..N - 1).rev() {
+                hash = hash.axis(around.cells[axis][digit(neighbor.into(), axis)]);
+            }
+            *hashed = (hash, words(hash));
+        }
+        for (&neighbor, (hash, words)) in neighbors.iter().zip(hashes) {
+            if around.gap(self.metric, neighbor) > ranking.reach * looseness {
+                continue;
+            }
+            let digit = |axis| digit(neighbor.into(), axis);
+            let cell: [i64; N] = core::array::from_fn(|axis| around.cells[axis][digit(axis)]);
+            let origin: [i32; N] = core::array::from_fn(|axis| around.origins[axis][digit(axis)]);
+            self.lattice.visit_hashed(cell, hash, words, |steps, name| {
+                let mut vector = [0.0; N];
+                for axis in 0..N {
+                    vector[axis] = (origin[axis] - steps[axis]) as f32 * STEP;
+                }
+                let key = self.metric.key(vector);
+                let name = Some(name);
+                ranking.add(Hit { key, vector, name }, Name::id);
+            });
+        }
+    }
+
+    /// The cell that is `shift` cells from the place's own.
+    #[inline(always)]
+    fn shifted(&self, shift: [i64; N]) -> [i64; N] {
+        core::array::from_fn(|axis| self.place.cell[axis] + shift[axis])
+    }
+
+    /// The hit of a point in the cell that is `shift` cells from the place's own.
+    #[inline(always)]
+    fn hit(&self, shift: [i64; N], steps: [i32; N], name: Name) -> Hit<N> {
+        let mut vector = [0.0; N];
+        for axis in 0..N {
+            let ahead = i64::from(self.place.steps[axis]) - i64::from(steps[axis]);
+            vector[axis] = cells(ahead - shift[axis] * i64::from(STEPS));
+        }
+        Hit {
+            key: self.metric.key(vector),
+            vector,
+            name: Some(name),
+        }
+    }
+
+    /// Calls `each` with the cells that are `ring` cells away along their furthest axis, and with lower bounds of the
+    /// keys of their points.
+    fn ring(&self, ring: i64, mut each: impl FnMut([i64; N], f32)) {
         let mut shift = [-ring; N];
         loop {
             if shift.iter().any(|part| part.abs() == ring) {
-                each(shift);
+                each(shift, self.gap(shift));
             }
             // Advances to the next cell, the first axis fastest; inside of the ring, straight to its other side.
             let inside = shift[1..].iter().all(|part| part.abs() < ring);
@@ -234,9 +380,8 @@ impl<const N: usize> Search<'_, N> {
     /// Calls `each` with the points of a cell.
     #[inline(always)]
     fn cell(&self, shift: [i64; N], mut each: impl FnMut(Hit<N>)) {
-        let cell = core::array::from_fn(|axis| self.place.cell[axis] + shift[axis]);
-        self.lattice.visit(cell, |steps, name| {
-            each(hit(self.metric, self.place, shift, steps, name));
+        self.lattice.visit(self.shifted(shift), |steps, name| {
+            each(self.hit(shift, steps, name));
         });
     }
 
@@ -258,14 +403,9 @@ impl<const N: usize> Search<'_, N> {
 
     /// A lower bound of the keys of all points beyond the visited rings.
     fn border(&self, ring: i64) -> f32 {
-        self.metric.term(cells(border(self.place, ring)))
+        let sides = self.place.steps.map(|steps| steps.min(STEPS - steps));
+        let nearest = sides.into_iter().fold(STEPS, i32::min);
+        self.metric
+            .term(cells(i64::from(nearest) + ring * i64::from(STEPS)))
     }
-}
-
-/// The number of steps from a place to the cells beyond the `ring` rings around its cell.
-#[inline(always)]
-pub(crate) fn border<const N: usize>(place: &Place<N>, ring: i64) -> i64 {
-    let sides = place.steps.map(|steps| steps.min(STEPS - steps));
-    let nearest = sides.into_iter().fold(STEPS, i32::min);
-    i64::from(nearest) + ring * i64::from(STEPS)
 }

@@ -6,7 +6,7 @@
 //!
 //! Differences are taken in `f64` and rounded once to `f32`, so that the unit of positions is the caller's own.
 
-use crate::search::{Hit, Name, Ranking};
+use crate::search::{Hit, Name, Ranking, by_rings};
 use crate::{Axes, Feature, LIMIT, Metric, Space, Vector, WorleyError};
 use dapple_hash::{CellHash, Seed};
 
@@ -175,16 +175,15 @@ where
             }
         }
         let center = core::array::from_fn(|axis| i64::from(bins.bin(axis, position[axis])));
-        let mut ranking = Ranking::new(n);
-        if self.points.is_empty() {
-            return ranking;
-        }
-        for ring in 0.. {
+        by_rings(n, self.metric, |ring, ranking| {
+            if self.points.is_empty() {
+                return f32::INFINITY;
+            }
             let [first, last] = bins.reach(center, ring);
             let mut bin = first;
             loop {
                 if (0..N).any(|axis| (bin[axis] - center[axis]).abs() == ring) {
-                    self.visit(position, bin, &mut ranking);
+                    self.visit(position, bin, ranking);
                 }
                 let Some(axis) = (0..N).find(|&axis| bin[axis] < last[axis]) else {
                     break;
@@ -192,13 +191,12 @@ where
                 bin[axis] += 1;
                 bin[..axis].copy_from_slice(&first[..axis]);
             }
-            let border = bins.border(position, [first, last]);
-            let is_enough = ranking.reach() * self.metric.looseness() < self.metric.term(border);
-            if is_enough || border == f32::INFINITY {
-                break;
+            match bins.border(position, [first, last]) {
+                f32::INFINITY => f32::INFINITY,
+                // The key of a large finite distance may overflow.
+                border => self.metric.term(border).min(f32::MAX),
             }
-        }
-        ranking
+        })
     }
 
     /// Inserts the points of a bin into a ranking.

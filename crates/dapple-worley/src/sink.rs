@@ -46,21 +46,13 @@ impl Tone {
         self.weights.depth()
     }
 
-    /// The number of nearest points to search for a single position.
-    pub(crate) fn n_hits(&self) -> usize {
-        if self.depth() <= 2 { 2 } else { LIMIT }
-    }
-
     /// The value at a place.
     pub(crate) fn at<const N: usize>(&self, worley: &Worley<N>, place: &Place<N>) -> f32
     where
         Axes: Space<N>,
     {
-        if self.depth() <= 2 {
-            self.of(&worley.distances::<2>(place))
-        } else {
-            self.of(&worley.distances::<4>(place))
-        }
+        let hits = worley.nearest(self.depth(), place);
+        self.of(&hits.map(|hit| worley.metric.distance(hit.key)))
     }
 
     /// The value for distances, at least [`Tone::depth`] of them.
@@ -88,7 +80,7 @@ impl Values {
     pub(crate) fn put_one(&self, basis: &dyn Basis, place: Option<FlatPlace>, out: &mut f32) {
         let value = place.map_or(f32::NAN, |place| {
             let mut hits = [Hit::NONE; LIMIT];
-            let hits = &mut hits[..self.tone.n_hits()];
+            let hits = &mut hits[..self.tone.depth()];
             basis.nearest(&place, hits);
             let mut distances = [0.0; LIMIT];
             for (distance, hit) in distances.iter_mut().zip(&*hits) {
@@ -103,9 +95,9 @@ impl Values {
         };
     }
 
-    /// The weights in the form for sixteen pixels at a time.
+    /// The weights in the form for sixteen pixels at a time, for `K` keys of which the last `depth` are in use.
     #[inline(always)]
-    pub(crate) fn lanes<S: Simd, const K: usize>(&self, simd: S) -> ValueLanes<S, K> {
+    pub(crate) fn lanes<S: Simd, const K: usize>(&self, simd: S, depth: usize) -> ValueLanes<S, K> {
         let coefficients = self.tone.weights.coefficients();
         let mut lanes = ValueLanes {
             shift: f32x16::splat(simd, self.tone.shift),
@@ -115,8 +107,11 @@ impl Values {
             weight: f32x16::splat(simd, self.weight.unwrap_or(1.0)),
         };
         for rank in 0..K {
-            lanes.weights[rank] = f32x16::splat(simd, coefficients[rank]);
-            lanes.counts[rank] = coefficients[rank] != 0.0;
+            if rank + depth >= K {
+                let weight = coefficients[rank + depth - K];
+                lanes.weights[rank] = f32x16::splat(simd, weight);
+                lanes.counts[rank] = weight != 0.0;
+            }
         }
         lanes
     }
@@ -140,8 +135,8 @@ impl<S: Simd, const K: usize> ValueLanes<S, K> {
     pub(crate) fn put<M: Measure>(&self, measure: M, keys: [f32x16<S>; K], out: &mut [f32]) {
         let mut values = self.shift;
         for rank in 0..K {
-            // The last of one or two weights is zero only in a combination without any, where it adds zero.
-            if (rank + 1 == K && K <= 2) || self.counts[rank] {
+            // A single weight is zero only in a combination without any, where it adds zero.
+            if K == 1 || self.counts[rank] {
                 values += measure.distances(keys[rank]) * self.weights[rank];
             }
         }

@@ -7,7 +7,6 @@ use crate::doors::Doors as _;
 use crate::fixed::{Place, STEP, STEPS};
 use crate::search::{Hit, Name, order};
 use crate::{Axes, Metric, Space, Vector, Worley, WorleyError};
-use dapple_raster::simd;
 
 impl<const N: usize> Worley<N>
 where
@@ -30,7 +29,7 @@ where
     pub(crate) fn edge_distance_at(&self, place: &Place<N>) -> f32 {
         let (metric, lattice) = (Metric::Euclidean, &self.lattice);
         let mut pair = [Hit::NONE; 2];
-        Axes::nearest(metric, lattice, simd::level(), place, &mut pair);
+        Axes::nearest(metric, lattice, place, &mut pair);
         if pair[1].name.is_none() {
             return f32::INFINITY;
         }

@@ -1,12 +1,11 @@
 //! Worley's basis: distances to the nearest feature points.
 
 use crate::doors::Doors as _;
-use crate::fixed::{Place, STEP, STEPS};
+use crate::fixed::{MOST_AXES, Place, STEP, STEPS, first_axes};
 use crate::lattice::{Density, Lattice};
 use crate::search::{Hit, Name};
 use crate::{Axes, Metric, Scatter, Space, Vector, WorleyError};
 use dapple_hash::{Seed, unit_f32};
-use dapple_raster::simd;
 use std::sync::Arc;
 
 /// The greatest n for which the basis has `F_n`.
@@ -43,7 +42,7 @@ pub type Worley4 = Worley<4>;
 #[derive(Clone, Debug)]
 pub struct Worley<const N: usize> {
     pub(crate) seed: Seed,
-    pub(crate) lattice: Lattice<N>,
+    pub(crate) lattice: Lattice,
     pub(crate) scatter: Scatter,
     pub(crate) metric: Metric,
 }
@@ -68,8 +67,13 @@ impl<V> Feature<V> {
     #[cfg_attr(doc, doc = include_str!("../docs/cell-value.md"))]
     #[must_use]
     pub fn cell_value(&self) -> f32 {
-        unit_f32((self.id >> 32) as u32)
+        cell_value(self.id)
     }
+}
+
+/// The random number of the feature point with an id, in `[0, 1)`.
+pub(crate) fn cell_value(id: u64) -> f32 {
+    unit_f32((id >> 32) as u32)
 }
 
 /// A feature point of a cell.
@@ -91,7 +95,7 @@ where
         let scatter = Scatter::default();
         Self {
             seed,
-            lattice: Lattice::new(seed, scatter, Scatter::default_counts()),
+            lattice: Lattice::new(N, seed, scatter, Scatter::default_counts()),
             scatter,
             metric: Metric::default(),
         }
@@ -103,7 +107,7 @@ where
     #[must_use]
     pub fn with_seed(&self, seed: Seed) -> Self {
         let lattice = Lattice {
-            root: Lattice::<N>::root(seed),
+            root: Lattice::root(seed),
             ..self.lattice.clone()
         };
         Self {
@@ -124,7 +128,7 @@ where
         Ok(Self {
             lattice: Lattice {
                 period,
-                ..Lattice::new(self.seed, scatter, counts)
+                ..Lattice::new(N, self.seed, scatter, counts)
             },
             scatter,
             ..self
@@ -164,7 +168,9 @@ where
         &self,
         density: impl Fn(Vector<N>) -> f64 + Send + Sync + 'static,
     ) -> Self {
-        let of = Arc::new(move |position: [f64; N]| density(Vector::<N>::from(position)));
+        let of = Arc::new(move |position: [f64; MOST_AXES]| {
+            density(Vector::<N>::from(first_axes(position)))
+        });
         let lattice = Lattice {
             density: Some(Density { of }),
             ..self.lattice.clone()
@@ -208,9 +214,12 @@ where
     /// [`Range`](crate::WorleyErrorKind::Range) if a period is 0.
     pub fn with_period(&self, period: [Option<u32>; N]) -> Result<Self, WorleyError> {
         WorleyError::check(!period.contains(&Some(0)), "period", 0.0, "at least 1 cell")?;
-        let period = period.map(|cells| cells.unwrap_or(0));
+        let mut cells = [0; MOST_AXES];
+        for (cells, period) in cells.iter_mut().zip(period) {
+            *cells = period.unwrap_or(0);
+        }
         let lattice = Lattice {
-            period,
+            period: cells,
             ..self.lattice.clone()
         };
         Ok(Self {
@@ -274,7 +283,14 @@ where
     /// The `K` nearest points of a place.
     pub(crate) fn hits<const K: usize>(&self, place: &Place<N>) -> [Hit<N>; K] {
         let mut hits = [Hit::NONE; K];
-        Axes::nearest(self.metric, &self.lattice, simd::level(), place, &mut hits);
+        Axes::nearest(self.metric, &self.lattice, place, &mut hits);
+        hits
+    }
+
+    /// The `n` nearest points of a place, at most four; the rest are absent.
+    pub(crate) fn nearest(&self, n: usize, place: &Place<N>) -> [Hit<N>; LIMIT] {
+        let mut hits = [Hit::NONE; LIMIT];
+        Axes::nearest(self.metric, &self.lattice, place, &mut hits[..n]);
         hits
     }
 

@@ -51,6 +51,7 @@ impl Nearest {
             distance: Some(self.distance.view_mut()),
             vector: Some(self.vector.view_mut()),
             id: Some(self.id.view_mut()),
+            ..FeatureView::default()
         }
     }
 }

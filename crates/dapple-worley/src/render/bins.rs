@@ -9,9 +9,11 @@ use super::table::{CellBox, numbers, words};
 use crate::Metric;
 use crate::fixed::{MOST_AXES, STEP, STEP_BITS};
 use crate::lattice::{Lattice, SixteenCells};
-use crate::metric::{Exact, Measure, Powers};
+use crate::levels::wide;
+use crate::metric::{Exact, General, Kernel, Measure};
 use dapple_hash::CellHashes;
-use fearless_simd::{f32x4, f32x16, i32x4, i32x16, mask32x16, prelude::*, u32x16};
+use dapple_raster::simd::{baseline, dispatch};
+use fearless_simd::{Level, f32x4, f32x16, i32x4, i32x16, mask32x16, prelude::*, u32x16};
 
 /// The number of columns and of rows of a tile.
 pub(super) const TILE: usize = 4;
@@ -32,7 +34,8 @@ pub(super) struct Reach {
 
 /// The coordinates of the pixels of a block.
 #[derive(Clone, Copy, Debug)]
-pub struct Grid {
+pub(super) struct Grid {
+    pub(super) n_axes: usize,
     pub(super) metric: Metric,
     pub(super) reach: Reach,
     /// The lower corner of the cell from which coordinates are counted.
@@ -61,7 +64,7 @@ pub(super) struct Point<const TILES: usize> {
 
 /// The feature points near to the pixels of a block, first in the order of their cells, then sorted by place.
 #[derive(Debug)]
-pub struct Bins {
+pub(super) struct Bins {
     /// The number of points.
     len: usize,
     /// The coordinates of the points along the axes of the picture, in the order of the cells.
@@ -114,14 +117,19 @@ impl Bins {
     }
 
     /// Generates the points of `cells` that any tile is compared with.
-    #[inline(always)]
-    pub(super) fn collect<S: Simd, const N: usize>(
+    pub(super) fn collect(
         &mut self,
-        simd: S,
-        lattice: &Lattice<N>,
+        level: Level,
+        lattice: &Lattice,
         cells: &CellBox,
         grid: &Grid,
     ) {
+        dispatch!(level, simd => self.collect_by(simd, lattice, cells, grid));
+    }
+
+    /// Generates points in registers.
+    #[inline(always)]
+    fn collect_by<S: Simd>(&mut self, simd: S, lattice: &Lattice, cells: &CellBox, grid: &Grid) {
         self.len = 0;
         let side = cells.side(0);
         let padded = side.next_multiple_of(LANES) as i64;
@@ -138,25 +146,28 @@ impl Bins {
                 let mut numbers = numbers(lattice, &sixteen, cell);
                 numbers[LANES.min(side - first)..].fill(0);
                 let numbers = u32x16::from_slice(simd, &numbers);
-                self.add::<S, N>(&sixteen, numbers, cell, lattice.jitter, grid);
+                self.add(lattice, &sixteen, numbers, cell, grid);
             }
         }
     }
 
     /// Adds those of the points of sixteen cells that any tile is compared with.
     #[inline(always)]
-    fn add<S: Simd, const N: usize>(
+    fn add<S: Simd>(
         &mut self,
+        lattice: &Lattice,
         cells: &SixteenCells<S>,
         numbers: u32x16<S>,
-        cell: [i64; N],
-        jitter: u32,
+        cell: [i64; MOST_AXES],
         grid: &Grid,
     ) {
         let simd = numbers.simd;
-        // For two axes this is known at compile time.
-        let row_axis = if N == 2 { 1 } else { grid.row_axis };
-        let Grid { metric, reach, .. } = *grid;
+        let Grid {
+            metric,
+            reach,
+            row_axis,
+            ..
+        } = *grid;
         let most = numbers.reduce_max();
         let room = self.len + (most as usize + 1) * LANES;
         if self.places.len() < room {
@@ -170,57 +181,50 @@ impl Bins {
         let lanes = i32x16::from_slice(simd, &ASCENDING) << STEP_BITS;
         let n_tiles = (grid.size[0].div_ceil(TILE) + 2 * reach.tiles) as u32;
         for index in 0..most {
-            let steps: [u32x16<S>; N] = cells.steps(u32x16::splat(simd, index), jitter);
-            let mut points = [lanes; N];
-            for axis in 0..N {
+            let steps = cells.flat_steps(u32x16::splat(simd, index), lattice);
+            let mut points = [lanes; MOST_AXES];
+            for axis in 0..MOST_AXES {
                 let corner = ((cell[axis] - grid.origin[axis]) as i32) << STEP_BITS;
-                let steps = steps[axis].bitcast::<i32x16<S>>() + corner;
-                points[axis] = if axis == 0 { steps + lanes } else { steps };
+                let ahead = steps[axis].bitcast::<i32x16<S>>() + (corner - grid.first[axis]);
+                points[axis] = if axis == 0 { ahead + lanes } else { ahead };
             }
-            let row = points[row_axis];
-            let ahead = [points[0] - grid.first[0], row - grid.first[row_axis]];
-            let column = bin(ahead[0], grid.pixel[0], TILE, reach.tiles);
-            let half = bin(ahead[1], grid.pixel[1], HALF, reach.halves);
-            let mut matters = numbers.simd_gt(index)
-                & column.simd_lt(n_tiles)
-                & half.simd_lt(self.n_halves as u32);
+            let [x, mut rows, ..] = points;
             let mut across = f32x16::splat(simd, 0.0);
-            for axis in (1..N).rev().filter(|&axis| axis != row_axis) {
-                let ahead = points[axis] - grid.first[axis];
-                let ahead = [ahead.to_float::<f32x16<S>>() * STEP];
-                if let Metric::Minkowski(p) = metric {
-                    across += Powers(p).terms(ahead)[0];
-                } else {
-                    let [terms] = Exact(metric).terms(ahead);
-                    across = Exact(metric).accumulate(terms, across);
+            for axis in (1..MOST_AXES).rev() {
+                if axis == row_axis {
+                    rows = points[axis];
+                } else if axis < lattice.n_axes {
+                    let ahead = points[axis].to_float::<f32x16<S>>() * STEP;
+                    let [terms] = General(metric).terms([ahead]);
+                    across = General(metric).accumulate(terms, across);
                 }
             }
-            if N > 2 {
-                matters &= across.simd_le(reach.key);
-            }
-            self.push::<S, N>(matters, [points[0], row], across, column << 16 | half);
+            let column = bin(x, grid.pixel[0], TILE, reach.tiles);
+            let half = bin(rows, grid.pixel[1], HALF, reach.halves);
+            let matters = numbers.simd_gt(index)
+                & column.simd_lt(n_tiles)
+                & half.simd_lt(self.n_halves as u32)
+                & across.simd_le(reach.key);
+            let steps = [x + grid.first[0], rows + grid.first[row_axis]];
+            self.push(matters, steps, across, column << 16 | half);
         }
     }
 
     /// Appends the selected ones of sixteen points.
     #[inline(always)]
-    fn push<S: Simd, const N: usize>(
+    fn push<S: Simd>(
         &mut self,
         matters: mask32x16<S>,
-        [column, row]: [i32x16<S>; 2],
+        steps: [i32x16<S>; 2],
         across: f32x16<S>,
         place: u32x16<S>,
     ) {
         let to = self.len..self.len + LANES;
-        let [columns, rows] = &mut self.steps;
-        column
-            .compress(matters)
-            .store_slice(&mut columns[to.clone()]);
-        row.compress(matters).store_slice(&mut rows[to.clone()]);
-        if N > 2 {
-            let across = across.compress(matters);
-            across.store_slice(&mut self.across[to.clone()]);
+        for (steps, stored) in steps.into_iter().zip(&mut self.steps) {
+            steps.compress(matters).store_slice(&mut stored[to.clone()]);
         }
+        let across = across.compress(matters);
+        across.store_slice(&mut self.across[to.clone()]);
         place.compress(matters).store_slice(&mut self.places[to]);
         self.len += matters.to_bitmask().count_ones() as usize;
     }
@@ -238,8 +242,24 @@ impl Bins {
     }
 
     /// Sorts the points by place, and computes their terms.
+    pub(super) fn sort<const TILES: usize>(
+        &mut self,
+        level: Level,
+        metric: Metric,
+        points: &mut Vec<Point<TILES>>,
+    ) {
+        let done = match metric.kernel() {
+            Kernel::General => None,
+            _ => wide!(level, simd => self.sort_by(simd, Exact(metric), points)),
+        };
+        if done.is_none() {
+            baseline!(simd => self.sort_by(simd, General(metric), points));
+        }
+    }
+
+    /// Sorts the points by place, and computes their terms in registers.
     #[inline(always)]
-    pub(super) fn sort<S: Simd, M: Measure, const TILES: usize>(
+    fn sort_by<S: Simd, M: Measure, const TILES: usize>(
         &mut self,
         simd: S,
         measure: M,

@@ -3,7 +3,7 @@
 use super::area::Area;
 use super::bins::Bins;
 use super::cull::{PixelBox, PointList};
-use super::flat::{Dominance, FlatPoints};
+use super::flat::{Dominance, FlatPoints, culls_dominated};
 use super::kernel::Candidate;
 use super::planes::{Neighbors, Planes};
 use super::splat::Splat;
@@ -11,8 +11,10 @@ use super::square::{Guess, Plan};
 use super::table::{CellBox, Table};
 use super::track::Lookup;
 use super::{Band, LANES, Output, Picture};
+use crate::features::position;
 use crate::fixed::{MOST_AXES, STEPS};
 use crate::search::{Hit, Name};
+use crate::worley::cell_value;
 use crate::{LIMIT, Metric};
 use core::ops::Range;
 use fearless_simd::Level;
@@ -190,7 +192,7 @@ impl Block<'_> {
         }
         let bands = &self.bands[first..];
         let is_single = !matches!(out, Output::Values(..))
-            || !bands[0].picture.basis.metric().is_exact_sum()
+            || !culls_dominated(self.level, bands[0].picture.basis.metric())
             || self.splat(out, self.guess(out)).is_some();
         if is_single {
             return 1;
@@ -264,7 +266,7 @@ impl Block<'_> {
         // The previous picture may have left the points of the same cells.
         if !memory.table.has(&cells, wants_ids) {
             memory.table.wants_ids = wants_ids;
-            basis.fill(self.level, &mut memory.table, cells);
+            memory.table.fill(self.level, basis.lattice(), cells);
         }
         memory.square.wants_numbers = !is_values;
         memory.tile.wants_numbers = !is_values;
@@ -363,7 +365,7 @@ impl Block<'_> {
         match out {
             Output::Values(values, rows) => values.put_one(basis, place, &mut rows[row][column]),
             Output::Gradients(tone, rows) => {
-                let vectors = nearest(tone.n_hits()).map(|hit| hit.vector);
+                let vectors = nearest(tone.depth()).map(|hit| hit.vector);
                 let gradient = tone.gradient(basis.metric(), &vectors);
                 let gradient = place.map_or([f32::NAN; MOST_AXES], |_| gradient);
                 rows[row][column * n..][..n].copy_from_slice(&gradient[..n]);
@@ -372,6 +374,7 @@ impl Block<'_> {
             Output::Features(features) => {
                 let hits = nearest(LIMIT);
                 for (hit, features) in hits.iter().zip(features) {
+                    let id = hit.name.map_or(0, Name::id);
                     if let Some(out) = features.distance.get_mut(row) {
                         let distance = || basis.metric().distance(hit.key);
                         out[column] = place.map_or(f32::NAN, |_| distance());
@@ -379,8 +382,18 @@ impl Block<'_> {
                     if let Some(out) = features.vector.get_mut(row) {
                         out[column * n..][..n].copy_from_slice(&hit.vector[..n]);
                     }
+                    if let Some(out) = features.position.get_mut(row) {
+                        for (axis, out) in out[column * n..][..n].iter_mut().enumerate() {
+                            *out = place.map_or(f64::NAN, |place| {
+                                position((place.cell[axis], place.steps[axis]), hit.vector[axis])
+                            });
+                        }
+                    }
                     if let Some(out) = features.id.get_mut(row) {
-                        out[column] = hit.name.map_or(0, Name::id);
+                        out[column] = id;
+                    }
+                    if let Some(out) = features.cell_value.get_mut(row) {
+                        out[column] = place.map_or(f32::NAN, |_| cell_value(id));
                     }
                 }
             }

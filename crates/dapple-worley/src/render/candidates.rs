@@ -8,25 +8,19 @@ use super::flat::{Cuboid, FlatPoints, PictureAxes};
 use super::kernel::{Candidate, TILE};
 use super::square::Square;
 use crate::fixed::STEP;
-use crate::metric::{Exact, Measure};
-use fearless_simd::{f32x16, i32x16, prelude::*};
+use crate::levels::measured;
+use crate::metric::Measure;
+use fearless_simd::{Level, f32x16, i32x16, prelude::*};
 
 impl Memory {
     /// Selects the candidates of a tile from those of its square, and computes their terms.
-    #[inline(always)]
-    pub(super) fn candidates<S: Simd, M: Measure>(
-        &mut self,
-        simd: S,
-        measure: M,
-        area: &Area,
-        square: &Square,
-    ) {
+    pub(super) fn candidates(&mut self, level: Level, area: &Area, square: &Square) {
         let (plan, low) = (&square.plan, &square.pixels.low);
-        if plan.culls_dominated() {
+        if plan.culls_dominated(level) {
             let cuboid = self.cuboid(area, square);
             let dominance = &mut self.dominance;
             self.tile
-                .take_undominated(simd, plan.metric, &self.square, &cuboid, dominance);
+                .take_undominated(level, plan.metric, &self.square, &cuboid, dominance);
         } else {
             let pixels = self.pixel_box(area);
             let mut moved = pixels;
@@ -39,13 +33,13 @@ impl Memory {
                 core::mem::swap(&mut self.list, &mut self.tile_list);
             } else {
                 let cull = Cull {
-                    measure,
+                    metric: plan.metric,
                     pixels: &moved,
                     keep: plan.nearest(),
                 };
                 let run = 0..self.list.len;
                 let points = self.list.points(&run, self.tile.wants_numbers);
-                self.tile_list.cull(simd, cull, points);
+                self.tile_list.cull(level, cull, points);
             }
             moved.low = self.low;
             let axes = PictureAxes {
@@ -53,7 +47,7 @@ impl Memory {
                 slices: None,
             };
             self.tile
-                .flatten(simd, measure, &self.tile_list, &moved, axes);
+                .flatten(level, plan.metric, &self.tile_list, &moved, axes);
         }
         if self.candidates.len() < self.tile.len {
             let none = Candidate {
@@ -63,17 +57,28 @@ impl Memory {
             let room = self.tile.len.next_power_of_two();
             self.candidates.resize(room, none);
         }
-        self.column_terms(simd, measure, area, square);
-        match plan.row_axis {
-            // These terms are computed for each slice.
-            Some(_) if plan.deep_axis.is_some() => {}
-            Some(row_axis) => self.row_terms(simd, measure, area, square, row_axis),
-            None => self.slanted_terms(simd, measure, area, square),
-        }
+        self.terms(level, area, square, None);
+    }
+
+    /// Computes the terms of a tile: those of its columns, and unless there are several slices, those of its rows; or,
+    /// for one of several slices at a place in steps from the lower corner of the square, those of the rows there.
+    pub(super) fn terms(&mut self, level: Level, area: &Area, square: &Square, slice: Option<i32>) {
+        let plan = &square.plan;
+        measured!(level, plan.metric, (simd, measure) => {
+            if let Some(place) = slice {
+                self.slice_terms(simd, measure, area, square, place);
+                return;
+            }
+            self.column_terms(simd, measure, area, square);
+            match plan.row_axis {
+                Some(_) if plan.deep_axis.is_some() => {}
+                Some(row_axis) => self.row_terms(simd, measure, area, square, row_axis),
+                None => self.slanted_terms(simd, measure, area, square),
+            }
+        });
     }
 
     /// The box of the pixels of a tile, from the lower corner of its square.
-    #[inline(always)]
     fn cuboid(&self, area: &Area, square: &Square) -> Cuboid {
         let mut cuboid = square.cuboid;
         if square.is_tile {
@@ -113,10 +118,10 @@ impl Memory {
     /// Computes the terms of the rows of a tile in one slice, given in steps from the lower corner of a square. Rows
     /// differ along the second axis.
     #[inline(always)]
-    pub(super) fn slice_terms<S: Simd>(
+    fn slice_terms<S: Simd, M: Measure>(
         &mut self,
         simd: S,
-        exact: Exact,
+        measure: M,
         area: &Area,
         square: &Square,
         place: i32,
@@ -126,8 +131,8 @@ impl Memory {
         let FlatPoints { y, z, rest, .. } = &self.tile;
         for start in (0..self.tile.len).step_by(LANES) {
             let at = start..start + LANES;
-            let [terms] = exact.terms([place - f32x16::from_slice(simd, &z[at.clone()])]);
-            let rest = exact.accumulate(terms, f32x16::from_slice(simd, &rest[at.clone()]));
+            let [terms] = measure.terms([place - f32x16::from_slice(simd, &z[at.clone()])]);
+            let rest = measure.accumulate(terms, f32x16::from_slice(simd, &rest[at.clone()]));
             let mut rests = [0.0; LANES];
             rest.store_slice(&mut rests);
             let n = LANES.min(self.tile.len - start);
@@ -135,8 +140,8 @@ impl Memory {
                 let places = places(simd, &line[first..], square.pixels.low[1]);
                 let points = y[at.clone()][..n].iter().zip(&rests);
                 for ((&y, &rest), candidate) in points.zip(&mut self.candidates[start..]) {
-                    let [terms] = exact.terms([places - y]);
-                    let terms = exact.accumulate(terms, f32x16::splat(simd, rest));
+                    let [terms] = measure.terms([places - y]);
+                    let terms = measure.accumulate(terms, f32x16::splat(simd, rest));
                     terms.store_slice(&mut candidate.rows[first..first + LANES]);
                 }
             }

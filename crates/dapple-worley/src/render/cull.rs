@@ -6,10 +6,12 @@
 //! it. The candidates of small boxes are taken from those of a larger box about them.
 
 use super::LANES;
+use crate::Metric;
 use crate::fixed::{MOST_AXES, STEP, STEP_BITS, STEPS};
+use crate::levels::measured;
 use crate::metric::Measure;
 use core::ops::Range;
-use fearless_simd::{f32x16, i32x16, mask32x16, prelude::*, u32x16};
+use fearless_simd::{Level, f32x16, i32x16, mask32x16, prelude::*, u32x16};
 
 /// The box around some pixels, in steps from the lower corner of a table.
 #[derive(Clone, Copy, Debug)]
@@ -97,8 +99,8 @@ pub(super) enum Keep {
 
 /// The box, the metric and the criterion for which points are culled.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Cull<'a, M> {
-    pub(super) measure: M,
+pub(super) struct Cull<'a> {
+    pub(super) metric: Metric,
     pub(super) pixels: &'a PixelBox,
     pub(super) keep: Keep,
 }
@@ -124,29 +126,22 @@ impl PointList {
     }
 
     /// Appends those of some points that are candidates, in their order.
-    #[inline(always)]
-    pub(super) fn cull<S: Simd, M: Measure>(
-        &mut self,
-        simd: S,
-        cull: Cull<'_, M>,
-        points: Points<'_>,
-    ) {
-        match cull.pixels.n_axes {
-            2 => self.cull_axes::<S, M, 2>(simd, cull, points),
-            3 => self.cull_axes::<S, M, 3>(simd, cull, points),
-            _ => self.cull_axes::<S, M, 4>(simd, cull, points),
-        }
+    pub(super) fn cull(&mut self, level: Level, cull: Cull<'_>, points: Points<'_>) {
+        measured!(level, cull.metric, (simd, measure) => {
+            self.cull_by(simd, measure, cull, points);
+        });
     }
 
-    /// Culls points; compiled for boxes with `N` axes.
+    /// Culls points in registers.
     #[inline(always)]
-    fn cull_axes<S: Simd, M: Measure, const N: usize>(
+    fn cull_by<S: Simd, M: Measure>(
         &mut self,
         simd: S,
-        cull: Cull<'_, M>,
+        measure: M,
+        cull: Cull<'_>,
         points: Points<'_>,
     ) {
-        let n_axes = N;
+        let n_axes = cull.pixels.n_axes;
         let room = self.make_room(points, n_axes);
         let infinite = f32x16::splat(simd, f32::INFINITY);
         let mut least = infinite;
@@ -156,7 +151,7 @@ impl PointList {
         }
         for run in points.runs {
             for start in run.clone().step_by(LANES) {
-                let (key, far) = cull.keys::<S, N>(simd, points.steps, start);
+                let (key, far) = cull.pixels.keys(simd, measure, points.steps, start);
                 let is_there = lanes_before(simd, run.end - start);
                 let near = &mut self.near[at..at + LANES];
                 is_there.select(key, infinite).store_slice(near);
@@ -233,28 +228,30 @@ pub(super) fn lanes_before<S: Simd>(simd: S, n: usize) -> mask32x16<S> {
     mask32x16::from_bitmask(simd, u64::MAX >> (64 - n.min(LANES)))
 }
 
-impl<M: Measure> Cull<'_, M> {
+impl PixelBox {
     /// The smallest and the largest keys of sixteen points in the box.
     #[inline(always)]
-    fn keys<S: Simd, const N: usize>(
+    fn keys<S: Simd, M: Measure>(
         &self,
         simd: S,
+        measure: M,
         steps: &[Vec<i32>; MOST_AXES],
         start: usize,
     ) -> (f32x16<S>, f32x16<S>) {
         let zero = f32x16::splat(simd, 0.0);
         let [mut near_key, mut far_key] = [zero; 2];
-        for axis in (0..N).rev() {
-            let [low, high] = [self.pixels.low[axis], self.pixels.high[axis]];
+        for axis in (0..MOST_AXES).rev() {
+            if axis >= self.n_axes {
+                continue;
+            }
+            let [low, high] = [self.low[axis], self.high[axis]];
             let steps = i32x16::from_slice(simd, &steps[axis][start..start + LANES]);
             let ahead = (steps - low).to_float::<f32x16<S>>() * STEP;
             let past = ahead - (high - low) as f32 * STEP;
             // Terms are not below zero, so that the first ones are the initial keys.
-            let [near, far] = self
-                .measure
-                .terms([past.max(-ahead).max(zero), ahead.max(-past)]);
-            near_key = self.measure.accumulate(near, near_key);
-            far_key = self.measure.accumulate(far, far_key);
+            let [near, far] = measure.terms([past.max(-ahead).max(zero), ahead.max(-past)]);
+            near_key = measure.accumulate(near, near_key);
+            far_key = measure.accumulate(far, far_key);
         }
         (near_key, far_key)
     }

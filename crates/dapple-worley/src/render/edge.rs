@@ -72,7 +72,7 @@ impl Block<'_> {
         };
         memory.take_lines(self, &cells);
         memory.table.wants_ids = false;
-        basis.fill(self.level, &mut memory.table, cells);
+        memory.table.fill(self.level, basis.lattice(), cells);
         memory.values.clear();
         memory.values.resize(out.len() * STRIDE, -1.0);
         dispatch!(self.level, simd => self.draw_cells(simd, guess, memory));

@@ -14,8 +14,9 @@ use super::LANES;
 use super::cull::{PixelBox, PointList, lanes_before};
 use crate::Metric;
 use crate::fixed::STEP;
+use crate::levels::{is_wide, measured, wide};
 use crate::metric::{Exact, Measure};
-use fearless_simd::{f32x16, i32x16, mask32x16, prelude::*, u32x16};
+use fearless_simd::{Level, f32x16, i32x16, mask32x16, prelude::*, u32x16};
 
 /// A rectangle of pixels along the axes of the columns and of the rows, and of slices across them, in cells.
 #[derive(Clone, Copy, Debug)]
@@ -36,6 +37,11 @@ pub(super) struct Dominance {
     pub(super) distance: f32,
     /// Scratch memory for the dominators.
     dominators: Dominators,
+}
+
+/// Whether dominated points can be removed: they are where terms are added up, in wide registers.
+pub(super) fn culls_dominated(level: Level, metric: Metric) -> bool {
+    is_wide(level) && metric.is_exact_sum()
 }
 
 impl Dominance {
@@ -220,8 +226,22 @@ impl FlatPoints {
 
     /// Appends all points of a list, with coordinates counted from the lower corner of some pixels. The rows of the
     /// picture differ along `row_axis`, and several slices along `deep_axis`.
+    pub(super) fn flatten(
+        &mut self,
+        level: Level,
+        metric: Metric,
+        points: &PointList,
+        pixels: &PixelBox,
+        axes: PictureAxes,
+    ) {
+        measured!(level, metric, (simd, measure) => {
+            self.flatten_by(simd, measure, points, pixels, axes);
+        });
+    }
+
+    /// Flattens points in registers.
     #[inline(always)]
-    pub(super) fn flatten<S: Simd, M: Measure>(
+    fn flatten_by<S: Simd, M: Measure>(
         &mut self,
         simd: S,
         measure: M,
@@ -256,20 +276,19 @@ impl FlatPoints {
 
     /// Selects the points that fewer than `depth` others dominate in a cuboid. Only for metrics whose terms are added
     /// up.
-    #[inline(always)]
-    pub(super) fn take_undominated<S: Simd>(
+    pub(super) fn take_undominated(
         &mut self,
-        simd: S,
+        level: Level,
         metric: Metric,
         points: &Self,
         cuboid: &Cuboid,
         dominance: &mut Dominance,
     ) {
-        if cuboid.is_deep {
-            self.take_undominated_axes::<S, true>(simd, metric, points, cuboid, dominance);
+        wide!(level, simd => if cuboid.is_deep {
+            self.take_undominated_axes::<_, true>(simd, metric, points, cuboid, dominance);
         } else {
-            self.take_undominated_axes::<S, false>(simd, metric, points, cuboid, dominance);
-        }
+            self.take_undominated_axes::<_, false>(simd, metric, points, cuboid, dominance);
+        });
     }
 
     /// Selects the points that fewer than `depth` others dominate; compiled for one slice or, where `DEEP`, for

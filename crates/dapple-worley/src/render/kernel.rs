@@ -35,6 +35,8 @@ pub(super) struct Rows<'a> {
 impl Rows<'_> {
     /// Fills pixels row by row, and returns the first row with a key that reaches the limit, or the end of the rows.
     ///
+    /// `depth` is the number of nearest points to find, at most `K`.
+    ///
     /// Square roots take long, but meanwhile the processor compares the next few rows: not too many at once, so that it
     /// can look that far ahead.
     #[inline(always)]
@@ -42,36 +44,58 @@ impl Rows<'_> {
         &self,
         simd: S,
         measure: M,
+        depth: usize,
         out: &mut [&mut [f32]],
     ) -> usize {
-        if const { <S::f32s as SimdBase<S>>::LEN < LANES } {
-            return match self.columns.len() {
-                TILE => self.fill_groups::<S, M, K, 1, 2>(simd, measure, out),
-                LANES => self.fill_groups::<S, M, K, 2, 1>(simd, measure, out),
-                _ => self.fill_groups::<S, M, K, 1, 0>(simd, measure, out),
-            };
-        }
+        let is_split = const { <S::f32s as SimdBase<S>>::LEN < LANES };
         match self.columns.len() {
-            TILE if const { K == 1 } => self.fill_groups::<S, M, K, 4, 2>(simd, measure, out),
-            TILE => self.fill_groups::<S, M, K, 2, 2>(simd, measure, out),
-            LANES => self.fill_groups::<S, M, K, 4, 1>(simd, measure, out),
-            _ => self.fill_groups::<S, M, K, 1, 0>(simd, measure, out),
+            TILE if is_split => self.fill_groups::<S, M, K, 1, 2>(simd, measure, depth, out),
+            TILE if const { K == 1 } => {
+                self.fill_groups::<S, M, K, 4, 2>(simd, measure, depth, out)
+            }
+            TILE => self.fill_groups::<S, M, K, 2, 2>(simd, measure, depth, out),
+            _ => self.fill_register::<S, M, K>(simd, measure, depth, out),
+        }
+    }
+
+    /// Fills one register of columns, or a part of it, as [`fill`](Self::fill) does.
+    #[inline(always)]
+    pub(super) fn fill_register<S: Simd, M: Measure, const K: usize>(
+        &self,
+        simd: S,
+        measure: M,
+        depth: usize,
+        out: &mut [&mut [f32]],
+    ) -> usize {
+        let is_split = const { <S::f32s as SimdBase<S>>::LEN < LANES };
+        match self.columns.len() {
+            LANES if is_split => self.fill_groups::<S, M, K, 2, 1>(simd, measure, depth, out),
+            LANES => self.fill_groups::<S, M, K, 4, 1>(simd, measure, depth, out),
+            _ => self.fill_groups::<S, M, K, 1, 0>(simd, measure, depth, out),
         }
     }
 
     /// Fills groups of `R` rows and `C` registers of columns; `C = 0` stands for a part of a register.
     #[inline(always)]
-    fn fill_groups<S: Simd, M: Measure, const K: usize, const R: usize, const C: usize>(
+    pub(super) fn fill_groups<
+        S: Simd,
+        M: Measure,
+        const K: usize,
+        const R: usize,
+        const C: usize,
+    >(
         &self,
         simd: S,
         measure: M,
+        depth: usize,
         out: &mut [&mut [f32]],
     ) -> usize {
         let register = if C == 2 { 0 } else { self.register };
-        let values = self.values.lanes::<S, K>(simd);
+        let values = self.values.lanes::<S, K>(simd, depth);
+        let empty = empty(simd, depth, f32::INFINITY);
         let out = &mut out[self.rows.clone()];
         for (group, out) in out.chunks_mut(R).enumerate() {
-            let mut best = [[[f32x16::splat(simd, f32::INFINITY); K]; 2]; R];
+            let mut best = [[empty; 2]; R];
             for candidate in self.candidates {
                 let row_terms = &candidate.rows.as_chunks::<R>().0[group];
                 for part in 0..C.max(1) {
@@ -113,6 +137,23 @@ impl Rows<'_> {
         }
         self.rows.end
     }
+}
+
+/// `K` sorted keys before any point is compared, of which the last `depth` are in use and hold `nothing`: the others
+/// stay zero, which is below all keys.
+#[inline(always)]
+pub(super) fn empty<S: Simd, const K: usize>(
+    simd: S,
+    depth: usize,
+    nothing: f32,
+) -> [f32x16<S>; K] {
+    let mut keys = [f32x16::splat(simd, nothing); K];
+    for rank in 0..K - 1 {
+        if rank + depth < K {
+            keys[rank] = f32x16::splat(simd, 0.0);
+        }
+    }
+    keys
 }
 
 /// Inserts one more key in its order, and drops the largest.

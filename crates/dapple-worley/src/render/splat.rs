@@ -7,15 +7,16 @@
 
 use super::bins::{Bins, Grid, HALF, Point, Reach, TILE};
 use super::block::{Block, Memory};
-use super::kernel::{greater, lesser};
+use super::kernel::{empty, greater, lesser};
 use super::table::CellBox;
 use super::{BLOCK_COLUMNS, LANES};
 use crate::LIMIT;
 use crate::Metric;
 use crate::fixed::{MOST_AXES, STEP, STEP_BITS};
-use crate::metric::{Additive, Exact, Kernel, Longest, Measure, Powers};
+use crate::levels::wide;
+use crate::metric::{Additive, Exact, General, Kernel, Longest, Measure};
 use crate::sink::{ValueLanes, Values};
-use dapple_raster::simd::{baseline, dispatch};
+use dapple_raster::simd::baseline;
 use fearless_simd::{Level, f32x4, f32x16, i32x4, prelude::*};
 
 /// The largest distance of a pixel from its even position, in pixels: well below the room that [`SURE`] leaves.
@@ -128,6 +129,7 @@ impl Splat {
             key: metric.term(self.reach),
         };
         let grid = Grid {
+            n_axes: cells.n_axes,
             metric,
             reach,
             origin: cells.first,
@@ -139,28 +141,18 @@ impl Splat {
             row_axis: self.row_axis,
         };
         bins.clear(&lines[0][..block.range.len()], block.bands[0].n_rows, reach);
-        basis.collect(block.level, bins, &near, &grid);
+        bins.collect(block.level, basis.lattice(), &near, &grid);
         bins.count();
         let rows = &lines[self.row_axis];
         if tiles == NEAR {
             let mut points = core::mem::take(&mut bins.near);
-            match metric.kernel() {
-                Kernel::Powers(p) => {
-                    baseline!(simd => bins.sort(simd, Powers(p), &mut points));
-                }
-                _ => dispatch!(block.level, simd => bins.sort(simd, Exact(metric), &mut points)),
-            }
+            bins.sort(block.level, metric, &mut points);
             let runs = Runs::new(bins, &grid, rows, &points);
             fill_block::<3>(block, runs, values, out);
             bins.near = points;
         } else {
             let mut points = core::mem::take(&mut bins.wide);
-            match metric.kernel() {
-                Kernel::Powers(p) => {
-                    baseline!(simd => bins.sort(simd, Powers(p), &mut points));
-                }
-                _ => dispatch!(block.level, simd => bins.sort(simd, Exact(metric), &mut points)),
-            }
+            bins.sort(block.level, metric, &mut points);
             let runs = Runs::new(bins, &grid, rows, &points);
             fill_block::<5>(block, runs, values, out);
             bins.wide = points;
@@ -210,22 +202,7 @@ fn fill_block<const TILES: usize>(
             pixels,
             unknown: &mut unknown[..n_tiles],
         };
-        let level = block.level;
-        match runs.metric.kernel() {
-            Kernel::Powers(p) => {
-                let measure = Powers(p);
-                baseline!(simd => fill::<_, _, LIMIT, TILES, true>(simd, measure, runs, &mut tiles));
-            }
-            Kernel::Longest => fill_by_depth::<_, TILES, true>(level, Longest, runs, &mut tiles),
-            _ if block.bands[0].rows.len() == 2 => {
-                let measure = Additive(runs.metric);
-                fill_by_depth::<_, TILES, false>(level, measure, runs, &mut tiles);
-            }
-            _ => {
-                let measure = Additive(runs.metric);
-                fill_by_depth::<_, TILES, true>(level, measure, runs, &mut tiles);
-            }
-        }
+        fill_tiles(block.level, runs, &mut tiles);
         if !is_whole {
             for (pixels, out) in whole_tiles.iter().zip(&mut *out) {
                 out[range.clone()].copy_from_slice(&pixels[..range.len()]);
@@ -253,6 +230,8 @@ fn fill_block<const TILES: usize>(
 #[derive(Clone, Copy, Debug)]
 struct Runs<'a, const TILES: usize> {
     metric: Metric,
+    /// Whether there are axes across the picture.
+    is_deep: bool,
     /// The key from which on keys may be wrong.
     limit: f32,
     starts: &'a [u32],
@@ -268,6 +247,7 @@ impl<'a, const TILES: usize> Runs<'a, TILES> {
     fn new(bins: &'a Bins, grid: &Grid, rows: &'a [i32], points: &'a [Point<TILES>]) -> Self {
         Self {
             metric: grid.metric,
+            is_deep: grid.n_axes > 2,
             limit: grid.metric.tightened(grid.reach.key),
             starts: &bins.starts,
             n_halves: bins.n_halves,
@@ -289,30 +269,53 @@ struct TileRow<'a> {
     unknown: &'a mut [u16],
 }
 
-/// Fills a row of tiles; `DEEP` is true if there may be axes across the picture.
-fn fill_by_depth<M: Measure, const TILES: usize, const DEEP: bool>(
-    level: Level,
-    measure: M,
-    runs: Runs<'_, TILES>,
-    tiles: &mut TileRow<'_>,
-) {
-    match tiles.values.tone.depth() {
-        1 => dispatch!(level, simd => fill::<_, _, 1, TILES, DEEP>(simd, measure, runs, tiles)),
-        2 => dispatch!(level, simd => fill::<_, _, 2, TILES, DEEP>(simd, measure, runs, tiles)),
-        _ => dispatch!(level, simd => fill::<_, _, LIMIT, TILES, DEEP>(simd, measure, runs, tiles)),
+/// Fills a row of tiles, with the loop that is compiled for the metric and the number of nearest points.
+fn fill_tiles<const TILES: usize>(level: Level, runs: Runs<'_, TILES>, tiles: &mut TileRow<'_>) {
+    let depth = match tiles.values.tone.depth() {
+        depth @ ..=2 => depth,
+        _ => LIMIT,
+    };
+    let sum = Additive(runs.metric);
+    let done = match (runs.metric.kernel(), depth, runs.is_deep) {
+        (Kernel::Squares | Kernel::Sum, 1, false) => {
+            wide!(level, simd => fill::<_, _, 1, TILES, false>(simd, sum, 1, runs, tiles))
+        }
+        (Kernel::Squares | Kernel::Sum, 1, true) => {
+            wide!(level, simd => fill::<_, _, 1, TILES, true>(simd, sum, 1, runs, tiles))
+        }
+        (Kernel::Squares | Kernel::Sum, 2, false) => {
+            wide!(level, simd => fill::<_, _, 2, TILES, false>(simd, sum, 2, runs, tiles))
+        }
+        (Kernel::Squares | Kernel::Sum, 2, true) => {
+            wide!(level, simd => fill::<_, _, 2, TILES, true>(simd, sum, 2, runs, tiles))
+        }
+        (Kernel::Longest, ..=2, _) => {
+            wide!(level, simd => fill::<_, _, 2, TILES, true>(simd, Longest, depth, runs, tiles))
+        }
+        (Kernel::General, ..) => None,
+        _ => {
+            let exact = Exact(runs.metric);
+            wide!(level, simd => fill::<_, _, LIMIT, TILES, true>(simd, exact, depth, runs, tiles))
+        }
+    };
+    if done.is_none() {
+        let any = General(runs.metric);
+        baseline!(simd => fill::<_, _, LIMIT, TILES, true>(simd, any, depth, runs, tiles));
     }
 }
 
-/// Fills a row of tiles. The tiles that one column of points matters to are held in registers.
+/// Fills a row of tiles; `depth` is the number of nearest points to find, at most `K`, and `DEEP` is true if there may be
+/// axes across the picture. The tiles that one column of points matters to are held in registers.
 #[inline(always)]
 fn fill<S: Simd, M: Measure, const K: usize, const TILES: usize, const DEEP: bool>(
     simd: S,
     measure: M,
+    depth: usize,
     runs: Runs<'_, TILES>,
     tiles: &mut TileRow<'_>,
 ) {
-    let values = tiles.values.lanes::<S, K>(simd);
-    let empty = [f32x16::splat(simd, f32::INFINITY); K];
+    let values = tiles.values.lanes::<S, K>(simd, depth);
+    let empty = empty::<S, K>(simd, depth, f32::INFINITY);
     let mut best = [empty; TILES];
     let rows = i32x4::from_slice(simd, &runs.rows[tiles.index * TILE..][..TILE]);
     let first = tiles.index * TILE / HALF;

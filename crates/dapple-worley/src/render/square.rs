@@ -7,16 +7,18 @@
 use super::area::Area;
 use super::block::{Block, Memory};
 use super::cull::{Cull, Keep, PixelBox, Points};
-use super::flat::{Cuboid, PictureAxes};
+use super::flat::{Cuboid, PictureAxes, culls_dominated};
 use super::kernel::{Rows, TILE};
 use super::track::{Found, TrackedRows};
 use super::{Basis, LANES, Output};
 use crate::fixed::{MOST_AXES, STEP, STEPS};
-use crate::metric::{Additive, Exact, Kernel, Longest, Measure, Powers, Squares};
+use crate::levels::{is_wide, wide};
+use crate::metric::{Additive, Exact, General, Kernel, Longest, Squares};
 use crate::sink::{Tone, Values};
 use crate::{LIMIT, Metric};
 use core::ops::Range;
-use dapple_raster::simd::{baseline, dispatch};
+use dapple_raster::simd::baseline;
+use fearless_simd::Level;
 
 /// A guess of the distance of the nearest points, which few of them exceed.
 #[derive(Clone, Copy, Debug)]
@@ -38,7 +40,10 @@ impl Guess {
         let points = [5.5, 7.8, 9.8, 11.6][depth - 1];
         // The volumes of the Euclidean unit balls, precise enough for a guess.
         let ball = [1.0, 2.0, 3.1, 4.2, 4.9][n_axes];
-        let distance = libm::pow(points / (ball * basis.density(middle)), 1.0 / n_axes as f64);
+        let distance = libm::pow(
+            points / (ball * basis.lattice().mean(&middle)),
+            1.0 / n_axes as f64,
+        );
         Self {
             distance: distance as f32,
             ring: (distance.ceil() as i32).max(1),
@@ -85,9 +90,14 @@ impl Plan {
         }
     }
 
+    /// Whether values are filled by a kernel that takes two registers of columns at once.
+    fn has_wide_kernel(&self, level: Level) -> bool {
+        is_wide(level) && self.depth <= 2 && self.metric.is_exact_sum()
+    }
+
     /// Whether dominated points are removed from the candidates of a rectangle.
-    pub(super) fn culls_dominated(&self) -> bool {
-        self.row_axis.is_some() && self.metric.is_exact_sum()
+    pub(super) fn culls_dominated(&self, level: Level) -> bool {
+        self.row_axis.is_some() && culls_dominated(level, self.metric)
     }
 }
 
@@ -233,10 +243,8 @@ impl Block<'_> {
                 moved.high[axis] -= cells[0][axis] * STEPS;
             }
             memory.wide_table.wants_ids = memory.table.wants_ids;
-            self.bands[0]
-                .picture
-                .basis
-                .fill(self.level, &mut memory.wide_table, all);
+            let lattice = self.bands[0].picture.basis.lattice();
+            memory.wide_table.fill(self.level, lattice, all);
             &memory.wide_table
         } else {
             &memory.table
@@ -255,23 +263,25 @@ impl Block<'_> {
         let (list, square, tile) = (&mut memory.list, &mut memory.square, &mut memory.tile);
         let dominance = &mut memory.dominance;
         (dominance.depth, dominance.distance) = (plan.depth, plan.guess.distance);
-        match metric.kernel() {
-            Kernel::Powers(p) => baseline!(simd => {
-                let measure = Powers(p);
-                list.cull(simd, Cull { measure, pixels: &moved, keep }, points);
-            }),
-            _ => dispatch!(self.level, simd => {
-                let measure = Exact(metric);
-                list.cull(simd, Cull { measure, pixels: &moved, keep }, points);
-                if let Some(rows) = plan.row_axis.filter(|_| plan.culls_dominated()) {
-                    let slices = plan.deep_axis;
-                    square.flatten(simd, measure, list, &moved, PictureAxes { rows, slices });
-                    if has_tiles {
-                        tile.take_undominated(simd, metric, square, &whole, dominance);
-                        core::mem::swap(tile, square);
-                    }
-                }
-            }),
+        let cull = Cull {
+            metric,
+            pixels: &moved,
+            keep,
+        };
+        list.cull(self.level, cull, points);
+        if let Some(rows) = plan.row_axis.filter(|_| plan.culls_dominated(self.level)) {
+            let slices = plan.deep_axis;
+            square.flatten(
+                self.level,
+                metric,
+                list,
+                &moved,
+                PictureAxes { rows, slices },
+            );
+            if has_tiles {
+                tile.take_undominated(self.level, metric, square, &whole, dominance);
+                core::mem::swap(tile, square);
+            }
         }
         limit
     }
@@ -279,15 +289,7 @@ impl Block<'_> {
     /// Fills the pixels of a tile from the candidates of its square.
     fn tile(&self, area: &Area, square: &Square, outs: &mut [Output<'_>], memory: &mut Memory) {
         let plan = square.plan;
-        match plan.metric.kernel() {
-            Kernel::Powers(p) => {
-                baseline!(simd => memory.candidates(simd, Powers(p), area, square));
-            }
-            _ => {
-                let exact = Exact(plan.metric);
-                dispatch!(self.level, simd => memory.candidates(simd, exact, area, square));
-            }
-        }
+        memory.candidates(self.level, area, square);
         let is_values = matches!(outs[0], Output::Values(..));
         if !is_values {
             let table = if memory.is_wide {
@@ -298,14 +300,13 @@ impl Block<'_> {
             memory.lookup.fill(&memory.tile, table, memory.low);
         }
         let size = match area.columns.len() {
-            TILE if is_values => [TILE; 2],
+            TILE if is_values && plan.has_wide_kernel(self.level) => [TILE; 2],
             _ => [LANES, TILE],
         };
         for slice in area.slices.clone() {
             if let Some(deep_axis) = plan.deep_axis {
                 let place = memory.slices[slice][deep_axis] - square.pixels.low[deep_axis];
-                let exact = Exact(plan.metric);
-                dispatch!(self.level, simd => memory.slice_terms(simd, exact, area, square, place));
+                memory.terms(self.level, area, square, Some(place));
             }
             for (register, area) in area.parts(size).enumerate() {
                 let area = Area {
@@ -331,49 +332,43 @@ impl Block<'_> {
     /// Fills one or two registers of columns of a tile, and returns the first row with a key that reaches the limit, or
     /// the end of the rows.
     fn fill_part(&self, part: Part<'_>, out: &mut Output<'_>, memory: &Memory) -> usize {
-        let metric = part.square.plan.metric;
-        if let Output::Values(values, out) = out {
-            let rows = self.rows_of(part, values, memory);
-            return match metric.kernel() {
-                Kernel::Squares => self.fill_values(Squares, part, &rows, out),
-                Kernel::Sum => self.fill_values(Additive(metric), part, &rows, out),
-                Kernel::Longest => self.fill_values(Longest, part, &rows, out),
-                Kernel::Powers(p) => {
-                    baseline!(simd => rows.fill::<_, _, LIMIT>(simd, Powers(p), out))
-                }
-            };
-        }
-        match metric.kernel() {
-            Kernel::Longest => self.fill_tracked(Longest, part, out, memory),
-            _ => self.fill_tracked(Additive(metric), part, out, memory),
+        match out {
+            Output::Values(values, out) => {
+                self.fill_values(part, &self.rows_of(part, values, memory), out)
+            }
+            _ => self.fill_tracked(part, out, memory),
         }
     }
 
-    /// Fills values.
-    fn fill_values<M: Measure>(
-        &self,
-        measure: M,
-        part: Part<'_>,
-        rows: &Rows<'_>,
-        out: &mut [&mut [f32]],
-    ) -> usize {
-        let level = self.level;
-        match part.square.plan.depth {
-            1 => dispatch!(level, simd => rows.fill::<_, M, 1>(simd, measure, out)),
-            2 => dispatch!(level, simd => rows.fill::<_, M, 2>(simd, measure, out)),
-            _ => dispatch!(level, simd => rows.fill::<_, M, LIMIT>(simd, measure, out)),
-        }
+    /// Fills values, with the loop that is compiled for the metric and the number of nearest points.
+    fn fill_values(&self, part: Part<'_>, rows: &Rows<'_>, out: &mut [&mut [f32]]) -> usize {
+        let (level, Plan { metric, depth, .. }) = (self.level, part.square.plan);
+        let (sum, exact) = (Additive(metric), Exact(metric));
+        let end = match (metric.kernel(), depth) {
+            (Kernel::Squares, 1) => {
+                wide!(level, simd => rows.fill::<_, _, 1>(simd, Squares, 1, out))
+            }
+            (Kernel::Squares, 2) => {
+                wide!(level, simd => rows.fill::<_, _, 2>(simd, Squares, 2, out))
+            }
+            (Kernel::Sum, 1) => wide!(level, simd => rows.fill::<_, _, 1>(simd, sum, 1, out)),
+            (Kernel::Sum, 2) => wide!(level, simd => rows.fill::<_, _, 2>(simd, sum, 2, out)),
+            (Kernel::Longest, ..=2) => {
+                wide!(level, simd => rows.fill_register::<_, _, 2>(simd, Longest, depth, out))
+            }
+            (Kernel::General, _) => None,
+            _ => wide!(level, simd => rows.fill_register::<_, _, LIMIT>(simd, exact, depth, out)),
+        };
+        end.unwrap_or_else(|| {
+            let any = General(metric);
+            baseline!(simd => rows.fill_groups::<_, _, LIMIT, 1, 0>(simd, any, depth, out))
+        })
     }
 
     /// Fills features or gradients, which need the identity of the nearest points.
-    fn fill_tracked<M: Measure>(
-        &self,
-        measure: M,
-        part: Part<'_>,
-        out: &mut Output<'_>,
-        memory: &Memory,
-    ) -> usize {
+    fn fill_tracked(&self, part: Part<'_>, out: &mut Output<'_>, memory: &Memory) -> usize {
         let (level, area) = (self.level, part.area);
+        let Plan { metric, depth, .. } = part.square.plan;
         let mut lines = memory.lines.each_ref().map(|line| &line[..]);
         lines[0] = &lines[0][area.columns.start..];
         let rows = TrackedRows {
@@ -387,11 +382,23 @@ impl Block<'_> {
             limit: part.square.limit,
         };
         let mut put = |found: &Found| self.put(area.slices.start, found, out);
-        if part.square.plan.depth <= 2 {
-            dispatch!(level, simd => rows.fill::<_, M, 2>(simd, measure, &mut put))
-        } else {
-            dispatch!(level, simd => rows.fill::<_, M, LIMIT>(simd, measure, &mut put))
-        }
+        let sum = Additive(metric);
+        let end = match (metric.kernel(), depth) {
+            (Kernel::Squares | Kernel::Sum, 2) => {
+                wide!(level, simd => rows.fill::<_, _, 2>(simd, sum, 2, &mut put))
+            }
+            (Kernel::Squares | Kernel::Sum, _) => {
+                wide!(level, simd => rows.fill::<_, _, LIMIT>(simd, sum, LIMIT, &mut put))
+            }
+            (Kernel::Longest, 2) => {
+                wide!(level, simd => rows.fill::<_, _, 2>(simd, Longest, 2, &mut put))
+            }
+            _ => None,
+        };
+        end.unwrap_or_else(|| {
+            let any = General(metric);
+            baseline!(simd => rows.fill::<_, _, LIMIT>(simd, any, depth, &mut put))
+        })
     }
 
     /// The rows of a part, for the kernel.
@@ -415,7 +422,7 @@ impl Block<'_> {
     /// Stores the nearest points of a row of pixels.
     fn put(&self, slice: usize, found: &Found, out: &mut Output<'_>) {
         match out {
-            Output::Features(features) => found.put(features),
+            Output::Features(features) => found.put(&self.bands[slice], features),
             Output::Gradients(tone, rows) => {
                 let metric = self.bands[slice].picture.basis.metric();
                 let n = found.n_axes;
@@ -428,10 +435,11 @@ impl Block<'_> {
             }
             Output::Values(..) | Output::Edges(..) => {}
         }
-        for (lane, column) in found.columns.clone().enumerate() {
-            if found.unknown >> lane & 1 == 1 {
-                self.one(slice, column, found.row, out);
-            }
+        let mut unknown = found.unknown & u64::MAX >> (64 - found.columns.len());
+        while unknown != 0 {
+            let column = found.columns.start + unknown.trailing_zeros() as usize;
+            unknown &= unknown - 1;
+            self.one(slice, column, found.row, out);
         }
     }
 }

@@ -5,11 +5,12 @@ use crate::fixed::{MOST_AXES, STEP_BITS};
 use crate::lattice::{IDS, Lattice, SixteenCells};
 use core::ops::Range;
 use dapple_hash::{CellHash, CellHashes};
-use fearless_simd::{prelude::*, u32x16};
+use dapple_raster::simd::dispatch;
+use fearless_simd::{Level, prelude::*, u32x16};
 
 /// A box of cells, from the first to the last along each axis; along missing axes it has only the cell 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CellBox {
+pub(super) struct CellBox {
     pub(super) n_axes: usize,
     pub(super) first: [i64; MOST_AXES],
     pub(super) last: [i64; MOST_AXES],
@@ -31,16 +32,16 @@ impl CellBox {
     }
 
     /// The rows of cells along the first axis: the hash state with which those of the row begin, and the first cell.
-    pub(super) fn rows<const N: usize>(
+    pub(super) fn rows(
         &self,
-        lattice: &Lattice<N>,
-    ) -> impl Iterator<Item = (CellHash, [i64; N])> {
-        let n_rows: usize = (1..N).map(|axis| self.side(axis)).product();
+        lattice: &Lattice,
+    ) -> impl Iterator<Item = (CellHash, [i64; MOST_AXES])> {
+        let n_rows: usize = (1..self.n_axes).map(|axis| self.side(axis)).product();
         (0..n_rows).map(move |mut index| {
             let mut hash = lattice.root;
-            let mut cell = core::array::from_fn(|axis| self.first[axis]);
+            let mut cell = self.first;
             let mut rest = n_rows;
-            for axis in (1..N).rev() {
+            for axis in (1..self.n_axes).rev() {
                 rest /= self.side(axis);
                 cell[axis] += (index / rest) as i64;
                 index %= rest;
@@ -64,7 +65,7 @@ const USUAL: usize = 4;
 
 /// The feature points of a box of cells, row by row of cells.
 #[derive(Debug)]
-pub struct Table {
+pub(super) struct Table {
     pub(super) cells: CellBox,
     /// The index of the first point of each cell, and at the end the number of points.
     starts: Vec<u32>,
@@ -101,13 +102,13 @@ impl Table {
     }
 
     /// Generates the points of `cells`, which are at most 1000 along each axis.
+    pub(super) fn fill(&mut self, level: Level, lattice: &Lattice, cells: CellBox) {
+        dispatch!(level, simd => self.fill_by(simd, lattice, cells));
+    }
+
+    /// Generates the points of cells in registers.
     #[inline(always)]
-    pub(super) fn fill<S: Simd, const N: usize>(
-        &mut self,
-        simd: S,
-        lattice: &Lattice<N>,
-        cells: CellBox,
-    ) {
+    fn fill_by<S: Simd>(&mut self, simd: S, lattice: &Lattice, cells: CellBox) {
         self.cells = cells;
         self.starts.clear();
         self.starts.push(0);
@@ -117,7 +118,7 @@ impl Table {
         let columns = columns.map(|column| words(lattice.wrap(0, cells.first[0] + column)));
         let (low, high): (Vec<u32>, Vec<u32>) = columns.map(|[low, high]| (low, high)).unzip();
         for (hash, cell) in cells.rows(lattice) {
-            let mut corner: [i32; N] =
+            let mut corner: [i32; MOST_AXES] =
                 core::array::from_fn(|axis| ((cell[axis] - cells.first[axis]) as i32) << STEP_BITS);
             for first in (0..side).step_by(LANES) {
                 corner[0] = (first as i32) << STEP_BITS;
@@ -133,14 +134,15 @@ impl Table {
 
     /// Adds the points of up to sixteen cells side by side.
     #[inline(always)]
-    fn add<S: Simd, const N: usize>(
+    fn add<S: Simd>(
         &mut self,
         simd: S,
-        lattice: &Lattice<N>,
+        lattice: &Lattice,
         hashes: CellHashes<S>,
-        corner: [i32; N],
+        corner: [i32; MOST_AXES],
         n_cells: usize,
     ) {
+        let n_axes = lattice.n_axes;
         let cells = SixteenCells::new(simd, lattice, hashes);
         let cell = core::array::from_fn(|axis| {
             self.cells.first[axis] + i64::from(corner[axis] >> STEP_BITS)
@@ -148,42 +150,46 @@ impl Table {
         let numbers = numbers(lattice, &cells, cell);
         let most = numbers[..n_cells].iter().copied().fold(0, u32::max);
         let mut scratch = core::mem::take(&mut self.scratch);
-        scratch.resize(most.max(USUAL as u32) as usize * N * LANES, 0);
+        scratch.resize(most.max(USUAL as u32) as usize * n_axes * LANES, 0);
         for index in 0..most {
-            let steps: [u32x16<S>; N] = cells.steps(u32x16::splat(simd, index), lattice.jitter);
-            for axis in 0..N {
-                let at = (index as usize * N + axis) * LANES;
-                steps[axis].store_slice(&mut scratch[at..at + LANES]);
+            let steps = cells.flat_steps(u32x16::splat(simd, index), lattice);
+            for axis in 0..MOST_AXES {
+                if axis < n_axes {
+                    let at = (index as usize * n_axes + axis) * LANES;
+                    steps[axis].store_slice(&mut scratch[at..at + LANES]);
+                }
             }
         }
-        let mut end = *self.starts.last().unwrap_or(&0) as usize;
-        for axis in 0..N {
-            let room = end + most as usize * LANES + LANES;
+        let start = *self.starts.last().unwrap_or(&0) as usize;
+        for axis in 0..n_axes {
+            let room = start + most as usize * LANES + LANES;
             if self.steps[axis].len() < room {
                 self.steps[axis].resize(room.next_power_of_two(), 0);
             }
-        }
-        for (lane, &number) in numbers[..n_cells].iter().enumerate() {
-            let number = number as usize;
-            for axis in 0..N {
-                let shift = if axis == 0 {
-                    corner[axis] + ((lane as i32) << STEP_BITS)
-                } else {
-                    corner[axis]
+            let steps = &mut self.steps[axis][start..];
+            let along = if axis == 0 { 1 << STEP_BITS } else { 0 };
+            let (mut end, mut shift) = (0, corner[axis]);
+            for (lane, &number) in numbers[..n_cells].iter().enumerate() {
+                let number = number as usize;
+                let from = |index: usize| {
+                    scratch[(index * n_axes + axis) * LANES + lane].cast_signed() + shift
                 };
-                let from =
-                    |index: usize| scratch[(index * N + axis) * LANES + lane].cast_signed() + shift;
                 // Most cells have no more points than this; the next cell overwrites what is too much.
-                let to = &mut self.steps[axis][end..end + number.max(USUAL)];
+                let to = &mut steps[end..end + number.max(USUAL)];
                 for index in 0..USUAL {
                     to[index] = from(index);
                 }
                 for index in USUAL..number {
                     to[index] = from(index);
                 }
+                end += number;
+                shift += along;
             }
+        }
+        let mut end = start as u32;
+        for number in &numbers[..n_cells] {
             end += number;
-            self.starts.push(end as u32);
+            self.starts.push(end);
         }
         self.scratch = scratch;
         if self.wants_ids {
@@ -275,10 +281,10 @@ impl Table {
 
 /// The numbers of points of sixteen cells, the first of which is `cell`.
 #[inline(always)]
-pub(super) fn numbers<S: Simd, const N: usize>(
-    lattice: &Lattice<N>,
+pub(super) fn numbers<S: Simd>(
+    lattice: &Lattice,
     cells: &SixteenCells<S>,
-    mut cell: [i64; N],
+    mut cell: [i64; MOST_AXES],
 ) -> [u32; LANES] {
     let mut numbers = [0; LANES];
     if lattice.density.is_none() {
@@ -286,7 +292,7 @@ pub(super) fn numbers<S: Simd, const N: usize>(
         return numbers;
     }
     for (lane, number) in numbers.iter_mut().enumerate() {
-        *number = lattice.count(cell, cells.words[0][lane]);
+        *number = lattice.count(&cell[..lattice.n_axes], cells.words[0][lane]);
         cell[0] += 1;
     }
     numbers

@@ -3,15 +3,16 @@
 //! Keys hold the number of their candidate in the low bits, as in [`many`](crate::many). If the other bits do not tell
 //! the order of two of the nearest points, the pixel is searched on its own.
 
-use super::LANES;
 use super::flat::FlatPoints;
-use super::kernel::{Candidate, greater, lesser};
+use super::kernel::{Candidate, empty, greater, lesser};
 use super::table::Table;
+use super::{Band, LANES};
 use crate::LIMIT;
-use crate::features::FeatureRows;
+use crate::features::{FeatureRows, position};
 use crate::fixed::{MOST_AXES, STEP};
 use crate::many::NOTHING;
 use crate::metric::Measure;
+use crate::worley::cell_value;
 use core::ops::Range;
 use fearless_simd::{f32x16, i32x16, prelude::*, u8x64, u32x16};
 
@@ -91,21 +92,34 @@ pub(super) struct Found {
     pub(super) unknown: u64,
 }
 
+/// The smallest keys of sixteen pixels, with the numbers of their candidates in the low bits.
+struct Keys<S: Simd, const K: usize> {
+    /// The keys of the nearest points, after some ranks that are not in use.
+    best: [u32x16<S>; K],
+    /// The smallest key of all other points.
+    next: u32x16<S>,
+    /// The bits that hold the numbers.
+    mask: u32,
+    /// The number of ranks that are not in use.
+    unused: usize,
+}
+
 impl TrackedRows<'_> {
-    /// Finds the `K` nearest points row by row, and returns the first row with a key that reaches the limit, or the end
-    /// of the rows.
+    /// Finds the `depth` nearest points row by row, at most `K`, and returns the first row with a key that reaches the
+    /// limit, or the end of the rows.
     #[inline(always)]
     pub(super) fn fill<S: Simd, M: Measure, const K: usize>(
         &self,
         simd: S,
         measure: M,
+        depth: usize,
         put: &mut dyn FnMut(&Found),
     ) -> usize {
         let mut found = Found {
             row: self.rows.start,
             columns: self.columns.clone(),
             n_axes: self.lookup.n_axes,
-            depth: K,
+            depth,
             distances: [[0.0; LANES]; LIMIT],
             vectors: [[0.0; MOST_AXES * LANES]; LIMIT],
             ids: [[0; LANES]; LIMIT],
@@ -120,40 +134,36 @@ impl TrackedRows<'_> {
                 let ahead = self.lines[axis][row] - self.low[axis];
                 places[axis] = f32x16::splat(simd, ahead as f32 * STEP);
             }
-            let (best, next) = self.smallest::<S, M, K>(simd, measure, row, mask);
-            let last = (best[K - 1] | mask).bitcast::<f32x16<S>>();
+            let keys = self.smallest::<S, M, K>(simd, measure, depth, row, mask);
+            let last = (keys.best[K - 1] | mask).bitcast::<f32x16<S>>();
             if !last.simd_lt(self.limit).all_true() {
                 return row;
             }
             found.row = row;
             found.unknown = 0;
-            for rank in 0..K {
-                let after = if rank + 1 < K { best[rank + 1] } else { next };
-                let is_unknown = (best[rank] | mask).simd_ge(after | mask);
-                found.unknown |= is_unknown.to_bitmask();
-                let numbers = best[rank] & mask;
-                match found.n_axes {
-                    2 => self.look_up::<S, M, 2>(measure, &places, numbers, &mut found, rank),
-                    3 => self.look_up::<S, M, 3>(measure, &places, numbers, &mut found, rank),
-                    _ => self.look_up::<S, M, 4>(measure, &places, numbers, &mut found, rank),
-                }
+            match found.n_axes {
+                2 => self.look_up_all::<S, M, K, 2>(measure, &places, &keys, &mut found),
+                3 => self.look_up_all::<S, M, K, 3>(measure, &places, &keys, &mut found),
+                _ => self.look_up_all::<S, M, K, 4>(measure, &places, &keys, &mut found),
             }
             put(&found);
         }
         self.rows.end
     }
 
-    /// The keys of the `K` nearest points, and of the next one, with the numbers of their candidates in the low bits.
+    /// The keys of the `depth` nearest points, and of the next one, with the numbers of their candidates in the low bits.
     #[inline(always)]
     fn smallest<S: Simd, M: Measure, const K: usize>(
         &self,
         simd: S,
         measure: M,
+        depth: usize,
         row: usize,
         mask: u32,
-    ) -> ([u32x16<S>; K], u32x16<S>) {
-        let mut best = [f32x16::splat(simd, f32::from_bits(NOTHING)); K];
-        let mut next = best[0];
+    ) -> Keys<S, K> {
+        let nothing = f32::from_bits(NOTHING);
+        let mut best = empty::<S, K>(simd, depth, nothing);
+        let mut next = f32x16::splat(simd, nothing);
         let row = row - self.rows.start;
         for (number, candidate) in self.candidates.iter().enumerate() {
             let columns = &candidate.columns.as_chunks::<LANES>().0[self.register % 2];
@@ -173,10 +183,38 @@ impl TrackedRows<'_> {
         for rank in 0..K {
             bits[rank] = best[rank].to_bits();
         }
-        (bits, next.to_bits())
+        Keys {
+            best: bits,
+            next: next.to_bits(),
+            mask,
+            unused: K - depth,
+        }
     }
 
     /// Looks up distances, vectors and ids of the nearest points.
+    #[inline(always)]
+    fn look_up_all<S: Simd, M: Measure, const K: usize, const N: usize>(
+        &self,
+        measure: M,
+        places: &[f32x16<S>; MOST_AXES],
+        keys: &Keys<S, K>,
+        found: &mut Found,
+    ) {
+        let Keys { mask, unused, .. } = *keys;
+        for rank in unused..K {
+            let best = keys.best[rank];
+            let after = if rank + 1 < K {
+                keys.best[rank + 1]
+            } else {
+                keys.next
+            };
+            let is_unknown = (best | mask).simd_ge(after | mask);
+            found.unknown |= is_unknown.to_bitmask();
+            self.look_up::<S, M, N>(measure, places, best & mask, found, rank - unused);
+        }
+    }
+
+    /// Looks up distances, vectors and ids of the nearest points with a rank.
     #[inline(always)]
     fn look_up<S: Simd, M: Measure, const N: usize>(
         &self,
@@ -192,9 +230,8 @@ impl TrackedRows<'_> {
         let mut vectors = [keys; N];
         for axis in (0..N).rev() {
             let points = look_up(simd, &lookup.coordinates[axis], numbers);
-            let parts = places[axis] - points;
-            vectors[axis] = parts;
-            let [terms] = measure.terms([parts]);
+            vectors[axis] = places[axis] - points;
+            let [terms] = measure.terms([vectors[axis]]);
             keys = measure.accumulate(terms, keys);
         }
         measure
@@ -256,8 +293,8 @@ fn look_up<S: Simd>(simd: S, table: &[f32], indices: u32x16<S>) -> f32x16<S> {
 }
 
 impl Found {
-    /// Stores the row in memory, except for the unknown pixels.
-    pub(super) fn put(&self, features: &mut [FeatureRows<'_>]) {
+    /// Stores the row of a band in memory, except for the unknown pixels.
+    pub(super) fn put(&self, band: &Band<'_>, features: &mut [FeatureRows<'_>]) {
         let columns = self.columns.clone();
         let n = columns.len();
         for (rank, out) in features.iter_mut().enumerate() {
@@ -268,8 +305,32 @@ impl Found {
                 let out = &mut out[columns.start * self.n_axes..columns.end * self.n_axes];
                 out.copy_from_slice(&self.vectors[rank][..n * self.n_axes]);
             }
+            if let Some(out) = out.position.get_mut(self.row) {
+                let out = &mut out[columns.start * self.n_axes..columns.end * self.n_axes];
+                self.put_positions(band, rank, out);
+            }
             if let Some(out) = out.id.get_mut(self.row) {
                 out[columns.clone()].copy_from_slice(&self.ids[rank][..n]);
+            }
+            if let Some(out) = out.cell_value.get_mut(self.row) {
+                for (out, &id) in out[columns.clone()].iter_mut().zip(&self.ids[rank]) {
+                    *out = cell_value(id);
+                }
+            }
+        }
+    }
+
+    /// Stores the positions of the nearest points with a rank, their components one after the other.
+    fn put_positions(&self, band: &Band<'_>, rank: usize, out: &mut [f64]) {
+        let vectors = self.vectors[rank].chunks(self.n_axes);
+        let pixels = self.columns.clone().zip(out.chunks_mut(self.n_axes));
+        for ((column, out), vector) in pixels.zip(vectors) {
+            for (axis, (out, &way)) in out.iter_mut().zip(vector).enumerate() {
+                let place = match axis {
+                    0 => band.columns.places[column],
+                    _ => band.rows[axis].places[self.row],
+                };
+                *out = position(place, way);
             }
         }
     }

@@ -247,6 +247,7 @@ where
             distance: Some(distances.view_mut()),
             vector: Some(vectors.view_mut()),
             id: Some(ids.view_mut()),
+            ..FeatureView::default()
         };
         worley.render_features(&plane, &window, [view])?;
         for (column, row) in (0..5).flat_map(|row| (0..37).map(move |column| (column, row))) {

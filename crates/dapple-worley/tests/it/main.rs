@@ -12,6 +12,7 @@ mod fractal;
 mod lipschitz;
 mod many;
 mod oracle;
+mod planes;
 mod profile;
 mod properties;
 mod radial;

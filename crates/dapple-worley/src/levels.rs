@@ -1,0 +1,69 @@
+//! The SIMD levels that code is compiled for.
+//!
+//! Where registers are wide, as on nearly all x86-64 processors since 2013, the inner loops are compiled for each way to
+//! accumulate and for the usual numbers of nearest points. For all others there is one loop of each kind, for any metric
+//! and number. It also serves Minkowski's metric everywhere, which is so slow that wide registers gain nothing.
+
+/// Runs an operation in wide registers and returns its result, if the level has them.
+#[cfg(target_arch = "x86_64")]
+macro_rules! wide {
+    ($level:expr, $simd:ident => $op:expr) => {{
+        use fearless_simd::Simd as _;
+        let level: fearless_simd::Level = $level;
+        if let Some($simd) = level.as_avx512() {
+            Some($simd.vectorize(
+                #[inline(always)]
+                || $op,
+            ))
+        } else if let Some($simd) = level.as_avx2() {
+            Some($simd.vectorize(
+                #[inline(always)]
+                || $op,
+            ))
+        } else {
+            None
+        }
+    }};
+}
+
+/// Runs an operation in the registers of the level, which count as wide, and returns its result.
+#[cfg(not(target_arch = "x86_64"))]
+macro_rules! wide {
+    ($level:expr, $simd:ident => $op:expr) => {
+        Some(dapple_raster::simd::dispatch!($level, $simd => $op))
+    };
+}
+
+/// Whether a level has wide registers.
+#[cfg(target_arch = "x86_64")]
+pub(crate) fn is_wide(level: fearless_simd::Level) -> bool {
+    level.as_avx2().is_some()
+}
+
+/// Whether a level has wide registers: those of the level count as wide.
+#[cfg(not(target_arch = "x86_64"))]
+pub(crate) fn is_wide(_: fearless_simd::Level) -> bool {
+    true
+}
+
+/// Runs an operation that needs a metric as a [`Measure`](crate::metric::Measure).
+macro_rules! measured {
+    ($level:expr, $metric:expr, ($simd:ident, $measure:ident) => $op:expr) => {{
+        let metric: crate::Metric = $metric;
+        let done = match metric.kernel() {
+            crate::metric::Kernel::General => None,
+            _ => crate::levels::wide!($level, $simd => {
+                let $measure = crate::metric::Exact(metric);
+                $op
+            }),
+        };
+        if done.is_none() {
+            dapple_raster::simd::baseline!($simd => {
+                let $measure = crate::metric::General(metric);
+                $op
+            });
+        }
+    }};
+}
+
+pub(crate) use {measured, wide};
