@@ -9,7 +9,7 @@
 
 use crate::bake::{Group, Paint, bake_with};
 use crate::mesh_ground::Around;
-use crate::places::{AGREEMENT, Frame, Places, frames};
+use crate::places::{AGREEMENT, Frame, Sourced, frames};
 use crate::sites::weight;
 use crate::{Atlas, SynthError, Synthesizer};
 use dapple_mesh::FaceIdx;
@@ -25,9 +25,9 @@ const SHARE_LEAST: f32 = 1.0 / 256.0;
 
 /// What a texel shows of the exemplar.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Spot {
-    /// The place in pixels of the exemplar.
-    pub(crate) place: Vec2,
+pub(crate) struct Spot<P> {
+    /// The place in the exemplar.
+    pub(crate) place: P,
     /// The side of the texel in pixels of the exemplar: the root of its area.
     pub(crate) footprint: f32,
     /// The directions in space of the exemplar's columns and rows, of length 1 but for rounding.
@@ -36,31 +36,35 @@ pub(crate) struct Spot {
 }
 
 /// The values of an exemplar's map at every texel of an atlas.
-pub(crate) fn magnify<const N: usize>(
+pub(crate) fn magnify<const N: usize, P: Sourced>(
     synthesizer: &Synthesizer,
-    places: &Places,
+    places: &P,
     atlas: &Atlas,
     background: [f32; N],
-    value: impl Fn(&Spot) -> [f32; N] + Sync,
+    value: impl Fn(&Spot<P::Place>) -> [f32; N] + Sync,
 ) -> Result<Raster<[f32; N]>, SynthError> {
     let (surface, hierarchy) = (synthesizer.surface(), synthesizer.hierarchy());
     let spacing = hierarchy.levels()[0].spacing();
     let magnified = Magnified {
         places,
         frames: frames(hierarchy, synthesizer.orientation()),
-        footprints: footprints(synthesizer, atlas),
+        footprints: footprints(synthesizer, &atlas.uvs(), atlas.size()),
         spacing: spacing as f32,
         value,
     };
     bake_with(surface, hierarchy, atlas, background, &magnified)
 }
 
-/// The side of a texel on every face, in spacings: the root of its area.
-fn footprints(synthesizer: &Synthesizer, atlas: &Atlas) -> Vec<f32> {
+/// The side of a texel on every face, in spacings: the root of its area. 0 where it has none.
+pub(crate) fn footprints(
+    synthesizer: &Synthesizer,
+    uvs: &[[DVec2; 3]],
+    size: [u32; 2],
+) -> Vec<f32> {
     let spacing = synthesizer.hierarchy().levels()[0].spacing();
-    let size = DVec2::from(atlas.size().map(f64::from));
+    let size = DVec2::from(size.map(f64::from));
     let mesh = synthesizer.surface().mesh();
-    let side = |(face, uvs): (FaceIdx, [DVec2; 3])| {
+    let side = |(face, uvs): (FaceIdx, &[DVec2; 3])| {
         let [a, b, c] = mesh.corners(face);
         let [ua, ub, uc] = uvs.map(|uv| uv * size);
         let texels = (ub - ua).perp_dot(uc - ua).abs();
@@ -69,12 +73,12 @@ fn footprints(synthesizer: &Synthesizer, atlas: &Atlas) -> Vec<f32> {
         // Not so for a face without a place, which no texel shows.
         if side.is_finite() { side as f32 } else { 0.0 }
     };
-    (0..).map(FaceIdx).zip(atlas.uvs()).map(side).collect()
+    (0..).map(FaceIdx).zip(uvs).map(side).collect()
 }
 
 /// The input of all texels.
-struct Magnified<'a, F> {
-    places: &'a Places,
+struct Magnified<'a, P, F> {
+    places: &'a P,
     frames: Vec<Frame>,
     footprints: Vec<f32>,
     spacing: f32,
@@ -83,17 +87,17 @@ struct Magnified<'a, F> {
 
 /// What a site predicts.
 #[derive(Clone, Copy, Debug)]
-struct Prediction {
+struct Prediction<P> {
     site: u32,
-    place: Vec2,
+    place: P,
     weight: f32,
 }
 
 /// Sites that predict about the same place.
 #[derive(Clone, Copy, Debug)]
-struct Piece {
+struct Piece<P> {
     /// The prediction of the site with the largest weight.
-    place: Vec2,
+    place: P,
     /// Sums with the weights of the sites: of how far from `place` the predictions are, and of directions.
     off: Vec2,
     right: Vec3,
@@ -102,16 +106,29 @@ struct Piece {
 }
 
 /// Memory of a thread.
-#[derive(Debug, Default)]
-pub(crate) struct Pieces {
-    predictions: Vec<Prediction>,
-    pieces: Vec<Piece>,
+#[derive(Debug)]
+pub(crate) struct Pieces<P> {
+    predictions: Vec<Prediction<P>>,
+    pieces: Vec<Piece<P>>,
 }
 
-impl<const N: usize, F: Fn(&Spot) -> [f32; N] + Sync> Paint<N> for Magnified<'_, F> {
-    type Memory = Pieces;
+impl<P> Default for Pieces<P> {
+    fn default() -> Self {
+        Self {
+            predictions: Vec::new(),
+            pieces: Vec::new(),
+        }
+    }
+}
 
-    fn paint(&self, group: &Group<'_>, memory: &mut Pieces, values: &mut [[f32; N]]) {
+impl<const N: usize, P, F> Paint<N> for Magnified<'_, P, F>
+where
+    P: Sourced,
+    F: Fn(&Spot<P::Place>) -> [f32; N] + Sync,
+{
+    type Memory = Pieces<P::Place>;
+
+    fn paint(&self, group: &Group<'_>, memory: &mut Self::Memory, values: &mut [[f32; N]]) {
         let footprint = self.footprints[group.face.index()];
         for (value, &point) in values.iter_mut().zip(group.points) {
             let at = (group.surface.position(point) - group.center).as_vec3();
@@ -123,14 +140,14 @@ impl<const N: usize, F: Fn(&Spot) -> [f32; N] + Sync> Paint<N> for Magnified<'_,
     }
 }
 
-impl<F> Magnified<'_, F> {
+impl<P: Sourced, F> Magnified<'_, P, F> {
     /// Lists what sites on the same sheet predict, that of the largest weight first.
     fn predict(
         &self,
         sites: Around<'_>,
         at: Vec3,
         normal: Vec3,
-        predictions: &mut Vec<Prediction>,
+        predictions: &mut Vec<Prediction<P::Place>>,
     ) {
         predictions.clear();
         let radius = RADIUS * self.spacing;
@@ -141,8 +158,10 @@ impl<F> Magnified<'_, F> {
             let is_opposed = Vec3::from(record.normal).dot(normal) < 0.0;
             let prediction = Prediction {
                 site: record.site,
-                place: self.places.of_site[record.site as usize]
-                    + self.frames[record.site as usize].flat(way),
+                place: self.places.moved(
+                    self.places.of_site(record.site as usize),
+                    self.frames[record.site as usize].flat(way),
+                ),
                 weight: 1.0,
             };
             if (is_opposed, x) < (nearest.0, nearest.1) {
@@ -166,7 +185,7 @@ impl<F> Magnified<'_, F> {
     }
 
     /// Puts predictions that agree together.
-    fn gather(&self, memory: &mut Pieces) {
+    fn gather(&self, memory: &mut Pieces<P::Place>) {
         memory.pieces.clear();
         for prediction in &memory.predictions {
             let &Prediction {
@@ -175,7 +194,7 @@ impl<F> Magnified<'_, F> {
                 weight,
             } = prediction;
             let frame = &self.frames[site as usize];
-            let agrees = |piece: &&mut Piece| {
+            let agrees = |piece: &&mut Piece<P::Place>| {
                 let off = self.places.difference(place, piece.place);
                 off.length_squared() < AGREEMENT * AGREEMENT
             };
@@ -197,9 +216,9 @@ impl<F> Magnified<'_, F> {
     }
 
     /// The value of the piece with the most weight, or of several at their seam.
-    fn mix<const N: usize>(&self, pieces: &[Piece], footprint: f32) -> [f32; N]
+    fn mix<const N: usize>(&self, pieces: &[Piece<P::Place>], footprint: f32) -> [f32; N]
     where
-        F: Fn(&Spot) -> [f32; N],
+        F: Fn(&Spot<P::Place>) -> [f32; N],
     {
         let most = pieces
             .iter()
@@ -214,7 +233,7 @@ impl<F> Magnified<'_, F> {
                 continue;
             }
             let value = (self.value)(&Spot {
-                place: piece.place + piece.off / piece.weight,
+                place: self.places.moved(piece.place, piece.off / piece.weight),
                 footprint,
                 right: piece.right * (self.spacing / piece.weight),
                 down: piece.down * (self.spacing / piece.weight),

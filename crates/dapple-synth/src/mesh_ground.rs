@@ -62,6 +62,14 @@ pub(crate) struct MeshMemory {
     interpolation: Interpolation,
 }
 
+impl MeshMemory {
+    /// Whether the samples of the square that was read last are at least `least` apart along rows and columns, as they are
+    /// where no way to them met a border or a sharp fold.
+    pub(crate) fn is_spread(&self, least: f64) -> bool {
+        self.lattice.is_spread(least as f32)
+    }
+}
+
 impl MeshGround<'_> {
     /// The sites around those of a level that squares on the level `reads` are made of.
     fn neighborhoods(&self, level: usize, reads: usize, half: i32) -> Neighborhoods {
