@@ -53,7 +53,7 @@
 //! large or regular in an exemplar, such as courses of bricks, goes on.
 //!
 //! The example may be another textured surface ([`MeshExemplar`]): [`Synthesizer::lift`] puts its texture and relief onto
-//! this one.
+//! this one, and [`MeshExemplar::repair`] makes a part of its own texture again.
 //!
 //! Guides ([`Exemplar::with_guides`]) say where in a texture which part of the exemplar goes: how light it is, so that the
 //! texture shows a picture; or which of several images, which lie [`SideBySide`].

@@ -25,11 +25,13 @@
 
 mod origin;
 mod reading;
+mod repair;
 mod rows;
 #[cfg(test)]
 mod tests;
 
 pub(crate) use origin::{LiftedDetail, LiftedPlaces, Origin};
+pub(crate) use repair::order as order_of_repair;
 
 use crate::engine::{self, Callback, Progress};
 use crate::guides::Targets;

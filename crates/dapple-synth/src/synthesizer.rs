@@ -168,6 +168,7 @@ impl Synthesizer {
             axes,
             is_blurred,
             targets: None,
+            starts: &[],
         }
     }
 

@@ -122,6 +122,15 @@ impl Origin {
             .collect()
     }
 
+    /// The way from one finest site to another near it, in pixels.
+    pub(super) fn step(&self, to: u32, from: u32) -> Vec2 {
+        let [to_place, from_place] = [to, from].map(|site| Place {
+            site,
+            off: Vec2::ZERO,
+        });
+        self.flat(self.way(to_place, from_place), to, from)
+    }
+
     /// A way in space as one between two sites. Frames turn on the way: the mean of both ends is that of its middle.
     fn flat(&self, way: Vec3, to: u32, from: u32) -> Vec2 {
         let [to, from] = [to, from].map(|site| self.frames[site as usize].flat(way));
