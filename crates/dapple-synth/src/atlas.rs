@@ -15,7 +15,7 @@ mod tangents;
 mod tiles;
 
 pub use report::AtlasReport;
-pub(crate) use tangents::{Tangents, mixed};
+pub(crate) use tangents::{Tangents, mixed, sum};
 
 use crate::{SynthError, SynthErrorKind};
 use dapple_mesh::{FaceIdx, Surface, SurfacePoint};

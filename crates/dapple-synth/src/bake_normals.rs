@@ -14,10 +14,12 @@
 use crate::atlas::{self, Tangents};
 use crate::detail::Detail;
 use crate::display::check_shading;
+use crate::lift::{LiftedDetail, Origin};
 use crate::magnify::magnify;
 use crate::maps::{check_column, check_finite};
 use crate::{Atlas, SurfaceTexture, SynthError, Synthesizer, bake};
 use dapple_color::{Normal, NormalY};
+use dapple_mesh::{CREASE, Walk};
 use dapple_raster::Raster;
 use glam::DVec3;
 
@@ -110,6 +112,15 @@ fn in_space(
         let along = right * f64::from(x) - down * f64::from(y);
         [along.x as f32, along.y as f32, along.z as f32, z]
     };
+    if let Some(places) = texture.lifted.as_ref().filter(|places| !places.is_mixed) {
+        let relief = Relief::new(&places.origin, map.size())?;
+        let detail = LiftedDetail::new(map, &places.origin)?;
+        return magnify(synthesizer, places, atlas, flat, |spot| {
+            let walk = places.origin.walk(spot.place);
+            let normal = relief.turned(detail.sample(walk.point, spot.footprint), &walk);
+            turn(normal, spot.right.as_dvec3(), spot.down.as_dvec3())
+        });
+    }
     if let Some(places) = &texture.places {
         let detail = Detail::new(map, places.size, places.edges)?;
         return magnify(synthesizer, places, atlas, flat, |spot| {
@@ -122,12 +133,53 @@ fn in_space(
         hierarchy.sites().normals(),
         synthesizer.orientation().vectors(),
     );
-    let normals = texture.transfer(&map)?;
+    let mut normals = texture.transfer(&map)?;
+    if let Some(places) = &texture.lifted {
+        let relief = Relief::new(&places.origin, map.size())?;
+        for (normal, &place) in normals.iter_mut().zip(&places.of_site) {
+            *normal = relief.turned(*normal, &places.origin.walk(place));
+        }
+    }
     let sites = normals.into_iter().zip(outs).zip(downs);
     let column: Vec<f32> = sites
         .flat_map(|((normal, out), &down)| turn(normal, out.cross(down), down))
         .collect();
     bake::<4>(surface, hierarchy, &column, atlas, flat)
+}
+
+/// The frames of the texture coordinates of a source, whose normals are between creases.
+struct Relief<'a> {
+    origin: &'a Origin,
+    shading: Vec<[DVec3; 3]>,
+    tangents: Tangents,
+}
+
+impl<'a> Relief<'a> {
+    fn new(origin: &'a Origin, size: [u32; 2]) -> Result<Self, SynthError> {
+        let surface = origin.synthesizer.surface();
+        let atlas = Atlas::from_uvs(surface, &origin.uvs, size, 0)?;
+        let shading = surface.mesh().corner_normals(CREASE);
+        Ok(Self {
+            tangents: Tangents::new(surface, &atlas, &shading),
+            origin,
+            shading,
+        })
+    }
+
+    /// The parts to the right, up and out, as the texture runs at the end of a walk, of a normal in the frame there.
+    fn turned(&self, [x, y, z]: [f32; 3], walk: &Walk) -> [f32; 3] {
+        let surface = self.origin.synthesizer.surface();
+        let face = walk.point.face;
+        let weights = surface.weights(walk.point);
+        let shaded = atlas::sum(self.shading[face.index()], weights);
+        let out = shaded.normalize_or(surface.face_normal(face));
+        let [tangent, up] = self.tangents.frame_of(face, weights, out);
+        let along = tangent * f64::from(x) + up * f64::from(y);
+        let along = turned(along, out, surface.face_normal(face));
+        let [right, down] = [walk.direction.perp(), walk.direction]
+            .map(|direction| along.dot(surface.lift(face, direction)) as f32);
+        [right, -down, z]
+    }
 }
 
 /// A vector turned as the shortest way turns one unit vector to another.

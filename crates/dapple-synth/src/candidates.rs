@@ -58,7 +58,13 @@ pub struct Candidates {
     inner: [Inner; 2],
     /// For the pixels of the rectangle their rows, or [`NO_ROW`]; nothing if all have one.
     row_of: Option<Vec<u32>>,
+    /// The pixels beside each other, where they are sites of a surface.
+    beside: Option<Beside>,
 }
+
+/// For each site of a surface the sites nearest to the places of the eight pixels around it, row by row, itself in the middle.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Beside(pub(crate) Vec<[u32; 9]>);
 
 /// In place of the row of a pixel that has none.
 const NO_ROW: u32 = u32::MAX;
@@ -89,14 +95,34 @@ impl Candidates {
         pass: &Pass,
         options: &Options,
     ) -> Result<Self, SynthError> {
-        let reads = |reads| pass.parts.iter().any(|part| part.reads == reads);
-        let refines = reads(Reads::Same) && reads(Reads::Coarser);
-        let few = if options.evenness > 0.0 && !refines {
-            usize::MAX
-        } else {
-            FEW
-        };
-        Self::within(pyramid, pass, options.center, few)
+        Self::within(pyramid, pass, options.center, few(pass, options))
+    }
+
+    /// The neighborhoods of some sites of a level of a surface, whose numbers ascend.
+    pub(crate) fn of_sites(
+        level: &Exemplar,
+        number: usize,
+        rows: Vec<f32>,
+        pixels: Vec<u32>,
+        beside: Beside,
+    ) -> Result<Self, SynthError> {
+        if pixels.is_empty() {
+            return Err(SynthError::new(SynthErrorKind::Masked { level: number }));
+        }
+        let mut row_of = vec![NO_ROW; beside.0.len()];
+        for (row, &pixel) in (0..).zip(&pixels) {
+            row_of[pixel as usize] = row;
+        }
+        Ok(Self {
+            dims: rows.len() / pixels.len(),
+            rows,
+            pixels,
+            edges: Edges::Cut,
+            size: level.size,
+            inner: level.size.map(|end| Inner { first: 0, end }),
+            row_of: Some(row_of),
+            beside: Some(beside),
+        })
     }
 
     /// The neighborhoods that do not reach past an edge, or all where less than `few` would remain.
@@ -124,6 +150,7 @@ impl Candidates {
             size: level.size,
             inner,
             row_of: None,
+            beside: None,
         };
         candidates.fill(pyramid, pass, center);
         if candidates.is_empty() {
@@ -195,6 +222,28 @@ impl Candidates {
         }
     }
 
+    /// The neighborhood of the pixel at an offset from one, at most 1 along each axis on a surface.
+    #[inline]
+    pub(crate) fn row_beside(&self, pixel: u32, [i, j]: [i32; 2]) -> Option<u32> {
+        if let Some(Beside(beside)) = &self.beside {
+            let beside = beside[pixel as usize][(3 * (j + 1) + i + 1) as usize];
+            return self.row_of_pixel([beside.into(), 0]);
+        }
+        let [x, y] = [pixel % self.size[0], pixel / self.size[0]].map(i64::from);
+        self.row_of_pixel([x + i64::from(i), y + i64::from(j)])
+    }
+
+    /// The neighborhood of one of the four pixels under one of the coarser level, which has as many columns as `width`.
+    #[inline]
+    pub(crate) fn row_under(&self, coarser: u32, width: u32, [i, j]: [i32; 2]) -> Option<u32> {
+        if self.beside.is_some() {
+            // The sites of a level are the first of the finer one.
+            return self.row_beside(coarser, [i, j]);
+        }
+        let [x, y] = [coarser % width, coarser / width].map(i64::from);
+        self.row_of_pixel([2 * x + i64::from(i), 2 * y + i64::from(j)])
+    }
+
     /// Writes the rows of all pixels in the rectangle.
     fn fill(&mut self, pyramid: &Pyramid, pass: &Pass, center: CoarserCenter) {
         let parts: Vec<PartReader<'_>> = pass
@@ -246,6 +295,17 @@ impl Inner {
 
     fn contains(self, at: i64) -> bool {
         (i64::from(self.first)..i64::from(self.end)).contains(&at)
+    }
+}
+
+/// Where fewer neighborhoods are whole, the others are compared, too: everywhere where pixels are to be used evenly.
+pub(crate) fn few(pass: &Pass, options: &Options) -> usize {
+    let reads = |reads| pass.parts.iter().any(|part| part.reads == reads);
+    let refines = reads(Reads::Same) && reads(Reads::Coarser);
+    if options.evenness > 0.0 && !refines {
+        usize::MAX
+    } else {
+        FEW
     }
 }
 

@@ -36,13 +36,26 @@ pub(crate) fn run<G: Ground>(
     options: &Options,
     callback: Callback<'_>,
 ) -> Result<Vec<Vec<u32>>, SynthError> {
-    let passes = options.passes()?.passes;
-    let n_guides = ground.targets().map_or(0, Targets::len);
-    guides::check_count(n_guides, pyramid.levels()[0].n_guides())?;
     let seen = match ground.blur() {
         0.0 => None,
         blur => Some(pyramid.blurred(blur)),
     };
+    let seen = seen.as_ref().unwrap_or(pyramid);
+    let candidates = |pass: &Pass| Candidates::for_options(seen, pass, options);
+    run_with(ground, pyramid, &candidates, options, callback)
+}
+
+/// Runs all passes like [`run`], with neighborhoods that the caller gathers for each.
+pub(crate) fn run_with<G: Ground>(
+    ground: &G,
+    pyramid: &Pyramid,
+    candidates: &dyn Fn(&Pass) -> Result<Candidates, SynthError>,
+    options: &Options,
+    callback: Callback<'_>,
+) -> Result<Vec<Vec<u32>>, SynthError> {
+    let passes = options.passes()?.passes;
+    let n_guides = ground.targets().map_or(0, Targets::len);
+    guides::check_count(n_guides, pyramid.levels()[0].n_guides())?;
     let coherence = options.coherence.factors(&pyramid.levels()[0]);
     let mut levels: Vec<Vec<AtomicU32>> = Vec::new();
     levels.resize_with(pyramid.levels().len(), Vec::new);
@@ -50,7 +63,7 @@ pub(crate) fn run<G: Ground>(
     let n_passes = passes.len();
     for (index, pass) in passes.iter().enumerate() {
         let n_sites = ground.n_sites(pass.level);
-        let candidates = Candidates::for_options(seen.as_ref().unwrap_or(pyramid), pass, options)?;
+        let candidates = candidates(pass)?;
         if levels[pass.level].is_empty() {
             let start = ground.start(pass.level);
             let reads_itself = pass.parts.iter().any(|part| part.reads == Reads::Same);

@@ -52,6 +52,9 @@
 //! what is near them. So any window of a texture without ends can be made on its own, in a tenth of the time, and what is
 //! large or regular in an exemplar, such as courses of bricks, goes on.
 //!
+//! The example may be another textured surface ([`MeshExemplar`]): [`Synthesizer::lift`] puts its texture and relief onto
+//! this one, and [`MeshExemplar::repair`] makes a part of its own texture again.
+//!
 //! Guides ([`Exemplar::with_guides`]) say where in a texture which part of the exemplar goes: how light it is, so that the
 //! texture shows a picture; or which of several images, which lie [`SideBySide`].
 //!
@@ -68,6 +71,7 @@
 //! | 5 | the pixel whose neighborhood matches best | [`Candidates`], [`Matcher`] |
 //! | 6 | the finest points with colors, as a mesh | [`site_model`], [`point_model`] |
 //! | 6 | a texture map of right triangles, or of charts | [`Atlas`], [`bake()`], [`textured_model`] |
+//! | 8 | patterns from other surfaces, their colors, bumps and ridges | [`MeshExemplar`] |
 //!
 //! # What the paper leaves open
 //!
@@ -127,6 +131,7 @@ mod grid;
 mod ground;
 mod guides;
 mod kept;
+mod lift;
 mod likeness;
 mod links;
 mod magnify;
@@ -163,6 +168,7 @@ pub use endless::{Endless, EndlessOptions};
 pub use engine::Progress;
 pub use error::{SynthError, SynthErrorKind};
 pub use exemplar::{Edges, Exemplar, Pyramid};
+pub use lift::MeshExemplar;
 pub use likeness::Likeness;
 pub use maps::{bake_colors, bake_colors_alpha, bake_values};
 pub use matcher::{Match, Matcher, MatcherMemory, distance_sq};

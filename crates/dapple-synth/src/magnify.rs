@@ -9,7 +9,7 @@
 
 use crate::bake::{Group, Paint, bake_with};
 use crate::mesh_ground::Around;
-use crate::places::{AGREEMENT, Frame, Places, frames};
+use crate::places::{AGREEMENT, Frame, Sourced, frames};
 use crate::sites::weight;
 use crate::{Atlas, SynthError, Synthesizer};
 use dapple_mesh::FaceIdx;
@@ -25,9 +25,9 @@ const SHARE_LEAST: f32 = 1.0 / 256.0;
 
 /// What a texel shows of the exemplar.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Spot {
-    /// The place in pixels of the exemplar.
-    pub(crate) place: Vec2,
+pub(crate) struct Spot<P> {
+    /// The place in the exemplar.
+    pub(crate) place: P,
     /// The side of the texel in pixels of the exemplar: the root of its area.
     pub(crate) footprint: f32,
     /// The directions in space of the exemplar's columns and rows, of length 1 but for rounding.
@@ -36,36 +36,46 @@ pub(crate) struct Spot {
 }
 
 /// The values of an exemplar's map at every texel of an atlas.
-pub(crate) fn magnify<const N: usize>(
+pub(crate) fn magnify<const N: usize, P: Sourced>(
     synthesizer: &Synthesizer,
-    places: &Places,
+    places: &P,
     atlas: &Atlas,
     background: [f32; N],
-    value: impl Fn(&Spot) -> [f32; N] + Sync,
+    value: impl Fn(&Spot<P::Place>) -> [f32; N] + Sync,
 ) -> Result<Raster<[f32; N]>, SynthError> {
     let (surface, hierarchy) = (synthesizer.surface(), synthesizer.hierarchy());
     let spacing = hierarchy.levels()[0].spacing();
     let magnified = Magnified {
         places,
         frames: frames(hierarchy, synthesizer.orientation()),
-        footprints: footprints(synthesizer, atlas),
+        footprints: footprints(synthesizer, &atlas.uvs(), atlas.size()),
         spacing: spacing as f32,
-        value: &|spot, channels| channels.copy_from_slice(&value(spot)),
+        value: &|spot: &Spot<P::Place>, channels: &mut [f32]| {
+            channels.copy_from_slice(&value(spot))
+        },
     };
     bake_with(surface, hierarchy, atlas, background, &|| {
         Box::new(Magnifier {
             input: &magnified,
-            pieces: Pieces::default(),
+            pieces: Pieces {
+                predictions: Vec::new(),
+                pieces: Vec::new(),
+                channels: Vec::new(),
+            },
         })
     })
 }
 
-/// The side of a texel on every face, in spacings: the root of its area.
-fn footprints(synthesizer: &Synthesizer, atlas: &Atlas) -> Vec<f32> {
+/// The side of a texel on every face, in spacings: the root of its area. 0 where it has none.
+pub(crate) fn footprints(
+    synthesizer: &Synthesizer,
+    uvs: &[[DVec2; 3]],
+    size: [u32; 2],
+) -> Vec<f32> {
     let spacing = synthesizer.hierarchy().levels()[0].spacing();
-    let size = DVec2::from(atlas.size().map(f64::from));
+    let size = DVec2::from(size.map(f64::from));
     let mesh = synthesizer.surface().mesh();
-    let side = |(face, uvs): (FaceIdx, [DVec2; 3])| {
+    let side = |(face, uvs): (FaceIdx, &[DVec2; 3])| {
         let [a, b, c] = mesh.corners(face);
         let [ua, ub, uc] = uvs.map(|uv| uv * size);
         let texels = (ub - ua).perp_dot(uc - ua).abs();
@@ -74,32 +84,34 @@ fn footprints(synthesizer: &Synthesizer, atlas: &Atlas) -> Vec<f32> {
         // Not so for a face without a place, which no texel shows.
         if side.is_finite() { side as f32 } else { 0.0 }
     };
-    (0..).map(FaceIdx).zip(atlas.uvs()).map(side).collect()
+    (0..).map(FaceIdx).zip(uvs).map(side).collect()
 }
 
+/// A function that writes the channels of a spot.
+type ValueOf<'a, P> = dyn Fn(&Spot<P>, &mut [f32]) + Sync + 'a;
+
 /// The input of all texels.
-struct Magnified<'a> {
-    places: &'a Places,
+struct Magnified<'a, P: Sourced> {
+    places: &'a P,
     frames: Vec<Frame>,
     footprints: Vec<f32>,
     spacing: f32,
-    /// Writes the channels of a spot.
-    value: &'a (dyn Fn(&Spot, &mut [f32]) + Sync),
+    value: &'a ValueOf<'a, P::Place>,
 }
 
 /// What a site predicts.
 #[derive(Clone, Copy, Debug)]
-struct Prediction {
+struct Prediction<P> {
     site: u32,
-    place: Vec2,
+    place: P,
     weight: f32,
 }
 
 /// Sites that predict about the same place.
 #[derive(Clone, Copy, Debug)]
-struct Piece {
+struct Piece<P> {
     /// The prediction of the site with the largest weight.
-    place: Vec2,
+    place: P,
     /// Sums with the weights of the sites: of how far from `place` the predictions are, and of directions.
     off: Vec2,
     right: Vec3,
@@ -108,21 +120,21 @@ struct Piece {
 }
 
 /// Memory of a thread.
-#[derive(Debug, Default)]
-struct Pieces {
-    predictions: Vec<Prediction>,
-    pieces: Vec<Piece>,
+#[derive(Debug)]
+struct Pieces<P> {
+    predictions: Vec<Prediction<P>>,
+    pieces: Vec<Piece<P>>,
     /// The channels of a piece.
     channels: Vec<f32>,
 }
 
 /// The input of all texels, with the memory of a thread.
-struct Magnifier<'a> {
-    input: &'a Magnified<'a>,
-    pieces: Pieces,
+struct Magnifier<'a, P: Sourced> {
+    input: &'a Magnified<'a, P>,
+    pieces: Pieces<P::Place>,
 }
 
-impl Paint for Magnifier<'_> {
+impl<P: Sourced> Paint for Magnifier<'_, P> {
     fn paint(&mut self, group: &Group<'_>, values: &mut [f32]) {
         let (input, memory) = (self.input, &mut self.pieces);
         let footprint = input.footprints[group.face.index()];
@@ -137,14 +149,14 @@ impl Paint for Magnifier<'_> {
     }
 }
 
-impl Magnified<'_> {
+impl<P: Sourced> Magnified<'_, P> {
     /// Lists what sites on the same sheet predict, that of the largest weight first.
     fn predict(
         &self,
         sites: Around<'_>,
         at: Vec3,
         normal: Vec3,
-        predictions: &mut Vec<Prediction>,
+        predictions: &mut Vec<Prediction<P::Place>>,
     ) {
         predictions.clear();
         let radius = RADIUS * self.spacing;
@@ -155,8 +167,10 @@ impl Magnified<'_> {
             let is_opposed = Vec3::from(record.normal).dot(normal) < 0.0;
             let prediction = Prediction {
                 site: record.site,
-                place: self.places.of_site[record.site as usize]
-                    + self.frames[record.site as usize].flat(way),
+                place: self.places.moved(
+                    self.places.of_site(record.site as usize),
+                    self.frames[record.site as usize].flat(way),
+                ),
                 weight: 1.0,
             };
             if (is_opposed, x) < (nearest.0, nearest.1) {
@@ -180,7 +194,7 @@ impl Magnified<'_> {
     }
 
     /// Puts predictions that agree together.
-    fn gather(&self, memory: &mut Pieces) {
+    fn gather(&self, memory: &mut Pieces<P::Place>) {
         memory.pieces.clear();
         for prediction in &memory.predictions {
             let &Prediction {
@@ -189,7 +203,7 @@ impl Magnified<'_> {
                 weight,
             } = prediction;
             let frame = &self.frames[site as usize];
-            let agrees = |piece: &&mut Piece| {
+            let agrees = |piece: &&mut Piece<P::Place>| {
                 let off = self.places.difference(place, piece.place);
                 off.length_squared() < AGREEMENT * AGREEMENT
             };
@@ -211,7 +225,7 @@ impl Magnified<'_> {
     }
 
     /// Writes the channels of the piece with the most weight, or of several at their seam.
-    fn mix(&self, memory: &mut Pieces, footprint: f32, mixed: &mut [f32]) {
+    fn mix(&self, memory: &mut Pieces<P::Place>, footprint: f32, mixed: &mut [f32]) {
         let most = memory
             .pieces
             .iter()
@@ -228,7 +242,7 @@ impl Magnified<'_> {
                 continue;
             }
             let spot = Spot {
-                place: piece.place + piece.off / piece.weight,
+                place: self.places.moved(piece.place, piece.off / piece.weight),
                 footprint,
                 right: piece.right * (self.spacing / piece.weight),
                 down: piece.down * (self.spacing / piece.weight),

@@ -8,6 +8,7 @@
 //! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, doi 10.1145/383259.383297, section 6.
 
 use crate::detail::Detail;
+use crate::lift::LiftedDetail;
 use crate::magnify::magnify;
 use crate::{Atlas, SurfaceTexture, SynthError, SynthErrorKind, Synthesizer, bake};
 use dapple_color::{Code, LinearRgb, LinearRgba};
@@ -140,6 +141,13 @@ fn bake_map<const N: usize>(
 ) -> Result<Raster<[f32; N]>, SynthError> {
     check_column(synthesizer, "sites of the texture", texture.n_sites())?;
     let background = mean(map.pixels());
+    if let Some(places) = texture.lifted.as_ref().filter(|places| !places.is_mixed) {
+        let detail = LiftedDetail::new(map, &places.origin)?;
+        return magnify(synthesizer, places, atlas, background, |spot| {
+            let point = places.origin.walk(spot.place).point;
+            detail.sample(point, spot.footprint)
+        });
+    }
     let Some(places) = &texture.places else {
         let column = texture.transfer(&map)?;
         let (surface, hierarchy) = (synthesizer.surface(), synthesizer.hierarchy());

@@ -10,8 +10,9 @@ mod lattice;
 mod nearby;
 mod turning;
 
-use crate::ground::{Colors, Ground, Samples, Square};
+use crate::ground::{Colors, Ground, Samples, Square, Start};
 use crate::guides::Targets;
+use crate::lift::order_of_repair;
 use crate::turns::Turns;
 use crate::{Axes, Hierarchy, INTERPOLATION_RADIUS, Orientation, SiteIdx, Sweep};
 use dapple_mesh::Surface;
@@ -44,6 +45,8 @@ pub(crate) struct MeshGround<'a> {
     /// Whether the exemplar is blurred as its squares are.
     pub(crate) is_blurred: bool,
     pub(crate) targets: Option<&'a Targets>,
+    /// What the sites of each level begin with in a repair.
+    pub(crate) starts: &'a [Start],
 }
 
 /// The sites around those of a level, on the level itself and on the next coarser one.
@@ -60,6 +63,14 @@ pub(crate) struct MeshMemory {
     nearby: Nearby,
     lattice: Lattice,
     interpolation: Interpolation,
+}
+
+impl MeshMemory {
+    /// Whether the samples of the square that was read last are at least `least` apart along rows and columns, as they are
+    /// where no way to them met a border or a sharp fold.
+    pub(crate) fn is_spread(&self, least: f64) -> bool {
+        self.lattice.is_spread(least as f32)
+    }
 }
 
 impl MeshGround<'_> {
@@ -88,13 +99,21 @@ impl Ground for MeshGround<'_> {
         if self.is_blurred { BLUR } else { 0.0 }
     }
 
+    fn start(&self, level: usize) -> Option<&Start> {
+        self.starts.get(level)
+    }
+
     fn targets(&self) -> Option<&Targets> {
         self.targets
     }
 
     fn order(&self, level: usize) -> Vec<u32> {
         let order = self.sweep.order(level);
-        order.into_iter().map(|SiteIdx(site)| site).collect()
+        let order = order.into_iter().map(|SiteIdx(site)| site).collect();
+        match self.start(level) {
+            Some(start) => order_of_repair(start, self.hierarchy.levels()[level].graph(), order),
+            None => order,
+        }
     }
 
     fn prepare(&self, level: usize, same: Option<i32>, coarser: Option<i32>) -> Prepared {

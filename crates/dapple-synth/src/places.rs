@@ -19,7 +19,22 @@ use glam::{DVec3, Vec2, Vec3};
 pub(crate) const AGREEMENT: f32 = 1.5;
 
 /// How often sources are averaged.
-const N_STEPS: usize = 8;
+pub(crate) const N_STEPS: usize = 8;
+
+/// Places in an exemplar that the finest sites are from.
+pub(crate) trait Sourced: Sync {
+    /// A place in the exemplar.
+    type Place: Copy + Send + Sync;
+
+    /// The source of a site.
+    fn of_site(&self, site: usize) -> Self::Place;
+
+    /// The shortest way from one place to another one, in pixels; infinite where there is none.
+    fn difference(&self, to: Self::Place, from: Self::Place) -> Vec2;
+
+    /// The place at a way from one.
+    fn moved(&self, place: Self::Place, by: Vec2) -> Self::Place;
+}
 
 /// The sub-pixel sources of the finest sites.
 #[derive(Clone, Debug, PartialEq)]
@@ -53,35 +68,24 @@ impl Places {
         };
         let frames = frames(hierarchy, orientation);
         for _ in 0..N_STEPS {
-            let averaged = |site: usize| places.averaged(hierarchy, &frames, site);
+            let averaged = |site: usize| averaged(&places, hierarchy, &frames, site);
             let next = columns::column(places.of_site.len(), averaged);
             places.of_site = next;
         }
         places
     }
+}
 
-    /// The mean of a site's source and those that its neighbors predict, if they agree.
-    fn averaged(&self, hierarchy: &Hierarchy, frames: &[Frame], site: usize) -> Vec2 {
-        let positions = hierarchy.sites().positions();
-        let (own, frame) = (self.of_site[site], &frames[site]);
-        let (mut sum, mut count) = (Vec2::ZERO, 1.0);
-        let graph = hierarchy.levels()[0].graph();
-        for &neighbor in graph.neighbors(SiteIdx(site as u32)) {
-            let way = (positions[site] - positions[neighbor.index()]).as_vec3();
-            // Frames turn on the way: the mean of both ends is that of its middle.
-            let way = 0.5 * (frame.flat(way) + frames[neighbor.index()].flat(way));
-            let off = self.difference(self.of_site[neighbor.index()] + way, own);
-            if off.length_squared() < AGREEMENT * AGREEMENT {
-                sum += off;
-                count += 1.0;
-            }
-        }
-        own + sum / count
+impl Sourced for Places {
+    type Place = Vec2;
+
+    #[inline]
+    fn of_site(&self, site: usize) -> Vec2 {
+        self.of_site[site]
     }
 
-    /// The shortest way from one place to another one.
     #[inline]
-    pub(crate) fn difference(&self, to: Vec2, from: Vec2) -> Vec2 {
+    fn difference(&self, to: Vec2, from: Vec2) -> Vec2 {
         let way = to - from;
         match self.edges {
             Edges::Cut => way,
@@ -91,6 +95,36 @@ impl Places {
             }
         }
     }
+
+    #[inline]
+    fn moved(&self, place: Vec2, by: Vec2) -> Vec2 {
+        place + by
+    }
+}
+
+/// The mean of a site's source and those that its neighbors predict, if they agree.
+pub(crate) fn averaged<P: Sourced>(
+    places: &P,
+    hierarchy: &Hierarchy,
+    frames: &[Frame],
+    site: usize,
+) -> P::Place {
+    let positions = hierarchy.sites().positions();
+    let (own, frame) = (places.of_site(site), &frames[site]);
+    let (mut sum, mut count) = (Vec2::ZERO, 1.0);
+    let graph = hierarchy.levels()[0].graph();
+    for &neighbor in graph.neighbors(SiteIdx(site as u32)) {
+        let way = (positions[site] - positions[neighbor.index()]).as_vec3();
+        // Frames turn on the way: the mean of both ends is that of its middle.
+        let way = 0.5 * (frame.flat(way) + frames[neighbor.index()].flat(way));
+        let predicted = places.moved(places.of_site(neighbor.index()), way);
+        let off = places.difference(predicted, own);
+        if off.length_squared() < AGREEMENT * AGREEMENT {
+            sum += off;
+            count += 1.0;
+        }
+    }
+    places.moved(own, sum / count)
 }
 
 impl Frame {

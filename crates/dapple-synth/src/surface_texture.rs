@@ -1,6 +1,7 @@
 //! The result of a synthesis on a surface.
 
 use crate::ground::Colors as _;
+use crate::lift::LiftedPlaces;
 use crate::places::Places;
 use crate::{Pyramid, SynthError, SynthErrorKind};
 use dapple_raster::Raster;
@@ -10,6 +11,8 @@ use dapple_raster::Raster;
 pub struct SurfaceTexture {
     levels: Vec<Level>,
     n_channels: usize,
+    /// The sources of the finest sites, if they are places on another surface.
+    pub(crate) lifted: Option<LiftedPlaces>,
     /// The sources of the finest sites, if they are places between pixels.
     pub(crate) places: Option<Places>,
 }
@@ -41,6 +44,7 @@ impl SurfaceTexture {
             levels: levels.collect(),
             n_channels: exemplars.first().map_or(0, |exemplar| exemplar.n_channels),
             places,
+            lifted: None,
         }
     }
 
@@ -81,7 +85,8 @@ impl SurfaceTexture {
     }
 
     /// The values of another map of the exemplar's size at the sources of the finest sites: how colors, heights, normals
-    /// and roughness follow what was matched.
+    /// and roughness follow what was matched. Of a texture that was [lifted](crate::Synthesizer::lift) they are those of a map
+    /// of any size at the texture coordinates of the example.
     ///
     /// # Errors
     ///
@@ -89,13 +94,18 @@ impl SurfaceTexture {
     /// level.
     pub fn transfer<T: Copy>(&self, map: &Raster<T>) -> Result<Vec<T>, SynthError> {
         let Level { size, sources, .. } = &self.levels[0];
-        map.check_same_size(*size)?;
+        if self.lifted.is_none() {
+            map.check_same_size(*size)?;
+        }
         if sources.is_empty() {
             return Err(SynthError::new(SynthErrorKind::Count {
                 what: "passes over the finest level",
                 count: 0,
                 needed: "at least 1",
             }));
+        }
+        if let Some(lifted) = &self.lifted {
+            return Ok(lifted.transfer(map));
         }
         let pixels = map.pixels();
         Ok(sources

@@ -128,13 +128,7 @@ impl Synthesizer {
         options: &Options,
         mut callback: impl FnMut(Progress) -> ControlFlow<()>,
     ) -> Result<SurfaceTexture, SynthError> {
-        if options.n_levels > self.hierarchy.levels().len() {
-            return Err(SynthError::new(SynthErrorKind::Count {
-                what: "levels",
-                count: options.n_levels,
-                needed: "at most those of the sites",
-            }));
-        }
+        self.check_levels(options)?;
         let pyramid = exemplar.pyramid(options.n_levels)?;
         let targets = Targets::of_surface(exemplar, guides, &self.hierarchy, options.n_levels)?;
         let ground = MeshGround {
@@ -152,6 +146,18 @@ impl Synthesizer {
         Ok(SurfaceTexture::new(&pyramid, sources, places))
     }
 
+    /// Refuses more levels than the sites have.
+    pub(crate) fn check_levels(&self, options: &Options) -> Result<(), SynthError> {
+        if options.n_levels <= self.hierarchy.levels().len() {
+            return Ok(());
+        }
+        Err(SynthError::new(SynthErrorKind::Count {
+            what: "levels",
+            count: options.n_levels,
+            needed: "at most those of the sites",
+        }))
+    }
+
     /// The surface, its sites and their orientation, on which the texture grows.
     pub(crate) fn ground(&self, axes: Axes, is_blurred: bool) -> MeshGround<'_> {
         MeshGround {
@@ -162,6 +168,7 @@ impl Synthesizer {
             axes,
             is_blurred,
             targets: None,
+            starts: &[],
         }
     }
 

@@ -16,10 +16,10 @@
 use crate::Candidates;
 
 /// How many pixels a use reaches to all sides.
-const REACH: i64 = 1;
+const REACH: i32 = 1;
 
 /// The pixels that a use is spread over.
-const N_PIXELS: i64 = (2 * REACH + 1) * (2 * REACH + 1);
+const N_PIXELS: i32 = (2 * REACH + 1) * (2 * REACH + 1);
 
 /// The uses around the pixel of each row, and its factor.
 #[derive(Clone, Debug, Default)]
@@ -37,7 +37,7 @@ impl Usage {
         if evenness == 0.0 {
             return Self::default();
         }
-        let n_uses = N_PIXELS as f64 * n_sites.max(1) as f64 / n_rows as f64;
+        let n_uses = f64::from(N_PIXELS) * n_sites.max(1) as f64 / n_rows as f64;
         Self {
             cost: f64::from(evenness) / n_uses,
             counts: vec![0; n_rows],
@@ -55,10 +55,10 @@ impl Usage {
         if row as usize >= self.counts.len() {
             return;
         }
-        let [x, y] = candidates.pixel(row as usize).map(i64::from);
-        for y in y - REACH..=y + REACH {
-            for x in x - REACH..=x + REACH {
-                if let Some(row) = candidates.row_of_pixel([x, y]) {
+        let pixel = candidates.pixels[row as usize];
+        for j in -REACH..=REACH {
+            for i in -REACH..=REACH {
+                if let Some(row) = candidates.row_beside(pixel, [i, j]) {
                     let row = row as usize;
                     self.counts[row] = self.counts[row].saturating_add(1);
                     self.factors[row] = (1.0 + self.cost * f64::from(self.counts[row])) as f32;

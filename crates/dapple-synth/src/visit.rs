@@ -20,7 +20,6 @@ pub(crate) struct Visit<'a, G: Ground> {
     prepared: G::Prepared,
     level: usize,
     n_channels: usize,
-    width: u32,
     coarser_width: u32,
     pyramid: &'a [Exemplar],
     candidates: Candidates,
@@ -41,17 +40,17 @@ pub(crate) struct Visit<'a, G: Ground> {
 
 /// A square of samples, without its place.
 #[derive(Clone, Copy, Debug)]
-struct Half {
-    half: i32,
-    rows: Rows,
+pub(crate) struct Half {
+    pub(crate) half: i32,
+    pub(crate) rows: Rows,
 }
 
 /// One pixel of a neighborhood.
 #[derive(Clone, Copy, Debug)]
-struct Term {
-    reads: Reads,
+pub(crate) struct Term {
+    pub(crate) reads: Reads,
     /// Its number in the square of samples.
-    sample: usize,
+    pub(crate) sample: usize,
     offset: [i32; 2],
     root_weight: f32,
 }
@@ -112,7 +111,6 @@ impl<'a, G: Ground> Visit<'a, G> {
             ),
             level: pass.level,
             n_channels: exemplar.n_channels,
-            width: exemplar.size[0],
             coarser_width: pyramid
                 .levels()
                 .get(pass.level + 1)
@@ -224,15 +222,7 @@ impl<'a, G: Ground> Visit<'a, G> {
             self.continue_coarser(&square, coarser, &painted, coherent);
         }
         query.clear();
-        for term in &self.terms {
-            let samples = match term.reads {
-                Reads::Same => &*same,
-                Reads::Coarser => &*coarser,
-            };
-            let at = term.sample * self.n_channels;
-            let values = &samples.values[at..at + self.n_channels];
-            query.extend(values.iter().map(|value| value * term.root_weight));
-        }
+        push_terms(&self.terms, [same, coarser], self.n_channels, query);
         if let Some(targets) = self.ground.targets() {
             let guides = targets.of(self.level, site).iter();
             query.extend(guides.map(|value| value * self.guide_scale));
@@ -257,8 +247,7 @@ impl<'a, G: Ground> Visit<'a, G> {
                 continue;
             }
             let source = painted.source(nearest as usize);
-            let [x, y] = [source % self.width, source / self.width].map(i64::from);
-            self.add_coherent([x - i64::from(i), y - i64::from(j)], coherent);
+            add_coherent(self.candidates.row_beside(source, [-i, -j]), coherent);
         }
     }
 
@@ -272,18 +261,11 @@ impl<'a, G: Ground> Visit<'a, G> {
     ) {
         let middle = (square.side() * square.side()) / 2;
         let source = painted.source(samples.nearest[middle] as usize);
-        let [x, y] = [source % self.coarser_width, source / self.coarser_width].map(i64::from);
-        for [i, j] in [[0, 0], [1, 0], [0, 1], [1, 1]] {
-            self.add_coherent([2 * x + i, 2 * y + j], coherent);
-        }
-    }
-
-    /// Adds the row of a pixel, if there is one and it is not yet there.
-    fn add_coherent(&self, pixel: [i64; 2], coherent: &mut Vec<u32>) {
-        if let Some(row) = self.candidates.row_of_pixel(pixel)
-            && !coherent.contains(&row)
-        {
-            coherent.push(row);
+        for offset in [[0, 0], [1, 0], [0, 1], [1, 1]] {
+            let row = self
+                .candidates
+                .row_under(source, self.coarser_width, offset);
+            add_coherent(row, coherent);
         }
     }
 
@@ -331,8 +313,31 @@ impl<M: Default> Default for Worker<M> {
     }
 }
 
+/// Adds a row, if there is one and it is not yet there.
+fn add_coherent(row: Option<u32>, coherent: &mut Vec<u32>) {
+    if let Some(row) = row
+        && !coherent.contains(&row)
+    {
+        coherent.push(row);
+    }
+}
+
+/// Appends the values of a neighborhood, from squares on the level itself and on the coarser one.
+pub(crate) fn push_terms(
+    terms: &[Term],
+    squares: [&Samples; 2],
+    n_channels: usize,
+    target: &mut Vec<f32>,
+) {
+    for term in terms {
+        let at = term.sample * n_channels;
+        let values = &squares[term.reads.step()].values[at..at + n_channels];
+        target.extend(values.iter().map(|value| value * term.root_weight));
+    }
+}
+
 /// The square that holds all parts of a pass that read a level.
-fn half_of(pass: &Pass, reads: Reads) -> Option<Half> {
+pub(crate) fn half_of(pass: &Pass, reads: Reads) -> Option<Half> {
     let parts = || pass.parts.iter().filter(|part| part.reads == reads);
     let side = parts().map(|part| part.side).max()?;
     let rows = |shape| match shape {
@@ -347,7 +352,7 @@ fn half_of(pass: &Pass, reads: Reads) -> Option<Half> {
 }
 
 /// Where the values of a query come from, in the order of the candidates' rows; `halves` are those of the squares.
-fn terms_of(pass: &Pass, halves: [i32; 2]) -> Vec<Term> {
+pub(crate) fn terms_of(pass: &Pass, halves: [i32; 2]) -> Vec<Term> {
     let mut terms = Vec::new();
     for part in &pass.parts {
         let half = match part.reads {

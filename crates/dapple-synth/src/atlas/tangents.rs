@@ -66,7 +66,12 @@ impl Tangents {
             let tangent = normal.any_orthonormal_vector();
             return [tangent, normal.cross(tangent)];
         };
-        let mixed = mixed(atlas, face, texel, self.corners[face.index()]);
+        self.frame_of(face, weights_within(atlas, face, texel), normal)
+    }
+
+    /// The tangent and the bitangent at the point of a face with these weights of its corners.
+    pub(crate) fn frame_of(&self, face: FaceIdx, weights: [f64; 3], normal: DVec3) -> [DVec3; 2] {
+        let mixed = sum(self.corners[face.index()], weights);
         let tangent = flat_part(mixed, normal).normalize_or(normal.any_orthonormal_vector());
         let up = normal.cross(tangent);
         let is_mirrored = self.is_mirrored[face.index()];
@@ -76,11 +81,19 @@ impl Tangents {
 
 /// The mean of vectors at the corners of a face as it is at a texel; in the padding, that of the border goes on.
 pub(crate) fn mixed(atlas: &Atlas, face: FaceIdx, texel: [u32; 2], corners: [DVec3; 3]) -> DVec3 {
+    sum(corners, weights_within(atlas, face, texel))
+}
+
+/// The weights of the corners of a face at a texel, each from 0 to 1.
+fn weights_within(atlas: &Atlas, face: FaceIdx, texel: [u32; 2]) -> [f64; 3] {
     let weights = weights(atlas.corners[face.index()], center(texel));
+    weights.map(|weight| weight.clamp(0.0, 1.0))
+}
+
+/// The sum of the vectors at the corners of a face times their weights.
+pub(crate) fn sum(corners: [DVec3; 3], weights: [f64; 3]) -> DVec3 {
     let parts = corners.iter().zip(weights);
-    parts
-        .map(|(&corner, weight)| corner * weight.clamp(0.0, 1.0))
-        .sum()
+    parts.map(|(&corner, weight)| corner * weight).sum()
 }
 
 /// Where the center of a texel is, in texels.

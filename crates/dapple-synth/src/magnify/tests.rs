@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::detail::Detail;
+use crate::places::Places;
 use crate::shapes::{square, synthesizer};
 use crate::{Edges, Exemplar, Options, Sources, SurfaceTexture, bake_colors, bake_values};
 use dapple_color::LinearRgb;

@@ -3,7 +3,7 @@
 use super::turning::Turning;
 use crate::ground::Square;
 use dapple_mesh::{Surface, SurfacePoint, Walk};
-use glam::{DVec2, DVec3};
+use glam::{DVec2, DVec3, Vec3};
 
 /// The samples in a register.
 const LANES: usize = 8;
@@ -101,6 +101,23 @@ impl Lattice {
                 self.put(surface, (point, normal), [0, number * LANES + lane], center);
             }
         }
+    }
+
+    /// Whether samples that follow each other in columns, and in the row of the middle or the last one, are `least` apart.
+    pub(crate) fn is_spread(&self, least: f32) -> bool {
+        let blocks = self.side.div_ceil(LANES).max(1);
+        let n_rows = self.rows.len() / blocks;
+        let place = |row: usize, column: usize| {
+            let lanes = &self.rows[row * blocks + column / LANES].lanes;
+            Vec3::from([0, 1, 2].map(|part| lanes[part][column % LANES]))
+        };
+        let is_apart = |a: Vec3, b: Vec3| a.distance_squared(b) >= least * least;
+        let middle = (self.side / 2).min(n_rows.saturating_sub(1));
+        let along =
+            |row: usize, column: usize| is_apart(place(row - 1, column), place(row, column));
+        (0..self.side).all(|column| (1..n_rows).all(|row| along(row, column)))
+            && (1..self.side)
+                .all(|column| is_apart(place(middle, column - 1), place(middle, column)))
     }
 
     /// Has as many rows as the square needs, with their unused lanes nowhere.

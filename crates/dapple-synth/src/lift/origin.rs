@@ -1,0 +1,261 @@
+//! Places on a source surface, from which the sites of a texture are.
+
+use crate::detail::Detail;
+use crate::magnify::footprints;
+use crate::places::{self, Frame, Sourced, frames};
+use crate::{Edges, Hierarchy, Sources, SynthError, SynthErrorKind, Synthesizer, columns};
+use dapple_mesh::{SurfacePoint, Walk};
+use dapple_raster::Raster;
+use glam::{DVec2, DVec3, Vec2, Vec3};
+use std::sync::Arc;
+
+/// How much longer the way between two places is in space than along the surface where they lie on two sheets, in pixels.
+const SHEETS: f32 = 1.0;
+
+/// The largest texture coordinate: the texels of any map have numbers.
+const UV_MAX: f64 = 1e6;
+
+/// A surface from which a texture is lifted.
+#[derive(Clone, Debug)]
+pub(crate) struct Origin {
+    pub(crate) synthesizer: Synthesizer,
+    /// The texture coordinates of the corners of faces, whole turns taken off.
+    pub(crate) uvs: Vec<[DVec2; 3]>,
+    /// What lies past the edges of the texture.
+    pub(crate) edges: Edges,
+    frames: Vec<Frame>,
+    /// The spacing of the finest sites.
+    spacing: f32,
+}
+
+/// A place on the source: a finest site, and the way from it in its frame, in pixels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Place {
+    pub(crate) site: u32,
+    pub(crate) off: Vec2,
+}
+
+/// The places from which the finest sites of a texture are.
+#[derive(Clone, Debug)]
+pub(crate) struct LiftedPlaces {
+    pub(crate) origin: Arc<Origin>,
+    pub(crate) of_site: Vec<Place>,
+    /// Whether texels mix the values of sites, as in the paper.
+    pub(crate) is_mixed: bool,
+}
+
+impl Origin {
+    pub(super) fn new(
+        synthesizer: Synthesizer,
+        uvs: &[[DVec2; 3]],
+        edges: Edges,
+    ) -> Result<Self, SynthError> {
+        if uvs.len() != synthesizer.surface().mesh().faces().len() {
+            return Err(SynthError::new(SynthErrorKind::Count {
+                what: "faces with uv",
+                count: uvs.len(),
+                needed: "as many as the mesh has",
+            }));
+        }
+        let parts = uvs.iter().flatten().flat_map(DVec2::to_array);
+        for part in parts {
+            let holds = part.abs() <= UV_MAX;
+            SynthError::check(holds, "texture coordinate", part, "from -1e6 to 1e6")?;
+        }
+        let place = |uvs: &[DVec2; 3]| {
+            let turns = ((uvs[0] + uvs[1] + uvs[2]) / 3.0).floor();
+            uvs.map(|uv| uv - turns)
+        };
+        let hierarchy = synthesizer.hierarchy();
+        Ok(Self {
+            uvs: uvs.iter().map(place).collect(),
+            edges,
+            frames: frames(hierarchy, synthesizer.orientation()),
+            spacing: hierarchy.levels()[0].spacing() as f32,
+            synthesizer,
+        })
+    }
+
+    pub(crate) fn hierarchy(&self) -> &Hierarchy {
+        self.synthesizer.hierarchy()
+    }
+
+    /// The point of a place, and the direction of the source's down there, in the plane of its face.
+    pub(crate) fn walk(&self, place: Place) -> Walk {
+        let surface = self.synthesizer.surface();
+        let point = self.hierarchy().sites().points()[place.site as usize];
+        let orientation = self.synthesizer.orientation().vectors()[place.site as usize];
+        let down = surface
+            .flatten(point.face, orientation)
+            .normalize_or(DVec2::X);
+        let off = place.off.as_dvec2();
+        let way = down.perp() * off.x + down * off.y;
+        let length = way.length();
+        if length == 0.0 {
+            return Walk {
+                point,
+                direction: down,
+                left: 0.0,
+            };
+        }
+        let along = way / length;
+        let walk = surface.walk(point, along, length * f64::from(self.spacing));
+        Walk {
+            // The way turned, and down turned as much.
+            direction: DVec2::new(along.dot(down), along.perp_dot(down)).rotate(walk.direction),
+            ..walk
+        }
+    }
+
+    /// The texture coordinates of a point.
+    pub(crate) fn uv(&self, point: SurfacePoint) -> DVec2 {
+        let weights = self.synthesizer.surface().weights(point);
+        let corners = self.uvs[point.face.index()].iter().zip(weights);
+        corners.map(|(&uv, weight)| uv * weight).sum()
+    }
+
+    /// How many texels of a map of a size are as long as a pixel, on every face; 0 on one without an area in it.
+    pub(crate) fn texels(&self, size: [u32; 2]) -> Vec<f32> {
+        let sides = footprints(&self.synthesizer, &self.uvs, size).into_iter();
+        sides
+            .map(|side| if side > 0.0 { 1.0 / side } else { 0.0 })
+            .collect()
+    }
+
+    /// The way from one finest site to another near it, in pixels.
+    pub(super) fn step(&self, to: u32, from: u32) -> Vec2 {
+        let [to_place, from_place] = [to, from].map(|site| Place {
+            site,
+            off: Vec2::ZERO,
+        });
+        self.flat(self.way(to_place, from_place), to, from)
+    }
+
+    /// A way in space as one between two sites. Frames turn on the way: the mean of both ends is that of its middle.
+    fn flat(&self, way: Vec3, to: u32, from: u32) -> Vec2 {
+        let [to, from] = [to, from].map(|site| self.frames[site as usize].flat(way));
+        0.5 * (from + to)
+    }
+
+    /// The way in space from one place to another.
+    fn way(&self, to: Place, from: Place) -> Vec3 {
+        let positions = self.hierarchy().sites().positions();
+        let [to_at, from_at] = [to, from].map(|place| positions[place.site as usize]);
+        let scale = self.spacing * self.spacing;
+        let [to_off, from_off] = [to, from].map(|Place { site, off }| {
+            let frame = &self.frames[site as usize];
+            (frame.right * off.x + frame.down * off.y) * scale
+        });
+        (to_at - from_at).as_vec3() + (to_off - from_off)
+    }
+}
+
+impl LiftedPlaces {
+    /// The places of sites that took these finest sites of the source, between them if that is asked for.
+    pub(super) fn new(
+        target: &Synthesizer,
+        origin: &Arc<Origin>,
+        sources: &[u32],
+        between: Sources,
+    ) -> Self {
+        let place = |&site: &u32| Place {
+            site,
+            off: Vec2::ZERO,
+        };
+        let mut lifted = Self {
+            origin: Arc::clone(origin),
+            of_site: sources.iter().map(place).collect(),
+            is_mixed: between == Sources::Pixel,
+        };
+        if !lifted.is_mixed {
+            let frames = frames(target.hierarchy(), target.orientation());
+            for _ in 0..places::N_STEPS {
+                let averaged =
+                    |site: usize| places::averaged(&lifted, target.hierarchy(), &frames, site);
+                lifted.of_site = columns::column(sources.len(), averaged);
+            }
+        }
+        lifted
+    }
+
+    /// The pixel of a map at every place.
+    pub(crate) fn transfer<T: Copy>(&self, map: &Raster<T>) -> Vec<T> {
+        let size = map.size().map(f64::from);
+        let wrap = self.origin.edges.wrap();
+        let pixel = |&place: &Place| {
+            let uv = self.origin.uv(self.origin.walk(place).point);
+            let [column, row] = [uv.x * size[0], uv.y * size[1]].map(|at| at.floor() as i64);
+            *map.at(column, row, [wrap; 2])
+        };
+        self.of_site.iter().map(pixel).collect()
+    }
+}
+
+impl PartialEq for LiftedPlaces {
+    /// Places on one source: of equal copies of it, they differ.
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.origin, &other.origin)
+            && self.of_site == other.of_site
+            && self.is_mixed == other.is_mixed
+    }
+}
+
+impl Sourced for LiftedPlaces {
+    type Place = Place;
+
+    #[inline]
+    fn of_site(&self, site: usize) -> Place {
+        self.of_site[site]
+    }
+
+    fn difference(&self, to: Place, from: Place) -> Vec2 {
+        if to.site == from.site {
+            return to.off - from.off;
+        }
+        let normals = self.origin.hierarchy().sites().normals();
+        let [to_normal, from_normal] = [to, from].map(|place| normals[place.site as usize]);
+        let way = self.origin.way(to, from);
+        let flat = self.origin.flat(way, to.site, from.site);
+        let is_far = way.length() > (flat.length() + SHEETS) * self.origin.spacing;
+        if is_far || DVec3::dot(to_normal, from_normal) < 0.0 {
+            return Vec2::INFINITY;
+        }
+        flat
+    }
+
+    #[inline]
+    fn moved(&self, place: Place, by: Vec2) -> Place {
+        Place {
+            off: place.off + by,
+            ..place
+        }
+    }
+}
+
+/// A map of the source, read at places.
+pub(crate) struct LiftedDetail<'a, const N: usize> {
+    origin: &'a Origin,
+    detail: Detail<N>,
+    size: DVec2,
+    texels: Vec<f32>,
+}
+
+impl<'a, const N: usize> LiftedDetail<'a, N> {
+    /// A map of any size at the texture coordinates of the source.
+    pub(crate) fn new(map: Raster<[f32; N]>, origin: &'a Origin) -> Result<Self, SynthError> {
+        let size = map.size();
+        Ok(Self {
+            origin,
+            size: DVec2::from(size.map(f64::from)),
+            texels: origin.texels(size),
+            detail: Detail::new(map, size, origin.edges)?,
+        })
+    }
+
+    /// The mean around a place; the footprint is the side of a square in pixels.
+    pub(crate) fn sample(&self, point: SurfacePoint, footprint: f32) -> [f32; N] {
+        let at = self.origin.uv(point) * self.size - 0.5;
+        self.detail
+            .sample(at.as_vec2(), footprint * self.texels[point.face.index()])
+    }
+}

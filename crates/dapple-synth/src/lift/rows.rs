@@ -1,0 +1,173 @@
+//! The neighborhoods of a source's sites.
+
+use crate::candidates::{self, Beside};
+use crate::ground::{Ground, Rows, Samples, Square};
+use crate::mesh_ground::{MeshGround, MeshMemory};
+use crate::visit::{self, Half, Term};
+use crate::{Candidates, Options, Pass, Pyramid, Reads, SynthError, Synthesizer};
+use dapple_raster::parallel;
+
+/// The sites that one thread reads at a time.
+const CHUNK: usize = 512;
+
+/// The least distance in spacings of samples that follow each other: less is past a border or across a sharp fold.
+const LEAST: f64 = 0.5;
+
+/// The neighborhoods of all sites of the pass' level that meet no border, fold or unusable site; of all usable ones where
+/// few would remain.
+pub(super) fn candidates(
+    source: &Synthesizer,
+    pyramid: &Pyramid,
+    pass: &Pass,
+    options: &Options,
+) -> Result<Candidates, SynthError> {
+    pass.check(pyramid.levels().len())?;
+    let ground = source.ground(options.axes, false);
+    let halves = [Reads::Same, Reads::Coarser].map(|reads| visit::half_of(pass, reads));
+    let [same, coarser] = halves.map(|half| half.map(|half| half.half));
+    let reader = Reader {
+        prepared: ground.prepare(pass.level, same, coarser),
+        beside: ground.prepare(pass.level, Some(1), None),
+        ground: &ground,
+        terms: visit::terms_of(pass, [same, coarser].map(Option::unwrap_or_default)),
+        halves,
+        level: pass.level,
+        pyramid,
+        guide_scale: candidates::guide_scale(pass),
+    };
+    let n_sites = ground.n_sites(pass.level);
+    let chunks = parallel::map(n_sites.div_ceil(CHUNK), |chunk| {
+        let first = chunk * CHUNK;
+        reader.chunk(first..(first + CHUNK).min(n_sites))
+    });
+    let few = candidates::few(pass, options);
+    let n_whole = chunks.iter().flat_map(|chunk| &chunk.are_whole);
+    let only_whole = n_whole.filter(|&&is_whole| is_whole).count() >= few;
+    let level = &pyramid.levels()[pass.level];
+    let dims = reader.dims();
+    let mut pixels = Vec::new();
+    let mut rows = Vec::new();
+    let mut beside = Vec::new();
+    for (site, (chunk, at)) in chunks
+        .iter()
+        .flat_map(|chunk| (0..chunk.beside.len()).map(move |at| (chunk, at)))
+        .enumerate()
+    {
+        beside.push(chunk.beside[at]);
+        if chunk.are_usable[at] && (chunk.are_whole[at] || !only_whole) {
+            pixels.push(site as u32);
+            rows.extend_from_slice(&chunk.rows[at * dims..][..dims]);
+        }
+    }
+    Candidates::of_sites(level, pass.level, rows, pixels, Beside(beside))
+}
+
+/// Neighborhoods of some sites, one after the other.
+#[derive(Default)]
+struct Chunk {
+    rows: Vec<f32>,
+    are_whole: Vec<bool>,
+    are_usable: Vec<bool>,
+    beside: Vec<[u32; 9]>,
+}
+
+/// Reads neighborhoods as those of the texture are.
+struct Reader<'a> {
+    ground: &'a MeshGround<'a>,
+    prepared: <MeshGround<'a> as Ground>::Prepared,
+    beside: <MeshGround<'a> as Ground>::Prepared,
+    terms: Vec<Term>,
+    /// The squares on the level itself and on the coarser one.
+    halves: [Option<Half>; 2],
+    level: usize,
+    pyramid: &'a Pyramid,
+    guide_scale: f32,
+}
+
+impl Reader<'_> {
+    /// The number of values of a neighborhood.
+    fn dims(&self) -> usize {
+        let level = &self.pyramid.levels()[self.level];
+        self.terms.len() * level.n_channels + level.n_guides()
+    }
+
+    fn chunk(&self, sites: core::ops::Range<usize>) -> Chunk {
+        let mut chunk = Chunk::default();
+        let mut memory = MeshMemory::default();
+        let [mut same, mut coarser] = [Samples::default(), Samples::default()];
+        for site in sites.start as u32..sites.end as u32 {
+            let [is_whole_same, is_whole_coarser] = [(0, &mut same), (1, &mut coarser)]
+                .map(|(step, samples)| self.read(site, step, samples, &mut memory));
+            let level = &self.pyramid.levels()[self.level];
+            visit::push_terms(
+                &self.terms,
+                [&same, &coarser],
+                level.n_channels,
+                &mut chunk.rows,
+            );
+            let guides = level.guides.of(site as usize).iter();
+            chunk
+                .rows
+                .extend(guides.map(|value| value * self.guide_scale));
+            chunk.are_whole.push(is_whole_same && is_whole_coarser);
+            chunk
+                .are_usable
+                .push(self.is_usable(site, [&same, &coarser]));
+            chunk.beside.push(self.read_beside(site, &mut memory));
+        }
+        chunk
+    }
+
+    /// Reads the square of a site on its level or on the one `step` coarser, if that is read; whether all of it is there.
+    fn read(&self, site: u32, step: usize, samples: &mut Samples, memory: &mut MeshMemory) -> bool {
+        let Some(half) = self.halves[step] else {
+            return true;
+        };
+        let reads = self.level + step;
+        let square = Square {
+            site,
+            level: self.level,
+            reads,
+            half: half.half,
+            rows: half.rows,
+        };
+        let colors = self.pyramid.levels()[reads].plain();
+        samples.make_room(square.side(), colors.n_channels);
+        self.ground
+            .read(square, &self.prepared, colors, samples, memory);
+        memory.is_spread(LEAST * self.ground.hierarchy.levels()[reads].spacing())
+    }
+
+    /// Whether textures may have the sites that a neighborhood is made of.
+    fn is_usable(&self, site: u32, samples: [&Samples; 2]) -> bool {
+        let usable = |step: usize, site: u32| {
+            let usable = &self.pyramid.levels()[self.level + step].usable;
+            usable.as_ref().is_none_or(|usable| usable[site as usize])
+        };
+        usable(0, site)
+            && self.terms.iter().all(|term| {
+                let step = term.reads.step();
+                usable(step, samples[step].nearest[term.sample])
+            })
+    }
+
+    /// The sites nearest to the eight steps from a site, and itself.
+    fn read_beside(&self, site: u32, memory: &mut MeshMemory) -> [u32; 9] {
+        let square = Square {
+            site,
+            level: self.level,
+            reads: self.level,
+            half: 1,
+            rows: Rows::All,
+        };
+        let mut samples = Samples::default();
+        let colors = self.pyramid.levels()[self.level].plain();
+        samples.make_room(square.side(), colors.n_channels);
+        self.ground
+            .read(square, &self.beside, colors, &mut samples, memory);
+        let mut beside = [site; 9];
+        beside.copy_from_slice(&samples.nearest);
+        beside[4] = site;
+        beside
+    }
+}
