@@ -23,7 +23,7 @@ const SIDE: i64 = 64;
 const N_TRIALS: u32 = 20;
 
 /// The most parts along an axis.
-const MAX_PARTS: i64 = 16;
+const MAX_PARTS: u32 = 16;
 
 /// How much a cost changes after the first trial, in mean squared distances, for a part that textures never have.
 const STEP: f32 = 0.8;
@@ -33,22 +33,21 @@ const HALF_STEP: f32 = 8.0;
 
 /// What the parts of an exemplar cost; nothing if they are not told apart.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Costs {
-    /// The columns and rows of a part.
-    side: i64,
-    n_columns: i64,
+pub(crate) struct Costs {
+    /// The part of each column in the first row, and what each row adds to that.
+    of_column: Vec<u32>,
+    of_row: Vec<u32>,
     of_part: Vec<f32>,
 }
 
 impl Costs {
     /// Parts of an exemplar that cost nothing.
-    fn new(size: [u32; 2], spacing: i64) -> Self {
-        let size = size.map(i64::from);
+    pub(crate) fn new(size: [u32; 2], spacing: u32) -> Self {
         let side = spacing.max((size[0].max(size[1]) - 1) / MAX_PARTS + 1);
         let [n_columns, n_rows] = size.map(|n| (n - 1) / side + 1);
         Self {
-            side,
-            n_columns,
+            of_column: (0..size[0]).map(|column| column / side).collect(),
+            of_row: (0..size[1]).map(|row| row / side * n_columns).collect(),
             of_part: vec![0.0; (n_columns * n_rows) as usize],
         }
     }
@@ -56,12 +55,12 @@ impl Costs {
     /// The part of a place within the exemplar.
     #[inline]
     fn part(&self, [column, row]: [i64; 2]) -> usize {
-        (row / self.side * self.n_columns + column / self.side) as usize
+        (self.of_row[row as usize] + self.of_column[column as usize]) as usize
     }
 
     /// What a place within the exemplar costs.
     #[inline]
-    pub(super) fn of(&self, place: [i64; 2]) -> f32 {
+    pub(crate) fn of(&self, place: [i64; 2]) -> f32 {
         if self.of_part.is_empty() {
             return 0.0;
         }
@@ -69,7 +68,7 @@ impl Costs {
     }
 
     /// The share of each part among some places.
-    pub(super) fn shares(&self, places: impl IntoIterator<Item = [u32; 2]>) -> Vec<f32> {
+    pub(crate) fn shares(&self, places: impl IntoIterator<Item = [u32; 2]>) -> Vec<f32> {
         let mut counts = vec![0_u32; self.of_part.len()];
         let mut n_places = 0;
         for place in places {
@@ -79,18 +78,28 @@ impl Costs {
         let share = |count| count as f32 / n_places.max(1) as f32;
         counts.into_iter().map(share).collect()
     }
+
+    /// Makes parts dearer that there are too many of, and those cheaper that there are too few of: by `step` where all or
+    /// none are too many.
+    pub(crate) fn change(&mut self, shares: &[f32], wanted: &[f32], step: f32) {
+        for (cost, (share, wanted)) in self.of_part.iter_mut().zip(shares.iter().zip(wanted)) {
+            if *wanted > 0.0 {
+                *cost += step * (share - wanted) / (share + wanted);
+            }
+        }
+    }
 }
 
 impl Endless {
     /// Finds out what the parts of the exemplar cost on the coarser levels.
-    pub(super) fn even_out(&mut self) {
+    pub(crate) fn even_out(&mut self) {
         let mut coarser: Option<Area> = None;
         for level in (0..self.stages.len()).rev() {
             let Stage { size, spacing, .. } = self.stages[level];
             if SIDE * spacing < i64::from(size[0].max(size[1])) {
                 return;
             }
-            let mut costs = Costs::new(size, spacing);
+            let mut costs = Costs::new(size, spacing as u32);
             let usable = self.stages[level].usable_pixels();
             let wanted = costs.shares(
                 usable
@@ -110,12 +119,11 @@ impl Endless {
                 if uneven < best.0 {
                     best = (uneven, costs.clone(), Some(made));
                 }
-                let step = STEP * scale / (1.0 + trial as f32 / HALF_STEP);
-                for (cost, (share, wanted)) in costs.of_part.iter_mut().zip(pairs()) {
-                    if *wanted > 0.0 {
-                        *cost += step * (share - wanted) / (share + wanted);
-                    }
-                }
+                costs.change(
+                    &shares,
+                    &wanted,
+                    STEP * scale / (1.0 + trial as f32 / HALF_STEP),
+                );
             }
             (_, self.stages[level].costs, coarser) = best;
         }

@@ -11,10 +11,10 @@ use dapple_raster::simd::{self, dispatch};
 use dapple_raster::{Wrap, parallel};
 
 /// The numbers that tell what is around a pixel.
-pub(super) const N_FEATURES: usize = 8;
+pub(crate) const N_FEATURES: usize = 8;
 
 /// The pixels around one whose features are compared, in pixels of the level.
-pub(super) const DIAGONALS: [[i64; 2]; 4] = [[-1, -1], [1, -1], [-1, 1], [1, 1]];
+pub(crate) const DIAGONALS: [[i64; 2]; 4] = [[-1, -1], [1, -1], [-1, 1], [1, 1]];
 
 /// How far the windows reach that features tell of, in pixels of the level.
 const HALF: i64 = 2;
@@ -29,7 +29,7 @@ const APART: f64 = 0.05;
 const GRID: i64 = 1 << 14;
 
 /// Pixels of the grid that are searched together.
-const PIXELS: usize = 2048;
+const PIXELS: usize = 512;
 
 /// The most windows whose principal components are taken.
 const SAMPLE: usize = 4096;
@@ -39,56 +39,41 @@ const NONE: u32 = u32::MAX;
 
 /// An exemplar on one level of a texture.
 #[derive(Clone, Debug)]
-pub(super) struct Stage {
-    pub(super) size: [u32; 2],
+pub(crate) struct Stage {
+    pub(crate) size: [u32; 2],
     wrap: Wrap,
     /// The pixels of the exemplar between two pixels of the level.
-    pub(super) spacing: i64,
+    pub(crate) spacing: i64,
     /// What is around each pixel: principal components of the window.
     features: Vec<[f32; N_FEATURES]>,
     /// Whether textures may have each pixel; all of them if nothing is said.
     usable: Option<Vec<bool>>,
     /// The columns and rows between pixels of the grid on which alike ones are searched.
-    pub(super) step: i64,
+    pub(crate) step: i64,
     /// For each pixel of the grid the one of the grid that is most like it.
     similar: Vec<u32>,
     /// What it costs in a match to go on in each part of the exemplar.
-    pub(super) costs: Costs,
+    pub(crate) costs: Costs,
 }
 
 /// The levels of an exemplar, the finest first.
-pub(super) fn stages(exemplar: &Exemplar, n_levels: usize) -> Result<Vec<Stage>, SynthError> {
-    let mut pixels = exemplar.pixels.clone();
-    let mut stages = Vec::with_capacity(n_levels);
-    for level in 0..n_levels {
-        let spacing = 1_i64 << level;
-        if level > 0 {
-            pixels = blurred(exemplar, &pixels, spacing / 2);
-        }
-        let n_pixels = i64::from(exemplar.size[0]) * i64::from(exemplar.size[1]);
-        let mut step = spacing;
-        while n_pixels > GRID * step * step {
-            step *= 2;
-        }
-        stages.push(Stage {
-            size: exemplar.size,
-            wrap: exemplar.edges.wrap(),
-            spacing,
-            features: features(exemplar, &pixels, spacing),
-            usable: None,
-            step,
-            similar: Vec::new(),
-            costs: Costs::default(),
-        });
+pub(crate) fn stages(exemplar: &Exemplar, n_levels: usize) -> Result<Vec<Stage>, SynthError> {
+    let mut pixels = vec![exemplar.pixels.clone()];
+    for level in 1..n_levels {
+        pixels.push(blurred(exemplar, &pixels[level - 1], 1 << (level - 1)));
     }
     // Never more is left out than of the next coarser level, so that the pixels that its texture has are usable.
     let mut reach = i64::MAX;
-    for (level, stage) in stages.iter_mut().enumerate().rev() {
-        reach = reach.min(HALF * stage.spacing);
-        (stage.usable, reach) = usable(exemplar, level, reach)?;
-        stage.similar = stage.most_similar();
+    let mut masks = Vec::with_capacity(n_levels);
+    for level in (0..n_levels).rev() {
+        reach = reach.min(HALF << level);
+        let (mask, left) = usable(exemplar, level, reach)?;
+        masks.push(mask);
+        reach = left;
     }
-    Ok(stages)
+    masks.reverse();
+    let stage = |level: usize| Stage::new(exemplar, level, &pixels[level], masks[level].clone());
+    Ok(parallel::map(n_levels, stage))
 }
 
 /// An image with every pixel mixed with those two and one steps away along both axes.
@@ -224,9 +209,31 @@ fn inner(edges: Edges, side: usize, reach: i64, holds: impl Fn(usize) -> bool) -
 }
 
 impl Stage {
+    /// A level of an exemplar, which has these pixels on it, of which textures may have some.
+    fn new(exemplar: &Exemplar, level: usize, pixels: &[f32], usable: Option<Vec<bool>>) -> Self {
+        let spacing = 1_i64 << level;
+        let n_pixels = i64::from(exemplar.size[0]) * i64::from(exemplar.size[1]);
+        let mut step = spacing;
+        while n_pixels > GRID * step * step {
+            step *= 2;
+        }
+        let mut stage = Self {
+            size: exemplar.size,
+            wrap: exemplar.edges.wrap(),
+            spacing,
+            features: features(exemplar, pixels, spacing),
+            usable,
+            step,
+            similar: Vec::new(),
+            costs: Costs::default(),
+        };
+        stage.similar = stage.most_similar();
+        stage
+    }
+
     /// The pixel at a column and row, of which those past the edges are mirrored or wrapped.
     #[inline]
-    pub(super) fn features(&self, place: [i64; 2]) -> &[f32; N_FEATURES] {
+    pub(crate) fn features(&self, place: [i64; 2]) -> &[f32; N_FEATURES] {
         let [column, row] = [0, 1].map(|axis| {
             let within = (0..i64::from(self.size[axis])).contains(&place[axis]);
             // The remainder of a division costs more than all else here.
@@ -240,7 +247,7 @@ impl Stage {
 
     /// The squared distance of features on the diagonals of a pixel from those on the diagonals of a place.
     #[inline]
-    pub(super) fn distance_sq(&self, around: &[[f32; N_FEATURES]; 4], place: [i64; 2]) -> f32 {
+    pub(crate) fn distance_sq(&self, around: &[[f32; N_FEATURES]; 4], place: [i64; 2]) -> f32 {
         let [column, row] = place;
         let mut sum = 0.0;
         for (own, [x, y]) in around.iter().zip(DIAGONALS) {
@@ -254,7 +261,7 @@ impl Stage {
 
     /// The place of a pixel that is a quarter of one of the next coarser level: beside the place of that, or, where that
     /// is not usable, the same.
-    pub(super) fn child(&self, parent: [i64; 2], at: [i64; 2]) -> [i64; 2] {
+    pub(crate) fn child(&self, parent: [i64; 2], at: [i64; 2]) -> [i64; 2] {
         // Half of the spacing to either side; rounded down on the finest level.
         let step = at.map(|at| ((2 * at.rem_euclid(2) - 1) * self.spacing).div_euclid(2));
         let beside = [parent[0] + step[0], parent[1] + step[1]];
@@ -263,7 +270,7 @@ impl Stage {
 
     /// A place in the exemplar, if textures may go on there.
     #[inline]
-    pub(super) fn usable(&self, mut place: [i64; 2]) -> Option<[i64; 2]> {
+    pub(crate) fn usable(&self, mut place: [i64; 2]) -> Option<[i64; 2]> {
         for (at, side) in place.iter_mut().zip(self.size) {
             if !(0..i64::from(side)).contains(at) {
                 if self.wrap != Wrap::Repeat {
@@ -281,7 +288,7 @@ impl Stage {
     }
 
     /// The pixels that textures may have.
-    pub(super) fn usable_pixels(&self) -> Vec<u32> {
+    pub(crate) fn usable_pixels(&self) -> Vec<u32> {
         let pixels = 0..self.size[0] * self.size[1];
         match &self.usable {
             Some(usable) => pixels.filter(|&pixel| usable[pixel as usize]).collect(),
@@ -291,7 +298,7 @@ impl Stage {
 
     /// The place that is to the one most like the grid's nearest as `place` is to that, if it is usable.
     #[inline]
-    pub(super) fn similar(&self, place: [i64; 2]) -> Option<[i64; 2]> {
+    pub(crate) fn similar(&self, place: [i64; 2]) -> Option<[i64; 2]> {
         let [column, row] = place.map(|at| at / self.step);
         let [width, _] = self.grid();
         let found = self.similar[(row * width + column) as usize];
@@ -354,7 +361,7 @@ impl Stage {
     }
 
     /// How far pixels that are alike are from each other at least, but for rounding, in steps of the grid.
-    pub(super) fn apart(&self) -> i64 {
+    pub(crate) fn apart(&self) -> i64 {
         let side = f64::from(self.size[0].min(self.size[1]));
         ((APART * side) as i64 / self.step).max(1)
     }

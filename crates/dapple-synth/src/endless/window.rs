@@ -3,8 +3,10 @@
 use super::Endless;
 use super::stage::{DIAGONALS, N_FEATURES, Stage};
 use crate::engine::{Callback, Progress};
+use crate::turns::Board;
 use crate::{SynthError, SynthErrorKind};
 use core::ops::Range;
+use core::sync::atomic::{AtomicU32, Ordering};
 use dapple_hash::{hash2, unit_f64};
 use dapple_raster::{Raster, parallel};
 
@@ -34,11 +36,21 @@ fn n_passes(coarser: Option<&Area>) -> usize {
 }
 
 /// A rectangle of the texture on one level, and the places in the exemplar that its pixels are from.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(super) struct Area {
     pub(super) columns: Range<i64>,
     pub(super) rows: Range<i64>,
-    places: Vec<[u32; 2]>,
+    /// Written by threads that wait for each other where they read what others write.
+    places: Vec<[AtomicU32; 2]>,
+}
+
+/// A row of a quarter that is corrected.
+#[derive(Clone, Copy, Debug)]
+struct Turn {
+    quarter: [i64; 2],
+    row: i64,
+    /// The turns from the first one on that must be over before.
+    wait: usize,
 }
 
 impl Endless {
@@ -67,7 +79,7 @@ impl Endless {
             let around = needs[level]
                 .clone()
                 .map(|range| range.start - reach..range.end + reach);
-            let mut area = self.start(level, coarser.as_ref(), around);
+            let area = self.start(level, coarser.as_ref(), around);
             let n_quarters = area.places.len() / QUARTERS.len();
             for (corrected, &quarter) in (0..n_passes).flat_map(|_| &QUARTERS).enumerate() {
                 let progress = Progress {
@@ -79,7 +91,7 @@ impl Endless {
                 if callback(progress).is_break() {
                     return Err(SynthError::new(SynthErrorKind::Cancelled));
                 }
-                area.correct(stage, quarter);
+                area.correct(stage, &[quarter]);
             }
             coarser = Some(area);
         }
@@ -114,10 +126,8 @@ impl Endless {
         coarser: Option<&Area>,
         ranges: [Range<i64>; 2],
     ) -> Area {
-        let mut area = self.start(level, coarser, ranges);
-        for &quarter in (0..n_passes(coarser)).flat_map(|_| &QUARTERS) {
-            area.correct(&self.stages[level], quarter);
-        }
+        let area = self.start(level, coarser, ranges);
+        area.correct(&self.stages[level], &QUARTERS.repeat(n_passes(coarser)));
         area
     }
 
@@ -146,6 +156,13 @@ impl Endless {
     }
 }
 
+/// The columns or rows of a range whose remainder by 2 is `rest`, but those from which not all is here that is read.
+fn odd_or_even(range: &Range<i64>, rest: i64) -> impl Iterator<Item = i64> + use<> {
+    let first = range.start + READS;
+    let first = first + (rest - first).rem_euclid(2);
+    (first..range.end - READS).step_by(2)
+}
+
 /// A place in the exemplar, which has less than 2^32 columns and rows.
 fn narrow(place: [i64; 2]) -> [u32; 2] {
     place.map(|at| at as u32)
@@ -161,43 +178,65 @@ impl Area {
         let row = |row: usize| {
             let row = rows.start + row as i64;
             let places = columns.clone().map(|column| place([column, row]));
-            places.map(narrow).collect::<Vec<_>>()
+            places
+                .map(|place| narrow(place).map(AtomicU32::new))
+                .collect::<Vec<_>>()
         };
         Self {
-            places: parallel::map(n_rows, row).concat(),
+            places: parallel::map(n_rows, row).into_iter().flatten().collect(),
             columns,
             rows,
         }
     }
 
-    /// The place of a pixel.
+    /// The number of a pixel among the places.
     #[inline]
-    pub(super) fn at(&self, [column, row]: [i64; 2]) -> [i64; 2] {
+    fn index(&self, [column, row]: [i64; 2]) -> usize {
         let width = self.columns.end - self.columns.start;
-        let place = (row - self.rows.start) * width + column - self.columns.start;
-        self.places[place as usize].map(i64::from)
+        ((row - self.rows.start) * width + column - self.columns.start) as usize
     }
 
-    /// Corrects a quarter of the pixels, but those from which not all is here that is read.
-    fn correct(&mut self, stage: &Stage, quarter: [i64; 2]) {
-        let [columns, rows] =
-            [(&self.columns, quarter[0]), (&self.rows, quarter[1])].map(|(range, rest)| {
-                let first = range.start + READS;
-                let first = first + (rest - first).rem_euclid(2);
-                (first..range.end - READS).step_by(2)
-            });
-        let rows: Vec<i64> = rows.collect();
-        let corrected = parallel::map(rows.len(), |row| {
-            let place = |column| self.corrected(stage, [column, rows[row]]);
-            columns.clone().map(place).collect::<Vec<_>>()
-        });
-        let width = self.columns.end - self.columns.start;
-        for (row, places) in rows.into_iter().zip(corrected) {
-            let line = ((row - self.rows.start) * width) as usize;
-            for (column, place) in columns.clone().zip(places) {
-                self.places[line + (column - self.columns.start) as usize] = narrow(place);
+    /// The place of a pixel.
+    #[inline]
+    pub(super) fn at(&self, pixel: [i64; 2]) -> [i64; 2] {
+        let [column, row] = &self.places[self.index(pixel)];
+        // Of a pixel that another thread writes, the board makes an order.
+        [column, row].map(|at| at.load(Ordering::Relaxed).into())
+    }
+
+    /// Corrects quarters of the pixels one after the other, but those pixels from which not all is here that is read.
+    fn correct(&self, stage: &Stage, quarters: &[[i64; 2]]) {
+        let turns = self.turns(quarters);
+        let mut workers = vec![(); parallel::n_threads()];
+        let board = Board::new(0..turns.len(), workers.len());
+        parallel::together(&mut workers, |thread, ()| {
+            while let Some(turn) = board.take(thread) {
+                let Turn { quarter, row, wait } = turns[turn];
+                board.wait(wait);
+                for column in odd_or_even(&self.columns, quarter[0]) {
+                    let place = narrow(self.corrected(stage, [column, row]));
+                    for (to, at) in self.places[self.index([column, row])].iter().zip(place) {
+                        to.store(at, Ordering::Relaxed);
+                    }
+                }
             }
+        });
+    }
+
+    /// The rows of quarters. Each waits for those of the quarter before it that it reads, and that read it.
+    fn turns(&self, quarters: &[[i64; 2]]) -> Vec<Turn> {
+        let mut turns: Vec<Turn> = Vec::new();
+        let mut before = 0..0;
+        for &quarter in quarters {
+            let first = turns.len();
+            for row in odd_or_even(&self.rows, quarter[1]) {
+                let is_near = |turn: &Turn| turn.row <= row + READS;
+                let wait = before.start + turns[before.clone()].partition_point(is_near);
+                turns.push(Turn { quarter, row, wait });
+            }
+            before = first..turns.len();
         }
+        turns
     }
 
     /// The place around which the exemplar looks most like the texture around a pixel. Of equally good ones the first.
