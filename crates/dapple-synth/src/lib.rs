@@ -53,7 +53,7 @@
 //! large or regular in an exemplar, such as courses of bricks, goes on.
 //!
 //! Guides ([`Exemplar::with_guides`]) say where in a texture which part of the exemplar goes: how light it is, so that the
-//! texture shows a picture; or which of several images, which lie [`SideBySide`].
+//! texture shows a picture; or which of several images, which lie [`SideBySide`]. There each may lie [`Turned`], too.
 //!
 //! # The paper's sections
 //!
@@ -147,6 +147,7 @@ mod sites;
 mod solve;
 mod surface_texture;
 mod sweep;
+mod turned;
 mod synthesizer;
 mod turns;
 mod usage;
@@ -180,4 +181,5 @@ pub use sites::{
 };
 pub use surface_texture::SurfaceTexture;
 pub use sweep::Sweep;
+pub use turned::Turned;
 pub use synthesizer::{Synthesizer, synthesize};
