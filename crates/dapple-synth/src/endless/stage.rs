@@ -54,6 +54,8 @@ pub(super) struct Stage {
     similar: Vec<u32>,
     /// What it costs in a match to go on in each part of the exemplar.
     pub(super) costs: Costs,
+    /// What it costs in a match to repeat what lies beside a pixel.
+    pub(super) repetition_cost: f32,
 }
 
 /// The levels of an exemplar, the finest first.
@@ -79,6 +81,7 @@ pub(super) fn stages(exemplar: &Exemplar, n_levels: usize) -> Result<Vec<Stage>,
             step,
             similar: Vec::new(),
             costs: Costs::default(),
+            repetition_cost: 0.0,
         });
     }
     // Never more is left out than of the next coarser level, so that the pixels that its texture has are usable.
