@@ -9,6 +9,8 @@ mod alike;
 #[cfg(feature = "peers")]
 mod beside_flat;
 mod drawings;
+#[cfg(feature = "peers")]
+mod features;
 mod matching;
 mod on_surface;
 mod scene;
@@ -25,6 +27,8 @@ use anyhow::Result;
 pub(crate) fn run(bench: &mut Bench) -> Result<()> {
     #[cfg(feature = "peers")]
     beside_flat::run(bench)?;
+    #[cfg(feature = "peers")]
+    features::run(bench)?;
     threads::run(bench)?;
     table_1::run(bench)?;
     steps::run(bench)?;

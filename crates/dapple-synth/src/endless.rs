@@ -27,6 +27,7 @@ use crate::options::REGULAR;
 use crate::{Edges, Exemplar, PlaneTexture, SynthError, SynthErrorKind};
 use core::ops::ControlFlow;
 use dapple_hash::Seed;
+use evenness::REPETITION;
 use stage::Stage;
 
 /// The most levels.
@@ -120,8 +121,9 @@ impl Endless {
         }
         let stages = stage::stages(exemplar, n_levels as usize)?;
         let is_tile = exemplar.edges == Edges::Wrap && exemplar.usable.is_none();
+        let is_regular = exemplar.regularity() > REGULAR;
         let mut texture = Self {
-            is_lattice: is_tile && exemplar.regularity() > REGULAR,
+            is_lattice: is_tile && is_regular,
             size: exemplar.size,
             edges: exemplar.edges,
             seed: options.seed,
@@ -131,7 +133,7 @@ impl Endless {
         };
         // Copies of what repeats are even, and moving it would break it.
         if !texture.is_lattice {
-            texture.even_out();
+            texture.even_out(if is_regular { 0.0 } else { REPETITION });
         }
         Ok(texture)
     }

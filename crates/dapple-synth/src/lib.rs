@@ -56,7 +56,7 @@
 //! this one, and [`MeshExemplar::repair`] makes a part of its own texture again.
 //!
 //! Guides ([`Exemplar::with_guides`]) say where in a texture which part of the exemplar goes: how light it is, so that the
-//! texture shows a picture; or which of several images, which lie [`SideBySide`].
+//! texture shows a picture; or which of several images, which lie [`SideBySide`]. There each may lie [`Turned`], too.
 //!
 //! # The paper's sections
 //!
@@ -153,6 +153,7 @@ mod solve;
 mod surface_texture;
 mod sweep;
 mod synthesizer;
+mod turned;
 mod turns;
 mod usage;
 mod visit;
@@ -187,3 +188,4 @@ pub use sites::{
 pub use surface_texture::SurfaceTexture;
 pub use sweep::Sweep;
 pub use synthesizer::{Synthesizer, synthesize};
+pub use turned::Turned;

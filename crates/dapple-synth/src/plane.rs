@@ -12,6 +12,7 @@
 //! in slanted lines instead, which change the texture no more than another seed and can be visited on all cores.
 
 mod enlarge;
+mod pieces;
 mod repair;
 mod tile;
 

@@ -1,9 +1,12 @@
 //! Several images in one, for a texture of several examples.
 
+use crate::turned::{Turn, Turned};
 use crate::{SynthError, SynthErrorKind};
+use dapple_color::Normal;
 use dapple_raster::Raster;
 
-/// Where several images lie in one that holds them all: side by side, a column of no image between them.
+/// Where several images lie in one that holds them all: side by side, a column of no image between them. Each
+/// may lie there [turned and mirrored](Self::with_turned), too.
 ///
 /// Joined images and their joined maps make one exemplar. [`mask`](Self::mask) keeps what lies between the images out of
 /// textures; with the [`membership`](Self::membership) of each image as a [guide](crate::Exemplar::with_guides), the caller
@@ -28,8 +31,19 @@ use dapple_raster::Raster;
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SideBySide {
-    /// The first column of each image, and its size.
-    images: Vec<(u32, [u32; 2])>,
+    /// The sizes of the images.
+    images: Vec<[u32; 2]>,
+    parts: Vec<Part>,
+    size: [u32; 2],
+}
+
+/// An image in one of the ways in which it lies there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Part {
+    image: usize,
+    turn: Turn,
+    /// The first column.
+    first: u32,
     size: [u32; 2],
 }
 
@@ -41,26 +55,53 @@ impl SideBySide {
     /// [`SynthErrorKind::Count`] for no image, and [`SynthErrorKind::Range`] for a width of all together that is not from 1
     /// to 2^31.
     pub fn new(sizes: &[[u32; 2]]) -> Result<Self, SynthError> {
-        if sizes.is_empty() {
+        Self::laid_out(sizes, Turned::None)
+    }
+
+    /// The layout of the same images, each turned and mirrored in all the given ways: those of the first image come first,
+    /// beginning with the image as it is.
+    ///
+    /// # Errors
+    ///
+    /// [`SynthErrorKind::Range`] for a width of all together that is more than 2^31.
+    pub fn with_turned(self, turned: Turned) -> Result<Self, SynthError> {
+        Self::laid_out(&self.images, turned)
+    }
+
+    fn laid_out(images: &[[u32; 2]], turned: Turned) -> Result<Self, SynthError> {
+        if images.is_empty() {
             return Err(SynthError::new(SynthErrorKind::Count {
                 what: "images side by side",
                 count: 0,
                 needed: "at least 1",
             }));
         }
+        let ways = turned.ways();
+        let of_image = |image: usize| ways.iter().map(move |&turn| (image, turn));
+        let ways = (0..images.len()).flat_map(of_image);
+        let sizes: Vec<_> = ways
+            .clone()
+            .map(|(image, turn)| turn.size(images[image]))
+            .collect();
         let width: u64 = sizes.iter().map(|size| u64::from(size[0])).sum();
         let width = width + sizes.len() as u64 - 1;
         let holds = (1..=1 << 31).contains(&width);
         SynthError::check(holds, "width of all images", width as f64, "from 1 to 2^31")?;
-        let mut images = Vec::with_capacity(sizes.len());
+        let mut parts = Vec::with_capacity(sizes.len());
         let mut first = 0;
-        for &size in sizes {
-            images.push((first, size));
+        for ((image, turn), &size) in ways.zip(&sizes) {
+            parts.push(Part {
+                image,
+                turn,
+                first,
+                size,
+            });
             first += size[0] + 1;
         }
         let height = sizes.iter().map(|size| size[1]).max().unwrap_or(0);
         Ok(Self {
-            images,
+            images: images.to_vec(),
+            parts,
             size: [width as u32, height],
         })
     }
@@ -78,16 +119,21 @@ impl SideBySide {
     /// If there is no such image.
     #[must_use]
     pub fn size_of(&self, image: usize) -> [u32; 2] {
-        self.images[image].1
+        self.images[image]
     }
 
     /// The image that a pixel belongs to, from 0; nothing between them and below the lower ones.
     #[must_use]
-    pub fn image_at(&self, [column, row]: [u32; 2]) -> Option<usize> {
-        let is_within = |&(first, size): &(u32, [u32; 2])| {
-            (first..first + size[0]).contains(&column) && row < size[1]
+    pub fn image_at(&self, place: [u32; 2]) -> Option<usize> {
+        self.part_at(place).map(|part| part.image)
+    }
+
+    /// The part that a pixel belongs to.
+    fn part_at(&self, [column, row]: [u32; 2]) -> Option<&Part> {
+        let is_within = |part: &&Part| {
+            (part.first..part.first + part.size[0]).contains(&column) && row < part.size[1]
         };
-        self.images.iter().position(is_within)
+        self.parts.iter().find(is_within)
     }
 
     /// All images in one, with `between` where no image is.
@@ -108,14 +154,30 @@ impl SideBySide {
                 needed: "as many as the layout has",
             }));
         }
-        for (image, &(_, size)) in images.iter().zip(&self.images) {
+        for (image, &size) in images.iter().zip(&self.images) {
             image.check_same_size(size)?;
         }
         Ok(Raster::from_fn(self.size, |column, row| {
-            match self.image_at([column, row]) {
-                Some(at) => images[at].row(row)[(column - self.images[at].0) as usize],
-                None => between,
-            }
+            let Some(part) = self.part_at([column, row]) else {
+                return between;
+            };
+            let place = [column - part.first, row];
+            let [column, row] = part.turn.pixel(place, self.images[part.image]);
+            images[part.image].row(row)[column as usize]
+        })?)
+    }
+
+    /// All normal maps in one, with green up, turned as the images are; flat where no image is.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`join`](Self::join).
+    pub fn join_normals(&self, images: &[&Raster<Normal>]) -> Result<Raster<Normal>, SynthError> {
+        let joined = self.join(images, Normal::FLAT)?;
+        Ok(Raster::from_fn(self.size, |column, row| {
+            let normal = joined.row(row)[column as usize];
+            let part = self.part_at([column, row]);
+            part.map_or(normal, |part| part.turn.normal(normal))
         })?)
     }
 

@@ -8,29 +8,36 @@ use dapple_color::LinearRgb;
 use dapple_raster::Raster;
 use std::hint::black_box;
 use texture_synthesis::image::{DynamicImage, Rgba, RgbaImage};
-use texture_synthesis::{Dims, Example, Session};
+use texture_synthesis::{Dims, Example, Session, SessionBuilder};
 
 /// Makes a flat square image that looks like an exemplar; returns the processor time in seconds and the image.
 pub(crate) fn synthesize(
     exemplar: &Raster<LinearRgb>,
     side: u32,
 ) -> Result<(f64, Raster<LinearRgb>)> {
-    let [width, height] = exemplar.size();
-    let image = RgbaImage::from_fn(width, height, |column, row| {
-        let [red, green, blue] = exemplar.row(row)[column as usize].to_srgb::<u8>();
-        Rgba([red, green, blue, u8::MAX])
-    });
-    let example = Example::new(DynamicImage::ImageRgba8(image));
-    let start = ProcessTime::now();
-    let session = Session::builder()
+    let example = Example::new(image(exemplar));
+    run(Session::builder()
         .add_example(example)
-        .seed(1)
-        .output_size(Dims::square(side))
-        .max_thread_count(1)
-        .build()?;
+        .output_size(Dims::square(side)))
+}
+
+/// An image in the form of the peer.
+pub(crate) fn image(colors: &Raster<LinearRgb>) -> DynamicImage {
+    let [width, height] = colors.size();
+    DynamicImage::ImageRgba8(RgbaImage::from_fn(width, height, |column, row| {
+        let [red, green, blue] = colors.row(row)[column as usize].to_srgb::<u8>();
+        Rgba([red, green, blue, u8::MAX])
+    }))
+}
+
+/// Makes an image as a session says; returns the processor time in seconds and the image.
+pub(crate) fn run(session: SessionBuilder<'_>) -> Result<(f64, Raster<LinearRgb>)> {
+    let start = ProcessTime::now();
+    let session = session.seed(1).max_thread_count(1).build()?;
     let made = black_box(session.run(None).into_image()).to_rgba8();
     let seconds = start.elapsed().as_secs_f64();
-    let colors = Raster::from_fn([side; 2], |column, row| {
+    let (width, height) = made.dimensions();
+    let colors = Raster::from_fn([width, height], |column, row| {
         let [red, green, blue, _] = made.get_pixel(column, row).0;
         LinearRgb::from_srgb([red, green, blue])
     })?;

@@ -3,6 +3,7 @@
 mod corners;
 mod displace;
 mod guides;
+mod inspect;
 mod material;
 mod options;
 mod plane;
@@ -28,6 +29,7 @@ Examples:
   dapple synth grass.png --size 256 --wrap both -o meadow.png
   dapple synth grass.png --size 128 --at 4096,-128 -o far.png
   dapple synth photo.png --repair scratch.png -o clean.png
+  dapple synth stones.png --turned all --size 256 --pieces pieces.png -o yard.png
   dapple synth grass.png --size 256 --sources meadow_places.exr -o meadow.png
   dapple synth sand.png --replay places.exr -o desert.png
   dapple synth stones.png --guide photo.png -o mosaic.png
@@ -82,9 +84,9 @@ pub(crate) struct Args {
     region: Option<Region>,
 
     /// Use only those pixels of the example at which this image, of its size, is white. Neighborhoods with other pixels are
-    /// not used either.
+    /// not used either. Of several examples, give one for each, in their order.
     #[arg(long, value_name = "IMAGE")]
-    mask: Option<PathBuf>,
+    mask: Vec<PathBuf>,
 
     #[command(flatten)]
     #[serde(flatten)]

@@ -21,6 +21,7 @@ mod shards;
 mod studio;
 mod support;
 mod synthesis;
+mod turned_examples;
 mod watch;
 mod whole_materials;
 mod words;

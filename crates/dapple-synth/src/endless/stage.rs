@@ -54,6 +54,8 @@ pub(crate) struct Stage {
     similar: Vec<u32>,
     /// What it costs in a match to go on in each part of the exemplar.
     pub(crate) costs: Costs,
+    /// What it costs in a match to repeat what lies beside a pixel.
+    pub(super) repetition_cost: f32,
 }
 
 /// The levels of an exemplar, the finest first.
@@ -226,6 +228,7 @@ impl Stage {
             step,
             similar: Vec::new(),
             costs: Costs::default(),
+            repetition_cost: 0.0,
         };
         stage.similar = stage.most_similar();
         stage

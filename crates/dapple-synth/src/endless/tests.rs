@@ -107,7 +107,24 @@ impl Naive<'_> {
             .collect();
         let similar = coherent.iter().filter_map(|&place| stage.similar(place));
         let candidates = coherent.iter().copied().chain(similar);
-        let distance = |place: [i64; 2]| stage.distance_sq(&around, place) + stage.costs.of(place);
+        let steps = (-2..=2).flat_map(|y: i64| (-2..=2).map(move |x: i64| [x, y]));
+        let near = steps.filter(|step| *step != [0, 0]).map(|[x, y]| {
+            let should_be = x.abs().max(y.abs()) as f64 * h as f64;
+            (goes_on([x, y], [0, 0]), should_be)
+        });
+        let near: Vec<_> = near.collect();
+        let distance = |place: [i64; 2]| {
+            let repeats = near.iter().any(|(other, should_be)| {
+                let apart = [0, 1].map(|axis| (other[axis] - place[axis]).abs() as f64);
+                apart[0].max(apart[1]) < should_be / 2.0
+            });
+            let cost = stage.costs.of(place);
+            let distance_sq = stage.distance_sq(&around, place) + cost;
+            match repeats {
+                true => distance_sq + stage.repetition_cost,
+                false => distance_sq,
+            }
+        };
         candidates
             .reduce(|best, other| {
                 if distance(other) < distance(best) {
@@ -266,6 +283,39 @@ fn costs_make_textures_have_all_parts_of_an_exemplar() {
     let [with, without] = [&texture, &free].map(uneven);
     // In photographs it is from a fifth to a half.
     assert!(with < 0.7 * without, "{with} with costs, {without} without");
+}
+
+#[test]
+fn what_lies_side_by_side_is_repeated_less_where_that_costs() {
+    let grain = |x: u32, y: u32| {
+        let cell = [x / 3, y / 3].map(i64::from);
+        unit_f32((hash2(Seed(1), cell, 0) >> 32) as u32)
+    };
+    let plane = Raster::from_fn([64, 64], grain).unwrap();
+    let exemplar = Exemplar::from_planes(&[(&plane, 1.0)], Edges::Cut).unwrap();
+    let texture = endless(&exemplar, 5, [None; 2]);
+    let mut free = texture.clone();
+    for stage in &mut free.stages {
+        assert!(stage.repetition_cost > 0.0);
+        stage.repetition_cost = 0.0;
+    }
+    // The pixels that have their source again at most 8 columns or rows away.
+    let n_repeated = |texture: &Endless| {
+        let made = window(texture, [0, 0], [128; 2]);
+        let source = |[x, y]: [i64; 2]| made.sources().row(y as u32)[x as usize];
+        let places = (8..120).flat_map(|y| (8..120).map(move |x| [x, y]));
+        let is_repeated = |&[x, y]: &[i64; 2]| {
+            let near = (-8..=8).flat_map(|down| (-8..=8).map(move |across| [across, down]));
+            let mut near = near.filter(|step| *step != [0, 0]);
+            near.any(|step| source([x + step[0], y + step[1]]) == source([x, y]))
+        };
+        places.filter(is_repeated).count()
+    };
+    let [with, without] = [&texture, &free].map(n_repeated);
+    assert!(
+        with < without / 2,
+        "{with} where it costs, {without} elsewhere"
+    );
 }
 
 #[test]

@@ -246,7 +246,10 @@ impl Area {
         let mut coherent = [best.1; 9];
         let mut n_coherent = 0;
         let mut compare = |place: [i64; 2]| {
-            let distance_sq = stage.distance_sq(&around, place) + stage.costs.of(place);
+            let mut distance_sq = stage.distance_sq(&around, place) + stage.costs.of(place);
+            if stage.repetition_cost > 0.0 && self.repeats(stage, [column, row], place) {
+                distance_sq += stage.repetition_cost;
+            }
             if distance_sq < best.0 {
                 best = (distance_sq, place);
             }
@@ -270,6 +273,18 @@ impl Area {
             }
         }
         best.1
+    }
+
+    /// Whether a place is less than half as far from that of a pixel beside the given one as the two pixels are from each
+    /// other.
+    #[inline]
+    fn repeats(&self, stage: &Stage, [column, row]: [i64; 2], place: [i64; 2]) -> bool {
+        let mut steps = (-READS..=READS).flat_map(|y| (-READS..=READS).map(move |x| [x, y]));
+        let farther = |a: i64, b: i64| a.abs().max(b.abs());
+        steps.any(|[x, y]| {
+            let other = self.at([column + x, row + y]);
+            2 * farther(other[0] - place[0], other[1] - place[1]) < farther(x, y) * stage.spacing
+        })
     }
 
     /// The features on the diagonals of a pixel: of each the mean of what it has and what two pixels beyond it, one along

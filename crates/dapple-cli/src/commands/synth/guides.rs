@@ -7,11 +7,12 @@ use super::reading::gray;
 use crate::args::Region;
 use crate::error::Hint;
 use crate::input::{self, Kind, Loaded};
+use crate::words::Word;
 use anyhow::Result;
 use dapple::mesh::{Model, Repair};
 use dapple::points::glam::DVec2;
 use dapple::raster::{Raster, Wrap};
-use dapple::synth::{SideBySide, Synthesizer};
+use dapple::synth::{SideBySide, Synthesizer, Turned};
 use dapple::tile::blur;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -22,8 +23,13 @@ use std::path::{Path, PathBuf};
 pub(super) struct GuideArgs {
     /// Another example beside the first; may be given several times. Every `--map` is then given once for each example, in the
     /// same order.
-    #[arg(long = "example", value_name = "IMAGE", conflicts_with_all = ["detail", "mask", "repair", "region"])]
+    #[arg(long = "example", value_name = "IMAGE", conflicts_with_all = ["detail", "region"])]
     pub(super) examples: Vec<PathBuf>,
+
+    /// Also take all examples mirrored or turned, with their maps and guides (normals have green up): for things that lie in
+    /// any direction, such as leaves and gravel.
+    #[arg(long, value_name = "HOW", value_parser = Word::<Turned>::all(), default_value_t, conflicts_with = "detail")]
+    pub(super) turned: Turned,
 
     /// Which example goes where: black is the first, white the last, and grays are those between. A texture in the plane has
     /// the size of this image; on a mesh it is read at the mesh's own texture coordinates.

@@ -2,13 +2,16 @@
 
 use crate::args::{Axes, Numbers, Size, seed};
 use crate::error::{Hint, usage};
-use crate::input::mesh_endings;
+use crate::input::{Loaded, mesh_endings};
 use crate::words::Word;
 use anyhow::Result;
+use dapple::color::Code as _;
 use dapple::hash::Seed;
+use dapple::raster::Raster;
 use dapple::synth::{
     Axes as FieldAxes, Coherence, Edges, EndlessOptions, HierarchyOptions, Options,
 };
+use dapple::tile::Map;
 use serde::Serialize;
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -25,6 +28,37 @@ dapple::raster::named! {
         Uniform = "uniform",
         /// The mesh's own texture coordinates.
         Uv = "uv",
+    }
+}
+
+dapple::raster::named! {
+    /// A channel of an image.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub(super) enum Channel {
+        /// Red.
+        Red = "r",
+        /// Green.
+        Green = "g",
+        /// Blue.
+        Blue = "b",
+        /// Alpha.
+        Alpha = "a",
+    }
+}
+
+impl Channel {
+    /// The values of the channel in an image, as codes from 0 to 1; none where it has no such channel.
+    pub(super) fn of(self, image: &Loaded) -> Option<Raster<f32>> {
+        let at = match self {
+            Self::Red => 0,
+            Self::Green => 1,
+            Self::Blue => 2,
+            Self::Alpha => return image.alpha.clone(),
+        };
+        match &image.map {
+            Map::Color(colors) => Some(colors.map(|color| color.to_srgb::<u16>()[at].to_unit())),
+            Map::Value(_) | Map::Normal(_) => None,
+        }
     }
 }
 
@@ -66,9 +100,27 @@ pub(super) struct PlaneArgs {
     #[arg(long, value_name = "IMAGE", conflicts_with_all = ["size", "wrap", "evenness", "paper"])]
     pub(super) repair: Option<PathBuf>,
 
+    /// Make those pixels of the example again at which this channel of it is less than half, such as the transparent ones.
+    #[arg(long, value_name = "CHANNEL", value_parser = Word::<Channel>::all(), conflicts_with_all = ["repair", "replay", "method", "at", "size", "wrap", "evenness", "paper", "which", "guide"])]
+    pub(super) repair_channel: Option<Channel>,
+
     /// Also write where in the example each pixel is from: an OpenEXR image, red the column and green the row.
     #[arg(long, value_name = "FILE.exr")]
     pub(super) sources: Option<PathBuf>,
+
+    /// Also write an image in which every piece that is copied as a whole has a color of its own.
+    #[arg(long, value_name = "FILE")]
+    pub(super) pieces: Option<PathBuf>,
+
+    /// Also write an image of how unlike the texture around each pixel and the example around its source are: black where
+    /// the example goes on, the lighter the more a border of pieces can be seen.
+    #[arg(long, value_name = "FILE")]
+    pub(super) differences: Option<PathBuf>,
+
+    /// Also write an image of which of several examples each pixel is from, as --which has them: black the first, white the
+    /// last.
+    #[arg(long, value_name = "FILE", requires = "examples")]
+    pub(super) origins: Option<PathBuf>,
 
     /// Take pixels of the example from where these sources of another texture say, and match nothing: another example of
     /// the same size, or its maps, laid out in the same way.
@@ -221,7 +273,11 @@ impl PlaneArgs {
             ("method", self.method.is_some()),
             ("at", self.at.is_some()),
             ("repair", self.repair.is_some()),
+            ("repair-channel", self.repair_channel.is_some()),
             ("sources", self.sources.is_some()),
+            ("pieces", self.pieces.is_some()),
+            ("differences", self.differences.is_some()),
+            ("origins", self.origins.is_some()),
             ("replay", self.replay.is_some()),
         ])
     }

@@ -2,7 +2,7 @@
 
 use super::options::{MethodName, PlaneArgs};
 use super::reading::Input;
-use super::{Args, STEPS, advise, shown};
+use super::{Args, STEPS, advise, inspect, shown};
 use crate::encode::{Format, map_raster};
 use crate::error::{Exit, Hint, usage};
 use crate::input;
@@ -35,34 +35,41 @@ pub(super) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let output = job.claim(&target)?;
     let map_outputs = args.claim_maps(&target, format.ending(), &mut job)?;
     let sources = claim_sources(args.plane.sources.as_deref(), &mut job)?;
+    let inspections = inspect::claim(&args.plane, &mut job)?;
     job.claim_sidecar(&target)?;
+    let input = args.read()?;
     let Input {
         base,
         maps,
         exemplar,
-        hole,
         guides,
-    } = args.read()?;
+        ..
+    } = &input;
     let progress = Progress::bar("synthesizing", STEPS.into(), context);
     let options = args.matching.options(&args.surface);
     let edges = args.plane.edges();
-    let texture = match (&args.plane.replay, &hole) {
+    let texture = match (&args.plane.replay, &input.hole) {
         (Some(path), _) => {
             let sources = read_sources(path)?;
             let example = exemplar.size();
             PlaneTexture::from_sources(sources, edges, example, exemplar.edges())
         }
-        (None, Some(hole)) => PlaneTexture::identity(&exemplar)
-            .and_then(|whole| whole.repair(&exemplar, hole, &options, shown(&progress))),
+        (None, Some(hole)) => {
+            // The first of several examples begins at the first pixel.
+            let sources = Raster::from_fn(hole.size(), |column, row| [column, row])?;
+            let edges = [exemplar.edges(); 2];
+            PlaneTexture::from_sources(sources, edges, exemplar.size(), exemplar.edges())
+                .and_then(|whole| whole.repair(exemplar, hole, &options, shown(&progress)))
+        }
         (None, None) if !guides.is_empty() => {
             let targets: Vec<_> = guides.iter().map(|guide| &guide.target).collect();
-            synthesize_plane_guided(&exemplar, &targets, edges, &options, shown(&progress))
+            synthesize_plane_guided(exemplar, &targets, edges, &options, shown(&progress))
         }
-        (None, None) => grow(args, &exemplar, &progress),
+        (None, None) => grow(args, exemplar, &progress),
     };
     let texture = texture.map_err(advise)?;
     drop(progress);
-    let examples = [&base].into_iter().chain(maps.iter().map(|(_, map)| map));
+    let examples = [base].into_iter().chain(maps.iter().map(|(_, map)| map));
     for (output, example) in [output].into_iter().chain(map_outputs).zip(examples) {
         let map = follow(&texture, &example.map)?;
         let alpha = example.alpha.as_ref().map(|alpha| texture.transfer(alpha));
@@ -73,6 +80,9 @@ pub(super) fn run(args: &Args, context: &Context) -> Result<Exit> {
         let place = |&[column, row]: &[u32; 2]| LinearRgb::new(column as f32, row as f32, 0.0);
         let places = Map::Color(texture.sources().map(place));
         job.write_map(output, &places, Format::Exr)?;
+    }
+    for inspection in inspections {
+        inspection.write(&texture, &input, args.guides.examples.len(), &mut job)?;
     }
     job.finish(args, Value::Null)?;
     Ok(Exit::Done)

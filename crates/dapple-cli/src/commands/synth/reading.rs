@@ -8,7 +8,7 @@ use crate::error::{Hint, usage};
 use crate::exemplar::exemplar_of;
 use crate::input::{self, Kind, Loaded};
 use anyhow::{Result, bail};
-use dapple::color::{LinearRgb, Normal};
+use dapple::color::LinearRgb;
 use dapple::raster::Raster;
 use dapple::recipe::{ImageAlpha, MapKind};
 use dapple::synth::{Edges, Exemplar, SideBySide, SynthError};
@@ -21,6 +21,8 @@ pub(super) struct Input {
     pub(super) base: Loaded,
     /// The maps that follow, with their names.
     pub(super) maps: Vec<(String, Loaded)>,
+    /// Where the examples lie in it.
+    pub(super) layout: SideBySide,
     pub(super) exemplar: Exemplar,
     /// The pixels that are made again, if the example is repaired.
     pub(super) hole: Option<Raster<bool>>,
@@ -37,28 +39,15 @@ impl Args {
         let examples = paths.iter().map(|path| self.load(path, Kind::ByChannels));
         let examples: Vec<_> = examples.collect::<Result<_>>()?;
         let sizes: Vec<_> = examples.iter().map(|example| example.map.size()).collect();
-        let layout = SideBySide::new(&sizes)?;
+        let layout = SideBySide::new(&sizes)?.with_turned(self.guides.turned)?;
+        let hole = self.read_hole(&examples[0])?;
         let example = joined(&layout, examples)?;
-        let edges = match paths.len() {
-            1 => self.matching.edges,
-            _ => Edges::Cut,
+        let edges = match layout.size() == sizes[0] {
+            true => self.matching.edges,
+            false => Edges::Cut,
         };
         let mut exemplar = exemplar_of(&example.map, edges).map_err(advise)?;
-        let hole = self.plane.repair.as_deref();
-        let hole = hole
-            .map(|path| self.load_mask(path, exemplar.size()))
-            .transpose()?;
-        let mask = match &self.mask {
-            Some(path) => Some(self.load_mask(path, exemplar.size())?),
-            None if paths.len() > 1 => Some(layout.mask()?),
-            None => None,
-        };
-        if mask.is_some() || hole.is_some() {
-            let is_usable = |column: u32, row: u32| {
-                let is_white = |mask: &Raster<bool>| mask.row(row)[column as usize];
-                mask.as_ref().is_none_or(is_white) && !hole.as_ref().is_some_and(is_white)
-            };
-            let usable = Raster::from_fn(exemplar.size(), is_usable)?;
+        if let Some(usable) = self.read_masks(&paths, &layout, hole.as_ref())? {
             exemplar = exemplar.with_mask(&usable)?;
         }
         let guides = self.read_guides(&layout, &example)?;
@@ -77,6 +66,7 @@ impl Args {
             exemplar: self.with_weighted(exemplar, &maps).map_err(advise)?,
             base,
             maps,
+            layout,
             hole,
             guides,
         })
@@ -122,7 +112,7 @@ impl Args {
                     );
                     return Err(usage(message).hint(input::ALPHA_HINT));
                 }
-                let size = if shown.len() > 1 {
+                let size = if self.detail.is_none() {
                     layout.size_of(image)
                 } else {
                     size
@@ -154,11 +144,60 @@ impl Args {
         Ok(exemplar)
     }
 
-    /// Reads a mask as large as the example: whether its pixels are nearer to white than to black.
-    fn load_mask(&self, path: &Path, size: [u32; 2]) -> Result<Raster<bool>> {
+    /// Which pixels of the examples textures may have, if not all: those of their masks that are not made again.
+    fn read_masks(
+        &self,
+        paths: &[&PathBuf],
+        layout: &SideBySide,
+        hole: Option<&Raster<bool>>,
+    ) -> Result<Option<Raster<bool>>> {
+        let is_one = layout.size() == layout.size_of(0);
+        if self.mask.is_empty() && hole.is_none() && is_one {
+            return Ok(None);
+        }
+        if !self.mask.is_empty() && self.mask.len() != paths.len() {
+            let message = format!("masks: {}; examples: {}", self.mask.len(), paths.len());
+            return Err(usage(message).hint("give --mask once for each example, in their order"));
+        }
+        let mut masks = Vec::new();
+        for (image, path) in paths.iter().enumerate() {
+            let size = layout.size_of(image);
+            masks.push(match self.mask.get(image) {
+                Some(mask) => self.load_mask(mask, path, size)?,
+                None => Raster::filled(size, true)?,
+            });
+        }
+        if let Some(hole) = hole {
+            let is_usable = |&is_usable: &bool, &is_made: &bool| is_usable && !is_made;
+            masks[0] = masks[0].zip_map(hole, is_usable)?;
+        }
+        let masks: Vec<_> = masks.iter().collect();
+        Ok(Some(layout.join(&masks, false)?))
+    }
+
+    /// Reads which pixels of the first example are made again.
+    fn read_hole(&self, example: &Loaded) -> Result<Option<Raster<bool>>> {
+        if let Some(path) = &self.plane.repair {
+            return self
+                .load_mask(path, &self.exemplar, example.map.size())
+                .map(Some);
+        }
+        let Some(channel) = self.plane.repair_channel else {
+            return Ok(None);
+        };
+        let values = channel.of(example).ok_or_else(|| {
+            let name = input::name(&self.exemplar);
+            let error = usage(format!("{name} has no channel {channel}"));
+            error.hint("give a mask with --repair FILE")
+        })?;
+        Ok(Some(values.map(|&value| value < 0.5)))
+    }
+
+    /// Reads a mask as large as an example: whether its pixels are nearer to white than to black.
+    fn load_mask(&self, path: &Path, example: &Path, size: [u32; 2]) -> Result<Raster<bool>> {
         let over_black = Alpha::Without(ImageAlpha::Over(LinearRgb::default()));
         let mask = input::map_with_alpha(path, Kind::ByChannels, self.region, over_black)?.map;
-        input::check_size(path, mask.size(), &self.exemplar, size)
+        input::check_size(path, mask.size(), example, size)
             .hint("a mask of an example has its size")?;
         match mask {
             Map::Value(values) => Ok(values.map(|&value| value >= 0.5)),
@@ -204,9 +243,9 @@ pub(super) fn gray(image: &Loaded) -> Result<Raster<f32>> {
     }
 }
 
-/// Images side by side. If some are gray and others colors, all are colors.
+/// Images side by side. If some are gray and others colors, all are colors. A larger version of one image stays as it is.
 fn joined(layout: &SideBySide, mut images: Vec<Loaded>) -> Result<Loaded> {
-    if images.len() == 1 {
+    if layout.size() == layout.size_of(0) {
         return Ok(images.remove(0));
     }
     let is_deep = images.iter().any(|image| image.is_deep);
@@ -219,7 +258,7 @@ fn joined(layout: &SideBySide, mut images: Vec<Loaded>) -> Result<Loaded> {
         Map::Normal(normals) => Some(normals),
         _ => None,
     }) {
-        Map::Normal(layout.join(&normals, Normal::FLAT)?)
+        Map::Normal(layout.join_normals(&normals)?)
     } else {
         let colors = images.iter().map(|image| match &image.map {
             Map::Value(values) => values.map(|&value| image.color_of(value)),

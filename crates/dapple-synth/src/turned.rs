@@ -1,0 +1,85 @@
+//! Turned and mirrored images, for exemplars whose things lie in any direction.
+
+use dapple_color::Normal;
+
+dapple_raster::named! {
+    /// The ways in which each image lies in a [layout](crate::SideBySide): a texture of it has what the image shows in as many
+    /// directions.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    pub enum Turned {
+        /// As it is.
+        #[default]
+        None = "none",
+        /// As it is and mirrored, left for right.
+        Mirror = "mirror",
+        /// As it is, and turned by one, two and three quarters.
+        Quarters = "quarters",
+        /// Turned by quarters and mirrored: eight ways.
+        All = "all",
+    }
+}
+
+/// A way to lay an image on a grid of pixels: mirrored or not, left for right, and then turned clockwise.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Turn {
+    is_mirrored: bool,
+    quarters: u8,
+}
+
+impl Turned {
+    /// The ways, that of the image itself first.
+    pub(crate) fn ways(self) -> Vec<Turn> {
+        let (is_mirrored, quarters): (&[bool], _) = match self {
+            Self::None => (&[false], 0..1),
+            Self::Mirror => (&[false, true], 0..1),
+            Self::Quarters => (&[false], 0..4),
+            Self::All => (&[false, true], 0..4),
+        };
+        let ways = is_mirrored.iter().flat_map(|&is_mirrored| {
+            quarters.clone().map(move |quarters| Turn {
+                is_mirrored,
+                quarters,
+            })
+        });
+        ways.collect()
+    }
+}
+
+impl Turn {
+    /// The size of an image that lies so.
+    pub(crate) fn size(self, [width, height]: [u32; 2]) -> [u32; 2] {
+        match self.quarters % 2 {
+            0 => [width, height],
+            _ => [height, width],
+        }
+    }
+
+    /// The pixel of an image of a size that comes to lie at a place within it.
+    pub(crate) fn pixel(self, [x, y]: [u32; 2], [width, height]: [u32; 2]) -> [u32; 2] {
+        let [column, row] = match self.quarters {
+            0 => [x, y],
+            1 => [y, height - 1 - x],
+            2 => [width - 1 - x, height - 1 - y],
+            _ => [width - 1 - y, x],
+        };
+        match self.is_mirrored {
+            true => [width - 1 - column, row],
+            false => [column, row],
+        }
+    }
+
+    /// A normal, with green up, as it lies so.
+    pub(crate) fn normal(self, Normal { x, y, z }: Normal) -> Normal {
+        let x = if self.is_mirrored { -x } else { x };
+        let [x, y] = match self.quarters {
+            0 => [x, y],
+            1 => [y, -x],
+            2 => [-x, -y],
+            _ => [-y, x],
+        };
+        Normal { x, y, z }
+    }
+}
+
+#[cfg(test)]
+mod tests;
