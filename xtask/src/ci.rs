@@ -24,7 +24,7 @@ pub(crate) enum Step {
     Doc,
     /// The house rules, as in `cargo xtask tidy`.
     Tidy,
-    /// Every published crate alone: without features, with each of its features, and its tests without threads.
+    /// Every published crate alone: without features, with each of its features, and the tests of threads without them.
     Features,
     /// The package of every published crate, as a registry would get it.
     Package,
@@ -113,8 +113,9 @@ fn run(shell: &Shell, step: Step) -> anyhow::Result<()> {
     Ok(command.run()?)
 }
 
-/// Checks every published crate alone, without features and with each of its features. Crates with the feature `rayon`
-/// are also tested without it.
+/// Checks every published crate alone, without features and with each of its features. A crate whose code is another
+/// without `rayon` is also tested without it; the code of the others is the same, and their tests compare one thread
+/// with several.
 fn features(shell: &Shell) -> anyhow::Result<()> {
     let workspace = Workspace::read(shell)?;
     for member in workspace.members.iter().filter(|member| member.published) {
@@ -122,11 +123,12 @@ fn features(shell: &Shell) -> anyhow::Result<()> {
         for set in feature_sets(member) {
             cmd!(
                 shell,
-                "cargo clippy --quiet --package {package} --no-default-features --features {set} -- -D warnings"
+                "cargo clippy --quiet --no-deps --package {package} --no-default-features --features {set} -- -D warnings"
             )
             .run()?;
         }
-        if member.features.iter().any(|feature| feature == "rayon") {
+        let rayon = member.features.get("rayon");
+        if rayon.is_some_and(|parts| !is_passed_on(parts)) {
             cmd!(
                 shell,
                 "cargo test --quiet --package {package} --no-default-features --tests"
@@ -148,18 +150,24 @@ fn package(shell: &Shell) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Returns the feature sets to build: no feature, each feature alone, and all of them.
+/// Returns the feature sets to build: no feature, each feature alone that is more than those of other crates, and all.
 fn feature_sets(member: &Member) -> Vec<String> {
-    let own = member
-        .features
-        .iter()
-        .filter(|feature| *feature != "default");
+    let features = member.features.iter();
+    let features: Vec<_> = features.filter(|(name, _)| *name != "default").collect();
+    let own = features.iter().filter(|(_, parts)| !is_passed_on(parts));
     let mut sets = vec![String::new()];
-    sets.extend(own.clone().cloned());
-    if own.clone().count() > 1 {
-        sets.push(own.cloned().collect::<Vec<_>>().join(","));
+    sets.extend(own.map(|(name, _)| (*name).clone()));
+    let names: Vec<&str> = features.iter().map(|(name, _)| name.as_str()).collect();
+    let all = names.join(",");
+    if sets.last() != Some(&all) {
+        sets.push(all);
     }
     sets
+}
+
+/// Returns whether a feature only turns on features of other crates, so that the code of its crate is the same without it.
+fn is_passed_on(parts: &[String]) -> bool {
+    parts.iter().all(|part| part.contains('/'))
 }
 
 /// Prints what is skipped, or fails if `DAPPLE_NO_SKIP=1` is set.

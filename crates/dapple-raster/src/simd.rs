@@ -14,7 +14,9 @@ pub use crate::{simd_baseline as baseline, simd_dispatch as dispatch};
 /// Runs an operation at a SIMD level, as `fearless_simd::dispatch!` does, compiled for fewer levels.
 ///
 /// On x86-64 these are SSE2, AVX2 and AVX-512. Nearly all processors with SSE4.2 have AVX2, and to compile everything a
-/// fourth time for the others would take a quarter of the time that it takes to compile.
+/// fourth time for the others would take a quarter of the time that it takes to compile. Builds with debug assertions
+/// have AVX-512 only with `--cfg all_simd_levels`, for the same reason: their tests wait for the compiler, not for the
+/// kernels.
 #[doc(hidden)]
 #[cfg(target_arch = "x86_64")]
 #[macro_export]
@@ -22,20 +24,42 @@ macro_rules! simd_dispatch {
     ($level:expr, $simd:ident => $op:expr) => {{
         use $crate::simd::fearless_simd::Simd as _;
         let level: $crate::simd::fearless_simd::Level = $level;
-        if let Some($simd) = level.as_avx512() {
-            $simd.vectorize(
-                #[inline(always)]
-                || $op,
-            )
-        } else if let Some($simd) = level.as_avx2() {
+        $crate::simd_avx512!(level, $simd => $op, else if let Some($simd) = level.as_avx2() {
             $simd.vectorize(
                 #[inline(always)]
                 || $op,
             )
         } else {
             $crate::simd_baseline!($simd => $op)
-        }
+        })
     }};
+}
+
+/// Runs an operation with AVX-512, or what is there for the other levels.
+#[doc(hidden)]
+#[cfg(all(target_arch = "x86_64", any(not(debug_assertions), all_simd_levels)))]
+#[macro_export]
+macro_rules! simd_avx512 {
+    ($level:ident, $simd:ident => $op:expr, else $others:expr) => {
+        if let Some($simd) = $level.as_avx512() {
+            $simd.vectorize(
+                #[inline(always)]
+                || $op,
+            )
+        } else {
+            $others
+        }
+    };
+}
+
+/// Runs what is there for the other levels, since AVX-512 is not compiled.
+#[doc(hidden)]
+#[cfg(all(target_arch = "x86_64", debug_assertions, not(all_simd_levels)))]
+#[macro_export]
+macro_rules! simd_avx512 {
+    ($level:ident, $simd:ident => $op:expr, else $others:expr) => {
+        $others
+    };
 }
 
 /// Runs an operation at a SIMD level, as `fearless_simd::dispatch!` does.
@@ -81,36 +105,48 @@ static CHOSEN: AtomicUsize = AtomicUsize::new(BEST);
 /// The value of [`CHOSEN`] while no level is forced.
 const BEST: usize = usize::MAX;
 
-/// The SIMD level to use: the best of this machine, looked up once, unless [`for_every_level`] forces another.
+/// The SIMD level to use: the best that this machine has and [`dispatch`] is compiled for, looked up once, unless
+/// [`for_every_level`] forces another.
 #[inline]
 #[must_use]
 pub fn level() -> Level {
     static LEVEL: OnceLock<Level> = OnceLock::new();
     match CHOSEN.load(Ordering::Relaxed) {
-        BEST => *LEVEL.get_or_init(Level::new),
+        BEST => *LEVEL.get_or_init(best),
         index => levels()[index],
     }
 }
 
-/// The levels that this machine has, from the least to the best, looked up once.
+/// The best level that this machine has and [`dispatch`] is compiled for.
+fn best() -> Level {
+    let best = Level::new();
+    #[cfg(all(target_arch = "x86_64", debug_assertions, not(all_simd_levels)))]
+    if let Some(avx2) = best.as_avx2() {
+        return Level::Avx2(avx2);
+    }
+    best
+}
+
+/// The levels that this machine has and [`dispatch`] is compiled for, from the least to the best, looked up once.
 #[cold]
 fn levels() -> &'static [Level] {
     static LEVELS: OnceLock<Vec<Level>> = OnceLock::new();
     LEVELS.get_or_init(|| {
+        let best = best();
         let mut levels = vec![Level::baseline()];
-        let best = Level::new();
-        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        #[cfg(target_arch = "x86_64")]
         {
-            levels.extend(best.as_sse4_2().map(Level::Sse4_2));
             levels.extend(best.as_avx2().map(Level::Avx2));
+            levels.extend(best.as_avx512().map(Level::Avx512));
         }
+        #[cfg(not(target_arch = "x86_64"))]
         levels.push(best);
         levels
     })
 }
 
-/// Calls `check` for every level that this machine has, from the least to the best, for tests that all give the same
-/// bits.
+/// Calls `check` for every level that this machine has and [`dispatch`] is compiled for, from the least to the best, for
+/// tests that all give the same bits.
 ///
 /// Meanwhile [`level`] returns that level in all threads, so that code without a level as an argument is checked as
 /// well. Calls from several threads wait for each other; `check` must not call this function.
@@ -127,7 +163,7 @@ pub fn for_every_level(mut check: impl FnMut(Level)) {
 
 #[cfg(test)]
 mod tests {
-    use super::{for_every_level, level};
+    use super::{best, dispatch, for_every_level, level};
 
     #[test]
     fn every_level_is_used_in_all_threads() {
@@ -138,9 +174,23 @@ mod tests {
             assert_eq!(found.expect("a thread"), expected);
             names.push(expected);
         });
+        assert_eq!(names.last(), Some(&format!("{:?}", best())));
+    }
+
+    #[test]
+    fn every_level_is_the_one_that_is_dispatched() {
+        for_every_level(|level| {
+            let found = dispatch!(level, simd => simd.level());
+            assert_eq!(format!("{found:?}"), format!("{level:?}"));
+        });
+    }
+
+    #[cfg(all_simd_levels)]
+    #[test]
+    fn all_levels_end_with_the_best_of_the_machine() {
         assert_eq!(
-            names.last(),
-            Some(&format!("{:?}", fearless_simd::Level::new()))
+            format!("{:?}", best()),
+            format!("{:?}", fearless_simd::Level::new())
         );
     }
 }

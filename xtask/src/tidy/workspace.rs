@@ -32,8 +32,8 @@ pub(crate) struct Member {
     pub(crate) manifest: String,
     /// The names of its normal and build dependencies, inside and outside the workspace.
     pub(crate) dependencies: Vec<String>,
-    /// The names of its features.
-    pub(crate) features: Vec<String>,
+    /// Its features, each with what it turns on.
+    pub(crate) features: BTreeMap<String, Vec<String>>,
     /// Whether the package is meant for a registry.
     pub(crate) published: bool,
     /// The names of the files directly in its folder, sorted.
@@ -86,7 +86,7 @@ fn member(shell: &Shell, package: &Value) -> anyhow::Result<Member> {
     let dependencies = list(&package["dependencies"])
         .iter()
         .filter(|dependency| dependency["kind"] != "dev");
-    let features = package["features"].as_object().into_iter().flatten();
+    let features = package["features"].clone();
     Ok(Member {
         name: text(&package["name"])?,
         folder: from_root(shell, folder),
@@ -94,7 +94,7 @@ fn member(shell: &Shell, package: &Value) -> anyhow::Result<Member> {
         dependencies: dependencies
             .map(|dependency| text(&dependency["name"]))
             .collect::<Result<_, _>>()?,
-        features: features.map(|(name, _)| name.clone()).collect(),
+        features: serde_json::from_value(features)?,
         published: package["publish"].is_null(),
         files: files(shell, folder)?,
     })

@@ -444,8 +444,10 @@ fn a_gray_photograph_keeps_its_codes_on_a_mesh() {
     let values = codes.map(|&code| f32::from(code) / 255.0);
     write_gray_png(folder.path("gray.png"), &values, Depth::Eight).unwrap();
     let arguments = ["synth", "gray.png", "--mesh", "model.obj", "--sites", "600"];
-    for name in ["out.glb", "out.obj", "out.ply"] {
-        assert_done(&folder.run(&[&arguments[..], &["-o", name]].concat()), name);
+    let size = ["--texture-size", "256"];
+    for (name, size) in [("out.glb", &size[..]), ("out.obj", &size), ("out.ply", &[])] {
+        let arguments = [&arguments, size, &["-o", name]].concat();
+        assert_done(&folder.run(&arguments), name);
         let model = read_model(folder.path(name)).unwrap();
         let colors = match &model.material.base_color {
             Some(texture) => {

@@ -27,7 +27,7 @@ fn folder(name: &str) -> Folder {
 /// Covers the model of a folder with its checker, with more options.
 fn cover(folder: &Folder, more: &str) {
     let line = format!(
-        "synth checker.png --mesh model.obj --edges wrap --sites 600 --texture-size 256 {more}"
+        "synth checker.png --mesh model.obj --edges wrap --sites 400 --texture-size 128 {more}"
     );
     let words: Vec<_> = line.split_whitespace().collect();
     assert_done(&folder.run(&words), &line);
@@ -207,7 +207,7 @@ fn a_map_with_a_weight_is_matched_on_a_mesh_and_beside_a_larger_example() {
     write_gray_png(folder.path("large.png"), &twice, Depth::Eight).unwrap();
     let cover = |more: &str| {
         let line = format!(
-            "synth plain.png --mesh model.obj --sites 2000 --texture-size 256 --force -o out.glb {more}"
+            "synth plain.png --mesh model.obj --sites 1000 --texture-size 128 --force -o out.glb {more}"
         );
         assert_done(
             &folder.run(&line.split_whitespace().collect::<Vec<_>>()),
@@ -359,7 +359,9 @@ fn an_opaque_example_makes_an_opaque_material() {
         "holes.png --alpha drop",
         "holes.png --alpha over:white",
     ] {
-        let line = format!("synth {options} --mesh model.obj --sites 500 --force -o out.glb");
+        let line = format!(
+            "synth {options} --mesh model.obj --sites 500 --texture-size 128 --force -o out.glb"
+        );
         assert_done(&folder.run(&line.split(' ').collect::<Vec<_>>()), &line);
         let material = read_model(folder.path("out.glb")).unwrap().material;
         assert_eq!(

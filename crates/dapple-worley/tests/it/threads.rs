@@ -1,9 +1,8 @@
 //! Tests that any number of threads gives the same bits.
 
-use super::oracle::METRICS;
 use dapple_hash::Seed;
 use dapple_raster::{Raster, Window};
-use dapple_worley::{Combination, FeatureView, Octaves, Plane, Worley, WorleyError};
+use dapple_worley::{Combination, FeatureView, Metric, Octaves, Plane, Worley, WorleyError};
 use glam::DVec2;
 
 /// Checks that 1, 2 and 7 threads make the same picture.
@@ -30,7 +29,8 @@ fn windows() -> Result<[Window; 2], WorleyError> {
 #[test]
 fn threads_do_not_change_a_bit_of_values() -> Result<(), WorleyError> {
     for window in windows()? {
-        for metric in METRICS.into_iter().take(4) {
+        // A sum and a largest term: the parts of a window that threads take do not depend on the metric.
+        for metric in [Metric::Euclidean, Metric::Chebyshev] {
             let worley = Worley::<2>::new(Seed(121)).with_metric(metric)?;
             let texture = worley.combine(Combination::TWO_F3_MINUS_F2_MINUS_F1);
             is_the_same_with_any_number_of_threads("values", || {
