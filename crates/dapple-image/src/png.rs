@@ -1,14 +1,18 @@
 //! PNG files: their pixels, writing and reading.
 //!
 //! The format is that of the W3C recommendation "Portable Network Graphics (PNG) Specification (Third Edition)", 2025,
-//! <https://www.w3.org/TR/png-3/>; the codec is the crate `png`.
+//! <https://www.w3.org/TR/png-3/>; files are read by the crate `png`.
 
 #[cfg(feature = "png")]
 mod decode;
 #[cfg(feature = "png")]
 mod encode;
+#[cfg(feature = "png")]
+mod filter;
 mod image;
 mod pixel;
+#[cfg(feature = "png")]
+mod runs;
 #[cfg(feature = "png")]
 mod shortcut;
 #[cfg(feature = "png")]

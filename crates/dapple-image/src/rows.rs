@@ -16,10 +16,11 @@ use std::io::{Seek, Write};
 
 /// Writes an image by its rows, from the top down, so that it never has to be in memory as a whole.
 ///
-/// The rows come in bands of any height; how they are divided does not change a byte of the file. PNG takes a few rows
-/// of memory, and the file equals that of [`encode_png`](crate::encode_png). OpenEXR is written in tiles of 64 × 64
-/// pixels and takes a band of these: 64 rows of 4 bytes for each plane. It is compressed on all cores where the feature
-/// `rayon` is on. NumPy arrays and raw heights take a row.
+/// The rows come in bands of any height; how they are divided does not change a byte of the file. PNG takes two MiB of
+/// memory for each thread, or a few rows if these are larger, and the file equals that of
+/// [`encode_png`](crate::encode_png). OpenEXR is written in tiles of 64 × 64 pixels and takes a band of these: 64 rows of
+/// 4 bytes for each plane. Both are compressed on all cores where the feature `rayon` is on. NumPy arrays and raw heights
+/// take a row.
 ///
 /// The sink should be empty, and buffered if it is a file. Its content is complete only after [`finish`](Self::finish).
 ///

@@ -4,7 +4,7 @@
 ///
 /// It is implemented for `u8` and `u16` and for arrays of two, three and four of them. Alpha comes last and is not
 /// multiplied into the color.
-pub trait PngPixel: Copy + sealed::Sealed {
+pub trait PngPixel: Copy + Sync + sealed::Sealed {
     /// The number of samples of a pixel: 1 to 4.
     #[doc(hidden)]
     const CHANNELS: usize;

@@ -21,3 +21,5 @@ mod png;
 mod round_trips;
 #[cfg(all(feature = "png", feature = "exr"))]
 mod rows;
+#[cfg(feature = "png")]
+mod strips;
