@@ -1,5 +1,6 @@
 //! The images of a synthesis: examples, their maps, masks and guides.
 
+use super::example_mesh::ExampleMesh;
 use super::guides::Guide;
 use super::material::is_of;
 use super::{Args, MapArg, advise};
@@ -53,14 +54,7 @@ impl Args {
             None if paths.len() > 1 => Some(layout.mask()?),
             None => None,
         };
-        if mask.is_some() || hole.is_some() {
-            let is_usable = |column: u32, row: u32| {
-                let is_white = |mask: &Raster<bool>| mask.row(row)[column as usize];
-                mask.as_ref().is_none_or(is_white) && !hole.as_ref().is_some_and(is_white)
-            };
-            let usable = Raster::from_fn(exemplar.size(), is_usable)?;
-            exemplar = exemplar.with_mask(&usable)?;
-        }
+        exemplar = without(exemplar, mask.as_ref(), hole.as_ref())?;
         let guides = self.read_guides(&layout, &example)?;
         let planes: Vec<_> = guides
             .iter()
@@ -77,6 +71,37 @@ impl Args {
             exemplar: self.with_weighted(exemplar, &maps).map_err(advise)?,
             base,
             maps,
+            hole,
+            guides,
+        })
+    }
+
+    /// The input with a mesh as the example: its texture, and its maps beside those that were given.
+    pub(super) fn read_with(&self, example: &ExampleMesh) -> Result<Input> {
+        let base = example.base.clone();
+        let mut exemplar = exemplar_of(&base.map, self.matching.edges).map_err(advise)?;
+        let load = |path: &PathBuf| self.load_mask(path, exemplar.size());
+        let hole = self.plane.repair.as_ref().map(load).transpose()?;
+        let mask = self.mask.as_ref().map(load).transpose()?;
+        exemplar = without(exemplar, mask.as_ref(), hole.as_ref())?;
+        let guides = self.read_guides(&SideBySide::new(&[exemplar.size()])?, &base)?;
+        let planes = guides.iter().map(|guide| (&guide.example, guide.weight));
+        let planes: Vec<_> = planes.collect();
+        let exemplar = exemplar.with_guides(&planes).map_err(advise)?;
+        let mut maps = Vec::new();
+        for MapArg { name, path } in &self.map {
+            if maps.iter().any(|(other, _)| other == name) {
+                let error = usage(format!("--map {name} is given twice"));
+                return Err(error.hint("leave one of them out"));
+            }
+            maps.push((name.clone(), self.load_map(name, path)?));
+        }
+        let exemplar = self.with_weighted(exemplar, &maps).map_err(advise)?;
+        maps.extend(example.maps.iter().cloned());
+        Ok(Input {
+            base,
+            maps,
+            exemplar,
             hole,
             guides,
         })
@@ -107,21 +132,9 @@ impl Args {
                 let hint = format!("give --map {name}=IMAGE once for each example, in their order");
                 return Err(usage(message).hint(hint));
             }
-            let kind = if is_of(&name, MapKind::Normal) {
-                Kind::Normals
-            } else {
-                Kind::ByChannels
-            };
             let mut images = Vec::new();
             for (image, (path, example)) in paths.into_iter().zip(shown).enumerate() {
-                let map = self.load(path, kind)?;
-                if map.alpha.is_some() && self.surface.mesh.is_some() {
-                    let message = format!(
-                        "{} is partly transparent, which maps on a mesh cannot be",
-                        input::name(path)
-                    );
-                    return Err(usage(message).hint(input::ALPHA_HINT));
-                }
+                let map = self.load_map(&name, path)?;
                 let size = if shown.len() > 1 {
                     layout.size_of(image)
                 } else {
@@ -134,6 +147,24 @@ impl Args {
             loaded.push((name, joined(layout, images)?));
         }
         Ok(loaded)
+    }
+
+    /// Reads a map, whose name says what is in it.
+    fn load_map(&self, name: &str, path: &Path) -> Result<Loaded> {
+        let kind = if is_of(name, MapKind::Normal) {
+            Kind::Normals
+        } else {
+            Kind::ByChannels
+        };
+        let map = self.load(path, kind)?;
+        if map.alpha.is_some() && self.surface.mesh.is_some() {
+            let message = format!(
+                "{} is partly transparent, which maps on a mesh cannot be",
+                input::name(path)
+            );
+            return Err(usage(message).hint(input::ALPHA_HINT));
+        }
+        Ok(map)
     }
 
     /// The exemplar with the maps that count in the match.
@@ -189,6 +220,23 @@ impl Args {
     fn load(&self, path: &Path, kind: Kind) -> Result<Loaded> {
         input::map_with_alpha(path, kind, self.region, self.alpha.alpha)
     }
+}
+
+/// The exemplar without what a mask leaves out and without a hole.
+fn without(
+    exemplar: Exemplar,
+    mask: Option<&Raster<bool>>,
+    hole: Option<&Raster<bool>>,
+) -> Result<Exemplar> {
+    if mask.is_none() && hole.is_none() {
+        return Ok(exemplar);
+    }
+    let is_usable = |column: u32, row: u32| {
+        let is_white = |mask: &Raster<bool>| mask.row(row)[column as usize];
+        mask.is_none_or(is_white) && !hole.is_some_and(is_white)
+    };
+    let usable = Raster::from_fn(exemplar.size(), is_usable)?;
+    Ok(exemplar.with_mask(&usable)?)
 }
 
 /// How light the pixels of an image are, as sRGB codes from 0 to 1; gray ones as they are.
