@@ -14,7 +14,7 @@ use dapple::color::{Code, LinearRgb, LinearRgba, Normal};
 use dapple::image::{
     ExrImage, Image, ImageError, ImageErrorKind, Limits, PngPixels, decode_image, read_image,
 };
-use dapple::mesh::Model;
+use dapple::mesh::{EncodedImage, Model};
 use dapple::mesh_io::{MeshIoErrorKind, read_model, readable_endings};
 use dapple::raster::Raster;
 use dapple::recipe::{ImageAlpha, similar_words};
@@ -53,6 +53,25 @@ pub(crate) struct Loaded {
 }
 
 impl Loaded {
+    /// Colors that are from no image.
+    pub(crate) fn of_colors(colors: Raster<LinearRgb>) -> Self {
+        Self {
+            map: Map::Color(colors),
+            alpha: None,
+            is_deep: false,
+            is_linear: false,
+        }
+    }
+
+    /// Another map of this image, such as one of its channels, without alpha.
+    pub(crate) fn with_map(&self, map: Map) -> Self {
+        Self {
+            map,
+            alpha: None,
+            ..*self
+        }
+    }
+
     /// The color of a gray value of a picture.
     pub(crate) fn color_of(&self, value: f32) -> LinearRgb {
         if self.is_linear {
@@ -150,7 +169,33 @@ pub(crate) fn map_with_alpha(
     region: Option<Region>,
     alpha: Alpha,
 ) -> Result<Loaded> {
-    let image = image(path)?;
+    of_image(&image(path)?, path, kind, region, alpha)
+}
+
+/// An image in a mesh file, as [`map_with_alpha`] gives one in a file of its own.
+///
+/// # Errors
+///
+/// If it is damaged, or has channels that do not fit the kind.
+pub(crate) fn embedded(
+    image: &EncodedImage,
+    path: &Path,
+    kind: Kind,
+    alpha: Alpha,
+) -> Result<Loaded> {
+    let image = decode_image(image.bytes(), &Limits::default()).map_err(advise);
+    let image = image.with_context(|| format!("a texture of {}", name(path)))?;
+    of_image(&image, path, kind, None, alpha)
+}
+
+/// An image as a map.
+fn of_image(
+    image: &Image,
+    path: &Path,
+    kind: Kind,
+    region: Option<Region>,
+    alpha: Alpha,
+) -> Result<Loaded> {
     let pixels = if kind != Kind::Normals && image.channels().has_alpha() {
         Some(image.color_alpha().map_err(advise)?)
     } else {
@@ -161,10 +206,10 @@ pub(crate) fn map_with_alpha(
         alphas.any(|alpha| alpha != 1.0)
     };
     let Some(pixels) = pixels.filter(is_transparent) else {
-        let map = opaque(&image, kind).with_context(|| name(path))?;
-        return part(path, &image, region, map, None);
+        let map = opaque(image, kind).with_context(|| name(path))?;
+        return part(path, image, region, map, None);
     };
-    let map = match (alpha, values_beside_alpha(&image)) {
+    let map = match (alpha, values_beside_alpha(image)) {
         (Alpha::Without(ImageAlpha::Drop), Some(values)) if kind == Kind::ByChannels => {
             Map::Value(values)
         }
@@ -176,7 +221,7 @@ pub(crate) fn map_with_alpha(
         }
     };
     let alpha = (alpha == Alpha::Keep).then(|| pixels.map(|pixel| pixel.alpha));
-    part(path, &image, region, map, alpha)
+    part(path, image, region, map, alpha)
 }
 
 /// The uncoded values of a gray image with alpha.

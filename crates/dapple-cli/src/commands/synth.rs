@@ -2,12 +2,14 @@
 
 mod corners;
 mod displace;
+mod example_mesh;
 mod guides;
 mod inspect;
 mod material;
 mod options;
 mod plane;
 mod reading;
+mod repair_mesh;
 mod surface;
 
 use crate::args::{AlphaArgs, ImageArgs, Region};
@@ -43,6 +45,8 @@ Examples:
   dapple synth rock.png --map normal=rock_normal.png --map ao=cracks.png \\
     --map roughness=rock_height.png --mesh model.obj --sites 4000 -o rocky.glb
   dapple synth leaves.png --mesh model.obj --sites 4000 -o hedge.glb
+  dapple synth shell.glb --mesh model.obj --sites 4000 -o lifted.glb
+  dapple synth shell.glb --repair stain.png --example-sites 4000 -o clean.glb
   dapple synth rock.png --map height=rock_height.png --displace 0.05 \\
     --mesh model.obj --sites 4000 -o rocky.ply
   dapple synth checker.png --mesh model.obj --sites 4000 \\
@@ -64,8 +68,10 @@ enough; in between they are interpolated.";
 #[derive(clap::Args, Debug, Serialize)]
 #[command(after_help = format!("{EXAMPLES}\n\n{}", surface::endings()))]
 pub(crate) struct Args {
-    /// The example. PNG and JPEG are sRGB, gray or color, and OpenEXR is linear. Color is matched in sRGB, gray as it is.
-    #[arg(value_name = "IMAGE")]
+    /// The example. PNG and JPEG are sRGB, gray or color, and OpenEXR is linear. Color is matched in sRGB, gray as it is. Or
+    /// another mesh with a texture or with colors of its vertices, whose texture and material --mesh then gets; maps of it are
+    /// at its texture coordinates.
+    #[arg(value_name = "IMAGE|MESH")]
     exemplar: PathBuf,
 
     /// Another map of the example that follows it, such as normal=FILE or roughness=FILE; may be given several times. It is
@@ -146,6 +152,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     args.check_used()?;
     match &args.surface.mesh {
         Some(mesh) => surface::run(args, mesh, context),
+        None if example_mesh::is_mesh(&args.exemplar) => repair_mesh::run(args, context),
         None => plane::run(args, context),
     }
 }
@@ -155,6 +162,7 @@ impl Args {
     fn check_used(&self) -> Result<()> {
         material::check_names(&self.map)?;
         self.check_displacement()?;
+        self.check_example()?;
         self.check_method()?;
         self.matching.check_weights(&self.map_names())?;
         let surface = self.surface.given();

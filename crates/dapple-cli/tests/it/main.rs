@@ -12,6 +12,7 @@ mod copies;
 mod examples;
 mod files;
 mod interrupt;
+mod lifting;
 mod meshes;
 mod outputs;
 mod refusals;

@@ -2,12 +2,13 @@
 
 use dapple::color::{LinearRgb, LinearRgba, Normal};
 use dapple::image::{
-    Depth, Limits, read_image, write_color_alpha_png, write_color_exr, write_color_png,
-    write_gray_exr, write_gray_png, write_normal_png,
+    Depth, Limits, Transfer, encode_png, read_image, write_color_alpha_png, write_color_exr,
+    write_color_png, write_gray_exr, write_gray_png, write_normal_png,
 };
-use dapple::mesh::Model;
+use dapple::mesh::{CREASE, EncodedImage, Model, Surface};
 use dapple::mesh_io::write_model;
 use dapple::raster::Raster;
+use dapple::synth::{Atlas, textured_model};
 use std::ffi::OsStr;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -17,6 +18,8 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 /// The side of the test images, in pixels.
 const SIDE: u32 = 64;
+/// The side of the texture of `shell.glb`, in texels.
+pub(crate) const SHELL_SIDE: u32 = 256;
 
 /// A recipe with an image.
 pub(crate) const ROCK: &str = r#"
@@ -82,6 +85,10 @@ impl Folder {
         let checker = checker();
         write_color_png(folder.path("checker.png"), &checker, Depth::Eight).unwrap();
         write_model(folder.path("model.obj"), model()).unwrap();
+        write_model(folder.path("shell.glb"), shell()).unwrap();
+        let stain = |x: u32, y: u32| f32::from(x.abs_diff(128) < 24 && y.abs_diff(128) < 24);
+        let stain = Raster::from_fn([SHELL_SIDE; 2], stain).unwrap();
+        write_gray_png(folder.path("stain.png"), &stain, Depth::Eight).unwrap();
         let directions = "x,y,z,dx,dy,dz\n0,0,0,0,0,-1\n";
         fs::write(folder.path("directions.csv"), directions).unwrap();
         let control = "x,y,value\n0.5,0.5,0\n1.5,0.6,1\n1,1.5,0.5\n0.2,1.7,0.9\n";
@@ -174,6 +181,20 @@ pub(crate) fn assert_refused(output: &Output, code: i32, part: &str, what: &str)
 fn model() -> &'static Model {
     static MODEL: OnceLock<Model> = OnceLock::new();
     MODEL.get_or_init(|| dapple_models::ray(300).unwrap().into())
+}
+
+/// The model with a checker on it.
+pub(crate) fn shell() -> &'static Model {
+    static SHELL: OnceLock<Model> = OnceLock::new();
+    SHELL.get_or_init(|| {
+        let surface = Surface::new(model().mesh.clone()).unwrap();
+        let atlas = Atlas::charts(&surface, SHELL_SIDE).unwrap();
+        let code = |x: u32, y: u32| [90, 30 + 200 * ((x / 16 + y / 16) % 2) as u8, 60];
+        let codes = Raster::from_fn([SHELL_SIDE; 2], code).unwrap();
+        let png = encode_png(codes.view(), Transfer::Srgb).unwrap();
+        let shading = surface.mesh().corner_normals(CREASE);
+        textured_model(&surface, &atlas, shading, EncodedImage::new(png).unwrap()).unwrap()
+    })
 }
 
 /// Colors of a smooth hill.

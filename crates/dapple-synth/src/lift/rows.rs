@@ -41,8 +41,11 @@ pub(super) fn candidates(
         reader.chunk(first..(first + CHUNK).min(n_sites))
     });
     let few = candidates::few(pass, options);
-    let n_whole = chunks.iter().flat_map(|chunk| &chunk.are_whole);
-    let only_whole = n_whole.filter(|&&is_whole| is_whole).count() >= few;
+    let sites = chunks
+        .iter()
+        .flat_map(|chunk| chunk.are_whole.iter().zip(&chunk.are_usable));
+    let n_whole = sites.filter(|(is_whole, is_usable)| **is_whole && **is_usable);
+    let only_whole = n_whole.count() >= few;
     let level = &pyramid.levels()[pass.level];
     let dims = reader.dims();
     let mut pixels = Vec::new();

@@ -1,5 +1,6 @@
 //! Geometry that the heights of the example move.
 
+use super::example_mesh::is_mesh;
 use super::material::is_of;
 use super::reading::Input;
 use super::{Args, advise};
@@ -37,7 +38,7 @@ impl Args {
         input: &Input,
     ) -> Result<()> {
         if let Some(length) = self.surface.displace {
-            let heights = heights(texture, input)?;
+            let heights = self.heights(texture, input)?;
             let mesh = displaced_mesh(synthesizer, &heights, length).map_err(advise)?;
             if let (None, Some(corners)) = (&model.material.normal, &mut model.corner_normals) {
                 turn(corners, &model.mesh, &mesh);
@@ -56,11 +57,30 @@ impl Args {
         input: &Input,
     ) -> Result<()> {
         if let Some(length) = self.surface.displace {
-            let heights = heights(texture, input)?;
+            let heights = self.heights(texture, input)?;
             model.mesh = displaced_sites(synthesizer, &heights, length).map_err(advise)?;
             model.normals = Some(model.mesh.vertex_normals());
         }
         Ok(())
+    }
+
+    /// The heights of all sites.
+    fn heights(&self, texture: &SurfaceTexture, input: &Input) -> Result<Vec<f32>> {
+        let mut maps = input.maps.iter();
+        let found = maps.find(|(name, _)| is_of(name, MapKind::Height));
+        let Some((_, height)) = found else {
+            return Err(usage("--displace needs heights").hint("add --map height=FILE"));
+        };
+        let (size, edges) = (input.exemplar.size(), input.exemplar.edges());
+        let values = height.numbers(&height.map)?;
+        if is_mesh(&self.exemplar) {
+            return Ok(texture.transfer(&values)?);
+        }
+        // Beside a larger version of the example, maps have its size.
+        let factor = values.size()[0] / size[0];
+        let reduced = Exemplar::from_planes(&[(&values, 1.0)], edges)?.reduced(factor)?;
+        let reduced = Raster::from_vec(size, reduced.pixels().to_vec())?;
+        Ok(texture.transfer(&reduced)?)
     }
 }
 
@@ -80,20 +100,4 @@ fn turn(corners: &mut [[DVec3; 3]], from: &Mesh, to: &Mesh) {
             *corner = (turns[vertex.index()] * *corner).normalize_or(*corner);
         }
     }
-}
-
-/// The heights of all sites.
-fn heights(texture: &SurfaceTexture, input: &Input) -> Result<Vec<f32>> {
-    let mut maps = input.maps.iter();
-    let found = maps.find(|(name, _)| is_of(name, MapKind::Height));
-    let Some((_, height)) = found else {
-        return Err(usage("--displace needs heights").hint("add --map height=FILE"));
-    };
-    let (size, edges) = (input.exemplar.size(), input.exemplar.edges());
-    let values = height.numbers(&height.map)?;
-    // Beside a larger version of the example, maps have its size.
-    let factor = values.size()[0] / size[0];
-    let reduced = Exemplar::from_planes(&[(&values, 1.0)], edges)?.reduced(factor)?;
-    let reduced = Raster::from_vec(size, reduced.pixels().to_vec())?;
-    Ok(texture.transfer(&reduced)?)
 }

@@ -96,7 +96,8 @@ pub(super) struct PlaneArgs {
     pub(super) at: Option<Numbers<i64, 2>>,
 
     /// Make only those pixels of the example again at which this image, of its size, is white, such as a scratch or a thing
-    /// that does not belong there. All others stay as they are.
+    /// that does not belong there. All others stay as they are. Of an example that is a mesh, those of its texture and of the
+    /// maps in its material, from what is around them on the mesh.
     #[arg(long, value_name = "IMAGE", conflicts_with_all = ["size", "wrap", "evenness", "paper"])]
     pub(super) repair: Option<PathBuf>,
 
@@ -141,6 +142,15 @@ pub(super) struct SurfaceArgs {
     /// Which way the texture runs: a file of directions, .csv or .json. By default the down of the example points down.
     #[arg(long, value_name = "FILE")]
     pub(super) directions: Option<PathBuf>,
+
+    /// Which way the texture of an example that is a mesh runs: a file of directions on it. By default down.
+    #[arg(long, value_name = "FILE")]
+    pub(super) example_directions: Option<PathBuf>,
+
+    /// The number of points of an example that is a mesh: more make its features larger. By default as many as --sites, with
+    /// which features have the same part of both surfaces.
+    #[arg(long, value_name = "N")]
+    example_sites: Option<usize>,
 
     /// The number of points of the surface that get a color, like pixels on the mesh: 1 to 2^28; by default 65536.
     #[arg(long, value_name = "N")]
@@ -303,6 +313,24 @@ impl SurfaceArgs {
             ("displace", self.displace.is_some()),
             ("axes", self.axes.is_some()),
         ])
+    }
+
+    /// An option that was given and needs an example that is a mesh.
+    pub(super) fn given_for_example(&self) -> Option<&'static str> {
+        first_given(&[
+            ("example-directions", self.example_directions.is_some()),
+            ("example-sites", self.example_sites.is_some()),
+        ])
+    }
+
+    /// The sites of an example that is a mesh.
+    pub(super) fn example_sites(&self, matching: &MatchArgs) -> HierarchyOptions {
+        let sites = self.sites(matching);
+        HierarchyOptions {
+            n_sites: self.example_sites.unwrap_or(sites.n_sites),
+            seed: Seed(matching.seed).child("example sites", 0),
+            ..sites
+        }
     }
 
     /// The side of the texture, in pixels.

@@ -1,5 +1,6 @@
 //! The images of a synthesis: examples, their maps, masks and guides.
 
+use super::example_mesh::ExampleMesh;
 use super::guides::Guide;
 use super::material::is_of;
 use super::{Args, MapArg, advise};
@@ -72,6 +73,39 @@ impl Args {
         })
     }
 
+    /// The input with a mesh as the example: its texture, and its maps beside those that were given.
+    pub(super) fn read_with(&self, example: &ExampleMesh) -> Result<Input> {
+        let base = example.base.clone();
+        let mut exemplar = exemplar_of(&base.map, self.matching.edges).map_err(advise)?;
+        let layout = SideBySide::new(&[exemplar.size()])?;
+        let hole = self.read_hole(&base)?;
+        if let Some(usable) = self.read_masks(&[&self.exemplar], &layout, hole.as_ref())? {
+            exemplar = exemplar.with_mask(&usable)?;
+        }
+        let guides = self.read_guides(&layout, &base)?;
+        let planes = guides.iter().map(|guide| (&guide.example, guide.weight));
+        let planes: Vec<_> = planes.collect();
+        let exemplar = exemplar.with_guides(&planes).map_err(advise)?;
+        let mut maps = Vec::new();
+        for MapArg { name, path } in &self.map {
+            if maps.iter().any(|(other, _)| other == name) {
+                let error = usage(format!("--map {name} is given twice"));
+                return Err(error.hint("leave one of them out"));
+            }
+            maps.push((name.clone(), self.load_map(name, path)?));
+        }
+        let exemplar = self.with_weighted(exemplar, &maps).map_err(advise)?;
+        maps.extend(example.maps.iter().cloned());
+        Ok(Input {
+            base,
+            maps,
+            layout,
+            exemplar,
+            hole,
+            guides,
+        })
+    }
+
     /// Reads the maps of what is shown: for each name as many as there are examples, side by side as they are.
     fn load_maps(
         &self,
@@ -97,21 +131,9 @@ impl Args {
                 let hint = format!("give --map {name}=IMAGE once for each example, in their order");
                 return Err(usage(message).hint(hint));
             }
-            let kind = if is_of(&name, MapKind::Normal) {
-                Kind::Normals
-            } else {
-                Kind::ByChannels
-            };
             let mut images = Vec::new();
             for (image, (path, example)) in paths.into_iter().zip(shown).enumerate() {
-                let map = self.load(path, kind)?;
-                if map.alpha.is_some() && self.surface.mesh.is_some() {
-                    let message = format!(
-                        "{} is partly transparent, which maps on a mesh cannot be",
-                        input::name(path)
-                    );
-                    return Err(usage(message).hint(input::ALPHA_HINT));
-                }
+                let map = self.load_map(&name, path)?;
                 let size = if self.detail.is_none() {
                     layout.size_of(image)
                 } else {
@@ -124,6 +146,24 @@ impl Args {
             loaded.push((name, joined(layout, images)?));
         }
         Ok(loaded)
+    }
+
+    /// Reads a map, whose name says what is in it.
+    fn load_map(&self, name: &str, path: &Path) -> Result<Loaded> {
+        let kind = if is_of(name, MapKind::Normal) {
+            Kind::Normals
+        } else {
+            Kind::ByChannels
+        };
+        let map = self.load(path, kind)?;
+        if map.alpha.is_some() && self.surface.mesh.is_some() {
+            let message = format!(
+                "{} is partly transparent, which maps on a mesh cannot be",
+                input::name(path)
+            );
+            return Err(usage(message).hint(input::ALPHA_HINT));
+        }
+        Ok(map)
     }
 
     /// The exemplar with the maps that count in the match.

@@ -1,6 +1,7 @@
 //! Synthesis on a mesh, and the files that it gives.
 
 use super::corners::{own_uvs, shading};
+use super::example_mesh::ExampleMesh;
 use super::material::{MaterialMaps, alpha_mode, is_of};
 use super::options::AtlasName;
 use super::reading::Input;
@@ -19,8 +20,8 @@ use dapple::points::glam::DVec3;
 use dapple::raster::Raster;
 use dapple::recipe::MapKind;
 use dapple::synth::{
-    Atlas, Direction, SurfaceTexture, Synthesizer, bake_colors, bake_colors_alpha, bake_normals,
-    bake_values, site_model, textured_model,
+    Atlas, Direction, Exemplar, MeshExemplar, SurfaceTexture, Synthesizer, bake_colors,
+    bake_colors_alpha, bake_normals, bake_values, site_model, textured_model,
 };
 use dapple::tile::Map;
 use serde_json::json;
@@ -28,7 +29,7 @@ use std::path::Path;
 
 /// The kind of output of a textured mesh.
 #[derive(Clone, Copy, Debug)]
-enum Product {
+pub(super) enum Product {
     /// The mesh with its texture.
     Model(&'static MeshFormat),
     /// The sites as a mesh, in a format without textures.
@@ -62,8 +63,12 @@ struct Claimed {
 /// Covers the mesh.
 pub(super) fn run(args: &Args, mesh: &Path, context: &Context) -> Result<Exit> {
     let mut job = Job::new(context, "synth", &args.image.files);
-    let claimed = claim(args, mesh, &mut job)?;
-    let input = args.read()?;
+    let example = args.read_example_mesh()?;
+    let claimed = claim(args, mesh, example.as_ref(), &mut job)?;
+    let input = match &example {
+        Some(example) => args.read_with(example)?,
+        None => args.read()?,
+    };
     let model = input::model(mesh)?;
     let (repaired, repair) = model.mesh.repair();
     if !context.quiet && repair.before != repair.after {
@@ -82,14 +87,20 @@ pub(super) fn run(args: &Args, mesh: &Path, context: &Context) -> Result<Exit> {
         || input.base.alpha.is_some();
     let spinner = Progress::spinner("scattering sites", context);
     let sites = args.surface.sites(&args.matching);
-    let synthesizer = Synthesizer::new(surface, &directions(args)?, &sites).map_err(advise)?;
+    let directions = directions(args.surface.directions.as_deref())?;
+    let synthesizer = Synthesizer::new(surface, &directions, &sites).map_err(advise)?;
+    let exemplar = example.map(|example| exemplar_of_mesh(args, example, &input.exemplar));
+    let exemplar = exemplar.transpose()?;
     drop(spinner);
     let progress = Progress::bar("synthesizing", STEPS.into(), context);
     let options = args.matching.options(&args.surface);
     let columns = guides::at_sites(&input.guides, &synthesizer, &model, &repair)?;
     let columns: Vec<_> = columns.iter().map(Vec::as_slice).collect();
-    let exemplar = &input.exemplar;
-    let texture = synthesizer.synthesize_guided(exemplar, &columns, &options, shown(&progress));
+    let callback = shown(&progress);
+    let texture = match &exemplar {
+        Some(exemplar) => synthesizer.lift(exemplar, &columns, &options, callback),
+        None => synthesizer.synthesize_guided(&input.exemplar, &columns, &options, callback),
+    };
     let texture = texture.map_err(advise)?;
     drop(progress);
     let spinner = Progress::spinner("baking", context);
@@ -123,6 +134,18 @@ pub(super) fn run(args: &Args, mesh: &Path, context: &Context) -> Result<Exit> {
     Ok(Exit::Done)
 }
 
+/// The sites of an example that is a mesh.
+pub(super) fn exemplar_of_mesh(
+    args: &Args,
+    example: ExampleMesh,
+    texture: &Exemplar,
+) -> Result<MeshExemplar> {
+    let directions = directions(args.surface.example_directions.as_deref())?;
+    let sites = args.surface.example_sites(&args.matching);
+    let source = Synthesizer::new(example.surface, &directions, &sites).map_err(advise)?;
+    MeshExemplar::new(source, &example.uvs, texture).map_err(advise)
+}
+
 /// A mesh with its texture, not baked yet.
 struct Covered {
     synthesizer: Synthesizer,
@@ -137,7 +160,7 @@ struct Covered {
 
 impl Product {
     /// What the ending of an output asks for.
-    fn of(target: &Target) -> Result<Self> {
+    pub(super) fn of(target: &Target) -> Result<Self> {
         let ending = match target {
             Target::Stdout if target.ending().is_empty() => DEFAULT_ENDING.to_owned(),
             _ => target.ending(),
@@ -232,7 +255,12 @@ impl Covered {
 }
 
 /// Claims the output, what belongs to it, and the maps.
-fn claim(args: &Args, mesh: &Path, job: &mut Job<'_>) -> Result<Claimed> {
+fn claim(
+    args: &Args,
+    mesh: &Path,
+    example: Option<&ExampleMesh>,
+    job: &mut Job<'_>,
+) -> Result<Claimed> {
     let target = args.target(
         mesh,
         args.image.format.map_or(DEFAULT_ENDING, Format::ending),
@@ -265,7 +293,9 @@ fn claim(args: &Args, mesh: &Path, job: &mut Job<'_>) -> Result<Claimed> {
     let mut beside = Vec::new();
     if let (Product::Model(format), Some(path)) = (product, target.path()) {
         // The names of the files of the writer are known before: they have the stem of the model.
-        for name in names_beside(format, path, args)? {
+        let has_normals = args.map.iter().any(|map| is_of(&map.name, MapKind::Normal))
+            || example.is_some_and(|example| example.has(MapKind::Normal));
+        for name in names_beside(format, path, has_normals)? {
             let output = job.claim(&Target::Path(path.with_file_name(&name)))?;
             beside.push((name, output));
         }
@@ -284,6 +314,9 @@ fn claim(args: &Args, mesh: &Path, job: &mut Job<'_>) -> Result<Claimed> {
             maps.push(None);
         }
     }
+    // Those of the example's material go into the new one alone.
+    let n_maps = maps.len() + example.map_or(0, |example| example.maps.len());
+    maps.resize_with(n_maps, || None);
     job.claim_sidecar(&target)?;
     Ok(Claimed {
         product,
@@ -296,11 +329,11 @@ fn claim(args: &Args, mesh: &Path, job: &mut Job<'_>) -> Result<Claimed> {
 }
 
 /// The names of the files beside that of a mesh: those of an empty mesh with as many textures.
-fn names_beside(format: &MeshFormat, path: &Path, args: &Args) -> Result<Vec<String>> {
+fn names_beside(format: &MeshFormat, path: &Path, has_normals: bool) -> Result<Vec<String>> {
     let mut model = Model::from(Mesh::default());
     let image = EncodedImage::new(PNG.to_vec())?;
     model.material.base_color = Some(image.clone());
-    if args.map.iter().any(|map| is_of(&map.name, MapKind::Normal)) {
+    if has_normals {
         model.material.normal = Some(image);
     }
     let mut files = format.write(&model, &stem(path))?;
@@ -403,8 +436,8 @@ fn atlas(args: &Args, surface: &Surface, model: &Model, repair: &Repair) -> Resu
 }
 
 /// The directions that the user gave.
-fn directions(args: &Args) -> Result<Vec<Direction>> {
-    let Some(path) = &args.surface.directions else {
+fn directions(path: Option<&Path>) -> Result<Vec<Direction>> {
+    let Some(path) = path else {
         return Ok(Vec::new());
     };
     let text = input::text(path)?;
