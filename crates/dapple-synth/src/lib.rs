@@ -147,8 +147,8 @@ mod sites;
 mod solve;
 mod surface_texture;
 mod sweep;
-mod turned;
 mod synthesizer;
+mod turned;
 mod turns;
 mod usage;
 mod visit;
@@ -181,5 +181,5 @@ pub use sites::{
 };
 pub use surface_texture::SurfaceTexture;
 pub use sweep::Sweep;
-pub use turned::Turned;
 pub use synthesizer::{Synthesizer, synthesize};
+pub use turned::Turned;
