@@ -119,7 +119,7 @@ fn a_channel_is_a_mask_of_what_is_made_again() {
     );
     run(
         &folder,
-        "synth hole.png --repair scratch.png --format png8 -o by_mask.png",
+        "synth hole.png --alpha drop --repair scratch.png --format png8 -o by_mask.png",
     );
     let bytes = |name: &str| fs::read(folder.path(name)).unwrap();
     assert!(bytes("by_channel.png") == bytes("by_mask.png"));
@@ -163,7 +163,7 @@ fn pieces_meet_where_the_example_does_not_go_on() {
             n_other += usize::from(a != b);
         }
     }
-    assert!(n_same > 48 * 24 && n_other > 0, "{n_same} and {n_other}");
+    assert!(n_same > 300 && n_other > 0, "{n_same} and {n_other}");
     let differences = read_image(folder.path("differences.exr"), &Limits::default()).unwrap();
     let differences = differences.color().unwrap();
     let is_in_range = |color: &LinearRgb| (0.0..=4.0).contains(&color.r);

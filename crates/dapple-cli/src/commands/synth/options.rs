@@ -101,7 +101,8 @@ pub(super) struct PlaneArgs {
     #[arg(long, value_name = "IMAGE", conflicts_with_all = ["size", "wrap", "evenness", "paper"])]
     pub(super) repair: Option<PathBuf>,
 
-    /// Make those pixels of the example again at which this channel of it is less than half, such as the transparent ones.
+    /// Make those pixels of the example again at which this channel of it is less than half, such as the transparent ones:
+    /// with `a` the result is opaque.
     #[arg(long, value_name = "CHANNEL", value_parser = Word::<Channel>::all(), conflicts_with_all = ["repair", "replay", "method", "at", "size", "wrap", "evenness", "paper", "which", "guide"])]
     pub(super) repair_channel: Option<Channel>,
 

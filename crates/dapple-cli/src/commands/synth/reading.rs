@@ -3,6 +3,7 @@
 use super::example_mesh::ExampleMesh;
 use super::guides::Guide;
 use super::material::is_of;
+use super::options::Channel;
 use super::{Args, MapArg, advise};
 use crate::args::Alpha;
 use crate::error::{Hint, usage};
@@ -38,10 +39,14 @@ impl Args {
             .chain(&self.guides.examples)
             .collect();
         let examples = paths.iter().map(|path| self.load(path, Kind::ByChannels));
-        let examples: Vec<_> = examples.collect::<Result<_>>()?;
+        let mut examples: Vec<_> = examples.collect::<Result<_>>()?;
         let sizes: Vec<_> = examples.iter().map(|example| example.map.size()).collect();
         let layout = SideBySide::new(&sizes)?.with_turned(self.guides.turned)?;
         let hole = self.read_hole(&examples[0])?;
+        if self.plane.repair_channel == Some(Channel::Alpha) {
+            // What is made again is as opaque as all else.
+            examples[0].alpha = None;
+        }
         let example = joined(&layout, examples)?;
         let edges = match layout.size() == sizes[0] {
             true => self.matching.edges,
