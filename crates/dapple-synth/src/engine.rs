@@ -37,6 +37,17 @@ pub(crate) fn run<G: Ground>(
     callback: Callback<'_>,
 ) -> Result<Vec<Vec<u32>>, SynthError> {
     let passes = options.passes()?.passes;
+    run_passes(ground, pyramid, &passes, options, callback)
+}
+
+/// Runs some passes, as [`run`] does those of the options.
+pub(crate) fn run_passes<G: Ground>(
+    ground: &G,
+    pyramid: &Pyramid,
+    passes: &[Pass],
+    options: &Options,
+    callback: Callback<'_>,
+) -> Result<Vec<Vec<u32>>, SynthError> {
     let n_guides = ground.targets().map_or(0, Targets::len);
     guides::check_count(n_guides, pyramid.levels()[0].n_guides())?;
     let seen = match ground.blur() {
