@@ -69,6 +69,7 @@ impl Matching {
             evenness: self.evenness.unwrap_or(default.evenness),
             axes: self.axes.unwrap_or(default.axes),
             center: default.center,
+            matching: default.matching,
             sources: default.sources,
         })
     }

@@ -18,8 +18,8 @@
 //! edge that is cut are left out where enough others remain ([`stage`]), and those of averages of the texture are not
 //! projected a second time. Parts of the exemplar that textures would have too often cost more ([`evenness`]).
 
-mod evenness;
-mod stage;
+pub(crate) mod evenness;
+pub(crate) mod stage;
 mod window;
 
 use crate::engine::Progress;

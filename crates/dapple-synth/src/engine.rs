@@ -36,24 +36,36 @@ pub(crate) fn run<G: Ground>(
     options: &Options,
     callback: Callback<'_>,
 ) -> Result<Vec<Vec<u32>>, SynthError> {
+    let passes = options.passes()?.passes;
+    run_passes(ground, pyramid, &passes, options, callback)
+}
+
+/// Runs some passes, as [`run`] does those of the options.
+pub(crate) fn run_passes<G: Ground>(
+    ground: &G,
+    pyramid: &Pyramid,
+    passes: &[Pass],
+    options: &Options,
+    callback: Callback<'_>,
+) -> Result<Vec<Vec<u32>>, SynthError> {
     let seen = match ground.blur() {
         0.0 => None,
         blur => Some(pyramid.blurred(blur)),
     };
     let seen = seen.as_ref().unwrap_or(pyramid);
     let candidates = |pass: &Pass| Candidates::for_options(seen, pass, options);
-    run_with(ground, pyramid, &candidates, options, callback)
+    run_with(ground, pyramid, passes, &candidates, options, callback)
 }
 
-/// Runs all passes like [`run`], with neighborhoods that the caller gathers for each.
+/// Runs some passes like [`run_passes`], with neighborhoods that the caller gathers for each.
 pub(crate) fn run_with<G: Ground>(
     ground: &G,
     pyramid: &Pyramid,
+    passes: &[Pass],
     candidates: &dyn Fn(&Pass) -> Result<Candidates, SynthError>,
     options: &Options,
     callback: Callback<'_>,
 ) -> Result<Vec<Vec<u32>>, SynthError> {
-    let passes = options.passes()?.passes;
     let n_guides = ground.targets().map_or(0, Targets::len);
     guides::check_count(n_guides, pyramid.levels()[0].n_guides())?;
     let coherence = options.coherence.factors(&pyramid.levels()[0]);

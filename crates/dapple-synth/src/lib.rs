@@ -39,6 +39,10 @@
 //! most alike ([`Schedule`], [`Matcher`]). A [`SurfaceTexture`] has the color and, more than that, the pixel that each
 //! site took.
 //!
+//! With [`Matching::Appearance`] only the coarsest level is made so. On all levels the sites are then corrected by what the
+//! exemplar looks like around the pixels that the sites around them took. It takes a quarter of the time, and what is
+//! connected in the exemplar, as strands and letters are, is more often whole.
+//!
 //! So other maps of the exemplar can follow: [`bake_values`] and [`bake_normals`] write heights, roughness and normals to
 //! texture maps with the same [`Atlas`] as [`bake_colors`] does colors. What is to be matched and what only follows is the
 //! caller's choice: see [`Exemplar::from_planes`], [`Exemplar::with_channels`] and the example of [`bake_values`]. [`textured_model`] and [`site_model`] make what file formats take, [`displaced_sites`] moves the mesh
@@ -113,6 +117,7 @@
 
 #![forbid(unsafe_code)]
 
+mod appearance;
 mod atlas;
 mod bake;
 mod bake_normals;
@@ -174,7 +179,7 @@ pub use likeness::Likeness;
 pub use maps::{bake_colors, bake_colors_alpha, bake_values};
 pub use matcher::{Match, Matcher, MatcherMemory, distance_sq};
 pub use neighborhood::{Part, Pass, Reads, Schedule, Shape};
-pub use options::{Axes, Coherence, Options, Sources};
+pub use options::{Axes, Coherence, Matching, Options, Sources};
 pub use orientation::{Direction, Orientation};
 pub use plane::{
     PlaneTexture, synthesize_plane, synthesize_plane_guided, synthesize_plane_with, tile_plane,

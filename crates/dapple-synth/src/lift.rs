@@ -156,7 +156,8 @@ impl MeshExemplar {
     ) -> Result<(Pyramid, Vec<Vec<u32>>), SynthError> {
         let pyramid = self.pyramid(options.n_levels)?;
         let candidates = |pass: &Pass| self.candidates(pass, options);
-        let sources = engine::run_with(ground, &pyramid, &candidates, options, callback)?;
+        let passes = options.passes()?.passes;
+        let sources = engine::run_with(ground, &pyramid, &passes, &candidates, options, callback)?;
         Ok((pyramid, sources))
     }
 }

@@ -1,12 +1,13 @@
 //! The doors for surfaces: one call for all of it, and what can be used again.
 
-use crate::engine::{self, Progress};
+use crate::appearance::Appearance;
+use crate::engine::{self, Callback, Progress};
 use crate::guides::Targets;
 use crate::mesh_ground::MeshGround;
 use crate::places::Places;
 use crate::{
-    Axes, Direction, Exemplar, Hierarchy, HierarchyOptions, Options, Orientation, SiteIdx, Sources,
-    SurfaceTexture, Sweep, SynthError, SynthErrorKind,
+    Axes, Direction, Exemplar, Hierarchy, HierarchyOptions, Matching, Options, Orientation,
+    Pyramid, SiteIdx, Sources, SurfaceTexture, Sweep, SynthError, SynthErrorKind,
 };
 use core::ops::ControlFlow;
 use dapple_mesh::{Mesh, Surface};
@@ -135,7 +136,13 @@ impl Synthesizer {
             targets: Some(&targets),
             ..self.ground(options.axes, options.sources == Sources::SubPixel)
         };
-        let sources = engine::run(&ground, &pyramid, options, &mut callback)?;
+        let is_plain = options.schedule.is_none() && exemplar.n_guides() == 0;
+        let sources = match options.matching {
+            Matching::Appearance if is_plain => {
+                self.by_appearance(&ground, &pyramid, options, &mut callback)?
+            }
+            _ => engine::run(&ground, &pyramid, options, &mut callback)?,
+        };
         let places = match options.sources {
             Sources::Pixel => None,
             Sources::SubPixel => sources.first().map(|sources| {
@@ -156,6 +163,34 @@ impl Synthesizer {
             count: options.n_levels,
             needed: "at most those of the sites",
         }))
+    }
+
+    /// The pixels of the sites of each level, the finest first: of the first pass on the coarsest, and then corrected.
+    fn by_appearance(
+        &self,
+        ground: &MeshGround<'_>,
+        pyramid: &Pyramid,
+        options: &Options,
+        callback: Callback<'_>,
+    ) -> Result<Vec<Vec<u32>>, SynthError> {
+        let exemplar = &pyramid.levels()[0];
+        let passes = options.passes()?.passes;
+        let mut first = |progress: Progress| {
+            callback(Progress {
+                n_passes: options.n_levels + 1,
+                ..progress
+            })
+        };
+        let sources = engine::run_passes(ground, pyramid, &passes[..1], options, &mut first)?;
+        let coarsest = sources.last().map_or(&[][..], Vec::as_slice);
+        let appearance = Appearance::new(&self.hierarchy, &self.orientation, exemplar, options)?;
+        let places = appearance.run(coarsest, callback)?;
+        let pixels = |(level, places): (usize, Vec<[u32; 2]>)| {
+            let width = pyramid.levels()[level].size[0];
+            let pixel = |[column, row]: [u32; 2]| (row >> level) * width + (column >> level);
+            places.into_iter().map(pixel).collect()
+        };
+        Ok(places.into_iter().enumerate().map(pixels).collect())
     }
 
     /// The surface, its sites and their orientation, on which the texture grows.

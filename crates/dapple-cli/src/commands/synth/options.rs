@@ -430,6 +430,7 @@ impl MatchArgs {
             evenness: self.evenness.unwrap_or(default.evenness),
             axes: surface.axes.unwrap_or(default.axes),
             center: default.center,
+            matching: default.matching,
             sources: default.sources,
         }
     }

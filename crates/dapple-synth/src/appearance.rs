@@ -1,0 +1,338 @@
+//! Corrections of all sites of a level at once, by what the exemplar looks like around the places that they are from.
+//!
+//! References: Sylvain Lefebvre and Hugues Hoppe, "Appearance-Space Texture Synthesis", SIGGRAPH 2006, DOI
+//! 10.1145/1141911.1141921, and "Parallel Controllable Texture Synthesis", SIGGRAPH 2005, DOI 10.1145/1186822.1073261.
+//!
+//! A site is from a place in the exemplar, on all levels a pixel of its full size. What is compared are the principal
+//! components of windows around such places ([`stage`]), as far apart as the sites of the level. A window is looked up where
+//! a site around goes on to: nothing is interpolated, so nothing is blurred, and 32 numbers are compared, where two squares of
+//! colors have 171. From level to level sites keep their places, and new ones go on from the nearest of those. Then every site takes a few times, of the places that its neighbors go on to and of those most like these, the one
+//! around which the exemplar looks most like the texture around it.
+//!
+//! Departures from the papers: sites are not pixels of a chart, and there are no jumps between charts; what lies to which
+//! side of a site follows from the field, half of it here and half there ([`links`]). Neighbors are corrected one after the
+//! other, in classes of sites that are not connected, which depend on nothing but the graph. The coarsest level begins with
+//! the paper's first pass of a sweep (Turk 2001), in which large features grow from one side to the other. Parts of the
+//! exemplar that the texture has too often cost more from one pass to the next, as those of endless textures do.
+
+mod links;
+
+use crate::endless::evenness::Costs;
+use crate::endless::stage::{self, DIAGONALS, N_FEATURES, Stage};
+use crate::engine::{Callback, Progress};
+use crate::options::REGULAR;
+use crate::places::{Frame, frames};
+use crate::{Coherence, Exemplar, Hierarchy, Options, Orientation, SynthError, SynthErrorKind};
+use core::ops::ControlFlow;
+use dapple_hash::{Seed, hash1};
+use dapple_raster::parallel;
+use glam::Vec2;
+use links::Links;
+
+/// How often a level is corrected; the coarsest twice as often.
+const N_PASSES: usize = 3;
+
+/// Sites that one task corrects at least.
+const TASK: usize = 64;
+
+/// The most places that a site chooses from, but for those that are like them.
+const MAX_COHERENT: usize = 16;
+
+/// How much a cost changes after a pass, in mean squared distances, for a part that the texture never has.
+const STEP: f32 = 0.8;
+
+/// The sites of a surface with their directions, and the exemplar on all levels.
+pub(crate) struct Appearance<'a> {
+    hierarchy: &'a Hierarchy,
+    frames: Vec<Frame>,
+    /// The levels, the finest first.
+    stages: Vec<Stage>,
+    seed: Seed,
+    /// How much costs change, and 0 where there are none.
+    evenness: f32,
+    /// By how much more than once the distance counts of what only is like a place that a neighbor goes on to.
+    coherence: f32,
+}
+
+/// A place in the exemplar, and how unlike the exemplar around it is to the texture around the site.
+#[derive(Clone, Copy, Debug)]
+struct Choice {
+    place: [u32; 2],
+    distance_sq: f32,
+}
+
+impl<'a> Appearance<'a> {
+    /// Prepares the levels of an exemplar.
+    ///
+    /// # Errors
+    ///
+    /// [`SynthErrorKind::Masked`] for a mask that leaves nothing.
+    pub(crate) fn new(
+        hierarchy: &'a Hierarchy,
+        orientation: &Orientation,
+        exemplar: &Exemplar,
+        options: &Options,
+    ) -> Result<Self, SynthError> {
+        // Of less than the exemplar, no texture has all parts; and what repeats has all of them anyway.
+        let [width, height] = exemplar.size.map(|side| side as usize);
+        let is_uneven = hierarchy.sites().len() < width * height || exemplar.regularity() > REGULAR;
+        Ok(Self {
+            hierarchy,
+            frames: frames(hierarchy, orientation),
+            stages: stage::stages(exemplar, options.n_levels)?,
+            seed: options.seed,
+            evenness: if is_uneven { 0.0 } else { options.evenness },
+            coherence: match options.coherence {
+                // Measured: also what repeats goes on better than with less.
+                Coherence::Auto => 2.0,
+                Coherence::Factor(factor) => factor,
+            },
+        })
+    }
+
+    /// The pixel of the exemplar that each site of each level is from, the finest first, given those of the coarsest level
+    /// of a pyramid that the coarsest sites begin with.
+    pub(crate) fn run(
+        mut self,
+        coarsest: &[u32],
+        callback: Callback<'_>,
+    ) -> Result<Vec<Vec<[u32; 2]>>, SynthError> {
+        let n_levels = self.stages.len();
+        let mut levels: Vec<Vec<[u32; 2]>> = Vec::new();
+        for level in (0..n_levels).rev() {
+            let links = Links::new(self.hierarchy, &self.frames, level);
+            let mut places = match levels.last() {
+                None => self.begin(level, coarsest),
+                Some(coarser) => self.refine(level, coarser, &links),
+            };
+            let n_passes = if levels.is_empty() {
+                2 * N_PASSES
+            } else {
+                N_PASSES
+            };
+            let n_sites = n_passes * places.len();
+            let mut tell = |done| {
+                let progress = Progress {
+                    pass: n_levels - level,
+                    n_passes: n_levels + 1,
+                    done,
+                    n_sites,
+                };
+                match callback(progress) {
+                    ControlFlow::Continue(()) => Ok(()),
+                    ControlFlow::Break(()) => Err(SynthError::new(SynthErrorKind::Cancelled)),
+                }
+            };
+            self.correct(level, &links, n_passes, &mut places, &mut tell)?;
+            levels.push(places);
+        }
+        levels.reverse();
+        Ok(levels)
+    }
+
+    /// The places of the coarsest sites, which have these pixels of a pyramid.
+    fn begin(&self, level: usize, pixels: &[u32]) -> Vec<[u32; 2]> {
+        let stage = &self.stages[level];
+        let width = ((stage.size[0] - 1) >> level) + 1;
+        let place = |(site, &pixel): (usize, &u32)| {
+            let place = [pixel % width, pixel / width].map(|at| i64::from(at) << level);
+            stage
+                .usable(place)
+                .map_or_else(|| self.any(level, site), narrow)
+        };
+        pixels.iter().enumerate().map(place).collect()
+    }
+
+    /// The places of the sites of a level before they are corrected: those of the coarser level keep theirs, and the others
+    /// go on from the nearest of them.
+    fn refine(&self, level: usize, coarser: &[[u32; 2]], links: &Links) -> Vec<[u32; 2]> {
+        let stage = &self.stages[level];
+        let n_sites = self.hierarchy.levels()[level].n_sites();
+        parallel::map_at_least(TASK, n_sites, |site| {
+            if let Some(&place) = coarser.get(site) {
+                return place;
+            }
+            let near = links.of(site).near.iter();
+            let parents = near.filter(|link| (link.site as usize) < coarser.len());
+            let nearest = parents.min_by(|a, b| {
+                a.way()
+                    .length_squared()
+                    .total_cmp(&b.way().length_squared())
+            });
+            let Some(link) = nearest else {
+                return self.any(level, site);
+            };
+            let parent = coarser[link.site as usize];
+            let place = stage.usable(moved(parent, -link.way()));
+            place.map_or(parent, narrow)
+        })
+    }
+
+    /// A random place for a site.
+    fn any(&self, level: usize, site: usize) -> [u32; 2] {
+        let stage = &self.stages[level];
+        let usable = stage.usable_pixels();
+        let random = hash1(
+            self.seed.child("appearance", level as u64),
+            [site as i64],
+            0,
+        ) >> 32;
+        let pixel = usable[((random * usable.len() as u64) >> 32) as usize];
+        [pixel % stage.size[0], pixel / stage.size[0]]
+    }
+
+    /// Corrects all sites of a level some times.
+    fn correct(
+        &mut self,
+        level: usize,
+        links: &Links,
+        n_passes: usize,
+        places: &mut [[u32; 2]],
+        tell: &mut dyn FnMut(usize) -> Result<(), SynthError>,
+    ) -> Result<(), SynthError> {
+        let Stage { size, spacing, .. } = self.stages[level];
+        let mut costs = Costs::new(size, spacing as u32);
+        let usable = self.stages[level].usable_pixels();
+        let usable = usable
+            .iter()
+            .map(|pixel| [pixel % size[0], pixel / size[0]]);
+        let wanted = costs.shares(usable);
+        let (mut scale, mut done) = (None, 0);
+        for _ in 0..n_passes {
+            let mut sum = 0.0;
+            for class in &links.classes {
+                let choose = |at: usize| {
+                    choose(
+                        &self.stages[level],
+                        links,
+                        class[at] as usize,
+                        places,
+                        self.coherence,
+                    )
+                };
+                let chosen = parallel::map_at_least(TASK, class.len(), choose);
+                for (&site, choice) in class.iter().zip(chosen) {
+                    places[site as usize] = choice.place;
+                    sum += f64::from(choice.distance_sq);
+                }
+                done += class.len();
+                tell(done)?;
+            }
+            if self.evenness > 0.0 {
+                let scale = *scale.get_or_insert(sum / places.len().max(1) as f64) as f32;
+                let shares = costs.shares(places.iter().copied());
+                costs.change(&shares, &wanted, self.evenness * STEP * scale);
+                self.stages[level].costs = costs.clone();
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The place around which the exemplar looks most like the texture around a site. Of equally good ones the first.
+fn choose(
+    stage: &Stage,
+    links: &Links,
+    site: usize,
+    places: &[[u32; 2]],
+    coherence: f32,
+) -> Choice {
+    let around = around(stage, links, site, places);
+    let mut best = Choice {
+        place: places[site],
+        distance_sq: f32::INFINITY,
+    };
+    let mut compare = |place: [i64; 2], factor: f32| {
+        let distance_sq = factor * distance_sq(stage, &around, place) + stage.costs.of(place);
+        if distance_sq < best.distance_sq {
+            best = Choice {
+                place: narrow(place),
+                distance_sq,
+            };
+        }
+    };
+    let own = places[site].map(i64::from);
+    let mut coherent = [own; MAX_COHERENT];
+    let mut n_coherent = 1;
+    compare(own, 1.0);
+    for link in links.of(site).near {
+        if let Some(place) = stage.usable(moved(places[link.site as usize], -link.way()))
+            && n_coherent < MAX_COHERENT
+            && !coherent[..n_coherent].contains(&place)
+        {
+            coherent[n_coherent] = place;
+            n_coherent += 1;
+            compare(place, 1.0);
+        }
+    }
+    for &place in &coherent[..n_coherent] {
+        if let Some(place) = stage.similar(place) {
+            compare(place, 1.0 + coherence);
+        }
+    }
+    best
+}
+
+/// The features on the diagonals of a site: of each the mean of what the sites around it go on to there. Nothing where there
+/// are none, as past an edge of the surface.
+fn around(
+    stage: &Stage,
+    links: &Links,
+    site: usize,
+    places: &[[u32; 2]],
+) -> [Option<[f32; N_FEATURES]>; 4] {
+    let corners = links.of(site).corners;
+    let mut corner = 0;
+    DIAGONALS.map(|diagonal| {
+        let links = corners[corner];
+        corner += 1;
+        if links.is_empty() {
+            return None;
+        }
+        let diagonal = Vec2::from(diagonal.map(|at| (at * stage.spacing) as f32));
+        let mut sums = [0.0; N_FEATURES];
+        for link in links {
+            let place = moved(places[link.site as usize], diagonal - link.way());
+            for (sum, value) in sums.iter_mut().zip(stage.features(place)) {
+                *sum += value;
+            }
+        }
+        Some(sums.map(|sum| sum / links.len() as f32))
+    })
+}
+
+/// The squared distance of features on the diagonals of a site from those on the diagonals of a place.
+#[inline]
+fn distance_sq(
+    stage: &Stage,
+    around: &[Option<[f32; N_FEATURES]>; 4],
+    [column, row]: [i64; 2],
+) -> f32 {
+    let mut sum = 0.0;
+    for (own, [x, y]) in around.iter().zip(DIAGONALS) {
+        let Some(own) = own else { continue };
+        let other = stage.features([column + x * stage.spacing, row + y * stage.spacing]);
+        for (a, b) in own.iter().zip(other) {
+            sum += (a - b) * (a - b);
+        }
+    }
+    sum
+}
+
+/// The pixel nearest to where a way from a place leads.
+#[inline]
+fn moved(place: [u32; 2], way: Vec2) -> [i64; 2] {
+    let way = way.round();
+    [
+        i64::from(place[0]) + way.x as i64,
+        i64::from(place[1]) + way.y as i64,
+    ]
+}
+
+/// A place in the exemplar, which has less than 2^32 columns and rows.
+fn narrow(place: [i64; 2]) -> [u32; 2] {
+    place.map(|at| at as u32)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,176 @@
+//! Which sites of a level read which: the neighbors of each, which it goes on with, and the sites on its diagonals, which
+//! say what is there.
+
+use crate::endless::stage::DIAGONALS;
+use crate::places::Frame;
+use crate::{Hierarchy, SiteIdx};
+use dapple_raster::parallel;
+use glam::Vec2;
+
+/// How far along both axes the middle of the sites is that tell of a diagonal, in spacings: beyond the corner, so that a site
+/// sees more than its neighbors.
+///
+/// Measured on hooks, text, leaves and bricks: with 1.6 windows of the texture are 2 to 5 % nearer to those of the exemplar
+/// than with 1.0.
+const CORNER: f32 = 1.6;
+
+/// How far from there they are at most, in spacings.
+const REACH: f32 = 1.1;
+
+/// Sites that one task links at least.
+const TASK: usize = 256;
+
+/// The most classes; more would only wait for each other.
+const MAX_CLASSES: u32 = 63;
+
+/// Another site, and where it lies.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Link {
+    pub(super) site: u32,
+    /// The way to it in pixels of the exemplar.
+    way: [f32; 2],
+}
+
+/// The sites that each site of a level reads.
+#[derive(Debug)]
+pub(super) struct Links {
+    links: Vec<Link>,
+    /// Where the neighbors of each site begin, and those of its diagonals, one after the other.
+    rows: Vec<[u32; 5]>,
+    /// The sites in classes that are corrected one after the other; no two of one class are connected.
+    pub(super) classes: Vec<Vec<u32>>,
+}
+
+/// What a site reads.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Around<'a> {
+    /// The sites that it is connected to.
+    pub(super) near: &'a [Link],
+    /// The sites on each of [`DIAGONALS`].
+    pub(super) corners: [&'a [Link]; 4],
+}
+
+impl Link {
+    #[inline]
+    pub(super) fn way(&self) -> Vec2 {
+        self.way.into()
+    }
+}
+
+impl Links {
+    pub(super) fn new(hierarchy: &Hierarchy, frames: &[Frame], level: usize) -> Self {
+        let n_sites = hierarchy.levels()[level].n_sites();
+        let pieces = parallel::map(n_sites.div_ceil(TASK), |piece| {
+            let mut part = (Vec::new(), Vec::new());
+            for site in piece * TASK..n_sites.min((piece + 1) * TASK) {
+                add(hierarchy, frames, level, SiteIdx(site as u32), &mut part);
+            }
+            part
+        });
+        let (mut links, mut rows) = (Vec::new(), Vec::with_capacity(n_sites + 1));
+        for (part, ends) in pieces {
+            let before = links.len() as u32;
+            rows.extend(
+                ends.into_iter()
+                    .map(|row: [u32; 5]| row.map(|at| before + at)),
+            );
+            links.extend(part);
+        }
+        rows.push([links.len() as u32; 5]);
+        Self {
+            links,
+            rows,
+            classes: classes(hierarchy, level),
+        }
+    }
+
+    /// What a site reads.
+    #[inline]
+    pub(super) fn of(&self, site: usize) -> Around<'_> {
+        let [near, corners @ ..] = self.rows[site];
+        let end = self.rows[site + 1][0];
+        let [a, b, c, d] = corners;
+        let part = |from: u32, until: u32| &self.links[from as usize..until as usize];
+        Around {
+            near: part(near, a),
+            corners: [part(a, b), part(b, c), part(c, d), part(d, end)],
+        }
+    }
+}
+
+/// Appends the links of a site, and where they begin.
+fn add(
+    hierarchy: &Hierarchy,
+    frames: &[Frame],
+    level: usize,
+    site: SiteIdx,
+    (links, rows): &mut (Vec<Link>, Vec<[u32; 5]>),
+) {
+    let graph = hierarchy.levels()[level].graph();
+    let near = graph.neighbors(site);
+    let begin = links.len() as u32;
+    links.extend(
+        near.iter()
+            .filter_map(|&other| link(hierarchy, frames, site, other)),
+    );
+    let mut row = [begin; 5];
+    let mut found: Vec<SiteIdx> = near
+        .iter()
+        .flat_map(|&near| graph.neighbors(near))
+        .copied()
+        .collect();
+    found.extend(near);
+    found.retain(|&other| other != site);
+    found.sort_unstable();
+    found.dedup();
+    let found: Vec<Link> = found
+        .into_iter()
+        .filter_map(|other| link(hierarchy, frames, site, other))
+        .collect();
+    let spacing = (1_u64 << level) as f32;
+    for (corner, diagonal) in DIAGONALS.iter().enumerate() {
+        row[corner + 1] = links.len() as u32;
+        let middle = Vec2::from(diagonal.map(|at| at as f32)) * CORNER * spacing;
+        let is_there = |link: &&Link| {
+            let way = link.way();
+            way.distance_squared(middle) < (REACH * spacing) * (REACH * spacing)
+                && (way * middle).cmpgt(Vec2::ZERO).all()
+        };
+        links.extend(found.iter().filter(is_there));
+    }
+    rows.push(row);
+}
+
+/// The way to another site; nothing if it is on another sheet.
+fn link(hierarchy: &Hierarchy, frames: &[Frame], from: SiteIdx, to: SiteIdx) -> Option<Link> {
+    let (sites, [a, b]) = (hierarchy.sites(), [from, to].map(|site| site.index()));
+    if sites.normals()[a].dot(sites.normals()[b]) < 0.0 {
+        return None;
+    }
+    let way = (sites.positions()[b] - sites.positions()[a]).as_vec3();
+    // Frames turn on the way: the mean of both ends is that of its middle.
+    let way = 0.5 * (frames[a].flat(way) + frames[b].flat(way));
+    Some(Link {
+        site: to.0,
+        way: way.to_array(),
+    })
+}
+
+/// Puts every site into the first class that none of its neighbors with a lower number is in.
+fn classes(hierarchy: &Hierarchy, level: usize) -> Vec<Vec<u32>> {
+    let graph = hierarchy.levels()[level].graph();
+    let mut class_of = vec![0_u32; graph.len()];
+    let mut classes: Vec<Vec<u32>> = Vec::new();
+    for site in 0..graph.len() as u32 {
+        let lower = graph.neighbors(SiteIdx(site)).iter();
+        let lower = lower.take_while(|other| other.0 < site);
+        let taken = lower.fold(0_u64, |taken, other| taken | 1 << class_of[other.index()]);
+        let class = taken.trailing_ones().min(MAX_CLASSES);
+        class_of[site as usize] = class;
+        if classes.len() <= class as usize {
+            classes.push(Vec::new());
+        }
+        classes[class as usize].push(site);
+    }
+    classes
+}
