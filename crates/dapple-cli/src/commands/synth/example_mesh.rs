@@ -53,7 +53,7 @@ impl Args {
             };
         }
         if self.surface.mesh.is_none() && self.plane.repair.is_none() {
-            let error = usage(format!("{name} is a mesh, whose texture needs another one"));
+            let error = anyhow!("{name} is a mesh, whose texture needs another one");
             return Err(error.hint("add --mesh FILE, the mesh that gets it, or --repair MASK"));
         }
         let plane = self.plane.given().filter(|&option| option != "repair");

@@ -214,7 +214,7 @@ pub(super) struct MatchArgs {
     weight: Vec<WeightArg>,
 
     /// How much worse a match may be that continues what lies beside it, at least 0: higher copies larger pieces. By
-    /// default auto, which is 2, or 0 on finer levels where the example is regular; 0 with --paper.
+    /// default auto, which is 2, or 0 on finer levels where the example is a regular image; 0 with --paper.
     #[arg(long, value_name = "auto|N")]
     coherence: Option<Coherence>,
 
