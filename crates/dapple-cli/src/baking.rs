@@ -165,14 +165,12 @@ pub(crate) fn encode(
         RowWriter::new(Cursor::new(Vec::new()), size, content, encoding)
     };
     let mut writers = images.iter().map(writer).collect::<Result<Vec<_>, _>>()?;
-    for band in bake {
-        let band = band.map_err(advise)?;
+    for_each_band(bake, progress, |band| {
         let written = parallel::map_mut_at_least(1, &mut writers, |index, writer| {
-            Ok(images[index].layers.rows(&band)?.write(writer)?)
+            Ok(images[index].layers.rows(band)?.write(writer)?)
         });
-        written.into_iter().collect::<Result<()>>()?;
-        progress.add(n_rows(&band));
-    }
+        written.into_iter().collect()
+    })?;
     let finished = writers.into_iter().map(RowWriter::finish);
     finished.map(|file| Ok(file?.into_inner())).collect()
 }
@@ -184,19 +182,33 @@ fn draw(
     progress: &Progress,
     write: fn(&mut Rows, &LayerRows<'_>) -> Result<()>,
 ) -> Result<()> {
-    for band in bake {
-        let band = band.map_err(advise)?;
+    for_each_band(bake, progress, |band| {
         let written =
-            parallel::map_mut_at_least(1, rows, |_, rows| write(rows, &rows.layers.rows(&band)?));
-        written.into_iter().collect::<Result<()>>()?;
-        progress.add(n_rows(&band));
-    }
-    Ok(())
+            parallel::map_mut_at_least(1, rows, |_, rows| write(rows, &rows.layers.rows(band)?));
+        written.into_iter().collect()
+    })
 }
 
-fn n_rows(band: &Band) -> u64 {
-    let rows = band.maps.first().map_or(0, |(_, rows)| rows.size()[1]);
-    rows.into()
+/// Writes the bands of a bake, each while the next one is made, and counts their rows in the progress.
+fn for_each_band(
+    mut bake: Bake<'_>,
+    progress: &Progress,
+    mut write: impl FnMut(&Band) -> Result<()> + Send,
+) -> Result<()> {
+    let mut next = bake.next();
+    while let Some(band) = next.transpose().map_err(advise)? {
+        let mut written = Ok(());
+        next = None;
+        let work: Vec<Box<dyn FnOnce() + Send + '_>> = vec![
+            Box::new(|| written = write(&band)),
+            Box::new(|| next = bake.next()),
+        ];
+        parallel::consume(work, |_, work| work());
+        written?;
+        let n_rows = band.maps.first().map_or(0, |(_, rows)| rows.size()[1]);
+        progress.add(n_rows.into());
+    }
+    Ok(())
 }
 
 /// The format of a map's file.
@@ -245,6 +257,8 @@ struct Rows {
     layers: Layers,
     map: Writer,
     sheet: Option<Writer>,
+    /// Whether the range of the numbers is noted.
+    is_noted: bool,
     /// The smallest and the largest number written so far.
     range: [f32; 2],
 }
@@ -259,13 +273,16 @@ impl Rows {
             layers: file.image.layers,
             map: Writer::new(job, file.image, file.output, size)?,
             sheet: sheet.transpose()?,
+            is_noted: job.has_sidecar(),
             range: [f32::INFINITY, f32::NEG_INFINITY],
         })
     }
 
     fn write(&mut self, rows: &LayerRows<'_>) -> Result<()> {
         self.map.write(rows)?;
-        self.range = rows.range(self.range);
+        if self.is_noted {
+            self.range = rows.range(self.range);
+        }
         self.write_sheet(rows)
     }
 

@@ -234,6 +234,11 @@ impl<'a> Job<'a> {
         self.outputs.writer(output)
     }
 
+    /// Whether there is a JSON file, for which [`note`](Self::note) records what is in the images.
+    pub(crate) fn has_sidecar(&self) -> bool {
+        self.sidecar.is_some()
+    }
+
     /// Records the format, the size and the range of an image.
     pub(crate) fn note(
         &mut self,

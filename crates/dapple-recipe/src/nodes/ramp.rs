@@ -59,10 +59,16 @@ impl NodeKind for Ramped {
         let ramp = self.ramp()?;
         let inputs = vec![plan.number(&self.input)?];
         let step = plan.local(inputs, move |inputs| {
+            // Neighbors often have the same number, such as that of their cell.
+            let mut last = (f32::NAN.to_bits(), ramp.at(f32::NAN));
+            let color = |&value: &f32| {
+                if value.to_bits() != last.0 {
+                    last = (value.to_bits(), ramp.at(value));
+                }
+                last.1
+            };
             let numbers = inputs[0].numbers().iter();
-            Ok(Values::Colors(
-                numbers.map(|&value| ramp.at(value)).collect(),
-            ))
+            Ok(Values::Colors(numbers.map(color).collect()))
         });
         Ok(step.with_colors())
     }
