@@ -51,7 +51,7 @@ pub(crate) fn magnify<const N: usize, P: Sourced>(
         footprints: footprints(synthesizer, &atlas.uvs(), atlas.size()),
         spacing: spacing as f32,
         value: &|spot: &Spot<P::Place>, channels: &mut [f32]| {
-            channels.copy_from_slice(&value(spot))
+            channels.copy_from_slice(&value(spot));
         },
     };
     bake_with(surface, hierarchy, atlas, background, &|| {
