@@ -1,8 +1,8 @@
 //! What `texture-synthesis` can do beside textures of one example, ours beside it: several examples, guides, turned examples,
 //! tiles and repairs.
 //!
-//! Exemplars are drawings of 128² pixels, and images have 192² but for the repair, which has those of its exemplar. Both sides have
-//! their defaults and run on one thread; times are medians of processor times, ours with all preparations.
+//! Exemplars are drawings of 128² pixels, and images have 192² but for the repair, which has those of its exemplar. Both
+//! sides have their defaults and run on one thread; times are medians of processor times, ours with all preparations.
 
 use super::drawings::{bricks, draw, scales};
 use crate::harness::{Bench, median};

@@ -47,8 +47,8 @@ impl PlaneTexture {
     /// How unlike the texture around each pixel and the exemplar around its source are: the root of the mean squared
     /// difference of the values within two pixels, at least 0.
     ///
-    /// Where it is 0 the exemplar goes on; else a border of pieces is near, and the more it can be seen, the larger it is. Values are
-    /// those of the exemplar times the roots of their weights; sRGB codes from 0 to 1 for colors.
+    /// Where it is 0 the exemplar goes on; else a border of pieces is near, and the more it can be seen, the larger it is.
+    /// Values are those of the exemplar times the roots of their weights; sRGB codes from 0 to 1 for colors.
     ///
     /// # Errors
     ///

@@ -115,7 +115,7 @@ pub(super) struct PlaneArgs {
     pub(super) pieces: Option<PathBuf>,
 
     /// Also write an image of how unlike the texture around each pixel and the example around its source are: black where
-    /// the example goes on, the lighter the more a border of pieces can be seen.
+    /// the example goes on, the lighter the more a border of pieces can be seen, and white for a quarter of the range.
     #[arg(long, value_name = "FILE")]
     pub(super) differences: Option<PathBuf>,
 
