@@ -77,19 +77,20 @@ pub(super) struct TrackedRows<'a> {
     pub(super) limit: f32,
 }
 
-/// The nearest points of the pixels of a row.
+/// The nearest points of the pixels of a row. The numbers come first, so that registers do not lie across cache lines.
+#[repr(C, align(64))]
 pub(super) struct Found {
-    pub(super) row: usize,
-    pub(super) columns: Range<usize>,
-    pub(super) n_axes: usize,
-    /// The number of nearest points for each pixel.
-    depth: usize,
     pub(super) distances: [[f32; LANES]; LIMIT],
     /// The components of the vectors, one after the other.
     pub(super) vectors: [[f32; MOST_AXES * LANES]; LIMIT],
     pub(super) ids: [[u64; LANES]; LIMIT],
     /// A bit for each lane whose order is unknown.
     pub(super) unknown: u64,
+    pub(super) row: usize,
+    pub(super) columns: Range<usize>,
+    pub(super) n_axes: usize,
+    /// The number of nearest points for each pixel.
+    depth: usize,
 }
 
 /// The smallest keys of sixteen pixels, with the numbers of their candidates in the low bits.
