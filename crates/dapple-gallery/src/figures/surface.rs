@@ -12,6 +12,7 @@ mod fig_extra_charts;
 mod fig_extra_endless;
 mod fig_extra_exemplars;
 mod fig_extra_guides;
+mod fig_extra_lifted;
 mod fig_extra_repair;
 mod fig_extra_sharp;
 mod hooks;
@@ -44,6 +45,7 @@ pub(super) const PAPER: Paper = Paper {
         fig_extra_endless::FIGURE,
         fig_extra_exemplars::FIGURE,
         fig_extra_guides::FIGURE,
+        fig_extra_lifted::FIGURE,
         fig_extra_repair::FIGURE,
         fig_extra_sharp::FIGURE,
     ],

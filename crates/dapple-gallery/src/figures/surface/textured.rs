@@ -7,8 +7,8 @@ use dapple_preview::Surface;
 use dapple_raster::{Raster, Wrap};
 use dapple_synth::mesh::{self, Mesh};
 use dapple_synth::{
-    Atlas, Coherence, Direction, Edges, Exemplar, HierarchyOptions, Options, Sources, Synthesizer,
-    bake_colors,
+    Atlas, Coherence, Direction, Edges, Exemplar, HierarchyOptions, MeshExemplar, Options, Sources,
+    Synthesizer, bake_colors,
 };
 use glam::{DVec2, DVec3};
 
@@ -41,7 +41,7 @@ pub(super) struct SiteGuide {
 }
 
 /// A mesh with its texture.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Textured {
     pub(super) synthesizer: Synthesizer,
     pub(super) map: Raster<LinearRgb>,
@@ -77,16 +77,78 @@ impl Job {
         let atlas = Atlas::uniform(surface, self.map_side)?;
         let shown = self.detail.as_ref().unwrap_or(&self.image);
         let map = bake_colors(&synthesizer, &texture, shown, &atlas)?;
-        Ok(Textured {
-            map: map.map(|color| LinearRgb::from_srgb(color.to_srgb::<u8>())),
-            uvs: atlas.uvs(),
-            atlas,
-            synthesizer,
-        })
+        Ok(Textured::new(synthesizer, atlas, &map))
     }
 }
 
 impl Textured {
+    fn new(synthesizer: Synthesizer, atlas: Atlas, map: &Raster<LinearRgb>) -> Self {
+        Self {
+            map: map.map(|color| LinearRgb::from_srgb(color.to_srgb::<u8>())),
+            uvs: atlas.uvs(),
+            atlas,
+            synthesizer,
+        }
+    }
+
+    /// The texture with a stain at some places, and without it again, made from the rest.
+    pub(super) fn stained(self, is_stain: fn(DVec3) -> bool) -> Result<[Self; 2]> {
+        let surface = self.synthesizer.surface();
+        let is_clean = Raster::from_fn(self.map.size(), |column, row| {
+            let point = self.atlas.point(surface, [column, row]);
+            !point.is_some_and(|point| is_stain(surface.position(point)))
+        })?;
+        let choose = |clean: &Raster<LinearRgb>, other: &Raster<LinearRgb>| {
+            let texel = |x: u32, y: u32| {
+                let from = if is_clean.row(y)[x as usize] {
+                    clean
+                } else {
+                    other
+                };
+                from.row(y)[x as usize]
+            };
+            Raster::from_fn(self.map.size(), texel)
+        };
+        let gray = Raster::filled(self.map.size(), LinearRgb::gray(0.25))?;
+        let stained = choose(&self.map, &gray)?;
+        let texture = Exemplar::new(&stained, Edges::Cut)?.with_mask(&is_clean)?;
+        let exemplar = MeshExemplar::new(self.synthesizer.clone(), &self.uvs, &texture)?;
+        let options = Options {
+            n_levels: self.synthesizer.hierarchy().levels().len(),
+            ..Options::default()
+        };
+        let repaired = exemplar.repair(&options, |_| ControlFlow::Continue(()))?;
+        let new = bake_colors(&self.synthesizer, &repaired, &stained, &self.atlas)?;
+        let repaired = choose(&stained, &new)?;
+        let with_map = |map| Self {
+            map,
+            ..self.clone()
+        };
+        Ok([with_map(stained), with_map(repaired)])
+    }
+
+    /// Lifts the texture, which is to be a regular one, onto another model, with a map as large.
+    pub(super) fn lifted(
+        &self,
+        mesh: Mesh,
+        directions: &[Direction],
+        sites: &HierarchyOptions,
+    ) -> Result<Self> {
+        let texture = Exemplar::new(&self.map, Edges::Cut)?;
+        let exemplar = MeshExemplar::new(self.synthesizer.clone(), &self.uvs, &texture)?;
+        let synthesizer = Synthesizer::new(mesh::Surface::new(mesh)?, directions, sites)?;
+        let options = Options {
+            n_levels: sites.n_levels,
+            // The texture is regular, which is not measured on a surface.
+            coherence: Coherence::Factor(0.0),
+            ..Options::default()
+        };
+        let lifted = synthesizer.lift(&exemplar, &[], &options, |_| ControlFlow::Continue(()))?;
+        let atlas = Atlas::uniform(synthesizer.surface(), self.map.width())?;
+        let map = bake_colors(&synthesizer, &lifted, &self.map, &atlas)?;
+        Ok(Self::new(synthesizer, atlas, &map))
+    }
+
     /// Returns the color of the texture map where a ray met the model.
     pub(super) fn color(&self, surface: &Surface) -> LinearRgb {
         let Some(triangle) = surface.triangle() else {
