@@ -16,7 +16,8 @@ use crate::detail::Detail;
 use crate::display::check_shading;
 use crate::magnify::magnify;
 use crate::maps::{check_column, check_finite};
-use crate::{Atlas, SurfaceTexture, SynthError, Synthesizer, bake};
+use crate::{Atlas, SurfaceTexture, SynthError, Synthesizer, bake, orientation};
+use core::iter::repeat;
 use dapple_color::{Normal, NormalY};
 use dapple_raster::Raster;
 use glam::DVec3;
@@ -112,10 +113,17 @@ fn in_space(
     };
     if let Some(places) = &texture.places {
         let detail = Detail::new(map, places.size, places.edges)?;
-        return magnify(synthesizer, places, atlas, flat, |spot| {
-            let normal = detail.sample(spot.place, spot.footprint);
-            turn(normal, spot.right.as_dvec3(), spot.down.as_dvec3())
-        });
+        return magnify(
+            synthesizer,
+            places,
+            &texture.quarters,
+            atlas,
+            flat,
+            |spot| {
+                let normal = detail.sample(spot.place, spot.footprint);
+                turn(normal, spot.right.as_dvec3(), spot.down.as_dvec3())
+            },
+        );
     }
     let (surface, hierarchy) = (synthesizer.surface(), synthesizer.hierarchy());
     let (outs, downs) = (
@@ -123,15 +131,19 @@ fn in_space(
         synthesizer.orientation().vectors(),
     );
     let normals = texture.transfer(&map)?;
-    let sites = normals.into_iter().zip(outs).zip(downs);
+    let quarters = texture.quarters.iter().copied().chain(repeat(0));
+    let sites = normals.into_iter().zip(outs).zip(downs).zip(quarters);
     let column: Vec<f32> = sites
-        .flat_map(|((normal, out), &down)| turn(normal, out.cross(down), down))
+        .flat_map(|(((normal, &out), &down), quarters)| {
+            let down = orientation::turned(down, out, quarters);
+            turn(normal, out.cross(down), down)
+        })
         .collect();
     bake::<4>(surface, hierarchy, &column, atlas, flat)
 }
 
 /// A vector turned as the shortest way turns one unit vector to another.
-fn turned(vector: DVec3, from: DVec3, to: DVec3) -> DVec3 {
+pub(crate) fn turned(vector: DVec3, from: DVec3, to: DVec3) -> DVec3 {
     let (sum, cos) = (from + to, from.dot(to));
     if cos <= -1.0 + 1e-9 {
         // All ways are equally short.

@@ -2,14 +2,14 @@
 //!
 //! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, doi 10.1145/383259.383297, section 5.
 
-use crate::ground::{Ground, UNKNOWN};
+use crate::ground::{Ground, Sources, UNKNOWN};
 use crate::guides::{self, Targets};
 use crate::kept::Kept;
 use crate::neighborhood::{Part, Pass, Reads};
 use crate::visit::Visit;
-use crate::{Candidates, Exemplar, Options, Pyramid, SynthError, SynthErrorKind};
+use crate::{Candidates, Exemplar, Options, Pyramid, Symmetry, SynthError, SynthErrorKind};
 use core::ops::ControlFlow;
-use core::sync::atomic::AtomicU32;
+use core::sync::atomic::{AtomicU8, AtomicU32};
 use dapple_hash::{Seed, hash1};
 
 /// The progress of a synthesis.
@@ -36,6 +36,17 @@ pub(crate) fn run<G: Ground>(
     options: &Options,
     callback: Callback<'_>,
 ) -> Result<Vec<Vec<u32>>, SynthError> {
+    let levels = run_turned(ground, pyramid, options, callback)?.into_iter();
+    Ok(levels.map(Sources::into_pixels).collect())
+}
+
+/// Runs all passes like [`run`], and also says by how many quarter turns the exemplar lies turned at each site.
+pub(crate) fn run_turned<G: Ground>(
+    ground: &G,
+    pyramid: &Pyramid,
+    options: &Options,
+    callback: Callback<'_>,
+) -> Result<Vec<Sources>, SynthError> {
     let passes = options.passes()?.passes;
     let n_guides = ground.targets().map_or(0, Targets::len);
     guides::check_count(n_guides, pyramid.levels()[0].n_guides())?;
@@ -44,14 +55,14 @@ pub(crate) fn run<G: Ground>(
         blur => Some(pyramid.blurred(blur)),
     };
     let coherence = options.coherence.factors(&pyramid.levels()[0]);
-    let mut levels: Vec<Vec<AtomicU32>> = Vec::new();
-    levels.resize_with(pyramid.levels().len(), Vec::new);
+    let mut levels: Vec<Sources> = Vec::new();
+    levels.resize_with(pyramid.levels().len(), Sources::default);
     let mut kept = Kept::default();
     let n_passes = passes.len();
     for (index, pass) in passes.iter().enumerate() {
         let n_sites = ground.n_sites(pass.level);
         let candidates = Candidates::for_options(seen.as_ref().unwrap_or(pyramid), pass, options)?;
-        if levels[pass.level].is_empty() {
+        if levels[pass.level].pixels.is_empty() {
             let start = ground.start(pass.level);
             let reads_itself = pass.parts.iter().any(|part| part.reads == Reads::Same);
             let mut first = if reads_itself || start.is_some() {
@@ -66,7 +77,11 @@ pub(crate) fn run<G: Ground>(
                     *first = known;
                 }
             }
-            levels[pass.level] = first.into_iter().map(AtomicU32::new).collect();
+            let level = &mut levels[pass.level];
+            level.pixels = first.into_iter().map(AtomicU32::new).collect();
+            if ground.symmetry() != Symmetry::One {
+                level.quarters.resize_with(n_sites, AtomicU8::default);
+            }
         }
         let keep = side_to_keep(pass, passes.get(index + 1));
         let visit = Visit::new(ground, pyramid, candidates, pass, options, coherence);
@@ -84,8 +99,15 @@ pub(crate) fn run<G: Ground>(
         };
         kept = visit.run(&levels, &kept, keep, &mut tell)?;
     }
-    let plain = |level: Vec<AtomicU32>| level.into_iter().map(AtomicU32::into_inner).collect();
-    Ok(levels.into_iter().map(plain).collect())
+    Ok(levels)
+}
+
+impl Sources {
+    /// The pixels of the sites.
+    pub(crate) fn into_pixels(self) -> Vec<u32> {
+        let pixels = self.pixels.into_iter();
+        pixels.map(AtomicU32::into_inner).collect()
+    }
 }
 
 /// A random pixel for every site of a level; of an exemplar with a mask, one of the candidates.

@@ -52,6 +52,10 @@
 //! what is near them. So any window of a texture without ends can be made on its own, in a tenth of the time, and what is
 //! large or regular in an exemplar, such as courses of bricks, goes on.
 //!
+//! Bricks look alike upside down, and a checker lying on its side. Fields of two or four directions
+//! ([`Orientation::symmetric`]) turn around fewer and gentler singularities, and textures go on across the places at which
+//! they turn.
+//!
 //! Guides ([`Exemplar::with_guides`]) say where in a texture which part of the exemplar goes: how light it is, so that the
 //! texture shows a picture; or which of several images, which lie [`SideBySide`].
 //!
@@ -168,7 +172,7 @@ pub use maps::{bake_colors, bake_colors_alpha, bake_values};
 pub use matcher::{Match, Matcher, MatcherMemory, distance_sq};
 pub use neighborhood::{Part, Pass, Reads, Schedule, Shape};
 pub use options::{Axes, Coherence, Options, Sources};
-pub use orientation::{Direction, Orientation};
+pub use orientation::{Direction, Orientation, Symmetry};
 pub use plane::{
     PlaneTexture, synthesize_plane, synthesize_plane_guided, synthesize_plane_with, tile_plane,
 };

@@ -9,7 +9,7 @@
 
 use crate::bake::{Group, Paint, bake_with};
 use crate::mesh_ground::Around;
-use crate::places::{AGREEMENT, Frame, Places, frames};
+use crate::places::{AGREEMENT, Frames, Places};
 use crate::sites::weight;
 use crate::{Atlas, SynthError, Synthesizer};
 use dapple_mesh::FaceIdx;
@@ -39,6 +39,7 @@ pub(crate) struct Spot {
 pub(crate) fn magnify<const N: usize>(
     synthesizer: &Synthesizer,
     places: &Places,
+    quarters: &[u8],
     atlas: &Atlas,
     background: [f32; N],
     value: impl Fn(&Spot) -> [f32; N] + Sync,
@@ -47,7 +48,7 @@ pub(crate) fn magnify<const N: usize>(
     let spacing = hierarchy.levels()[0].spacing();
     let magnified = Magnified {
         places,
-        frames: frames(hierarchy, synthesizer.orientation()),
+        frames: Frames::new(hierarchy, synthesizer.orientation(), quarters),
         footprints: footprints(synthesizer, atlas),
         spacing: spacing as f32,
         value,
@@ -75,7 +76,7 @@ fn footprints(synthesizer: &Synthesizer, atlas: &Atlas) -> Vec<f32> {
 /// The input of all texels.
 struct Magnified<'a, F> {
     places: &'a Places,
-    frames: Vec<Frame>,
+    frames: Frames,
     footprints: Vec<f32>,
     spacing: f32,
     value: F,
@@ -142,7 +143,7 @@ impl<F> Magnified<'_, F> {
             let prediction = Prediction {
                 site: record.site,
                 place: self.places.of_site[record.site as usize]
-                    + self.frames[record.site as usize].flat(way),
+                    + self.frames.of_site[record.site as usize].flat(way),
                 weight: 1.0,
             };
             if (is_opposed, x) < (nearest.0, nearest.1) {
@@ -174,10 +175,11 @@ impl<F> Magnified<'_, F> {
                 place,
                 weight,
             } = prediction;
-            let frame = &self.frames[site as usize];
+            let frame = &self.frames.of_site[site as usize];
             let agrees = |piece: &&mut Piece| {
                 let off = self.places.difference(place, piece.place);
-                off.length_squared() < AGREEMENT * AGREEMENT
+                let is_near = off.length_squared() < AGREEMENT * AGREEMENT;
+                is_near && !self.frames.differ(piece.down, frame)
             };
             if let Some(piece) = memory.pieces.iter_mut().find(agrees) {
                 piece.off += self.places.difference(place, piece.place) * weight;

@@ -146,9 +146,14 @@ fn bake_map<const N: usize>(
         return bake(surface, hierarchy, column.as_flattened(), atlas, background);
     };
     let detail = Detail::new(map, places.size, places.edges)?;
-    magnify(synthesizer, places, atlas, background, |spot| {
-        detail.sample(spot.place, spot.footprint)
-    })
+    magnify(
+        synthesizer,
+        places,
+        &texture.quarters,
+        atlas,
+        background,
+        |spot| detail.sample(spot.place, spot.footprint),
+    )
 }
 
 /// Refuses a column that has not just one value for each finest site.

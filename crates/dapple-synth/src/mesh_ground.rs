@@ -13,7 +13,7 @@ mod turning;
 use crate::ground::{Colors, Ground, Samples, Square};
 use crate::guides::Targets;
 use crate::turns::Turns;
-use crate::{Axes, Hierarchy, INTERPOLATION_RADIUS, Orientation, SiteIdx, Sweep};
+use crate::{Axes, Hierarchy, INTERPOLATION_RADIUS, Orientation, SiteIdx, Sweep, Symmetry};
 use dapple_mesh::Surface;
 use dapple_raster::simd;
 use nearby::Neighborhoods;
@@ -92,6 +92,17 @@ impl Ground for MeshGround<'_> {
         self.targets
     }
 
+    fn symmetry(&self) -> Symmetry {
+        self.orientation.symmetry()
+    }
+
+    fn quarters_toward(&self, site: u32, other: u32, quarters: u8) -> u8 {
+        let normals = self.hierarchy.sites().normals();
+        let [site, other] = [site, other].map(|site| site as usize);
+        self.orientation
+            .quarters_toward(normals, site, other, quarters)
+    }
+
     fn order(&self, level: usize) -> Vec<u32> {
         let order = self.sweep.order(level);
         order.into_iter().map(|SiteIdx(site)| site).collect()
@@ -135,7 +146,7 @@ impl Ground for MeshGround<'_> {
             Axes::Carried => Turning::default(),
             Axes::Followed => Turning::around(
                 self.hierarchy,
-                vectors,
+                self.orientation,
                 (SiteIdx(square.site), square.level),
                 (spacing, square.half),
             ),

@@ -3,12 +3,13 @@
 use crate::engine::{self, Progress};
 use crate::guides::Targets;
 use crate::mesh_ground::MeshGround;
-use crate::places::Places;
+use crate::places::{Frames, Places};
 use crate::{
     Axes, Direction, Exemplar, Hierarchy, HierarchyOptions, Options, Orientation, SiteIdx, Sources,
     SurfaceTexture, Sweep, SynthError, SynthErrorKind,
 };
 use core::ops::ControlFlow;
+use core::sync::atomic::AtomicU8;
 use dapple_mesh::{Mesh, Surface};
 
 /// A surface with its sites, their directions and their order: all that does not depend on the exemplar.
@@ -141,15 +142,24 @@ impl Synthesizer {
             targets: Some(&targets),
             ..self.ground(options.axes, options.sources == Sources::SubPixel)
         };
-        let sources = engine::run(&ground, &pyramid, options, &mut callback)?;
+        let mut levels = engine::run_turned(&ground, &pyramid, options, &mut callback)?;
+        let finest = levels.first_mut().map(|level| &mut level.quarters);
+        let quarters = finest.map(core::mem::take).unwrap_or_default();
+        let quarters: Vec<u8> = quarters.into_iter().map(AtomicU8::into_inner).collect();
+        let sources: Vec<_> = levels
+            .into_iter()
+            .map(|level| level.into_pixels())
+            .collect();
         let places = match options.sources {
             Sources::Pixel => None,
             Sources::SubPixel => sources.first().map(|sources| {
-                let exemplar = &pyramid.levels()[0];
-                Places::new(&self.hierarchy, &self.orientation, exemplar, sources)
+                let frames = Frames::new(&self.hierarchy, &self.orientation, &quarters);
+                Places::new(&self.hierarchy, &frames, &pyramid.levels()[0], sources)
             }),
         };
-        Ok(SurfaceTexture::new(&pyramid, sources, places))
+        let mut texture = SurfaceTexture::new(&pyramid, sources, places);
+        texture.quarters = quarters;
+        Ok(texture)
     }
 
     /// The surface, its sites and their orientation, on which the texture grows.
