@@ -54,7 +54,7 @@
 //!
 //! Bricks look alike upside down, and a checker lying on its side. Fields of two or four directions
 //! ([`Orientation::symmetric`]) turn around fewer and gentler singularities, and textures go on across the places at which
-//! they turn.
+//! they turn. In the plane, [`synthesize_plane_along`] takes directions and sizes of features from images.
 //!
 //! Guides ([`Exemplar::with_guides`]) say where in a texture which part of the exemplar goes: how light it is, so that the
 //! texture shows a picture; or which of several images, which lie [`SideBySide`].
@@ -143,6 +143,7 @@ mod orientation;
 mod parents;
 mod places;
 mod plane;
+mod plane_along;
 mod regularity;
 #[cfg(test)]
 mod shapes;
@@ -176,6 +177,7 @@ pub use orientation::{Direction, Orientation, Symmetry};
 pub use plane::{
     PlaneTexture, synthesize_plane, synthesize_plane_guided, synthesize_plane_with, tile_plane,
 };
+pub use plane_along::{PlaneAlong, synthesize_plane_along};
 pub use side_by_side::SideBySide;
 pub use sites::{
     Blend, Connected, DOWNSAMPLE_STEPS, DOWNSAMPLE_T, Evenness, Hierarchy, HierarchyOptions,

@@ -48,7 +48,7 @@ pub(crate) fn magnify<const N: usize>(
     let spacing = hierarchy.levels()[0].spacing();
     let magnified = Magnified {
         places,
-        frames: Frames::new(hierarchy, synthesizer.orientation(), quarters),
+        frames: Frames::new(synthesizer, quarters),
         footprints: footprints(synthesizer, atlas),
         spacing: spacing as f32,
         value,
@@ -95,10 +95,11 @@ struct Prediction {
 struct Piece {
     /// The prediction of the site with the largest weight.
     place: Vec2,
-    /// Sums with the weights of the sites: of how far from `place` the predictions are, and of directions.
+    /// Sums with the weights of the sites: of how far from `place` the predictions are, of directions, and of scales.
     off: Vec2,
     right: Vec3,
     down: Vec3,
+    scale: f32,
     weight: f32,
 }
 
@@ -183,15 +184,17 @@ impl<F> Magnified<'_, F> {
             };
             if let Some(piece) = memory.pieces.iter_mut().find(agrees) {
                 piece.off += self.places.difference(place, piece.place) * weight;
-                piece.right += frame.right * weight;
-                piece.down += frame.down * weight;
+                piece.right += frame.right * (weight * frame.scale);
+                piece.down += frame.down * (weight * frame.scale);
+                piece.scale += weight * frame.scale;
                 piece.weight += weight;
             } else {
                 memory.pieces.push(Piece {
                     place,
                     off: Vec2::ZERO,
-                    right: frame.right * weight,
-                    down: frame.down * weight,
+                    right: frame.right * (weight * frame.scale),
+                    down: frame.down * (weight * frame.scale),
+                    scale: weight * frame.scale,
                     weight,
                 });
             }
@@ -217,7 +220,7 @@ impl<F> Magnified<'_, F> {
             }
             let value = (self.value)(&Spot {
                 place: piece.place + piece.off / piece.weight,
-                footprint,
+                footprint: footprint * (piece.weight / piece.scale),
                 right: piece.right * (self.spacing / piece.weight),
                 down: piece.down * (self.spacing / piece.weight),
             });

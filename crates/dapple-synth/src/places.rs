@@ -13,7 +13,7 @@
 
 use crate::columns;
 use crate::orientation::turned;
-use crate::{Edges, Exemplar, Hierarchy, Orientation, SiteIdx};
+use crate::{Edges, Exemplar, Hierarchy, SiteIdx, Synthesizer};
 use glam::{Vec2, Vec3};
 
 /// How far from each other two predictions of one place may be, in pixels.
@@ -39,6 +39,8 @@ pub(crate) struct Places {
 pub(crate) struct Frame {
     pub(crate) right: Vec3,
     pub(crate) down: Vec3,
+    /// The size of a pixel in spacings.
+    pub(crate) scale: f32,
 }
 
 /// The frames of the finest sites.
@@ -119,15 +121,19 @@ impl Frame {
 
 impl Frames {
     /// The frames of sites whose exemplar lies turned by these quarter turns, or by none if there are no such numbers.
-    pub(crate) fn new(hierarchy: &Hierarchy, orientation: &Orientation, quarters: &[u8]) -> Self {
-        let pixels = 1.0 / hierarchy.levels()[0].spacing();
+    pub(crate) fn new(synthesizer: &Synthesizer, quarters: &[u8]) -> Self {
+        let (hierarchy, orientation) = (synthesizer.hierarchy(), synthesizer.orientation());
+        let spacing = hierarchy.levels()[0].spacing();
         let normals = hierarchy.sites().normals();
         let frame = |site: usize| {
             let quarters = quarters.get(site).copied().unwrap_or(0);
+            let scale = synthesizer.scale(site);
+            let pixels = 1.0 / (spacing * f64::from(scale));
             let down = turned(orientation.vectors()[site], normals[site], quarters);
             Frame {
                 right: (normals[site].cross(down) * pixels).as_vec3(),
                 down: (down * pixels).as_vec3(),
+                scale,
             }
         };
         Self {

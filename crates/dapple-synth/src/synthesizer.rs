@@ -19,6 +19,8 @@ pub struct Synthesizer {
     hierarchy: Hierarchy,
     orientation: Orientation,
     sweep: Sweep,
+    /// How large a pixel of the exemplar is at each site, in spacings; nothing where all are 1.
+    scales: Vec<f32>,
 }
 
 /// Covers a mesh with a texture that looks like an exemplar: `directions` say which way its "down" runs.
@@ -79,7 +81,32 @@ impl Synthesizer {
             hierarchy,
             orientation,
             sweep,
+            scales: Vec::new(),
         })
+    }
+
+    /// These sites with pixels of the exemplar of different sizes: for each site how large a pixel is there, in spacings, from
+    /// 1/8 to 8. Without scales all are 1.
+    ///
+    /// What is larger than 1 is smoother than the sites could be; what is smaller loses detail that more sites would show.
+    ///
+    /// # Errors
+    ///
+    /// [`SynthErrorKind::Count`] unless there is a scale for every site of [`hierarchy`](Self::hierarchy), and
+    /// [`SynthErrorKind::Range`] for a scale out of its range.
+    pub fn with_scales(self, scales: Vec<f32>) -> Result<Self, SynthError> {
+        if scales.len() != self.hierarchy.sites().len() {
+            return Err(SynthError::new(SynthErrorKind::Count {
+                what: "scales",
+                count: scales.len(),
+                needed: "as many as sites",
+            }));
+        }
+        for &scale in &scales {
+            let holds = (0.125..=8.0).contains(&scale);
+            SynthError::check(holds, "scale", scale.into(), "from 1/8 to 8")?;
+        }
+        Ok(Self { scales, ..self })
     }
 
     /// Gives every site a color.
@@ -153,7 +180,7 @@ impl Synthesizer {
         let places = match options.sources {
             Sources::Pixel => None,
             Sources::SubPixel => sources.first().map(|sources| {
-                let frames = Frames::new(&self.hierarchy, &self.orientation, &quarters);
+                let frames = Frames::new(self, &quarters);
                 Places::new(&self.hierarchy, &frames, &pyramid.levels()[0], sources)
             }),
         };
@@ -170,9 +197,15 @@ impl Synthesizer {
             orientation: &self.orientation,
             sweep: &self.sweep,
             axes,
+            scales: &self.scales,
             is_blurred,
             targets: None,
         }
+    }
+
+    /// How large a pixel of the exemplar is at a site, in spacings.
+    pub(crate) fn scale(&self, site: usize) -> f32 {
+        self.scales.get(site).copied().unwrap_or(1.0)
     }
 
     /// The surface.
