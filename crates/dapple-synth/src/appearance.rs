@@ -21,8 +21,8 @@ use crate::endless::evenness::Costs;
 use crate::endless::stage::{self, DIAGONALS, N_FEATURES, Stage};
 use crate::engine::{Callback, Progress};
 use crate::options::REGULAR;
-use crate::places::{Frame, frames};
-use crate::{Coherence, Exemplar, Hierarchy, Options, Orientation, SynthError, SynthErrorKind};
+use crate::places::{Frame, Frames};
+use crate::{Coherence, Exemplar, Hierarchy, Options, SynthError, SynthErrorKind, Synthesizer};
 use core::ops::ControlFlow;
 use dapple_hash::{Seed, hash1};
 use dapple_raster::parallel;
@@ -68,17 +68,17 @@ impl<'a> Appearance<'a> {
     ///
     /// [`SynthErrorKind::Masked`] for a mask that leaves nothing.
     pub(crate) fn new(
-        hierarchy: &'a Hierarchy,
-        orientation: &Orientation,
+        synthesizer: &'a Synthesizer,
         exemplar: &Exemplar,
         options: &Options,
     ) -> Result<Self, SynthError> {
         // Of less than the exemplar, no texture has all parts; and what repeats has all of them anyway.
         let [width, height] = exemplar.size.map(|side| side as usize);
+        let hierarchy = synthesizer.hierarchy();
         let is_uneven = hierarchy.sites().len() < width * height || exemplar.regularity() > REGULAR;
         Ok(Self {
             hierarchy,
-            frames: frames(hierarchy, orientation),
+            frames: Frames::new(synthesizer, &[]).of_site,
             stages: stage::stages(exemplar, options.n_levels)?,
             seed: options.seed,
             evenness: if is_uneven { 0.0 } else { options.evenness },

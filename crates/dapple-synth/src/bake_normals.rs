@@ -17,7 +17,8 @@ use crate::display::check_shading;
 use crate::lift::{LiftedDetail, Origin};
 use crate::magnify::magnify;
 use crate::maps::{check_column, check_finite};
-use crate::{Atlas, SurfaceTexture, SynthError, Synthesizer, bake};
+use crate::{Atlas, SurfaceTexture, SynthError, Synthesizer, bake, orientation};
+use core::iter::repeat;
 use dapple_color::{Normal, NormalY};
 use dapple_mesh::{CREASE, Walk};
 use dapple_raster::Raster;
@@ -115,18 +116,32 @@ fn in_space(
     if let Some(places) = texture.lifted.as_ref().filter(|places| !places.is_mixed) {
         let relief = Relief::new(&places.origin, map.size())?;
         let detail = LiftedDetail::new(map, &places.origin)?;
-        return magnify(synthesizer, places, atlas, flat, |spot| {
-            let walk = places.origin.walk(spot.place);
-            let normal = relief.turned(detail.sample(walk.point, spot.footprint), &walk);
-            turn(normal, spot.right.as_dvec3(), spot.down.as_dvec3())
-        });
+        return magnify(
+            synthesizer,
+            places,
+            &texture.quarters,
+            atlas,
+            flat,
+            |spot| {
+                let walk = places.origin.walk(spot.place);
+                let normal = relief.turned(detail.sample(walk.point, spot.footprint), &walk);
+                turn(normal, spot.right.as_dvec3(), spot.down.as_dvec3())
+            },
+        );
     }
     if let Some(places) = &texture.places {
         let detail = Detail::new(map, places.size, places.edges)?;
-        return magnify(synthesizer, places, atlas, flat, |spot| {
-            let normal = detail.sample(spot.place, spot.footprint);
-            turn(normal, spot.right.as_dvec3(), spot.down.as_dvec3())
-        });
+        return magnify(
+            synthesizer,
+            places,
+            &texture.quarters,
+            atlas,
+            flat,
+            |spot| {
+                let normal = detail.sample(spot.place, spot.footprint);
+                turn(normal, spot.right.as_dvec3(), spot.down.as_dvec3())
+            },
+        );
     }
     let (surface, hierarchy) = (synthesizer.surface(), synthesizer.hierarchy());
     let (outs, downs) = (
@@ -140,9 +155,13 @@ fn in_space(
             *normal = relief.turned(*normal, &places.origin.walk(place));
         }
     }
-    let sites = normals.into_iter().zip(outs).zip(downs);
+    let quarters = texture.quarters.iter().copied().chain(repeat(0));
+    let sites = normals.into_iter().zip(outs).zip(downs).zip(quarters);
     let column: Vec<f32> = sites
-        .flat_map(|((normal, out), &down)| turn(normal, out.cross(down), down))
+        .flat_map(|(((normal, &out), &down), quarters)| {
+            let down = orientation::turned(down, out, quarters);
+            turn(normal, out.cross(down), down)
+        })
         .collect();
     bake::<4>(surface, hierarchy, &column, atlas, flat)
 }
@@ -183,7 +202,7 @@ impl<'a> Relief<'a> {
 }
 
 /// A vector turned as the shortest way turns one unit vector to another.
-fn turned(vector: DVec3, from: DVec3, to: DVec3) -> DVec3 {
+pub(crate) fn turned(vector: DVec3, from: DVec3, to: DVec3) -> DVec3 {
     let (sum, cos) = (from + to, from.dot(to));
     if cos <= -1.0 + 1e-9 {
         // All ways are equally short.

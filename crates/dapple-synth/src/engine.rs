@@ -2,14 +2,14 @@
 //!
 //! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, doi 10.1145/383259.383297, section 5.
 
-use crate::ground::{Ground, UNKNOWN};
+use crate::ground::{Ground, Sources, UNKNOWN};
 use crate::guides::{self, Targets};
 use crate::kept::Kept;
 use crate::neighborhood::{Part, Pass, Reads};
 use crate::visit::Visit;
-use crate::{Candidates, Exemplar, Options, Pyramid, SynthError, SynthErrorKind};
+use crate::{Candidates, Exemplar, Options, Pyramid, Symmetry, SynthError, SynthErrorKind};
 use core::ops::ControlFlow;
-use core::sync::atomic::AtomicU32;
+use core::sync::atomic::{AtomicU8, AtomicU32};
 use dapple_hash::{Seed, hash1};
 
 /// The progress of a synthesis.
@@ -36,18 +36,29 @@ pub(crate) fn run<G: Ground>(
     options: &Options,
     callback: Callback<'_>,
 ) -> Result<Vec<Vec<u32>>, SynthError> {
+    let levels = run_turned(ground, pyramid, options, callback)?;
+    Ok(Sources::pixels_and_quarters(levels).0)
+}
+
+/// Runs all passes like [`run`], and also says by how many quarter turns the exemplar lies turned at each site.
+pub(crate) fn run_turned<G: Ground>(
+    ground: &G,
+    pyramid: &Pyramid,
+    options: &Options,
+    callback: Callback<'_>,
+) -> Result<Vec<Sources>, SynthError> {
     let passes = options.passes()?.passes;
     run_passes(ground, pyramid, &passes, options, callback)
 }
 
-/// Runs some passes, as [`run`] does those of the options.
+/// Runs some passes, as [`run_turned`] does those of the options.
 pub(crate) fn run_passes<G: Ground>(
     ground: &G,
     pyramid: &Pyramid,
     passes: &[Pass],
     options: &Options,
     callback: Callback<'_>,
-) -> Result<Vec<Vec<u32>>, SynthError> {
+) -> Result<Vec<Sources>, SynthError> {
     let seen = match ground.blur() {
         0.0 => None,
         blur => Some(pyramid.blurred(blur)),
@@ -65,18 +76,18 @@ pub(crate) fn run_with<G: Ground>(
     candidates: &dyn Fn(&Pass) -> Result<Candidates, SynthError>,
     options: &Options,
     callback: Callback<'_>,
-) -> Result<Vec<Vec<u32>>, SynthError> {
+) -> Result<Vec<Sources>, SynthError> {
     let n_guides = ground.targets().map_or(0, Targets::len);
     guides::check_count(n_guides, pyramid.levels()[0].n_guides())?;
     let coherence = options.coherence.factors(&pyramid.levels()[0]);
-    let mut levels: Vec<Vec<AtomicU32>> = Vec::new();
-    levels.resize_with(pyramid.levels().len(), Vec::new);
+    let mut levels: Vec<Sources> = Vec::new();
+    levels.resize_with(pyramid.levels().len(), Sources::default);
     let mut kept = Kept::default();
     let n_passes = passes.len();
     for (index, pass) in passes.iter().enumerate() {
         let n_sites = ground.n_sites(pass.level);
         let candidates = candidates(pass)?;
-        if levels[pass.level].is_empty() {
+        if levels[pass.level].pixels.is_empty() {
             let start = ground.start(pass.level);
             let reads_itself = pass.parts.iter().any(|part| part.reads == Reads::Same);
             let mut first = if reads_itself || start.is_some() {
@@ -91,7 +102,11 @@ pub(crate) fn run_with<G: Ground>(
                     *first = known;
                 }
             }
-            levels[pass.level] = first.into_iter().map(AtomicU32::new).collect();
+            let level = &mut levels[pass.level];
+            level.pixels = first.into_iter().map(AtomicU32::new).collect();
+            if ground.symmetry() != Symmetry::One {
+                level.quarters.resize_with(n_sites, AtomicU8::default);
+            }
         }
         let keep = side_to_keep(pass, passes.get(index + 1));
         let visit = Visit::new(ground, pyramid, candidates, pass, options, coherence);
@@ -109,8 +124,21 @@ pub(crate) fn run_with<G: Ground>(
         };
         kept = visit.run(&levels, &kept, keep, &mut tell)?;
     }
-    let plain = |level: Vec<AtomicU32>| level.into_iter().map(AtomicU32::into_inner).collect();
-    Ok(levels.into_iter().map(plain).collect())
+    Ok(levels)
+}
+
+impl Sources {
+    /// The pixels of the sites of all levels, and by how many quarter turns the exemplar lies turned at the finest ones.
+    pub(crate) fn pixels_and_quarters(mut levels: Vec<Self>) -> (Vec<Vec<u32>>, Vec<u8>) {
+        let finest = levels.first_mut().map(|level| &mut level.quarters);
+        let quarters = finest.map(core::mem::take).unwrap_or_default();
+        let quarters = quarters.into_iter().map(AtomicU8::into_inner).collect();
+        let pixels = |level: Self| {
+            let pixels = level.pixels.into_iter();
+            pixels.map(AtomicU32::into_inner).collect()
+        };
+        (levels.into_iter().map(pixels).collect(), quarters)
+    }
 }
 
 /// A random pixel for every site of a level; of an exemplar with a mask, one of the candidates.

@@ -1,9 +1,10 @@
 //! The ground of a texture: sites on several levels, their order, and how neighborhoods are read.
 
+use crate::Symmetry;
 use crate::guides::Targets;
 use crate::turns::Turns;
 use core::ops::RangeInclusive;
-use core::sync::atomic::{AtomicU32, Ordering};
+use core::sync::atomic::{AtomicU8, AtomicU32, Ordering};
 
 /// In place of a site, or of the pixel of one that begins with a random one.
 pub(crate) const UNKNOWN: u32 = u32::MAX;
@@ -37,8 +38,17 @@ pub(crate) struct Plain<'a> {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Painted<'a> {
     pub(crate) pixels: Plain<'a>,
-    /// The pixel of each site.
-    pub(crate) sources: &'a [AtomicU32],
+    /// What each site is from.
+    pub(crate) sources: &'a Sources,
+}
+
+/// What the sites of a level are from.
+#[derive(Debug, Default)]
+pub(crate) struct Sources {
+    /// The pixel of each site; nothing if no pass visited the level.
+    pub(crate) pixels: Vec<AtomicU32>,
+    /// By how many quarter turns the exemplar lies turned at each site; nothing where directions have no symmetry.
+    pub(crate) quarters: Vec<AtomicU8>,
 }
 
 /// Where a square of samples is read.
@@ -105,6 +115,16 @@ pub(crate) trait Ground: Sync {
         None
     }
 
+    /// The symmetry of the directions in which squares are laid.
+    fn symmetry(&self) -> Symmetry {
+        Symmetry::One
+    }
+
+    /// How many quarter turns take the directions of a site nearest to those of another one after some quarter turns.
+    fn quarters_toward(&self, _site: u32, _other: u32, _quarters: u8) -> u8 {
+        0
+    }
+
     /// The sites of a level that are visited, in the order of the sweep.
     fn order(&self, level: usize) -> Vec<u32>;
 
@@ -155,7 +175,14 @@ impl Painted<'_> {
     #[inline(always)]
     pub(crate) fn source(&self, site: usize) -> u32 {
         // A thread that reads a site that another one writes waits for its turn to be over, which makes an order of both.
-        self.sources[site].load(Ordering::Relaxed)
+        self.sources.pixels[site].load(Ordering::Relaxed)
+    }
+
+    /// By how many quarter turns the exemplar lies turned at a site.
+    #[inline]
+    pub(crate) fn quarters(&self, site: usize) -> u8 {
+        let quarters = self.sources.quarters.get(site);
+        quarters.map_or(0, |quarters| quarters.load(Ordering::Relaxed))
     }
 }
 

@@ -59,6 +59,10 @@
 //! The example may be another textured surface ([`MeshExemplar`]): [`Synthesizer::lift`] puts its texture and relief onto
 //! this one, and [`MeshExemplar::repair`] makes a part of its own texture again.
 //!
+//! Bricks look alike upside down, and a checker lying on its side. Fields of two or four directions
+//! ([`Orientation::symmetric`]) turn around fewer and gentler singularities, and textures go on across the places at which
+//! they turn. In the plane, [`synthesize_plane_along`] takes directions and sizes of features from images.
+//!
 //! Guides ([`Exemplar::with_guides`]) say where in a texture which part of the exemplar goes: how light it is, so that the
 //! texture shows a picture; or which of several images, which lie [`SideBySide`]. There each may lie [`Turned`], too.
 //!
@@ -149,6 +153,7 @@ mod orientation;
 mod parents;
 mod places;
 mod plane;
+mod plane_along;
 mod regularity;
 #[cfg(test)]
 mod shapes;
@@ -180,10 +185,11 @@ pub use maps::{bake_colors, bake_colors_alpha, bake_values};
 pub use matcher::{Match, Matcher, MatcherMemory, distance_sq};
 pub use neighborhood::{Part, Pass, Reads, Schedule, Shape};
 pub use options::{Axes, Coherence, Matching, Options, Sources};
-pub use orientation::{Direction, Orientation};
+pub use orientation::{Direction, Orientation, Symmetry};
 pub use plane::{
     PlaneTexture, synthesize_plane, synthesize_plane_guided, synthesize_plane_with, tile_plane,
 };
+pub use plane_along::{PlaneAlong, synthesize_plane_along};
 pub use side_by_side::SideBySide;
 pub use sites::{
     Blend, Connected, DOWNSAMPLE_STEPS, DOWNSAMPLE_T, Evenness, Hierarchy, HierarchyOptions,

@@ -34,8 +34,10 @@ pub(crate) use origin::{LiftedDetail, LiftedPlaces, Origin};
 pub(crate) use repair::order as order_of_repair;
 
 use crate::engine::{self, Callback, Progress};
+use crate::ground::Sources;
 use crate::guides::Targets;
 use crate::mesh_ground::MeshGround;
+use crate::places::Frames;
 use crate::{
     Candidates, Edges, Exemplar, Hierarchy, Options, Pass, Pyramid, SurfaceTexture, SynthError,
     SynthErrorKind, Synthesizer,
@@ -59,7 +61,7 @@ impl MeshExemplar {
     ///
     /// The sites are what is matched, as the pixels of an image are: features are as large on the target as on the source where
     /// both have sites equally far apart, and more sites of the source make them larger. Sites beside texels that a
-    /// [mask](Exemplar::with_mask) leaves out are not used.
+    /// [mask](Exemplar::with_mask) leaves out are not used. [Scales](Synthesizer::with_scales) of the source have no effect.
     ///
     /// # Errors
     ///
@@ -147,18 +149,26 @@ impl MeshExemplar {
         )
     }
 
-    /// Runs the passes on a ground.
+    /// Runs the passes on a ground, which is that of a target.
     fn grow(
         &self,
+        target: &Synthesizer,
         ground: &MeshGround<'_>,
         options: &Options,
         callback: Callback<'_>,
-    ) -> Result<(Pyramid, Vec<Vec<u32>>), SynthError> {
+    ) -> Result<SurfaceTexture, SynthError> {
         let pyramid = self.pyramid(options.n_levels)?;
         let candidates = |pass: &Pass| self.candidates(pass, options);
         let passes = options.passes()?.passes;
-        let sources = engine::run_with(ground, &pyramid, &passes, &candidates, options, callback)?;
-        Ok((pyramid, sources))
+        let levels = engine::run_with(ground, &pyramid, &passes, &candidates, options, callback)?;
+        let (sources, quarters) = Sources::pixels_and_quarters(levels);
+        let finest = sources.first().map_or(&[][..], Vec::as_slice);
+        let frames = Frames::new(target, &quarters);
+        let places = LiftedPlaces::new(target.hierarchy(), &frames, &self.origin, finest, options);
+        let mut texture = SurfaceTexture::new(&pyramid, sources, None);
+        texture.lifted = Some(places);
+        texture.quarters = quarters;
+        Ok(texture)
     }
 }
 
@@ -188,12 +198,7 @@ impl Synthesizer {
             targets: Some(&targets),
             ..self.ground(options.axes, false)
         };
-        let (pyramid, sources) = exemplar.grow(&ground, options, &mut callback)?;
-        let finest = sources.first().map_or(&[][..], Vec::as_slice);
-        let places = LiftedPlaces::new(self, &exemplar.origin, finest, options.sources);
-        let mut texture = SurfaceTexture::new(&pyramid, sources, None);
-        texture.lifted = Some(places);
-        Ok(texture)
+        exemplar.grow(self, &ground, options, &mut callback)
     }
 }
 

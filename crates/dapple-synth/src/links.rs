@@ -84,7 +84,13 @@ impl<'a> Links<'a> {
     /// The weights of the edges to the neighbors of a site, in the same order.
     #[inline]
     pub(crate) fn weights(&self, site: usize) -> &[f64] {
-        &self.weights[self.offsets[site] as usize..self.offsets[site + 1] as usize]
+        &self.weights[self.row(site)]
+    }
+
+    /// Where the links of a site are among those of all sites.
+    #[inline]
+    pub(crate) fn row(&self, site: usize) -> core::ops::Range<usize> {
+        self.offsets[site] as usize..self.offsets[site + 1] as usize
     }
 
     /// The sums of the weights of the sites; 0 for a site without neighbors.
@@ -94,7 +100,7 @@ impl<'a> Links<'a> {
     }
 
     /// Assigns values ring by ring, from the sites that have one on: those of a ring get what `opinion` makes of the
-    /// sites that were assigned before. What is not connected to an assigned site stays as it is.
+    /// sites that were assigned before. Links without a weight are none. What is not connected to an assigned site stays as it is.
     pub(crate) fn fill<T: Copy>(
         &self,
         assigned: &mut [bool],
@@ -102,8 +108,8 @@ impl<'a> Links<'a> {
         opinion: impl Fn(usize, &[bool], &[T]) -> T,
     ) {
         let touches = |site: usize, assigned: &[bool]| {
-            let neighbors = self.neighbors(site).iter();
-            !assigned[site] && neighbors.into_iter().any(|other| assigned[other.index()])
+            let mut linked = self.linked(site);
+            !assigned[site] && linked.any(|other| assigned[other])
         };
         let mut ring: Vec<usize> = (0..self.len())
             .filter(|&site| touches(site, assigned))
@@ -119,14 +125,22 @@ impl<'a> Links<'a> {
             }
             let mut next: Vec<usize> = ring
                 .iter()
-                .flat_map(|&site| self.neighbors(site))
-                .map(|other| other.index())
+                .flat_map(|&site| self.linked(site))
                 .filter(|&other| !assigned[other])
                 .collect();
             next.sort_unstable();
             next.dedup();
             ring = next;
         }
+    }
+}
+
+impl Links<'_> {
+    /// The neighbors of a site that are linked with a weight.
+    fn linked(&self, site: usize) -> impl Iterator<Item = usize> {
+        let linked = self.neighbors(site).iter().zip(self.weights(site));
+        let linked = linked.filter(|&(_, &weight)| weight > 0.0);
+        linked.map(|(other, _)| other.index())
     }
 }
 

@@ -9,7 +9,7 @@
 
 use crate::bake::{Group, Paint, bake_with};
 use crate::mesh_ground::Around;
-use crate::places::{AGREEMENT, Frame, Sourced, frames};
+use crate::places::{AGREEMENT, Frames, Sourced};
 use crate::sites::weight;
 use crate::{Atlas, SynthError, Synthesizer};
 use dapple_mesh::FaceIdx;
@@ -39,6 +39,7 @@ pub(crate) struct Spot<P> {
 pub(crate) fn magnify<const N: usize, P: Sourced>(
     synthesizer: &Synthesizer,
     places: &P,
+    quarters: &[u8],
     atlas: &Atlas,
     background: [f32; N],
     value: impl Fn(&Spot<P::Place>) -> [f32; N] + Sync,
@@ -47,7 +48,7 @@ pub(crate) fn magnify<const N: usize, P: Sourced>(
     let spacing = hierarchy.levels()[0].spacing();
     let magnified = Magnified {
         places,
-        frames: frames(hierarchy, synthesizer.orientation()),
+        frames: Frames::new(synthesizer, quarters),
         footprints: footprints(synthesizer, &atlas.uvs(), atlas.size()),
         spacing: spacing as f32,
         value: &|spot: &Spot<P::Place>, channels: &mut [f32]| {
@@ -93,7 +94,7 @@ type ValueOf<'a, P> = dyn Fn(&Spot<P>, &mut [f32]) + Sync + 'a;
 /// The input of all texels.
 struct Magnified<'a, P: Sourced> {
     places: &'a P,
-    frames: Vec<Frame>,
+    frames: Frames,
     footprints: Vec<f32>,
     spacing: f32,
     value: &'a ValueOf<'a, P::Place>,
@@ -112,10 +113,11 @@ struct Prediction<P> {
 struct Piece<P> {
     /// The prediction of the site with the largest weight.
     place: P,
-    /// Sums with the weights of the sites: of how far from `place` the predictions are, and of directions.
+    /// Sums with the weights of the sites: of how far from `place` the predictions are, of directions, and of scales.
     off: Vec2,
     right: Vec3,
     down: Vec3,
+    scale: f32,
     weight: f32,
 }
 
@@ -169,7 +171,7 @@ impl<P: Sourced> Magnified<'_, P> {
                 site: record.site,
                 place: self.places.moved(
                     self.places.of_site(record.site as usize),
-                    self.frames[record.site as usize].flat(way),
+                    self.frames.of_site[record.site as usize].flat(way),
                 ),
                 weight: 1.0,
             };
@@ -202,22 +204,25 @@ impl<P: Sourced> Magnified<'_, P> {
                 place,
                 weight,
             } = prediction;
-            let frame = &self.frames[site as usize];
+            let frame = &self.frames.of_site[site as usize];
             let agrees = |piece: &&mut Piece<P::Place>| {
                 let off = self.places.difference(place, piece.place);
-                off.length_squared() < AGREEMENT * AGREEMENT
+                let is_near = off.length_squared() < AGREEMENT * AGREEMENT;
+                is_near && !self.frames.differ(piece.down, frame)
             };
             if let Some(piece) = memory.pieces.iter_mut().find(agrees) {
                 piece.off += self.places.difference(place, piece.place) * weight;
-                piece.right += frame.right * weight;
-                piece.down += frame.down * weight;
+                piece.right += frame.right * (weight * frame.scale);
+                piece.down += frame.down * (weight * frame.scale);
+                piece.scale += weight * frame.scale;
                 piece.weight += weight;
             } else {
                 memory.pieces.push(Piece {
                     place,
                     off: Vec2::ZERO,
-                    right: frame.right * weight,
-                    down: frame.down * weight,
+                    right: frame.right * (weight * frame.scale),
+                    down: frame.down * (weight * frame.scale),
+                    scale: weight * frame.scale,
                     weight,
                 });
             }
@@ -243,7 +248,7 @@ impl<P: Sourced> Magnified<'_, P> {
             }
             let spot = Spot {
                 place: self.places.moved(piece.place, piece.off / piece.weight),
-                footprint,
+                footprint: footprint * (piece.weight / piece.scale),
                 right: piece.right * (self.spacing / piece.weight),
                 down: piece.down * (self.spacing / piece.weight),
             };

@@ -143,10 +143,17 @@ fn bake_map<const N: usize>(
     let background = mean(map.pixels());
     if let Some(places) = texture.lifted.as_ref().filter(|places| !places.is_mixed) {
         let detail = LiftedDetail::new(map, &places.origin)?;
-        return magnify(synthesizer, places, atlas, background, |spot| {
-            let point = places.origin.walk(spot.place).point;
-            detail.sample(point, spot.footprint)
-        });
+        return magnify(
+            synthesizer,
+            places,
+            &texture.quarters,
+            atlas,
+            background,
+            |spot| {
+                let point = places.origin.walk(spot.place).point;
+                detail.sample(point, spot.footprint)
+            },
+        );
     }
     let Some(places) = &texture.places else {
         let column = texture.transfer(&map)?;
@@ -154,9 +161,14 @@ fn bake_map<const N: usize>(
         return bake(surface, hierarchy, column.as_flattened(), atlas, background);
     };
     let detail = Detail::new(map, places.size, places.edges)?;
-    magnify(synthesizer, places, atlas, background, |spot| {
-        detail.sample(spot.place, spot.footprint)
-    })
+    magnify(
+        synthesizer,
+        places,
+        &texture.quarters,
+        atlas,
+        background,
+        |spot| detail.sample(spot.place, spot.footprint),
+    )
 }
 
 /// Refuses a column that has not just one value for each finest site.

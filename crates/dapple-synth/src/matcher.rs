@@ -10,6 +10,8 @@
 mod basis;
 mod distance;
 mod jacobi;
+#[cfg(test)]
+pub(crate) use jacobi::eigen;
 mod lattice;
 mod margin;
 mod search;

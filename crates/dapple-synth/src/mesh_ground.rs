@@ -14,7 +14,7 @@ use crate::ground::{Colors, Ground, Samples, Square, Start};
 use crate::guides::Targets;
 use crate::lift::order_of_repair;
 use crate::turns::Turns;
-use crate::{Axes, Hierarchy, INTERPOLATION_RADIUS, Orientation, SiteIdx, Sweep};
+use crate::{Axes, Hierarchy, INTERPOLATION_RADIUS, Orientation, SiteIdx, Sweep, Symmetry};
 use dapple_mesh::Surface;
 use dapple_raster::simd;
 use nearby::Neighborhoods;
@@ -42,6 +42,8 @@ pub(crate) struct MeshGround<'a> {
     pub(crate) orientation: &'a Orientation,
     pub(crate) sweep: &'a Sweep,
     pub(crate) axes: Axes,
+    /// How large a pixel of the exemplar is at each site, in spacings; nothing where all are 1.
+    pub(crate) scales: &'a [f32],
     /// Whether the exemplar is blurred as its squares are.
     pub(crate) is_blurred: bool,
     pub(crate) targets: Option<&'a Targets>,
@@ -74,9 +76,20 @@ impl MeshMemory {
 }
 
 impl MeshGround<'_> {
+    /// How large a pixel of the exemplar is at a site, in spacings.
+    fn scale(&self, site: usize) -> f64 {
+        self.scales.get(site).map_or(1.0, |&scale| scale.into())
+    }
+
     /// The sites around those of a level that squares on the level `reads` are made of.
     fn neighborhoods(&self, level: usize, reads: usize, half: i32) -> Neighborhoods {
-        let spacings = core::f64::consts::SQRT_2 * f64::from(half) + INTERPOLATION_RADIUS;
+        let largest = self.scales.iter().copied().fold(0.0, f32::max);
+        let largest = if largest > 0.0 {
+            f64::from(largest)
+        } else {
+            1.0
+        };
+        let spacings = core::f64::consts::SQRT_2 * f64::from(half) * largest + radius(largest);
         let spacing = self.hierarchy.levels()[reads].spacing();
         Neighborhoods::new(
             self.hierarchy.sites(),
@@ -85,6 +98,11 @@ impl MeshGround<'_> {
             (spacings + REACH_SPARE) * spacing,
         )
     }
+}
+
+/// How far sites have a part in a sample of a pixel of this size, in spacings: all those within a large pixel do.
+fn radius(scale: f64) -> f64 {
+    INTERPOLATION_RADIUS * scale.max(1.0)
 }
 
 impl Ground for MeshGround<'_> {
@@ -105,6 +123,17 @@ impl Ground for MeshGround<'_> {
 
     fn targets(&self) -> Option<&Targets> {
         self.targets
+    }
+
+    fn symmetry(&self) -> Symmetry {
+        self.orientation.symmetry()
+    }
+
+    fn quarters_toward(&self, site: u32, other: u32, quarters: u8) -> u8 {
+        let normals = self.hierarchy.sites().normals();
+        let [site, other] = [site, other].map(|site| site as usize);
+        self.orientation
+            .quarters_toward(normals, site, other, quarters)
     }
 
     fn order(&self, level: usize) -> Vec<u32> {
@@ -148,27 +177,29 @@ impl Ground for MeshGround<'_> {
         let Some(around) = around else { return };
         let at = square.site as usize;
         let spacing = self.hierarchy.levels()[square.reads].spacing();
+        let scale = self.scale(at);
+        let step = spacing * scale;
         let point = self.hierarchy.sites().points()[at];
         let vectors = self.orientation.vectors();
         let turning = match self.axes {
             Axes::Carried => Turning::default(),
             Axes::Followed => Turning::around(
                 self.hierarchy,
-                vectors,
+                self.orientation,
                 (SiteIdx(square.site), square.level),
-                (spacing, square.half),
+                (step, square.half),
             ),
         };
         let level = simd::level();
         let sites = around.collect(level, square.site, &mut memory.nearby);
         let lattice = &mut memory.lattice;
         let directions = (vectors[at], turning);
-        lattice.lay(self.surface, point, directions, &square, spacing);
+        lattice.lay(self.surface, point, directions, &square, step);
         interpolate(
             level,
             lattice,
             sites,
-            (spacing * INTERPOLATION_RADIUS) as f32,
+            (spacing * radius(scale)) as f32,
             (colors, samples),
             &mut memory.interpolation,
         );

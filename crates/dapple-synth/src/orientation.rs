@@ -15,12 +15,21 @@
 //! * the way down ends, on every level, with a few sweeps of equation 4, which take out the facets of interpolation;
 //! * a connected part of the surface without any direction runs along a fixed axis.
 //!
+//! Fields with a [`Symmetry`] are the smoothest ones on the coarsest level (`smooth.rs`). Of the turns at a place one is stored,
+//! that of most neighbors (`comb.rs`), and on the way down means are those of the nearest turns.
+//!
 //! Positions are in units of the mesh; the vectors of the result have unit length.
 
+mod comb;
 mod pull;
 mod push;
+mod smooth;
+mod symmetry;
 #[cfg(test)]
 mod tests;
+
+pub use symmetry::Symmetry;
+pub(crate) use symmetry::{offset_before, turned};
 
 use crate::{Hierarchy, SynthError, SynthErrorKind, columns};
 use glam::DVec3;
@@ -58,6 +67,7 @@ pub struct Direction {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Orientation {
     vectors: Vec<DVec3>,
+    symmetry: Symmetry,
 }
 
 impl Orientation {
@@ -90,16 +100,42 @@ impl Orientation {
         directions: &[Direction],
         axis: DVec3,
     ) -> Result<Self, SynthError> {
-        let Some(axis) = unit(axis) else {
-            return Err(SynthError::new(SynthErrorKind::Range {
-                what: "length of the axis",
-                value: axis.length(),
-                range: "finite and above 0",
-            }));
-        };
-        let pulled = pull::pull(hierarchy, pull::known(hierarchy, directions)?);
+        let axis = checked(axis)?;
+        let pulled = pull::pull(
+            hierarchy,
+            pull::known(hierarchy, directions, Symmetry::One)?,
+        );
         Ok(Self {
-            vectors: push::push(hierarchy, &pulled, axis),
+            vectors: push::push(hierarchy, &pulled, axis, Symmetry::One),
+            symmetry: Symmetry::One,
+        })
+    }
+
+    /// The smoothest field of a symmetry that has these directions or turns of them; with [`Symmetry::One`] that of
+    /// [`with_axis`](Self::with_axis).
+    ///
+    /// It has few singularities, which lie where the surface is most curved: a field of one direction turns around a point
+    /// by whole turns, one of two or four also by half or quarter turns, and so less sharply. Connected parts without
+    /// directions lie along the axis as a whole as well as they can, and not at every place.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`with_axis`](Self::with_axis).
+    pub fn symmetric(
+        hierarchy: &Hierarchy,
+        directions: &[Direction],
+        axis: DVec3,
+        symmetry: Symmetry,
+    ) -> Result<Self, SynthError> {
+        if symmetry == Symmetry::One {
+            return Self::with_axis(hierarchy, directions, axis);
+        }
+        let axis = checked(axis)?;
+        let known = pull::known(hierarchy, directions, symmetry)?;
+        let pulled = pull::pull_nearest(hierarchy, known, symmetry);
+        Ok(Self {
+            vectors: push::push(hierarchy, &pulled, axis, symmetry),
+            symmetry,
         })
     }
 
@@ -112,7 +148,40 @@ impl Orientation {
             let (at, normal) = (sites.positions()[site], sites.normals()[site]);
             tangent(field(at, normal), normal).unwrap_or_else(|| axis_tangent(Self::AXIS, normal))
         });
-        Self { vectors }
+        Self {
+            vectors,
+            symmetry: Symmetry::One,
+        }
+    }
+
+    /// How many directions at a place are as good as the one that is stored.
+    #[must_use]
+    pub fn symmetry(&self) -> Symmetry {
+        self.symmetry
+    }
+
+    /// The turn of the direction of a site that is nearest to a vector.
+    #[inline]
+    pub(crate) fn nearest(&self, normals: &[DVec3], site: usize, vector: DVec3) -> DVec3 {
+        self.symmetry
+            .nearest(self.vectors[site], normals[site], vector)
+    }
+
+    /// How many quarter turns take the direction of a site nearest to the direction of another one after some quarter turns.
+    #[inline]
+    pub(crate) fn quarters_toward(
+        &self,
+        normals: &[DVec3],
+        site: usize,
+        other: usize,
+        quarters: u8,
+    ) -> u8 {
+        if self.symmetry == Symmetry::One {
+            return 0;
+        }
+        let other = turned(self.vectors[other], normals[other], quarters);
+        self.symmetry
+            .quarters_toward(self.vectors[site], normals[site], other)
     }
 
     /// The unit vectors at the sites, in the order of [`SiteIdx`](crate::SiteIdx); those of a coarser level are the
@@ -121,6 +190,17 @@ impl Orientation {
     pub fn vectors(&self) -> &[DVec3] {
         &self.vectors
     }
+}
+
+/// The unit vector along an axis.
+fn checked(axis: DVec3) -> Result<DVec3, SynthError> {
+    unit(axis).ok_or_else(|| {
+        SynthError::new(SynthErrorKind::Range {
+            what: "length of the axis",
+            value: axis.length(),
+            range: "finite and above 0",
+        })
+    })
 }
 
 /// The part of a vector in the plane with this unit normal.

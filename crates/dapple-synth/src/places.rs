@@ -12,11 +12,16 @@
 //! Units: places are in pixels of the exemplar, the middle of the first one at 0, x to the right and y down.
 
 use crate::columns;
-use crate::{Edges, Exemplar, Hierarchy, Orientation, SiteIdx};
-use glam::{DVec3, Vec2, Vec3};
+use crate::orientation::turned;
+use crate::{Edges, Exemplar, Hierarchy, SiteIdx, Synthesizer};
+use glam::{Vec2, Vec3};
 
 /// How far from each other two predictions of one place may be, in pixels.
 pub(crate) const AGREEMENT: f32 = 1.5;
+
+/// The cosine of the angle between the directions of neighbors from which on they are not those of one piece: halfway to a
+/// quarter turn.
+const SAME_TURN: f32 = 0.707;
 
 /// How often sources are averaged.
 pub(crate) const N_STEPS: usize = 8;
@@ -49,13 +54,23 @@ pub(crate) struct Places {
 pub(crate) struct Frame {
     pub(crate) right: Vec3,
     pub(crate) down: Vec3,
+    /// The size of a pixel in spacings.
+    pub(crate) scale: f32,
+}
+
+/// The frames of the finest sites.
+#[derive(Clone, Debug)]
+pub(crate) struct Frames {
+    pub(crate) of_site: Vec<Frame>,
+    /// Whether neighbors may be off by quarter turns.
+    are_turned: bool,
 }
 
 impl Places {
     /// The places of sites that took these pixels.
     pub(crate) fn new(
         hierarchy: &Hierarchy,
-        orientation: &Orientation,
+        frames: &Frames,
         exemplar: &Exemplar,
         sources: &[u32],
     ) -> Self {
@@ -66,9 +81,8 @@ impl Places {
             size: exemplar.size,
             edges: exemplar.edges,
         };
-        let frames = frames(hierarchy, orientation);
         for _ in 0..N_STEPS {
-            let averaged = |site: usize| averaged(&places, hierarchy, &frames, site);
+            let averaged = |site: usize| averaged(&places, hierarchy, frames, site);
             let next = columns::column(places.of_site.len(), averaged);
             places.of_site = next;
         }
@@ -106,17 +120,21 @@ impl Sourced for Places {
 pub(crate) fn averaged<P: Sourced>(
     places: &P,
     hierarchy: &Hierarchy,
-    frames: &[Frame],
+    frames: &Frames,
     site: usize,
 ) -> P::Place {
     let positions = hierarchy.sites().positions();
-    let (own, frame) = (places.of_site(site), &frames[site]);
+    let (own, frame) = (places.of_site(site), &frames.of_site[site]);
     let (mut sum, mut count) = (Vec2::ZERO, 1.0);
     let graph = hierarchy.levels()[0].graph();
     for &neighbor in graph.neighbors(SiteIdx(site as u32)) {
         let way = (positions[site] - positions[neighbor.index()]).as_vec3();
+        let other = &frames.of_site[neighbor.index()];
+        if frames.differ(frame.down, other) {
+            continue;
+        }
         // Frames turn on the way: the mean of both ends is that of its middle.
-        let way = 0.5 * (frame.flat(way) + frames[neighbor.index()].flat(way));
+        let way = 0.5 * (frame.flat(way) + other.flat(way));
         let predicted = places.moved(places.of_site(neighbor.index()), way);
         let off = places.difference(predicted, own);
         if off.length_squared() < AGREEMENT * AGREEMENT {
@@ -135,13 +153,33 @@ impl Frame {
     }
 }
 
-/// The frames of the finest sites.
-pub(crate) fn frames(hierarchy: &Hierarchy, orientation: &Orientation) -> Vec<Frame> {
-    let pixels = 1.0 / hierarchy.levels()[0].spacing();
-    let normals = hierarchy.sites().normals().iter();
-    let frame = |(normal, &down): (&DVec3, &DVec3)| Frame {
-        right: (normal.cross(down) * pixels).as_vec3(),
-        down: (down * pixels).as_vec3(),
-    };
-    normals.zip(orientation.vectors()).map(frame).collect()
+impl Frames {
+    /// The frames of sites whose exemplar lies turned by these quarter turns, or by none if there are no such numbers.
+    pub(crate) fn new(synthesizer: &Synthesizer, quarters: &[u8]) -> Self {
+        let (hierarchy, orientation) = (synthesizer.hierarchy(), synthesizer.orientation());
+        let spacing = hierarchy.levels()[0].spacing();
+        let normals = hierarchy.sites().normals();
+        let frame = |site: usize| {
+            let quarters = quarters.get(site).copied().unwrap_or(0);
+            let scale = synthesizer.scale(site);
+            let pixels = 1.0 / (spacing * f64::from(scale));
+            let down = turned(orientation.vectors()[site], normals[site], quarters);
+            Frame {
+                right: (normals[site].cross(down) * pixels).as_vec3(),
+                down: (down * pixels).as_vec3(),
+                scale,
+            }
+        };
+        Self {
+            of_site: (0..normals.len()).map(frame).collect(),
+            are_turned: !quarters.is_empty(),
+        }
+    }
+
+    /// Whether the exemplar lies turned at a site, seen from where its down is this direction of any length.
+    #[inline]
+    pub(crate) fn differ(&self, down: Vec3, other: &Frame) -> bool {
+        let lengths = down.length_squared() * other.down.length_squared();
+        self.are_turned && down.dot(other.down) < SAME_TURN * lengths.sqrt()
+    }
 }

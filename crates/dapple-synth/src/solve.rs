@@ -6,7 +6,7 @@
 //! preconditioner. Sums are added in a fixed order, so the bits do not depend on the cores.
 
 use crate::{Blend, columns};
-use dapple_mesh::glam::DVec3;
+use glam::{DVec2, DVec3};
 
 /// A value of a column that is solved for.
 pub(crate) trait Unknown: Blend + Send + Sync {
@@ -18,6 +18,13 @@ impl Unknown for f64 {
     #[inline]
     fn dot(self, other: Self) -> f64 {
         self * other
+    }
+}
+
+impl Unknown for DVec2 {
+    #[inline]
+    fn dot(self, other: Self) -> f64 {
+        Self::dot(self, other)
     }
 }
 

@@ -15,6 +15,8 @@ pub struct SurfaceTexture {
     pub(crate) lifted: Option<LiftedPlaces>,
     /// The sources of the finest sites, if they are places between pixels.
     pub(crate) places: Option<Places>,
+    /// By how many quarter turns the exemplar lies turned at each finest site; nothing where directions have no symmetry.
+    pub(crate) quarters: Vec<u8>,
 }
 
 /// Colors and sources of every site of a level; empty if no pass visited it.
@@ -45,6 +47,7 @@ impl SurfaceTexture {
             n_channels: exemplars.first().map_or(0, |exemplar| exemplar.n_channels),
             places,
             lifted: None,
+            quarters: Vec::new(),
         }
     }
 

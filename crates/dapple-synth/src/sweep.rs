@@ -15,6 +15,8 @@
 //! * where the field turns around a point or runs around a tube, no distance increases along it everywhere. The best mean
 //!   would not increase at all there, so neighbors count less that disagree by about a spacing or more (Cauchy's weights):
 //!   all the error gathers in a tear, a line along which the order jumps, and the distance increases everywhere else;
+//! * across the cuts of a field with a symmetry, where the next direction is another turn, sites believe nothing of each
+//!   other; the cuts join singularities, so that nearly all of a component is still reached;
 //! * every connected component of a level has an anchor of its own, and the order goes through one component after the
 //!   other.
 //!
@@ -75,7 +77,7 @@ impl Sweep {
         }
         let mut levels: Vec<Distances> = Vec::new();
         for level in (0..hierarchy.levels().len()).rev() {
-            let sweep = LevelSweep::new(hierarchy, orientation.vectors(), level);
+            let sweep = LevelSweep::new(hierarchy, orientation, level);
             let components = components(hierarchy.levels()[level].graph());
             let distances = match levels.last() {
                 None => sweep.solve(&components, coarse_anchor(hierarchy, level, anchor)),

@@ -2,12 +2,13 @@
 
 use crate::appearance::Appearance;
 use crate::engine::{self, Callback, Progress};
+use crate::ground;
 use crate::guides::Targets;
 use crate::mesh_ground::MeshGround;
-use crate::places::Places;
+use crate::places::{Frames, Places};
 use crate::{
     Axes, Direction, Exemplar, Hierarchy, HierarchyOptions, Matching, Options, Orientation,
-    Pyramid, SiteIdx, Sources, SurfaceTexture, Sweep, SynthError, SynthErrorKind,
+    Pyramid, SiteIdx, Sources, SurfaceTexture, Sweep, Symmetry, SynthError, SynthErrorKind,
 };
 use core::ops::ControlFlow;
 use dapple_mesh::{Mesh, Surface};
@@ -19,6 +20,8 @@ pub struct Synthesizer {
     hierarchy: Hierarchy,
     orientation: Orientation,
     sweep: Sweep,
+    /// How large a pixel of the exemplar is at each site, in spacings; nothing where all are 1.
+    scales: Vec<f32>,
 }
 
 /// Covers a mesh with a texture that looks like an exemplar: `directions` say which way its "down" runs.
@@ -79,7 +82,32 @@ impl Synthesizer {
             hierarchy,
             orientation,
             sweep,
+            scales: Vec::new(),
         })
+    }
+
+    /// These sites with pixels of the exemplar of different sizes: for each site how large a pixel is there, in spacings, from
+    /// 1/8 to 8. Without scales all are 1.
+    ///
+    /// What is larger than 1 is smoother than the sites could be; what is smaller loses detail that more sites would show.
+    ///
+    /// # Errors
+    ///
+    /// [`SynthErrorKind::Count`] unless there is a scale for every site of [`hierarchy`](Self::hierarchy), and
+    /// [`SynthErrorKind::Range`] for a scale out of its range.
+    pub fn with_scales(self, scales: Vec<f32>) -> Result<Self, SynthError> {
+        if scales.len() != self.hierarchy.sites().len() {
+            return Err(SynthError::new(SynthErrorKind::Count {
+                what: "scales",
+                count: scales.len(),
+                needed: "as many as sites",
+            }));
+        }
+        for &scale in &scales {
+            let holds = (0.125..=8.0).contains(&scale);
+            SynthError::check(holds, "scale", scale.into(), "from 1/8 to 8")?;
+        }
+        Ok(Self { scales, ..self })
     }
 
     /// Gives every site a color.
@@ -136,21 +164,30 @@ impl Synthesizer {
             targets: Some(&targets),
             ..self.ground(options.axes, options.sources == Sources::SubPixel)
         };
-        let is_plain = options.schedule.is_none() && exemplar.n_guides() == 0;
-        let sources = match options.matching {
+        let is_plain = options.schedule.is_none()
+            && exemplar.n_guides() == 0
+            && self.orientation.symmetry() == Symmetry::One
+            && self.scales.is_empty();
+        let (sources, quarters) = match options.matching {
             Matching::Appearance if is_plain => {
-                self.by_appearance(&ground, &pyramid, options, &mut callback)?
+                let sources = self.by_appearance(&ground, &pyramid, options, &mut callback)?;
+                (sources, Vec::new())
             }
-            _ => engine::run(&ground, &pyramid, options, &mut callback)?,
+            _ => {
+                let levels = engine::run_turned(&ground, &pyramid, options, &mut callback)?;
+                ground::Sources::pixels_and_quarters(levels)
+            }
         };
         let places = match options.sources {
             Sources::Pixel => None,
             Sources::SubPixel => sources.first().map(|sources| {
-                let exemplar = &pyramid.levels()[0];
-                Places::new(&self.hierarchy, &self.orientation, exemplar, sources)
+                let frames = Frames::new(self, &quarters);
+                Places::new(&self.hierarchy, &frames, &pyramid.levels()[0], sources)
             }),
         };
-        Ok(SurfaceTexture::new(&pyramid, sources, places))
+        let mut texture = SurfaceTexture::new(&pyramid, sources, places);
+        texture.quarters = quarters;
+        Ok(texture)
     }
 
     /// Refuses more levels than the sites have.
@@ -181,9 +218,10 @@ impl Synthesizer {
                 ..progress
             })
         };
-        let sources = engine::run_passes(ground, pyramid, &passes[..1], options, &mut first)?;
+        let levels = engine::run_passes(ground, pyramid, &passes[..1], options, &mut first)?;
+        let (sources, _) = ground::Sources::pixels_and_quarters(levels);
         let coarsest = sources.last().map_or(&[][..], Vec::as_slice);
-        let appearance = Appearance::new(&self.hierarchy, &self.orientation, exemplar, options)?;
+        let appearance = Appearance::new(self, exemplar, options)?;
         let places = appearance.run(coarsest, callback)?;
         let pixels = |(level, places): (usize, Vec<[u32; 2]>)| {
             let width = pyramid.levels()[level].size[0];
@@ -201,10 +239,24 @@ impl Synthesizer {
             orientation: &self.orientation,
             sweep: &self.sweep,
             axes,
+            scales: &self.scales,
             is_blurred,
             targets: None,
             starts: &[],
         }
+    }
+
+    /// These sites, at which all pixels of the exemplar have the same size.
+    pub(crate) fn without_scales(self) -> Self {
+        Self {
+            scales: Vec::new(),
+            ..self
+        }
+    }
+
+    /// How large a pixel of the exemplar is at a site, in spacings.
+    pub(crate) fn scale(&self, site: usize) -> f32 {
+        self.scales.get(site).copied().unwrap_or(1.0)
     }
 
     /// The surface.

@@ -8,7 +8,8 @@ use crate::kept::Kept;
 use crate::matcher::Query;
 use crate::neighborhood::{Pass, Reads, Shape};
 use crate::options::CoherenceFactors;
-use crate::{Candidates, Exemplar, Matcher, MatcherMemory, Options, Pyramid};
+use crate::orientation::offset_before;
+use crate::{Candidates, Exemplar, Matcher, MatcherMemory, Options, Pyramid, Symmetry};
 use core::sync::atomic::Ordering;
 
 /// No row.
@@ -33,6 +34,8 @@ pub(crate) struct Visit<'a, G: Ground> {
     guide_scale: f32,
     /// Where the values of a query come from.
     terms: Vec<Term>,
+    /// The symmetry of directions, if squares have all samples that turned ones need.
+    symmetry: Symmetry,
     /// The squares that are read on the level itself and on the coarser one.
     same: Option<Half>,
     coarser: Option<Half>,
@@ -49,14 +52,16 @@ pub(crate) struct Half {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Term {
     pub(crate) reads: Reads,
-    /// Its number in the square of samples.
-    pub(crate) sample: usize,
+    /// Its number in the square of samples, for each number of quarter turns that the exemplar lies turned.
+    pub(crate) samples: [usize; 4],
     offset: [i32; 2],
     root_weight: f32,
 }
 
 /// Memory of a thread.
 struct Worker<M> {
+    /// By how many quarter turns the exemplar lies turned in `query` and `coherent`.
+    quarters: u8,
     same: Samples,
     coarser: Samples,
     query: Vec<f32>,
@@ -123,6 +128,11 @@ impl<'a, G: Ground> Visit<'a, G> {
             },
             candidates,
             is_repair: ground.start(pass.level).is_some(),
+            symmetry: match pass.parts.iter().all(|part| part.shape == Shape::Full) {
+                true => ground.symmetry(),
+                // The rows above after a turn are not those that were made before.
+                false => Symmetry::One,
+            },
             coherence,
             evenness,
             guide_scale: candidates::guide_scale(pass),
@@ -134,20 +144,84 @@ impl<'a, G: Ground> Visit<'a, G> {
 
     /// Gives a site the pixel of the row that matches, and tells which one that is.
     fn visit(&self, site: u32, worker: &mut Worker<G::Memory>, state: &State<'_>) -> u32 {
-        self.gather(site, worker, state);
+        self.read(site, worker, state);
+        let sources = state.here.sources;
         if self.is_repair
             && let Some(pixel) = self.pixel_of_piece(site, worker, state)
         {
-            state.here.sources[site as usize].store(pixel, Ordering::Relaxed);
+            sources.pixels[site as usize].store(pixel, Ordering::Relaxed);
             return NOWHERE;
         }
-        let row = self.best_row(worker, state.factors);
+        let row = if self.symmetry == Symmetry::One {
+            self.gather(site, worker, state);
+            self.best_row(worker, state.factors).row
+        } else {
+            let (best, quarters) = self.best_turned(site, worker, state);
+            sources.quarters[site as usize].store(quarters, Ordering::Relaxed);
+            best.row
+        };
         // Without any row, which finite values do not lead to, the site keeps what it has.
         if let Some(&pixel) = self.candidates.pixels.get(row as usize) {
             // Turns of other threads that read it are ordered by the board.
-            state.here.sources[site as usize].store(pixel, Ordering::Relaxed);
+            sources.pixels[site as usize].store(pixel, Ordering::Relaxed);
         }
         row
+    }
+
+    /// The best row of those that are the best with the exemplar turned as it lies at a neighbor, and how it lies there.
+    fn best_turned(
+        &self,
+        site: u32,
+        worker: &mut Worker<G::Memory>,
+        state: &State<'_>,
+    ) -> (Best, u8) {
+        let wanted = self.quarters_around(site, worker, state);
+        let mut best = (Best::NONE, 0);
+        let turns = self.symmetry.quarters().iter().copied();
+        for quarters in turns.filter(|&quarters| wanted[usize::from(quarters)]) {
+            worker.quarters = quarters;
+            self.gather(site, worker, state);
+            let found = self.best_row(worker, state.factors);
+            if best.0.row == NOWHERE || found.distance_sq < best.0.distance_sq {
+                best = (found, quarters);
+            }
+        }
+        worker.quarters = 0;
+        best
+    }
+
+    /// How the exemplar lies at the eight neighbors of a site, and on the coarser level in its middle.
+    fn quarters_around(
+        &self,
+        site: u32,
+        worker: &Worker<G::Memory>,
+        state: &State<'_>,
+    ) -> [bool; 4] {
+        let mut found = [false; 4];
+        let mut add = |painted: &Painted<'_>, nearest: u32| {
+            if nearest != site && nearest != UNKNOWN {
+                found[usize::from(self.quarters_of(site, nearest, painted))] = true;
+            }
+        };
+        if let (Some(half), Some(painted)) = (self.coarser, state.coarser) {
+            let side = 2 * half.half as usize + 1;
+            add(&painted, worker.coarser.nearest[side * side / 2]);
+        }
+        for term in self.terms.iter().filter(|term| term.is_beside()) {
+            add(&state.here, worker.same.nearest[term.samples[0]]);
+        }
+        // A site that is its own neighbor everywhere, or stands alone.
+        if found == [false; 4] {
+            found[usize::from(state.here.quarters(site as usize))] = true;
+        }
+        found
+    }
+
+    /// By how many quarter turns the exemplar lies turned at a site that goes on with another one.
+    #[inline]
+    fn quarters_of(&self, site: u32, other: u32, painted: &Painted<'_>) -> u8 {
+        let quarters = painted.quarters(other as usize);
+        self.ground.quarters_toward(site, other, quarters)
     }
 
     /// The pixel of a site all of whose neighborhood goes on with one piece of the exemplar: no other fits better.
@@ -164,7 +238,7 @@ impl<'a, G: Ground> Visit<'a, G> {
         let exemplar = &self.pyramid[self.level + reads.step()];
         let mut piece = None;
         for term in self.terms.iter().filter(|term| term.reads == reads) {
-            let nearest = samples.nearest[term.sample];
+            let nearest = samples.nearest[term.samples[0]];
             if nearest == UNKNOWN {
                 continue;
             }
@@ -187,13 +261,11 @@ impl<'a, G: Ground> Visit<'a, G> {
         Some(self.pyramid[self.level].pixel_at(pixel)? as u32)
     }
 
-    /// Reads the neighborhood of a site, and gathers the rows that continue its neighbors.
-    fn gather(&self, site: u32, worker: &mut Worker<G::Memory>, state: &State<'_>) {
+    /// Reads the neighborhood of a site.
+    fn read(&self, site: u32, worker: &mut Worker<G::Memory>, state: &State<'_>) {
         let Worker {
             same,
             coarser,
-            query,
-            coherent,
             ground,
             ..
         } = worker;
@@ -204,13 +276,11 @@ impl<'a, G: Ground> Visit<'a, G> {
             half: half.half,
             rows: half.rows,
         };
-        coherent.clear();
         if let Some(half) = self.same {
             let square = square(self.level, half);
             same.make_room(square.side(), self.n_channels);
             self.ground
                 .read(square, &self.prepared, state.here, same, ground);
-            self.continue_same(&square, same, &state.here, coherent);
         }
         if let (Some(half), Some(painted)) = (self.coarser, state.coarser) {
             let square = square(self.level + 1, half);
@@ -219,10 +289,39 @@ impl<'a, G: Ground> Visit<'a, G> {
                 self.ground
                     .read(square, &self.prepared, painted, coarser, ground);
             }
-            self.continue_coarser(&square, coarser, &painted, coherent);
+        }
+    }
+
+    /// Gathers the query of a neighborhood that was read, and the rows that continue its neighbors.
+    fn gather(&self, site: u32, worker: &mut Worker<G::Memory>, state: &State<'_>) {
+        let Worker {
+            quarters,
+            same,
+            coarser,
+            query,
+            coherent,
+            ..
+        } = worker;
+        let center = Center {
+            site,
+            quarters: *quarters,
+        };
+        coherent.clear();
+        if self.same.is_some() {
+            self.continue_same(center, same, &state.here, coherent);
+        }
+        if let (Some(half), Some(painted)) = (self.coarser, state.coarser) {
+            self.continue_coarser(center, half, coarser, &painted, coherent);
         }
         query.clear();
-        push_terms(&self.terms, [same, coarser], self.n_channels, query);
+        let squares = [&*same, &*coarser];
+        push_terms(
+            &self.terms,
+            squares,
+            self.n_channels,
+            center.quarters,
+            query,
+        );
         if let Some(targets) = self.ground.targets() {
             let guides = targets.of(self.level, site).iter();
             query.extend(guides.map(|value| value * self.guide_scale));
@@ -232,18 +331,18 @@ impl<'a, G: Ground> Visit<'a, G> {
     /// The rows of the pixels that lie beside the sources of the eight nearest samples, as this site lies beside them.
     fn continue_same(
         &self,
-        square: &Square,
+        center: Center,
         samples: &Samples,
         painted: &Painted<'_>,
         coherent: &mut Vec<u32>,
     ) {
-        for term in &self.terms {
+        for term in self.terms.iter().filter(|term| term.is_beside()) {
             let [i, j] = term.offset;
-            if term.reads != Reads::Same || i.abs() > 1 || j.abs() > 1 {
+            let nearest = samples.nearest[term.samples[usize::from(center.quarters)]];
+            if nearest == center.site || nearest == UNKNOWN {
                 continue;
             }
-            let nearest = samples.nearest[term.sample];
-            if nearest == square.site || nearest == UNKNOWN {
+            if self.quarters_of(center.site, nearest, painted) != center.quarters {
                 continue;
             }
             let source = painted.source(nearest as usize);
@@ -254,13 +353,18 @@ impl<'a, G: Ground> Visit<'a, G> {
     /// The rows of the four pixels under the source of the coarser sample in the middle.
     fn continue_coarser(
         &self,
-        square: &Square,
+        center: Center,
+        half: Half,
         samples: &Samples,
         painted: &Painted<'_>,
         coherent: &mut Vec<u32>,
     ) {
-        let middle = (square.side() * square.side()) / 2;
-        let source = painted.source(samples.nearest[middle] as usize);
+        let side = 2 * half.half as usize + 1;
+        let nearest = samples.nearest[side * side / 2];
+        if self.quarters_of(center.site, nearest, painted) != center.quarters {
+            return;
+        }
+        let source = painted.source(nearest as usize);
         for offset in [[0, 0], [1, 0], [0, 1], [1, 1]] {
             let row = self
                 .candidates
@@ -270,7 +374,7 @@ impl<'a, G: Ground> Visit<'a, G> {
     }
 
     /// The row that the site takes: the nearest one, or a coherent one that is not much farther.
-    fn best_row(&self, worker: &mut Worker<G::Memory>, factors: Option<&[f32]>) -> u32 {
+    fn best_row(&self, worker: &mut Worker<G::Memory>, factors: Option<&[f32]>) -> Best {
         let Worker {
             query,
             coherent,
@@ -284,25 +388,60 @@ impl<'a, G: Ground> Visit<'a, G> {
             factors,
         };
         let near = self.matcher.find_among(all, coherent, matcher);
-        let (below, fallback) = match near {
-            Some(near) if self.coherence > 0.0 => {
-                (near.distance_sq / (1.0 + self.coherence), near.row)
-            }
-            _ => (f32::INFINITY, NOWHERE),
+        let fallback = match near {
+            Some(near) if self.coherence > 0.0 => Best {
+                row: near.row,
+                distance_sq: near.distance_sq / (1.0 + self.coherence),
+            },
+            _ => Best::NONE,
         };
         let query = Query {
-            below,
+            below: fallback.distance_sq,
             hint: near.map(|near| near.row),
             ..all
         };
         let found = self.matcher.find(query, matcher);
-        found.map_or(fallback, |found| found.row)
+        found.map_or(fallback, |found| Best {
+            row: found.row,
+            distance_sq: found.distance_sq,
+        })
+    }
+}
+
+/// The row that a site takes.
+#[derive(Clone, Copy, Debug)]
+struct Best {
+    row: u32,
+    /// Its squared distance; of a row that goes on with a neighbor, what another one has to be below.
+    distance_sq: f32,
+}
+
+impl Best {
+    /// No row.
+    const NONE: Self = Self {
+        row: NOWHERE,
+        distance_sq: f32::INFINITY,
+    };
+}
+
+/// A site in the middle of a neighborhood, and by how many quarter turns the exemplar lies turned there.
+#[derive(Clone, Copy, Debug)]
+struct Center {
+    site: u32,
+    quarters: u8,
+}
+
+impl Term {
+    /// Whether the pixel is one of the eight neighbors on the level itself.
+    fn is_beside(&self) -> bool {
+        self.reads == Reads::Same && self.offset.iter().all(|at| at.abs() <= 1)
     }
 }
 
 impl<M: Default> Default for Worker<M> {
     fn default() -> Self {
         Self {
+            quarters: 0,
             same: Samples::default(),
             coarser: Samples::default(),
             query: Vec::new(),
@@ -322,15 +461,17 @@ fn add_coherent(row: Option<u32>, coherent: &mut Vec<u32>) {
     }
 }
 
-/// Appends the values of a neighborhood, from squares on the level itself and on the coarser one.
+/// Appends the values of a neighborhood, from squares on the level itself and on the coarser one, with the exemplar turned by
+/// some quarter turns.
 pub(crate) fn push_terms(
     terms: &[Term],
     squares: [&Samples; 2],
     n_channels: usize,
+    quarters: u8,
     target: &mut Vec<f32>,
 ) {
     for term in terms {
-        let at = term.sample * n_channels;
+        let at = term.samples[usize::from(quarters)] * n_channels;
         let values = &squares[term.reads.step()].values[at..at + n_channels];
         target.extend(values.iter().map(|value| value * term.root_weight));
     }
@@ -361,9 +502,13 @@ pub(crate) fn terms_of(pass: &Pass, halves: [i32; 2]) -> Vec<Term> {
         };
         let side = 2 * half + 1;
         for offset in part.offsets() {
+            let sample = |quarters| {
+                let [i, j] = offset_before(offset, quarters);
+                ((j + half) * side + i + half) as usize
+            };
             terms.push(Term {
                 reads: part.reads,
-                sample: ((offset[1] + half) * side + offset[0] + half) as usize,
+                samples: [0, 1, 2, 3].map(sample),
                 offset,
                 root_weight: part.weight.sqrt(),
             });

@@ -3,7 +3,7 @@
 use super::links::Links;
 use super::{Appearance, Choice, choose};
 use crate::endless::stage::DIAGONALS;
-use crate::places::{Frame, frames};
+use crate::places::{Frame, Frames};
 use crate::shapes::{on_threads, sheet, sphere, synthesizer};
 use crate::{
     Edges, Exemplar, Matching, Options, SiteIdx, SurfaceTexture, SynthErrorKind, Synthesizer,
@@ -46,7 +46,7 @@ fn way(ball: &Synthesizer, frames: &[Frame], [from, to]: [usize; 2]) -> Vec2 {
 #[test]
 fn links_are_the_sites_on_the_diagonals_that_two_edges_reach() {
     let ball = ball();
-    let frames = frames(ball.hierarchy(), ball.orientation());
+    let frames = Frames::new(&ball, &[]).of_site;
     for level in 0..2 {
         let links = Links::new(ball.hierarchy(), &frames, level);
         let graph = ball.hierarchy().levels()[level].graph();
@@ -90,7 +90,7 @@ fn links_are_the_sites_on_the_diagonals_that_two_edges_reach() {
 #[test]
 fn classes_have_every_site_once_and_no_two_that_are_connected() {
     let ball = ball();
-    let frames = frames(ball.hierarchy(), ball.orientation());
+    let frames = Frames::new(&ball, &[]).of_site;
     let links = Links::new(ball.hierarchy(), &frames, 0);
     let graph = ball.hierarchy().levels()[0].graph();
     let mut all = links.classes.concat();
@@ -108,8 +108,7 @@ fn classes_have_every_site_once_and_no_two_that_are_connected() {
 fn sites_take_the_place_that_comparing_with_all_they_may_take_finds() {
     let ball = ball();
     let exemplar = noise(Edges::Cut);
-    let appearance =
-        Appearance::new(ball.hierarchy(), ball.orientation(), &exemplar, &options()).unwrap();
+    let appearance = Appearance::new(&ball, &exemplar, &options()).unwrap();
     let (frames, stage) = (&appearance.frames, &appearance.stages[0]);
     let links = Links::new(ball.hierarchy(), frames, 0);
     let usable = stage.usable_pixels();

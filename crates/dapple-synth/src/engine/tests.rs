@@ -1,5 +1,7 @@
 //! The engine beside the paper's pseudo-code, which compares every neighborhood with every pixel's.
 
+mod turned;
+
 use super::{Progress, random_pixels, run};
 use crate::ground::{Ground, Plain, Rows, Samples, Square};
 use crate::mesh_ground::MeshGround;

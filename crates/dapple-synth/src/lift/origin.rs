@@ -2,8 +2,8 @@
 
 use crate::detail::Detail;
 use crate::magnify::footprints;
-use crate::places::{self, Frame, Sourced, frames};
-use crate::{Edges, Hierarchy, Sources, SynthError, SynthErrorKind, Synthesizer, columns};
+use crate::places::{self, Frame, Frames, Sourced};
+use crate::{Edges, Hierarchy, Options, Sources, SynthError, SynthErrorKind, Synthesizer, columns};
 use dapple_mesh::{SurfacePoint, Walk};
 use dapple_raster::Raster;
 use glam::{DVec2, DVec3, Vec2, Vec3};
@@ -66,12 +66,13 @@ impl Origin {
             let turns = ((uvs[0] + uvs[1] + uvs[2]) / 3.0).floor();
             uvs.map(|uv| uv - turns)
         };
-        let hierarchy = synthesizer.hierarchy();
+        let synthesizer = synthesizer.without_scales();
+        let spacing = synthesizer.hierarchy().levels()[0].spacing();
         Ok(Self {
             uvs: uvs.iter().map(place).collect(),
             edges,
-            frames: frames(hierarchy, synthesizer.orientation()),
-            spacing: hierarchy.levels()[0].spacing() as f32,
+            frames: Frames::new(&synthesizer, &[]).of_site,
+            spacing: spacing as f32,
             synthesizer,
         })
     }
@@ -153,10 +154,11 @@ impl Origin {
 impl LiftedPlaces {
     /// The places of sites that took these finest sites of the source, between them if that is asked for.
     pub(super) fn new(
-        target: &Synthesizer,
+        hierarchy: &Hierarchy,
+        frames: &Frames,
         origin: &Arc<Origin>,
         sources: &[u32],
-        between: Sources,
+        options: &Options,
     ) -> Self {
         let place = |&site: &u32| Place {
             site,
@@ -165,13 +167,11 @@ impl LiftedPlaces {
         let mut lifted = Self {
             origin: Arc::clone(origin),
             of_site: sources.iter().map(place).collect(),
-            is_mixed: between == Sources::Pixel,
+            is_mixed: options.sources == Sources::Pixel,
         };
         if !lifted.is_mixed {
-            let frames = frames(target.hierarchy(), target.orientation());
             for _ in 0..places::N_STEPS {
-                let averaged =
-                    |site: usize| places::averaged(&lifted, target.hierarchy(), &frames, site);
+                let averaged = |site: usize| places::averaged(&lifted, hierarchy, frames, site);
                 lifted.of_site = columns::column(sources.len(), averaged);
             }
         }

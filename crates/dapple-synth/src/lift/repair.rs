@@ -9,7 +9,7 @@
 //! Reference: our own; the passes are those of [`Schedule::repair`].
 
 use super::origin::Place;
-use super::{LiftedPlaces, MeshExemplar, Origin};
+use super::{MeshExemplar, Origin};
 use crate::engine::Progress;
 use crate::ground::{Start, UNKNOWN};
 use crate::mesh_ground::MeshGround;
@@ -53,12 +53,7 @@ impl MeshExemplar {
             starts: &starts,
             ..self.source().ground(options.axes, false)
         };
-        let (pyramid, sources) = self.grow(&ground, &options, &mut callback)?;
-        let finest = sources.first().map_or(&[][..], Vec::as_slice);
-        let places = LiftedPlaces::new(self.source(), &self.origin, finest, options.sources);
-        let mut texture = SurfaceTexture::new(&pyramid, sources, None);
-        texture.lifted = Some(places);
-        Ok(texture)
+        self.grow(self.source(), &ground, &options, &mut callback)
     }
 
     /// What the sites of each level begin with.

@@ -106,6 +106,7 @@ impl Reader<'_> {
                 &self.terms,
                 [&same, &coarser],
                 level.n_channels,
+                0,
                 &mut chunk.rows,
             );
             let guides = level.guides.of(site as usize).iter();
@@ -150,7 +151,7 @@ impl Reader<'_> {
         usable(0, site)
             && self.terms.iter().all(|term| {
                 let step = term.reads.step();
-                usable(step, samples[step].nearest[term.sample])
+                usable(step, samples[step].nearest[term.samples[0]])
             })
     }
 

@@ -70,7 +70,7 @@ fn neighborhood(
     pass: &Pass,
     site: u32,
     pyramid: &Pyramid,
-    levels: &[Vec<AtomicU32>],
+    levels: &[Sources],
 ) -> Vec<f32> {
     let mut values = Vec::new();
     for part in &pass.parts {
@@ -104,9 +104,12 @@ fn neighborhood(
 }
 
 /// Every site with its own number.
-fn own_pixels(exemplar: &MeshExemplar) -> Vec<Vec<AtomicU32>> {
+fn own_pixels(exemplar: &MeshExemplar) -> Vec<Sources> {
     let levels = exemplar.pyramid.levels().iter();
-    let numbers = levels.map(|level| (0..level.size[0]).map(AtomicU32::new).collect());
+    let numbers = levels.map(|level| Sources {
+        pixels: (0..level.size[0]).map(AtomicU32::new).collect(),
+        quarters: Vec::new(),
+    });
     numbers.collect()
 }
 
@@ -126,13 +129,14 @@ fn lifting_is_the_pseudo_code_with_neighborhoods_of_the_source() {
     let own = own_pixels(&exemplar);
     let found = target.lift(&exemplar, &[], &options, go_on).unwrap();
     // What the coarsest level begins with is not part of the public result: its last visit gives it anyway.
-    let mut levels: Vec<Vec<AtomicU32>> = vec![Vec::new(), Vec::new()];
-    levels[1] = found
+    let mut levels = [Sources::default(), Sources::default()];
+    levels[1].pixels = found
         .sources(1)
         .map(|[site, _]| AtomicU32::new(site))
         .collect();
     for pass in &Schedule::paper(2).passes[1..] {
-        levels[0].resize_with(ground.n_sites(0), AtomicU32::default);
+        let n_sites = ground.n_sites(0);
+        levels[0].pixels.resize_with(n_sites, AtomicU32::default);
         let n_rows = exemplar.source().hierarchy().levels()[0].n_sites() as u32;
         let rows: Vec<Vec<f32>> = (0..n_rows)
             .map(|site| neighborhood(&source_ground, pass, site, &exemplar.pyramid, &own))
@@ -146,12 +150,13 @@ fn lifting_is_the_pseudo_code_with_neighborhoods_of_the_source() {
                     (smallest, best) = (distance, row);
                 }
             }
-            levels[0][site as usize] = AtomicU32::new(best);
+            levels[0].pixels[site as usize] = AtomicU32::new(best);
         }
     }
-    let expected: Vec<u32> = levels[0].drain(..).map(AtomicU32::into_inner).collect();
+    let (expected, _) = Sources::pixels_and_quarters(levels.into());
+
     let found: Vec<u32> = found.sources(0).map(|[site, _]| site).collect();
-    assert!(found == expected, "other sites than the pseudo-code's");
+    assert!(found == expected[0], "other sites than the pseudo-code's");
 }
 
 /// The quantiles of values, and those of the lengths of gradients.
@@ -211,7 +216,19 @@ fn identity(exemplar: &MeshExemplar, between: crate::Sources) -> SurfaceTexture 
     let own: Vec<u32> = (0..n_sites).collect();
     let pyramid = exemplar.pyramid(1).unwrap();
     let mut texture = SurfaceTexture::new(&pyramid, vec![own.clone()], None);
-    texture.lifted = Some(LiftedPlaces::new(source, &exemplar.origin, &own, between));
+    let options = Options {
+        sources: between,
+        ..Options::default()
+    };
+    let frames = Frames::new(source, &[]);
+    let places = LiftedPlaces::new(
+        source.hierarchy(),
+        &frames,
+        &exemplar.origin,
+        &own,
+        &options,
+    );
+    texture.lifted = Some(places);
     texture
 }
 

@@ -50,7 +50,8 @@ fn texture(plane: &Synthesizer, edges: Edges, source: impl Fn(Vec2) -> Vec2) -> 
         y * SIDE + x
     };
     let sources: Vec<u32> = positions.map(pixel).collect();
-    let places = Places::new(plane.hierarchy(), plane.orientation(), &exemplar, &sources);
+    let frames = Frames::new(plane, &[]);
+    let places = Places::new(plane.hierarchy(), &frames, &exemplar, &sources);
     SurfaceTexture::new(&exemplar.pyramid(1).unwrap(), vec![sources], Some(places))
 }
 

@@ -5,8 +5,8 @@
 //! where they should bend. All later passes keep that error. So directions turn on the way as the field does, to first
 //! order: by one rate along P and one along O, which fit the field at the neighbors of the site best.
 
-use crate::{Hierarchy, SiteIdx};
-use glam::{DVec2, DVec3};
+use crate::{Hierarchy, Orientation, SiteIdx};
+use glam::DVec2;
 
 /// The most that directions turn from the middle of a square to its edge, in radians. There is no useful rate close to
 /// where the field turns around a point, and sites that are out of reach of the square do not count.
@@ -28,11 +28,12 @@ impl Turning {
     /// middle.
     pub(crate) fn around(
         hierarchy: &Hierarchy,
-        vectors: &[DVec3],
+        orientation: &Orientation,
         (site, level): (SiteIdx, usize),
         (spacing, half): (f64, i32),
     ) -> Self {
         let (positions, normals) = (hierarchy.sites().positions(), hierarchy.sites().normals());
+        let vectors = orientation.vectors();
         let at = site.index();
         let (down, right) = (vectors[at], normals[at].cross(vectors[at]));
         // The normal equations of the least squares: turn = x * along P + y * along O.
@@ -42,7 +43,8 @@ impl Turning {
             let step = positions[other] - positions[at];
             let (x, y) = (step.dot(right), step.dot(down));
             // The sine of the turn from O here to O there, seen in the tangent plane.
-            let there = DVec2::new(vectors[other].dot(down), vectors[other].dot(right));
+            let there = orientation.nearest(normals, other, down);
+            let there = DVec2::new(there.dot(down), there.dot(right));
             let turn = there.normalize_or(DVec2::X).y;
             xx += x * x;
             xy += x * y;
@@ -101,6 +103,7 @@ mod tests {
     use crate::mesh_ground::Lattice;
     use crate::shapes::{sites_on, square};
     use dapple_mesh::Surface;
+    use glam::DVec3;
 
     const HALF: i32 = 3;
     /// Circles around this point pass through the unit square, which it is far from.
@@ -146,8 +149,7 @@ mod tests {
             if (at - DVec3::new(0.5, 0.5, 0.0)).abs().max_element() > 0.25 {
                 continue; // The square may end at an edge of the surface.
             }
-            let vectors = orientation.vectors();
-            let turning = Turning::around(&hierarchy, vectors, (site, 0), (spacing, HALF));
+            let turning = Turning::around(&hierarchy, &orientation, (site, 0), (spacing, HALF));
             // Straight on, three steps lead off by 9 / 2 of the spacing over the radius, which is 0.054 over 1.75 at the
             // most here. The fit is of first order, and its neighbors are not all around at the same distances.
             let [followed, carried] =
@@ -167,8 +169,7 @@ mod tests {
         let hierarchy = sites_on(square(), 400, 1);
         let orientation = circles(&hierarchy, DVec3::new(0.5, 0.5, 0.0));
         for site in hierarchy.sites().iter() {
-            let vectors = orientation.vectors();
-            let turning = Turning::around(&hierarchy, vectors, (site, 0), (1.0, HALF));
+            let turning = Turning::around(&hierarchy, &orientation, (site, 0), (1.0, HALF));
             for Turn(turn) in [turning.right, turning.down] {
                 assert!((turn.length() - 1.0).abs() < 1e-12, "{site:?}: not a turn");
                 let most = MOST / f64::from(HALF) / 2.0;
@@ -183,7 +184,7 @@ mod tests {
             let hierarchy = sites_on(square(), n_sites, 1);
             let orientation = circles(&hierarchy, CENTER);
             let site = (SiteIdx(0), 0);
-            let turning = Turning::around(&hierarchy, orientation.vectors(), site, (0.1, HALF));
+            let turning = Turning::around(&hierarchy, &orientation, site, (0.1, HALF));
             assert_eq!(turning, Turning::default(), "{n_sites} sites");
         }
     }

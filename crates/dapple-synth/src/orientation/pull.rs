@@ -2,7 +2,7 @@
 
 use super::{flat_part, tangent};
 use crate::links::LEAST_LENGTH;
-use crate::{Direction, Hierarchy, Level, SiteIdx, SynthError, SynthErrorKind, columns};
+use crate::{Direction, Hierarchy, Level, SiteIdx, Symmetry, SynthError, SynthErrorKind, columns};
 use glam::DVec3;
 
 /// Low-pass steps before a level is thinned, and their strength t of equation 3: together the spread of the filter
@@ -35,6 +35,7 @@ pub(super) struct Known {
 pub(super) fn known(
     hierarchy: &Hierarchy,
     directions: &[Direction],
+    symmetry: Symmetry,
 ) -> Result<Vec<Known>, SynthError> {
     let sites = hierarchy.sites();
     let mut given: Vec<(usize, DVec3)> = Vec::with_capacity(directions.len());
@@ -43,7 +44,7 @@ pub(super) fn known(
         if !direction.at.is_finite() {
             return Err(refused);
         }
-        let Some(site) = nearest_site(hierarchy, direction.at) else {
+        let Some(site) = nearest_site(hierarchy, 0, direction.at) else {
             continue;
         };
         let Some(vector) = tangent(direction.vector, sites.normals()[site]) else {
@@ -51,13 +52,21 @@ pub(super) fn known(
         };
         given.push((site, vector));
     }
+    Ok(means(given, sites.normals(), symmetry))
+}
+
+/// The mean of the directions at each site, lowest site first; none where they cancel.
+fn means(mut given: Vec<(usize, DVec3)>, normals: &[DVec3], symmetry: Symmetry) -> Vec<Known> {
     // Stable, so that those of one site are added in the order of the caller.
     given.sort_by_key(|&(site, _)| site);
     let mean = |group: &[(usize, DVec3)]| {
-        let sum: DVec3 = group.iter().map(|&(_, vector)| vector).sum();
-        summed(group[0].0, sum, group.len() as f64)
+        let (site, first) = group[0];
+        let turns = group
+            .iter()
+            .map(|&(_, vector)| symmetry.nearest(vector, normals[site], first));
+        summed(site, turns.sum(), group.len() as f64)
     };
-    Ok(given.chunk_by(|a, b| a.0 == b.0).filter_map(mean).collect())
+    given.chunk_by(|a, b| a.0 == b.0).filter_map(mean).collect()
 }
 
 /// The known vectors of every level, the finest first.
@@ -66,6 +75,28 @@ pub(super) fn pull(hierarchy: &Hierarchy, finest: Vec<Known>) -> Vec<Vec<Known>>
     for pair in hierarchy.levels().windows(2) {
         let coarser = down(hierarchy, [&pair[0], &pair[1]], &levels[levels.len() - 1]);
         levels.push(coarser);
+    }
+    levels
+}
+
+/// The known directions of a symmetry on every level, the finest first: on a coarser level those of the sites nearest to
+/// them, with the whole weight, since means of turns are not blurred.
+pub(super) fn pull_nearest(
+    hierarchy: &Hierarchy,
+    finest: Vec<Known>,
+    symmetry: Symmetry,
+) -> Vec<Vec<Known>> {
+    let sites = hierarchy.sites();
+    let mut levels = vec![finest];
+    for level in 1..hierarchy.levels().len() {
+        let mut given = Vec::new();
+        for known in &levels[0] {
+            let near = nearest_site(hierarchy, level, sites.positions()[known.site]);
+            let there =
+                near.and_then(|site| Some((site, tangent(known.vector, sites.normals()[site])?)));
+            given.extend(there);
+        }
+        levels.push(means(given, sites.normals(), symmetry));
     }
     levels
 }
@@ -180,10 +211,10 @@ fn step(values: &[(DVec3, f64)], at: usize, edges: &[(usize, f64)]) -> (DVec3, f
     )
 }
 
-/// The site nearest to a position, and of several the lowest; none only if there are no sites.
-fn nearest_site(hierarchy: &Hierarchy, at: DVec3) -> Option<usize> {
-    let positions = hierarchy.sites().positions();
-    let finest = hierarchy.levels().first()?;
+/// The site of a level nearest to a position, and of several the lowest; none only if there are no sites.
+fn nearest_site(hierarchy: &Hierarchy, level: usize, at: DVec3) -> Option<usize> {
+    let level = hierarchy.levels().get(level)?;
+    let positions = &hierarchy.sites().positions()[..level.n_sites()];
     let mut nearest = (f64::INFINITY, u32::MAX);
     let mut visit = |site: SiteIdx| {
         let found = (positions[site.index()].distance(at), site.0);
@@ -191,8 +222,8 @@ fn nearest_site(hierarchy: &Hierarchy, at: DVec3) -> Option<usize> {
             nearest = found;
         }
     };
-    let radius = SEARCH_RADIUS * finest.spacing();
-    finest.grid().visit(at, radius, &mut visit);
+    let radius = SEARCH_RADIUS * level.spacing();
+    level.grid().visit(at, radius, &mut visit);
     if nearest.0 > radius {
         // A position far off the surface.
         nearest = (f64::INFINITY, u32::MAX);
@@ -276,10 +307,10 @@ mod tests {
             ) * part;
             let distance = |site: &usize| (positions[*site].distance(at), *site);
             let wanted = (0..500).min_by(|a, b| distance(a).partial_cmp(&distance(b)).unwrap());
-            assert_eq!(nearest_site(&hierarchy, at), wanted, "{at}");
+            assert_eq!(nearest_site(&hierarchy, 0, at), wanted, "{at}");
         }
         assert!(
-            nearest_site(&hierarchy, DVec3::splat(1e200)).is_some(),
+            nearest_site(&hierarchy, 0, DVec3::splat(1e200)).is_some(),
             "however far"
         );
     }

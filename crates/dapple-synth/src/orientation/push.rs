@@ -1,8 +1,10 @@
 //! From what is known on every level to a field on the finest: diffusion on the coarsest level and the way down.
 
+use super::comb::comb;
 use super::pull::Known;
-use super::{axis_tangent, flat_part};
-use crate::links::Links;
+use super::smooth::smoothest;
+use super::{Symmetry, axis_tangent, flat_part};
+use crate::links::{Links, components};
 use crate::parents::Parents;
 use crate::solve::{System, conjugate_gradients};
 use crate::{Hierarchy, SiteIdx, columns};
@@ -17,7 +19,12 @@ const SWEEPS: usize = 4;
 const SWEEP_STRENGTH: f64 = 0.8;
 
 /// A unit tangent vector for every site, from what is known on every level.
-pub(super) fn push(hierarchy: &Hierarchy, pulled: &[Vec<Known>], axis: DVec3) -> Vec<DVec3> {
+pub(super) fn push(
+    hierarchy: &Hierarchy,
+    pulled: &[Vec<Known>],
+    axis: DVec3,
+    symmetry: Symmetry,
+) -> Vec<DVec3> {
     let mut vectors = Vec::new();
     for (level, known) in pulled.iter().enumerate().rev() {
         let links = Links::new(hierarchy, level);
@@ -25,9 +32,13 @@ pub(super) fn push(hierarchy: &Hierarchy, pulled: &[Vec<Known>], axis: DVec3) ->
             links: &links,
             normals: hierarchy.sites().normals(),
             axis,
+            symmetry,
         };
         if level + 1 == pulled.len() {
-            vectors = field.diffuse(known);
+            vectors = match symmetry {
+                Symmetry::One => field.diffuse(known),
+                _ => field.smoothest(&components(hierarchy.levels()[level].graph()), known),
+            };
         } else {
             vectors = field.refine(hierarchy, level, &vectors, known);
         }
@@ -43,10 +54,11 @@ pub(super) fn push(hierarchy: &Hierarchy, pulled: &[Vec<Known>], axis: DVec3) ->
 }
 
 /// The links of a level and the planes that vectors are projected to.
-struct Field<'a> {
-    links: &'a Links<'a>,
-    normals: &'a [DVec3],
-    axis: DVec3,
+pub(super) struct Field<'a> {
+    pub(super) links: &'a Links<'a>,
+    pub(super) normals: &'a [DVec3],
+    pub(super) axis: DVec3,
+    pub(super) symmetry: Symmetry,
 }
 
 impl Field<'_> {
@@ -78,6 +90,13 @@ impl Field<'_> {
         vectors
     }
 
+    /// The smoothest field of the symmetry with what is known, on the coarsest level.
+    fn smoothest(&self, components: &[u32], known: &[Known]) -> Vec<DVec3> {
+        let mut vectors = smoothest(self, components, known);
+        comb(self, &mut vectors);
+        vectors
+    }
+
     /// Upsampling: unit vectors for all sites of a finer level that are connected to a known one.
     fn refine(
         &self,
@@ -92,7 +111,7 @@ impl Field<'_> {
                 .copied()
                 .unwrap_or_else(|| self.inherit(hierarchy, level, site, coarser))
         });
-        mix(&mut vectors, known);
+        self.mix(&mut vectors, known);
         let mut assigned: Vec<bool> = vectors
             .iter()
             .map(|&vector| vector != DVec3::ZERO)
@@ -108,7 +127,7 @@ impl Field<'_> {
                     DVec3::ZERO
                 };
             });
-            mix(&mut vectors, known);
+            self.mix(&mut vectors, known);
         }
         vectors
     }
@@ -122,10 +141,7 @@ impl Field<'_> {
         coarser: &[DVec3],
     ) -> DVec3 {
         let parents = Parents::new(hierarchy, level, SiteIdx(site as u32));
-        let mut sum = DVec3::ZERO;
-        for (parent, weight) in parents.iter() {
-            sum += coarser[parent] * weight;
-        }
+        let sum = self.sum(parents.iter(), coarser);
         flat_part(sum, self.normals[site]).normalize_or_zero()
     }
 
@@ -133,18 +149,8 @@ impl Field<'_> {
     fn fill(&self, assigned: &mut [bool], vectors: &mut [DVec3]) {
         self.links
             .fill(assigned, vectors, |site, assigned, vectors| {
-                let mut sum = DVec3::ZERO;
-                for (other, weight) in self
-                    .links
-                    .neighbors(site)
-                    .iter()
-                    .zip(self.links.weights(site))
-                {
-                    if assigned[other.index()] {
-                        sum += vectors[other.index()] * *weight;
-                    }
-                }
-                self.unit(site, sum)
+                let near = self.near(site).filter(|&(other, _)| assigned[other]);
+                self.unit(site, self.sum(near, vectors))
             });
     }
 
@@ -159,36 +165,65 @@ impl Field<'_> {
         self.unit(site, vectors[site] * (1.0 - SWEEP_STRENGTH) + average)
     }
 
-    /// The sum of the neighbors' vectors with their weights.
+    /// The sum of the neighbors' vectors with their weights, each turned toward that of the site.
     #[inline]
     fn average(&self, site: usize, vectors: &[DVec3]) -> DVec3 {
         let mut sum = DVec3::ZERO;
-        for (other, weight) in self
-            .links
-            .neighbors(site)
-            .iter()
-            .zip(self.links.weights(site))
-        {
-            sum += vectors[other.index()] * *weight;
+        for (other, weight) in self.near(site) {
+            let vector = vectors[other];
+            sum += self
+                .symmetry
+                .nearest(vector, self.normals[other], vectors[site])
+                * weight;
         }
         sum
     }
 
+    /// The sum of vectors with weights, each turned toward the one with the most weight.
+    fn sum(&self, near: impl Iterator<Item = (usize, f64)> + Clone, vectors: &[DVec3]) -> DVec3 {
+        let (mut leader, mut most) = (DVec3::ZERO, 0.0);
+        for (other, weight) in near.clone() {
+            if weight > most {
+                (leader, most) = (vectors[other], weight);
+            }
+        }
+        let mut sum = DVec3::ZERO;
+        for (other, weight) in near {
+            sum += self
+                .symmetry
+                .nearest(vectors[other], self.normals[other], leader)
+                * weight;
+        }
+        sum
+    }
+
+    /// The neighbors of a site and their weights.
+    #[inline]
+    fn near(&self, site: usize) -> impl Iterator<Item = (usize, f64)> + Clone {
+        let neighbors = self.links.neighbors(site).iter();
+        let weights = self.links.weights(site).iter().copied();
+        neighbors.map(|other| other.index()).zip(weights)
+    }
+
     /// The unit tangent vector of a sum, or if that cancels the tangent along the axis.
     #[inline]
-    fn unit(&self, site: usize, vector: DVec3) -> DVec3 {
+    pub(super) fn unit(&self, site: usize, vector: DVec3) -> DVec3 {
         let normal = self.normals[site];
         flat_part(vector, normal)
             .try_normalize()
             .unwrap_or_else(|| axis_tangent(self.axis, normal))
     }
-}
 
-/// Mixes what is known in by its weights; where the weight is 1, the known vector replaces the other.
-fn mix(vectors: &mut [DVec3], known: &[Known]) {
-    for known in known {
-        let mixed = vectors[known.site] * (1.0 - known.weight) + known.vector * known.weight;
-        vectors[known.site] = mixed.normalize_or(known.vector);
+    /// Mixes what is known in by its weights; where the weight is 1, the known vector replaces the other.
+    fn mix(&self, vectors: &mut [DVec3], known: &[Known]) {
+        for known in known {
+            let vector = vectors[known.site];
+            let turned = self
+                .symmetry
+                .nearest(known.vector, self.normals[known.site], vector);
+            let mixed = vector * (1.0 - known.weight) + turned * known.weight;
+            vectors[known.site] = mixed.normalize_or(turned);
+        }
     }
 }
 

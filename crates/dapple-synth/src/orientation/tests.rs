@@ -1,5 +1,7 @@
 //! Fields of orientations on surfaces where they are known.
 
+mod symmetric;
+
 use super::*;
 use crate::links::{Links, components};
 use crate::shapes::{moved, sites_on, sphere, square, tube, two_squares};

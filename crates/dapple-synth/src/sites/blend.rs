@@ -1,6 +1,6 @@
 //! Values that the operations on a hierarchy can mix.
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 /// A value that can be mixed with weights, such as a color, a vector, or a distance.
 ///
@@ -36,6 +36,15 @@ impl Blend for f32 {
     #[inline]
     fn add_scaled(self, other: Self, weight: f64) -> Self {
         self + other * weight as Self
+    }
+}
+
+impl Blend for DVec2 {
+    const ZERO: Self = Self::ZERO;
+
+    #[inline]
+    fn add_scaled(self, other: Self, weight: f64) -> Self {
+        self + other * weight
     }
 }
 

@@ -4,7 +4,7 @@ use super::Distances;
 use crate::links::Links;
 use crate::parents::Parents;
 use crate::solve::{System, conjugate_gradients};
-use crate::{Hierarchy, SiteIdx, columns};
+use crate::{Hierarchy, Orientation, SiteIdx, Symmetry, columns};
 use glam::DVec3;
 
 /// The coarsest level is solved until equation 5 would change no distance by more than this part of the spacing, ...
@@ -22,7 +22,7 @@ const ROUNDS: usize = 3;
 pub(super) struct LevelSweep<'a> {
     hierarchy: &'a Hierarchy,
     level: usize,
-    vectors: &'a [DVec3],
+    orientation: &'a Orientation,
     links: Links<'a>,
     /// For each site the sum of how far it is ahead of its neighbors, with their weights.
     ahead: Vec<f64>,
@@ -31,12 +31,16 @@ pub(super) struct LevelSweep<'a> {
 }
 
 impl<'a> LevelSweep<'a> {
-    pub(super) fn new(hierarchy: &'a Hierarchy, vectors: &'a [DVec3], level: usize) -> Self {
+    pub(super) fn new(
+        hierarchy: &'a Hierarchy,
+        orientation: &'a Orientation,
+        level: usize,
+    ) -> Self {
         Self {
             hierarchy,
             level,
-            vectors,
-            links: Links::new(hierarchy, level),
+            orientation,
+            links: links(hierarchy, orientation, level),
             ahead: Vec::new(),
             spacing: hierarchy.levels()[level].spacing(),
         }
@@ -56,7 +60,7 @@ impl<'a> LevelSweep<'a> {
         self.fill(&mut assigned, &mut distances);
         for round in 0..ROUNDS {
             if round > 0 {
-                self.links = Links::new(self.hierarchy, self.level);
+                self.links = links(self.hierarchy, self.orientation, self.level);
             }
             self.ease(&distances);
             conjugate_gradients(&self, &mut distances, STEPS_MAX);
@@ -112,23 +116,37 @@ impl<'a> LevelSweep<'a> {
         inherits: impl Fn(usize) -> bool + Copy,
     ) -> Option<f64> {
         let parents = Parents::new(self.hierarchy, self.level, SiteIdx(site as u32));
-        let believers = parents.iter().filter(|&(parent, _)| inherits(parent));
+        let (normals, orientation) = (self.hierarchy.sites().normals(), self.orientation);
+        let is_cut = |parent| orientation.quarters_toward(normals, site, parent, 0) != 0;
+        let believers = parents
+            .iter()
+            .filter(|&(parent, _)| inherits(parent) && !is_cut(parent));
         self.consensus(site, believers, coarser)
     }
 
-    /// Assigns the sites that are connected to assigned ones: equation 5, in which only assigned sites contribute.
+    /// Assigns all sites that are connected to assigned ones: equation 5, in which only assigned sites contribute. What
+    /// cuts separate from them begins at 0.
     fn fill(&self, assigned: &mut [bool], distances: &mut [f64]) {
-        self.links
-            .fill(assigned, distances, |site, assigned, distances| {
-                let neighbors = self.links.neighbors(site).iter();
-                let weights = self.links.weights(site).iter().copied();
-                let believers = neighbors
-                    .map(|other| other.index())
-                    .zip(weights)
-                    .filter(|&(other, _)| assigned[other]);
-                self.consensus(site, believers, distances)
-                    .unwrap_or_default()
-            });
+        let opinion = |site, assigned: &[bool], distances: &[f64]| {
+            let neighbors = self.links.neighbors(site).iter();
+            let weights = self.links.weights(site).iter().copied();
+            let believers = neighbors
+                .map(|other| other.index())
+                .zip(weights)
+                .filter(|&(other, _)| assigned[other]);
+            self.consensus(site, believers, distances)
+                .unwrap_or_default()
+        };
+        self.links.fill(assigned, distances, opinion);
+        if self.orientation.symmetry() == Symmetry::One {
+            return;
+        }
+        for site in 0..assigned.len() {
+            if !assigned[site] {
+                assigned[site] = true;
+                self.links.fill(assigned, distances, opinion);
+            }
+        }
     }
 
     /// The distance that others with weights believe that a site has: the mean, in which those count less that disagree
@@ -164,7 +182,7 @@ impl<'a> LevelSweep<'a> {
 
     /// Lowers the weights of edges whose ends disagree, and sums up how far sites are ahead of their neighbors.
     fn ease(&mut self, distances: &[f64]) {
-        let (sites, vectors) = (self.hierarchy.sites(), self.vectors);
+        let (sites, vectors) = (self.hierarchy.sites(), self.orientation.vectors());
         let (positions, normals) = (sites.positions(), sites.normals());
         let spacing = self.spacing;
         self.ahead = self.links.reweigh(|site, neighbors, weights| {
@@ -213,16 +231,36 @@ impl<'a> LevelSweep<'a> {
     /// The paper's Δ: how much further along the field a site is than another one. 0 where their orientations cancel.
     #[inline]
     fn step(&self, site: usize, other: usize) -> f64 {
+        let vectors = self.orientation.vectors();
         let (positions, normals) = (
             self.hierarchy.sites().positions(),
             self.hierarchy.sites().normals(),
         );
         step(
             positions[site] - positions[other],
-            self.vectors[site] + self.vectors[other],
+            vectors[site] + vectors[other],
             normals[site] + normals[other],
         )
     }
+}
+
+/// The links of a level, without weight where they cross a cut of the field.
+fn links<'a>(hierarchy: &'a Hierarchy, orientation: &Orientation, level: usize) -> Links<'a> {
+    let mut links = Links::new(hierarchy, level);
+    let normals = hierarchy.sites().normals();
+    if orientation.symmetry() != Symmetry::One {
+        links.reweigh(|site, neighbors, weights| {
+            for (weight, other) in weights.iter_mut().zip(neighbors) {
+                let there = orientation.quarters_toward(normals, other.index(), site, 0);
+                let here = orientation.quarters_toward(normals, site, other.index(), 0);
+                // From both ends, as weights are symmetric.
+                if here != 0 || there != 0 {
+                    *weight = 0.0;
+                }
+            }
+        });
+    }
+    links
 }
 
 /// How much an opinion counts that is off by `difference`: Cauchy's weights, of which half is left at a spacing.

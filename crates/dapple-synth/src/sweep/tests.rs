@@ -277,8 +277,8 @@ fn refined_levels_are_near_the_solution() {
     let orientation = Orientation::from_fn(&hierarchy, field);
     let refined = Sweep::new(&hierarchy, &orientation, None).unwrap();
     let finest = &hierarchy.levels()[0];
-    let solved = LevelSweep::new(&hierarchy, orientation.vectors(), 0)
-        .solve(&components(finest.graph()), None);
+    let solved =
+        LevelSweep::new(&hierarchy, &orientation, 0).solve(&components(finest.graph()), None);
     // The sweeps leave the long waves of the error of the coarser level, which measures with longer edges.
     let spread = spread(refined.distances(0), &solved) / finest.spacing();
     assert!(spread < 0.3, "{spread} spacings");

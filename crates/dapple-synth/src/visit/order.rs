@@ -2,12 +2,11 @@
 
 use super::{State, Visit, Worker};
 use crate::SynthError;
-use crate::ground::{Ground, Painted};
+use crate::ground::{Ground, Painted, Sources};
 use crate::kept::Kept;
 use crate::turns::{Board, Turns};
 use crate::usage::Usage;
 use core::iter::repeat_with;
-use core::sync::atomic::AtomicU32;
 use dapple_raster::parallel;
 use std::sync::{Mutex, PoisonError};
 
@@ -21,7 +20,7 @@ impl<G: Ground> Visit<'_, G> {
     /// of squares of the coarser level, `keep` samples wide.
     pub(crate) fn run(
         &self,
-        levels: &[Vec<AtomicU32>],
+        levels: &[Sources],
         kept: &Kept,
         keep: u32,
         tell: &mut dyn FnMut(usize) -> Result<(), SynthError>,

@@ -68,7 +68,7 @@ fn jacobi_gives_eigenvectors() {
     let n = 12;
     let entry = |i: usize| random((i / n).min(i % n), (i / n).max(i % n)) - 0.5;
     let matrix: Vec<f64> = (0..n * n).map(|i| f64::from(entry(i))).collect();
-    let (values, vectors) = jacobi::eigen(n, matrix.clone());
+    let (values, vectors) = eigen(n, matrix.clone());
     for (value, vector) in values.iter().zip(vectors.chunks_exact(n)) {
         for (line, own) in matrix.chunks_exact(n).zip(vector) {
             let image: f64 = line.iter().zip(vector).map(|(a, b)| a * b).sum();

@@ -1,0 +1,253 @@
+//! The smoothest field of a symmetry on the coarsest level.
+//!
+//! Source: Felix Knöppel, Keenan Crane, Ulrich Pinkall, Peter Schröder, "Globally Optimal Direction Fields", SIGGRAPH 2013,
+//! <https://doi.org/10.1145/2461912.2462005>.
+//!
+//! Directions that are n-ths of a turn from each other have the same n-th power as complex numbers in a frame of their
+//! tangent plane. The field whose powers change least from site to site, without being zero everywhere, is the lowest
+//! eigenvector of the connection Laplacian A: `(A u)_i = Σ_j w_ij (u_i - r_ij u_j)`, where `r_ij` is the n-th power of the turn
+//! that the frame of j has after it is carried to i the shortest way. The paper has it on the vertices of a triangulation,
+//! here the edges of the graph of sites are used, with inverse lengths for weights. It is found by inverse iteration, in
+//! each connected component on its own, and turned as a whole to lie along the axis as well as it can.
+//!
+//! Given directions are held fixed: the paper's shifted system `(A - λ) u = 0`, with λ a little below the lowest eigenvalue,
+//! has the smoothest field with these values, which for one direction is nearly the eigenvector turned to it.
+
+use super::pull::Known;
+use super::push::Field;
+use crate::bake_normals::turned as carried;
+use crate::columns;
+use crate::solve::{System, conjugate_gradients};
+use dapple_hash::{Seed, hash1, unit_f32};
+use glam::{DVec2, DVec3};
+
+/// The most inverse iterations, each of which brings the field nearer to the smoothest by the ratio of the lowest two
+/// eigenvalues, ...
+const ITERATIONS: usize = 12;
+/// ... and the most steps to solve one, or for the field with directions.
+const STEPS_MAX: usize = 200;
+const STEPS_MAX_FIXED: usize = 500;
+/// A system is solved when averaging once more would change no number by more than this, where numbers are about 1.
+const TOLERANCE: f64 = 1e-7;
+/// The iteration ends when no eigenvalue falls by more than this part of it.
+const EIGENVALUE_TOLERANCE: f64 = 1e-3;
+/// The part of a mean diagonal that is added to all of it, so that a field that is constant can be solved for.
+const SHIFT: f64 = 1e-6;
+/// The part of the lowest eigenvalue that is taken away with directions: at all of it one direction would leave nothing to
+/// solve.
+const TOWARD_EIGENVALUE: f64 = 0.9;
+/// How much of the first field is random, beside the axis: the smoothest one may have nothing in common with that.
+const NOISE: f64 = 0.5;
+
+/// Unit tangent vectors at all sites of a level in these components; which of its turns each one is, is left to chance.
+pub(super) fn smoothest(field: &Field<'_>, components: &[u32], known: &[Known]) -> Vec<DVec3> {
+    let mut smooth = Smooth::new(field, components);
+    let (mut powers, eigenvalues) = smooth.lowest();
+    let of_known: Vec<(usize, DVec2)> = known
+        .iter()
+        .map(|known| (known.site, smooth.power(known)))
+        .collect();
+    smooth.turn_to(&mut powers, &of_known);
+    if !known.is_empty() {
+        smooth.hold(&mut powers, &of_known, &eigenvalues);
+    }
+    columns::column(powers.len(), |site| {
+        let [x, y] = smooth.frames[site];
+        let root = field.symmetry.root(powers[site]).unwrap_or(DVec2::X);
+        field.unit(site, x * root.x + y * root.y)
+    })
+}
+
+/// The connection Laplacian of a level with something on its diagonal, and right sides.
+pub(super) struct Smooth<'a> {
+    field: &'a Field<'a>,
+    components: &'a [u32],
+    /// Two directions at each site: the tangent along the axis, and the one across it.
+    frames: Vec<[DVec3; 2]>,
+    /// For each link the power of how the frame of its far end lies in that of the near one.
+    carried: Vec<DVec2>,
+    /// What is added to the diagonal.
+    shifts: Vec<f64>,
+    right: Vec<DVec2>,
+    is_fixed: Vec<bool>,
+}
+
+impl<'a> Smooth<'a> {
+    pub(super) fn new(field: &'a Field<'a>, components: &'a [u32]) -> Self {
+        let (links, normals) = (field.links, field.normals);
+        let n_sites = links.len();
+        let frames: Vec<[DVec3; 2]> = columns::column(n_sites, |site| {
+            let along = super::axis_tangent(field.axis, normals[site]);
+            [along, normals[site].cross(along)]
+        });
+        let mut of_links = Vec::new();
+        for site in 0..n_sites {
+            let [x, y] = frames[site];
+            of_links.extend(links.neighbors(site).iter().map(|other| {
+                let other = other.index();
+                let there = carried(frames[other][0], normals[other], normals[site]);
+                let turn = DVec2::new(there.dot(x), there.dot(y)).normalize_or(DVec2::X);
+                field.symmetry.power(turn)
+            }));
+        }
+        let mean = columns::sum(n_sites, |site| links.sums()[site]) / n_sites.max(1) as f64;
+        Self {
+            field,
+            components,
+            frames,
+            carried: of_links,
+            shifts: vec![SHIFT * mean; n_sites],
+            right: vec![DVec2::ZERO; n_sites],
+            is_fixed: vec![false; n_sites],
+        }
+    }
+
+    /// The lowest eigenvector in every component, of numbers of about 1, and the eigenvalues.
+    pub(super) fn lowest(&mut self) -> (Vec<DVec2>, Vec<f64>) {
+        let n_sites = self.frames.len();
+        let mut powers: Vec<DVec2> = (0..n_sites as i64).map(first).collect();
+        let mut eigenvalues = self.normalize(&mut powers);
+        for _ in 0..ITERATIONS {
+            for (site, right) in self.right.iter_mut().enumerate() {
+                *right = powers[site] * eigenvalues[self.components[site] as usize];
+            }
+            conjugate_gradients(self, &mut powers, STEPS_MAX);
+            let next = self.normalize(&mut powers);
+            let falls =
+                |(next, before): (&f64, &f64)| before - next > EIGENVALUE_TOLERANCE * before;
+            let go_on = next.iter().zip(&eigenvalues).any(falls);
+            eigenvalues = next;
+            if !go_on {
+                break;
+            }
+        }
+        (powers, eigenvalues)
+    }
+
+    /// Scales the numbers of every component to a mean square of 1, and gives the Rayleigh quotients.
+    fn normalize(&self, powers: &mut [DVec2]) -> Vec<f64> {
+        let images = columns::column(powers.len(), |site| {
+            self.row(powers, site).dot(powers[site])
+        });
+        let energies = self.by_component(|site| images[site]);
+        let squares = self.by_component(|site| powers[site].length_squared());
+        let counts = self.by_component(|_| 1.0);
+        for (power, &component) in powers.iter_mut().zip(self.components) {
+            let component = component as usize;
+            if squares[component] > 0.0 {
+                *power *= (counts[component] / squares[component]).sqrt();
+            }
+        }
+        let ratio =
+            |(energy, square): (&f64, &f64)| if *square > 0.0 { energy / square } else { 0.0 };
+        energies.iter().zip(&squares).map(ratio).collect()
+    }
+
+    /// Turns the field of every component as a whole to what is known there, or to the axis.
+    fn turn_to(&self, powers: &mut [DVec2], known: &[(usize, DVec2)]) {
+        let n_components = self.by_component(|_| 0.0).len();
+        let (mut of_known, mut of_axis) = (
+            vec![DVec2::ZERO; n_components],
+            vec![DVec2::ZERO; n_components],
+        );
+        let conjugate = |number: DVec2| DVec2::new(number.x, -number.y);
+        for &(site, power) in known {
+            of_known[self.components[site] as usize] += conjugate(powers[site]).rotate(power);
+        }
+        for (&power, &component) in powers.iter().zip(self.components) {
+            of_axis[component as usize] += conjugate(power);
+        }
+        for (power, &component) in powers.iter_mut().zip(self.components) {
+            let component = component as usize;
+            let turn = of_known[component]
+                .try_normalize()
+                .or_else(|| of_axis[component].try_normalize());
+            *power = turn.unwrap_or(DVec2::X).rotate(*power);
+        }
+    }
+
+    /// Solves for the smoothest field that has the known values, in the components that have some.
+    fn hold(&mut self, powers: &mut [DVec2], known: &[(usize, DVec2)], eigenvalues: &[f64]) {
+        let mut is_known = vec![false; eigenvalues.len()];
+        for &(site, power) in known {
+            powers[site] = power;
+            self.is_fixed[site] = true;
+            is_known[self.components[site] as usize] = true;
+        }
+        for (site, &component) in self.components.iter().enumerate() {
+            let component = component as usize;
+            self.is_fixed[site] |= !is_known[component];
+            self.shifts[site] -= TOWARD_EIGENVALUE * eigenvalues[component];
+        }
+        self.right.fill(DVec2::ZERO);
+        conjugate_gradients(self, powers, STEPS_MAX_FIXED);
+    }
+
+    /// The power of a known direction.
+    fn power(&self, known: &Known) -> DVec2 {
+        let [x, y] = self.frames[known.site].map(|axis| axis.dot(known.vector));
+        self.field
+            .symmetry
+            .power(DVec2::new(x, y).normalize_or(DVec2::X))
+    }
+
+    /// The sum over the sites of each component.
+    fn by_component(&self, value: impl Fn(usize) -> f64) -> Vec<f64> {
+        let mut sums = Vec::new();
+        for (site, &component) in self.components.iter().enumerate() {
+            // Components are numbered in the order of their lowest sites.
+            if component as usize == sums.len() {
+                sums.push(0.0);
+            }
+            sums[component as usize] += value(site);
+        }
+        sums
+    }
+}
+
+impl System<DVec2> for Smooth<'_> {
+    #[inline]
+    fn row(&self, column: &[DVec2], row: usize) -> DVec2 {
+        if self.is_fixed[row] {
+            return DVec2::ZERO;
+        }
+        let links = self.field.links;
+        let carried = &self.carried[links.row(row)];
+        let mut sum = column[row] * (links.sums()[row] + self.shifts[row]);
+        for ((other, weight), turn) in links
+            .neighbors(row)
+            .iter()
+            .zip(links.weights(row))
+            .zip(carried)
+        {
+            sum -= turn.rotate(column[other.index()]) * *weight;
+        }
+        sum
+    }
+
+    fn right(&self, row: usize) -> DVec2 {
+        self.right[row]
+    }
+
+    fn diagonal(&self, row: usize) -> f64 {
+        if self.is_fixed[row] {
+            0.0
+        } else {
+            self.field.links.sums()[row] + self.shifts[row]
+        }
+    }
+
+    fn is_near(&self, _value: DVec2, change: DVec2) -> bool {
+        change.length_squared() <= TOLERANCE * TOLERANCE
+    }
+}
+
+/// The first number of a site: that of the axis, and some noise.
+fn first(site: i64) -> DVec2 {
+    let part = |index| {
+        f64::from(unit_f32(
+            (hash1(Seed(0).child("smoothest field", 0), [site], index) >> 32) as u32,
+        )) - 0.5
+    };
+    DVec2::X + DVec2::new(part(0), part(1)) * (2.0 * NOISE)
+}

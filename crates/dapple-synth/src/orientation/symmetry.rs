@@ -1,0 +1,191 @@
+//! How many directions at a place are one: the symmetry of a field, and which of its turns is nearest to a direction.
+//!
+//! A quarter turn takes down to right, and right to up; two of them take a direction to its opposite.
+
+use glam::{DVec2, DVec3};
+
+dapple_raster::named! {
+    /// How many directions at a place are as good as each other for a texture.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+    pub enum Symmetry {
+        /// One: down is down.
+        #[default]
+        One = "1",
+        /// Two, up and down: for textures that look alike upside down, such as bricks.
+        Two = "2",
+        /// Four, a quarter turn from each other: for those that look alike lying on their side, such as a checker.
+        Four = "4",
+    }
+}
+
+impl Symmetry {
+    /// The numbers of quarter turns that directions of the field are off by.
+    pub(crate) fn quarters(self) -> &'static [u8] {
+        match self {
+            Self::One => &[0],
+            Self::Two => &[0, 2],
+            Self::Four => &[0, 1, 2, 3],
+        }
+    }
+
+    /// How many quarter turns take a direction in the plane of a normal nearest to another direction; of several the least.
+    #[inline]
+    pub(crate) fn quarters_toward(self, direction: DVec3, normal: DVec3, other: DVec3) -> u8 {
+        if self == Self::One {
+            return 0;
+        }
+        let right = normal.cross(direction);
+        self.quarters_to(DVec2::new(direction.dot(other), right.dot(other)))
+    }
+
+    /// How many quarter turns take (1, 0) nearest to a vector, toward (0, 1) first.
+    #[inline]
+    pub(crate) fn quarters_to(self, DVec2 { x, y }: DVec2) -> u8 {
+        match self {
+            Self::One => 0,
+            Self::Two => 2 * u8::from(x < 0.0),
+            Self::Four if x.abs() >= y.abs() => 2 * u8::from(x < 0.0),
+            Self::Four => 1 + 2 * u8::from(y < 0.0),
+        }
+    }
+
+    /// The turn of a direction in the plane of a normal that is nearest to another direction.
+    #[inline]
+    pub(crate) fn nearest(self, direction: DVec3, normal: DVec3, other: DVec3) -> DVec3 {
+        turned(
+            direction,
+            normal,
+            self.quarters_toward(direction, normal, other),
+        )
+    }
+
+    /// The power of a unit complex number at which all turns are one.
+    pub(crate) fn power(self, number: DVec2) -> DVec2 {
+        match self {
+            Self::One => number,
+            Self::Two => number.rotate(number),
+            Self::Four => Self::Two.power(number.rotate(number)),
+        }
+    }
+
+    /// A unit complex number whose [`power`](Self::power) has the direction of a number; none of zero.
+    pub(crate) fn root(self, power: DVec2) -> Option<DVec2> {
+        let unit = power.try_normalize()?;
+        Some(match self {
+            Self::One => unit,
+            Self::Two => square_root(unit),
+            Self::Four => square_root(square_root(unit)),
+        })
+    }
+}
+
+/// The square root of a unit complex number with a real part of at least zero.
+fn square_root(unit: DVec2) -> DVec2 {
+    // Of the two halves of an angle the one without cancellation, and the other from it.
+    let [cos, sin] = [1.0 + unit.x, 1.0 - unit.x].map(|double| (0.5 * double.max(0.0)).sqrt());
+    if cos >= sin {
+        DVec2::new(cos, 0.5 * unit.y / cos)
+    } else {
+        DVec2::new(0.5 * unit.y.abs() / sin, sin.copysign(unit.y))
+    }
+}
+
+/// A direction in the plane of a normal after some quarter turns.
+#[inline]
+pub(crate) fn turned(direction: DVec3, normal: DVec3, quarters: u8) -> DVec3 {
+    match quarters {
+        0 => direction,
+        1 => normal.cross(direction),
+        2 => -direction,
+        _ => -normal.cross(direction),
+    }
+}
+
+/// Where a sample of a square at an offset, to the right and down, lies in the square before these quarter turns.
+pub(crate) fn offset_before([i, j]: [i32; 2], quarters: u8) -> [i32; 2] {
+    match quarters {
+        0 => [i, j],
+        // Right became up, and down became right.
+        1 => [j, -i],
+        2 => [-i, -j],
+        _ => [-j, i],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use dapple_raster::Named as _;
+
+    /// The unit complex number of an angle in degrees.
+    fn unit(degrees: f64) -> DVec2 {
+        let (sin, cos) = libm::sincos(degrees.to_radians());
+        DVec2::new(cos, sin)
+    }
+
+    #[test]
+    fn nearest_turn_is_that_of_all_turns() {
+        let normal = DVec3::new(0.6, 0.0, 0.8);
+        let down = DVec3::Y;
+        let right = normal.cross(down);
+        for symmetry in Symmetry::ALL.iter().copied() {
+            for degrees in 0..72 {
+                let other = unit(5.0 * f64::from(degrees) + 1.0);
+                let other = down * other.x + right * other.y;
+                let found = symmetry.nearest(down, normal, other).dot(other);
+                let all = symmetry.quarters().iter();
+                let best = all.map(|&quarters| turned(down, normal, quarters).dot(other));
+                let best = best.fold(-1.0, f64::max);
+                assert!(
+                    (found - best).abs() < 1e-12,
+                    "{symmetry} {degrees}: {found} {best}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn root_of_a_power_is_one_of_the_turns() {
+        for symmetry in Symmetry::ALL.iter().copied() {
+            for degrees in -40..=40 {
+                let number = unit(4.5 * f64::from(degrees));
+                let root = symmetry.root(symmetry.power(number)).unwrap();
+                assert!(
+                    (root.length() - 1.0).abs() < 1e-15,
+                    "{symmetry} {degrees}: {root}"
+                );
+                // The turns of the number: times 1, i, -1 and -i.
+                let turns = [DVec2::X, DVec2::Y, DVec2::NEG_X, DVec2::NEG_Y];
+                let quarters = symmetry.quarters().iter();
+                let off = quarters.map(|&at| turns[usize::from(at)].rotate(number).distance(root));
+                let off = off.fold(f64::INFINITY, f64::min);
+                assert!(off < 1e-9, "{symmetry} {degrees}: {root} is off by {off}");
+            }
+            assert_eq!(symmetry.root(DVec2::ZERO), None);
+        }
+    }
+
+    #[test]
+    fn samples_move_as_directions_turn() {
+        let normal = DVec3::Z;
+        let (right, down) = (DVec3::X, DVec3::NEG_Y);
+        assert_eq!(
+            turned(down, normal, 1),
+            right,
+            "a quarter turn takes down to right"
+        );
+        for quarters in 0..4 {
+            let [new_down, new_right] = [down, right].map(|at| turned(at, normal, quarters));
+            for offset in [[2, 1], [-3, 2], [0, -1]] {
+                let place =
+                    |[i, j]: [i32; 2], right, down| right * f64::from(i) + down * f64::from(j);
+                let before = place(offset_before(offset, quarters), right, down);
+                assert_eq!(
+                    place(offset, new_right, new_down),
+                    before,
+                    "{quarters} {offset:?}"
+                );
+            }
+        }
+    }
+}

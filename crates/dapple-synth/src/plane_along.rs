@@ -1,0 +1,139 @@
+//! Textures in the plane along directions, with features of different sizes from place to place.
+//!
+//! The plane is a rectangle that sites are scattered over as over any surface, with a field that the caller drew, and the
+//! texture is baked to an image of its pixels: neighborhoods turn and grow with the field, and sources lie between the
+//! pixels of the exemplar. (Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001,
+//! <https://doi.org/10.1145/383259.383297>.)
+//!
+//! The rectangle lies in the plane of x and y. A pixel has a side of 1; the image begins at the origin, and its rows go down
+//! to -y.
+
+use crate::engine::Progress;
+use crate::plane::check_pixels;
+use crate::{
+    Atlas, Exemplar, Hierarchy, HierarchyOptions, Options, Orientation, SurfaceTexture, SynthError,
+    Synthesizer,
+};
+use core::ops::ControlFlow;
+use dapple_mesh::{Mesh, Surface};
+use dapple_raster::{Raster, Wrap};
+use glam::{DVec2, DVec3};
+
+/// A texture in the plane along a field. [`bake_colors`](crate::bake_colors) and its like make images of it.
+#[derive(Clone, Debug)]
+pub struct PlaneAlong {
+    /// The sites on the rectangle.
+    pub synthesizer: Synthesizer,
+    /// Their sources.
+    pub texture: SurfaceTexture,
+    /// The rectangle as an image.
+    pub atlas: Atlas,
+}
+
+/// Makes a texture like an exemplar whose down follows `directions`, in which a pixel of the exemplar has the size `scales`:
+/// two planes of the size of the texture.
+///
+/// Directions are angles in radians: at 0 the down of the exemplar points down, and at a quarter turn, π / 2, to the right.
+/// Scales are in pixels of the texture, from 1/8 to 8; what is smaller than 1 loses detail.
+///
+/// # Errors
+///
+/// Those of [`Synthesizer::synthesize_with`], [`SynthErrorKind::Raster`](crate::SynthErrorKind::Raster) for planes of
+/// different sizes, and [`SynthErrorKind::Range`](crate::SynthErrorKind::Range) for too many pixels, an angle that is not
+/// finite, and a scale out of its range.
+///
+/// # Examples
+///
+/// ```
+/// use core::ops::ControlFlow;
+/// use dapple_raster::Raster;
+/// use dapple_synth::{Edges, Exemplar, Options, bake_values, synthesize_plane_along};
+///
+/// // Stripes that lie along the rows in the example, and stand twice as wide in the texture.
+/// let stripes = Raster::from_fn([16, 16], |_, y| f32::from(y / 4 % 2 == 0))?;
+/// let exemplar = Exemplar::from_planes(&[(&stripes, 1.0)], Edges::Wrap)?;
+/// let right = Raster::filled([40, 30], core::f32::consts::FRAC_PI_2)?;
+/// let twice = Raster::filled([40, 30], 2.0)?;
+/// let options = Options { n_levels: 2, ..Options::default() };
+/// let go_on = |_| ControlFlow::Continue(());
+/// let along = synthesize_plane_along(&exemplar, &right, &twice, &options, go_on)?;
+/// let image = bake_values(&along.synthesizer, &along.texture, &stripes, &along.atlas)?;
+/// assert_eq!(image.size(), [40, 30]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn synthesize_plane_along(
+    exemplar: &Exemplar,
+    directions: &Raster<f32>,
+    scales: &Raster<f32>,
+    options: &Options,
+    callback: impl FnMut(Progress) -> ControlFlow<()>,
+) -> Result<PlaneAlong, SynthError> {
+    let size = directions.size();
+    scales.check_same_size(size)?;
+    check_pixels(size)?;
+    for &angle in directions.pixels() {
+        SynthError::check(
+            angle.is_finite(),
+            "angle of a direction",
+            angle.into(),
+            "finite",
+        )?;
+    }
+    let surface = rectangle(size)?;
+    let hierarchy = Hierarchy::new(&surface, &sites(size, options))?;
+    let orientation = Orientation::from_fn(&hierarchy, |at, _| {
+        let (sin, cos) = libm::sincos(f64::from(*pixel(directions, at)));
+        DVec3::new(sin, -cos, 0.0)
+    });
+    let positions = hierarchy.sites().positions().iter();
+    let scales = positions.map(|&at| *pixel(scales, at)).collect();
+    let synthesizer = Synthesizer::from_parts(surface, hierarchy, orientation, None)?;
+    let synthesizer = synthesizer.with_scales(scales)?;
+    let texture = synthesizer.synthesize_with(exemplar, options, callback)?;
+    let atlas = Atlas::from_uvs(synthesizer.surface(), &uvs(size, &synthesizer), size, 0)?;
+    Ok(PlaneAlong {
+        synthesizer,
+        texture,
+        atlas,
+    })
+}
+
+/// The sites of a plane: so many that they are a pixel apart.
+fn sites(size: [u32; 2], options: &Options) -> HierarchyOptions {
+    // The area of a site in a hexagonal lattice is the root of 3/4.
+    let n_sites = f64::from(size[0]) * f64::from(size[1]) * (4.0_f64 / 3.0).sqrt();
+    HierarchyOptions {
+        n_sites: n_sites.round() as usize,
+        n_levels: options.n_levels,
+        seed: options.seed.child("sites", 0),
+        ..HierarchyOptions::default()
+    }
+}
+
+/// The rectangle of an image.
+fn rectangle(size: [u32; 2]) -> Result<Surface, SynthError> {
+    let [x, y] = size.map(f64::from);
+    let corners = [[0.0, 0.0], [0.0, -y], [x, -y], [x, 0.0]];
+    let corners = corners.map(|[x, y]| DVec3::new(x, y, 0.0));
+    let mesh = Mesh::new(corners.to_vec(), &[[0, 1, 2], [0, 2, 3]])?;
+    Ok(Surface::new(mesh)?)
+}
+
+/// The places of the rectangle's corners in its image.
+fn uvs(size: [u32; 2], synthesizer: &Synthesizer) -> Vec<[DVec2; 3]> {
+    let [width, height] = size.map(f64::from);
+    let mesh = synthesizer.surface().mesh();
+    let uv = |at: DVec3| DVec2::new(at.x / width, -at.y / height);
+    let faces = mesh.faces().iter();
+    let corners = faces.map(|face| face.map(|vertex| uv(mesh.positions()[vertex.index()])));
+    corners.collect()
+}
+
+/// The pixel at a position.
+fn pixel(plane: &Raster<f32>, at: DVec3) -> &f32 {
+    let [column, row] = [at.x, -at.y].map(|at| at.floor() as i64);
+    plane.at(column, row, [Wrap::Clamp; 2])
+}
+
+#[cfg(test)]
+mod tests;
