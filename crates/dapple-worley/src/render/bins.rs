@@ -35,6 +35,7 @@ pub(super) struct Reach {
 /// The coordinates of the pixels of a block.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Grid {
+    /// The number of axes of the space.
     pub(super) n_axes: usize,
     pub(super) metric: Metric,
     pub(super) reach: Reach,
@@ -69,7 +70,8 @@ pub(super) struct Bins {
     len: usize,
     /// The coordinates of the points along the axes of the picture, in the order of the cells.
     steps: [Vec<i32>; 2],
-    /// The accumulated terms of the points along the other axes, in the order of the cells.
+    /// The accumulated terms of the points along the other axes, in the order of the cells; they stay zero in the plane,
+    /// since all blocks of a memory belong to one basis.
     across: Vec<f32>,
     /// The places of the points, in the order of the cells: the column of tiles in the upper half of the word, the row
     /// of half tiles in the lower half.
@@ -189,8 +191,9 @@ impl Bins {
                 points[axis] = if axis == 0 { ahead + lanes } else { ahead };
             }
             let [x, mut rows, ..] = points;
+            let is_deep = lattice.n_axes > 2;
             let mut across = f32x16::splat(simd, 0.0);
-            for axis in (1..MOST_AXES).rev() {
+            for axis in (1..MOST_AXES).rev().filter(|_| is_deep) {
                 if axis == row_axis {
                     rows = points[axis];
                 } else if axis < lattice.n_axes {
@@ -201,30 +204,27 @@ impl Bins {
             }
             let column = bin(x, grid.pixel[0], TILE, reach.tiles);
             let half = bin(rows, grid.pixel[1], HALF, reach.halves);
-            let matters = numbers.simd_gt(index)
+            let mut matters = numbers.simd_gt(index)
                 & column.simd_lt(n_tiles)
-                & half.simd_lt(self.n_halves as u32)
-                & across.simd_le(reach.key);
+                & half.simd_lt(self.n_halves as u32);
+            let to = self.len..self.len + LANES;
+            if is_deep {
+                matters &= across.simd_le(reach.key);
+                let across = across.compress(matters);
+                across.store_slice(&mut self.across[to]);
+            }
             let steps = [x + grid.first[0], rows + grid.first[row_axis]];
-            self.push(matters, steps, across, column << 16 | half);
+            self.push(matters, steps, column << 16 | half);
         }
     }
 
     /// Appends the selected ones of sixteen points.
     #[inline(always)]
-    fn push<S: Simd>(
-        &mut self,
-        matters: mask32x16<S>,
-        steps: [i32x16<S>; 2],
-        across: f32x16<S>,
-        place: u32x16<S>,
-    ) {
+    fn push<S: Simd>(&mut self, matters: mask32x16<S>, steps: [i32x16<S>; 2], place: u32x16<S>) {
         let to = self.len..self.len + LANES;
         for (steps, stored) in steps.into_iter().zip(&mut self.steps) {
             steps.compress(matters).store_slice(&mut stored[to.clone()]);
         }
-        let across = across.compress(matters);
-        across.store_slice(&mut self.across[to.clone()]);
         place.compress(matters).store_slice(&mut self.places[to]);
         self.len += matters.to_bitmask().count_ones() as usize;
     }
