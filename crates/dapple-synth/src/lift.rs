@@ -1,8 +1,8 @@
 //! Lifting: textures whose example is another textured surface.
 //!
-//! Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, DOI 10.1145/383259.383297, ends section 8 with what is left to
-//! do: "to extend this method to taking patterns directly from other surfaces. Imagine being able to "lift" the color, bumps
-//! and ridges from one model and place them onto another surface." No more is said of how.
+//! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, DOI 10.1145/383259.383297. Section 8 ends with what
+//! is left to do: "to extend this method to taking patterns directly from other surfaces. Imagine being able to "lift" the
+//! color, bumps and ridges from one model and place them onto another surface." No more is said of how.
 //!
 //! Here the example is a surface with sites of its own, on as many levels, with directions and an order, as the surface that
 //! gets the texture has. They are its pixels:
