@@ -5,7 +5,7 @@
 //!
 //! Directions that are n-ths of a turn from each other have the same n-th power as complex numbers in a frame of their
 //! tangent plane. The field whose powers change least from site to site, without being zero everywhere, is the lowest
-//! eigenvector of the connection Laplacian A: `(A u)_i = Σ_j w_ij (u_i - r_ij u_j)`, where r_ij is the n-th power of the turn
+//! eigenvector of the connection Laplacian A: `(A u)_i = Σ_j w_ij (u_i - r_ij u_j)`, where `r_ij` is the n-th power of the turn
 //! that the frame of j has after it is carried to i the shortest way. The paper has it on the vertices of a triangulation,
 //! here the edges of the graph of sites are used, with inverse lengths for weights. It is found by inverse iteration, in
 //! each connected component on its own, and turned as a whole to lie along the axis as well as it can.
