@@ -84,7 +84,7 @@ impl Own {
 }
 
 /// Returns views from four sides, a little from above, far enough away to show all of the mesh.
-fn views(mesh: &Mesh) -> [(&'static str, View); 4] {
+pub(super) fn views(mesh: &Mesh) -> [(&'static str, View); 4] {
     let positions = mesh.positions().iter().copied();
     let low = positions.clone().fold(DVec3::INFINITY, DVec3::min);
     let high = positions.clone().fold(DVec3::NEG_INFINITY, DVec3::max);

@@ -7,8 +7,8 @@ use dapple_preview::Surface;
 use dapple_raster::{Raster, Wrap};
 use dapple_synth::mesh::{self, Mesh};
 use dapple_synth::{
-    Atlas, Coherence, Direction, Edges, Exemplar, HierarchyOptions, MeshExemplar, Options, Sources,
-    Synthesizer, bake_colors,
+    Atlas, Coherence, Direction, Edges, Exemplar, Hierarchy, HierarchyOptions, MeshExemplar,
+    Options, Orientation, Sources, Symmetry, Synthesizer, bake_colors,
 };
 use glam::{DVec2, DVec3};
 
@@ -52,6 +52,11 @@ pub(super) struct Textured {
 impl Job {
     /// Synthesizes the texture and bakes it to a map of right triangles of one size, as in the paper.
     pub(super) fn run(self) -> Result<Textured> {
+        self.run_symmetric(Symmetry::One)
+    }
+
+    /// Runs like [`run`](Self::run), along a field of a symmetry.
+    pub(super) fn run_symmetric(self, symmetry: Symmetry) -> Result<Textured> {
         let surface = mesh::Surface::new(self.mesh)?;
         let options = Options {
             n_levels: self.sites.n_levels,
@@ -59,7 +64,10 @@ impl Job {
             sources: self.sources,
             ..Options::default()
         };
-        let synthesizer = Synthesizer::new(surface, &self.directions, &self.sites)?;
+        let hierarchy = Hierarchy::new(&surface, &self.sites)?;
+        let axis = Orientation::AXIS;
+        let orientation = Orientation::symmetric(&hierarchy, &self.directions, axis, symmetry)?;
+        let synthesizer = Synthesizer::from_parts(surface, hierarchy, orientation, None)?;
         let mut exemplar = Exemplar::new(&self.image, self.edges)?;
         if let Some(mask) = &self.mask {
             exemplar = exemplar.with_mask(mask)?;

@@ -1,0 +1,84 @@
+//! Fields of one, two and four directions: bricks, which look alike upside down, and a checker, which looks alike on its
+//! side, with fewer tears where the field may turn by half or a quarter around a point.
+//!
+//! No directions are given: a field of one direction runs down the model, and the others are the smoothest.
+
+use super::exemplar::EXEMPLARS;
+use super::own::views;
+use super::stage::lit;
+use super::textured::Job;
+use crate::draw::sheet;
+use crate::figure::source;
+use crate::{Figure, Panel};
+use anyhow::Context;
+use dapple_color::LinearRgb;
+use dapple_models::bunny;
+use dapple_raster::Raster;
+use dapple_synth::{Coherence, Edges, HierarchyOptions, Sources, Symmetry};
+
+pub(super) const FIGURE: Figure = Figure {
+    number: "extra",
+    parameters: &[
+        ("exemplars", "96² and 64², which repeat"),
+        ("points", "65,536"),
+        ("views", "from four sides"),
+    ],
+    source: source!(),
+    render,
+};
+
+/// The panels: a label, the exemplar, its side in pixels, and the symmetry of the field.
+const PANELS: [(&str, &str, u32, Symmetry); 4] = [
+    ("bricks, one direction", "color bricks", 96, Symmetry::One),
+    ("bricks, two", "color bricks", 96, Symmetry::Two),
+    (
+        "checker, one direction",
+        "wiggly checker",
+        64,
+        Symmetry::One,
+    ),
+    ("checker, four", "wiggly checker", 64, Symmetry::Four),
+];
+
+fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
+    let panel = |&(label, exemplar, side, symmetry): &(&str, &str, u32, Symmetry)| {
+        Ok(Panel::color(
+            label,
+            four_sides(size, exemplar, side, symmetry)?,
+        ))
+    };
+    PANELS.iter().map(panel).collect()
+}
+
+/// A model with a texture, from four sides.
+fn four_sides(
+    size: u32,
+    exemplar: &str,
+    side: u32,
+    symmetry: Symmetry,
+) -> anyhow::Result<Raster<LinearRgb>> {
+    let exemplar = EXEMPLARS.iter().find(|found| found.name == exemplar);
+    let job = Job {
+        mesh: bunny((14_000 * size / 512).clamp(2000, 14_000) as usize)?,
+        image: (exemplar.context("no such exemplar")?.draw)(side)?,
+        edges: Edges::Wrap,
+        directions: Vec::new(),
+        sites: HierarchyOptions {
+            n_sites: (size * size / 4).clamp(4096, 65_536) as usize,
+            ..HierarchyOptions::default()
+        },
+        coherence: Coherence::Auto,
+        sources: Sources::SubPixel,
+        detail: None,
+        map_side: (4 * size).clamp(512, 2048),
+        mask: None,
+        guides: Vec::new(),
+    };
+    let textured = job.run_symmetric(symmetry)?;
+    let mesh = textured.synthesizer.surface().mesh();
+    let views = views(mesh);
+    sheet([size; 2], [2, 2], 0, LinearRgb::BLACK, |at, size| {
+        let (_, view) = &views[at as usize];
+        lit(mesh, view, size, |surface| textured.color(surface))
+    })
+}
