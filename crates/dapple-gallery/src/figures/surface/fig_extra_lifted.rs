@@ -11,8 +11,9 @@ use super::textured::{Job, Textured};
 use crate::figure::source;
 use crate::{Figure, Panel};
 use anyhow::Context;
+use dapple_synth::mesh::rotation;
 use dapple_synth::{Coherence, Edges, HierarchyOptions, Sources};
-use glam::{DQuat, DVec3};
+use glam::DVec3;
 
 pub(super) const FIGURE: Figure = Figure {
     number: "extra",
@@ -62,7 +63,7 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
         (180.0, "from behind"),
         (270.0, "from the right"),
     ] {
-        let turn = DQuat::from_rotation_y(f64::to_radians(turn));
+        let turn = rotation(DVec3::Y, f64::to_radians(turn));
         let view = View {
             eye: turn * (TORI.view.eye - TORI.view.target) + TORI.view.target,
             ..TORI.view
