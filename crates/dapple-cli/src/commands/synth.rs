@@ -1,5 +1,6 @@
 //! `dapple synth`: texture from an example, in the plane or on a mesh.
 
+mod along;
 mod corners;
 mod displace;
 mod guides;
@@ -32,6 +33,7 @@ Examples:
   dapple synth sand.png --replay places.exr -o desert.png
   dapple synth stones.png --guide photo.png -o mosaic.png
   dapple synth grass.png --example sand.png --which mask.png -o garden.png
+  dapple synth rock.png --directions rock_height.png --scale mask.png -o flow.png
   dapple synth grass.png --size 300x200 --map normal=grass_normal.png \\
     --seed 7 -o meadow.png
   dapple synth rock.png --size 128 --map height=rock_height.png \\
@@ -54,7 +56,7 @@ less. More sites make the features smaller on the mesh, and take longer.
 Where the example is transparent, so is the texture. In GLB its alpha cuts, if more
 pixels of the example are clear than in between, and else it blends.
 
-Directions are lines x,y,z,dx,dy,dz (CSV) or [{\"at\": [x,y,z], \"vector\": [dx,dy,dz]}]
+On a mesh directions are lines x,y,z,dx,dy,dz (CSV) or [{\"at\": [x,y,z], \"vector\": [dx,dy,dz]}]
 (JSON): at a place on the mesh, where the down of the example points. One or a few are
 enough; in between they are interpolated.";
 
@@ -144,6 +146,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     args.check_used()?;
     match &args.surface.mesh {
         Some(mesh) => surface::run(args, mesh, context),
+        None if args.is_along() => along::run(args, context),
         None => plane::run(args, context),
     }
 }
@@ -154,6 +157,7 @@ impl Args {
         material::check_names(&self.map)?;
         self.check_displacement()?;
         self.check_method()?;
+        self.check_along()?;
         self.matching.check_weights(&self.map_names())?;
         let surface = self.surface.given();
         match (&self.surface.mesh, self.plane.given(), surface) {

@@ -7,7 +7,7 @@ use crate::words::Word;
 use anyhow::Result;
 use dapple::hash::Seed;
 use dapple::synth::{
-    Axes as FieldAxes, Coherence, Edges, EndlessOptions, HierarchyOptions, Options,
+    Axes as FieldAxes, Coherence, Edges, EndlessOptions, HierarchyOptions, Options, Symmetry,
 };
 use serde::Serialize;
 use std::path::PathBuf;
@@ -66,6 +66,14 @@ pub(super) struct PlaneArgs {
     #[arg(long, value_name = "IMAGE", conflicts_with_all = ["size", "wrap", "evenness", "paper"])]
     pub(super) repair: Option<PathBuf>,
 
+    /// How large a pixel of the example is: an image of the texture's size, black where it is small and white where it is large.
+    #[arg(long, value_name = "IMAGE")]
+    pub(super) scale: Option<PathBuf>,
+
+    /// The sizes at black and at white of --scale, in pixels of the texture, from 1/8 to 8; by default 1,2.
+    #[arg(long, value_name = "A,B", requires = "scale")]
+    pub(super) scales: Option<Numbers<f32, 2>>,
+
     /// Also write where in the example each pixel is from: an OpenEXR image, red the column and green the row.
     #[arg(long, value_name = "FILE.exr")]
     pub(super) sources: Option<PathBuf>,
@@ -86,9 +94,16 @@ pub(super) struct SurfaceArgs {
     ))]
     pub(super) mesh: Option<PathBuf>,
 
-    /// Which way the texture runs: a file of directions, .csv or .json. By default the down of the example points down.
+    /// Which way the texture runs: on a mesh a file of directions, .csv or .json; in the plane an image of the texture's size, in
+    /// which black is down, gray of a quarter of white is to the right, and so on around to white, which is down again. By default
+    /// the down of the example points down.
     #[arg(long, value_name = "FILE")]
     pub(super) directions: Option<PathBuf>,
+
+    /// How many directions at a place are as good as each other: 2 for examples that look alike upside down, such as bricks, and
+    /// 4 for those that look alike lying on their side, such as a checker. The texture then has fewer tears. By default 1.
+    #[arg(long, value_name = "N", value_parser = Word::<Symmetry>::all())]
+    pub(super) symmetry: Option<Symmetry>,
 
     /// The number of points of the surface that get a color, like pixels on the mesh: 1 to 2^28; by default 65536.
     #[arg(long, value_name = "N")]
@@ -223,6 +238,8 @@ impl PlaneArgs {
             ("repair", self.repair.is_some()),
             ("sources", self.sources.is_some()),
             ("replay", self.replay.is_some()),
+            // The last, since it can go with a file of directions.
+            ("scale", self.scale.is_some()),
         ])
     }
 
@@ -238,7 +255,7 @@ impl SurfaceArgs {
     /// An option that was given and needs a mesh.
     pub(super) fn given(&self) -> Option<&'static str> {
         first_given(&[
-            ("directions", self.directions.is_some()),
+            ("symmetry", self.symmetry.is_some()),
             ("sites", self.sites.is_some()),
             ("texture-size", self.texture_size.is_some()),
             ("atlas", self.atlas.is_some()),

@@ -19,8 +19,9 @@ use dapple::points::glam::DVec3;
 use dapple::raster::Raster;
 use dapple::recipe::MapKind;
 use dapple::synth::{
-    Atlas, Direction, SurfaceTexture, Synthesizer, bake_colors, bake_colors_alpha, bake_normals,
-    bake_values, site_model, textured_model,
+    Atlas, Direction, Hierarchy, HierarchyOptions, Orientation, SurfaceTexture, SynthError,
+    Synthesizer, bake_colors, bake_colors_alpha, bake_normals, bake_values, site_model,
+    textured_model,
 };
 use dapple::tile::Map;
 use serde_json::json;
@@ -82,7 +83,7 @@ pub(super) fn run(args: &Args, mesh: &Path, context: &Context) -> Result<Exit> {
         || input.base.alpha.is_some();
     let spinner = Progress::spinner("scattering sites", context);
     let sites = args.surface.sites(&args.matching);
-    let synthesizer = Synthesizer::new(surface, &directions(args)?, &sites).map_err(advise)?;
+    let synthesizer = synthesizer(surface, args, &sites, &directions(args)?).map_err(advise)?;
     drop(spinner);
     let progress = Progress::bar("synthesizing", STEPS.into(), context);
     let options = args.matching.options(&args.surface);
@@ -124,15 +125,15 @@ pub(super) fn run(args: &Args, mesh: &Path, context: &Context) -> Result<Exit> {
 }
 
 /// A mesh with its texture, not baked yet.
-struct Covered {
-    synthesizer: Synthesizer,
-    texture: SurfaceTexture,
-    atlas: Option<Atlas>,
+pub(super) struct Covered {
+    pub(super) synthesizer: Synthesizer,
+    pub(super) texture: SurfaceTexture,
+    pub(super) atlas: Option<Atlas>,
     /// The normals of the corners of all faces.
-    shading: Vec<[DVec3; 3]>,
+    pub(super) shading: Vec<[DVec3; 3]>,
     /// Whether faces are seen from both sides.
-    double_sided: bool,
-    input: Input,
+    pub(super) double_sided: bool,
+    pub(super) input: Input,
 }
 
 impl Product {
@@ -178,7 +179,7 @@ pub(super) fn endings() -> String {
 
 impl Covered {
     /// A map of the example, as a texture of the mesh.
-    fn bake(&self, map: &Map) -> Result<Map> {
+    pub(super) fn bake(&self, map: &Map) -> Result<Map> {
         let Some(atlas) = &self.atlas else {
             bail!("a mesh of sites has no texture");
         };
@@ -198,7 +199,7 @@ impl Covered {
     }
 
     /// The texture that is shown, and its alpha if the example has one.
-    fn bake_base(&self) -> Result<(Map, Option<Raster<f32>>)> {
+    pub(super) fn bake_base(&self) -> Result<(Map, Option<Raster<f32>>)> {
         let base = &self.input.base;
         let (Map::Color(colors), Some(alpha), Some(atlas)) = (&base.map, &base.alpha, &self.atlas)
         else {
@@ -400,6 +401,20 @@ fn atlas(args: &Args, surface: &Surface, model: &Model, repair: &Repair) -> Resu
         }
     };
     atlas.map_err(advise)
+}
+
+/// The surface with its sites and their directions.
+fn synthesizer(
+    surface: Surface,
+    args: &Args,
+    sites: &HierarchyOptions,
+    directions: &[Direction],
+) -> Result<Synthesizer, SynthError> {
+    let hierarchy = Hierarchy::new(&surface, sites)?;
+    let symmetry = args.surface.symmetry.unwrap_or_default();
+    let axis = Orientation::AXIS;
+    let orientation = Orientation::symmetric(&hierarchy, directions, axis, symmetry)?;
+    Synthesizer::from_parts(surface, hierarchy, orientation, None)
 }
 
 /// The directions that the user gave.
