@@ -1,5 +1,8 @@
 //! Textures that are synthesized on meshes.
 
+mod along;
+mod surface_guides;
+
 use crate::data;
 use crate::error::{Error, Result};
 use crate::images::encode;
@@ -8,20 +11,22 @@ use crate::pictures::{self, Content, Kind, Layout};
 use crate::seed::SeedArgument;
 use crate::synthesis::{Coherence, Matching, check_sizes, exemplar};
 use crate::{threads, watch};
+pub(crate) use along::synthesize_along;
 use dapple::color::{Code, LinearRgb, LinearRgba, NormalY};
 use dapple::image::{Depth, Encoding};
 use dapple::mesh::glam::{DVec2, DVec3};
-use dapple::mesh::{CREASE, EncodedImage, Mesh, Repair, Surface};
+use dapple::mesh::{CREASE, EncodedImage, FaceIdx, Mesh, Repair, Surface};
 use dapple::mesh_io::{self, MaterialPlace, MeshFormat};
 use dapple::raster::Raster;
 use dapple::synth::{
-    Atlas, Axes, Direction, Hierarchy, HierarchyOptions, Orientation, SurfaceTexture, SynthError,
-    Synthesizer, bake_colors, bake_normals, bake_values, site_model, textured_model,
+    Atlas, Axes, Direction, Hierarchy, HierarchyOptions, Orientation, SurfaceTexture, Symmetry,
+    SynthError, Synthesizer, bake_colors, bake_normals, bake_values, site_model, textured_model,
 };
 use dapple::tile::Map;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::path::PathBuf;
+use surface_guides::{Guide, SurfaceGuides};
 
 dapple::raster::named! {
     /// The layout of a mesh in a texture.
@@ -67,10 +72,15 @@ pub(crate) struct Model {
 /// directions : (positions, vectors), each (n, 3): the direction of the example's down at these positions; in between
 ///     they are interpolated.
 /// down : the direction for pieces of the surface without any.
+/// symmetry : how many directions at a place are as good as each other: 2 for examples that look alike upside down, such as
+///     bricks, and 4 for those that look alike lying on their side, such as a checker; the texture then has fewer tears.
 /// atlas : the layout of faces: `"charts"` (large pieces), `"area"` (triangles by their areas), `"uniform"`, or `"uv"` (`mesh.uv`, (m, 3, 2), v down).
 /// padding : the number of pixels around each piece of the texture that continue it.
 /// crease : the angle of an edge in degrees above which it is shaded as a crease.
 /// axes : how neighborhoods continue over the surface: `"followed"` or `"carried"`.
+/// guides : a list of (of_example, of_mesh, weight): numbers in the size of the example, and for the mesh a number for each
+///     vertex, (n,), or an image that is read at `mesh.uv` and repeats, (rows, columns); parts of the example go where both
+///     are alike. Weights are as for `synthesize`, and `evenness` has no effect.
 /// seed, edges, levels, coherence, evenness, paper, progress : as for `synthesize`.
 ///
 /// Examples
@@ -82,12 +92,12 @@ pub(crate) struct Model {
 /// >>> model.texture.shape, model.uv.shape
 /// ((64, 64), (2, 3, 2))
 #[pyfunction]
-#[pyo3(signature = (mesh, exemplar, *, texels = 1024, sites = 65536, directions = None, down = [0.0, -1.0, 0.0],
+#[pyo3(signature = (mesh, exemplar, *, texels = 1024, sites = 65536, directions = None, down = [0.0, -1.0, 0.0], symmetry = 1,
     atlas = "charts", padding = None, crease = None, axes = None, seed = SeedArgument::default(), edges = "cut", levels = 3,
-    coherence = None, evenness = None, paper = false, progress = None),
-    text_signature = "(mesh, exemplar, *, texels=1024, sites=65536, directions=None, down=(0.0, -1.0, 0.0), atlas=\"charts\", \
+    coherence = None, evenness = None, paper = false, guides = Vec::new(), progress = None),
+    text_signature = "(mesh, exemplar, *, texels=1024, sites=65536, directions=None, down=(0.0, -1.0, 0.0), symmetry=1, atlas=\"charts\", \
     padding=None, crease=30.0, axes=None, seed=0, edges=\"cut\", levels=3, coherence=None, evenness=None, paper=False, \
-    progress=None)")]
+    guides=(), progress=None)")]
 pub(crate) fn synthesize_on<'py>(
     py: Python<'py>,
     mesh: &Bound<'py, PyAny>,
@@ -96,6 +106,7 @@ pub(crate) fn synthesize_on<'py>(
     sites: usize,
     directions: Option<(Bound<'py, PyAny>, Bound<'py, PyAny>)>,
     down: [f64; 3],
+    symmetry: u8,
     atlas: &str,
     padding: Option<u32>,
     crease: Option<f64>,
@@ -106,25 +117,21 @@ pub(crate) fn synthesize_on<'py>(
     coherence: Option<Coherence>,
     evenness: Option<f32>,
     paper: bool,
+    guides: Vec<Guide<'py>>,
     progress: Option<&Bound<'py, PyAny>>,
 ) -> Result<Model> {
     let atlas = data::named("atlas", atlas)?;
-    let uvs = match atlas {
-        AtlasKind::Uv => Some(vectors::<2>("uv", &mesh.getattr("uv")?, &[3, 2])?),
-        _ => None,
+    let guides = SurfaceGuides::read(&guides)?;
+    let uvs = match atlas == AtlasKind::Uv || guides.have_images() {
+        true => vectors::<2>("uv", &mesh.getattr("uv")?, &[3, 2])?,
+        false => Vec::new(),
     };
     let mesh = crate::meshes::mesh(mesh)?;
+    guides.check(&mesh)?;
     let (layout, maps) = pictures::read("exemplar", exemplar)?;
     check_sizes(&maps)?;
-    if layout
-        .kinds
-        .iter()
-        .any(|kind| kind.content == Content::Color && kind.n_channels == 4)
-    {
-        let message = "a mesh cannot keep alpha: give three channels";
-        return Err(Error::new("channels", message));
-    }
-    let example = self::exemplar(&maps, edges)?;
+    refuse_alpha(&layout)?;
+    let example = guides.of_example(self::exemplar(&maps, edges)?)?;
     let options = Matching {
         seed,
         levels,
@@ -143,6 +150,7 @@ pub(crate) fn synthesize_on<'py>(
     };
     let options = options.options()?;
     let directions = self::directions(directions)?;
+    let symmetry: Symmetry = data::named("symmetry", &symmetry.to_string())?;
     let crease = crease.map_or(CREASE, f64::to_radians);
     let cover = |heard: watch::Heard<'_>| -> Result<Model> {
         let (repaired, repair) = mesh.repair();
@@ -157,16 +165,18 @@ pub(crate) fn synthesize_on<'py>(
                 Atlas::uniform_padded(&surface, texels, padding)?
             }
             (AtlasKind::Uv, padding) => {
-                let uvs = own_uvs(&surface, &mesh, &repair, &uvs.unwrap_or_default())?;
+                let uvs = own_uvs(&surface, &mesh, &repair, &uvs)?;
                 Atlas::from_uvs(&surface, &uvs, [texels; 2], padding.unwrap_or(texels))?
             }
         };
         let shading = surface.mesh().corner_normals(crease);
         let is_double_sided = repair.before.back_to_back_faces > 0;
         let hierarchy = Hierarchy::new(&surface, &hierarchy)?;
-        let orientation = Orientation::with_axis(&hierarchy, &directions, down.into())?;
+        let orientation = Orientation::symmetric(&hierarchy, &directions, down.into(), symmetry)?;
         let synthesizer = Synthesizer::from_parts(surface, hierarchy, orientation, None)?;
-        let texture = synthesizer.synthesize_with(&example, &options, heard)?;
+        let columns = guides.at_sites(&synthesizer, &mesh, &repair, &uvs)?;
+        let columns: Vec<_> = columns.iter().map(Vec::as_slice).collect();
+        let texture = synthesizer.synthesize_guided(&example, &columns, &options, heard)?;
         let bake = |map: &Map| bake(&synthesizer, &texture, &atlas, &shading, map);
         let baked = maps
             .iter()
@@ -183,6 +193,16 @@ pub(crate) fn synthesize_on<'py>(
         })
     };
     watch::run(py, progress, cover)?
+}
+
+/// Refuses colors with alpha, which is not baked.
+fn refuse_alpha(layout: &Layout) -> Result<()> {
+    let has_alpha = |kind: &Kind| kind.content == Content::Color && kind.n_channels == 4;
+    if layout.kinds.iter().any(has_alpha) {
+        let message = "the texture cannot keep alpha: give three channels";
+        return Err(Error::new("channels", message));
+    }
+    Ok(())
 }
 
 /// Reads the directions of a texture at positions.
@@ -215,11 +235,27 @@ fn own_uvs(
     repair: &Repair,
     uvs: &[[f64; 2]],
 ) -> Result<Vec<[DVec2; 3]>> {
-    let refused = |message: &str| Error::new("uv", message);
     let uvs = uvs.as_chunks::<3>().0;
     if uvs.len() != before.faces().len() {
-        return Err(refused("uv has another number of faces than the mesh"));
+        let message = "uv has another number of faces than the mesh";
+        return Err(Error::new("uv", message));
     }
+    let uv = |face: FaceIdx, corner: usize| DVec2::from(uvs[face.index()][corner]);
+    at_corners(surface, before, repair, uv).ok_or_else(|| {
+        Error::new(
+            "uv",
+            "a face was cut in repair, and its texture coordinates are gone",
+        )
+    })
+}
+
+/// The values that the corners of faces had before a repair, for the faces that remain; none if a face was cut.
+fn at_corners<T: Copy>(
+    surface: &Surface,
+    before: &Mesh,
+    repair: &Repair,
+    value: impl Fn(FaceIdx, usize) -> T,
+) -> Option<Vec<[T; 3]>> {
     let mesh = surface.mesh();
     let faces = mesh.faces().iter().zip(&repair.face_before);
     let whole = faces.map(|(face, &at)| {
@@ -228,12 +264,11 @@ fn own_uvs(
         let own = face.map(|vertex| {
             let here = mesh.positions()[vertex.index()];
             let corner = corners.iter().position(|&other| other == here)?;
-            Some(DVec2::from(uvs[at.index()][corner]))
+            Some(value(at, corner))
         });
         Some([own[0]?, own[1]?, own[2]?])
     });
-    let whole: Option<_> = whole.collect();
-    whole.ok_or_else(|| refused("a face was cut in repair, and its texture coordinates are gone"))
+    whole.collect()
 }
 
 /// A map of the example as a texture of the mesh.

@@ -200,6 +200,37 @@ def test_bad_guides_are_refused(guides):
         dp.synthesize(np.zeros((32, 64)), 40, mask=np.ones((32, 65)))
 
 
+def test_guides_of_vertices_and_images_say_where_parts_of_the_example_go_on_a_mesh():
+    columns = np.indices((32, 64))[1]
+    stripes = np.where(columns < 32, 0.3, 0.7).astype(np.float32)
+    is_light = (columns >= 32).astype(np.float32)
+    vertices, faces = TORUS
+    # Light where x is positive: a number for each vertex, and an image at texture coordinates that are x and z.
+    of_vertices = (vertices[:, 0] > 0).astype(np.float32)
+    mesh = trimesh.Trimesh(vertices, faces, process=False)
+    mesh.uv = (vertices[faces][..., [0, 2]] + 2) / 4
+    image = np.repeat([[0.0, 1.0]], 2, axis=0)
+    middle = vertices[faces].mean(1)[:, 0]
+    for of_mesh in (of_vertices, image):
+        model = dp.synthesize_on(mesh, stripes, guides=[(is_light, of_mesh, 3)], **{**QUICK, "edges": "cut"})
+        at = (model.uv.mean(1) * 256).astype(int)
+        values = model.texture[at[:, 1], at[:, 0]]
+        away = np.abs(middle) > 0.2
+        assert ((values > 0.5) == (middle > 0))[away].mean() > 0.97
+
+
+def test_guides_of_vertices_are_interpolated_as_sites_lie():
+    # On a mesh without a repair and with one the same numbers, although the repaired one has fewer vertices.
+    vertices, faces = TORUS
+    twice = np.concatenate([vertices, vertices]), np.concatenate([faces[::2], faces[1::2] + len(vertices)])
+    number = vertices[:, 1] * 2
+    models = [
+        dp.synthesize_on(mesh, CELLS, guides=[(HEIGHT, of_mesh, 1)], **QUICK)
+        for mesh, of_mesh in [((vertices, np.concatenate([faces[::2], faces[1::2]])), number), (twice, np.tile(number, 2))]
+    ]
+    np.testing.assert_array_equal(models[0].texture, models[1].texture)
+
+
 def test_a_model_has_the_mesh_its_layout_and_all_maps():
     np.testing.assert_allclose(MODEL.vertices, TORUS[0])
     assert MODEL.faces.shape == TORUS[1].shape and MODEL.uv.shape == (len(TORUS[1]), 3, 2)
@@ -249,6 +280,30 @@ def test_directions_turn_the_texture():
             values = np.where(y < x, model.texture[at[..., 1].astype(int) % 256, at[..., 0].astype(int) % 256], np.nan)
             change = [np.nanmean(np.abs(np.diff(values, axis=axis))) for axis in (1, 0)]
             assert change[axis] > 2.5 * change[1 - axis], (turned, axis, change)
+
+
+def test_a_symmetry_lets_the_texture_turn_and_has_its_colors():
+    plain = dp.synthesize_on(TORUS, CHECKER, **QUICK)
+    for symmetry in (1, 2, 4):
+        model = dp.synthesize_on(TORUS, CHECKER, **QUICK, symmetry=symmetry)
+        assert (model.texture != plain.texture).any() == (symmetry > 1)
+        assert abs(model.texture.mean() - 0.5) < 0.05
+
+
+def test_textures_in_the_plane_follow_directions_and_scales():
+    stripes = np.repeat(np.sin(np.arange(32) * np.pi / 4)[:, None] * 0.5 + 0.5, 32, 1).astype(np.float32)
+    one = np.zeros((60, 72), np.float32)
+    options = {"edges": "wrap", "levels": 2}
+    down = dp.synthesize_along({"a": stripes, "b": 1 - stripes}, one, **options)
+    np.testing.assert_allclose(down["a"], 1 - down["b"], atol=1e-6)
+    for texture, axis, period in [
+        (down["a"], 0, 8),
+        (dp.synthesize_along(stripes, one + np.pi / 2, **options), 1, 8),
+        (dp.synthesize_along(stripes, one, one + 2, **options), 0, 16),
+    ]:
+        assert texture.shape == (60, 72)
+        passes = [(np.diff(texture > 0.5, axis=at) != 0).mean() for at in (axis, 1 - axis)]
+        assert abs(passes[0] * period / 2 - 1) < 0.2 and passes[1] < 0.3 * passes[0]
 
 
 def test_models_are_exported_and_read_back(tmp_path):
@@ -317,7 +372,15 @@ def test_a_report_counts_what_is_wrong():
         lambda: dp.synthesize_on(TORUS, CELLS, texels=2**30),
         lambda: dp.synthesize_on(TORUS, CELLS, atlas="cube"),
         lambda: dp.synthesize_on(TORUS, CELLS, padding=0),
+        lambda: dp.synthesize_on(TORUS, CELLS, guides=[(HEIGHT, np.zeros(287), 1)]),
+        lambda: dp.synthesize_on(TORUS, CELLS, guides=[(HEIGHT[:9], np.zeros(288), 1)]),
+        lambda: dp.synthesize_on(TORUS, CELLS, guides=[(HEIGHT, np.full(288, np.nan), 1)], **QUICK),
+        lambda: dp.synthesize_on(TORUS, CELLS, guides=[(HEIGHT, np.zeros((4, 4)), 1)]),
         lambda: dp.synthesize_on(TORUS, CELLS, down=(0, 0, 0), **QUICK),
+        lambda: dp.synthesize_on(TORUS, CELLS, symmetry=3),
+        lambda: dp.synthesize_along(CELLS, np.zeros((40, 40)), np.zeros((40, 40))),
+        lambda: dp.synthesize_along(CELLS, np.zeros((40, 40)), np.ones((40, 41))),
+        lambda: dp.synthesize_along(CELLS, np.full((40, 40), np.nan)),
         lambda: dp.synthesize_on(TORUS, CELLS, directions=([[0, 0, 0]], [[0, np.nan, 0]]), **QUICK),
         lambda: dp.synthesize_on(TORUS, CELLS, directions=([[0, 0, 0]], np.zeros((2, 3)))),
         lambda: dp.synthesize_on((TORUS[0], TORUS[1] + 10_000), CELLS),

@@ -1,5 +1,6 @@
 //! `dapple synth`: texture from an example, in the plane or on a mesh.
 
+mod along;
 mod corners;
 mod displace;
 mod example_mesh;
@@ -36,6 +37,7 @@ Examples:
   dapple synth sand.png --replay places.exr -o desert.png
   dapple synth stones.png --guide photo.png -o mosaic.png
   dapple synth grass.png --example sand.png --which mask.png -o garden.png
+  dapple synth rock.png --directions rock_height.png --scale mask.png -o flow.png
   dapple synth grass.png --size 300x200 --map normal=grass_normal.png \\
     --seed 7 -o meadow.png
   dapple synth rock.png --size 128 --map height=rock_height.png \\
@@ -60,7 +62,7 @@ less. More sites make the features smaller on the mesh, and take longer.
 Where the example is transparent, so is the texture. In GLB its alpha cuts, if more
 pixels of the example are clear than in between, and else it blends.
 
-Directions are lines x,y,z,dx,dy,dz (CSV) or [{\"at\": [x,y,z], \"vector\": [dx,dy,dz]}]
+On a mesh directions are lines x,y,z,dx,dy,dz (CSV) or [{\"at\": [x,y,z], \"vector\": [dx,dy,dz]}]
 (JSON): at a place on the mesh, where the down of the example points. One or a few are
 enough; in between they are interpolated.";
 
@@ -153,6 +155,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     match &args.surface.mesh {
         Some(mesh) => surface::run(args, mesh, context),
         None if example_mesh::is_mesh(&args.exemplar) => repair_mesh::run(args, context),
+        None if args.is_along() => along::run(args, context),
         None => plane::run(args, context),
     }
 }
@@ -164,6 +167,7 @@ impl Args {
         self.check_displacement()?;
         self.check_example()?;
         self.check_method()?;
+        self.check_along()?;
         self.matching.check_weights(&self.map_names())?;
         let surface = self.surface.given();
         match (&self.surface.mesh, self.plane.given(), surface) {

@@ -92,6 +92,48 @@ fn hard_edges_of_a_mesh_stay_hard() {
 }
 
 #[test]
+fn a_symmetry_lets_a_texture_turn() {
+    let folder = Folder::with_inputs("symmetry");
+    write_model(folder.path("hard.obj"), &cube().into()).unwrap();
+    let texture = |extra: &[&str]| {
+        let output = "out.png";
+        let arguments = [
+            "synth",
+            "checker.png",
+            "--mesh",
+            "hard.obj",
+            "--sites",
+            "500",
+            "--texture-size",
+            "128",
+        ];
+        let run = folder.run(&[&arguments[..], &["--force", "-o", output], extra].concat());
+        assert_done(&run, output);
+        std::fs::read(folder.path(output)).unwrap()
+    };
+    let plain = texture(&[]);
+    assert!(plain == texture(&["--symmetry", "1"]), "the default");
+    let [two, four] = ["2", "4"].map(|symmetry| texture(&["--symmetry", symmetry]));
+    assert!(
+        plain != two && plain != four && two != four,
+        "fields differ"
+    );
+    let run = folder.run(&["synth", "checker.png", "--symmetry", "2", "-o", "none.png"]);
+    assert_eq!(run.status.code(), Some(2), "without a mesh");
+    let run = folder.run(&[
+        "synth",
+        "checker.png",
+        "--mesh",
+        "hard.obj",
+        "--symmetry",
+        "3",
+        "-o",
+        "none.glb",
+    ]);
+    assert_eq!(run.status.code(), Some(2), "of three");
+}
+
+#[test]
 fn both_sides_of_a_sheet_get_one_texture_and_are_seen() {
     let folder = Folder::with_inputs("sides");
     let cube = cube();

@@ -73,6 +73,54 @@ fn the_method_is_the_first_that_can() {
 }
 
 #[test]
+fn textures_in_the_plane_follow_images_of_directions_and_scales() {
+    let folder = Folder::with_inputs("along");
+    let run = |line: &str| folder.run(&line.split_whitespace().collect::<Vec<_>>());
+    let gray = |more: &str| {
+        let line =
+            format!("synth height.png --map more=height.png --levels 2 --force -o out.png {more}");
+        assert_done(&run(&line), &line);
+        let [out, map] = ["out.png", "out_more.png"].map(|name| read_gray(&folder, name));
+        assert!(out == map, "maps follow");
+        out
+    };
+    let size = read_gray(&folder, "mask.png").size();
+    let scaled = gray("--scale mask.png");
+    assert_eq!(scaled.size(), size);
+    assert!(
+        scaled == gray("--scale mask.png --scales 1,2"),
+        "the default"
+    );
+    assert!(scaled != gray("--scale mask.png --scales 1,1"));
+    let turned = gray("--directions mask.png --scale mask.png");
+    assert!(turned != scaled && turned != gray("--directions mask.png"));
+    for (more, part) in [
+        ("--scale mask.png --size 24", "--size has no effect with"),
+        (
+            "--directions mask.png --guide photo.png",
+            "--guide has no effect",
+        ),
+        (
+            "--directions mask.png --detail height.png",
+            "--detail has no effect",
+        ),
+        ("--directions mask.png --scale places.exr", "have one size"),
+        ("--scale mask.png --scales 9,9", "from 1/8 to 8"),
+        ("--scales 1,2", "--scale"),
+        (
+            "--scale mask.png --mesh model.obj",
+            "--scale has no effect on a mesh",
+        ),
+    ] {
+        let line = format!("synth height.png {more} -o none.png");
+        let output = run(&line);
+        assert_eq!(output.status.code(), Some(2), "{line}");
+        let text = stderr(&output);
+        assert!(text.contains(part), "{line}: {text}");
+    }
+}
+
+#[test]
 fn a_repair_changes_only_what_is_white_in_its_mask() {
     let folder = Folder::with_inputs("repair");
     let repair = |more: &str| {

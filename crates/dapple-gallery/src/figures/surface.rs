@@ -8,6 +8,7 @@ mod fig_02;
 mod fig_03;
 mod fig_04;
 mod fig_05;
+mod fig_extra_along;
 mod fig_extra_charts;
 mod fig_extra_endless;
 mod fig_extra_exemplars;
@@ -42,6 +43,7 @@ pub(super) const PAPER: Paper = Paper {
         fig_03::FIGURE,
         fig_04::FIGURE,
         fig_05::FIGURE,
+        fig_extra_along::FIGURE,
         fig_extra_charts::FIGURE,
         fig_extra_endless::FIGURE,
         fig_extra_exemplars::FIGURE,

@@ -143,7 +143,7 @@ fn blur_range(text: &str) -> Result<f64, String> {
 }
 
 /// Reads an image as gray values: colors as how light they are.
-fn read_gray(path: &Path, region: Option<Region>) -> Result<Raster<f32>> {
+pub(super) fn read_gray(path: &Path, region: Option<Region>) -> Result<Raster<f32>> {
     gray(&input::map(
         path,
         Kind::ByChannels,

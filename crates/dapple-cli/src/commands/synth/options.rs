@@ -9,7 +9,7 @@ use dapple::color::Code as _;
 use dapple::hash::Seed;
 use dapple::raster::Raster;
 use dapple::synth::{
-    Axes as FieldAxes, Coherence, Edges, EndlessOptions, HierarchyOptions, Options,
+    Axes as FieldAxes, Coherence, Edges, EndlessOptions, HierarchyOptions, Options, Symmetry,
 };
 use dapple::tile::Map;
 use serde::Serialize;
@@ -106,6 +106,14 @@ pub(super) struct PlaneArgs {
     #[arg(long, value_name = "CHANNEL", value_parser = Word::<Channel>::all(), conflicts_with_all = ["repair", "replay", "method", "at", "size", "wrap", "evenness", "paper", "which", "guide"])]
     pub(super) repair_channel: Option<Channel>,
 
+    /// How large a pixel of the example is: an image of the texture's size, black where it is small and white where it is large.
+    #[arg(long, value_name = "IMAGE")]
+    pub(super) scale: Option<PathBuf>,
+
+    /// The sizes at black and at white of --scale, in pixels of the texture, from 1/8 to 8; by default 1,2.
+    #[arg(long, value_name = "A,B", requires = "scale")]
+    pub(super) scales: Option<Numbers<f32, 2>>,
+
     /// Also write where in the example each pixel is from: an OpenEXR image, red the column and green the row.
     #[arg(long, value_name = "FILE.exr")]
     pub(super) sources: Option<PathBuf>,
@@ -140,7 +148,9 @@ pub(super) struct SurfaceArgs {
     ))]
     pub(super) mesh: Option<PathBuf>,
 
-    /// Which way the texture runs: a file of directions, .csv or .json. By default the down of the example points down.
+    /// Which way the texture runs: on a mesh a file of directions, .csv or .json; in the plane an image of the texture's size, in
+    /// which black is down, gray of a quarter of white is to the right, and so on around to white, which is down again. By default
+    /// the down of the example points down.
     #[arg(long, value_name = "FILE")]
     pub(super) directions: Option<PathBuf>,
 
@@ -152,6 +162,11 @@ pub(super) struct SurfaceArgs {
     /// which features have the same part of both surfaces.
     #[arg(long, value_name = "N")]
     example_sites: Option<usize>,
+
+    /// How many directions at a place are as good as each other: 2 for examples that look alike upside down, such as bricks, and
+    /// 4 for those that look alike lying on their side, such as a checker. The texture then has fewer tears. By default 1.
+    #[arg(long, value_name = "N", value_parser = Word::<Symmetry>::all())]
+    pub(super) symmetry: Option<Symmetry>,
 
     /// The number of points of the surface that get a color, like pixels on the mesh: 1 to 2^28; by default 65536.
     #[arg(long, value_name = "N")]
@@ -290,6 +305,8 @@ impl PlaneArgs {
             ("differences", self.differences.is_some()),
             ("origins", self.origins.is_some()),
             ("replay", self.replay.is_some()),
+            // The last, since it can go with a file of directions.
+            ("scale", self.scale.is_some()),
         ])
     }
 
@@ -305,7 +322,7 @@ impl SurfaceArgs {
     /// An option that was given and needs a mesh.
     pub(super) fn given(&self) -> Option<&'static str> {
         first_given(&[
-            ("directions", self.directions.is_some()),
+            ("symmetry", self.symmetry.is_some()),
             ("sites", self.sites.is_some()),
             ("texture-size", self.texture_size.is_some()),
             ("atlas", self.atlas.is_some()),

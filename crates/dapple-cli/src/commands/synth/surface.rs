@@ -20,8 +20,9 @@ use dapple::points::glam::DVec3;
 use dapple::raster::Raster;
 use dapple::recipe::MapKind;
 use dapple::synth::{
-    Atlas, Direction, Exemplar, MeshExemplar, SurfaceTexture, Synthesizer, bake_colors,
-    bake_colors_alpha, bake_normals, bake_values, site_model, textured_model,
+    Atlas, Direction, Exemplar, Hierarchy, HierarchyOptions, MeshExemplar, Orientation,
+    SurfaceTexture, SynthError, Synthesizer, bake_colors, bake_colors_alpha, bake_normals,
+    bake_values, site_model, textured_model,
 };
 use dapple::tile::Map;
 use serde_json::json;
@@ -88,7 +89,7 @@ pub(super) fn run(args: &Args, mesh: &Path, context: &Context) -> Result<Exit> {
     let spinner = Progress::spinner("scattering sites", context);
     let sites = args.surface.sites(&args.matching);
     let directions = directions(args.surface.directions.as_deref())?;
-    let synthesizer = Synthesizer::new(surface, &directions, &sites).map_err(advise)?;
+    let synthesizer = synthesizer(surface, args, &sites, &directions).map_err(advise)?;
     let exemplar = example.map(|example| exemplar_of_mesh(args, example, &input.exemplar));
     let exemplar = exemplar.transpose()?;
     drop(spinner);
@@ -147,15 +148,15 @@ pub(super) fn exemplar_of_mesh(
 }
 
 /// A mesh with its texture, not baked yet.
-struct Covered {
-    synthesizer: Synthesizer,
-    texture: SurfaceTexture,
-    atlas: Option<Atlas>,
+pub(super) struct Covered {
+    pub(super) synthesizer: Synthesizer,
+    pub(super) texture: SurfaceTexture,
+    pub(super) atlas: Option<Atlas>,
     /// The normals of the corners of all faces.
-    shading: Vec<[DVec3; 3]>,
+    pub(super) shading: Vec<[DVec3; 3]>,
     /// Whether faces are seen from both sides.
-    double_sided: bool,
-    input: Input,
+    pub(super) double_sided: bool,
+    pub(super) input: Input,
 }
 
 impl Product {
@@ -201,7 +202,7 @@ pub(super) fn endings() -> String {
 
 impl Covered {
     /// A map of the example, as a texture of the mesh.
-    fn bake(&self, map: &Map) -> Result<Map> {
+    pub(super) fn bake(&self, map: &Map) -> Result<Map> {
         let Some(atlas) = &self.atlas else {
             bail!("a mesh of sites has no texture");
         };
@@ -221,7 +222,7 @@ impl Covered {
     }
 
     /// The texture that is shown, and its alpha if the example has one.
-    fn bake_base(&self) -> Result<(Map, Option<Raster<f32>>)> {
+    pub(super) fn bake_base(&self) -> Result<(Map, Option<Raster<f32>>)> {
         let base = &self.input.base;
         let (Map::Color(colors), Some(alpha), Some(atlas)) = (&base.map, &base.alpha, &self.atlas)
         else {
@@ -433,6 +434,20 @@ fn atlas(args: &Args, surface: &Surface, model: &Model, repair: &Repair) -> Resu
         }
     };
     atlas.map_err(advise)
+}
+
+/// The surface with its sites and their directions.
+fn synthesizer(
+    surface: Surface,
+    args: &Args,
+    sites: &HierarchyOptions,
+    directions: &[Direction],
+) -> Result<Synthesizer, SynthError> {
+    let hierarchy = Hierarchy::new(&surface, sites)?;
+    let symmetry = args.surface.symmetry.unwrap_or_default();
+    let axis = Orientation::AXIS;
+    let orientation = Orientation::symmetric(&hierarchy, directions, axis, symmetry)?;
+    Synthesizer::from_parts(surface, hierarchy, orientation, None)
 }
 
 /// The directions that the user gave.

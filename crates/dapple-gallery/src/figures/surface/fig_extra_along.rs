@@ -1,0 +1,82 @@
+//! Textures in the plane along directions, with features of different sizes: scales around a middle, woven hooks that grow to
+//! the right, and scales that do both.
+//!
+//! Directions and sizes are planes of the texture's size. The texture is grown on sites, whose neighborhoods turn and grow
+//! with them, and its pixels read the exemplar between its own.
+
+use super::exemplar::EXEMPLARS;
+use crate::draw::enlarged;
+use crate::figure::source;
+use crate::{Figure, Panel};
+use anyhow::Context;
+use core::ops::ControlFlow;
+use dapple_color::LinearRgb;
+use dapple_raster::Raster;
+use dapple_synth::{Edges, Exemplar, Options, bake_colors, synthesize_plane_along};
+
+pub(super) const FIGURE: Figure = Figure {
+    number: "extra",
+    parameters: &[
+        ("exemplars", "64², which repeat"),
+        ("textures", "256²"),
+        ("sizes", "from 1 to 2.5"),
+    ],
+    source: source!(),
+    render,
+};
+
+/// The sides of the exemplars and of the textures in pixels.
+const SIDE: u32 = 64;
+const LARGE: u32 = 256;
+/// The most that a pixel of an exemplar grows.
+const LARGEST: f64 = 2.5;
+
+fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
+    let from_middle =
+        |x: u32, y: u32| [x, y].map(|at| (f64::from(at) + 0.5) / f64::from(LARGE) - 0.5);
+    // The angle from down toward the right of the direction away from the middle.
+    let outward = Raster::from_fn([LARGE; 2], |x, y| {
+        let [x, y] = from_middle(x, y);
+        libm::atan2(x, y) as f32
+    })?;
+    let straight = Raster::filled([LARGE; 2], 0.0)?;
+    let rightward = Raster::from_fn([LARGE; 2], |x, y| {
+        let [x, _] = from_middle(x, y);
+        (1.0 + (LARGEST - 1.0) * (x + 0.5)) as f32
+    })?;
+    let from_small = Raster::from_fn([LARGE; 2], |x, y| {
+        let [x, y] = from_middle(x, y);
+        (1.0 + (LARGEST - 1.0) * libm::hypot(x, y) * 1.4) as f32
+    })?;
+    let one = Raster::filled([LARGE; 2], 1.0)?;
+    let mut panels = Vec::new();
+    for (label, exemplar, directions, scales) in [
+        ("outward", "scales", &outward, &one),
+        ("growing to the right", "woven hooks", &straight, &rightward),
+        ("both", "scales", &outward, &from_small),
+    ] {
+        let texture = grown(exemplar, directions, scales)?;
+        panels.push(Panel::color(label, enlarged(&texture, size)?));
+    }
+    Ok(panels)
+}
+
+/// A texture of an exemplar along directions.
+fn grown(
+    exemplar: &str,
+    directions: &Raster<f32>,
+    scales: &Raster<f32>,
+) -> anyhow::Result<Raster<LinearRgb>> {
+    let exemplar = EXEMPLARS.iter().find(|found| found.name == exemplar);
+    let image = (exemplar.context("no such exemplar")?.draw)(SIDE)?;
+    let exemplar = Exemplar::new(&image, Edges::Wrap)?;
+    let options = Options::default();
+    let go_on = |_| ControlFlow::Continue(());
+    let along = synthesize_plane_along(&exemplar, directions, scales, &options, go_on)?;
+    Ok(bake_colors(
+        &along.synthesizer,
+        &along.texture,
+        &image,
+        &along.atlas,
+    )?)
+}

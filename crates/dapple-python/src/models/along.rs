@@ -1,0 +1,79 @@
+//! Textures in the plane along directions and with scales.
+
+use super::bake;
+use crate::error::Result;
+use crate::pictures;
+use crate::seed::SeedArgument;
+use crate::synthesis::{Coherence, Matching, check_sizes, exemplar};
+use crate::watch;
+use dapple::mesh::CREASE;
+use dapple::raster::Raster;
+use dapple::synth::{PlaneAlong, SynthError, synthesize_plane_along};
+use pyo3::prelude::*;
+
+/// A texture that runs along directions, with features of different sizes.
+///
+/// Parameters
+/// ----------
+/// exemplar : as for `synthesize`, without alpha.
+/// directions : (rows, columns), angles in radians: at 0 the example's down is down, at pi / 2 it points to the right.
+/// scales : (rows, columns), how large a pixel of the example is, in pixels of the texture, from 1/8 to 8; by default 1.
+/// seed, edges, levels, coherence, evenness, paper, progress : as for `synthesize`.
+///
+/// Examples
+/// --------
+/// >>> import numpy as np, dapple_textures as dp
+/// >>> stripes = np.kron([[0], [1], [0], [1]], np.ones((4, 16)))
+/// >>> rows, columns = np.indices((40, 30))
+/// >>> dp.synthesize_along(stripes, np.arctan2(columns - 15, rows - 20), edges="wrap", levels=2).shape
+/// (40, 30)
+#[pyfunction]
+#[pyo3(signature = (exemplar, directions, scales = None, *, seed = SeedArgument::default(), edges = "cut", levels = 3,
+    coherence = None, evenness = None, paper = false, progress = None),
+    text_signature = "(exemplar, directions, scales=None, *, seed=0, edges=\"cut\", levels=3, coherence=None, evenness=None, \
+    paper=False, progress=None)")]
+pub(crate) fn synthesize_along<'py>(
+    py: Python<'py>,
+    exemplar: &Bound<'py, PyAny>,
+    directions: &Bound<'py, PyAny>,
+    scales: Option<&Bound<'py, PyAny>>,
+    seed: SeedArgument,
+    edges: &str,
+    levels: usize,
+    coherence: Option<Coherence>,
+    evenness: Option<f32>,
+    paper: bool,
+    progress: Option<&Bound<'py, PyAny>>,
+) -> Result<Bound<'py, PyAny>> {
+    let (layout, maps) = pictures::read("exemplar", exemplar)?;
+    check_sizes(&maps)?;
+    super::refuse_alpha(&layout)?;
+    let example = self::exemplar(&maps, edges)?;
+    let directions = pictures::numbers("directions", directions)?;
+    let scales = match scales {
+        Some(scales) => pictures::numbers("scales", scales)?,
+        None => Raster::filled(directions.size(), 1.0)?,
+    };
+    let matching = Matching {
+        seed,
+        levels,
+        coherence,
+        evenness,
+        axes: None,
+        paper,
+    };
+    let options = matching.options()?;
+    let baked = watch::run(py, progress, |heard| {
+        let along = synthesize_plane_along(&example, &directions, &scales, &options, heard)?;
+        let PlaneAlong {
+            synthesizer,
+            texture,
+            atlas,
+        } = &along;
+        let shading = synthesizer.surface().mesh().corner_normals(CREASE);
+        let maps = maps.iter();
+        let baked = maps.map(|map| bake(synthesizer, texture, atlas, &shading, map));
+        baked.collect::<core::result::Result<Vec<_>, SynthError>>()
+    })??;
+    layout.python(py, baked)
+}
