@@ -108,7 +108,9 @@ impl Naive<'_> {
         let similar = coherent.iter().filter_map(|&place| stage.similar(place));
         let candidates = coherent.iter().copied().chain(similar);
         let steps = (-2..=2).flat_map(|y: i64| (-2..=2).map(move |x: i64| [x, y]));
-        let near = steps.filter(|step| *step != [0, 0]).map(|[x, y]| {
+        // Pixels of the same quarter do not read each other.
+        let near = steps.filter(|[x, y]| x % 2 != 0 || y % 2 != 0);
+        let near = near.map(|[x, y]| {
             let should_be = x.abs().max(y.abs()) as f64 * h as f64;
             (goes_on([x, y], [0, 0]), should_be)
         });
@@ -421,13 +423,13 @@ fn value_stability_endless() {
         made.sources().pixels(),
         [
             [18, 7],
-            [3, 5],
-            [4, 5],
-            [5, 5],
+            [19, 7],
             [20, 7],
-            [3, 10],
-            [4, 6],
             [5, 6],
+            [18, 8],
+            [19, 8],
+            [4, 7],
+            [5, 7],
         ],
         "sources of the first pixels"
     );

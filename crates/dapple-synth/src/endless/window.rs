@@ -276,10 +276,11 @@ impl Area {
     }
 
     /// Whether a place is less than half as far from that of a pixel beside the given one as the two pixels are from each
-    /// other.
+    /// other. Pixels of the same quarter do not count, since they are corrected at the same time.
     #[inline]
     fn repeats(&self, stage: &Stage, [column, row]: [i64; 2], place: [i64; 2]) -> bool {
-        let mut steps = (-READS..=READS).flat_map(|y| (-READS..=READS).map(move |x| [x, y]));
+        let steps = (-READS..=READS).flat_map(|y| (-READS..=READS).map(move |x| [x, y]));
+        let mut steps = steps.filter(|[x, y]| x % 2 != 0 || y % 2 != 0);
         let farther = |a: i64, b: i64| a.abs().max(b.abs());
         steps.any(|[x, y]| {
             let other = self.at([column + x, row + y]);
