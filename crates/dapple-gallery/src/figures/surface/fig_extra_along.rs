@@ -17,7 +17,7 @@ use dapple_synth::{Edges, Exemplar, Options, bake_colors, synthesize_plane_along
 pub(super) const FIGURE: Figure = Figure {
     number: "extra",
     parameters: &[
-        ("exemplars", "64², which repeat"),
+        ("exemplars", "64²; the hooks repeat"),
         ("textures", "256²"),
         ("sizes", "from 1 to 2.5"),
     ],
@@ -50,26 +50,28 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     })?;
     let one = Raster::filled([LARGE; 2], 1.0)?;
     let mut panels = Vec::new();
-    for (label, exemplar, directions, scales) in [
-        ("outward", "scales", &outward, &one),
-        ("growing to the right", "woven hooks", &straight, &rightward),
-        ("both", "scales", &outward, &from_small),
+    let [scales, hooks] = [("scales", Edges::Cut), ("woven hooks", Edges::Wrap)];
+    for (label, exemplar, directions, sizes) in [
+        ("outward", scales, &outward, &one),
+        ("growing to the right", hooks, &straight, &rightward),
+        ("both", scales, &outward, &from_small),
     ] {
-        let texture = grown(exemplar, directions, scales)?;
+        let texture = grown(exemplar, directions, sizes)?;
         panels.push(Panel::color(label, enlarged(&texture, size)?));
     }
     Ok(panels)
 }
 
-/// A texture of an exemplar along directions.
+/// A texture of an exemplar, by its name and with its edges, along directions.
 fn grown(
-    exemplar: &str,
+    exemplar: (&str, Edges),
     directions: &Raster<f32>,
     scales: &Raster<f32>,
 ) -> anyhow::Result<Raster<LinearRgb>> {
-    let exemplar = EXEMPLARS.iter().find(|found| found.name == exemplar);
+    let (name, edges) = exemplar;
+    let exemplar = EXEMPLARS.iter().find(|found| found.name == name);
     let image = (exemplar.context("no such exemplar")?.draw)(SIDE)?;
-    let exemplar = Exemplar::new(&image, Edges::Wrap)?;
+    let exemplar = Exemplar::new(&image, edges)?;
     let options = Options::default();
     let go_on = |_| ControlFlow::Continue(());
     let along = synthesize_plane_along(&exemplar, directions, scales, &options, go_on)?;
