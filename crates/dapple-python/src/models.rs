@@ -123,7 +123,11 @@ pub(crate) fn synthesize_on<'py>(
     let atlas = data::named("atlas", atlas)?;
     let guides = SurfaceGuides::read(&guides)?;
     let uvs = match atlas == AtlasKind::Uv || guides.have_images() {
-        true => vectors::<2>("uv", &mesh.getattr("uv")?, &[3, 2])?,
+        true => {
+            let uvs = mesh.getattr("uv");
+            let uvs = uvs.map_err(|_| Error::new("uv", "the mesh has no attribute uv"))?;
+            vectors::<2>("uv", &uvs, &[3, 2])?
+        }
         false => Vec::new(),
     };
     let mesh = crate::meshes::mesh(mesh)?;

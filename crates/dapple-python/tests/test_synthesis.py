@@ -295,7 +295,8 @@ def test_textures_in_the_plane_follow_directions_and_scales():
     one = np.zeros((60, 72), np.float32)
     options = {"edges": "wrap", "levels": 2}
     down = dp.synthesize_along({"a": stripes, "b": 1 - stripes}, one, **options)
-    np.testing.assert_allclose(down["a"], 1 - down["b"], atol=1e-6)
+    # Between pixels values are sums of sixteen in single precision, with weights of both signs.
+    np.testing.assert_allclose(down["a"], 1 - down["b"], atol=1e-5)
     for texture, axis, period in [
         (down["a"], 0, 8),
         (dp.synthesize_along(stripes, one + np.pi / 2, **options), 1, 8),

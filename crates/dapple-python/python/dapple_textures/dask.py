@@ -164,9 +164,18 @@ class _Run:
 
     def _fill(self, tasks: Iterator[list[int]]) -> None:
         """Submits tasks until the workers have enough."""
-        threads = sum(self.client.nthreads().values()) if self.client.status == "running" else 0
+        threads = self._threads()
         for indices in islice(tasks, max(0, max(_LEAST, threads * _AHEAD) - len(self._begun))):
             self._submit(indices, 0)
+
+    def _threads(self) -> int:
+        """The number of threads of all workers; 0 while the scheduler does not answer, which `_look` finds out about."""
+        if self.client.status != "running":
+            return 0
+        try:
+            return sum(self.client.nthreads().values())
+        except OSError:
+            return 0
 
     def _submit(self, indices: list[int], attempt: int) -> None:
         future = self.client.submit(_workers.bake_shards, self.job.store, self._call, indices, pure=False)
