@@ -2,13 +2,14 @@
 
 use super::corners::own_uvs;
 use super::material::is_of;
+use super::options::first_given;
 use super::{Args, advise};
 use crate::error::{Hint, usage};
 use crate::input::{self, Kind, Loaded};
 use anyhow::{Context as _, Result, anyhow};
 use dapple::color::{Code, LinearRgb};
 use dapple::mesh::{Model, Repair, Surface};
-use dapple::mesh_io::readable_endings;
+use dapple::mesh_io::MeshFormat;
 use dapple::points::glam::DVec2;
 use dapple::raster::Raster;
 use dapple::recipe::MapKind;
@@ -35,8 +36,7 @@ pub(super) struct ExampleMesh {
 
 /// Whether a file is a mesh, by its ending.
 pub(super) fn is_mesh(path: &Path) -> bool {
-    let ending = path.extension().unwrap_or_default().to_string_lossy();
-    readable_endings().any(|mesh| ending.eq_ignore_ascii_case(mesh))
+    MeshFormat::of_path(path).is_some()
 }
 
 impl Args {
@@ -57,14 +57,13 @@ impl Args {
             return Err(error.hint("add --mesh FILE, the mesh that gets it, or --repair MASK"));
         }
         let plane = self.plane.given().filter(|&option| option != "repair");
-        let given = [
-            (plane.unwrap_or_default(), plane.is_some()),
+        let other = first_given(&[
             ("detail", self.detail.is_some()),
             ("region", self.region.is_some()),
             ("example", !self.guides.examples.is_empty()),
-        ];
-        match given.iter().find(|(_, is_given)| *is_given) {
-            Some((option, _)) => {
+        ]);
+        match plane.or(other) {
+            Some(option) => {
                 let error = usage(format!("--{option} has no effect: {name} is a mesh"));
                 Err(error.hint(format!("leave out --{option}")))
             }
