@@ -298,7 +298,8 @@ impl Inner {
     }
 }
 
-/// Where fewer neighborhoods are whole, the others are compared, too: everywhere where pixels are to be used evenly.
+/// The number of whole neighborhoods below which the others are compared, too; without a limit where pixels are to be used
+/// evenly.
 pub(crate) fn few(pass: &Pass, options: &Options) -> usize {
     let reads = |reads| pass.parts.iter().any(|part| part.reads == reads);
     let refines = reads(Reads::Same) && reads(Reads::Coarser);

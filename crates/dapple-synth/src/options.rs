@@ -28,7 +28,7 @@ pub struct Options {
     pub schedule: Option<Schedule>,
     /// Where neighborhoods on the coarser level are centered; by default exactly.
     pub center: CoarserCenter,
-    /// What is compared on surfaces; by default colors.
+    /// The values that are compared on surfaces; by default colors.
     pub matching: Matching,
     /// Which way neighborhoods on surfaces go on away from their site; by default as the field does.
     pub axes: Axes,
@@ -111,7 +111,7 @@ impl FromStr for Coherence {
 }
 
 dapple_raster::named! {
-    /// What is compared to find the pixels of the sites on a surface.
+    /// The values that are compared to find the pixels of the sites on a surface.
     #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
     pub enum Matching {
         /// Colors of squares, site after site in the order of the sweep, as in the paper.

@@ -47,7 +47,7 @@ pub(super) fn deflated(bytes: &[u8]) -> Vec<u8> {
     out.align()
 }
 
-/// What is done with bytes and runs.
+/// A consumer of single bytes and runs: counts the symbols, or writes their codes.
 trait Sink {
     fn literals(&mut self, bytes: [u8; STEP / 2]);
     fn literal(&mut self, byte: u8);

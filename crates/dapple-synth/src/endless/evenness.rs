@@ -35,7 +35,7 @@ const STEP: f32 = 0.8;
 /// The trials after which costs change by half as much as after the first.
 const HALF_STEP: f32 = 8.0;
 
-/// What it costs to repeat what lies beside a pixel, in mean squared distances: 4 % of the pixels of a texture of leaves have
+/// The cost of a place that repeats what lies beside a pixel, in mean squared distances: 4 % of the pixels of a texture of leaves have
 /// their source again within 16 pixels without it, and 1 % with it; twice as much leaves hardly fewer.
 pub(super) const REPETITION: f32 = 1.0;
 

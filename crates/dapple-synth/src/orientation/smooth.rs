@@ -66,7 +66,7 @@ pub(super) struct Smooth<'a> {
     frames: Vec<[DVec3; 2]>,
     /// For each link the power of how the frame of its far end lies in that of the near one.
     carried: Vec<DVec2>,
-    /// What is added to the diagonal.
+    /// The numbers added to the diagonal, one for each site.
     shifts: Vec<f64>,
     right: Vec<DVec2>,
     is_fixed: Vec<bool>,
