@@ -18,12 +18,11 @@
 mod links;
 
 use crate::endless::evenness::Costs;
-use crate::endless::stage::{self, DIAGONALS, N_FEATURES, Stage};
-use crate::engine::{Callback, Progress};
+use crate::endless::stage::{self, DIAGONALS, N_FEATURES, Stage, narrow};
+use crate::engine::{self, Callback, Progress};
 use crate::options::REGULAR;
 use crate::places::{Frame, Frames};
-use crate::{Coherence, Exemplar, Hierarchy, Options, SynthError, SynthErrorKind, Synthesizer};
-use core::ops::ControlFlow;
+use crate::{Coherence, Exemplar, Hierarchy, Options, SynthError, Synthesizer};
 use dapple_hash::{Seed, hash1};
 use dapple_raster::parallel;
 use glam::Vec2;
@@ -118,10 +117,7 @@ impl<'a> Appearance<'a> {
                     done,
                     n_sites,
                 };
-                match callback(progress) {
-                    ControlFlow::Continue(()) => Ok(()),
-                    ControlFlow::Break(()) => Err(SynthError::new(SynthErrorKind::Cancelled)),
-                }
+                engine::report(callback, progress)
             };
             self.correct(level, &links, n_passes, &mut places, &mut tell)?;
             levels.push(places);
@@ -282,14 +278,12 @@ fn around(
     places: &[[u32; 2]],
 ) -> [Option<[f32; N_FEATURES]>; 4] {
     let corners = links.of(site).corners;
-    let mut corner = 0;
-    DIAGONALS.map(|diagonal| {
+    core::array::from_fn(|corner| {
         let links = corners[corner];
-        corner += 1;
         if links.is_empty() {
             return None;
         }
-        let diagonal = Vec2::from(diagonal.map(|at| (at * stage.spacing) as f32));
+        let diagonal = Vec2::from(DIAGONALS[corner].map(|at| (at * stage.spacing) as f32));
         let mut sums = [0.0; N_FEATURES];
         for link in links {
             let place = moved(places[link.site as usize], diagonal - link.way());
@@ -327,11 +321,6 @@ fn moved(place: [u32; 2], way: Vec2) -> [i64; 2] {
         i64::from(place[0]) + way.x as i64,
         i64::from(place[1]) + way.y as i64,
     ]
-}
-
-/// A place in the exemplar, which has less than 2^32 columns and rows.
-fn narrow(place: [i64; 2]) -> [u32; 2] {
-    place.map(|at| at as u32)
 }
 
 #[cfg(test)]

@@ -113,7 +113,7 @@ fn in_space(
         let along = right * f64::from(x) - down * f64::from(y);
         [along.x as f32, along.y as f32, along.z as f32, z]
     };
-    if let Some(places) = texture.lifted.as_ref().filter(|places| !places.is_mixed) {
+    if let Some(places) = texture.lifted_between() {
         let relief = Relief::new(&places.origin, map.size())?;
         let detail = LiftedDetail::new(map, &places.origin)?;
         return magnify(

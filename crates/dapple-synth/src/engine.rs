@@ -28,6 +28,14 @@ pub struct Progress {
 /// A callback for progress; it can stop the synthesis.
 pub(crate) type Callback<'a> = &'a mut dyn FnMut(Progress) -> ControlFlow<()>;
 
+/// Reports progress to a callback, and fails if it stops the synthesis.
+pub(crate) fn report(callback: Callback<'_>, progress: Progress) -> Result<(), SynthError> {
+    match callback(progress) {
+        ControlFlow::Continue(()) => Ok(()),
+        ControlFlow::Break(()) => Err(SynthError::new(SynthErrorKind::Cancelled)),
+    }
+}
+
 /// Runs all passes. For each level, the finest first, the pixel that each site is from, as `row * width + column` of the
 /// same level of the pyramid; nothing for a level that no pass visited.
 pub(crate) fn run<G: Ground>(
@@ -117,10 +125,7 @@ pub(crate) fn run_with<G: Ground>(
                 done,
                 n_sites,
             };
-            match callback(progress) {
-                ControlFlow::Continue(()) => Ok(()),
-                ControlFlow::Break(()) => Err(SynthError::new(SynthErrorKind::Cancelled)),
-            }
+            report(callback, progress)
         };
         kept = visit.run(&levels, &kept, keep, &mut tell)?;
     }

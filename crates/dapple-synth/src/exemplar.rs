@@ -312,12 +312,6 @@ impl Exemplar {
         }
     }
 
-    /// The values of a pixel.
-    #[inline]
-    pub(crate) fn plain_of(&self, pixel: usize) -> &[f32] {
-        &self.pixels[pixel * self.n_channels..][..self.n_channels]
-    }
-
     /// The image with every pixel mixed with those around it.
     fn blurred(&self, blur: f32) -> Self {
         let n = self.n_channels;

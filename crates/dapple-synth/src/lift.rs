@@ -131,22 +131,14 @@ impl MeshExemplar {
     }
 
     /// The sites of the finest levels.
-    fn pyramid(&self, n_levels: usize) -> Result<Pyramid, SynthError> {
-        let levels = self.pyramid.levels.get(..n_levels);
-        levels.map_or_else(
-            || {
-                Err(SynthError::new(SynthErrorKind::Count {
-                    what: "levels",
-                    count: n_levels,
-                    needed: "at most those of the example's sites",
-                }))
-            },
-            |levels| {
-                Ok(Pyramid {
-                    levels: levels.to_vec(),
-                })
-            },
-        )
+    fn levels(&self, n_levels: usize) -> Result<&[Exemplar], SynthError> {
+        self.pyramid.levels.get(..n_levels).ok_or_else(|| {
+            SynthError::new(SynthErrorKind::Count {
+                what: "levels",
+                count: n_levels,
+                needed: "at most those of the example's sites",
+            })
+        })
     }
 
     /// Runs the passes on a ground, which is that of a target.
@@ -157,7 +149,8 @@ impl MeshExemplar {
         options: &Options,
         callback: Callback<'_>,
     ) -> Result<SurfaceTexture, SynthError> {
-        let pyramid = self.pyramid(options.n_levels)?;
+        let levels = self.levels(options.n_levels)?.to_vec();
+        let pyramid = Pyramid { levels };
         let candidates = |pass: &Pass| self.candidates(pass, options);
         let passes = options.passes()?.passes;
         let levels = engine::run_with(ground, &pyramid, &passes, &candidates, options, callback)?;

@@ -141,7 +141,7 @@ fn bake_map<const N: usize>(
 ) -> Result<Raster<[f32; N]>, SynthError> {
     check_column(synthesizer, "sites of the texture", texture.n_sites())?;
     let background = mean(map.pixels());
-    if let Some(places) = texture.lifted.as_ref().filter(|places| !places.is_mixed) {
+    if let Some(places) = texture.lifted_between() {
         let detail = LiftedDetail::new(map, &places.origin)?;
         return magnify(
             synthesizer,

@@ -51,6 +51,11 @@ impl SurfaceTexture {
         }
     }
 
+    /// The places on another surface at which texels read its maps; none where they mix the values of sites.
+    pub(crate) fn lifted_between(&self) -> Option<&LiftedPlaces> {
+        self.lifted.as_ref().filter(|places| !places.is_mixed)
+    }
+
     /// The number of finest sites.
     pub(crate) fn n_sites(&self) -> usize {
         self.levels.first().map_or(0, |level| level.sources.len())

@@ -52,9 +52,9 @@ pub(crate) struct Stage {
     pub(crate) step: i64,
     /// For each pixel of the grid the one of the grid that is most like it.
     similar: Vec<u32>,
-    /// What it costs in a match to go on in each part of the exemplar.
+    /// The costs of the parts of the exemplar, added to the squared distances of places in them.
     pub(crate) costs: Costs,
-    /// What it costs in a match to repeat what lies beside a pixel.
+    /// The cost of a place that repeats what lies beside a pixel, added to its squared distance.
     pub(super) repetition_cost: f32,
 }
 
@@ -76,6 +76,11 @@ pub(crate) fn stages(exemplar: &Exemplar, n_levels: usize) -> Result<Vec<Stage>,
     masks.reverse();
     let stage = |level: usize| Stage::new(exemplar, level, &pixels[level], masks[level].clone());
     Ok(parallel::map(n_levels, stage))
+}
+
+/// A place in the exemplar, which has less than 2^32 columns and rows.
+pub(crate) fn narrow(place: [i64; 2]) -> [u32; 2] {
+    place.map(|at| at as u32)
 }
 
 /// An image with every pixel mixed with those two and one steps away along both axes.

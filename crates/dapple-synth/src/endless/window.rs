@@ -1,10 +1,10 @@
 //! The pixels of a window, level by level.
 
 use super::Endless;
-use super::stage::{DIAGONALS, N_FEATURES, Stage};
-use crate::engine::{Callback, Progress};
+use super::stage::{DIAGONALS, N_FEATURES, Stage, narrow};
+use crate::SynthError;
+use crate::engine::{self, Callback, Progress};
 use crate::turns::Board;
-use crate::{SynthError, SynthErrorKind};
 use core::ops::Range;
 use core::sync::atomic::{AtomicU32, Ordering};
 use dapple_hash::{hash2, unit_f64};
@@ -88,9 +88,7 @@ impl Endless {
                     done: corrected * n_quarters,
                     n_sites: QUARTERS.len() * n_passes * n_quarters,
                 };
-                if callback(progress).is_break() {
-                    return Err(SynthError::new(SynthErrorKind::Cancelled));
-                }
+                engine::report(callback, progress)?;
                 area.correct(stage, &[quarter]);
             }
             coarser = Some(area);
@@ -161,11 +159,6 @@ fn odd_or_even(range: &Range<i64>, rest: i64) -> impl Iterator<Item = i64> + use
     let first = range.start + READS;
     let first = first + (rest - first).rem_euclid(2);
     (first..range.end - READS).step_by(2)
-}
-
-/// A place in the exemplar, which has less than 2^32 columns and rows.
-fn narrow(place: [i64; 2]) -> [u32; 2] {
-    place.map(|at| at as u32)
 }
 
 impl Area {

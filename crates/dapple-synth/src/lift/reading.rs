@@ -2,6 +2,7 @@
 
 use super::Origin;
 use super::origin::Place;
+use crate::ground::Colors;
 use crate::guides::Guides;
 use crate::{Edges, Exemplar, SiteGraph, SiteIdx, columns};
 use dapple_raster::Wrap;
@@ -85,6 +86,7 @@ impl Reader<'_> {
     /// Adds a part of the texture at a uv, between its texels.
     fn add(&self, uv: DVec2, part: f32, mean: &mut Site) {
         let Exemplar { size, usable, .. } = self.texture;
+        let colors = self.texture.plain();
         let at = uv * DVec2::from(size.map(f64::from)) - 0.5;
         let first = at.floor();
         let after = (at - first).as_vec2();
@@ -96,7 +98,7 @@ impl Reader<'_> {
                 let texel = row * size[0] as usize + index(first.x, right, size[0]);
                 let weight = part * of_row * of_column;
                 let guides = self.texture.guides.of(texel);
-                let values = self.texture.plain_of(texel).iter().chain(guides);
+                let values = colors.of(texel).iter().chain(guides);
                 for (sum, value) in mean.values.iter_mut().zip(values) {
                     *sum += weight * value;
                 }

@@ -11,9 +11,9 @@
 use super::origin::Place;
 use super::{MeshExemplar, Origin};
 use crate::engine::Progress;
-use crate::ground::{Start, UNKNOWN};
+use crate::ground::{Colors, Start, UNKNOWN};
 use crate::mesh_ground::MeshGround;
-use crate::{Exemplar, Options, Pyramid, Schedule, SiteGraph, SiteIdx, SurfaceTexture, SynthError};
+use crate::{Exemplar, Options, Schedule, SiteGraph, SiteIdx, SurfaceTexture, SynthError};
 use core::ops::ControlFlow;
 use dapple_raster::parallel;
 use glam::Vec2;
@@ -48,7 +48,7 @@ impl MeshExemplar {
             evenness: 0.0,
             ..options.clone()
         };
-        let starts = self.starts(&self.pyramid(options.n_levels)?);
+        let starts = self.starts(self.levels(options.n_levels)?);
         let ground = MeshGround {
             starts: &starts,
             ..self.source().ground(options.axes, false)
@@ -57,8 +57,7 @@ impl MeshExemplar {
     }
 
     /// What the sites of each level begin with.
-    fn starts(&self, pyramid: &Pyramid) -> Vec<Start> {
-        let levels = pyramid.levels().iter();
+    fn starts(&self, levels: &[Exemplar]) -> Vec<Start> {
         let start = |level: &Exemplar| {
             let n_sites = level.size[0];
             let is_kept = level.usable.clone();
@@ -71,9 +70,9 @@ impl MeshExemplar {
                 is_kept,
             }
         };
-        let mut starts: Vec<Start> = levels.map(start).collect();
-        if let (Some(start), Some(exemplar)) = (starts.last_mut(), pyramid.levels().last()) {
-            let level = pyramid.levels().len() - 1;
+        let mut starts: Vec<Start> = levels.iter().map(start).collect();
+        if let (Some(start), Some(exemplar)) = (starts.last_mut(), levels.last()) {
+            let level = levels.len() - 1;
             let graph = self.origin.hierarchy().levels()[level].graph();
             for hole in holes(&self.origin, graph, &start.is_kept) {
                 let filler = Filler {
@@ -236,9 +235,10 @@ impl Filler<'_> {
     /// all of the piece is kept.
     fn distance(&self, hole: &Hole, first: u32, limit: f64) -> Option<f64> {
         let mut distance = 0.0;
+        let colors = self.exemplar.plain();
         for &(site, way) in &hole.ring {
             let other = self.site_at(first, way)?;
-            let [own, other] = [site, other].map(|site| self.exemplar.plain_of(site as usize));
+            let [own, other] = [site, other].map(|site| colors.of(site as usize));
             let squares = own.iter().zip(other);
             let squares = squares.map(|(a, b)| f64::from(a - b) * f64::from(a - b));
             distance += squares.sum::<f64>();

@@ -214,7 +214,8 @@ fn identity(exemplar: &MeshExemplar, between: crate::Sources) -> SurfaceTexture 
     let source = exemplar.source();
     let n_sites = source.hierarchy().sites().len() as u32;
     let own: Vec<u32> = (0..n_sites).collect();
-    let pyramid = exemplar.pyramid(1).unwrap();
+    let levels = exemplar.levels(1).unwrap().to_vec();
+    let pyramid = Pyramid { levels };
     let mut texture = SurfaceTexture::new(&pyramid, vec![own.clone()], None);
     let options = Options {
         sources: between,
