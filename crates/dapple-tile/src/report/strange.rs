@@ -11,7 +11,7 @@
 use super::quotient;
 use crate::TileError;
 use crate::axis::transpose;
-use dapple_raster::{Raster, Wrap, parallel};
+use dapple_raster::{Raster, Wrap, parallel, simd};
 
 /// The side of a square, in pixels.
 const SIDE: u32 = 8;
@@ -20,10 +20,13 @@ const SIDE: u32 = 8;
 const SQUARES: u32 = 128;
 
 /// The largest number of places of the source that are compared: all of 256 × 256 pixels.
-const PLACES: u32 = 1 << 16;
+const PLACES: usize = 1 << 16;
 
 /// The part of a side, on the far side of the wrap, where methods lay two pictures over each other.
 const BESIDE: u32 = 5;
+
+/// The places that are compared at once.
+const LANES: usize = 8;
 
 /// The smallest distance of a match in the source, as a multiple of the deviation of the source.
 const LEAST_DISTANCE: f64 = 0.01;
@@ -102,71 +105,111 @@ fn square(tile: &Raster<f32>, corner: [i64; 2], is_turned: bool) -> Square {
 /// Squares of the source, on a lattice that is as fine as the largest number of places allows.
 struct Places<'a> {
     source: &'a Raster<f32>,
-    corners: Vec<[u32; 2]>,
+    /// The distance of neighbors in the lattice.
+    step: usize,
+    /// The columns and rows of the lattice.
+    size: [usize; 2],
+    /// For each row of the source its pixels in runs, one for each remainder of the column by `step`: what squares side by
+    /// side have at one column of theirs lies side by side.
+    runs: Vec<f32>,
+    /// The length of a run, with room for the last register.
+    run_length: usize,
 }
 
 impl<'a> Places<'a> {
     fn new(source: &'a Raster<f32>) -> Self {
-        let ends = source.size().map(|side| side - SIDE + 1);
-        let count = u64::from(ends[0]) * u64::from(ends[1]);
+        let ends = source.size().map(|side| (side - SIDE + 1) as usize);
         let step = (1..)
-            .find(|step| count / (step * step) <= u64::from(PLACES))
-            .unwrap_or(1) as usize;
-        let rows = (0..ends[1]).step_by(step);
-        let corners = rows.flat_map(|y| (0..ends[0]).step_by(step).map(move |x| [x, y]));
+            .find(|step| ends[0] * ends[1] / (step * step) <= PLACES)
+            .unwrap_or(1);
+        let run_length = (source.width() as usize).div_ceil(step) + LANES;
+        let mut runs = vec![0.0; run_length * step * source.height() as usize];
+        for (line, runs) in source
+            .view()
+            .rows()
+            .zip(runs.chunks_exact_mut(run_length * step))
+        {
+            for (column, &value) in line.iter().enumerate() {
+                runs[column % step * run_length + column / step] = value;
+            }
+        }
         Self {
             source,
-            corners: corners.collect(),
+            step,
+            size: ends.map(|end| end.div_ceil(step)),
+            runs,
+            run_length,
         }
     }
 
     /// The mean distance of squares of the source from their nearest match elsewhere in it.
     fn usual(&self) -> f64 {
         let [columns, rows] = self.source.size().map(|side| side - SIDE + 1);
-        let distances: Vec<f64> = (0..SQUARES)
-            .map(|index| {
-                let corner = [
-                    spread(index.wrapping_mul(7) + 3, columns),
-                    spread(index, rows),
-                ];
-                let own = square(self.source, corner, false);
-                let corner = corner.map(|at| at as u32);
-                self.distance(&own, |place| {
-                    (0..2).all(|axis| place[axis].abs_diff(corner[axis]) < SIDE)
-                })
-            })
-            .collect();
-        distances.iter().sum::<f64>() / f64::from(SQUARES)
+        self.mean(SQUARES as usize, |index| {
+            let index = index as u32;
+            let corner = [
+                spread(index.wrapping_mul(7) + 3, columns),
+                spread(index, rows),
+            ];
+            let own = square(self.source, corner, false);
+            self.distance(&own, Some(corner.map(|at| at as usize)))
+        })
     }
 
     fn mean_distance(&self, squares: &[Square]) -> f64 {
-        let distance = |square: &Square| self.distance(square, |_| false);
-        let distances = parallel::map(squares.len(), |index| distance(&squares[index]));
-        distances.iter().sum::<f64>() / squares.len() as f64
+        self.mean(squares.len(), |index| self.distance(&squares[index], None))
     }
 
-    /// The distance of a square from the nearest in the source, apart from the excluded ones.
-    fn distance(&self, square: &Square, is_left_out: impl Fn(&[u32; 2]) -> bool) -> f64 {
+    fn mean(&self, count: usize, distance: impl Fn(usize) -> f64 + Sync) -> f64 {
+        parallel::map(count, distance).iter().sum::<f64>() / count as f64
+    }
+
+    /// The distance of a square from the nearest in the source, apart from those that meet the one at a corner.
+    fn distance(&self, square: &Square, left_out: Option<[usize; 2]>) -> f64 {
+        simd::dispatch!(simd::level(), _simd => self.search(square, left_out)).sqrt()
+    }
+
+    /// The square of the distance. Plain loops over lanes, which are compiled to the registers of the level.
+    #[inline(always)]
+    fn search(&self, square: &Square, left_out: Option<[usize; 2]>) -> f64 {
         let mut least = f64::INFINITY;
-        for corner in self.corners.iter().filter(|corner| !is_left_out(corner)) {
-            let mut sum = 0.0;
-            for (row, part) in (corner[1]..).zip(square.chunks_exact(SIDE as usize)) {
-                let line = &self.source.row(row)[corner[0] as usize..][..SIDE as usize];
-                sum += part
-                    .iter()
-                    .zip(line)
-                    .map(|(a, b)| {
-                        let apart = f64::from(*a) - f64::from(*b);
-                        apart * apart
-                    })
-                    .sum::<f64>();
-                if sum >= least {
-                    break;
+        let meets = |at: usize, axis: usize| {
+            left_out.is_some_and(|corner| at.abs_diff(corner[axis]) < SIDE as usize)
+        };
+        for y in (0..self.size[1]).map(|row| row * self.step) {
+            for first in (0..self.size[0]).step_by(LANES) {
+                let Some(sums) = self.sums(square, [first, y], least) else {
+                    continue;
+                };
+                for (lane, sum) in sums.into_iter().enumerate() {
+                    let is_out = first + lane >= self.size[0]
+                        || meets(y, 1) && meets((first + lane) * self.step, 0);
+                    least = if is_out { least } else { least.min(sum) };
                 }
             }
-            least = least.min(sum);
         }
-        least.sqrt()
+        least
+    }
+
+    /// The squares of the distances from places side by side, unless all are at least the limit.
+    #[inline(always)]
+    fn sums(&self, square: &Square, [first, y]: [usize; 2], limit: f64) -> Option<[f64; LANES]> {
+        let mut sums = [0.0; LANES];
+        for (row, part) in (y..).zip(square.chunks_exact(SIDE as usize)) {
+            let mut of_row = [0.0; LANES];
+            for (column, &value) in part.iter().enumerate() {
+                let run = row * self.step + column % self.step;
+                let at = run * self.run_length + first + column / self.step;
+                let others: &[f32; LANES] = self.runs[at..].first_chunk()?;
+                let apart = others.map(|other| f64::from(value) - f64::from(other));
+                of_row = core::array::from_fn(|lane| of_row[lane] + apart[lane] * apart[lane]);
+            }
+            sums = core::array::from_fn(|lane| sums[lane] + of_row[lane]);
+            if sums.iter().all(|sum| *sum >= limit) {
+                return None;
+            }
+        }
+        Some(sums)
     }
 }
 
