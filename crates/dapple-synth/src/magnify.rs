@@ -8,13 +8,14 @@
 //! Synthesis", SIGGRAPH 2005, DOI 10.1145/1186822.1073261, section 5.
 
 use crate::bake::{Group, Paint, bake_with};
-use crate::mesh_ground::Around;
 use crate::places::{AGREEMENT, Frames, Sourced};
-use crate::sites::weight;
 use crate::{Atlas, SynthError, Synthesizer};
 use dapple_mesh::FaceIdx;
-use dapple_raster::Raster;
+use dapple_raster::{Raster, simd};
 use glam::{DVec2, Vec2, Vec3};
+use reach::{Reach, Reaching};
+
+mod reach;
 
 /// How far away sites have a say, in spacings: half again as far as in means of values, so that seams are smooth and a
 /// site alone among others is outvoted.
@@ -58,6 +59,7 @@ pub(crate) fn magnify<const N: usize, P: Sourced>(
     bake_with(surface, hierarchy, atlas, background, &|| {
         Box::new(Magnifier {
             input: &magnified,
+            reach: Reach::default(),
             pieces: Pieces {
                 predictions: Vec::new(),
                 pieces: Vec::new(),
@@ -133,6 +135,7 @@ struct Pieces<P> {
 /// The input of all texels, with the memory of a thread.
 struct Magnifier<'a, P: Sourced> {
     input: &'a Magnified<'a, P>,
+    reach: Reach,
     pieces: Pieces<P::Place>,
 }
 
@@ -141,10 +144,11 @@ impl<P: Sourced> Paint for Magnifier<'_, P> {
         let (input, memory) = (self.input, &mut self.pieces);
         let footprint = input.footprints[group.face.index()];
         let n_channels = values.len() / group.points.len();
-        for (value, &point) in values.chunks_exact_mut(n_channels).zip(group.points) {
-            let at = (group.surface.position(point) - group.center).as_vec3();
-            let normal = group.surface.normal(point).as_vec3();
-            input.predict(group.sites, at, normal, &mut memory.predictions);
+        self.reach
+            .find(simd::level(), group, RADIUS * input.spacing);
+        let values = values.chunks_exact_mut(n_channels);
+        for (value, reaching) in values.zip(self.reach.of_points()) {
+            input.predict(reaching, &mut memory.predictions);
             input.gather(memory);
             input.mix(memory, footprint, value);
         }
@@ -152,47 +156,19 @@ impl<P: Sourced> Paint for Magnifier<'_, P> {
 }
 
 impl<P: Sourced> Magnified<'_, P> {
-    /// Lists what sites on the same sheet predict, that of the largest weight first.
-    fn predict(
-        &self,
-        sites: Around<'_>,
-        at: Vec3,
-        normal: Vec3,
-        predictions: &mut Vec<Prediction<P::Place>>,
-    ) {
+    /// Lists what the sites in reach predict.
+    fn predict(&self, reaching: &[Reaching], predictions: &mut Vec<Prediction<P::Place>>) {
+        let prediction = |&Reaching { site, way, weight }: &Reaching| {
+            let flat = self.frames.of_site[site as usize].flat(way);
+            let place = self.places.of_site(site as usize);
+            Prediction {
+                site,
+                place: self.places.moved(place, flat),
+                weight,
+            }
+        };
         predictions.clear();
-        let radius = RADIUS * self.spacing;
-        let mut nearest = (true, f32::INFINITY, None);
-        for record in sites.sites() {
-            let way = at - Vec3::from(record.position);
-            let x = way.length() / radius;
-            let is_opposed = Vec3::from(record.normal).dot(normal) < 0.0;
-            let prediction = Prediction {
-                site: record.site,
-                place: self.places.moved(
-                    self.places.of_site(record.site as usize),
-                    self.frames.of_site[record.site as usize].flat(way),
-                ),
-                weight: 1.0,
-            };
-            if (is_opposed, x) < (nearest.0, nearest.1) {
-                nearest = (is_opposed, x, Some(prediction));
-            }
-            if x < 1.0 && !is_opposed {
-                let weight = weight(f64::from(x)) as f32;
-                let rank = predictions.partition_point(|other| other.weight >= weight);
-                predictions.insert(
-                    rank,
-                    Prediction {
-                        weight,
-                        ..prediction
-                    },
-                );
-            }
-        }
-        if predictions.is_empty() {
-            predictions.extend(nearest.2);
-        }
+        predictions.extend(reaching.iter().map(prediction));
     }
 
     /// Puts predictions that agree together.

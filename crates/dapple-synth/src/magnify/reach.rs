@@ -1,0 +1,179 @@
+//! The sites that have a say at texels, found for all texels of a face at once.
+
+use crate::bake::Group;
+use crate::mesh_ground::Around;
+use crate::sites::weights;
+use dapple_raster::simd::dispatch;
+use fearless_simd::{Level, f32x8, prelude::*};
+use glam::Vec3;
+
+/// The sites in a register.
+const LANES: usize = 8;
+
+/// A site in reach of a point.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Reaching {
+    pub(super) site: u32,
+    /// From the site to the point.
+    pub(super) way: Vec3,
+    pub(super) weight: f32,
+}
+
+/// The sites in reach of each point of a group and on the same sheet, that of the largest weight first, of several the
+/// first of the group. Where there is none, the nearest one, on the same sheet if there can be.
+#[derive(Debug, Default)]
+pub(super) struct Reach {
+    /// The points and their smooth normals, relative to the middle of the group.
+    points: Vec<[Vec3; 2]>,
+    sites: Vec<u32>,
+    /// The coordinates of positions and normals of the sites, up to a whole number of registers.
+    columns: [Vec<f32>; 6],
+    found: Found,
+    /// One point after the other.
+    reaching: Vec<Reaching>,
+    /// Where those of each point end.
+    ends: Vec<usize>,
+}
+
+/// The sites in reach of one point, in the order of the group, up to a whole number of registers.
+#[derive(Debug, Default)]
+struct Found {
+    numbers: Vec<u32>,
+    weights: Vec<f32>,
+}
+
+impl Reach {
+    /// Finds the sites of a group that are less than a radius from its points.
+    pub(super) fn find(&mut self, level: Level, group: &Group<'_>, radius: f32) {
+        self.points.clear();
+        self.points.extend(group.points.iter().map(|&point| {
+            let at = group.surface.position(point) - group.center;
+            [at, group.surface.normal(point)].map(|vector| vector.as_vec3())
+        }));
+        self.sites.clear();
+        self.columns.iter_mut().for_each(Vec::clear);
+        for record in group.sites.sites() {
+            self.sites.push(record.site);
+            let parts = record.position.into_iter().chain(record.normal);
+            for (column, part) in self.columns.iter_mut().zip(parts) {
+                column.push(part);
+            }
+        }
+        let n_slots = self.sites.len().next_multiple_of(LANES);
+        for column in &mut self.columns {
+            // Out of reach.
+            column.resize(n_slots, f32::MAX);
+        }
+        self.found.numbers.resize(n_slots, 0);
+        self.found.weights.resize(n_slots, 0.0);
+        self.reaching.clear();
+        self.ends.clear();
+        dispatch!(level, simd => self.list(simd, radius, group.sites));
+    }
+
+    /// The sites in reach of one point after the other.
+    pub(super) fn of_points(&self) -> impl Iterator<Item = &[Reaching]> {
+        let starts = core::iter::once(0).chain(self.ends.iter().copied());
+        starts
+            .zip(&self.ends)
+            .map(|(start, &end)| &self.reaching[start..end])
+    }
+
+    #[inline(always)]
+    fn list<S: Simd>(&mut self, simd: S, radius: f32, around: Around<'_>) {
+        for &[at, normal] in &self.points {
+            let n_found = self.found.search(simd, &self.columns, [at, normal], radius);
+            let reaching = |number: usize, weight| {
+                let position = [0, 1, 2].map(|part| self.columns[part][number]);
+                Reaching {
+                    site: self.sites[number],
+                    way: at - Vec3::from(position),
+                    weight,
+                }
+            };
+            let start = self.reaching.len();
+            if n_found > 0 {
+                let first = self.found.get(0);
+                let first = reaching(first.0, first.1);
+                self.reaching.resize(start + n_found, first);
+            } else {
+                let nearest = nearest([at, normal], around).into_iter();
+                self.reaching
+                    .extend(nearest.map(|number| reaching(number, 1.0)));
+            }
+            for found in 0..n_found {
+                let rank = self.found.rank(simd, found, n_found);
+                let (number, weight) = self.found.get(found);
+                self.reaching[start + rank] = reaching(number, weight);
+            }
+            self.ends.push(self.reaching.len());
+        }
+    }
+}
+
+impl Found {
+    #[inline(always)]
+    fn get(&self, found: usize) -> (usize, f32) {
+        (self.numbers[found] as usize, self.weights[found])
+    }
+
+    /// Searches the sites within a radius of a point, and counts them.
+    #[inline(always)]
+    fn search<S: Simd>(
+        &mut self,
+        simd: S,
+        columns: &[Vec<f32>; 6],
+        [at, normal]: [Vec3; 2],
+        radius: f32,
+    ) -> usize {
+        let inverse_sq = 1.0 / (radius * radius);
+        let mut n_found = 0;
+        for first in (0..columns[0].len()).step_by(LANES) {
+            let [x, y, z, nx, ny, nz] = columns
+                .each_ref()
+                .map(|column| f32x8::from_slice(simd, &column[first..first + LANES]));
+            let [x, y, z] = [x - at.x, y - at.y, z - at.z];
+            let weight = weights(simd, (x * x + y * y + z * z) * inverse_sq);
+            let along = nx * normal.x + ny * normal.y + nz * normal.z;
+            let reaches = (weight.simd_gt(0.0) & along.simd_ge(0.0)).to_bitmask();
+            let weight: [f32; LANES] = weight.into();
+            // Without branches on which ones reach the point, which a processor could not predict.
+            for (lane, weight) in weight.into_iter().enumerate() {
+                self.numbers[n_found] = (first + lane) as u32;
+                self.weights[n_found] = weight;
+                n_found += (reaches >> lane & 1) as usize;
+            }
+        }
+        self.weights[n_found..n_found.next_multiple_of(LANES)].fill(0.0);
+        n_found
+    }
+
+    /// How many sites come before one in the order of weights.
+    #[inline(always)]
+    fn rank<S: Simd>(&self, simd: S, found: usize, n_found: usize) -> usize {
+        let weight = f32x8::splat(simd, self.weights[found]);
+        let mut rank = 0;
+        for first in (0..n_found).step_by(LANES) {
+            let others = f32x8::from_slice(simd, &self.weights[first..first + LANES]);
+            let earlier = (1_u32 << found.saturating_sub(first).min(LANES)) - 1;
+            let before = u32::from(others.simd_gt(weight).to_bitmask() as u8)
+                | u32::from(others.simd_eq(weight).to_bitmask() as u8) & earlier;
+            rank += before.count_ones() as usize;
+        }
+        rank
+    }
+}
+
+/// Which site is nearest to a point, the first of several: of those on the same sheet, if there are any.
+#[cold]
+fn nearest([at, normal]: [Vec3; 2], around: Around<'_>) -> Option<usize> {
+    let far = around.sites().map(|record| {
+        let is_opposed = Vec3::from(record.normal).dot(normal) < 0.0;
+        (is_opposed, at.distance_squared(Vec3::from(record.position)))
+    });
+    let nearest = far.enumerate().min_by(|(_, a), (_, b)| {
+        let by_distance = a.1.total_cmp(&b.1);
+        a.0.cmp(&b.0).then(by_distance)
+    });
+    nearest.map(|(number, _)| number)
+}
