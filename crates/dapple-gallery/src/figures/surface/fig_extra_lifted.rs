@@ -50,7 +50,7 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
         coherence: Coherence::Auto,
         sources: Sources::SubPixel,
         detail: None,
-        map_side: (4 * size).max(512),
+        map_side: (2 * size).max(512),
         mask: None,
         guides: Vec::new(),
     };

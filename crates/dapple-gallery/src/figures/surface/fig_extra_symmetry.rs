@@ -70,7 +70,7 @@ fn four_sides(
         coherence: Coherence::Auto,
         sources: Sources::SubPixel,
         detail: None,
-        map_side: (4 * size).clamp(512, 2048),
+        map_side: (2 * size).clamp(512, 1024),
         mask: None,
         guides: Vec::new(),
     };

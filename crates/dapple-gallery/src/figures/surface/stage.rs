@@ -51,5 +51,5 @@ pub(crate) fn lit(
         .with_light(fill)
         .with_ambient(LinearRgb::gray(0.22))
         .with_environment(Environment::Sky(room));
-    Ok(scene.render(size, Supersampling(3))?)
+    Ok(scene.render(size, Supersampling(2))?)
 }
