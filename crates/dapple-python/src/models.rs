@@ -78,6 +78,8 @@ pub(crate) struct Model {
 /// padding : the number of pixels around each piece of the texture that continue it.
 /// crease : the angle of an edge in degrees above which it is shaded as a crease.
 /// axes : how neighborhoods continue over the surface: `"followed"` or `"carried"`.
+/// matching : the values that are compared, `"appearance"` by default, or `"colors"` as in the paper; always colors with
+///     `guides` and a `symmetry` of 2 or 4.
 /// guides : a list of (of_example, of_mesh, weight): numbers in the size of the example, and for the mesh a number for each
 ///     vertex, (n,), or an image that is read at `mesh.uv` and repeats, (rows, columns); parts of the example go where both
 ///     are alike. Weights are as for `synthesize`, and `evenness` has no effect.
@@ -93,10 +95,10 @@ pub(crate) struct Model {
 /// ((64, 64), (2, 3, 2))
 #[pyfunction]
 #[pyo3(signature = (mesh, exemplar, *, texels = 1024, sites = 65536, directions = None, down = [0.0, -1.0, 0.0], symmetry = 1,
-    atlas = "charts", padding = None, crease = None, axes = None, seed = SeedArgument::default(), edges = "cut", levels = 3,
+    atlas = "charts", padding = None, crease = None, axes = None, matching = None, seed = SeedArgument::default(), edges = "cut", levels = 3,
     coherence = None, evenness = None, paper = false, guides = Vec::new(), progress = None),
     text_signature = "(mesh, exemplar, *, texels=1024, sites=65536, directions=None, down=(0.0, -1.0, 0.0), symmetry=1, atlas=\"charts\", \
-    padding=None, crease=30.0, axes=None, seed=0, edges=\"cut\", levels=3, coherence=None, evenness=None, paper=False, \
+    padding=None, crease=30.0, axes=None, matching=None, seed=0, edges=\"cut\", levels=3, coherence=None, evenness=None, paper=False, \
     guides=(), progress=None)")]
 pub(crate) fn synthesize_on<'py>(
     py: Python<'py>,
@@ -111,6 +113,7 @@ pub(crate) fn synthesize_on<'py>(
     padding: Option<u32>,
     crease: Option<f64>,
     axes: Option<&str>,
+    matching: Option<&str>,
     seed: SeedArgument,
     edges: &str,
     levels: usize,
@@ -143,6 +146,9 @@ pub(crate) fn synthesize_on<'py>(
         evenness,
         axes: axes
             .map(|axes| data::named::<Axes>("axes", axes))
+            .transpose()?,
+        matching: matching
+            .map(|matching| data::named("matching", matching))
             .transpose()?,
         paper,
     };

@@ -43,6 +43,7 @@ pub(crate) struct Matching {
     pub(crate) coherence: Option<Coherence>,
     pub(crate) evenness: Option<f32>,
     pub(crate) axes: Option<Axes>,
+    pub(crate) matching: Option<dapple::synth::Matching>,
     pub(crate) paper: bool,
 }
 
@@ -69,7 +70,7 @@ impl Matching {
             evenness: self.evenness.unwrap_or(default.evenness),
             axes: self.axes.unwrap_or(default.axes),
             center: default.center,
-            matching: default.matching,
+            matching: self.matching.unwrap_or(default.matching),
             sources: default.sources,
         })
     }
@@ -169,6 +170,7 @@ pub(crate) fn synthesize<'py>(
         coherence,
         evenness,
         axes: None,
+        matching: None,
         paper,
     };
     let options = matching.options()?;
@@ -293,6 +295,7 @@ pub(crate) fn repair<'py>(
         coherence,
         evenness: None,
         axes: None,
+        matching: None,
         paper: false,
     };
     let options = matching.options()?;

@@ -282,6 +282,16 @@ def test_directions_turn_the_texture():
             assert change[axis] > 2.5 * change[1 - axis], (turned, axis, change)
 
 
+def test_appearance_is_compared_by_default_and_colors_as_in_the_paper():
+    def texture(**options):
+        return dp.synthesize_on(TORUS, CHECKER, **QUICK, **options).texture
+
+    plain, colors = texture(), texture(matching="colors")
+    assert (plain == texture(matching="appearance")).all()
+    assert (plain != colors).any()
+    assert (texture(paper=True) == texture(paper=True, matching="colors")).all()
+
+
 def test_a_symmetry_lets_the_texture_turn_and_has_its_colors():
     plain = dp.synthesize_on(TORUS, CHECKER, **QUICK)
     for symmetry in (1, 2, 4):

@@ -39,9 +39,10 @@
 //! most alike ([`Schedule`], [`Matcher`]). A [`SurfaceTexture`] has the color and, more than that, the pixel that each
 //! site took.
 //!
-//! With [`Matching::Appearance`] only the coarsest level is made so. On all levels the sites are then corrected by what the
-//! exemplar looks like around the pixels that the sites around them took. It takes a quarter of the time, and what is
-//! connected in the exemplar, as strands and letters are, is more often whole.
+//! That is the paper's way, [`Matching::Colors`]. By default only the coarsest level is made so
+//! ([`Matching::Appearance`]). On all levels the sites are then corrected by what the exemplar looks like around the pixels
+//! that the sites around them took. It takes a quarter of the time, and what is connected in the exemplar, as strands and
+//! letters are, is more often whole.
 //!
 //! So other maps of the exemplar can follow: [`bake_values`] and [`bake_normals`] write heights, roughness and normals to
 //! texture maps with the same [`Atlas`] as [`bake_colors`] does colors. What is to be matched and what only follows is the

@@ -167,7 +167,7 @@ impl Synthesizer {
         let is_plain = options.schedule.is_none()
             && exemplar.n_guides() == 0
             && self.orientation.symmetry() == Symmetry::One
-            && self.scales.is_empty();
+            && self.scales.iter().all(|&scale| scale == 1.0);
         let (sources, quarters) = match options.matching {
             Matching::Appearance if is_plain => {
                 let sources = self.by_appearance(&ground, &pyramid, options, &mut callback)?;

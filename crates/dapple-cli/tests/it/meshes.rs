@@ -134,6 +134,20 @@ fn a_symmetry_lets_a_texture_turn() {
 }
 
 #[test]
+fn appearance_is_compared_by_default_and_colors_as_in_the_paper() {
+    let folder = Folder::with_inputs("matching");
+    write_model(folder.path("hard.obj"), &cube().into()).unwrap();
+    let covered = |extra: &[&str]| {
+        cover(&folder, &[&["--force"], extra].concat(), "covered.ply");
+        std::fs::read(folder.path("covered.ply")).unwrap()
+    };
+    let (plain, colors) = (covered(&[]), covered(&["--matching", "colors"]));
+    assert!(plain == covered(&["--matching", "appearance"]));
+    assert!(plain != colors);
+    assert!(covered(&["--paper"]) == covered(&["--paper", "--matching", "colors"]));
+}
+
+#[test]
 fn both_sides_of_a_sheet_get_one_texture_and_are_seen() {
     let folder = Folder::with_inputs("sides");
     let cube = cube();

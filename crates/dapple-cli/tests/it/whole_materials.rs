@@ -219,11 +219,16 @@ fn a_map_with_a_weight_is_matched_on_a_mesh_and_beside_a_larger_example() {
         "--map height=bumps.png",
         "--detail large.png --map height=large.png",
     ] {
-        let follows = cover(map);
-        let matched = cover(&format!("{map} --weight height=1"));
+        let [follows, matched] =
+            ["", "--weight height=1"].map(|weight| cover(&format!("{map} {weight}")));
+        assert!(matched < 0.7 * follows, "{map}: {matched}, {follows}");
+        // Where nothing is to be seen all pixels match: by colors one of them is taken everywhere.
+        let colors = format!("{map} --matching colors");
+        let [follows, matched] =
+            ["", "--weight height=1"].map(|weight| cover(&format!("{colors} {weight}")));
         assert!(
             matched > 0.02 && follows == 0.0,
-            "{map}: {matched}, {follows}"
+            "{colors}: {matched}, {follows}"
         );
     }
 }

@@ -60,6 +60,7 @@ pub(crate) fn synthesize_along<'py>(
         coherence,
         evenness,
         axes: None,
+        matching: None,
         paper,
     };
     let options = matching.options()?;

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::shapes::{cap, synthesizer};
-use crate::{Edges, bake_values};
+use crate::{Edges, Matching, bake_values};
 use core::f32::consts::FRAC_PI_2;
 use dapple_raster::RasterError;
 
@@ -88,19 +88,22 @@ fn scales_of_one_are_as_none() {
     let plain = synthesizer(cap(), 1500, |_, _| DVec3::NEG_Y);
     let scaled = plain.clone().with_scales(vec![1.0; 1500]).unwrap();
     let exemplar = Exemplar::from_planes(&[(&stripes(), 1.0)], Edges::Wrap).unwrap();
-    let options = Options {
-        n_levels: 2,
-        ..Options::default()
-    };
-    let [plain, scaled] = [plain, scaled].map(|sites| {
-        let texture = sites.synthesize(&exemplar, &options).unwrap();
-        let atlas = Atlas::uniform(sites.surface(), 256).unwrap();
-        (
-            bake_values(&sites, &texture, &stripes(), &atlas).unwrap(),
-            texture,
-        )
-    });
-    assert_eq!(plain, scaled);
+    for matching in [Matching::Colors, Matching::Appearance] {
+        let options = Options {
+            n_levels: 2,
+            matching,
+            ..Options::default()
+        };
+        let [plain, scaled] = [&plain, &scaled].map(|sites| {
+            let texture = sites.synthesize(&exemplar, &options).unwrap();
+            let atlas = Atlas::uniform(sites.surface(), 256).unwrap();
+            (
+                bake_values(sites, &texture, &stripes(), &atlas).unwrap(),
+                texture,
+            )
+        });
+        assert_eq!(plain, scaled, "{matching:?}");
+    }
 }
 
 #[test]

@@ -9,7 +9,8 @@ use dapple::color::Code as _;
 use dapple::hash::Seed;
 use dapple::raster::Raster;
 use dapple::synth::{
-    Axes as FieldAxes, Coherence, Edges, EndlessOptions, HierarchyOptions, Options, Symmetry,
+    Axes as FieldAxes, Coherence, Edges, EndlessOptions, HierarchyOptions, Matching, Options,
+    Symmetry,
 };
 use dapple::tile::Map;
 use serde::Serialize;
@@ -199,6 +200,11 @@ pub(super) struct SurfaceArgs {
     /// Which way neighborhoods go on over the surface; by default followed.
     #[arg(long, value_name = "HOW", value_parser = Word::<FieldAxes>::all())]
     axes: Option<FieldAxes>,
+
+    /// The values that are compared; by default appearance, or colors with --paper. Colors are compared all the same with
+    /// guides, with --symmetry 2 or 4, and where the example is a mesh.
+    #[arg(long, value_name = "WHAT", value_parser = Word::<Matching>::all())]
+    matching: Option<Matching>,
 }
 
 /// How pixels of the example are found.
@@ -330,6 +336,7 @@ impl SurfaceArgs {
             ("crease", self.crease.is_some()),
             ("displace", self.displace.is_some()),
             ("axes", self.axes.is_some()),
+            ("matching", self.matching.is_some()),
         ])
     }
 
@@ -447,7 +454,7 @@ impl MatchArgs {
             evenness: self.evenness.unwrap_or(default.evenness),
             axes: surface.axes.unwrap_or(default.axes),
             center: default.center,
-            matching: default.matching,
+            matching: surface.matching.unwrap_or(default.matching),
             sources: default.sources,
         }
     }

@@ -3,7 +3,7 @@
 
 use super::RAY;
 use dapple_synth::mesh::Surface;
-use dapple_synth::{Coherence, Exemplar, Options, Sources, Synthesizer};
+use dapple_synth::{Coherence, Exemplar, Matching, Options, Sources, Synthesizer};
 use dapple_worley::hash::Seed;
 
 /// A radius around a site, in spacings, within which two colors must occur. It is nearly the width of a square, 10.7;
@@ -37,8 +37,9 @@ fn squares_of_the_ray_do_not_run_together() {
         seed: Seed(1),
         ..Options::default()
     };
-    // The exemplar as it is, not blurred as much as neighborhoods are, and the least distance.
+    // The colors of the exemplar as it is, not blurred as much as neighborhoods are, and the least distance.
     let literal = Options {
+        matching: Matching::Colors,
         coherence: Coherence::Factor(0.0),
         sources: Sources::Pixel,
         ..default.clone()
