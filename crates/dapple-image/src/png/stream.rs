@@ -3,16 +3,12 @@
 //! A strip is half a MiB of rows. Its compressed bytes depend on its rows and the row above alone, and end with an empty
 //! block that fills up the last byte, so that those of all strips, one after the other, are a stream of the format.
 //!
-//! The lower half of a sample of 16 bits is nearly noise, and so are bytes of 8 bits with grain: a search for matches
-//! finds next to nothing, and bytes are coded by their frequency alone ([`super::runs`]), four times as fast. Whether a
-//! search is worth its time is tried on a sample of each strip. Measured on six maps of all built-in recipes in 512 × 512
-//! pixels, files are 1.9 % smaller with 16 bits and 5.5 % with 8 than with a search throughout, and none of more than 100
-//! KB is more than 1.7 % larger. With 8 bits level 3 of the search takes a fifth of the time of level 6, for files that are
-//! at most 5 % larger, where level 1 would make them up to a third larger; with 16 bits level 1 makes files no larger than
-//! level 6 does.
+//! Measured on six maps of all built-in recipes in 512 × 512 pixels: with 8 bits level 3 of the compression takes a fifth
+//! of the time of level 6, for files that are at most 5 % larger, where level 1 would make them up to a third larger. With 16
+//! bits level 1 makes files no larger than level 6 does: the lower half of a sample is nearly noise.
 
 use super::filter::{Row, filter};
-use super::{GAMMA_OF_SRGB, PngPixel, Transfer, runs};
+use super::{GAMMA_OF_SRGB, PngPixel, Transfer};
 use crate::limits::check_side;
 use crate::{ImageError, ImageErrorKind};
 use dapple_raster::{RasterView, parallel};
@@ -30,9 +26,6 @@ const STRIP: usize = 1 << 19;
 
 /// The number of strips for each thread that are compressed before they are written.
 const STRIPS: usize = 2;
-
-/// The number of bytes of a strip that are compressed in two ways to choose one.
-const SAMPLE: usize = 1 << 14;
 
 /// The number of zeros before each row, in place of the pixel at its left; the largest pixel has as many bytes.
 const LEFT: usize = 8;
@@ -195,18 +188,6 @@ impl PngStream {
 
 /// Compressed bytes of a part of a stream: blocks that are not the last, up to a whole byte.
 fn compressed(bytes: &[u8], level: u32) -> Result<Vec<u8>, CompressError> {
-    let middle = bytes.len().saturating_sub(SAMPLE) / 2;
-    let sample = &bytes[middle..bytes.len().min(middle + SAMPLE)];
-    // Worth a search is a sixty-fourth.
-    if searched(sample, level)?.len() * 64 < runs::deflated(sample).len() * 63 {
-        searched(bytes, level)
-    } else {
-        Ok(runs::deflated(bytes))
-    }
-}
-
-/// Bytes compressed with a search for matches.
-fn searched(bytes: &[u8], level: u32) -> Result<Vec<u8>, CompressError> {
     let mut deflate = Compress::new(Compression::new(level), false);
     let mut out = Vec::with_capacity(bytes.len() + 1024);
     loop {
