@@ -9,8 +9,8 @@ use dapple_mesh::Surface;
 use dapple_models::bunny;
 use dapple_raster::Raster;
 use dapple_synth::{
-    Coherence, Direction, Edges, Endless, EndlessOptions, Exemplar, HierarchyOptions, Options,
-    PlaneTexture, SurfaceTexture, SynthError, Synthesizer,
+    Coherence, Direction, Edges, Endless, EndlessOptions, Exemplar, HierarchyOptions, Matching,
+    Options, PlaneTexture, SurfaceTexture, SynthError, Synthesizer,
 };
 use glam::DVec3;
 use std::fmt::Write as _;
@@ -125,10 +125,11 @@ impl Picture {
     }
 }
 
-/// Returns the options of the paper's exact search: the least distance wins.
+/// Returns the options of the paper's exact search: colors are compared, and the least distance wins.
 pub(super) fn exact(n_levels: usize) -> Options {
     Options {
         n_levels,
+        matching: Matching::Colors,
         coherence: Coherence::Factor(0.0),
         evenness: 0.0,
         ..Options::default()

@@ -20,6 +20,9 @@ const REACH: f32 = 1.1;
 /// Sites that one task links at least.
 const TASK: usize = 256;
 
+/// Tasks whose links are put together before others begin.
+const TASKS: usize = 256;
+
 /// The most classes; more would only wait for each other.
 const MAX_CLASSES: u32 = 63;
 
@@ -60,21 +63,24 @@ impl Link {
 impl Links {
     pub(super) fn new(hierarchy: &Hierarchy, frames: &[Frame], level: usize) -> Self {
         let n_sites = hierarchy.levels()[level].n_sites();
-        let pieces = parallel::map(n_sites.div_ceil(TASK), |piece| {
-            let mut part = (Vec::new(), Vec::new());
-            for site in piece * TASK..n_sites.min((piece + 1) * TASK) {
-                add(hierarchy, frames, level, SiteIdx(site as u32), &mut part);
-            }
-            part
-        });
         let (mut links, mut rows) = (Vec::new(), Vec::with_capacity(n_sites + 1));
-        for (part, ends) in pieces {
-            let before = links.len() as u32;
-            rows.extend(
-                ends.into_iter()
-                    .map(|row: [u32; 5]| row.map(|at| before + at)),
-            );
-            links.extend(part);
+        // Links take most of the memory of a synthesis: few of them are there twice.
+        for first in (0..n_sites).step_by(TASK * TASKS) {
+            let n_tasks = (n_sites - first).div_ceil(TASK).min(TASKS);
+            let pieces = parallel::map(n_tasks, |piece| {
+                let mut part = (Vec::new(), Vec::new());
+                let first = first + piece * TASK;
+                for site in first..n_sites.min(first + TASK) {
+                    add(hierarchy, frames, level, SiteIdx(site as u32), &mut part);
+                }
+                part
+            });
+            for (part, ends) in pieces {
+                let before = links.len() as u32;
+                let ends = ends.into_iter();
+                rows.extend(ends.map(|row: [u32; 5]| row.map(|at| before + at)));
+                links.extend(part);
+            }
         }
         rows.push([links.len() as u32; 5]);
         Self {
