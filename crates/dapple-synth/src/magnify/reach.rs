@@ -177,3 +177,96 @@ fn nearest([at, normal]: [Vec3; 2], around: Around<'_>) -> Option<usize> {
     });
     nearest.map(|(number, _)| number)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{Found, LANES, Reach};
+    use crate::bake::Group;
+    use crate::mesh_ground::Nearby;
+    use crate::shapes::{cap, synthesizer};
+    use crate::sites::weights;
+    use dapple_mesh::FaceIdx;
+    use dapple_raster::simd::{dispatch, for_every_level};
+    use fearless_simd::{Level, f32x8, prelude::*};
+    use glam::{DVec3, Vec3};
+
+    /// The weight of one site, with the arithmetic of a register.
+    fn weight(level: Level, x_sq: f32) -> f32 {
+        dispatch!(level, simd => {
+            let all: [f32; LANES] = weights(simd, f32x8::splat(simd, x_sq)).into();
+            all[0]
+        })
+    }
+
+    #[test]
+    fn ranks_are_those_of_a_stable_sort() {
+        for n_found in 1..30_usize {
+            // Some weights are equal.
+            let weights: Vec<f32> = (0..n_found).map(|at| (at * 7 % 5 + 1) as f32).collect();
+            let mut sorted: Vec<usize> = (0..n_found).collect();
+            sorted.sort_by(|&a, &b| weights[b].total_cmp(&weights[a]));
+            let mut padded = weights.clone();
+            padded.resize(n_found.next_multiple_of(LANES), 0.0);
+            let found = Found {
+                numbers: Vec::new(),
+                weights: padded,
+            };
+            for_every_level(|level| {
+                for (rank, &at) in sorted.iter().enumerate() {
+                    let own = dispatch!(level, simd => found.rank(simd, at, n_found));
+                    assert_eq!(own, rank, "{at} of {n_found} at {level:?}");
+                }
+            });
+        }
+    }
+
+    #[test]
+    fn sites_in_reach_are_those_of_a_plain_loop_at_every_level() {
+        let cap = synthesizer(cap(), 1500, |_, _| DVec3::NEG_Y);
+        let (surface, hierarchy) = (cap.surface(), cap.hierarchy());
+        let spacing = hierarchy.levels()[0].spacing();
+        let points = &hierarchy.sites().points()[..40];
+        let center = surface.position(points[0]);
+        // Far enough that some points have many sites in reach, and others none.
+        let mut nearby = Nearby::default();
+        let sites = nearby.collect_ball(hierarchy, 0, center, 6.0 * spacing);
+        let group = Group {
+            surface,
+            face: FaceIdx(0),
+            points,
+            center,
+            sites,
+        };
+        let radius = (1.5 * spacing) as f32;
+        let inverse_sq = 1.0 / (radius * radius);
+        for_every_level(|level| {
+            let mut reach = Reach::default();
+            reach.find(level, &group, radius);
+            let (mut n_near, mut n_far) = (0, 0);
+            for (&point, found) in points.iter().zip(reach.of_points()) {
+                let at = (surface.position(point) - center).as_vec3();
+                let normal = surface.normal(point).as_vec3();
+                let mut expected: Vec<(u32, f32)> = sites
+                    .sites()
+                    .filter(|record| Vec3::from(record.normal).dot(normal) >= 0.0)
+                    .map(|record| {
+                        let [x, y, z] = (Vec3::from(record.position) - at).to_array();
+                        let x_sq = (x * x + y * y + z * z) * inverse_sq;
+                        (record.site, weight(level, x_sq))
+                    })
+                    .filter(|(_, weight)| *weight > 0.0)
+                    .collect();
+                expected.sort_by(|a, b| b.1.total_cmp(&a.1));
+                let found: Vec<_> = found.iter().map(|own| (own.site, own.weight)).collect();
+                if expected.is_empty() {
+                    n_far += 1;
+                    assert_eq!(found.len(), 1, "the nearest one at {level:?}");
+                } else {
+                    n_near += 1;
+                    assert_eq!(found, expected, "{level:?}");
+                }
+            }
+            assert!(n_near > 0 && n_far > 0, "{n_near} near and {n_far} far");
+        });
+    }
+}
