@@ -42,7 +42,8 @@ pub struct Model {
     pub corner_normals: Option<Vec<[DVec3; 3]>>,
     /// The material of all faces.
     pub material: Material,
-    /// Parts of a file that contradicts itself that a reader left out, in words for people; no writer writes it.
+    /// Parts of a file that a reader left out, since the file contradicts itself or a model has no place for them, in words
+    /// for people; no writer writes it.
     pub left_out: Vec<String>,
 }
 
@@ -99,6 +100,9 @@ pub enum ImageFormat {
 }
 
 impl Model {
+    /// What [`left_out`](Self::left_out) has where faces have several materials, of which a model keeps the first.
+    pub const FURTHER_MATERIALS: &str = "the materials of faces but the first";
+
     /// The normals of the corners of all faces, or else those of their vertices; nothing if there are neither.
     #[must_use]
     pub fn normals_of_corners(&self) -> Option<Vec<[DVec3; 3]>> {

@@ -117,10 +117,19 @@ fn meshes_without_texture_and_options_without_effect_are_refused() {
     let mut unmapped = shell().clone();
     unmapped.uvs = None;
     write_model(folder.path("unmapped.glb"), &unmapped).unwrap();
+    let library = "newmtl a\nmap_Kd photo.png\nnewmtl b\n";
+    std::fs::write(folder.path("two.mtl"), library).unwrap();
+    let mesh = "mtllib two.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n\
+        usemtl a\nf 1/1 2/2 3/3\nusemtl b\nf 1/1 3/3 4/4\n";
+    std::fs::write(folder.path("two.obj"), mesh).unwrap();
     for (line, part) in [
         (
             "synth plain.glb --mesh model.obj -o a.glb",
             "neither a texture nor colors of vertices",
+        ),
+        (
+            "synth two.obj --mesh model.obj -o a.glb",
+            "faces of two.obj have several materials",
         ),
         ("synth unmapped.glb --mesh model.obj -o a.glb", "texture"),
         (

@@ -337,6 +337,16 @@ fn info_says_what_was_left_out_of_a_mesh() {
     .unwrap();
     let text = stdout(&folder.run(&["info", "a.obj"]));
     assert!(text.contains("without normals that faces name"), "{text}");
+    fs::write(
+        folder.path("b.obj"),
+        "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\nusemtl b\nf 3 2 1\n",
+    )
+    .unwrap();
+    let text = stdout(&folder.run(&["info", "b.obj"]));
+    assert!(
+        text.contains("without the materials of faces but the first"),
+        "{text}"
+    );
 }
 
 #[test]

@@ -66,6 +66,8 @@ struct Draft {
     libraries: Vec<String>,
     /// The name of the material in use, and whether a face uses it.
     material: Option<(String, bool)>,
+    /// Whether another material is in use than the first of a face, and whether a face uses one.
+    others: [bool; 2],
 }
 
 /// Reads an OBJ file without its material.
@@ -160,9 +162,10 @@ impl Draft {
             b"mtllib" if self.libraries.last() != Some(&name(line)) => {
                 self.libraries.push(name(line));
             }
-            b"usemtl" if !matches!(self.material, Some((_, true))) => {
-                self.material = Some((name(line), false));
-            }
+            b"usemtl" => match &self.material {
+                Some((first, true)) => self.others[0] = *first != name(line),
+                _ => self.material = Some((name(line), false)),
+            },
             _ => {}
         }
         Ok(())
@@ -193,6 +196,7 @@ impl Draft {
         if let Some((_, used)) = &mut self.material {
             *used = true;
         }
+        self.others[1] |= self.others[0];
         Ok(())
     }
 
@@ -260,7 +264,10 @@ impl Draft {
     }
 
     fn into_model(mut self) -> Result<Model, MeshIoError> {
-        let left_out = self.take_away_missing();
+        let mut left_out = self.take_away_missing();
+        if self.others[1] {
+            left_out.push(Model::FURTHER_MATERIALS.to_owned());
+        }
         let faces: Vec<_> = self
             .faces
             .iter()

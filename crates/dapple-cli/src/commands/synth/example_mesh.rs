@@ -80,7 +80,15 @@ impl Args {
         let model = input::model(path)?;
         let (mesh, repair) = model.mesh.repair();
         let surface = Surface::new(mesh).with_context(|| input::name(path))?;
+        let has_others = |model: &Model| {
+            let mut left_out = model.left_out.iter();
+            left_out.any(|what| what == Model::FURTHER_MATERIALS)
+        };
         let (uvs, base) = match (&model.material.base_color, &model.colors) {
+            (Some(_), _) if has_others(&model) => {
+                let error = anyhow!("faces of {} have several materials", input::name(path));
+                return Err(error.hint("give a mesh whose faces have one texture in all"));
+            }
             (Some(image), _) => {
                 let uvs = own_uvs(&surface, &model, &repair);
                 let mut base = input::embedded(image, path, Kind::Colors, self.alpha.alpha)?;

@@ -9,7 +9,7 @@ use crate::polygon::{fan, strip};
 use dapple_color::{LinearRgb, LinearRgba};
 use dapple_mesh::{Mesh, Model};
 use glam::{DMat3, DMat4, DVec2, DVec3};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// The accessors of positions, normals, colors and texture coordinates.
 type Attributes = [Option<usize>; 4];
@@ -25,6 +25,8 @@ struct Draft<'a> {
     uvs: Vec<DVec2>,
     faces: Vec<[u32; 3]>,
     material: Option<usize>,
+    /// The materials of faces.
+    materials: BTreeSet<Option<usize>>,
 }
 
 /// The model without its material, and the number of the material. The file has `n_bytes` bytes, with its buffers.
@@ -41,6 +43,7 @@ pub(super) fn read(
         uvs: Vec::new(),
         faces: Vec::new(),
         material: None,
+        materials: BTreeSet::new(),
     };
     let nodes = &source.document.nodes;
     let mut seen = vec![false; nodes.len()];
@@ -147,6 +150,7 @@ impl Draft<'_> {
             known.insert(attributes, first);
             self.material = self.material.or(primitive.material);
             if mode != 0 {
+                self.materials.insert(primitive.material);
                 self.add_faces(primitive, first, n_vertices, turned)?;
             }
         }
@@ -289,6 +293,9 @@ impl Draft<'_> {
             self.uvs.resize(count, DVec2::ZERO);
             let face = |face: &[u32; 3]| face.map(|vertex| self.uvs[vertex as usize]);
             model.uvs = Some(self.faces.iter().map(face).collect());
+        }
+        if self.materials.len() > 1 {
+            model.left_out.push(Model::FURTHER_MATERIALS.to_owned());
         }
         Ok((model, self.material))
     }

@@ -215,6 +215,22 @@ fn primitives_merge_and_share_vertices() {
 }
 
 #[test]
+fn further_materials_of_faces_are_listed() {
+    let left_out = |materials: [serde_json::Value; 2]| {
+        let mut document = square();
+        let primitive = document["meshes"][0]["primitives"][0].clone();
+        document["materials"] = json!([{}, {}]);
+        document["meshes"][0]["primitives"] = json!([primitive, primitive]);
+        for (at, material) in materials.into_iter().enumerate() {
+            document["meshes"][0]["primitives"][at]["material"] = material;
+        }
+        read_json(&document).expect("it is valid").left_out
+    };
+    assert!(left_out([1.into(), 1.into()]).is_empty());
+    assert_eq!(left_out([1.into(), 0.into()]), [Model::FURTHER_MATERIALS]);
+}
+
+#[test]
 fn sparse_accessors_replace_elements() {
     let mut document = square();
     document["accessors"][0] = json!({

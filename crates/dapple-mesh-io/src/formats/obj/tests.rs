@@ -227,6 +227,23 @@ fn several_libraries_of_one_line_are_found() {
 }
 
 #[test]
+fn further_materials_of_faces_are_listed() {
+    let left_out = |uses: &str| {
+        let text = format!("v 0 0 0\nv 1 0 0\nv 0 1 0\n{uses}");
+        read(text.as_bytes()).expect("it is valid").left_out
+    };
+    for one in [
+        "usemtl a\nf 1 2 3\nusemtl a\nf 1 2 3\n",
+        "usemtl b\nusemtl a\nf 1 2 3\nusemtl b\n",
+        "usemtl a\nf 1 2 3\nusemtl b\nusemtl a\nf 1 2 3\n",
+    ] {
+        assert!(left_out(one).is_empty(), "{one}");
+    }
+    let two = "usemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\n";
+    assert_eq!(left_out(two), [Model::FURTHER_MATERIALS]);
+}
+
+#[test]
 fn a_diffuse_color_beyond_single_precision_is_refused() {
     let text = b"mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n";
     let read = |kd: &str| {
