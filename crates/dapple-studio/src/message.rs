@@ -267,6 +267,8 @@ pub enum Reply {
         node: Option<String>,
         /// The part of a loop that has passed.
         time: f64,
+        /// Whether a small picture may come first.
+        draft: bool,
     },
     /// All pictures of a generation have been made.
     Rendered {

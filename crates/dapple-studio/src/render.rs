@@ -317,6 +317,7 @@ impl Pass<'_> {
                 region: view.region,
                 node: view.node.clone(),
                 time: view.time,
+                draft: view.draft,
             }
             .into(),
         );

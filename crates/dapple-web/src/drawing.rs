@@ -197,8 +197,8 @@ impl Place<'_> {
         let mut told = self.told.borrow_mut();
         let is_rows = matches!(self.drawing.next, Next::Rows(_));
         match &mut reply {
-            Reply::Began { region, .. } => {
-                *region = self.drawing.job.view.region;
+            Reply::Began { region, draft, .. } => {
+                (*region, *draft) = (self.drawing.job.view.region, self.drawing.job.view.draft);
                 return (!core::mem::replace(&mut told.began, true)).then_some(reply);
             }
             Reply::Graph { .. } => {

@@ -93,7 +93,9 @@ export class Rendering {
 
   #isOfView(generation: number): boolean {
     const began = this.#began.get(generation);
-    const [has, wants] = [began, this.#view].map((one) => one && JSON.stringify([one.size, one.region, one.node, one.time]));
+    // When a loop is stopped, the last of its pictures is not the answer: a draft is yet to come.
+    const told = (one: Began | View) => JSON.stringify([one.size, one.region, one.node, one.time, one.draft]);
+    const [has, wants] = [began, this.#view].map((one) => one && told(one));
     return began === undefined || has === wants;
   }
 

@@ -227,6 +227,8 @@ export interface Began {
   region: Region | null;
   node: string | null;
   time: number;
+  /** Whether a draft may come first. */
+  draft: boolean;
 }
 
 /** All pictures of a generation are there. */
