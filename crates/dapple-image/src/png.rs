@@ -12,7 +12,6 @@ mod filter;
 mod image;
 mod pixel;
 #[cfg(feature = "png")]
-#[cfg(feature = "png")]
 mod shortcut;
 #[cfg(feature = "png")]
 mod stream;

@@ -61,7 +61,6 @@ pub(crate) fn magnify<const N: usize, P: Sourced>(
             input: &magnified,
             reach: Reach::default(),
             pieces: Pieces {
-                predictions: Vec::new(),
                 pieces: Vec::new(),
                 channels: Vec::new(),
             },
@@ -102,14 +101,6 @@ struct Magnified<'a, P: Sourced> {
     value: &'a ValueOf<'a, P::Place>,
 }
 
-/// What a site predicts.
-#[derive(Clone, Copy, Debug)]
-struct Prediction<P> {
-    site: u32,
-    place: P,
-    weight: f32,
-}
-
 /// Sites that predict about the same place.
 #[derive(Clone, Copy, Debug)]
 struct Piece<P> {
@@ -126,7 +117,6 @@ struct Piece<P> {
 /// Memory of a thread.
 #[derive(Debug)]
 struct Pieces<P> {
-    predictions: Vec<Prediction<P>>,
     pieces: Vec<Piece<P>>,
     /// The channels of a piece.
     channels: Vec<f32>,
@@ -148,52 +138,33 @@ impl<P: Sourced> Paint for Magnifier<'_, P> {
             .find(simd::level(), group, RADIUS * input.spacing);
         let values = values.chunks_exact_mut(n_channels);
         for (value, reaching) in values.zip(self.reach.of_points()) {
-            input.predict(reaching, &mut memory.predictions);
-            input.gather(memory);
+            input.gather(reaching, &mut memory.pieces);
             input.mix(memory, footprint, value);
         }
     }
 }
 
 impl<P: Sourced> Magnified<'_, P> {
-    /// Lists what the sites in reach predict.
-    fn predict(&self, reaching: &[Reaching], predictions: &mut Vec<Prediction<P::Place>>) {
-        let prediction = |&Reaching { site, way, weight }: &Reaching| {
-            let flat = self.frames.of_site[site as usize].flat(way);
-            let place = self.places.of_site(site as usize);
-            Prediction {
-                site,
-                place: self.places.moved(place, flat),
-                weight,
-            }
-        };
-        predictions.clear();
-        predictions.extend(reaching.iter().map(prediction));
-    }
-
-    /// Puts predictions that agree together.
-    fn gather(&self, memory: &mut Pieces<P::Place>) {
-        memory.pieces.clear();
-        for prediction in &memory.predictions {
-            let &Prediction {
-                site,
-                place,
-                weight,
-            } = prediction;
+    /// Puts sites in reach together whose predictions agree.
+    fn gather(&self, reaching: &[Reaching], pieces: &mut Vec<Piece<P::Place>>) {
+        pieces.clear();
+        for &Reaching { site, way, weight } in reaching {
             let frame = &self.frames.of_site[site as usize];
+            let own = self.places.of_site(site as usize);
+            let place = self.places.moved(own, frame.flat(way));
             let agrees = |piece: &&mut Piece<P::Place>| {
                 let off = self.places.difference(place, piece.place);
                 let is_near = off.length_squared() < AGREEMENT * AGREEMENT;
                 is_near && !self.frames.differ(piece.down, frame)
             };
-            if let Some(piece) = memory.pieces.iter_mut().find(agrees) {
+            if let Some(piece) = pieces.iter_mut().find(agrees) {
                 piece.off += self.places.difference(place, piece.place) * weight;
                 piece.right += frame.right * (weight * frame.scale);
                 piece.down += frame.down * (weight * frame.scale);
                 piece.scale += weight * frame.scale;
                 piece.weight += weight;
             } else {
-                memory.pieces.push(Piece {
+                pieces.push(Piece {
                     place,
                     off: Vec2::ZERO,
                     right: frame.right * (weight * frame.scale),

@@ -11,7 +11,7 @@ use glam::Vec3;
 const LANES: usize = 8;
 
 /// A site in reach of a point.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Reaching {
     pub(super) site: u32,
     /// From the site to the point.
@@ -92,19 +92,16 @@ impl Reach {
                 }
             };
             let start = self.reaching.len();
-            if n_found > 0 {
-                let first = self.found.get(0);
-                let first = reaching(first.0, first.1);
-                self.reaching.resize(start + n_found, first);
-            } else {
+            self.reaching.resize(start + n_found, Reaching::default());
+            for found in 0..n_found {
+                let rank = self.found.rank(simd, found, n_found);
+                let number = self.found.numbers[found] as usize;
+                self.reaching[start + rank] = reaching(number, self.found.weights[found]);
+            }
+            if n_found == 0 {
                 let nearest = nearest([at, normal], around).into_iter();
                 self.reaching
                     .extend(nearest.map(|number| reaching(number, 1.0)));
-            }
-            for found in 0..n_found {
-                let rank = self.found.rank(simd, found, n_found);
-                let (number, weight) = self.found.get(found);
-                self.reaching[start + rank] = reaching(number, weight);
             }
             self.ends.push(self.reaching.len());
         }
@@ -112,11 +109,6 @@ impl Reach {
 }
 
 impl Found {
-    #[inline(always)]
-    fn get(&self, found: usize) -> (usize, f32) {
-        (self.numbers[found] as usize, self.weights[found])
-    }
-
     /// Searches the sites within a radius of a point, and counts them.
     #[inline(always)]
     fn search<S: Simd>(

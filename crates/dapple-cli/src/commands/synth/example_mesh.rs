@@ -80,12 +80,10 @@ impl Args {
         let model = input::model(path)?;
         let (mesh, repair) = model.mesh.repair();
         let surface = Surface::new(mesh).with_context(|| input::name(path))?;
-        let has_others = |model: &Model| {
-            let mut left_out = model.left_out.iter();
-            left_out.any(|what| what == Model::FURTHER_MATERIALS)
-        };
+        let mut left_out = model.left_out.iter();
+        let has_others = left_out.any(|what| what == Model::FURTHER_MATERIALS);
         let (uvs, base) = match (&model.material.base_color, &model.colors) {
-            (Some(_), _) if has_others(&model) => {
+            (Some(_), _) if has_others => {
                 let error = anyhow!("faces of {} have several materials", input::name(path));
                 return Err(error.hint("give a mesh whose faces have one texture in all"));
             }
