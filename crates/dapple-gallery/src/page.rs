@@ -5,7 +5,6 @@
 //! scripts, thumbnails are plain links, and controls that need scripts are hidden.
 
 use crate::{Figure, Paper, papers};
-use core::time::Duration;
 
 /// A rendered figure, as the page shows it.
 #[derive(Clone, Debug)]
@@ -14,8 +13,6 @@ pub struct Entry {
     pub figure: &'static Figure,
     /// The pictures of the figure.
     pub images: Vec<Image>,
-    /// The time to render the pictures, without writing the files.
-    pub time: Duration,
 }
 
 /// A picture of a figure, as the page shows it.
@@ -87,12 +84,11 @@ fn article(entry: &Entry, root: &str) -> String {
     let thumbnails = entry.images.iter().map(|image| thumbnail(image, &number));
     let images: String = thumbnails.collect();
     let parameters: String = figure.parameters.iter().copied().map(parameter).collect();
-    let time = milliseconds(entry.time);
     let code = code(figure, root);
     format!(
         "<article id=\"{name}\"{width}><div class=\"images\">{images}</div>\
          <div class=\"text\"><p><b>{number}.</b> {caption}</p><dl>{parameters}</dl>{code}\
-         <p class=\"small\"><a href=\"#{name}\">{name}</a> · {time}</p></div></article>\n"
+         <p class=\"small\"><a href=\"#{name}\">{name}</a></p></div></article>\n"
     )
 }
 
@@ -161,14 +157,6 @@ const RECIPE: &str = "recipe";
 /// The button that copies the text before it.
 const COPY: &str = "<button class=\"scripted\" data-copy>Copy</button>";
 
-fn milliseconds(time: Duration) -> String {
-    match time.as_millis() {
-        0 => format!("{} µs", time.as_micros()),
-        ms @ 1..=9999 => format!("{ms} ms"),
-        ms => format!("{}.{} s", ms / 1000, ms % 1000 / 100),
-    }
-}
-
 /// Escapes a text for an HTML element or an attribute in double quotes.
 fn escape(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
@@ -186,15 +174,10 @@ fn escape(text: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{escape, milliseconds};
-    use core::time::Duration;
+    use super::escape;
 
     #[test]
-    fn text_is_escaped_and_times_are_readable() {
+    fn text_is_escaped() {
         assert_eq!(escape("a<b>&\"c\""), "a&lt;b&gt;&amp;&quot;c&quot;");
-        let times = [(700, "700 µs"), (12_345, "12 ms"), (12_345_678, "12.3 s")];
-        for (micros, text) in times {
-            assert_eq!(milliseconds(Duration::from_micros(micros)), text);
-        }
     }
 }

@@ -21,7 +21,6 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::thread::sleep;
-use std::time::Duration;
 
 /// The names that a Chromium may have on the `PATH`.
 const NAMES: [&str; 4] = [
@@ -69,7 +68,6 @@ fn page_names_every_picture_and_loads_nothing_from_elsewhere() {
         .map(|figure| Entry {
             figure,
             images: vec![image(format!("{}.png", figure.name()))],
-            time: Duration::from_micros(1500),
         })
         .collect();
     let page = html(&entries, "../../");

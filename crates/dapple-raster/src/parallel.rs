@@ -1,8 +1,9 @@
 //! Work on all cores where the feature `rayon` is on, and one piece after the other where it is not.
 //!
 //! Every piece is computed on its own and put where it belongs, so that the bits do not depend on the number of
-//! threads. This is the only place that uses `rayon`. Its code is large and compiled anew for every closure, so there
-//! is only one closure, which calls the work through a reference.
+//! threads. This is the only place that uses `rayon`. Its code and that of iterators is large and compiled anew for every
+//! closure, which is optimized again in each of their functions. So closures are called through references to trait
+//! objects: a call costs about a nanosecond, and all that is around it is compiled once for each type of values.
 
 use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
@@ -41,7 +42,13 @@ pub fn map_at_least<T: Send>(
     count: usize,
     make: impl Fn(usize) -> T + Sync,
 ) -> Vec<T> {
-    map_parts(least, count, &|part| part.map(&make).collect())
+    all_of(least, count, &make)
+}
+
+/// What [`map_at_least`] returns, by one call of a closure for each number.
+#[inline(never)]
+fn all_of<T: Send>(least: usize, count: usize, make: &(dyn Fn(usize) -> T + Sync)) -> Vec<T> {
+    map_parts(least, count, &|part| part.map(make).collect())
 }
 
 /// The results of `make` for ranges of the numbers below `count`, one after the other; `least` numbers together are
@@ -58,21 +65,17 @@ pub(crate) fn map_parts<T: Send>(
     if size >= count {
         return make(0..count);
     }
-    let parts: Vec<_> = (0..count.div_ceil(size))
-        .map(|_| Mutex::new(Vec::new()))
-        .collect();
-    for_each(parts.len(), &|part| {
+    let n_parts = count.div_ceil(size);
+    let parts = Mutex::new(Vec::new());
+    lock(&parts).resize_with(n_parts, Vec::new);
+    for_each(n_parts, &|part| {
         let first = part * size;
         let made = make(first..count.min(first + size));
-        *lock(&parts[part]) = made;
+        lock(&parts)[part] = made;
     });
-    let parts: Vec<_> = parts
-        .into_iter()
-        .map(|part| part.into_inner().unwrap_or_else(PoisonError::into_inner))
-        .collect();
-    let mut all = Vec::with_capacity(parts.iter().map(Vec::len).sum());
-    for mut part in parts {
-        all.append(&mut part);
+    let mut all = Vec::with_capacity(count);
+    for part in lock(&parts).iter_mut() {
+        all.append(&mut core::mem::take(part));
     }
     all
 }
@@ -88,6 +91,12 @@ pub fn for_each_mut_at_least<T: Send>(
     items: &mut [T],
     work: impl Fn(usize, &mut T) + Sync,
 ) {
+    each_of(least, items, &work);
+}
+
+/// What [`for_each_mut_at_least`] does, by one call of a closure for each item.
+#[inline(never)]
+fn each_of<T: Send>(least: usize, items: &mut [T], work: &(dyn Fn(usize, &mut T) + Sync)) {
     let size = piece(items.len(), least);
     for_each_chunk(items, size, |chunk, items| {
         for (index, item) in (chunk * size..).zip(items) {
@@ -152,19 +161,28 @@ pub fn consume_with<T: Send, S: Send>(
     scratch: impl Fn() -> S + Sync,
     work: impl Fn(&mut S, usize, T) + Sync,
 ) {
-    let size = piece(items.len(), 1);
-    let mut items: Vec<_> = items.into_iter().map(Some).collect();
-    let pieces: Vec<_> = items.chunks_mut(size).map(Mutex::new).collect();
-    let free = Mutex::new(Vec::new());
-    for_each(pieces.len(), &|piece| {
-        let before = lock(&free).pop();
-        let mut memory = before.unwrap_or_else(&scratch);
-        for (index, item) in (piece * size..).zip(lock(&pieces[piece]).iter_mut()) {
-            if let Some(item) = item.take() {
-                work(&mut memory, index, item);
-            }
+    consume_all(items, &scratch, &work);
+}
+
+/// What [`consume_with`] does, by one call of a closure for each item.
+#[inline(never)]
+fn consume_all<T: Send, S: Send>(
+    items: Vec<T>,
+    scratch: &(dyn Fn() -> S + Sync),
+    work: &(dyn Fn(&mut S, usize, T) + Sync),
+) {
+    let (count, items, free) = (items.len(), Mutex::new(items), Mutex::new(Vec::new()));
+    for_each(count, &|_| {
+        let last = {
+            let mut items = lock(&items);
+            items.pop().map(|item| (items.len(), item))
+        };
+        if let Some((index, item)) = last {
+            let before = lock(&free).pop();
+            let mut memory = before.unwrap_or_else(scratch);
+            work(&mut memory, index, item);
+            lock(&free).push(memory);
         }
-        lock(&free).push(memory);
     });
 }
 

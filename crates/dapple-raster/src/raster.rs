@@ -38,11 +38,11 @@ impl<T> Raster<T> {
         mut value: impl FnMut(u32, u32) -> T,
     ) -> Result<Self, RasterError> {
         check_size(size)?;
-        let pixels = (0..size[1]).flat_map(|row| (0..size[0]).map(move |column| (column, row)));
-        Ok(Self {
-            data: pixels.map(|(column, row)| value(column, row)).collect(),
-            size,
-        })
+        let mut data = Vec::with_capacity(size[0] as usize * size[1] as usize);
+        for row in 0..size[1] {
+            data.extend((0..size[0]).map(|column| value(column, row)));
+        }
+        Ok(Self { data, size })
     }
 
     /// Columns and rows.
@@ -235,9 +235,17 @@ impl<T: Send> Raster<T> {
         window: &Window,
         value: impl Fn(DVec2) -> T + Sync,
     ) -> Result<Self, RasterError> {
+        Self::of_window(window, &value)
+    }
+
+    /// What [`from_window`](Self::from_window) returns, by one call of a closure for each pixel.
+    #[inline(never)]
+    fn of_window(
+        window: &Window,
+        value: &(dyn Fn(DVec2) -> T + Sync),
+    ) -> Result<Self, RasterError> {
         Self::from_rows(window.size, |row| {
             let y = window.row_y(row);
-            let value = &value;
             (0..window.size[0]).map(move |column| value(DVec2::new(window.column_x(column), y)))
         })
     }

@@ -157,6 +157,17 @@ impl Synthesizer {
         options: &Options,
         mut callback: impl FnMut(Progress) -> ControlFlow<()>,
     ) -> Result<SurfaceTexture, SynthError> {
+        self.grow(exemplar, guides, options, &mut callback)
+    }
+
+    /// What [`synthesize_guided`](Self::synthesize_guided) does, compiled for all callbacks.
+    fn grow(
+        &self,
+        exemplar: &Exemplar,
+        guides: &[&[f32]],
+        options: &Options,
+        callback: Callback<'_>,
+    ) -> Result<SurfaceTexture, SynthError> {
         self.check_levels(options)?;
         let pyramid = exemplar.pyramid(options.n_levels)?;
         let targets = Targets::of_surface(exemplar, guides, &self.hierarchy, options.n_levels)?;
@@ -170,11 +181,11 @@ impl Synthesizer {
             && self.scales.iter().all(|&scale| scale == 1.0);
         let (sources, quarters) = match options.matching {
             Matching::Appearance if is_plain => {
-                let sources = self.by_appearance(&ground, &pyramid, options, &mut callback)?;
+                let sources = self.by_appearance(&ground, &pyramid, options, callback)?;
                 (sources, Vec::new())
             }
             _ => {
-                let levels = engine::run_turned(&ground, &pyramid, options, &mut callback)?;
+                let levels = engine::run_turned(&ground, &pyramid, options, callback)?;
                 ground::Sources::pixels_and_quarters(levels)
             }
         };

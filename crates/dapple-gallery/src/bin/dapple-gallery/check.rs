@@ -1,7 +1,7 @@
 //! The options `--check` and `--bless`, which compare the figures with `figures.lock` or rewrite it.
 #![expect(clippy::disallowed_methods, reason = "the lock is a file")]
 
-use crate::{say, with_progress};
+use crate::{draw_each, say};
 use anyhow::{Context, bail};
 use dapple_gallery::lock::Change;
 use dapple_gallery::{Figure, LOCK_SIZE, Lock, figures};
@@ -48,8 +48,9 @@ fn updated(old: &Lock, selected: &[&'static Figure]) -> anyhow::Result<Lock> {
     let mut lock = old.clone();
     let names: Vec<String> = figures().map(Figure::name).collect();
     lock.retain(|name| names.iter().any(|figure| figure == name));
-    for figure in with_progress(selected) {
-        lock.insert(figure.name(), figure.hash(LOCK_SIZE)?);
+    let hashes = draw_each(selected, |figure| figure.hash(LOCK_SIZE))?;
+    for (figure, hash) in selected.iter().zip(hashes) {
+        lock.insert(figure.name(), hash);
     }
     Ok(lock)
 }

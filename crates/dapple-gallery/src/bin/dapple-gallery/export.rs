@@ -1,10 +1,7 @@
 //! Writes the pictures as PNG files, with the page beside them.
-#![expect(
-    clippy::disallowed_methods,
-    reason = "files are written here, and the page says how long a figure took"
-)]
+#![expect(clippy::disallowed_methods, reason = "files are written here")]
 
-use crate::{root, with_progress};
+use crate::{draw_each, root};
 use anyhow::{Context, ensure};
 use dapple_gallery::page::{self, Entry, Image};
 use dapple_gallery::{Figure, Panel, Picture};
@@ -12,19 +9,15 @@ use dapple_image::{Depth, write_color_png, write_gray_png};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use std::time::Instant;
 
-/// Renders `figures` one after another, each on all cores, into the folder `out`. Returns the path of the page.
+/// Renders `figures` into the folder `out`. Returns the path of the page.
 pub(crate) fn export(
     figures: &[&'static Figure],
     size: u32,
     out: &Path,
 ) -> anyhow::Result<PathBuf> {
     fs::create_dir_all(out).with_context(|| format!("cannot make the folder {}", out.display()))?;
-    let mut entries = Vec::new();
-    for figure in with_progress(figures) {
-        entries.push(export_figure(figure, size, out)?);
-    }
+    let entries = draw_each(figures, |figure| export_figure(figure, size, out))?;
     let page = out.join("index.html");
     let html = page::html(&entries, &relative_root(out)?);
     fs::write(&page, html).with_context(|| format!("cannot write {}", page.display()))?;
@@ -32,9 +25,7 @@ pub(crate) fn export(
 }
 
 fn export_figure(figure: &'static Figure, size: u32, out: &Path) -> anyhow::Result<Entry> {
-    let start = Instant::now();
     let panels = figure.render(size)?;
-    let time = start.elapsed();
     let mut images = Vec::new();
     for (number, panel) in (1..).zip(&panels) {
         let file = match panels.len() {
@@ -50,11 +41,7 @@ fn export_figure(figure: &'static Figure, size: u32, out: &Path) -> anyhow::Resu
             size: panel.size(),
         });
     }
-    Ok(Entry {
-        figure,
-        images,
-        time,
-    })
+    Ok(Entry { figure, images })
 }
 
 fn write_png(path: &Path, panel: &Panel) -> anyhow::Result<()> {

@@ -10,6 +10,7 @@ mod ranges;
 use anyhow::ensure;
 use command::{Command, HELP, Task};
 use dapple_gallery::{Figure, select};
+use dapple_raster::parallel;
 use std::io::{IsTerminal, stderr};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -73,15 +74,21 @@ fn lock_path() -> PathBuf {
     root().join("crates/dapple-gallery/figures.lock")
 }
 
-/// Iterates over the figures and prints a progress line for each before it is drawn, if standard error is a terminal.
-fn with_progress<'a>(figures: &'a [&'static Figure]) -> impl Iterator<Item = &'static Figure> + 'a {
+/// Draws figures, several at a time where there are several cores, since few keep all of them busy on their own. Prints a
+/// line for each before it is drawn, if standard error is a terminal.
+fn draw_each<T: Send>(
+    figures: &[&'static Figure],
+    draw: impl Fn(&'static Figure) -> anyhow::Result<T> + Sync,
+) -> anyhow::Result<Vec<T>> {
     let is_shown = stderr().is_terminal();
-    (1..).zip(figures).map(move |(number, figure)| {
+    let drawn = parallel::map(figures.len(), |at| {
+        let figure = figures[at];
         if is_shown {
-            eprintln!("{number}/{} {}", figures.len(), figure.name());
+            eprintln!("{}/{} {}", at + 1, figures.len(), figure.name());
         }
-        *figure
-    })
+        draw(figure)
+    });
+    drawn.into_iter().collect()
 }
 
 #[expect(clippy::print_stdout, reason = "this is what the program says")]

@@ -22,7 +22,7 @@ pub(super) const FIGURE: Figure = Figure {
             "coherence, evenness",
             "auto (2 for puzzle pieces, for all others 2 in the first pass and then 0); 1; 0 in the paper",
         ),
-        ("texture map", "2048²"),
+        ("texture map", "1024²"),
     ],
     source: source!(),
     render,

@@ -18,15 +18,15 @@ use glam::DVec3;
 pub(super) const FIGURE: Figure = Figure {
     number: "extra",
     parameters: &[
-        ("first model", "bunny; scales, 64²; 64,000 points"),
-        ("second model", "tori; 64,000 points; coherence 0"),
+        ("first model", "bunny; scales, 64²; 40,000 points"),
+        ("second model", "tori; 40,000 points; coherence 0"),
     ],
     source: source!(),
     render,
 };
 
 /// The points of each model for a figure of 512 pixels, and the least number.
-const SITES: f64 = 64_000.0;
+const SITES: f64 = 40_000.0;
 const SITES_MIN: usize = 2000;
 /// The middle of the stain.
 const STAIN: DVec3 = DVec3::new(0.32, -0.3, 0.28);

@@ -18,7 +18,7 @@ const TRIANGLES: [f64; 2] = [14_000.0, 2000.0];
 /// The least number of sites.
 const SITES_MIN: f64 = 1024.0;
 /// Texels along the side of a texture map, per pixel of the figure.
-const TEXELS: u32 = 4;
+const TEXELS: u32 = 2;
 
 /// A model and the texture that it gets.
 #[derive(Clone, Copy, Debug)]
