@@ -79,7 +79,7 @@ pub(crate) struct Model {
 /// crease : the angle of an edge in degrees above which it is shaded as a crease.
 /// axes : how neighborhoods continue over the surface: `"followed"` or `"carried"`.
 /// matching : the values that are compared, `"appearance"` by default, or `"colors"` as in the paper; always colors with
-///     `guides` and a `symmetry` of 2 or 4.
+///     `guides`.
 /// guides : a list of (of_example, of_mesh, weight): numbers in the size of the example, and for the mesh a number for each
 ///     vertex, (n,), or an image that is read at `mesh.uv` and repeats, (rows, columns); parts of the example go where both
 ///     are alike. Weights are as for `synthesize`, and `evenness` has no effect.

@@ -14,15 +14,19 @@
 //! other, in classes of sites that are not connected, which depend on nothing but the graph. The coarsest level begins with
 //! the paper's first pass of a sweep (Turk 2001), in which large features grow from one side to the other. Parts of the
 //! exemplar that the texture has too often cost more from one pass to the next, as those of endless textures do.
+//!
+//! Where directions have a symmetry, the first pass says by how many quarter turns the exemplar lies turned at the coarsest
+//! sites, and finer ones take this from the nearest of them. A site goes on with neighbors at which it lies the same; of
+//! others it sees what the exemplar looks like when it is turned.
 
 mod links;
 
 use crate::endless::evenness::Costs;
-use crate::endless::stage::{self, DIAGONALS, N_FEATURES, Stage, narrow};
+use crate::endless::stage::{self, DIAGONALS, N_FEATURES, Stage, exemplar_offset, narrow};
 use crate::engine::{self, Callback, Progress};
 use crate::options::REGULAR;
-use crate::places::{Frame, Frames};
-use crate::{Coherence, Exemplar, Hierarchy, Options, SynthError, Synthesizer};
+use crate::places::Frames;
+use crate::{Coherence, Exemplar, Hierarchy, Options, SiteIdx, SynthError, Synthesizer};
 use dapple_hash::{Seed, hash1};
 use dapple_raster::parallel;
 use glam::Vec2;
@@ -43,7 +47,9 @@ const STEP: f32 = 0.8;
 /// The sites of a surface with their directions, and the exemplar on all levels.
 pub(crate) struct Appearance<'a> {
     hierarchy: &'a Hierarchy,
-    frames: Vec<Frame>,
+    /// By how many quarter turns the exemplar lies turned at each site; nothing where directions have no symmetry.
+    pub(crate) quarters: Vec<u8>,
+    frames: Frames,
     /// The levels, the finest first.
     stages: Vec<Stage>,
     seed: Seed,
@@ -61,7 +67,7 @@ struct Choice {
 }
 
 impl<'a> Appearance<'a> {
-    /// Prepares the levels of an exemplar.
+    /// Prepares the levels of an exemplar, which lies turned by these quarter turns at the coarsest sites.
     ///
     /// # Errors
     ///
@@ -69,16 +75,20 @@ impl<'a> Appearance<'a> {
     pub(crate) fn new(
         synthesizer: &'a Synthesizer,
         exemplar: &Exemplar,
+        coarsest: &[u8],
         options: &Options,
     ) -> Result<Self, SynthError> {
         // Of less than the exemplar, no texture has all parts; and what repeats has all of them anyway.
         let [width, height] = exemplar.size.map(|side| side as usize);
         let hierarchy = synthesizer.hierarchy();
         let is_uneven = hierarchy.sites().len() < width * height || exemplar.regularity() > REGULAR;
+        let quarters = quarters(synthesizer, coarsest, options.n_levels);
+        let symmetry = synthesizer.orientation().symmetry();
         Ok(Self {
             hierarchy,
-            frames: Frames::new(synthesizer, &[]).of_site,
-            stages: stage::stages(exemplar, options.n_levels)?,
+            frames: Frames::new(synthesizer, &quarters),
+            quarters,
+            stages: stage::stages(exemplar, symmetry, options.n_levels)?,
             seed: options.seed,
             evenness: if is_uneven { 0.0 } else { options.evenness },
             coherence: match options.coherence {
@@ -92,7 +102,7 @@ impl<'a> Appearance<'a> {
     /// The pixel of the exemplar that each site of each level is from, the finest first, given those of the coarsest level
     /// of a pyramid that the coarsest sites begin with.
     pub(crate) fn run(
-        mut self,
+        &mut self,
         coarsest: &[u32],
         callback: Callback<'_>,
     ) -> Result<Vec<Vec<[u32; 2]>>, SynthError> {
@@ -149,7 +159,8 @@ impl<'a> Appearance<'a> {
                 return place;
             }
             let near = links.of(site).near.iter();
-            let parents = near.filter(|link| (link.site as usize) < coarser.len());
+            let parents =
+                near.filter(|link| (link.site as usize) < coarser.len() && link.quarters == 0);
             let nearest = parents.min_by(|a, b| {
                 a.way()
                     .length_squared()
@@ -225,6 +236,33 @@ impl<'a> Appearance<'a> {
     }
 }
 
+/// By how many quarter turns the exemplar lies turned at all sites, given those at the coarsest ones: each site goes on with
+/// the nearest one of the coarser level that it is connected to.
+fn quarters(synthesizer: &Synthesizer, coarsest: &[u8], n_levels: usize) -> Vec<u8> {
+    let (hierarchy, orientation) = (synthesizer.hierarchy(), synthesizer.orientation());
+    let (positions, normals) = (hierarchy.sites().positions(), hierarchy.sites().normals());
+    if coarsest.is_empty() {
+        return Vec::new();
+    }
+    let mut quarters = coarsest.to_vec();
+    for level in hierarchy.levels()[..n_levels - 1].iter().rev() {
+        let n_coarser = quarters.len();
+        for site in n_coarser..level.n_sites() {
+            let near = level.graph().neighbors(SiteIdx(site as u32)).iter();
+            let parents = near
+                .map(|near| near.index())
+                .filter(|&near| near < n_coarser);
+            let distance_sq = |parent: usize| positions[parent].distance_squared(positions[site]);
+            let nearest = parents.min_by(|&a, &b| distance_sq(a).total_cmp(&distance_sq(b)));
+            let turned = |parent: usize| {
+                orientation.quarters_toward(normals, site, parent, quarters[parent])
+            };
+            quarters.push(nearest.map_or(0, turned));
+        }
+    }
+    quarters
+}
+
 /// The place around which the exemplar looks most like the texture around a site. Of equally good ones the first.
 fn choose(
     stage: &Stage,
@@ -252,6 +290,9 @@ fn choose(
     let mut n_coherent = 1;
     compare(own, 1.0);
     for link in links.of(site).near {
+        if link.quarters != 0 {
+            continue;
+        }
         if let Some(place) = stage.usable(moved(places[link.site as usize], -link.way()))
             && n_coherent < MAX_COHERENT
             && !coherent[..n_coherent].contains(&place)
@@ -286,8 +327,10 @@ fn around(
         let diagonal = Vec2::from(DIAGONALS[corner].map(|at| (at * stage.spacing) as f32));
         let mut sums = [0.0; N_FEATURES];
         for link in links {
-            let place = moved(places[link.site as usize], diagonal - link.way());
-            for (sum, value) in sums.iter_mut().zip(stage.features(place)) {
+            let way = exemplar_offset((diagonal - link.way()).to_array(), link.quarters);
+            let place = moved(places[link.site as usize], way.into());
+            let features = stage.turned_features(place, link.quarters);
+            for (sum, value) in sums.iter_mut().zip(features) {
                 *sum += value;
             }
         }

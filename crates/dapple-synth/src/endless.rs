@@ -24,7 +24,7 @@ mod window;
 
 use crate::engine::Progress;
 use crate::options::REGULAR;
-use crate::{Edges, Exemplar, PlaneTexture, SynthError, SynthErrorKind};
+use crate::{Edges, Exemplar, PlaneTexture, Symmetry, SynthError, SynthErrorKind};
 use core::ops::ControlFlow;
 use dapple_hash::Seed;
 use evenness::REPETITION;
@@ -119,7 +119,7 @@ impl Endless {
                 return Err(SynthError::new(SynthErrorKind::Period { period, n_levels }));
             }
         }
-        let stages = stage::stages(exemplar, n_levels as usize)?;
+        let stages = stage::stages(exemplar, Symmetry::One, n_levels as usize)?;
         let is_tile = exemplar.edges == Edges::Wrap && exemplar.usable.is_none();
         let is_regular = exemplar.regularity() > REGULAR;
         let mut texture = Self {

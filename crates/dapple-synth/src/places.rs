@@ -13,8 +13,8 @@
 
 use crate::columns;
 use crate::orientation::turned;
-use crate::{Edges, Exemplar, Hierarchy, SiteIdx, Synthesizer};
-use glam::{Vec2, Vec3};
+use crate::{Edges, Exemplar, Hierarchy, SiteIdx, Symmetry, Synthesizer};
+use glam::{DVec2, Vec2, Vec3};
 
 /// How far from each other two predictions of one place may be, in pixels.
 pub(crate) const AGREEMENT: f32 = 1.5;
@@ -62,8 +62,8 @@ pub(crate) struct Frame {
 #[derive(Clone, Debug)]
 pub(crate) struct Frames {
     pub(crate) of_site: Vec<Frame>,
-    /// Whether neighbors may be off by quarter turns.
-    are_turned: bool,
+    /// The quarter turns that neighbors may be off by.
+    symmetry: Symmetry,
 }
 
 impl Places {
@@ -171,14 +171,23 @@ impl Frames {
         };
         Self {
             of_site: (0..normals.len()).map(frame).collect(),
-            are_turned: !quarters.is_empty(),
+            symmetry: orientation.symmetry(),
         }
+    }
+
+    /// By how many quarter turns the exemplar at one site lies turned from how it lies at another one.
+    #[inline]
+    pub(crate) fn quarters_between(&self, from: usize, to: usize) -> u8 {
+        let (own, other) = (&self.of_site[from], self.of_site[to].down);
+        let along = |axis: Vec3| f64::from(other.dot(axis));
+        self.symmetry
+            .quarters_to(DVec2::new(along(own.down), along(own.right)))
     }
 
     /// Whether the exemplar lies turned at a site, seen from where its down is this direction of any length.
     #[inline]
     pub(crate) fn differ(&self, down: Vec3, other: &Frame) -> bool {
         let lengths = down.length_squared() * other.down.length_squared();
-        self.are_turned && down.dot(other.down) < SAME_TURN * lengths.sqrt()
+        self.symmetry != Symmetry::One && down.dot(other.down) < SAME_TURN * lengths.sqrt()
     }
 }

@@ -8,7 +8,7 @@ use crate::mesh_ground::MeshGround;
 use crate::places::{Frames, Places};
 use crate::{
     Axes, Direction, Exemplar, Hierarchy, HierarchyOptions, Matching, Options, Orientation,
-    Pyramid, SiteIdx, Sources, SurfaceTexture, Sweep, Symmetry, SynthError, SynthErrorKind,
+    Pyramid, SiteIdx, Sources, SurfaceTexture, Sweep, SynthError, SynthErrorKind,
 };
 use core::ops::ControlFlow;
 use dapple_mesh::{Mesh, Surface};
@@ -177,12 +177,10 @@ impl Synthesizer {
         };
         let is_plain = options.schedule.is_none()
             && exemplar.n_guides() == 0
-            && self.orientation.symmetry() == Symmetry::One
             && self.scales.iter().all(|&scale| scale == 1.0);
         let (sources, quarters) = match options.matching {
             Matching::Appearance if is_plain => {
-                let sources = self.by_appearance(&ground, &pyramid, options, callback)?;
-                (sources, Vec::new())
+                self.by_appearance(&ground, &pyramid, options, callback)?
             }
             _ => {
                 let levels = engine::run_turned(&ground, &pyramid, options, callback)?;
@@ -213,14 +211,15 @@ impl Synthesizer {
         }))
     }
 
-    /// The pixels of the sites of each level, the finest first: of the first pass on the coarsest, and then corrected.
+    /// The pixels of the sites of each level, the finest first: of the first pass on the coarsest, and then corrected. And by
+    /// how many quarter turns the exemplar lies turned at the finest ones.
     fn by_appearance(
         &self,
         ground: &MeshGround<'_>,
         pyramid: &Pyramid,
         options: &Options,
         callback: Callback<'_>,
-    ) -> Result<Vec<Vec<u32>>, SynthError> {
+    ) -> Result<(Vec<Vec<u32>>, Vec<u8>), SynthError> {
         let exemplar = &pyramid.levels()[0];
         let passes = options.passes()?.passes;
         let mut first = |progress: Progress| {
@@ -229,17 +228,18 @@ impl Synthesizer {
                 ..progress
             })
         };
-        let levels = engine::run_passes(ground, pyramid, &passes[..1], options, &mut first)?;
-        let (sources, _) = ground::Sources::pixels_and_quarters(levels);
-        let coarsest = sources.last().map_or(&[][..], Vec::as_slice);
-        let appearance = Appearance::new(self, exemplar, options)?;
-        let places = appearance.run(coarsest, callback)?;
+        let mut levels = engine::run_passes(ground, pyramid, &passes[..1], options, &mut first)?;
+        let coarsest = levels.split_off(options.n_levels - 1);
+        let (sources, quarters) = ground::Sources::pixels_and_quarters(coarsest);
+        let mut appearance = Appearance::new(self, exemplar, &quarters, options)?;
+        let places = appearance.run(&sources.concat(), callback)?;
         let pixels = |(level, places): (usize, Vec<[u32; 2]>)| {
             let width = pyramid.levels()[level].size[0];
             let pixel = |[column, row]: [u32; 2]| (row >> level) * width + (column >> level);
             places.into_iter().map(pixel).collect()
         };
-        Ok(places.into_iter().enumerate().map(pixels).collect())
+        let pixels = places.into_iter().enumerate().map(pixels).collect();
+        Ok((pixels, appearance.quarters))
     }
 
     /// The surface, its sites and their orientation, on which the texture grows.

@@ -2,7 +2,8 @@
 //! say what is there.
 
 use crate::endless::stage::DIAGONALS;
-use crate::places::Frame;
+use crate::orientation::offset_before;
+use crate::places::Frames;
 use crate::{Hierarchy, SiteIdx};
 use dapple_raster::parallel;
 use glam::Vec2;
@@ -30,6 +31,8 @@ const MAX_CLASSES: u32 = 63;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Link {
     pub(super) site: u32,
+    /// By how many quarter turns the exemplar lies turned there, seen from here.
+    pub(super) quarters: u8,
     /// The way to it in pixels of the exemplar.
     way: [f32; 2],
 }
@@ -61,7 +64,7 @@ impl Link {
 }
 
 impl Links {
-    pub(super) fn new(hierarchy: &Hierarchy, frames: &[Frame], level: usize) -> Self {
+    pub(super) fn new(hierarchy: &Hierarchy, frames: &Frames, level: usize) -> Self {
         let n_sites = hierarchy.levels()[level].n_sites();
         let (mut links, mut rows) = (Vec::new(), Vec::with_capacity(n_sites + 1));
         // Links take most of the memory of a synthesis: few of them are there twice.
@@ -107,7 +110,7 @@ impl Links {
 /// Appends the links of a site, and where they begin.
 fn add(
     hierarchy: &Hierarchy,
-    frames: &[Frame],
+    frames: &Frames,
     level: usize,
     site: SiteIdx,
     (links, rows): &mut (Vec<Link>, Vec<[u32; 5]>),
@@ -148,16 +151,19 @@ fn add(
 }
 
 /// The way to another site; nothing if it is on another sheet.
-fn link(hierarchy: &Hierarchy, frames: &[Frame], from: SiteIdx, to: SiteIdx) -> Option<Link> {
+fn link(hierarchy: &Hierarchy, frames: &Frames, from: SiteIdx, to: SiteIdx) -> Option<Link> {
     let (sites, [a, b]) = (hierarchy.sites(), [from, to].map(|site| site.index()));
     if sites.normals()[a].dot(sites.normals()[b]) < 0.0 {
         return None;
     }
     let way = (sites.positions()[b] - sites.positions()[a]).as_vec3();
+    let quarters = frames.quarters_between(a, b);
+    let [here, there] = [a, b].map(|site| frames.of_site[site].flat(way));
     // Frames turn on the way: the mean of both ends is that of its middle.
-    let way = 0.5 * (frames[a].flat(way) + frames[b].flat(way));
+    let way = 0.5 * (here + Vec2::from(offset_before(there.to_array(), quarters)));
     Some(Link {
         site: to.0,
+        quarters,
         way: way.to_array(),
     })
 }

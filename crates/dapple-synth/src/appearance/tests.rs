@@ -1,15 +1,18 @@
 //! Tests of corrections on surfaces.
 
 use super::links::Links;
-use super::{Appearance, Choice, choose};
-use crate::endless::stage::DIAGONALS;
+use super::{Appearance, Choice, choose, quarters};
+use crate::endless::stage::{self, DIAGONALS};
+use crate::orientation::offset_before;
 use crate::places::{Frame, Frames};
-use crate::shapes::{on_threads, sheet, sphere, synthesizer};
+use crate::shapes::{on_threads, sheet, sites_on, sphere, synthesizer};
 use crate::{
-    Edges, Exemplar, Matching, Options, SiteIdx, SurfaceTexture, SynthErrorKind, Synthesizer,
+    Edges, Exemplar, Matching, Options, Orientation, SiteIdx, SurfaceTexture, Symmetry,
+    SynthErrorKind, Synthesizer,
 };
 use core::ops::ControlFlow;
 use dapple_hash::{Seed, hash2, unit_f32};
+use dapple_mesh::Surface;
 use dapple_raster::Raster;
 use glam::{DVec3, Vec2};
 
@@ -24,6 +27,14 @@ fn ball() -> Synthesizer {
     synthesizer(sphere(), 1500, |at, normal| normal.cross(at + DVec3::X))
 }
 
+fn ball_along(symmetry: Symmetry) -> Synthesizer {
+    let hierarchy = sites_on(sphere(), 1500, 2);
+    let axis = Orientation::AXIS;
+    let orientation = Orientation::symmetric(&hierarchy, &[], axis, symmetry).unwrap();
+    let surface = Surface::new(sphere()).unwrap();
+    Synthesizer::from_parts(surface, hierarchy, orientation, None).unwrap()
+}
+
 fn options() -> Options {
     Options {
         n_levels: 2,
@@ -36,17 +47,39 @@ fn sources(texture: &SurfaceTexture) -> Vec<[u32; 2]> {
     texture.sources(0).collect()
 }
 
+/// An offset after some quarter turns of what it is an offset in, each of which takes right to up.
+fn before([mut x, mut y]: [f32; 2], quarters: u8) -> Vec2 {
+    for _ in 0..quarters {
+        (x, y) = (y, -x);
+    }
+    Vec2::new(x, y)
+}
+
+/// By how many quarter turns the exemplar at a site lies turned from how it lies at another one.
+fn turn(frames: &[Frame], symmetry: Symmetry, [from, to]: [usize; 2]) -> u8 {
+    let Frame { right, down, .. } = frames[from];
+    let alike = |&quarters: &u8| match quarters {
+        0 => down.dot(frames[to].down),
+        1 => right.dot(frames[to].down),
+        2 => -down.dot(frames[to].down),
+        _ => -right.dot(frames[to].down),
+    };
+    let turns = symmetry.quarters().iter().copied();
+    turns.max_by(|a, b| alike(a).total_cmp(&alike(b))).unwrap()
+}
+
 /// The way from one site to another one in pixels.
 fn way(ball: &Synthesizer, frames: &[Frame], [from, to]: [usize; 2]) -> Vec2 {
     let positions = ball.hierarchy().sites().positions();
     let way = (positions[to] - positions[from]).as_vec3();
-    0.5 * (frames[from].flat(way) + frames[to].flat(way))
+    let quarters = turn(frames, ball.orientation().symmetry(), [from, to]);
+    0.5 * (frames[from].flat(way) + before(frames[to].flat(way).to_array(), quarters))
 }
 
 #[test]
 fn links_are_the_sites_on_the_diagonals_that_two_edges_reach() {
     let ball = ball();
-    let frames = Frames::new(&ball, &[]).of_site;
+    let frames = Frames::new(&ball, &[]);
     for level in 0..2 {
         let links = Links::new(ball.hierarchy(), &frames, level);
         let graph = ball.hierarchy().levels()[level].graph();
@@ -72,7 +105,7 @@ fn links_are_the_sites_on_the_diagonals_that_two_edges_reach() {
                 let is_there = |&other: &usize| {
                     let is_reached =
                         connected(site, other) || near.iter().any(|&near| connected(near, other));
-                    let way = way(&ball, &frames, [site, other]);
+                    let way = way(&ball, &frames.of_site, [site, other]);
                     other != site
                         && is_reached
                         && way.distance(middle) < 1.1 * spacing
@@ -90,7 +123,7 @@ fn links_are_the_sites_on_the_diagonals_that_two_edges_reach() {
 #[test]
 fn classes_have_every_site_once_and_no_two_that_are_connected() {
     let ball = ball();
-    let frames = Frames::new(&ball, &[]).of_site;
+    let frames = Frames::new(&ball, &[]);
     let links = Links::new(ball.hierarchy(), &frames, 0);
     let graph = ball.hierarchy().levels()[0].graph();
     let mut all = links.classes.concat();
@@ -106,11 +139,25 @@ fn classes_have_every_site_once_and_no_two_that_are_connected() {
 
 #[test]
 fn sites_take_the_place_that_comparing_with_all_they_may_take_finds() {
-    let ball = ball();
+    for symmetry in [Symmetry::One, Symmetry::Two, Symmetry::Four] {
+        takes_the_place_that_comparing_with_all_finds(&ball_along(symmetry));
+    }
+}
+
+fn takes_the_place_that_comparing_with_all_finds(ball: &Synthesizer) {
     let exemplar = noise(Edges::Cut);
-    let appearance = Appearance::new(&ball, &exemplar, &options()).unwrap();
-    let (frames, stage) = (&appearance.frames, &appearance.stages[0]);
-    let links = Links::new(ball.hierarchy(), frames, 0);
+    let symmetry = ball.orientation().symmetry();
+    let turns = symmetry.quarters().iter().copied().cycle();
+    let quarters: Vec<u8> = match symmetry {
+        Symmetry::One => Vec::new(),
+        _ => turns.take(ball.hierarchy().levels()[1].n_sites()).collect(),
+    };
+    let appearance = Appearance::new(ball, &exemplar, &quarters, &options()).unwrap();
+    let stage = &appearance.stages[0];
+    let links = Links::new(ball.hierarchy(), &appearance.frames, 0);
+    let frames = &appearance.frames.of_site;
+    let turn = |from: usize, to: usize| turn(frames, symmetry, [from, to]);
+    let mut n_turned = 0;
     let usable = stage.usable_pixels();
     let places: Vec<[u32; 2]> = (0..1500)
         .map(|site: usize| usable[site * 7 % usable.len()])
@@ -126,8 +173,12 @@ fn sites_take_the_place_that_comparing_with_all_they_may_take_finds() {
         let around = DIAGONALS.iter().zip(read.corners).map(|(diagonal, sites)| {
             let diagonal = Vec2::from(diagonal.map(|at| at as f32));
             let there = sites.iter().map(|link| {
-                let way = way(&ball, frames, [site, link.site as usize]);
-                *stage.features(from(link.site as usize, diagonal - way))
+                let other = link.site as usize;
+                let quarters = turn(site, other);
+                n_turned += usize::from(quarters != 0);
+                let way = diagonal - way(ball, frames, [site, other]);
+                let way = before(way.to_array(), (4 - quarters) % 4);
+                *stage.turned_features(from(other, way), quarters)
             });
             let there: Vec<[f32; 8]> = there.collect();
             core::array::from_fn::<f32, 8, _>(|i| {
@@ -143,8 +194,10 @@ fn sites_take_the_place_that_comparing_with_all_they_may_take_finds() {
             });
             squares.sum()
         };
-        let coherent = read.near.iter().filter_map(|link| {
-            let way = way(&ball, frames, [site, link.site as usize]);
+        let same = read.near.iter();
+        let same = same.filter(|link| turn(site, link.site as usize) == 0);
+        let coherent = same.filter_map(|link| {
+            let way = way(ball, frames, [site, link.site as usize]);
             stage.usable(from(link.site as usize, -way))
         });
         let mut coherent: Vec<[i64; 2]> = coherent.collect();
@@ -160,17 +213,103 @@ fn sites_take_the_place_that_comparing_with_all_they_may_take_finds() {
         // Sums of the same squares in another order.
         assert!(
             (distance_sq - least).abs() <= 1e-4 * least,
-            "{site}: {distance_sq}, {least}"
+            "{symmetry}, {site}: {distance_sq}, {least}"
         );
+    }
+    assert_eq!(
+        n_turned > 1000,
+        symmetry != Symmetry::One,
+        "{n_turned} turned"
+    );
+}
+
+#[test]
+fn features_of_what_looks_alike_when_turned_are_those_at_the_turned_place() {
+    const SIDE: i64 = 15;
+    let around = |at: [i64; 2]| at.map(|at| (at - 7).rem_euclid(SIDE));
+    let value = |x: u32, y: u32| {
+        let mut at = [x, y].map(|at| i64::from(at) - 7);
+        let mut values = [0.0; 4];
+        for value in &mut values {
+            at = offset_before(at, 1);
+            *value = unit_f32((hash2(Seed(3), at.map(|at| at.rem_euclid(SIDE)), 0) >> 32) as u32);
+        }
+        // In one order for all turns.
+        values.sort_unstable_by(f32::total_cmp);
+        values.iter().sum()
+    };
+    let plane = Raster::from_fn([SIDE as u32; 2], value).unwrap();
+    let exemplar = Exemplar::from_planes(&[(&plane, 1.0)], Edges::Wrap).unwrap();
+    for symmetry in [Symmetry::One, Symmetry::Two, Symmetry::Four] {
+        let stage = &stage::stages(&exemplar, symmetry, 1).unwrap()[0];
+        for place in (0..SIDE * SIDE).map(|pixel| [pixel % SIDE, pixel / SIDE]) {
+            for &quarters in symmetry.quarters() {
+                let turned = offset_before(around(place), quarters).map(|at| at + 7);
+                assert_eq!(
+                    stage.turned_features(place, quarters),
+                    stage.features(turned),
+                    "{symmetry}, {place:?}, {quarters}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn exemplars_lie_turned_as_at_the_neighbors_but_along_seams() {
+    for symmetry in [Symmetry::Two, Symmetry::Four] {
+        let ball = ball_along(symmetry);
+        let (graph, normals) = (
+            ball.hierarchy().levels()[0].graph(),
+            ball.hierarchy().sites().normals(),
+        );
+        let agrees = |quarters: &[u8], site: usize, near: SiteIdx| {
+            let (near, of_near) = (near.index(), quarters[near.index()]);
+            let toward = ball
+                .orientation()
+                .quarters_toward(normals, site, near, of_near);
+            toward == quarters[site]
+        };
+        let texture = ball.synthesize(&noise(Edges::Wrap), &options()).unwrap();
+        let (mut same, mut all) = (0, 0);
+        for site in 0..graph.len() {
+            let near = graph.neighbors(SiteIdx(site as u32)).iter();
+            all += near.len();
+            same += near
+                .filter(|&&near| agrees(&texture.quarters, site, near))
+                .count();
+        }
+        // Seams go from singularity to singularity, of which there are a few.
+        assert!(same * 100 > 93 * all, "{symmetry}: {same} of {all}");
+
+        // However the coarsest sites lie turned, the others do as one of them that they are connected to.
+        let n_coarser = ball.hierarchy().levels()[1].n_sites();
+        let turns = symmetry.quarters().iter().copied().cycle();
+        let coarsest: Vec<u8> = turns.take(n_coarser).collect();
+        let all = quarters(&ball, &coarsest, 2);
+        assert_eq!(all.len(), graph.len(), "{symmetry}");
+        assert_eq!(all[..n_coarser], coarsest, "{symmetry}");
+        for site in n_coarser..graph.len() {
+            let near = graph.neighbors(SiteIdx(site as u32)).iter();
+            let mut coarser = near.filter(|near| near.index() < n_coarser);
+            assert!(
+                coarser.any(|&near| agrees(&all, site, near)),
+                "{symmetry}, {site}"
+            );
+        }
     }
 }
 
 #[test]
 fn textures_have_the_same_bits_on_any_number_of_threads() {
-    for edges in [Edges::Cut, Edges::Wrap] {
-        let [one, two, seven] =
-            on_threads(|| ball().synthesize(&noise(edges), &options()).unwrap());
-        assert!(one == two && one == seven, "{edges}");
+    for (edges, symmetry) in [
+        (Edges::Cut, Symmetry::One),
+        (Edges::Wrap, Symmetry::One),
+        (Edges::Cut, Symmetry::Four),
+    ] {
+        let ball = ball_along(symmetry);
+        let [one, two, seven] = on_threads(|| ball.synthesize(&noise(edges), &options()).unwrap());
+        assert!(one == two && one == seven, "{edges}, {symmetry}");
     }
 }
 
@@ -258,6 +397,19 @@ fn pieces(flat: &Synthesizer, values: &[f32]) -> (usize, usize) {
         }
     }
     (n_pieces, n_torn)
+}
+
+#[test]
+fn value_stability_appearance_along_four_directions() {
+    let texture = ball_along(Symmetry::Four)
+        .synthesize(&noise(Edges::Wrap), &options())
+        .unwrap();
+    let sources: Vec<[u32; 2]> = texture.sources(0).step_by(300).collect();
+    assert_eq!(
+        sources,
+        [[23, 2], [10, 10], [18, 11], [18, 5], [5, 19]],
+        "some sources"
+    );
 }
 
 #[test]

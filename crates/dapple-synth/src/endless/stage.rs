@@ -6,7 +6,9 @@
 use super::evenness::Costs;
 use crate::exemplar::blend;
 use crate::matcher::{Basis, Matcher, MatcherMemory, Query};
-use crate::{Edges, Exemplar, SynthError, SynthErrorKind};
+use crate::orientation::offset_before;
+use crate::{Edges, Exemplar, Symmetry, SynthError, SynthErrorKind};
+use core::ops::Neg;
 use dapple_raster::simd::{self, dispatch};
 use dapple_raster::{Wrap, parallel};
 
@@ -44,8 +46,9 @@ pub(crate) struct Stage {
     wrap: Wrap,
     /// The pixels of the exemplar between two pixels of the level.
     pub(crate) spacing: i64,
-    /// What is around each pixel: principal components of the window.
-    features: Vec<[f32; N_FEATURES]>,
+    /// What is around each pixel: principal components of the window. First as it is, then with the exemplar turned by one
+    /// to three quarter turns; nothing for turns that its symmetry has not.
+    features: [Vec<[f32; N_FEATURES]>; 4],
     /// Whether textures may have each pixel; all of them if nothing is said.
     usable: Option<Vec<bool>>,
     /// The columns and rows between pixels of the grid on which alike ones are searched.
@@ -58,8 +61,12 @@ pub(crate) struct Stage {
     pub(super) repetition_cost: f32,
 }
 
-/// The levels of an exemplar, the finest first.
-pub(crate) fn stages(exemplar: &Exemplar, n_levels: usize) -> Result<Vec<Stage>, SynthError> {
+/// The levels of an exemplar that may lie turned as a symmetry says, the finest first.
+pub(crate) fn stages(
+    exemplar: &Exemplar,
+    symmetry: Symmetry,
+    n_levels: usize,
+) -> Result<Vec<Stage>, SynthError> {
     let mut pixels = vec![exemplar.pixels.clone()];
     for level in 1..n_levels {
         pixels.push(blurred(exemplar, &pixels[level - 1], 1 << (level - 1)));
@@ -74,7 +81,10 @@ pub(crate) fn stages(exemplar: &Exemplar, n_levels: usize) -> Result<Vec<Stage>,
         reach = left;
     }
     masks.reverse();
-    let stage = |level: usize| Stage::new(exemplar, level, &pixels[level], masks[level].clone());
+    let stage = |level: usize| {
+        let features = features(exemplar, symmetry, &pixels[level], 1 << level);
+        Stage::new(exemplar, level, features, masks[level].clone())
+    };
     Ok(parallel::map(n_levels, stage))
 }
 
@@ -110,22 +120,29 @@ fn blurred(exemplar: &Exemplar, pixels: &[f32], step: i64) -> Vec<f32> {
     rows.concat()
 }
 
-/// The principal components of the windows around all pixels.
-fn features(exemplar: &Exemplar, pixels: &[f32], spacing: i64) -> Vec<[f32; N_FEATURES]> {
+/// The principal components of the windows around all pixels, for each number of quarter turns that a symmetry has.
+fn features(
+    exemplar: &Exemplar,
+    symmetry: Symmetry,
+    pixels: &[f32],
+    spacing: i64,
+) -> [Vec<[f32; N_FEATURES]>; 4] {
     let n = exemplar.n_channels;
     let [width, height] = exemplar.size;
     let wrap = exemplar.edges.wrap();
-    let places = |at: usize, side: u32| {
-        let taps = -HALF..=HALF;
-        taps.map(move |tap| wrap.index(at as i64 + tap * spacing, side) as usize)
+    let taps = |at: usize, side: u32| {
+        let tap = |tap| wrap.index(at as i64 + tap * spacing, side) as usize;
+        core::array::from_fn::<usize, { WEIGHTS.len() }, _>(|at| tap(at as i64 - HALF))
     };
-    let window = |column: usize, row: usize, window: &mut Vec<f32>| {
+    let window = |quarters: u8, column: usize, row: usize, window: &mut Vec<f32>| {
         window.clear();
-        for (line, down) in places(row, height).zip(WEIGHTS) {
-            for (at, across) in places(column, width).zip(WEIGHTS) {
+        let (columns, rows) = (taps(column, width), taps(row, height));
+        for (y, down) in (-HALF..).zip(WEIGHTS) {
+            for (x, across) in (-HALF..).zip(WEIGHTS) {
                 // Both sums of weights are 16.
                 let weight = (down * across).sqrt() / 16.0;
-                let pixel = &pixels[(line * width as usize + at) * n..][..n];
+                let [x, y] = exemplar_offset([x, y], quarters).map(|at| (at + HALF) as usize);
+                let pixel = &pixels[(rows[y] * width as usize + columns[x]) * n..][..n];
                 window.extend(pixel.iter().map(|value| value * weight));
             }
         }
@@ -135,27 +152,38 @@ fn features(exemplar: &Exemplar, pixels: &[f32], spacing: i64) -> Vec<[f32; N_FE
     let step = n_pixels.div_ceil(SAMPLE);
     let sample = parallel::map_at_least(64, n_pixels / step, |at| {
         let mut values = Vec::with_capacity(dims);
-        window(
-            at * step % width as usize,
-            at * step / width as usize,
-            &mut values,
-        );
+        let [column, row] = [at * step % width as usize, at * step / width as usize];
+        window(0, column, row, &mut values);
         values
     });
     let basis = Basis::with_most(N_FEATURES, dims, &sample.concat());
     let level = simd::level();
-    let rows = parallel::map(height as usize, |row| {
-        let (mut values, mut centered) = (Vec::new(), Vec::new());
-        let mut rotated = basis.memory();
-        let features = |column| {
-            window(column, row, &mut values);
-            basis.center(&values, &mut centered);
-            dispatch!(level, simd => basis.rotate(simd, &centered, &mut rotated));
-            core::array::from_fn(|i| rotated[0][i])
-        };
-        (0..width as usize).map(features).collect::<Vec<_>>()
-    });
-    rows.concat()
+    let turned = |quarters: u8| {
+        let rows = parallel::map(height as usize, |row| {
+            let (mut values, mut centered) = (Vec::new(), Vec::new());
+            let mut rotated = basis.memory();
+            let features = |column| {
+                window(quarters, column, row, &mut values);
+                basis.center(&values, &mut centered);
+                dispatch!(level, simd => basis.rotate(simd, &centered, &mut rotated));
+                core::array::from_fn(|i| rotated[0][i])
+            };
+            (0..width as usize).map(features).collect::<Vec<_>>()
+        });
+        rows.concat()
+    };
+    let mut features = [const { Vec::new() }; 4];
+    for &quarters in symmetry.quarters() {
+        features[usize::from(quarters)] = turned(quarters);
+    }
+    features
+}
+
+/// What lies at an offset to the right and down, where the exemplar lies turned by some quarter turns: the offset in it.
+#[inline]
+pub(crate) fn exemplar_offset<T: Copy + Neg<Output = T>>(offset: [T; 2], quarters: u8) -> [T; 2] {
+    // As many quarter turns the other way.
+    offset_before(offset, (4 - quarters) % 4)
 }
 
 /// The pixels that textures may have, and how far they are from what they may not have: at most `reach`, and less, down to
@@ -216,8 +244,13 @@ fn inner(edges: Edges, side: usize, reach: i64, holds: impl Fn(usize) -> bool) -
 }
 
 impl Stage {
-    /// A level of an exemplar, which has these pixels on it, of which textures may have some.
-    fn new(exemplar: &Exemplar, level: usize, pixels: &[f32], usable: Option<Vec<bool>>) -> Self {
+    /// A level of an exemplar, which looks like this around its pixels, of which textures may have some.
+    fn new(
+        exemplar: &Exemplar,
+        level: usize,
+        features: [Vec<[f32; N_FEATURES]>; 4],
+        usable: Option<Vec<bool>>,
+    ) -> Self {
         let spacing = 1_i64 << level;
         let n_pixels = i64::from(exemplar.size[0]) * i64::from(exemplar.size[1]);
         let mut step = spacing;
@@ -228,7 +261,7 @@ impl Stage {
             size: exemplar.size,
             wrap: exemplar.edges.wrap(),
             spacing,
-            features: features(exemplar, pixels, spacing),
+            features,
             usable,
             step,
             similar: Vec::new(),
@@ -242,6 +275,12 @@ impl Stage {
     /// The pixel at a column and row, of which those past the edges are mirrored or wrapped.
     #[inline]
     pub(crate) fn features(&self, place: [i64; 2]) -> &[f32; N_FEATURES] {
+        self.turned_features(place, 0)
+    }
+
+    /// What [`features`](Self::features) returns, with the exemplar turned by quarter turns that its symmetry has.
+    #[inline]
+    pub(crate) fn turned_features(&self, place: [i64; 2], quarters: u8) -> &[f32; N_FEATURES] {
         let [column, row] = [0, 1].map(|axis| {
             let within = (0..i64::from(self.size[axis])).contains(&place[axis]);
             // The remainder of a division costs more than all else here.
@@ -250,7 +289,7 @@ impl Stage {
                 false => self.wrap.index(place[axis], self.size[axis]) as usize,
             }
         });
-        &self.features[row * self.size[0] as usize + column]
+        &self.features[usize::from(quarters)][row * self.size[0] as usize + column]
     }
 
     /// The squared distance of features on the diagonals of a pixel from those on the diagonals of a place.

@@ -102,7 +102,11 @@ pub(crate) fn turned(direction: DVec3, normal: DVec3, quarters: u8) -> DVec3 {
 }
 
 /// Where a sample of a square at an offset, to the right and down, lies in the square before these quarter turns.
-pub(crate) fn offset_before([i, j]: [i32; 2], quarters: u8) -> [i32; 2] {
+#[inline]
+pub(crate) fn offset_before<T: Copy + core::ops::Neg<Output = T>>(
+    [i, j]: [T; 2],
+    quarters: u8,
+) -> [T; 2] {
     match quarters {
         0 => [i, j],
         // Right became up, and down became right.

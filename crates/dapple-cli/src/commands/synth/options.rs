@@ -202,7 +202,7 @@ pub(super) struct SurfaceArgs {
     axes: Option<FieldAxes>,
 
     /// The values that are compared; by default appearance, or colors with --paper. Colors are compared all the same with
-    /// guides, with --symmetry 2 or 4, and where the example is a mesh.
+    /// guides and where the example is a mesh.
     #[arg(long, value_name = "WHAT", value_parser = Word::<Matching>::all())]
     matching: Option<Matching>,
 }
