@@ -2,7 +2,7 @@
 
 use super::links::Links;
 use super::{Appearance, Choice, choose, quarters};
-use crate::endless::stage::{self, DIAGONALS};
+use crate::endless::stage::{self, DIAGONALS, Stage};
 use crate::orientation::offset_before;
 use crate::places::{Frame, Frames};
 use crate::shapes::{on_threads, sheet, sites_on, sphere, synthesizer};
@@ -186,14 +186,7 @@ fn takes_the_place_that_comparing_with_all_finds(ball: &Synthesizer) {
             })
         });
         let around: Vec<[f32; 8]> = around.collect();
-        let unlike = |[x, y]: [i64; 2]| -> f32 {
-            let corners = around.iter().zip(DIAGONALS);
-            let squares = corners.flat_map(|(own, [i, j])| {
-                let other = stage.features([x + i, y + j]);
-                own.iter().zip(other).map(|(a, b)| (a - b) * (a - b))
-            });
-            squares.sum()
-        };
+        let unlike = |place| unlike(stage, &around, place);
         let same = read.near.iter();
         let same = same.filter(|link| turn(site, link.site as usize) == 0);
         let coherent = same.filter_map(|link| {
@@ -221,6 +214,16 @@ fn takes_the_place_that_comparing_with_all_finds(ball: &Synthesizer) {
         symmetry != Symmetry::One,
         "{n_turned} turned"
     );
+}
+
+/// The squared distance of what is on the diagonals of a site from what is on those of a place.
+fn unlike(stage: &Stage, around: &[[f32; 8]], [x, y]: [i64; 2]) -> f32 {
+    let corners = around.iter().zip(DIAGONALS);
+    let squares = corners.flat_map(|(own, [i, j])| {
+        let other = stage.features([x + i, y + j]);
+        own.iter().zip(other).map(|(a, b)| (a - b) * (a - b))
+    });
+    squares.sum()
 }
 
 #[test]
