@@ -90,34 +90,23 @@ pub(crate) fn run_with<G: Ground>(
     let coherence = options.coherence.factors(&pyramid.levels()[0]);
     let mut levels: Vec<Sources> = Vec::new();
     levels.resize_with(pyramid.levels().len(), Sources::default);
-    let mut kept = Kept::default();
+    let (mut kept, mut visit) = (Kept::default(), None);
     let n_passes = passes.len();
     for (index, pass) in passes.iter().enumerate() {
-        let n_sites = ground.n_sites(pass.level);
-        let candidates = candidates(pass)?;
-        if levels[pass.level].pixels.is_empty() {
-            let start = ground.start(pass.level);
-            let reads_itself = pass.parts.iter().any(|part| part.reads == Reads::Same);
-            let mut first = if reads_itself || start.is_some() {
-                random_pixels(n_sites, pyramid, &candidates, pass.level, options.seed)
-            } else {
-                // Nobody reads them before all are visited.
-                vec![0; n_sites]
-            };
-            let known = start.map_or(&[][..], |start| &start.pixels);
-            for (first, &known) in first.iter_mut().zip(known) {
-                if known != UNKNOWN {
-                    *first = known;
-                }
+        // A pass that comes again finds the same neighborhoods.
+        if index == 0 || passes[index - 1] != *pass {
+            let candidates = candidates(pass)?;
+            if levels[pass.level].pixels.is_empty() {
+                levels[pass.level] = first_sources(ground, pyramid, pass, &candidates, options);
             }
-            let level = &mut levels[pass.level];
-            level.pixels = first.into_iter().map(AtomicU32::new).collect();
-            if ground.symmetry() != Symmetry::One {
-                level.quarters.resize_with(n_sites, AtomicU8::default);
-            }
+            // The one before is gone before the next one takes its memory.
+            drop(visit.take());
+            visit = Some(Visit::new(
+                ground, pyramid, candidates, pass, options, coherence,
+            ));
         }
-        let keep = side_to_keep(pass, passes.get(index + 1));
-        let visit = Visit::new(ground, pyramid, candidates, pass, options, coherence);
+        let Some(visit) = &visit else { continue };
+        let n_sites = ground.n_sites(pass.level);
         let mut tell = |done| {
             let progress = Progress {
                 pass: index,
@@ -127,9 +116,43 @@ pub(crate) fn run_with<G: Ground>(
             };
             report(callback, progress)
         };
+        let keep = side_to_keep(pass, passes.get(index + 1));
         kept = visit.run(&levels, &kept, keep, &mut tell)?;
     }
     Ok(levels)
+}
+
+/// What the sites of a level have before its first pass.
+fn first_sources<G: Ground>(
+    ground: &G,
+    pyramid: &Pyramid,
+    pass: &Pass,
+    candidates: &Candidates,
+    options: &Options,
+) -> Sources {
+    let n_sites = ground.n_sites(pass.level);
+    let start = ground.start(pass.level);
+    let reads_itself = pass.parts.iter().any(|part| part.reads == Reads::Same);
+    let mut first = if reads_itself || start.is_some() {
+        random_pixels(n_sites, pyramid, candidates, pass.level, options.seed)
+    } else {
+        // Nobody reads them before all are visited.
+        vec![0; n_sites]
+    };
+    let known = start.map_or(&[][..], |start| &start.pixels);
+    for (first, &known) in first.iter_mut().zip(known) {
+        if known != UNKNOWN {
+            *first = known;
+        }
+    }
+    let mut sources = Sources {
+        pixels: first.into_iter().map(AtomicU32::new).collect(),
+        ..Sources::default()
+    };
+    if ground.symmetry() != Symmetry::One {
+        sources.quarters.resize_with(n_sites, AtomicU8::default);
+    }
+    sources
 }
 
 impl Sources {
