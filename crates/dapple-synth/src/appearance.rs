@@ -159,8 +159,7 @@ impl<'a> Appearance<'a> {
                 return place;
             }
             let near = links.of(site).near.iter();
-            let parents =
-                near.filter(|link| (link.site as usize) < coarser.len() && link.quarters == 0);
+            let parents = near.filter(|link| link.site() < coarser.len() && link.quarters() == 0);
             let nearest = parents.min_by(|a, b| {
                 a.way()
                     .length_squared()
@@ -169,7 +168,7 @@ impl<'a> Appearance<'a> {
             let Some(link) = nearest else {
                 return self.any(level, site);
             };
-            let parent = coarser[link.site as usize];
+            let parent = coarser[link.site()];
             let place = stage.usable(moved(parent, -link.way()));
             place.map_or(parent, narrow)
         })
@@ -290,10 +289,10 @@ fn choose(
     let mut n_coherent = 1;
     compare(own, 1.0);
     for link in links.of(site).near {
-        if link.quarters != 0 {
+        if link.quarters() != 0 {
             continue;
         }
-        if let Some(place) = stage.usable(moved(places[link.site as usize], -link.way()))
+        if let Some(place) = stage.usable(moved(places[link.site()], -link.way()))
             && n_coherent < MAX_COHERENT
             && !coherent[..n_coherent].contains(&place)
         {
@@ -327,9 +326,9 @@ fn around(
         let diagonal = Vec2::from(DIAGONALS[corner].map(|at| (at * stage.spacing) as f32));
         let mut sums = [0.0; N_FEATURES];
         for link in links {
-            let way = exemplar_offset((diagonal - link.way()).to_array(), link.quarters);
-            let place = moved(places[link.site as usize], way.into());
-            let features = stage.turned_features(place, link.quarters);
+            let way = exemplar_offset((diagonal - link.way()).to_array(), link.quarters());
+            let place = moved(places[link.site()], way.into());
+            let features = stage.turned_features(place, link.quarters());
             for (sum, value) in sums.iter_mut().zip(features) {
                 *sum += value;
             }

@@ -95,12 +95,12 @@ pub(crate) fn run_with<G: Ground>(
     for (index, pass) in passes.iter().enumerate() {
         // A pass that comes again finds the same neighborhoods.
         if index == 0 || passes[index - 1] != *pass {
+            // The one before is gone before the next one takes its memory.
+            drop(visit.take());
             let candidates = candidates(pass)?;
             if levels[pass.level].pixels.is_empty() {
                 levels[pass.level] = first_sources(ground, pyramid, pass, &candidates, options);
             }
-            // The one before is gone before the next one takes its memory.
-            drop(visit.take());
             visit = Some(Visit::new(
                 ground, pyramid, candidates, pass, options, coherence,
             ));

@@ -27,15 +27,17 @@ const TASKS: usize = 256;
 /// The most classes; more would only wait for each other.
 const MAX_CLASSES: u32 = 63;
 
-/// Another site, and where it lies.
+/// Another site, and where it lies. There are so many that every byte counts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Link {
-    pub(super) site: u32,
-    /// By how many quarter turns the exemplar lies turned there, seen from here.
-    pub(super) quarters: u8,
+    /// The site, and above [`SITE_BITS`] by how many quarter turns the exemplar lies turned there, seen from here.
+    turned_site: u32,
     /// The way to it in pixels of the exemplar.
     way: [f32; 2],
 }
+
+/// The bits of a link that say which site it is; there are at most 2^28.
+const SITE_BITS: u32 = 30;
 
 /// The sites that each site of a level reads.
 #[derive(Debug)]
@@ -57,6 +59,24 @@ pub(super) struct Around<'a> {
 }
 
 impl Link {
+    fn new(site: SiteIdx, quarters: u8, way: Vec2) -> Self {
+        Self {
+            turned_site: site.0 | u32::from(quarters) << SITE_BITS,
+            way: way.to_array(),
+        }
+    }
+
+    #[inline]
+    pub(super) fn site(&self) -> usize {
+        (self.turned_site & ((1 << SITE_BITS) - 1)) as usize
+    }
+
+    /// By how many quarter turns the exemplar lies turned at the site, seen from the one that it is linked to.
+    #[inline]
+    pub(super) fn quarters(&self) -> u8 {
+        (self.turned_site >> SITE_BITS) as u8
+    }
+
     #[inline]
     pub(super) fn way(&self) -> Vec2 {
         self.way.into()
@@ -161,11 +181,7 @@ fn link(hierarchy: &Hierarchy, frames: &Frames, from: SiteIdx, to: SiteIdx) -> O
     let [here, there] = [a, b].map(|site| frames.of_site[site].flat(way));
     // Frames turn on the way: the mean of both ends is that of its middle.
     let way = 0.5 * (here + Vec2::from(offset_before(there.to_array(), quarters)));
-    Some(Link {
-        site: to.0,
-        quarters,
-        way: way.to_array(),
-    })
+    Some(Link::new(to, quarters, way))
 }
 
 /// Puts every site into the first class that none of its neighbors with a lower number is in.

@@ -96,7 +96,7 @@ fn links_are_the_sites_on_the_diagonals_that_two_edges_reach() {
             assert!(
                 read.near
                     .iter()
-                    .map(|link| link.site as usize)
+                    .map(|link| link.site())
                     .eq(near.iter().copied()),
                 "neighbors of {site}"
             );
@@ -112,7 +112,7 @@ fn links_are_the_sites_on_the_diagonals_that_two_edges_reach() {
                         && way.x * middle.x > 0.0
                         && way.y * middle.y > 0.0
                 };
-                let found = read.corners[corner].iter().map(|link| link.site as usize);
+                let found = read.corners[corner].iter().map(|link| link.site());
                 let expected = (0..graph.len()).filter(is_there);
                 assert!(found.eq(expected), "site {site}, diagonal {diagonal:?}");
             }
@@ -173,7 +173,7 @@ fn takes_the_place_that_comparing_with_all_finds(ball: &Synthesizer) {
         let around = DIAGONALS.iter().zip(read.corners).map(|(diagonal, sites)| {
             let diagonal = Vec2::from(diagonal.map(|at| at as f32));
             let there = sites.iter().map(|link| {
-                let other = link.site as usize;
+                let other = link.site();
                 let quarters = turn(site, other);
                 n_turned += usize::from(quarters != 0);
                 let way = diagonal - way(ball, frames, [site, other]);
@@ -188,10 +188,10 @@ fn takes_the_place_that_comparing_with_all_finds(ball: &Synthesizer) {
         let around: Vec<[f32; 8]> = around.collect();
         let unlike = |place| unlike(stage, &around, place);
         let same = read.near.iter();
-        let same = same.filter(|link| turn(site, link.site as usize) == 0);
+        let same = same.filter(|link| turn(site, link.site()) == 0);
         let coherent = same.filter_map(|link| {
-            let way = way(ball, frames, [site, link.site as usize]);
-            stage.usable(from(link.site as usize, -way))
+            let way = way(ball, frames, [site, link.site()]);
+            stage.usable(from(link.site(), -way))
         });
         let mut coherent: Vec<[i64; 2]> = coherent.collect();
         coherent.push(places[site].map(i64::from));
