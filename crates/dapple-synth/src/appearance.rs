@@ -22,9 +22,10 @@
 mod links;
 
 use crate::endless::evenness::Costs;
-use crate::endless::stage::{self, DIAGONALS, N_FEATURES, Stage, exemplar_offset, narrow};
+use crate::endless::stage::{self, DIAGONALS, N_FEATURES, Stage, narrow};
 use crate::engine::{self, Callback, Progress};
 use crate::options::REGULAR;
+use crate::orientation::offset_after;
 use crate::places::Frames;
 use crate::{Coherence, Exemplar, Hierarchy, Options, SiteIdx, SynthError, Synthesizer};
 use dapple_hash::{Seed, hash1};
@@ -238,11 +239,11 @@ impl<'a> Appearance<'a> {
 /// By how many quarter turns the exemplar lies turned at all sites, given those at the coarsest ones: each site goes on with
 /// the nearest one of the coarser level that it is connected to.
 fn quarters(synthesizer: &Synthesizer, coarsest: &[u8], n_levels: usize) -> Vec<u8> {
-    let (hierarchy, orientation) = (synthesizer.hierarchy(), synthesizer.orientation());
-    let (positions, normals) = (hierarchy.sites().positions(), hierarchy.sites().normals());
     if coarsest.is_empty() {
         return Vec::new();
     }
+    let (hierarchy, orientation) = (synthesizer.hierarchy(), synthesizer.orientation());
+    let (positions, normals) = (hierarchy.sites().positions(), hierarchy.sites().normals());
     let mut quarters = coarsest.to_vec();
     for level in hierarchy.levels()[..n_levels - 1].iter().rev() {
         let n_coarser = quarters.len();
@@ -326,7 +327,7 @@ fn around(
         let diagonal = Vec2::from(DIAGONALS[corner].map(|at| (at * stage.spacing) as f32));
         let mut sums = [0.0; N_FEATURES];
         for link in links {
-            let way = exemplar_offset((diagonal - link.way()).to_array(), link.quarters());
+            let way = offset_after((diagonal - link.way()).to_array(), link.quarters());
             let place = moved(places[link.site()], way.into());
             let features = stage.turned_features(place, link.quarters());
             for (sum, value) in sums.iter_mut().zip(features) {

@@ -29,7 +29,7 @@ mod symmetry;
 mod tests;
 
 pub use symmetry::Symmetry;
-pub(crate) use symmetry::{offset_before, turned};
+pub(crate) use symmetry::{offset_after, offset_before, turned};
 
 use crate::{Hierarchy, SynthError, SynthErrorKind, columns};
 use glam::DVec3;

@@ -6,9 +6,8 @@
 use super::evenness::Costs;
 use crate::exemplar::blend;
 use crate::matcher::{Basis, Matcher, MatcherMemory, Query};
-use crate::orientation::offset_before;
+use crate::orientation::offset_after;
 use crate::{Edges, Exemplar, Symmetry, SynthError, SynthErrorKind};
-use core::ops::Neg;
 use dapple_raster::simd::{self, dispatch};
 use dapple_raster::{Wrap, parallel};
 
@@ -46,8 +45,8 @@ pub(crate) struct Stage {
     wrap: Wrap,
     /// The pixels of the exemplar between two pixels of the level.
     pub(crate) spacing: i64,
-    /// What is around each pixel: principal components of the window. First as it is, then with the exemplar turned by one
-    /// to three quarter turns; nothing for turns that its symmetry has not.
+    /// The principal components of the window around each pixel: of the exemplar as it is, and turned by one, two and three
+    /// quarter turns; nothing for turns that its symmetry does not have.
     features: [Vec<[f32; N_FEATURES]>; 4],
     /// Whether textures may have each pixel; all of them if nothing is said.
     usable: Option<Vec<bool>>,
@@ -141,7 +140,7 @@ fn features(
             for (x, across) in (-HALF..).zip(WEIGHTS) {
                 // Both sums of weights are 16.
                 let weight = (down * across).sqrt() / 16.0;
-                let [x, y] = exemplar_offset([x, y], quarters).map(|at| (at + HALF) as usize);
+                let [x, y] = offset_after([x, y], quarters).map(|at| (at + HALF) as usize);
                 let pixel = &pixels[(rows[y] * width as usize + columns[x]) * n..][..n];
                 window.extend(pixel.iter().map(|value| value * weight));
             }
@@ -177,13 +176,6 @@ fn features(
         features[usize::from(quarters)] = turned(quarters);
     }
     features
-}
-
-/// What lies at an offset to the right and down, where the exemplar lies turned by some quarter turns: the offset in it.
-#[inline]
-pub(crate) fn exemplar_offset<T: Copy + Neg<Output = T>>(offset: [T; 2], quarters: u8) -> [T; 2] {
-    // As many quarter turns the other way.
-    offset_before(offset, (4 - quarters) % 4)
 }
 
 /// The pixels that textures may have, and how far they are from what they may not have: at most `reach`, and less, down to

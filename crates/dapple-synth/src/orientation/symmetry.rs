@@ -2,6 +2,7 @@
 //!
 //! A quarter turn takes down to right, and right to up; two of them take a direction to its opposite.
 
+use core::ops::Neg;
 use glam::{DVec2, DVec3};
 
 dapple_raster::named! {
@@ -103,10 +104,7 @@ pub(crate) fn turned(direction: DVec3, normal: DVec3, quarters: u8) -> DVec3 {
 
 /// Where a sample of a square at an offset, to the right and down, lies in the square before these quarter turns.
 #[inline]
-pub(crate) fn offset_before<T: Copy + core::ops::Neg<Output = T>>(
-    [i, j]: [T; 2],
-    quarters: u8,
-) -> [T; 2] {
+pub(crate) fn offset_before<T: Copy + Neg<Output = T>>([i, j]: [T; 2], quarters: u8) -> [T; 2] {
     match quarters {
         0 => [i, j],
         // Right became up, and down became right.
@@ -114,6 +112,14 @@ pub(crate) fn offset_before<T: Copy + core::ops::Neg<Output = T>>(
         2 => [-i, -j],
         _ => [-j, i],
     }
+}
+
+/// Where a sample of a square at an offset, to the right and down, lies in the square after these quarter turns: the inverse
+/// of [`offset_before`].
+#[inline]
+pub(crate) fn offset_after<T: Copy + Neg<Output = T>>(offset: [T; 2], quarters: u8) -> [T; 2] {
+    // As many quarter turns the other way.
+    offset_before(offset, (4 - quarters) % 4)
 }
 
 #[cfg(test)]
