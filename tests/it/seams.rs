@@ -9,7 +9,7 @@ mod generators;
 use anyhow::Result;
 use dapple_hash::Seed;
 use dapple_raster::{Raster, Window, glam::DVec2};
-use dapple_tile::{Seam, SeamOptions, SeamReport};
+use dapple_tile::{SeamOptions, SeamReport};
 use generators::GENERATORS;
 use rayon::prelude::*;
 
@@ -21,6 +21,9 @@ const UNIT: u32 = 8;
 
 /// The number of tiles of a generator that are averaged.
 const N_TILES: u64 = 50;
+
+/// The number of tiles of a generator that must pass by themselves; of more, chance lets some fail.
+const N_PASSING: usize = 8;
 
 /// The number of crops that are averaged: fewer, since their ratios are far from 1.
 const N_CROPS: u64 = 8;
@@ -50,11 +53,16 @@ struct Ratio {
 fn tiles_of_generators_have_no_seam() -> Result<()> {
     let mut problems = Vec::new();
     for generator in GENERATORS {
-        let ratios = generator.ratios(PERIOD, N_TILES)?;
-        for Ratio { width, mean, error } in ratios {
+        let name = generator.name;
+        let reports = generator.reports(PERIOD, N_TILES)?;
+        for (seed, report) in reports.iter().take(N_PASSING).enumerate() {
+            if !report.passes() {
+                problems.push(format!("{name}, {seed}: {report}"));
+            }
+        }
+        for Ratio { width, mean, error } in ratios(&reports) {
             let off = (mean - 1.0).abs() / error;
             if !(off <= 3.0 && error < LARGEST_ERROR) {
-                let name = generator.name;
                 problems.push(format!("{name} at {width} px: {mean:.4} ± {error:.4}"));
             }
         }
@@ -64,23 +72,9 @@ fn tiles_of_generators_have_no_seam() -> Result<()> {
 }
 
 #[test]
-fn tiles_of_generators_pass() -> Result<()> {
-    for generator in GENERATORS {
-        let extent = DVec2::splat(f64::from(PERIOD));
-        let window = Window::new(DVec2::ZERO, extent, [PERIOD * generator.unit; 2])?;
-        for seed in 0..N_CROPS {
-            let tile = (generator.draw)(Seed(seed), &window)?;
-            let report = SeamReport::of(&tile, &generator.options)?;
-            assert!(report.passes(), "{}, {seed}: {report}", generator.name);
-        }
-    }
-    Ok(())
-}
-
-#[test]
 fn crops_of_generators_have_a_seam() -> Result<()> {
     for generator in GENERATORS {
-        let [Ratio { mean, error, .. }, ..] = generator.ratios(PERIOD * 3 / 4, N_CROPS)?;
+        let [Ratio { mean, error, .. }, ..] = ratios(&generator.reports(PERIOD * 3 / 4, N_CROPS)?);
         let clearly = mean - 1.0 > 5.0 * error && mean > 1.25;
         assert!(clearly, "{}: {mean:.4} ± {error:.4}", generator.name);
     }
@@ -88,30 +82,33 @@ fn crops_of_generators_have_a_seam() -> Result<()> {
 }
 
 impl Generator {
-    /// Returns the mean ratios of square pictures over all periodic axes, at 1, 2, 4 and 8 pixels.
-    fn ratios(&self, units: u32, n_seeds: u64) -> Result<[Ratio; 4]> {
+    /// Returns the reports on square pictures of this many units with different seeds.
+    fn reports(&self, units: u32, n_seeds: u64) -> Result<Vec<SeamReport>> {
         let extent = DVec2::splat(f64::from(units));
         let window = &Window::new(DVec2::ZERO, extent, [units * self.unit; 2])?;
-        let seams = |seed| -> Result<[Seam; 4]> {
+        let report = |seed| -> Result<SeamReport> {
             let tile = (self.draw)(Seed(seed), window)?;
-            Ok(SeamReport::of(&tile, &self.options)?.seams)
+            Ok(SeamReport::of(&tile, &self.options)?)
         };
-        let all: Result<Vec<_>> = (0..n_seeds).into_par_iter().map(seams).collect();
-        let all = all?;
-        Ok(core::array::from_fn(|index| {
-            let both = all.iter().filter_map(|seams| seams[index].both);
-            let ratios: Vec<f64> = both.map(|both| both.ratio).collect();
-            let n = ratios.len() as f64;
-            let mean = ratios.iter().sum::<f64>() / n;
-            let squares: f64 = ratios
-                .iter()
-                .map(|ratio| (ratio - mean) * (ratio - mean))
-                .sum();
-            Ratio {
-                width: all[0][index].width,
-                mean,
-                error: (squares / (n - 1.0) / n).sqrt(),
-            }
-        }))
+        (0..n_seeds).into_par_iter().map(report).collect()
     }
+}
+
+/// Returns the mean ratios over all periodic axes, at 1, 2, 4 and 8 pixels.
+fn ratios(reports: &[SeamReport]) -> [Ratio; 4] {
+    core::array::from_fn(|index| {
+        let both = reports.iter().filter_map(|report| report.seams[index].both);
+        let ratios: Vec<f64> = both.map(|both| both.ratio).collect();
+        let n = ratios.len() as f64;
+        let mean = ratios.iter().sum::<f64>() / n;
+        let squares: f64 = ratios
+            .iter()
+            .map(|ratio| (ratio - mean) * (ratio - mean))
+            .sum();
+        Ratio {
+            width: reports[0].seams[index].width,
+            mean,
+            error: (squares / (n - 1.0) / n).sqrt(),
+        }
+    })
 }

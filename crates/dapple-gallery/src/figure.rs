@@ -58,10 +58,19 @@ impl Figure {
     ///
     /// # Errors
     ///
-    /// If the code of the figure fails, with the name of the figure as context, or if it made no picture.
+    /// If the code of the figure fails, with the name of the figure as context, or if it made no picture or one of another
+    /// size.
     pub fn render(&self, size: u32) -> anyhow::Result<Vec<Panel>> {
         let panels = (self.render)(size).with_context(|| format!("figure {}", self.name()))?;
         ensure!(!panels.is_empty(), "figure {} made no picture", self.name());
+        for panel in &panels {
+            let [width, height] = panel.size();
+            ensure!(
+                width.max(height) == size,
+                "figure {} made a picture of {width} × {height} pixels for {size}",
+                self.name()
+            );
+        }
         Ok(panels)
     }
 
