@@ -18,16 +18,23 @@
 //! Where directions have a symmetry, the first pass says by how many quarter turns the exemplar lies turned at the coarsest
 //! sites, and finer ones take this from the nearest of them. A site goes on with neighbors at which it lies the same; of
 //! others it sees what the exemplar looks like when it is turned.
+//!
+//! Guides are compared beside the components. What a site goes on to from the coarser level may be far from what they ask
+//! for, with nothing nearer around it: a site whose guides are off by a good part of how much its surroundings are
+//! searches all of the exemplar before it is corrected.
 
 mod links;
 
 use crate::endless::evenness::Costs;
 use crate::endless::stage::{self, DIAGONALS, N_FEATURES, Stage, narrow};
 use crate::engine::{self, Callback, Progress};
+use crate::guides::Targets;
 use crate::options::REGULAR;
 use crate::orientation::offset_after;
 use crate::places::Frames;
-use crate::{Coherence, Exemplar, Hierarchy, Options, SiteIdx, SynthError, Synthesizer};
+use crate::{
+    Coherence, Exemplar, Hierarchy, MatcherMemory, Options, SiteIdx, SynthError, Synthesizer,
+};
 use dapple_hash::{Seed, hash1};
 use dapple_raster::parallel;
 use glam::Vec2;
@@ -45,9 +52,20 @@ const MAX_COHERENT: usize = 16;
 /// How much a cost changes after a pass, in mean squared distances, for a part that the texture never has.
 const STEP: f32 = 0.8;
 
-/// The sites of a surface with their directions, and the exemplar on all levels.
+/// How much of the distance of its surroundings the guides of a site may be off before it searches.
+///
+/// Measured on leaves after a soft and a hard picture: the light of the texture follows that of the picture (correlation) by
+/// 0.42 and 0.41, as colors do, in the same time as with 1 (0.40 and 0.39); to search everywhere gives 0.01 more and takes
+/// a quarter longer.
+const MISFIT: f32 = 0.25;
+
+/// Tasks that search before a callback hears of it.
+const TASKS: usize = 256;
+
+/// The sites of a surface with their directions and guides, and the exemplar on all levels.
 pub(crate) struct Appearance<'a> {
     hierarchy: &'a Hierarchy,
+    targets: &'a Targets,
     /// By how many quarter turns the exemplar lies turned at each site; nothing where directions have no symmetry.
     pub(crate) quarters: Vec<u8>,
     frames: Frames,
@@ -68,7 +86,8 @@ struct Choice {
 }
 
 impl<'a> Appearance<'a> {
-    /// Prepares the levels of an exemplar, which lies turned by these quarter turns at the coarsest sites.
+    /// Prepares the levels of an exemplar, which lies turned by these quarter turns at the coarsest sites; there are as many
+    /// guides as it has.
     ///
     /// # Errors
     ///
@@ -76,20 +95,24 @@ impl<'a> Appearance<'a> {
     pub(crate) fn new(
         synthesizer: &'a Synthesizer,
         exemplar: &Exemplar,
+        targets: &'a Targets,
         coarsest: &[u8],
         options: &Options,
     ) -> Result<Self, SynthError> {
-        // Of less than the exemplar, no texture has all parts; and what repeats has all of them anyway.
+        // Of less than the exemplar, no texture has all parts; what repeats has all of them anyway; and guides say which.
         let [width, height] = exemplar.size.map(|side| side as usize);
         let hierarchy = synthesizer.hierarchy();
-        let is_uneven = hierarchy.sites().len() < width * height || exemplar.regularity() > REGULAR;
+        let is_uneven = hierarchy.sites().len() < width * height
+            || exemplar.n_guides() > 0
+            || exemplar.regularity() > REGULAR;
         let quarters = quarters(synthesizer, coarsest, options.n_levels);
         let symmetry = synthesizer.orientation().symmetry();
         Ok(Self {
             hierarchy,
+            targets,
             frames: Frames::new(synthesizer, &quarters),
             quarters,
-            stages: stage::stages(exemplar, symmetry, options.n_levels)?,
+            stages: stage::stages(exemplar, &exemplar.guides, symmetry, options.n_levels)?,
             seed: options.seed,
             evenness: if is_uneven { 0.0 } else { options.evenness },
             coherence: match options.coherence {
@@ -130,6 +153,7 @@ impl<'a> Appearance<'a> {
                 };
                 engine::report(callback, progress)
             };
+            self.obey(level, &links, &mut places, &mut tell)?;
             self.correct(level, &links, n_passes, &mut places, &mut tell)?;
             levels.push(places);
         }
@@ -188,6 +212,47 @@ impl<'a> Appearance<'a> {
         [pixel % stage.size[0], pixel / stage.size[0]]
     }
 
+    /// Moves sites whose guides are off to the places of the exemplar that are the most like these and their surroundings.
+    fn obey(
+        &self,
+        level: usize,
+        links: &Links,
+        places: &mut Vec<[u32; 2]>,
+        tell: &mut dyn FnMut(usize) -> Result<(), SynthError>,
+    ) -> Result<(), SynthError> {
+        if self.targets.len() == 0 {
+            return Ok(());
+        }
+        let stage = &self.stages[level];
+        let mut obeying = Vec::with_capacity(places.len());
+        while obeying.len() < places.len() {
+            let first = obeying.len();
+            let n_tasks = (places.len() - first).div_ceil(TASK).min(TASKS);
+            let pieces = parallel::map(n_tasks, |piece| {
+                let first = first + piece * TASK;
+                let mut memory = MatcherMemory::default();
+                let sites = first..places.len().min(first + TASK);
+                let place = |site: usize| {
+                    let wanted = self.targets.of(level, site as u32);
+                    let own = places[site].map(i64::from);
+                    let off = stage.guides_distance_sq(wanted, own);
+                    let around = around(stage, links, site, places);
+                    if off <= MISFIT * distance_sq(stage, &around, own) {
+                        return places[site];
+                    }
+                    let found = filled(around)
+                        .and_then(|around| stage.search(&around, wanted, &mut memory));
+                    found.map_or(places[site], narrow)
+                };
+                sites.map(place).collect::<Vec<_>>()
+            });
+            obeying.extend(pieces.into_iter().flatten());
+            tell(0)?;
+        }
+        *places = obeying;
+        Ok(())
+    }
+
     /// Corrects all sites of a level some times.
     fn correct(
         &mut self,
@@ -209,13 +274,10 @@ impl<'a> Appearance<'a> {
             let mut sum = 0.0;
             for class in &links.classes {
                 let choose = |at: usize| {
-                    choose(
-                        &self.stages[level],
-                        links,
-                        class[at] as usize,
-                        places,
-                        self.coherence,
-                    )
+                    let site = class[at] as usize;
+                    let wanted = self.targets.of(level, site as u32);
+                    let stage = &self.stages[level];
+                    choose(stage, links, site, places, wanted, self.coherence)
                 };
                 let chosen = parallel::map_at_least(TASK, class.len(), choose);
                 for (&site, choice) in class.iter().zip(chosen) {
@@ -263,12 +325,14 @@ fn quarters(synthesizer: &Synthesizer, coarsest: &[u8], n_levels: usize) -> Vec<
     quarters
 }
 
-/// The place around which the exemplar looks most like the texture around a site. Of equally good ones the first.
+/// The place around which the exemplar looks most like the texture around a site, with guides like the wanted ones. Of equally
+/// good ones the first.
 fn choose(
     stage: &Stage,
     links: &Links,
     site: usize,
     places: &[[u32; 2]],
+    wanted: &[f32],
     coherence: f32,
 ) -> Choice {
     let around = around(stage, links, site, places);
@@ -277,7 +341,9 @@ fn choose(
         distance_sq: f32::INFINITY,
     };
     let mut compare = |place: [i64; 2], factor: f32| {
-        let distance_sq = factor * distance_sq(stage, &around, place) + stage.costs.of(place);
+        let distance_sq =
+            distance_sq(stage, &around, place) + stage.guides_distance_sq(wanted, place);
+        let distance_sq = factor * distance_sq + stage.costs.of(place);
         if distance_sq < best.distance_sq {
             best = Choice {
                 place: narrow(place),
@@ -336,6 +402,18 @@ fn around(
         }
         Some(sums.map(|sum| sum / links.len() as f32))
     })
+}
+
+/// The features on all diagonals, with their mean in place of those that are missing; nothing if all are.
+fn filled(around: [Option<[f32; N_FEATURES]>; 4]) -> Option<[[f32; N_FEATURES]; 4]> {
+    let known: Vec<_> = around.into_iter().flatten().collect();
+    if known.is_empty() {
+        return None;
+    }
+    let mean = core::array::from_fn(|i| {
+        known.iter().map(|features| features[i]).sum::<f32>() / known.len() as f32
+    });
+    Some(around.map(|features| features.unwrap_or(mean)))
 }
 
 /// The squared distance of features on the diagonals of a site from those on the diagonals of a place.

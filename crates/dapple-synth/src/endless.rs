@@ -23,6 +23,7 @@ pub(crate) mod stage;
 mod window;
 
 use crate::engine::Progress;
+use crate::guides::Guides;
 use crate::options::REGULAR;
 use crate::{Edges, Exemplar, PlaneTexture, Symmetry, SynthError, SynthErrorKind};
 use core::ops::ControlFlow;
@@ -119,7 +120,12 @@ impl Endless {
                 return Err(SynthError::new(SynthErrorKind::Period { period, n_levels }));
             }
         }
-        let stages = stage::stages(exemplar, Symmetry::One, n_levels as usize)?;
+        let stages = stage::stages(
+            exemplar,
+            &Guides::default(),
+            Symmetry::One,
+            n_levels as usize,
+        )?;
         let is_tile = exemplar.edges == Edges::Wrap && exemplar.usable.is_none();
         let is_regular = exemplar.regularity() > REGULAR;
         let mut texture = Self {

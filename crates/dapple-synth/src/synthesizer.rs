@@ -175,12 +175,10 @@ impl Synthesizer {
             targets: Some(&targets),
             ..self.ground(options.axes, options.sources == Sources::SubPixel)
         };
-        let is_plain = options.schedule.is_none()
-            && exemplar.n_guides() == 0
-            && self.scales.iter().all(|&scale| scale == 1.0);
+        let is_plain = options.schedule.is_none() && self.scales.iter().all(|&scale| scale == 1.0);
         let (sources, quarters) = match options.matching {
             Matching::Appearance if is_plain => {
-                self.by_appearance(&ground, &pyramid, options, callback)?
+                self.by_appearance(&ground, &targets, &pyramid, options, callback)?
             }
             _ => {
                 let levels = engine::run_turned(&ground, &pyramid, options, callback)?;
@@ -216,6 +214,7 @@ impl Synthesizer {
     fn by_appearance(
         &self,
         ground: &MeshGround<'_>,
+        targets: &Targets,
         pyramid: &Pyramid,
         options: &Options,
         callback: Callback<'_>,
@@ -231,7 +230,7 @@ impl Synthesizer {
         let mut levels = engine::run_passes(ground, pyramid, &passes[..1], options, &mut first)?;
         let coarsest = levels.split_off(options.n_levels - 1);
         let (sources, quarters) = ground::Sources::pixels_and_quarters(coarsest);
-        let mut appearance = Appearance::new(self, exemplar, &quarters, options)?;
+        let mut appearance = Appearance::new(self, exemplar, targets, &quarters, options)?;
         let places = appearance.run(&sources.concat(), callback)?;
         let pixels = |(level, places): (usize, Vec<[u32; 2]>)| {
             let width = pyramid.levels()[level].size[0];

@@ -1,8 +1,9 @@
 //! Tests of corrections on surfaces.
 
 use super::links::Links;
-use super::{Appearance, Choice, choose, quarters};
+use super::{Appearance, Choice, around, choose, distance_sq, quarters};
 use crate::endless::stage::{self, DIAGONALS, Stage};
+use crate::guides::Targets;
 use crate::orientation::offset_before;
 use crate::places::{Frame, Frames};
 use crate::shapes::{on_threads, sheet, sites_on, sphere, synthesizer};
@@ -144,15 +145,24 @@ fn sites_take_the_place_that_comparing_with_all_they_may_take_finds() {
     }
 }
 
-fn takes_the_place_that_comparing_with_all_finds(ball: &Synthesizer) {
-    let exemplar = noise(Edges::Cut);
-    let symmetry = ball.orientation().symmetry();
-    let turns = symmetry.quarters().iter().copied().cycle();
-    let quarters: Vec<u8> = match symmetry {
-        Symmetry::One => Vec::new(),
-        _ => turns.take(ball.hierarchy().levels()[1].n_sites()).collect(),
+/// The quarter turns of a symmetry for the coarsest sites, one after the other; none where there is no symmetry.
+fn all_quarters(ball: &Synthesizer) -> Vec<u8> {
+    let turns = match ball.orientation().symmetry() {
+        Symmetry::One => &[],
+        symmetry => symmetry.quarters(),
     };
-    let appearance = Appearance::new(ball, &exemplar, &quarters, &options()).unwrap();
+    let turns = turns.iter().copied().cycle();
+    turns.take(ball.hierarchy().levels()[1].n_sites()).collect()
+}
+
+fn takes_the_place_that_comparing_with_all_finds(ball: &Synthesizer) {
+    let guide = Raster::from_fn([24, 20], |x, y| (x * y % 7) as f32 / 7.0).unwrap();
+    let exemplar = noise(Edges::Cut).with_guides(&[(&guide, 0.5)]).unwrap();
+    let wanted: Vec<f32> = (0..1500).map(|site| (site % 5) as f32 / 5.0).collect();
+    let targets = Targets::of_surface(&exemplar, &[&wanted], ball.hierarchy(), 2).unwrap();
+    let symmetry = ball.orientation().symmetry();
+    let quarters = all_quarters(ball);
+    let appearance = Appearance::new(ball, &exemplar, &targets, &quarters, &options()).unwrap();
     let stage = &appearance.stages[0];
     let links = Links::new(ball.hierarchy(), &appearance.frames, 0);
     let frames = &appearance.frames.of_site;
@@ -186,23 +196,25 @@ fn takes_the_place_that_comparing_with_all_finds(ball: &Synthesizer) {
             })
         });
         let around: Vec<[f32; 8]> = around.collect();
-        let unlike = |place| unlike(stage, &around, place);
+        let unlike = |place: [i64; 2]| {
+            // With the weight of a half, on four diagonals.
+            let off = guide.row(place[1] as u32)[place[0] as usize] - wanted[site];
+            unlike(stage, &around, place) + 2.0 * off * off
+        };
         let same = read.near.iter();
         let same = same.filter(|link| turn(site, link.site()) == 0);
         let coherent = same.filter_map(|link| {
             let way = way(ball, frames, [site, link.site()]);
             stage.usable(from(link.site(), -way))
         });
-        let mut coherent: Vec<[i64; 2]> = coherent.collect();
-        coherent.push(places[site].map(i64::from));
+        let own = places[site].map(i64::from);
+        let coherent: Vec<[i64; 2]> = coherent.chain([own]).collect();
         let alike = coherent.iter().filter_map(|&place| stage.similar(place));
         let alike = alike.map(|place| 3.0 * unlike(place));
-        let least = coherent
-            .iter()
-            .map(|&place| unlike(place))
-            .chain(alike)
-            .fold(f32::INFINITY, f32::min);
-        let Choice { distance_sq, .. } = choose(stage, &links, site, &places, 2.0);
+        let all = coherent.iter().map(|&place| unlike(place)).chain(alike);
+        let least = all.fold(f32::INFINITY, f32::min);
+        let wanted = targets.of(0, site as u32);
+        let Choice { distance_sq, .. } = choose(stage, &links, site, &places, wanted, 2.0);
         // Sums of the same squares in another order.
         assert!(
             (distance_sq - least).abs() <= 1e-4 * least,
@@ -214,6 +226,50 @@ fn takes_the_place_that_comparing_with_all_finds(ball: &Synthesizer) {
         symmetry != Symmetry::One,
         "{n_turned} turned"
     );
+}
+
+#[test]
+fn sites_whose_guides_are_off_search_all_of_the_exemplar() {
+    let ball = ball();
+    let is_right = Raster::from_fn([24, 20], |x, _| f32::from(x >= 12)).unwrap();
+    let exemplar = noise(Edges::Wrap).with_guides(&[(&is_right, 3.0)]).unwrap();
+    let wanted: Vec<f32> = (0..1500).map(|site| f32::from(site % 3 == 0)).collect();
+    let targets = Targets::of_surface(&exemplar, &[&wanted], ball.hierarchy(), 2).unwrap();
+    let appearance = Appearance::new(&ball, &exemplar, &targets, &[], &options()).unwrap();
+    let stage = &appearance.stages[0];
+    let links = Links::new(ball.hierarchy(), &appearance.frames, 0);
+    let before: Vec<[u32; 2]> = (0..1500).map(|site| [site % 12, site % 20]).collect();
+    let mut places = before.clone();
+    let mut tell = |_| Ok(());
+    appearance
+        .obey(0, &links, &mut places, &mut tell)
+        .expect("nobody stops it");
+    let mut n_exact = 0;
+    for (site, place) in places.into_iter().enumerate() {
+        if wanted[site] == 0.0 {
+            assert_eq!(place, before[site], "{site} is where it should be");
+            continue;
+        }
+        let around = around(stage, &links, site, &before);
+        if around.iter().any(Option::is_none) {
+            // What is not known is guessed.
+            continue;
+        }
+        n_exact += 1;
+        let off = |[column, row]: [u32; 2]| {
+            let place = [column, row].map(i64::from);
+            distance_sq(stage, &around, place) + stage.guides_distance_sq(&[3_f32.sqrt()], place)
+        };
+        let all = (0..20).flat_map(|row| (0..24).map(move |column| off([column, row])));
+        let least = all.fold(f32::INFINITY, f32::min);
+        // Sums of the same squares in another order.
+        assert!(
+            off(place) <= least * 1.0001,
+            "{site}: {} {least}",
+            off(place)
+        );
+    }
+    assert!(n_exact > 400, "{n_exact} of 500");
 }
 
 /// The squared distance of what is on the diagonals of a site from what is on those of a place.
@@ -244,7 +300,7 @@ fn features_of_what_looks_alike_when_turned_are_those_at_the_turned_place() {
     let plane = Raster::from_fn([SIDE as u32; 2], value).unwrap();
     let exemplar = Exemplar::from_planes(&[(&plane, 1.0)], Edges::Wrap).unwrap();
     for symmetry in [Symmetry::One, Symmetry::Two, Symmetry::Four] {
-        let stage = &stage::stages(&exemplar, symmetry, 1).unwrap()[0];
+        let stage = &stage::stages(&exemplar, &exemplar.guides, symmetry, 1).unwrap()[0];
         for place in (0..SIDE * SIDE).map(|pixel| [pixel % SIDE, pixel / SIDE]) {
             for &quarters in symmetry.quarters() {
                 let turned = offset_before(around(place), quarters).map(|at| at + 7);

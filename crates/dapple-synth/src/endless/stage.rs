@@ -5,6 +5,7 @@
 
 use super::evenness::Costs;
 use crate::exemplar::blend;
+use crate::guides::Guides;
 use crate::matcher::{Basis, Matcher, MatcherMemory, Query};
 use crate::orientation::offset_after;
 use crate::{Edges, Exemplar, Symmetry, SynthError, SynthErrorKind};
@@ -54,21 +55,44 @@ pub(crate) struct Stage {
     pub(crate) step: i64,
     /// For each pixel of the grid the one of the grid that is most like it.
     similar: Vec<u32>,
+    /// One value of each guide for every pixel, times the root of its weight.
+    guides: Vec<f32>,
+    n_guides: usize,
+    /// The usable pixels of the grid, to be searched for; nothing without guides.
+    searched: Option<Grid>,
     /// The costs of the parts of the exemplar, added to the squared distances of places in them.
     pub(crate) costs: Costs,
     /// The cost of a place that repeats what lies beside a pixel, added to its squared distance.
     pub(super) repetition_cost: f32,
 }
 
-/// The levels of an exemplar that may lie turned as a symmetry says, the finest first.
+/// The usable pixels of a grid, as rows of what is compared.
+#[derive(Clone, Debug)]
+struct Grid {
+    /// The number of each pixel in the grid.
+    pixels: Vec<usize>,
+    matcher: Matcher,
+}
+
+/// The levels of an exemplar that may lie turned as a symmetry says, with some of its guides or none, the finest first.
 pub(crate) fn stages(
     exemplar: &Exemplar,
+    guides: &Guides,
     symmetry: Symmetry,
     n_levels: usize,
 ) -> Result<Vec<Stage>, SynthError> {
     let mut pixels = vec![exemplar.pixels.clone()];
+    let mut guides_of = vec![guides.values.clone()];
+    let n_guides = guides.roots.len();
     for level in 1..n_levels {
-        pixels.push(blurred(exemplar, &pixels[level - 1], 1 << (level - 1)));
+        let step = 1 << (level - 1);
+        pixels.push(blurred(
+            exemplar,
+            &pixels[level - 1],
+            exemplar.n_channels,
+            step,
+        ));
+        guides_of.push(blurred(exemplar, &guides_of[level - 1], n_guides, step));
     }
     // Never more is left out than of the next coarser level, so that the pixels that its texture has are usable.
     let mut reach = i64::MAX;
@@ -82,7 +106,11 @@ pub(crate) fn stages(
     masks.reverse();
     let stage = |level: usize| {
         let features = features(exemplar, symmetry, &pixels[level], 1 << level);
-        Stage::new(exemplar, level, features, masks[level].clone())
+        let mut stage = Stage::new(exemplar, level, features, masks[level].clone());
+        stage.n_guides = n_guides;
+        stage.guides.clone_from(&guides_of[level]);
+        stage.search_alike();
+        stage
     };
     Ok(parallel::map(n_levels, stage))
 }
@@ -92,9 +120,8 @@ pub(crate) fn narrow(place: [i64; 2]) -> [u32; 2] {
     place.map(|at| at as u32)
 }
 
-/// An image with every pixel mixed with those two and one steps away along both axes.
-fn blurred(exemplar: &Exemplar, pixels: &[f32], step: i64) -> Vec<f32> {
-    let n = exemplar.n_channels;
+/// An image of `n` channels with every pixel mixed with those two and one steps away along both axes.
+fn blurred(exemplar: &Exemplar, pixels: &[f32], n: usize, step: i64) -> Vec<f32> {
     let [width, height] = exemplar.size;
     let wrap = exemplar.edges.wrap();
     let taps = |at: usize, side: u32| {
@@ -236,7 +263,8 @@ fn inner(edges: Edges, side: usize, reach: i64, holds: impl Fn(usize) -> bool) -
 }
 
 impl Stage {
-    /// A level of an exemplar, which looks like this around its pixels, of which textures may have some.
+    /// A level of an exemplar, which looks like this around its pixels, of which textures may have some. It has no guides yet,
+    /// nor is it known which pixels are alike.
     fn new(
         exemplar: &Exemplar,
         level: usize,
@@ -249,7 +277,7 @@ impl Stage {
         while n_pixels > GRID * step * step {
             step *= 2;
         }
-        let mut stage = Self {
+        Self {
             size: exemplar.size,
             wrap: exemplar.edges.wrap(),
             spacing,
@@ -257,11 +285,12 @@ impl Stage {
             usable,
             step,
             similar: Vec::new(),
+            guides: Vec::new(),
+            n_guides: 0,
+            searched: None,
             costs: Costs::default(),
             repetition_cost: 0.0,
-        };
-        stage.similar = stage.most_similar();
-        stage
+        }
     }
 
     /// The pixel at a column and row, of which those past the edges are mirrored or wrapped.
@@ -296,6 +325,32 @@ impl Stage {
             }
         }
         sum
+    }
+
+    /// The squared distance of guides at a pixel of a texture from those of a place within the exemplar: each counts as a
+    /// channel that differs everywhere.
+    #[inline]
+    pub(crate) fn guides_distance_sq(&self, wanted: &[f32], [column, row]: [i64; 2]) -> f32 {
+        if wanted.is_empty() {
+            return 0.0;
+        }
+        let pixel = row as usize * self.size[0] as usize + column as usize;
+        let own = &self.guides[pixel * self.n_guides..][..self.n_guides];
+        let squares = own.iter().zip(wanted).map(|(a, b)| (a - b) * (a - b));
+        DIAGONALS.len() as f32 * squares.sum::<f32>()
+    }
+
+    /// The place of the grid whose diagonals and guides are the most like these; nothing without guides.
+    pub(crate) fn search(
+        &self,
+        around: &[[f32; N_FEATURES]; 4],
+        wanted: &[f32],
+        memory: &mut MatcherMemory,
+    ) -> Option<[i64; 2]> {
+        let grid = self.searched.as_ref()?;
+        let values = compared(around, wanted);
+        let found = grid.matcher.nearest(&values, f32::INFINITY, None, memory)?;
+        Some(self.grid_place(grid.pixels[found.row as usize]))
     }
 
     /// The place of a pixel that is a quarter of one of the next coarser level: beside the place of that, or, where that
@@ -353,50 +408,58 @@ impl Stage {
         self.size.map(|side| (i64::from(side) - 1) / self.step + 1)
     }
 
-    /// The pixel of the grid that is most like each of the grid, not too near to it.
-    fn most_similar(&self) -> Vec<u32> {
+    /// The place of a pixel of the grid.
+    fn grid_place(&self, pixel: usize) -> [i64; 2] {
+        let [width, _] = self.grid();
+        [pixel as i64 % width, pixel as i64 / width].map(|at| at * self.step)
+    }
+
+    /// Finds the pixel of the grid that is most like each of the grid, not too near to it.
+    fn search_alike(&mut self) {
         let [width, height] = self.grid();
-        let place = |at: usize| [at as i64 % width, at as i64 / width].map(|at| at * self.step);
-        let is_usable = |at: &usize| self.usable(place(*at)).is_some();
-        let grid: Vec<usize> = (0..(width * height) as usize).filter(is_usable).collect();
-        let mut row_of = vec![NONE; (width * height) as usize];
-        for (row, &at) in grid.iter().enumerate() {
-            row_of[at] = row as u32;
+        let n_pixels = (width * height) as usize;
+        let is_usable = |pixel: &usize| self.usable(self.grid_place(*pixel)).is_some();
+        let pixels: Vec<usize> = (0..n_pixels).filter(is_usable).collect();
+        let mut row_of = vec![NONE; n_pixels];
+        for (row, &pixel) in pixels.iter().enumerate() {
+            row_of[pixel] = row as u32;
         }
-        let values = parallel::map_at_least(64, grid.len(), |row| {
-            let [column, line] = place(grid[row]);
+        let values = parallel::map_at_least(64, pixels.len(), |row| {
+            let [column, line] = self.grid_place(pixels[row]);
             let around = |[x, y]: [i64; 2]| [column + x * self.spacing, line + y * self.spacing];
-            DIAGONALS.map(|step| *self.features(around(step)))
+            let pixel = (line * i64::from(self.size[0]) + column) as usize;
+            let guides = &self.guides[pixel * self.n_guides..][..self.n_guides];
+            compared(&DIAGONALS.map(|step| *self.features(around(step))), guides)
         });
-        let dims = DIAGONALS.len() * N_FEATURES;
-        let matcher = Matcher::with_factors(dims, values.as_flattened().as_flattened());
+        let dims = DIAGONALS.len() * N_FEATURES + self.n_guides;
+        let matcher = Matcher::with_factors(dims, &values.concat());
         let apart = self.apart();
-        let found = parallel::map(grid.len().div_ceil(PIXELS), |block| {
+        let found = parallel::map(pixels.len().div_ceil(PIXELS), |block| {
             let mut memory = MatcherMemory::default();
-            let mut factors = vec![1.0; grid.len()];
+            let mut factors = vec![1.0; pixels.len()];
             let mut hint = None;
-            let rows = block * PIXELS..grid.len().min((block + 1) * PIXELS);
+            let rows = block * PIXELS..pixels.len().min((block + 1) * PIXELS);
             let search = |row: usize| {
-                self.mark(&row_of, grid[row], apart, f32::INFINITY, &mut factors);
+                self.mark(&row_of, pixels[row], apart, f32::INFINITY, &mut factors);
                 let query = Query {
-                    values: values[row].as_flattened(),
+                    values: &values[row],
                     below: f32::INFINITY,
                     hint,
                     factors: Some(&factors),
                 };
                 let found = matcher.find(query, &mut memory).map(|found| found.row);
-                self.mark(&row_of, grid[row], apart, 1.0, &mut factors);
+                self.mark(&row_of, pixels[row], apart, 1.0, &mut factors);
                 // What is most like the next one is often beside it.
                 hint = found.map(|row| row + 1);
-                found.map_or(NONE, |row| grid[row as usize] as u32)
+                found.map_or(NONE, |row| pixels[row as usize] as u32)
             };
             rows.map(search).collect::<Vec<u32>>()
         });
-        let mut similar = vec![NONE; row_of.len()];
-        for (&at, found) in grid.iter().zip(found.concat()) {
-            similar[at] = found;
+        self.similar = vec![NONE; row_of.len()];
+        for (&pixel, found) in pixels.iter().zip(found.concat()) {
+            self.similar[pixel] = found;
         }
-        similar
+        self.searched = (self.n_guides > 0).then_some(Grid { pixels, matcher });
     }
 
     /// How far pixels that are alike are from each other at least, but for rounding, in steps of the grid.
@@ -420,4 +483,12 @@ impl Stage {
             }
         }
     }
+}
+
+/// What is compared of a place: its diagonals, and its guides, each as often as there are of those.
+fn compared(around: &[[f32; N_FEATURES]; 4], guides: &[f32]) -> Vec<f32> {
+    let mut values = around.as_flattened().to_vec();
+    let root = (DIAGONALS.len() as f32).sqrt();
+    values.extend(guides.iter().map(|guide| guide * root));
+    values
 }

@@ -201,8 +201,8 @@ pub(super) struct SurfaceArgs {
     #[arg(long, value_name = "HOW", value_parser = Word::<FieldAxes>::all())]
     axes: Option<FieldAxes>,
 
-    /// The values that are compared; by default appearance, or colors with --paper. Colors are compared all the same with
-    /// guides and where the example is a mesh.
+    /// The values that are compared; by default appearance, or colors with --paper. Colors are compared all the same where
+    /// the example is a mesh.
     #[arg(long, value_name = "WHAT", value_parser = Word::<Matching>::all())]
     matching: Option<Matching>,
 }
