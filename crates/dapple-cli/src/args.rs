@@ -23,6 +23,8 @@ use crate::progress::Style;
 use crate::words::Word;
 use anyhow::Result;
 use clap::Args;
+use dapple::color::Palette;
+use dapple::raster::Named;
 use std::path::{Path, PathBuf};
 
 /// Options of all subcommands.
@@ -88,10 +90,16 @@ pub(crate) struct ImageArgs {
     #[arg(long, value_name = "FORMAT", value_parser = Word::<Format>::all())]
     pub(crate) format: Option<Format>,
 
-    /// Color gray results: a palette (gray, lagoon, ember, terrain, cow, giraffe, labels) or colors from low to high,
-    /// such as `#123,#8ac,white`.
-    #[arg(long, value_name = "COLORS")]
+    #[arg(long, value_name = "COLORS", help = ramp_help())]
     pub(crate) ramp: Option<RampArg>,
+}
+
+/// The help of `--ramp`, with the names of all palettes.
+fn ramp_help() -> String {
+    format!(
+        "Color gray results: a palette ({}) or colors from low to high, such as `#123,#8ac,white`",
+        Palette::NAMES.join(", ")
+    )
 }
 
 dapple::raster::named! {

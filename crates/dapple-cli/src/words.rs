@@ -5,8 +5,6 @@ use clap::error::ErrorKind;
 use clap::{Arg, Command, Error};
 use dapple::raster::Named;
 use dapple::recipe::similar_words;
-use serde::de::value::Error as WordError;
-use serde::de::{DeserializeOwned, IntoDeserializer};
 use std::ffi::OsStr;
 
 /// A word in the form of the names of maps and fields: in lower case, with `_`.
@@ -71,6 +69,16 @@ impl<T: Named> Word<T> {
 }
 
 impl<T> Word<T> {
+    /// A parser of these values.
+    pub(crate) fn of(values: impl IntoIterator<Item = (&'static str, T)>) -> Self {
+        let values = values.into_iter();
+        Self(
+            values
+                .map(|(name, value)| (PossibleValue::new(name), value))
+                .collect(),
+        )
+    }
+
     /// A parser without values.
     pub(crate) fn none() -> Self {
         Self(Vec::new())
@@ -80,18 +88,6 @@ impl<T> Word<T> {
     pub(crate) fn or(mut self, name: &'static str, help: &'static str, value: T) -> Self {
         self.0.push((PossibleValue::new(name).help(help), value));
         self
-    }
-}
-
-impl<T: DeserializeOwned> Word<T> {
-    /// A parser of values with these names in recipes, with `-` where recipes have `_`.
-    pub(crate) fn of(names: &'static [&'static str]) -> Self {
-        let named = |&name: &&'static str| {
-            let written = with_underscores(name);
-            let value = IntoDeserializer::<WordError>::into_deserializer(written.as_str());
-            Some((PossibleValue::new(name), T::deserialize(value).ok()?))
-        };
-        Self(names.iter().filter_map(named).collect())
     }
 }
 

@@ -227,7 +227,15 @@ impl Made {
             Self::Fractal {
                 gain, lacunarity, ..
             } => vec![*gain, *lacunarity],
-            _ => Vec::new(),
+            Self::Worley(_)
+            | Self::GradientNoise(_)
+            | Self::WaveletNoise(_)
+            | Self::Pups(_)
+            | Self::Texture(_)
+            | Self::Node(_)
+            | Self::Absolute(_)
+            | Self::Pair { .. }
+            | Self::Mix { .. } => Vec::new(),
         };
         let Some(number) = numbers.iter().find(|number| !number.is_finite()) else {
             return Ok(());

@@ -95,7 +95,7 @@ pub(crate) trait NodeKind {
 
 /// Defines the enum of all kinds, their names in recipes, and the conversion from a node to its kind.
 macro_rules! nodes {
-    ($($(#[$doc:meta])* $name:literal $variant:ident($options:ident),)*) => {
+    ($($(#[$doc:meta])* $name:literal $variant:ident($options:ident) in $group:literal as $start:literal,)*) => {
         /// A node of a recipe: a table with one entry, whose name is the kind.
         ///
         /// Most nodes make a number at every position. Those that make a color are `ramp`, `color`, `image` and `synth` of a
@@ -112,6 +112,10 @@ macro_rules! nodes {
         /// The names of the kinds in files.
         pub const KINDS: [&str; [$($name),*].len()] = [$($name),*];
 
+        /// For each of [`KINDS`] the group that it belongs to, such as `shape`, and the options that a new node may begin with,
+        /// as JSON.
+        pub const NEW_NODES: [(&str, &str); KINDS.len()] = [$(($group, $start)),*];
+
         impl Node {
             pub(crate) fn kind(&self) -> &dyn NodeKind {
                 match self {
@@ -124,63 +128,63 @@ macro_rules! nodes {
 
 nodes! {
     /// Worley's cellular basis.
-    "worley" Worley(WorleyNode),
+    "worley" Worley(WorleyNode) in "cells and noise" as "{}",
     /// A partition-of-unity texture.
-    "pups" Pups(PupsNode),
+    "pups" Pups(PupsNode) in "cells and noise" as r#"{"cells":{}}"#,
     /// Wavelet noise.
-    "wavelet" Wavelet(WaveletNode),
+    "wavelet" Wavelet(WaveletNode) in "cells and noise" as "{}",
     /// Octaves of noise from 0 to 1, of PUPs, gradients or wavelets.
-    "noise" Noise(Fractal),
+    "noise" Noise(Fractal) in "cells and noise" as "{}",
     /// The coordinate of a position along a direction.
-    "coordinate" Coordinate(Coordinate),
+    "coordinate" Coordinate(Coordinate) in "position" as r#"{"along":[1.0,0.0]}"#,
     /// The distance of a position from a center.
-    "distance" Distance(Distance),
+    "distance" Distance(Distance) in "position" as r#"{"center":[0.5,0.5]}"#,
     /// An image file, laid over the tile.
-    "image" Image(ImageNode),
+    "image" Image(ImageNode) in "color and images" as r#"{"file":"image.png"}"#,
     /// A texture grown from an image of it.
-    "synth" Synth(SynthNode),
+    "synth" Synth(SynthNode) in "color and images" as r#"{"file":"image.png"}"#,
     /// One color at every position.
-    "color" Color(ColorOf),
+    "color" Color(ColorOf) in "color and images" as r##""#c08040""##,
     /// The sum of all inputs.
-    "add" Add(Add),
+    "add" Add(Add) in "arithmetic" as "[0.0,0.0]",
     /// The first input minus the second.
-    "subtract" Subtract(Subtract),
+    "subtract" Subtract(Subtract) in "arithmetic" as "[0.0,0.0]",
     /// The product of all inputs.
-    "multiply" Multiply(Multiply),
+    "multiply" Multiply(Multiply) in "arithmetic" as "[1.0,1.0]",
     /// The first input divided by the second; 0 where the second is 0.
-    "divide" Divide(Divide),
+    "divide" Divide(Divide) in "arithmetic" as "[1.0,1.0]",
     /// The smallest of all inputs.
-    "minimum" Minimum(Minimum),
+    "minimum" Minimum(Minimum) in "arithmetic" as "[0.0,1.0]",
     /// The largest of all inputs.
-    "maximum" Maximum(Maximum),
+    "maximum" Maximum(Maximum) in "arithmetic" as "[0.0,1.0]",
     /// The absolute value of a number.
-    "absolute" Absolute(Absolute),
+    "absolute" Absolute(Absolute) in "arithmetic" as "0.0",
     /// A number raised to a power.
-    "power" Power(Power),
+    "power" Power(Power) in "arithmetic" as r#"{"input":0.5,"exponent":2.0}"#,
     /// A wave of a number.
-    "wave" Wave(Wave),
+    "wave" Wave(Wave) in "shape" as r#"{"input":0.5}"#,
     /// A range of numbers stretched to another.
-    "levels" Levels(Levels),
+    "levels" Levels(Levels) in "shape" as r#"{"input":0.5}"#,
     /// The cross-section of a bump, such as spots or channels.
-    "profile" Profile(ProfileOf),
+    "profile" Profile(ProfileOf) in "shape" as r#"{"input":0.5,"shape":{"spots":{"radius":0.5}}}"#,
     /// The interpolation from one input to another.
-    "mix" Mix(Mix),
+    "mix" Mix(Mix) in "shape" as r#"{"from":0.0,"to":1.0,"by":0.5}"#,
     /// Another node at displaced positions.
-    "warp" Warp(Warp),
+    "warp" Warp(Warp) in "shape" as r#"{"input":0.5,"x":0.0,"y":0.0}"#,
     /// A color for each number, by a color ramp.
-    "ramp" Ramp(Ramped),
+    "ramp" Ramp(Ramped) in "color and images" as r##"{"input":0.5,"colors":["#202020","#f0f0f0"]}"##,
     /// A texture made to repeat.
-    "tile" Tile(Tiled),
+    "tile" Tile(Tiled) in "whole tile" as r#"{"input":0.5}"#,
     /// Copies of a texture that differ inside.
-    "disturb" Disturb(Disturbed),
+    "disturb" Disturb(Disturbed) in "whole tile" as r#"{"input":0.5}"#,
     /// A texture with the borders of another one.
-    "match_borders" MatchBorders(Framed),
+    "match_borders" MatchBorders(Framed) in "whole tile" as r#"{"input":0.5,"border":0.5}"#,
     /// Pieces of several textures, in random order.
-    "corner_tiles" CornerTiles(CornerTilesOf),
+    "corner_tiles" CornerTiles(CornerTilesOf) in "whole tile" as r#"{"inputs":[0.25,0.75]}"#,
     /// A map of the places where another texture shows first.
-    "blend_map" BlendMap(BlendMapOf),
+    "blend_map" BlendMap(BlendMapOf) in "whole tile" as r#"{"input":0.5,"feature_size":0.5}"#,
     /// Layers blended by weights.
-    "blend" Blend(Blended),
+    "blend" Blend(Blended) in "whole tile" as r#"{"layers":[{"input":0.5}]}"#,
 }
 
 impl Node {

@@ -1,7 +1,7 @@
 //! What the schema of recipes says of a recipe: where inputs and seeds are, and which kinds of nodes there are.
 
 use crate::Part;
-use dapple::recipe::{KINDS, Recipe};
+use dapple::recipe::{KINDS, NEW_NODES, Recipe};
 use serde::Serialize;
 use serde_json::Value as Json;
 use std::sync::OnceLock;
@@ -162,73 +162,19 @@ fn requirements(schema: &Json) -> impl Iterator<Item = &str> {
     all.into_iter().flatten().filter_map(Json::as_str)
 }
 
-/// The use of each kind of node, and the options of a new one. An input called `?` is to be chosen.
-const GROUPS: [(&str, &str, &str); 29] = [
-    ("worley", "cells and noise", "{}"),
-    ("pups", "cells and noise", r#"{"cells":{}}"#),
-    ("wavelet", "cells and noise", "{}"),
-    ("noise", "cells and noise", "{}"),
-    ("coordinate", "position", r#"{"along":[1.0,0.0]}"#),
-    ("distance", "position", r#"{"center":[0.5,0.5]}"#),
-    ("image", "color and images", r#"{"file":"image.png"}"#),
-    ("synth", "color and images", r#"{"file":"image.png"}"#),
-    ("color", "color and images", r##""#c08040""##),
-    ("add", "arithmetic", "[0.0,0.0]"),
-    ("subtract", "arithmetic", "[0.0,0.0]"),
-    ("multiply", "arithmetic", "[1.0,1.0]"),
-    ("divide", "arithmetic", "[1.0,1.0]"),
-    ("minimum", "arithmetic", "[0.0,1.0]"),
-    ("maximum", "arithmetic", "[0.0,1.0]"),
-    ("absolute", "arithmetic", "0.0"),
-    ("power", "arithmetic", r#"{"input":0.5,"exponent":2.0}"#),
-    ("wave", "shape", r#"{"input":0.5}"#),
-    ("levels", "shape", r#"{"input":0.5}"#),
-    (
-        "profile",
-        "shape",
-        r#"{"input":0.5,"shape":{"spots":{"radius":0.5}}}"#,
-    ),
-    ("mix", "shape", r#"{"from":0.0,"to":1.0,"by":0.5}"#),
-    ("warp", "shape", r#"{"input":0.5,"x":0.0,"y":0.0}"#),
-    (
-        "ramp",
-        "color and images",
-        r##"{"input":0.5,"colors":["#202020","#f0f0f0"]}"##,
-    ),
-    ("tile", "whole tile", r#"{"input":0.5}"#),
-    ("disturb", "whole tile", r#"{"input":0.5}"#),
-    (
-        "match_borders",
-        "whole tile",
-        r#"{"input":0.5,"border":0.5}"#,
-    ),
-    ("corner_tiles", "whole tile", r#"{"inputs":[0.25,0.75]}"#),
-    (
-        "blend_map",
-        "whole tile",
-        r#"{"input":0.5,"feature_size":0.5}"#,
-    ),
-    ("blend", "whole tile", r#"{"layers":[{"input":0.5}]}"#),
-];
-
 /// All kinds of nodes, in the order of the reader.
 pub(crate) fn kinds() -> Vec<Kind> {
-    KINDS.into_iter().map(kind).collect()
-}
-
-fn kind(name: &'static str) -> Kind {
-    let known = GROUPS.iter().find(|(other, ..)| *other == name);
-    let (_, group, example) = known.copied().unwrap_or((name, "other", "{}"));
-    Kind {
+    let kind = |(name, (group, example))| Kind {
         name,
         group,
         value: serde_json::from_str(example).unwrap_or_default(),
-    }
+    };
+    KINDS.into_iter().zip(NEW_NODES).map(kind).collect()
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{GROUPS, KINDS, Role, kinds, roles};
+    use super::{Role, kinds, roles};
     use crate::data::json_of_table;
     use dapple::recipe::{Images, Input, Plan, Recipe};
     use serde_json::json;
@@ -263,7 +209,6 @@ mod tests {
 
     #[test]
     fn every_kind_begins_with_a_node_that_can_be_read() {
-        assert_eq!(GROUPS.map(|(name, ..)| name), KINDS);
         for kind in kinds() {
             let recipe = json!({
                 "dapple": 1, "extent": [4, 4], "material": {}, "nodes": { "a": { kind.name: kind.value } },

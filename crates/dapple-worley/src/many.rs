@@ -13,7 +13,7 @@ use crate::lattice::{IDS, Lattice, SixteenCells};
 use crate::levels::wide;
 use crate::metric::{Exact, Measure as _};
 use crate::places::{LANES, Places, Words, cells_by_distance, digit, load, store};
-use crate::{LIMIT, Metric, Worley};
+use crate::{LIMIT, Worley};
 use dapple_hash::CellHashes;
 use fearless_simd::{Level, f32x16, i32x16, mask32x16, prelude::*, u32x16, u64x8};
 
@@ -146,7 +146,7 @@ impl<const N: usize> Group<N> {
     /// Finds the nearest points of the positions; returns a bit for each position for which they are certain.
     pub(crate) fn search(&mut self, worley: &Worley<N>, level: Level) -> u64 {
         // Powers are so slow that lanes gain nothing, and the counts of a varying density are drawn one by one.
-        let is_scalar = matches!(worley.metric, Metric::Minkowski(_));
+        let is_scalar = worley.metric.is_slow();
         if is_scalar || worley.lattice.density.is_some() {
             return 0;
         }

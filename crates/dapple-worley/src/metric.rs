@@ -36,8 +36,12 @@ pub enum Metric {
 const LARGEST_EXPONENT: f32 = 10.0;
 
 impl Metric {
-    /// The names of the metrics without an exponent, as recipes and the command use them.
-    pub const NAMES: [&'static str; 3] = ["euclidean", "manhattan", "chebyshev"];
+    /// The metrics without an exponent, with the names that recipes and the command use.
+    pub const NAMED: [(&'static str, Self); 3] = [
+        ("euclidean", Self::Euclidean),
+        ("manhattan", Self::Manhattan),
+        ("chebyshev", Self::Chebyshev),
+    ];
 
     pub(crate) fn check(self) -> Result<Self, WorleyError> {
         match self {
@@ -108,7 +112,7 @@ impl Metric {
             // `powf` is good to an ulp or two, so larger differences can have smaller powers by as much; this is 80
             // ulps.
             Self::Minkowski(_) => 1.000_01,
-            _ => 1.0,
+            Self::Euclidean | Self::Manhattan | Self::Chebyshev => 1.0,
         }
     }
 
@@ -116,6 +120,12 @@ impl Metric {
     #[inline(always)]
     pub(crate) fn is_exact_sum(self) -> bool {
         matches!(self, Self::Euclidean | Self::Manhattan)
+    }
+
+    /// Whether terms are so slow that registers gain nothing.
+    #[inline]
+    pub(crate) fn is_slow(self) -> bool {
+        matches!(self, Self::Minkowski(_))
     }
 
     /// The term of a difference along one axis, which is also the key of a vector along that axis.
@@ -144,7 +154,7 @@ impl Metric {
         match self {
             Self::Chebyshev if term > key => term,
             Self::Chebyshev => key,
-            _ => term + key,
+            Self::Euclidean | Self::Manhattan | Self::Minkowski(_) => term + key,
         }
     }
 
@@ -203,13 +213,17 @@ pub(crate) trait Measure: Copy {
         self,
         mut differences: [V; C],
     ) -> [V; C] {
-        if matches!(self.metric(), Metric::Euclidean) {
-            for i in 0..C {
-                differences[i] *= differences[i];
+        match self.metric() {
+            Metric::Euclidean => {
+                for i in 0..C {
+                    differences[i] *= differences[i];
+                }
             }
-        } else {
-            for i in 0..C {
-                differences[i] = differences[i].abs();
+            // The powers are taken by `General`.
+            Metric::Manhattan | Metric::Chebyshev | Metric::Minkowski(_) => {
+                for i in 0..C {
+                    differences[i] = differences[i].abs();
+                }
             }
         }
         differences
@@ -218,20 +232,19 @@ pub(crate) trait Measure: Copy {
     /// Accumulates one more term into the keys of a register.
     #[inline(always)]
     fn accumulate<S: Simd, V: SimdFloat<S, Element = f32>>(self, terms: V, keys: V) -> V {
-        if matches!(self.metric(), Metric::Chebyshev) {
-            terms.max(keys)
-        } else {
-            terms + keys
+        match self.metric() {
+            Metric::Chebyshev => terms.max(keys),
+            Metric::Euclidean | Metric::Manhattan | Metric::Minkowski(_) => terms + keys,
         }
     }
 
     /// The distances for these keys.
     #[inline(always)]
     fn distances<S: Simd>(self, keys: f32x16<S>) -> f32x16<S> {
-        if matches!(self.metric(), Metric::Euclidean) {
-            keys.sqrt()
-        } else {
-            keys
+        match self.metric() {
+            Metric::Euclidean => keys.sqrt(),
+            // The roots are taken by `General`.
+            Metric::Manhattan | Metric::Chebyshev | Metric::Minkowski(_) => keys,
         }
     }
 

@@ -6,12 +6,9 @@
 
 use crate::{Combination, Metric, Scatter};
 
-/// The metrics with a table, in its order.
-const METRICS: [Metric; 3] = [Metric::Euclidean, Metric::Manhattan, Metric::Chebyshev];
-
-/// The low and the high end for each metric, for 2, 3 and 4 axes, for each of [`Combination::NAMED`].
+/// The low and the high end for each of [`Metric::NAMED`], for 2, 3 and 4 axes, for each of [`Combination::NAMED`].
 #[rustfmt::skip]
-const RANGES: [[[[f32; 2]; Combination::NAMED.len()]; 3]; METRICS.len()] = [
+const RANGES: [[[[f32; 2]; Combination::NAMED.len()]; 3]; Metric::NAMED.len()] = [
     [
         [[0.010974076, 0.76229835], [0.065805584, 0.91428345], [0.1417761, 1.0195735], [0.21772087, 1.1010303], [0.00022466481, 0.68405354], [0.10049477, 1.6141443], [0.007353246, 0.8322673], [0.00012877584, 0.5937053], [0.030768067, 0.9054758], [9.557605e-5, 0.5008415], [0.01136148, 1.2969987]],
         [[0.041316748, 0.8015076], [0.15808596, 0.88636553], [0.24387576, 0.95029527], [0.33023053, 0.99278855], [0.00016638637, 0.5972576], [0.24232218, 1.6419287], [0.0071097612, 0.6763977], [0.000101566315, 0.45619264], [0.021424234, 0.74553096], [6.502867e-5, 0.39463115], [0.009961963, 1.0222847]],
@@ -39,7 +36,9 @@ pub(crate) fn range(
     if scatter != Scatter::default() {
         return None;
     }
-    let metric = METRICS.iter().position(|&other| other == metric)?;
+    let metric = Metric::NAMED
+        .iter()
+        .position(|&(_, other)| other == metric)?;
     let mut named = Combination::NAMED.iter();
     let named = named.position(|&(_, other)| other == combination)?;
     Some(RANGES[metric][n_axes - 2][named])

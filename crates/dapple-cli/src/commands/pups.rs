@@ -103,11 +103,11 @@ pub(crate) struct Args {
     axis_scale: Option<f64>,
 
     /// How weights fall off along an axis: by the cubic of the paper, or by a quintic with a continuous second derivative.
-    #[arg(long, value_name = "CURVE", value_parser = Word::<AxialWeight>::of(&["cubic", "quintic"]), help_heading = "Weights")]
+    #[arg(long, value_name = "CURVE", value_parser = Word::of([("cubic", AxialWeight::Cubic), ("quintic", AxialWeight::Quintic)]), help_heading = "Weights")]
     weight: Option<AxialWeight>,
 
     /// Whether control points have orientations; by default as the texture has it.
-    #[arg(long, value_name = "WHICH", value_parser = Word::<Orientations>::of(&["none", "random"]), help_heading = "Weights")]
+    #[arg(long, value_name = "WHICH", value_parser = Word::of([("none", Orientations::None), ("random", Orientations::Random)]), help_heading = "Weights")]
     orientations: Option<Orientations>,
 
     /// How strongly orientations shift weights, from 0 to below 1.

@@ -30,21 +30,6 @@ Examples:
   dapple tile photo.png --wrap x -o wall.exr
   dapple tile photo.png --report
 
-Which method:
-  soft-cut         cuts along the line of least difference; smaller by the margin;
-                   for photographs; the default
-  synth            looks for the size that repeats best, and synthesizes a strip along the
-                   seam from the rest; for bricks, planks and weave; takes seconds
-  auto             tries all but synth and keeps the best by the report
-  periodic         keeps all detail and the size; spreads the step across the wrap over
-                   the image, which shows as a stain where it is large
-  poisson          the same with another gradient across the wrap
-  spline           the blend tile of Du, Wang and Meng; smooths, and hides a seam only
-                   in part
-  periodic-spline  periodic first, then spline
-  feather          a crossfade, the usual baseline
-  mirror           the image beside its mirror image, twice as large
-
 To make a tile of another size or from an example, see `dapple synth`.";
 
 /// Make an image repeat, or all maps of a material along the same cut.

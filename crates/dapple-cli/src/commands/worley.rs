@@ -63,8 +63,8 @@ pub(crate) struct Args {
     #[arg(long, value_name = "N[xM]", help_heading = "Texture")]
     period: Option<Extent>,
 
-    /// The metric: the straight line, along the axes, or the longer of the two.
-    #[arg(long, value_name = "METRIC", default_value = "euclidean", value_parser = Word::<Metric>::of(&Metric::NAMES), help_heading = "Texture")]
+    /// The metric: how distances are measured.
+    #[arg(long, value_name = "METRIC", default_value = "euclidean", value_parser = Word::of(Metric::NAMED), help_heading = "Texture")]
     metric: Metric,
 
     /// The exponent of the Minkowski metric, from 1 to 10; replaces --metric.
@@ -109,7 +109,7 @@ pub(crate) struct Args {
         long,
         value_name = "SEEDS",
         default_value = "own",
-        value_parser = Word::<OctaveSeeds>::of(&["own", "same"]),
+        value_parser = Word::of([("own", OctaveSeeds::Own), ("same", OctaveSeeds::Same)]),
         requires = "octaves",
         help_heading = "Texture"
     )]

@@ -43,8 +43,7 @@ impl NodeKind for Tiled {
         Ok(plan.global(inputs, [1; 2], move |tile| {
             let tiled = seamless.apply_maps(&tile.maps()?)?;
             if tiled[0].size() != tile.window.size {
-                let rule =
-                    "a tile in a recipe keeps its size: the methods soft_cut and mirror do not";
+                let rule = "a tile in a recipe keeps its size, and this method does not";
                 return Err(RecipeError::new(RecipeErrorKind::Conflict { rule }));
             }
             Values::of_map(tiled)

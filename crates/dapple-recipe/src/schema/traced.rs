@@ -348,7 +348,7 @@ mod tests {
                 "additionalProperties": false, "required": [name],
             })
         };
-        let words = json!({ "type": "string", "enum": ["euclidean", "manhattan", "chebyshev"] });
+        let words = json!({ "type": "string", "enum": Metric::NAMED.map(|(name, _)| name) });
         let expected = json!({ "oneOf": [words, table("minkowski", &number)] });
         assert_eq!(traced::<Metric>(), expected);
         let jitter = traced::<Scatter>()["oneOf"][2]["properties"]["jittered"].clone();

@@ -11,11 +11,11 @@ use super::square::{Guess, Plan};
 use super::table::{CellBox, Table};
 use super::track::Lookup;
 use super::{Band, LANES, Output, Picture};
+use crate::LIMIT;
 use crate::features::position;
 use crate::fixed::{MOST_AXES, STEPS};
 use crate::search::{Hit, Name};
 use crate::worley::cell_value;
-use crate::{LIMIT, Metric};
 use core::ops::Range;
 use fearless_simd::Level;
 
@@ -251,7 +251,7 @@ impl Block<'_> {
         let splat = self.splat(&outs[0], guess);
         let reach = splat.map_or(0, |splat| splat.reach.ceil() as i32);
         // Powers are so slow that lanes gain nothing, except for values.
-        let is_single = !is_values && matches!(metric, Metric::Minkowski(_));
+        let is_single = !is_values && metric.is_slow();
         let cells = self.cells(guess.ring.max(reach));
         let Some(cells) = cells.filter(|_| !is_single) else {
             self.one_by_one(&self.all(), outs);

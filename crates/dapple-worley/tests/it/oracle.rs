@@ -60,13 +60,17 @@ fn length<const N: usize>(metric: Metric, vector: [f64; N]) -> f64 {
     }
 }
 
-pub(super) const METRICS: [Metric; 5] = [
-    Metric::Euclidean,
-    Metric::Manhattan,
-    Metric::Chebyshev,
-    Metric::Minkowski(3.0),
-    Metric::Minkowski(10.0),
-];
+/// All metrics without an exponent, and two with one.
+pub(super) const METRICS: [Metric; Metric::NAMED.len() + 2] = {
+    let mut metrics = [Metric::Minkowski(10.0); Metric::NAMED.len() + 2];
+    let mut at = 0;
+    while at < Metric::NAMED.len() {
+        metrics[at] = Metric::NAMED[at].1;
+        at += 1;
+    }
+    metrics[at] = Metric::Minkowski(3.0);
+    metrics
+};
 
 pub(super) const SCATTERS: [Scatter; 6] = [
     Scatter::Poisson { density: 3.0 },

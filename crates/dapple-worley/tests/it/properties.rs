@@ -10,11 +10,10 @@ use proptest::prelude::*;
 use std::collections::BTreeSet;
 
 fn any_metric() -> impl Strategy<Value = Metric> {
+    let named = Metric::NAMED.map(|(_, metric)| metric);
     prop_oneof![
-        Just(Metric::Euclidean),
-        Just(Metric::Manhattan),
-        Just(Metric::Chebyshev),
-        (1.0_f32..=10.0).prop_map(Metric::Minkowski),
+        3 => prop::sample::select(named.to_vec()),
+        1 => (1.0_f32..=10.0).prop_map(Metric::Minkowski),
     ]
 }
 

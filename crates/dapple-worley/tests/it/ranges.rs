@@ -9,7 +9,7 @@ where
     Axes: Space<N>,
 {
     let mut other = Vec::new();
-    for metric in [Metric::Euclidean, Metric::Manhattan, Metric::Chebyshev] {
+    for (_, metric) in Metric::NAMED {
         let worley = Worley::<N>::new(Seed(0)).with_metric(metric).unwrap();
         for (name, combination) in Combination::NAMED {
             let texture = worley.combine(combination);

@@ -26,25 +26,25 @@ struct Row {
 const METHODS: [Row; 8] = [
     Row {
         name: "periodic",
-        about: "The periodic part of the image, of the same size",
+        about: "Keeps all detail and the size; spreads the step across the wrap over the image, which shows as a stain where it is large",
         options: &[],
         make: |_, _| How::Seamless(Method::Periodic),
     },
     Row {
         name: "poisson",
-        about: "The image with nearly its gradients and another one across the wrap",
+        about: "The same with another gradient across the wrap",
         options: &["wrap-gradient"],
         make: |args, _| How::Seamless(Method::Poisson(args.wrap_gradient.unwrap_or_default())),
     },
     Row {
         name: SOFT_CUT,
-        about: "A margin over the opposite side, cut along the line of least difference",
+        about: "Cuts along the line of least difference, smaller by the margin: for photographs",
         options: &["margin", "half-width", "crossfade"],
         make: |args, size| How::Seamless(Method::SoftCut(args.soft_cut(size))),
     },
     Row {
         name: "spline",
-        about: "The blend tile of Du, Wang and Meng",
+        about: "The blend tile of Du, Wang and Meng; smooths, and hides a seam only in part",
         options: PROJECT_OPTIONS,
         make: |args, _| How::Seamless(Method::SplineProject(args.project())),
     },
@@ -56,7 +56,7 @@ const METHODS: [Row; 8] = [
     },
     Row {
         name: "feather",
-        about: "A crossfade",
+        about: "A crossfade, the usual baseline",
         options: &["margin", "crossfade"],
         make: |args, _| How::Seamless(Method::Feather(args.feather())),
     },
@@ -68,7 +68,7 @@ const METHODS: [Row; 8] = [
     },
     Row {
         name: SYNTH,
-        about: "The part that repeats best, and a strip along its seam synthesized from the image",
+        about: "Looks for the size that repeats best, and synthesizes a strip along the seam from the rest: for bricks, planks and weave; takes seconds",
         options: &["margin", "seed"],
         make: |args, _| {
             How::Synth(Resynthesis {
@@ -108,7 +108,11 @@ const PROJECT_OPTIONS: &[&str] = &["levels", "basis", "phase", "pixels"];
 
 /// Parses the name of a method.
 fn method() -> Word<&'static str> {
-    let auto = Word::none().or(AUTO, "The best of all by the seam report", AUTO);
+    let auto = Word::none().or(
+        AUTO,
+        "Tries all but synth and keeps the best by the report",
+        AUTO,
+    );
     METHODS
         .iter()
         .fold(auto, |words, row| words.or(row.name, row.about, row.name))

@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 /// Returns the table as it stands in `crates/dapple-worley/src/ranges.rs`: metrics, numbers of axes, combinations.
 pub(crate) fn table() -> anyhow::Result<String> {
     let mut text = String::from("[\n");
-    for metric in [Metric::Euclidean, Metric::Manhattan, Metric::Chebyshev] {
+    for (_, metric) in Metric::NAMED {
         let rows = [row::<2>(metric)?, row::<3>(metric)?, row::<4>(metric)?];
         writeln!(text, "    [\n{}    ],", rows.concat())?;
     }
