@@ -74,8 +74,6 @@ pub(crate) struct Appearance<'a> {
     seed: Seed,
     /// How much costs change, and 0 where there are none.
     evenness: f32,
-    /// By how much more than once the distance counts of what only is like a place that a neighbor goes on to.
-    coherence: f32,
 }
 
 /// A place in the exemplar, and how unlike the exemplar around it is to the texture around the site.
@@ -107,19 +105,22 @@ impl<'a> Appearance<'a> {
             || exemplar.regularity() > REGULAR;
         let quarters = quarters(synthesizer, coarsest, options.n_levels);
         let symmetry = synthesizer.orientation().symmetry();
+        let mut stages = stage::stages(exemplar, &exemplar.guides, symmetry, options.n_levels)?;
+        for stage in &mut stages {
+            stage.coherence = match options.coherence {
+                // Measured: also what repeats goes on better than with less.
+                Coherence::Auto => 2.0,
+                Coherence::Factor(factor) => factor,
+            };
+        }
         Ok(Self {
             hierarchy,
             targets,
             frames: Frames::new(synthesizer, &quarters),
             quarters,
-            stages: stage::stages(exemplar, &exemplar.guides, symmetry, options.n_levels)?,
+            stages,
             seed: options.seed,
             evenness: if is_uneven { 0.0 } else { options.evenness },
-            coherence: match options.coherence {
-                // Measured: also what repeats goes on better than with less.
-                Coherence::Auto => 2.0,
-                Coherence::Factor(factor) => factor,
-            },
         })
     }
 
@@ -277,7 +278,7 @@ impl<'a> Appearance<'a> {
                     let site = class[at] as usize;
                     let wanted = self.targets.of(level, site as u32);
                     let stage = &self.stages[level];
-                    choose(stage, links, site, places, wanted, self.coherence)
+                    choose(stage, links, site, places, wanted)
                 };
                 let chosen = parallel::map_at_least(TASK, class.len(), choose);
                 for (&site, choice) in class.iter().zip(chosen) {
@@ -333,7 +334,6 @@ fn choose(
     site: usize,
     places: &[[u32; 2]],
     wanted: &[f32],
-    coherence: f32,
 ) -> Choice {
     let around = around(stage, links, site, places);
     let mut best = Choice {
@@ -370,7 +370,7 @@ fn choose(
     }
     for &place in &coherent[..n_coherent] {
         if let Some(place) = stage.similar(place) {
-            compare(place, 1.0 + coherence);
+            compare(place, 1.0 + stage.coherence);
         }
     }
     best
@@ -418,20 +418,10 @@ fn filled(around: [Option<[f32; N_FEATURES]>; 4]) -> Option<[[f32; N_FEATURES]; 
 
 /// The squared distance of features on the diagonals of a site from those on the diagonals of a place.
 #[inline]
-fn distance_sq(
-    stage: &Stage,
-    around: &[Option<[f32; N_FEATURES]>; 4],
-    [column, row]: [i64; 2],
-) -> f32 {
-    let mut sum = 0.0;
-    for (own, [x, y]) in around.iter().zip(DIAGONALS) {
-        let Some(own) = own else { continue };
-        let other = stage.features([column + x * stage.spacing, row + y * stage.spacing]);
-        for (a, b) in own.iter().zip(other) {
-            sum += (a - b) * (a - b);
-        }
-    }
-    sum
+fn distance_sq(stage: &Stage, around: &[Option<[f32; N_FEATURES]>; 4], place: [i64; 2]) -> f32 {
+    let known = around.iter().zip(DIAGONALS);
+    let known = known.filter_map(|(own, diagonal)| Some((own.as_ref()?, diagonal)));
+    stage.distance_sq_of(known, place)
 }
 
 /// The pixel nearest to where a way from a place leads.

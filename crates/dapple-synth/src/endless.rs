@@ -13,7 +13,7 @@
 //! Departures from the papers: the coarsest level begins with random pixels of the exemplar and not with copies of it. Only
 //! where it is a tile of something that repeats in it, such as bricks, it begins with copies, of whose pixels each is
 //! replaced by one that is like it, or like that, and so on: random ones would settle to courses that do not go on. There
-//! is no jitter on finer levels; levels are corrected three times, the coarsest six times, and not twice; the pixel most
+//! is no jitter on finer levels; where nothing repeats, what only is like what goes on is at a disadvantage; levels are corrected three times, the coarsest six times, and not twice; the pixel most
 //! like another is searched on the grid of its level, of which each pixel takes the place beside its own; features near an
 //! edge that is cut are left out where enough others remain ([`stage`]), and those of averages of the texture are not
 //! projected a second time. Parts of the exemplar that textures would have too often cost more ([`evenness`]).
@@ -30,6 +30,14 @@ use core::ops::ControlFlow;
 use dapple_hash::Seed;
 use evenness::REPETITION;
 use stage::Stage;
+
+/// By how much more than once the distance counts of a pixel that only is like one that a neighbor goes on to, where the
+/// exemplar is not regular: what goes on keeps its detail.
+///
+/// Measured on photographs, four textures of each: colors and patches are nearer to those of the exemplar
+/// ([`Likeness`](crate::Likeness)) by half for grass, rock, sand and gravel, by a tenth for leaves, and a seventh farther
+/// for a meadow and for wood. With 2 leaves lose what they gained; and weave, which is regular, is torn already with 1.
+const COHERENCE: f32 = 1.0;
 
 /// The most levels.
 const MAX_LEVELS: u32 = 16;
@@ -120,7 +128,7 @@ impl Endless {
                 return Err(SynthError::new(SynthErrorKind::Period { period, n_levels }));
             }
         }
-        let stages = stage::stages(
+        let mut stages = stage::stages(
             exemplar,
             &Guides::default(),
             Symmetry::One,
@@ -128,6 +136,9 @@ impl Endless {
         )?;
         let is_tile = exemplar.edges == Edges::Wrap && exemplar.usable.is_none();
         let is_regular = exemplar.regularity() > REGULAR;
+        for stage in &mut stages {
+            stage.coherence = if is_regular { 0.0 } else { COHERENCE };
+        }
         let mut texture = Self {
             is_lattice: is_tile && is_regular,
             size: exemplar.size,

@@ -214,7 +214,7 @@ fn takes_the_place_that_comparing_with_all_finds(ball: &Synthesizer) {
         let all = coherent.iter().map(|&place| unlike(place)).chain(alike);
         let least = all.fold(f32::INFINITY, f32::min);
         let wanted = targets.of(0, site as u32);
-        let Choice { distance_sq, .. } = choose(stage, &links, site, &places, wanted, 2.0);
+        let Choice { distance_sq, .. } = choose(stage, &links, site, &places, wanted);
         // Sums of the same squares in another order.
         assert!(
             (distance_sq - least).abs() <= 1e-4 * least,

@@ -64,6 +64,8 @@ pub(crate) struct Stage {
     pub(crate) costs: Costs,
     /// The cost of a place that repeats what lies beside a pixel, added to its squared distance.
     pub(super) repetition_cost: f32,
+    /// By how much more than once the distance counts of a place that only is like one that a neighbor goes on to.
+    pub(crate) coherence: f32,
 }
 
 /// The usable pixels of a grid, as rows of what is compared.
@@ -290,6 +292,7 @@ impl Stage {
             searched: None,
             costs: Costs::default(),
             repetition_cost: 0.0,
+            coherence: 0.0,
         }
     }
 
@@ -316,15 +319,26 @@ impl Stage {
     /// The squared distance of features on the diagonals of a pixel from those on the diagonals of a place.
     #[inline]
     pub(crate) fn distance_sq(&self, around: &[[f32; N_FEATURES]; 4], place: [i64; 2]) -> f32 {
-        let [column, row] = place;
-        let mut sum = 0.0;
-        for (own, [x, y]) in around.iter().zip(DIAGONALS) {
+        self.distance_sq_of(around.iter().zip(DIAGONALS), place)
+    }
+
+    /// The squared distance of features on some diagonals of a pixel from those on the same of a place.
+    #[inline]
+    pub(crate) fn distance_sq_of<'a>(
+        &self,
+        around: impl Iterator<Item = (&'a [f32; N_FEATURES], [i64; 2])>,
+        [column, row]: [i64; 2],
+    ) -> f32 {
+        // Each component has a sum of its own, so that they fill registers and do not wait for each other.
+        let mut sums = [0.0; N_FEATURES];
+        for (own, [x, y]) in around {
             let other = self.features([column + x * self.spacing, row + y * self.spacing]);
-            for (a, b) in own.iter().zip(other) {
-                sum += (a - b) * (a - b);
+            for i in 0..N_FEATURES {
+                sums[i] += (own[i] - other[i]) * (own[i] - other[i]);
             }
         }
-        sum
+        let [a, b, c, d, e, f, g, h] = sums;
+        ((a + e) + (c + g)) + ((b + f) + (d + h))
     }
 
     /// The squared distance of guides at a pixel of a texture from those of a place within the exemplar: each counts as a

@@ -107,7 +107,8 @@ impl Naive<'_> {
             .filter_map(|step| stage.usable(goes_on(step, step)))
             .collect();
         let similar = coherent.iter().filter_map(|&place| stage.similar(place));
-        let candidates = coherent.iter().copied().chain(similar);
+        let similar = similar.map(|place| (place, 1.0 + stage.coherence));
+        let candidates = coherent.iter().map(|&place| (place, 1.0)).chain(similar);
         let steps = (-2..=2).flat_map(|y: i64| (-2..=2).map(move |x: i64| [x, y]));
         // Pixels of the same quarter do not read each other.
         let near = steps.filter(|[x, y]| x % 2 != 0 || y % 2 != 0);
@@ -116,13 +117,13 @@ impl Naive<'_> {
             (goes_on([x, y], [0, 0]), should_be)
         });
         let near: Vec<_> = near.collect();
-        let distance = |place: [i64; 2]| {
+        let distance = |(place, factor): ([i64; 2], f32)| {
             let repeats = near.iter().any(|(other, should_be)| {
                 let apart = [0, 1].map(|axis| (other[axis] - place[axis]).abs() as f64);
                 apart[0].max(apart[1]) < should_be / 2.0
             });
             let cost = stage.costs.of(place);
-            let distance_sq = stage.distance_sq(&around, place) + cost;
+            let distance_sq = factor * stage.distance_sq(&around, place) + cost;
             match repeats {
                 true => distance_sq + stage.repetition_cost,
                 false => distance_sq,
@@ -136,7 +137,7 @@ impl Naive<'_> {
                     best
                 }
             })
-            .unwrap_or_else(|| goes_on([0, 0], [0, 0]))
+            .map_or_else(|| goes_on([0, 0], [0, 0]), |(place, _)| place)
     }
 }
 
@@ -296,7 +297,11 @@ fn what_lies_side_by_side_is_repeated_less_where_that_costs() {
     };
     let plane = Raster::from_fn([64, 64], grain).unwrap();
     let exemplar = Exemplar::from_planes(&[(&plane, 1.0)], Edges::Cut).unwrap();
-    let texture = endless(&exemplar, 5, [None; 2]);
+    let mut texture = endless(&exemplar, 5, [None; 2]);
+    for stage in &mut texture.stages {
+        // What goes on repeats less by itself: each is tested alone.
+        stage.coherence = 0.0;
+    }
     let mut free = texture.clone();
     for stage in &mut free.stages {
         assert!(stage.repetition_cost > 0.0);
@@ -423,14 +428,14 @@ fn value_stability_endless() {
     assert_eq!(
         made.sources().pixels(),
         [
-            [18, 7],
-            [19, 7],
-            [20, 7],
-            [5, 6],
-            [18, 8],
-            [19, 8],
-            [4, 7],
-            [5, 7],
+            [4, 4],
+            [5, 4],
+            [6, 4],
+            [7, 4],
+            [4, 5],
+            [5, 5],
+            [6, 5],
+            [7, 5],
         ],
         "sources of the first pixels"
     );

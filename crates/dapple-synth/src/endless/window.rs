@@ -238,9 +238,14 @@ impl Area {
         let mut best = (f32::INFINITY, self.at([column, row]));
         let mut coherent = [best.1; 9];
         let mut n_coherent = 0;
-        let mut compare = |place: [i64; 2]| {
-            let mut distance_sq = stage.distance_sq(&around, place) + stage.costs.of(place);
-            if stage.repetition_cost > 0.0 && self.repeats(stage, [column, row], place) {
+        let mut compare = |place: [i64; 2], factor: f32| {
+            let distance_sq = factor * stage.distance_sq(&around, place);
+            let mut distance_sq = distance_sq + stage.costs.of(place);
+            // What is too far already need not be looked for beside the pixel.
+            if distance_sq < best.0
+                && stage.repetition_cost > 0.0
+                && self.repeats(stage, [column, row], place)
+            {
                 distance_sq += stage.repetition_cost;
             }
             if distance_sq < best.0 {
@@ -256,13 +261,13 @@ impl Area {
                 {
                     coherent[n_coherent] = place;
                     n_coherent += 1;
-                    compare(place);
+                    compare(place, 1.0);
                 }
             }
         }
         for &place in &coherent[..n_coherent] {
             if let Some(place) = stage.similar(place) {
-                compare(place);
+                compare(place, 1.0 + stage.coherence);
             }
         }
         best.1
