@@ -39,7 +39,7 @@ fn turned_examples_have_turned_maps() {
     write_normal_png(folder.path("ramp_n.png"), &left, Depth::Eight).unwrap();
     run(
         &folder,
-        "synth ramp.png --turned quarters --map normal=ramp_n.png --size 64 -o out.png",
+        "synth ramp.png --turned quarters --map normal=ramp_n.png --size 128 -o out.png",
     );
     let out = read_gray(&folder, "out.png");
     let image = read_image(folder.path("out_normal.png"), &Limits::default()).unwrap();
@@ -47,7 +47,7 @@ fn turned_examples_have_turned_maps() {
     let normals = image.color().unwrap().map(codes);
     let mut counts = [0; 4];
     let mut n_uphill = 0;
-    for [x, y] in (1..63).flat_map(|y| (1..63).map(move |x| [x, y])) {
+    for [x, y] in (1..127).flat_map(|y| (1..127).map(move |x| [x, y])) {
         let Normal {
             x: east, y: north, ..
         } = normals.row(y)[x as usize];
@@ -64,10 +64,10 @@ fn turned_examples_have_turned_maps() {
         n_uphill += usize::from(east * slope[0] + north * slope[1] > 0.0);
     }
     assert!(
-        counts.iter().filter(|&&count| count > 62 * 62 / 20).count() >= 3,
+        counts.iter().all(|&count| count > 126 * 126 / 20),
         "{counts:?}"
     );
-    assert!(n_uphill < 62 * 62 / 5, "{n_uphill} normals lean uphill");
+    assert!(n_uphill < 126 * 126 / 5, "{n_uphill} normals lean uphill");
 }
 
 #[test]
