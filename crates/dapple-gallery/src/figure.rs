@@ -121,6 +121,9 @@ impl core::fmt::Debug for Source {
 #[cfg(test)]
 mod tests {
     use super::{Figure, Source};
+    use crate::Panel;
+    use dapple_color::LinearRgb;
+    use dapple_raster::Raster;
 
     fn figure(path: &'static str, text: &'static str) -> Figure {
         Figure {
@@ -155,5 +158,22 @@ mod tests {
     fn render_without_a_picture_is_an_error_that_names_the_figure() {
         let error = figure("figures/pups/fig_99.rs", "").render(8).unwrap_err();
         assert_eq!(error.to_string(), "figure pups-fig-99 made no picture");
+    }
+    #[test]
+    fn render_refuses_pictures_of_another_size() {
+        let small = |_| {
+            let picture = Raster::filled([4, 2], LinearRgb::WHITE)?;
+            Ok(vec![Panel::color("small", picture)])
+        };
+        let figure = Figure {
+            render: small,
+            ..figure("figures/pups/fig_99.rs", "")
+        };
+        assert!(figure.render(4).is_ok(), "the longer side counts");
+        let error = figure.render(8).unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "figure pups-fig-99 made a picture of 4 × 2 pixels for 8"
+        );
     }
 }

@@ -156,9 +156,6 @@ impl Targets {
 
     /// The values at a site of a level.
     pub(crate) fn of(&self, level: usize, site: u32) -> &[f32] {
-        if self.n == 0 {
-            return &[];
-        }
         &self.levels[level][site as usize * self.n..][..self.n]
     }
 }

@@ -57,7 +57,6 @@ pub(crate) struct Stage {
     similar: Vec<u32>,
     /// One value of each guide for every pixel, times the root of its weight.
     guides: Vec<f32>,
-    n_guides: usize,
     /// The usable pixels of the grid, to be searched for; nothing without guides.
     searched: Option<Grid>,
     /// The costs of the parts of the exemplar, added to the squared distances of places in them.
@@ -108,11 +107,8 @@ pub(crate) fn stages(
     masks.reverse();
     let stage = |level: usize| {
         let features = features(exemplar, symmetry, &pixels[level], 1 << level);
-        let mut stage = Stage::new(exemplar, level, features, masks[level].clone());
-        stage.n_guides = n_guides;
-        stage.guides.clone_from(&guides_of[level]);
-        stage.search_alike();
-        stage
+        let (guides, mask) = (guides_of[level].clone(), masks[level].clone());
+        Stage::new(exemplar, level, features, guides, mask)
     };
     Ok(parallel::map(n_levels, stage))
 }
@@ -265,12 +261,13 @@ fn inner(edges: Edges, side: usize, reach: i64, holds: impl Fn(usize) -> bool) -
 }
 
 impl Stage {
-    /// A level of an exemplar, which looks like this around its pixels, of which textures may have some. It has no guides yet,
-    /// nor is it known which pixels are alike.
+    /// A level of an exemplar, which looks like this around its pixels and has these guides there, and of which textures may
+    /// have some pixels.
     fn new(
         exemplar: &Exemplar,
         level: usize,
         features: [Vec<[f32; N_FEATURES]>; 4],
+        guides: Vec<f32>,
         usable: Option<Vec<bool>>,
     ) -> Self {
         let spacing = 1_i64 << level;
@@ -279,7 +276,7 @@ impl Stage {
         while n_pixels > GRID * step * step {
             step *= 2;
         }
-        Self {
+        let mut stage = Self {
             size: exemplar.size,
             wrap: exemplar.edges.wrap(),
             spacing,
@@ -287,13 +284,14 @@ impl Stage {
             usable,
             step,
             similar: Vec::new(),
-            guides: Vec::new(),
-            n_guides: 0,
+            guides,
             searched: None,
             costs: Costs::default(),
             repetition_cost: 0.0,
             coherence: 0.0,
-        }
+        };
+        stage.search_alike();
+        stage
     }
 
     /// The pixel at a column and row, of which those past the edges are mirrored or wrapped.
@@ -349,7 +347,7 @@ impl Stage {
             return 0.0;
         }
         let pixel = row as usize * self.size[0] as usize + column as usize;
-        let own = &self.guides[pixel * self.n_guides..][..self.n_guides];
+        let own = &self.guides[pixel * wanted.len()..][..wanted.len()];
         let squares = own.iter().zip(wanted).map(|(a, b)| (a - b) * (a - b));
         DIAGONALS.len() as f32 * squares.sum::<f32>()
     }
@@ -438,14 +436,15 @@ impl Stage {
         for (row, &pixel) in pixels.iter().enumerate() {
             row_of[pixel] = row as u32;
         }
+        let n_guides = self.guides.len() / (self.size[0] as usize * self.size[1] as usize);
         let values = parallel::map_at_least(64, pixels.len(), |row| {
             let [column, line] = self.grid_place(pixels[row]);
             let around = |[x, y]: [i64; 2]| [column + x * self.spacing, line + y * self.spacing];
             let pixel = (line * i64::from(self.size[0]) + column) as usize;
-            let guides = &self.guides[pixel * self.n_guides..][..self.n_guides];
+            let guides = &self.guides[pixel * n_guides..][..n_guides];
             compared(&DIAGONALS.map(|step| *self.features(around(step))), guides)
         });
-        let dims = DIAGONALS.len() * N_FEATURES + self.n_guides;
+        let dims = DIAGONALS.len() * N_FEATURES + n_guides;
         let matcher = Matcher::with_factors(dims, &values.concat());
         let apart = self.apart();
         let found = parallel::map(pixels.len().div_ceil(PIXELS), |block| {
@@ -473,7 +472,7 @@ impl Stage {
         for (&pixel, found) in pixels.iter().zip(found.concat()) {
             self.similar[pixel] = found;
         }
-        self.searched = (self.n_guides > 0).then_some(Grid { pixels, matcher });
+        self.searched = (n_guides > 0).then_some(Grid { pixels, matcher });
     }
 
     /// How far pixels that are alike are from each other at least, but for rounding, in steps of the grid.
@@ -499,7 +498,8 @@ impl Stage {
     }
 }
 
-/// What is compared of a place: its diagonals, and its guides, each as often as there are of those.
+/// The numbers by which places are compared: the features on the four diagonals of a place, and its guides, which count four
+/// times.
 fn compared(around: &[[f32; N_FEATURES]; 4], guides: &[f32]) -> Vec<f32> {
     let mut values = around.as_flattened().to_vec();
     let root = (DIAGONALS.len() as f32).sqrt();
