@@ -20,7 +20,7 @@ pytest.importorskip("distributed")
 pytest.importorskip("zarr")
 
 from dask import config  # noqa: E402
-from distributed import Client, LocalCluster, WorkerPlugin  # noqa: E402
+from distributed import Client, Future, LocalCluster, WorkerPlugin  # noqa: E402
 
 from dapple_textures import jobs  # noqa: E402
 from dapple_textures.dask import bake, bake_to_zarr  # noqa: E402
@@ -125,6 +125,22 @@ def test_a_cluster_that_is_restarted_goes_on(tmp_path):
         report = bake_to_zarr(RECIPE, (600, 600), "height", str(tmp_path / "a.zarr"), shard=16, client=client)
         restarter.join()
         assert report.restarted > 0 and jobs.Job(report.job.store).missing() == []
+
+
+def test_a_result_may_be_lost_while_it_is_fetched(tmp_path, monkeypatch):
+    fetch, fetched = Future.result, []
+
+    def restart_first(future, **kwargs):
+        if not fetched:
+            client.restart()
+        fetched.append(future)
+        return fetch(future, **kwargs)
+
+    monkeypatch.setattr(Future, "result", restart_first)
+    with cluster(2) as workers, Client(workers) as client:
+        report = bake_to_zarr(RECIPE, (300, 300), "height", str(tmp_path / "a.zarr"), shard=100, client=client)
+        assert fetched[0].status == "cancelled"
+        assert jobs.Job(report.job.store).missing() == [] and len(report.records) < 9
 
 
 def test_workers_may_come_late_and_the_client_need_not_be_the_default(tmp_path):

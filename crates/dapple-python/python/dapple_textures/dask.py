@@ -6,6 +6,7 @@ import math
 import queue
 import uuid
 from collections.abc import Iterator, Sequence
+from concurrent.futures import CancelledError
 from dataclasses import dataclass, field
 from itertools import islice
 from typing import Any
@@ -190,7 +191,7 @@ class _Run:
         if done.status == "finished":
             try:
                 records = done.result(timeout=_PATIENCE * 10)
-            except TimeoutError:
+            except (CancelledError, TimeoutError):
                 # The result was lost with its worker, but the shards are in the store and will be found.
                 records = []
             self.records += [record for record in records if record.hashes]
