@@ -8,6 +8,7 @@
 
 use super::quotient;
 use super::seam::boundaries;
+use core::ops::Range;
 use dapple_raster::Raster;
 
 /// The number of steps on either side that can hide a step.
@@ -35,10 +36,9 @@ pub(super) fn stands_out(tile: &Raster<f32>, width: usize, lattice: usize) -> Op
     for line in tile.view().rows() {
         let steps = steps(line, width);
         let floor = FLOOR * steps.iter().sum::<f64>() / n as f64;
+        let beside = sums_beside(&steps, width..width + around);
         for (shown, &at) in shown.iter_mut().zip(&at) {
-            let beside = (width..width + around)
-                .map(|off| steps[(at + off) % n] + steps[(at + n - off) % n]);
-            let beside = beside.sum::<f64>() / (2 * around) as f64 + floor;
+            let beside = beside[at] / (2 * around) as f64 + floor;
             if beside > 0.0 {
                 *shown += steps[at] / beside;
             }
@@ -63,21 +63,47 @@ fn above(wrap: f64, inside: &[f64]) -> f64 {
 /// The steps between the means of `width` pixels before and after each pixel's left border, once around.
 fn steps(line: &[f32], width: usize) -> Vec<f64> {
     let n = line.len();
-    let sums: Vec<f64> = (0..n)
-        .map(|first| {
-            (first..first + width)
-                .map(|at| f64::from(line[at % n]))
-                .sum()
-        })
-        .collect();
-    (0..n)
-        .map(|at| f64::abs(sums[at] - sums[(at + n - width) % n]))
+    let values: Vec<f64> = once_more(line, width).map(f64::from).collect();
+    let mut sums = vec![0.0; n];
+    for off in 0..width {
+        for (sum, value) in sums.iter_mut().zip(&values[off..]) {
+            *sum += value;
+        }
+    }
+    let before = sums[n - width..].iter().chain(&sums);
+    let pairs = sums.iter().zip(before);
+    pairs
+        .map(|(after, before)| f64::abs(after - before))
         .collect()
+}
+
+/// For each step the sum of those at some distances before and after it, once around.
+fn sums_beside(steps: &[f64], distances: Range<usize>) -> Vec<f64> {
+    let (n, reach) = (steps.len(), distances.end);
+    let before = &steps[n - reach..];
+    let around: Vec<f64> = before
+        .iter()
+        .copied()
+        .chain(once_more(steps, reach))
+        .collect();
+    let mut sums = vec![0.0; n];
+    for off in distances {
+        let pairs = around[reach + off..].iter().zip(&around[reach - off..]);
+        for (sum, (after, before)) in sums.iter_mut().zip(pairs) {
+            *sum += after + before;
+        }
+    }
+    sums
+}
+
+/// Values once around, and then the first `more` again.
+fn once_more<T: Copy>(values: &[T], more: usize) -> impl Iterator<Item = T> {
+    values.iter().chain(&values[..more]).copied()
 }
 
 #[cfg(test)]
 mod tests {
-    use super::stands_out;
+    use super::{stands_out, steps, sums_beside};
     use dapple_hash::{Seed, hash2, unit_f32};
     use dapple_raster::Raster;
 
@@ -89,6 +115,28 @@ mod tests {
     fn bricks(x: u32, y: u32) -> f32 {
         let [x, y] = [x, y].map(|at| (at % 32).min(32 - at % 32));
         0.2 + 0.15 * (4.0 - x.min(y) as f32).max(0.0)
+    }
+
+    #[test]
+    fn steps_and_their_sums_go_once_around() {
+        let line: Vec<f32> = (0..13).map(|x| noise(x, 0)).collect();
+        let sum = |first: usize, width| {
+            let values = (first..first + width).map(|at| f64::from(line[at % 13]));
+            values.sum::<f64>()
+        };
+        for width in 1..=4 {
+            let steps = steps(&line, width);
+            let sums = sums_beside(&steps, width..width + 2);
+            for at in 0..13 {
+                assert_eq!(
+                    steps[at],
+                    (sum(at, width) - sum(at + 13 - width, width)).abs()
+                );
+                let beside = (width..width + 2)
+                    .map(|off| steps[(at + off) % 13] + steps[(at + 13 - off) % 13]);
+                assert_eq!(sums[at], beside.sum::<f64>());
+            }
+        }
     }
 
     #[test]
