@@ -24,6 +24,7 @@ use crate::grid::{self, Grid};
 use crate::ground::Plain;
 use crate::neighborhood::{Part, Pass, Reads};
 use crate::{Edges, Exemplar, Options, Pyramid};
+use core::ops::Range;
 
 /// Where fewer neighborhoods lie within the exemplar, those that reach past an edge are compared, too.
 ///
@@ -333,8 +334,8 @@ struct PartReader<'a> {
     usable: Option<&'a [bool]>,
     /// The root of the part's weight.
     scale: f32,
-    /// Where the offsets are in the square.
-    places: Vec<usize>,
+    /// Where the offsets are in the square: runs of samples side by side.
+    runs: Vec<Range<usize>>,
 }
 
 impl<'a> PartReader<'a> {
@@ -342,14 +343,20 @@ impl<'a> PartReader<'a> {
         let half = part.side as i32 / 2;
         let place = |&[i, j]: &[i32; 2]| ((j + half) * (2 * half + 1) + i + half) as usize;
         let read = &pyramid.levels[level + part.reads.step()];
-        let offsets = part.offsets();
+        let mut runs: Vec<Range<usize>> = Vec::new();
+        for place in part.offsets().iter().map(place) {
+            match runs.last_mut() {
+                Some(run) if run.end == place => run.end += 1,
+                _ => runs.push(place..place + 1),
+            }
+        }
         Self {
             grid: read.grid(),
             reads: part.reads,
             half,
             usable: read.usable.as_deref(),
             scale: part.weight.sqrt(),
-            places: offsets.iter().map(place).collect(),
+            runs,
         }
     }
 
@@ -374,8 +381,8 @@ impl<'a> PartReader<'a> {
         let side = 2 * half as usize + 1;
         samples.resize(side * side * n, 0.0);
         self.grid.read(halves, half, -half..=half, samples);
-        for &place in &self.places {
-            let values = &samples[place * n..][..n];
+        for run in &self.runs {
+            let values = &samples[run.start * n..run.end * n];
             target.extend(values.iter().map(|value| value * self.scale));
         }
     }

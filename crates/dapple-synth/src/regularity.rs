@@ -10,7 +10,11 @@
 //! Reference: our own.
 
 use crate::guides::Guides;
-use crate::{Candidates, CoarserCenter, Edges, Exemplar, Part, Pass, Reads, Shape, distance_sq};
+use crate::matcher::{PaddedRows, pad};
+use crate::{Candidates, CoarserCenter, Edges, Exemplar, Part, Pass, Reads, Shape};
+use dapple_raster::simd;
+use dapple_raster::simd::dispatch;
+use fearless_simd::prelude::*;
 
 /// The side of the part in the middle of the exemplar that is compared. A side of 128 ranks the exemplars at hand alike, and
 /// takes four times as long.
@@ -54,7 +58,7 @@ impl Exemplar {
         let mut nearest = Mean::default();
         let mut any = Mean::default();
         for query in (0..n_rows).step_by(step) {
-            let least = details.least_from(query, &mut any);
+            let least = dispatch!(simd::level(), simd => details.least_from(simd, query, &mut any));
             if least.is_finite() {
                 nearest.add(least);
             }
@@ -97,6 +101,9 @@ impl Exemplar {
 /// The neighborhoods of an image, each without its mean.
 struct Details {
     neighborhoods: Candidates,
+    /// Their pixels and their rows.
+    pixels: Vec<[u32; 2]>,
+    rows: PaddedRows,
     size: [u32; 2],
     edges: Edges,
 }
@@ -120,6 +127,10 @@ impl Details {
             }
         }
         Some(Self {
+            pixels: (0..neighborhoods.len())
+                .map(|row| neighborhoods.pixel(row))
+                .collect(),
+            rows: PaddedRows::new(dims, &neighborhoods.rows),
             neighborhoods,
             size: image.size,
             edges: image.edges,
@@ -128,13 +139,15 @@ impl Details {
 
     /// The least squared distance to a neighborhood that lies apart, and infinity if there is none; all of them go into a
     /// mean.
-    fn least_from(&self, query: usize, mean: &mut Mean) -> f32 {
-        let from = self.neighborhoods.pixel(query);
-        let values = self.neighborhoods.row(query);
+    #[inline(always)]
+    fn least_from<S: Simd>(&self, simd: S, query: usize, mean: &mut Mean) -> f32 {
+        let from = self.pixels[query];
+        let mut values = Vec::new();
+        pad(self.neighborhoods.row(query), &mut values);
         let mut least = f32::INFINITY;
-        for row in 0..self.neighborhoods.len() {
-            if self.lie_apart(from, self.neighborhoods.pixel(row)) {
-                let distance_sq = distance_sq(values, self.neighborhoods.row(row));
+        for (row, &pixel) in (0..).zip(&self.pixels) {
+            if self.lie_apart(from, pixel) {
+                let distance_sq = self.rows.distance_sq(simd, &values, row);
                 least = least.min(distance_sq);
                 mean.add(distance_sq);
             }

@@ -16,17 +16,36 @@ use fearless_simd::{f32x16, prelude::*};
 /// Directions that are rotated together: the lanes of a register.
 pub(crate) const LANES: usize = 16;
 
-/// The most directions: more hold almost nothing of the variance of neighborhoods, and cost as much as the first ones.
-const MOST: usize = 64;
-
-/// The most rows whose covariance is taken. Enough for the directions, which need not be exact.
-const SAMPLE: usize = 2048;
-
 /// Lines of the covariance that are summed together: they stay in the cache.
 const BAND: usize = 8;
 
-/// Steps of orthogonal iteration: the spectrum of neighborhoods falls quickly.
-const STEPS: usize = 4;
+/// How exact directions are.
+#[derive(Clone, Copy, Debug)]
+struct Effort {
+    /// The most directions.
+    most: usize,
+    /// The most rows whose covariance is taken.
+    sample: usize,
+    /// Steps of orthogonal iteration: the spectrum of neighborhoods falls quickly.
+    steps: usize,
+}
+
+/// More directions hold almost nothing of the variance of neighborhoods, and cost as much as the first ones.
+const EFFORT: Effort = Effort {
+    most: 64,
+    sample: 2048,
+    steps: 4,
+};
+
+/// For fewer than [`FEW`] rows: what better directions save in searches is less than they cost.
+const LESS: Effort = Effort {
+    most: 32,
+    sample: 1024,
+    steps: 3,
+};
+
+/// The number of rows from which on directions are worth more.
+const FEW: usize = 20_000;
 
 /// Where the iteration starts.
 const START: Seed = Seed(2001);
@@ -49,22 +68,28 @@ pub(crate) struct Basis {
 }
 
 impl Basis {
-    /// The directions of rows of `dims` finite numbers.
+    /// The directions of rows of `dims` finite numbers, for a search.
     pub(crate) fn new(dims: usize, rows: &[f32]) -> Self {
-        Self::with_most(MOST, dims, rows)
+        let is_few = rows.len() < FEW * dims;
+        Self::of(if is_few { LESS } else { EFFORT }, dims, rows)
     }
 
     /// The directions of rows, at most `most` and those that fill up a group.
     pub(crate) fn with_most(most: usize, dims: usize, rows: &[f32]) -> Self {
-        let step = (rows.len() / dims).div_ceil(SAMPLE).max(1);
+        Self::of(Effort { most, ..EFFORT }, dims, rows)
+    }
+
+    fn of(effort: Effort, dims: usize, rows: &[f32]) -> Self {
+        let step = (rows.len() / dims).div_ceil(effort.sample).max(1);
         let sample: Vec<&[f32]> = rows.chunks_exact(dims).step_by(step).collect();
         let mean = mean(dims, &sample);
         let sample = centered(&sample, &mean);
-        let n_directions = most.min(dims).next_multiple_of(LANES);
+        let n_directions = effort.most.min(dims).next_multiple_of(LANES);
         let directions = if sample.is_empty() {
             vec![0.0; dims * n_directions]
         } else {
-            principal(dims, n_directions, &covariance(dims, &sample))
+            let matrix = covariance(dims, &sample);
+            principal(dims, n_directions, &matrix, effort.steps)
         };
         let mut groups = vec![[0.0; LANES]; dims * n_directions / LANES];
         for (direction, factors) in directions.chunks_exact(dims).enumerate() {
@@ -201,11 +226,11 @@ fn add_products(dims: usize, first: usize, sample: &[f64], sums: &mut [f64]) {
 }
 
 /// The unit eigenvectors with the largest eigenvalues, one after the other; zeros where there are no more.
-fn principal(dims: usize, n_directions: usize, matrix: &[f64]) -> Vec<f64> {
+fn principal(dims: usize, n_directions: usize, matrix: &[f64], n_steps: usize) -> Vec<f64> {
     let mut directions: Vec<f64> = (0..(dims * n_directions) as i64)
         .map(|i| unit_f64(hash1(START, [i], 0)) - 0.5)
         .collect();
-    for _ in 0..STEPS {
+    for _ in 0..n_steps {
         directions = times(dims, &directions, matrix);
         orthonormalize(dims, &mut directions);
     }
