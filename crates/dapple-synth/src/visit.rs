@@ -255,9 +255,8 @@ impl<'a, G: Ground> Visit<'a, G> {
         if reads == Reads::Same {
             return (painted.source(site as usize) == piece).then_some(piece);
         }
-        let quarter = self.ground.quarter(self.level, site)?;
-        let [x, y] = [piece % exemplar.size[0], piece / exemplar.size[0]].map(i64::from);
-        let pixel = [2 * x + quarter[0], 2 * y + quarter[1]];
+        let (_, quarter) = self.ground.parent(self.level, site)?;
+        let pixel = exemplar.pixel_over(piece, quarter);
         Some(self.pyramid[self.level].pixel_at(pixel)? as u32)
     }
 

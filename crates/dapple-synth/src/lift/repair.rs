@@ -6,7 +6,7 @@
 //! fits what is around it best; where no piece is as large as the hole, random sites. A pass goes from the rim of a hole
 //! inward.
 //!
-//! Reference: our own; the passes are those of [`Schedule::repair`].
+//! Reference: our own; the passes are those of [`Schedule::repair_on_mesh`].
 
 use super::origin::Place;
 use super::{MeshExemplar, Origin};
@@ -31,7 +31,7 @@ impl MeshExemplar {
     /// The texture is for [`source`](Self::source) itself. Baked to a map at the texture coordinates of the example, it is
     /// what belongs at the texels that the mask leaves out; all others need no change.
     ///
-    /// Without a schedule in the options it is [`Schedule::repair`]. [`Options::evenness`] has no effect: a small part need
+    /// Without a schedule in the options it is [`Schedule::repair_on_mesh`]. [`Options::evenness`] has no effect: a small part need
     /// not use all of the texture.
     ///
     /// # Errors
@@ -44,7 +44,7 @@ impl MeshExemplar {
     ) -> Result<SurfaceTexture, SynthError> {
         let schedule = options.schedule.clone();
         let options = Options {
-            schedule: Some(schedule.unwrap_or_else(|| Schedule::repair(options.n_levels))),
+            schedule: Some(schedule.unwrap_or_else(|| Schedule::repair_on_mesh(options.n_levels))),
             evenness: 0.0,
             ..options.clone()
         };

@@ -5,7 +5,8 @@
 //!
 //! A sweep would know only one side of a hole. Here all pixels of a level have a color before any is visited, those in the
 //! hole too, and each compares with all of its neighborhood. What a hole begins with on the coarsest level is the piece of
-//! the exemplar that fits what is around it best; where no piece is as large as the hole, random pixels.
+//! the exemplar that fits what is around it best; where no piece is as large as the hole, random pixels. On finer levels a
+//! pixel begins with what the one under it goes on to, as in the paper of 2005.
 
 use super::{PlaneGround, PlaneTexture};
 use crate::engine::Progress;

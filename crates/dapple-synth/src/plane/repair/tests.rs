@@ -152,6 +152,23 @@ impl Naive<'_> {
     }
 }
 
+impl Naive<'_> {
+    /// What is made on a level begins with what the coarser one goes on to; nothing of it is from the hole or past an edge,
+    /// as holes are here.
+    fn go_on(&mut self, level: usize) {
+        let [width, _] = self.levels[level].size;
+        let wider = self.levels[level + 1].size[0];
+        for site in 0..self.levels[level].sources.len() {
+            if self.levels[level].is_made[site] {
+                let [x, y] = [site as u32 % width, site as u32 / width];
+                let [a, b] = self.levels[level + 1].sources[(y / 2 * wider + x / 2) as usize];
+                self.levels[level].sources[site] =
+                    [2 * a + i64::from(x % 2), 2 * b + i64::from(y % 2)];
+            }
+        }
+    }
+}
+
 /// The sources of a repair whose hole is one rectangle on the coarsest level.
 fn naive(exemplar: &Exemplar, hole: &Raster<bool>, n_levels: usize) -> Vec<[u32; 2]> {
     let pyramid = exemplar.pyramid(n_levels).unwrap();
@@ -184,7 +201,12 @@ fn naive(exemplar: &Exemplar, hole: &Raster<bool>, n_levels: usize) -> Vec<[u32;
         wrap,
         levels,
     };
+    let mut level = n_levels - 1;
     for pass in &Schedule::repair(n_levels).passes {
+        if pass.level < level {
+            level = pass.level;
+            naive.go_on(level);
+        }
         naive.visit(pass);
     }
     let sources = naive.levels[0].sources.iter();
