@@ -5,8 +5,8 @@
 //! of a good match depends on the picture: squares of the source are compared with the rest of the source. The measure
 //! is the mean distance of the tile's squares to their nearest match, as a multiple of that of the source's squares.
 //!
-//! Most places are left out by the sums of the quarters of their squares: 16 times the squared distance of two quarters is at
-//! least the square of how far their sums are apart (Cauchy and Schwarz).
+//! Most places are left out by the means of the quarters of their squares: the squared distance of two quarters is at least
+//! 16 times the square of how far their means are apart (Cauchy and Schwarz).
 //!
 //! Reference: our own, after the nearest neighbors of Alexei A. Efros and Thomas K. Leung, "Texture Synthesis by
 //! Non-parametric Sampling", ICCV 1999, <https://doi.org/10.1109/ICCV.1999.790383>.
@@ -39,9 +39,9 @@ const HALF: usize = SIDE as usize / 2;
 /// with an error of half of the last bit, 6e-8.
 const SAFE: f32 = 1.0 - 1e-5;
 
-/// The part of the largest value by which the sums of two quarters may be farther apart by rounding: half of the last bit of
-/// 16 values for either, and for their difference.
-const SUM_ERROR: f32 = 4e-6;
+/// The part of the largest value by which the means of two quarters may be farther apart by rounding: half of the last bit for
+/// either, and twice as much for their difference.
+const MEAN_ERROR: f32 = 4e-7;
 
 /// The smallest distance of a match in the source, as a multiple of the deviation of the source.
 const LEAST_DISTANCE: f64 = 0.01;
@@ -125,15 +125,20 @@ fn largest(values: &[f32]) -> f32 {
     values.iter().fold(0.0, |most, value| most.max(value.abs()))
 }
 
-/// The sum of a quarter of a square.
-fn sum(square: &Square, [column, row]: [usize; 2]) -> f32 {
+/// The mean of a quarter of a square.
+fn mean(square: &Square, [column, row]: [usize; 2]) -> f32 {
     let rows = square.chunks_exact(SIDE as usize).skip(row).take(HALF);
     let values = rows.flat_map(|row| &row[column..column + HALF]);
-    values.map(|&value| f64::from(value)).sum::<f64>() as f32
+    mean_of(values.map(|&value| f64::from(value)).sum())
 }
 
-/// The sums of one quarter of all squares of a lattice, row by row.
-fn quarter_sums(
+/// The mean of a quarter with a sum, which may be larger than single precision has numbers for.
+fn mean_of(sum: f64) -> f32 {
+    (sum / (HALF * HALF) as f64) as f32
+}
+
+/// The means of one quarter of all squares of a lattice, row by row.
+fn quarter_means(
     source: &Raster<f32>,
     size: [usize; 2],
     step: usize,
@@ -149,7 +154,13 @@ fn quarter_sums(
             }
         }
     }
-    sums.into_iter().map(|sum| sum as f32).collect()
+    sums.into_iter().map(mean_of).collect()
+}
+
+/// Bounds, of which an infinite one says only that it is not below the largest number.
+#[inline(always)]
+fn at_most_largest<S: Simd>(simd: S, bounds: f32x16<S>) -> f32x16<S> {
+    bounds.min(f32x16::splat(simd, f32::MAX))
 }
 
 /// A number of places with room for the last register.
@@ -169,10 +180,10 @@ struct Places<'a> {
     runs: Vec<f32>,
     /// The length of a run, with room for the last register.
     run_length: usize,
-    /// For each place of the lattice the sums of the quarters of its square, row by row with room for the last register.
+    /// For each place of the lattice the means of the quarters of its square, row by row with room for the last register.
     quarters: [Vec<f32>; 4],
-    /// How far off sums of quarters may be.
-    sum_error: f32,
+    /// How far off means of quarters may be.
+    mean_error: f32,
 }
 
 impl<'a> Places<'a> {
@@ -199,8 +210,8 @@ impl<'a> Places<'a> {
             size,
             runs,
             run_length,
-            quarters: QUARTERS.map(|quarter| quarter_sums(source, size, step, quarter)),
-            sum_error: SUM_ERROR * largest(source.pixels()),
+            quarters: QUARTERS.map(|quarter| quarter_means(source, size, step, quarter)),
+            mean_error: MEAN_ERROR * largest(source.pixels()),
         }
     }
 
@@ -234,8 +245,8 @@ impl<'a> Places<'a> {
     /// The square of the distance.
     #[inline(always)]
     fn search<S: Simd>(&self, simd: S, square: &Square, left_out: Option<[usize; 2]>) -> f64 {
-        let own = QUARTERS.map(|quarter| sum(square, quarter));
-        let error = self.sum_error + SUM_ERROR * largest(square);
+        let own = QUARTERS.map(|quarter| mean(square, quarter));
+        let error = self.mean_error + MEAN_ERROR * largest(square);
         let rows = 0..self.size[1];
         let groups = rows.flat_map(|row| (0..self.size[0]).step_by(LANES).map(move |at| [at, row]));
         // The place that is the nearest by its bound leaves out most others.
@@ -251,12 +262,11 @@ impl<'a> Places<'a> {
             }
         }
         let mut least = f64::INFINITY;
-        for (turn, group) in guess.into_iter().chain(groups).enumerate() {
-            let limit = f32x16::splat(simd, least as f32);
+        for group in guess.into_iter().chain(groups) {
+            // Squares of what is smaller are not exact.
+            let limit = f32x16::splat(simd, least as f32 + f32::MIN_POSITIVE);
             let bounds = self.bounds(simd, &own, error, group);
-            let may_be_nearer =
-                bounds.simd_lt(limit).any_true() && self.may_be_nearer(simd, square, group, limit);
-            if turn == 0 || may_be_nearer {
+            if bounds.simd_lt(limit).any_true() && self.may_be_nearer(simd, square, group, limit) {
                 for (lane, sum) in self.sums(square, group).into_iter().enumerate() {
                     if self.is_compared([group[0] + lane, group[1]], left_out) {
                         least = least.min(sum);
@@ -295,7 +305,8 @@ impl<'a> Places<'a> {
             let apart = ((f32x16::splat(simd, *own) - others).abs() - error).max(zero);
             bounds += apart * apart;
         }
-        bounds * f32x16::splat(simd, SAFE / 16.0)
+        let factor = SAFE * (HALF * HALF) as f32;
+        at_most_largest(simd, bounds * f32x16::splat(simd, factor))
     }
 
     /// Whether the square of the distance from any of some places side by side may be below a limit.
@@ -307,7 +318,7 @@ impl<'a> Places<'a> {
         group: [usize; 2],
         limit: f32x16<S>,
     ) -> bool {
-        let [safe, most] = [SAFE, f32::MAX].map(|value| f32x16::splat(simd, value));
+        let safe = f32x16::splat(simd, SAFE);
         let mut sums = f32x16::splat(simd, 0.0);
         for (row, part) in square.chunks_exact(SIDE as usize).enumerate() {
             for (column, &value) in part.iter().enumerate() {
@@ -315,8 +326,10 @@ impl<'a> Places<'a> {
                 let apart = f32x16::splat(simd, value) - others;
                 sums += apart * apart;
             }
-            // An infinite sum says only that it is not below the largest number.
-            if !(sums.min(most) * safe).simd_lt(limit).any_true() {
+            if !(at_most_largest(simd, sums) * safe)
+                .simd_lt(limit)
+                .any_true()
+            {
                 return false;
             }
         }
@@ -391,14 +404,17 @@ mod tests {
 
     #[test]
     fn nearest_square_is_that_of_comparing_with_all() {
-        for (source, offset) in [
-            (gravel(4, [61, 37], false), 0.0),
-            (fbm(2, [300, 290], false), 0.0),
-            (fbm(3, [40, 50], false), 1e4),
+        for (source, factor, offset) in [
+            (gravel(4, [61, 37], false), 1.0, 0.0),
+            (fbm(2, [300, 290], false), 1.0, 0.0),
+            (fbm(3, [40, 50], false), 1.0, 1e4),
+            (gravel(6, [40, 50], false), 1e30, 0.0),
+            (gravel(6, [40, 50], false), 1e38, 2e38),
+            (gravel(6, [40, 50], false), 1e-30, 0.0),
         ] {
-            let source = source.map(|value| value + offset);
+            let source = source.map(|value| factor * value + offset);
             let places = Places::new(&source);
-            let tile = gravel(5, [64; 2], true).map(|value| value + offset);
+            let tile = gravel(5, [64; 2], true).map(|value| factor * value + offset);
             for at in 0..12 {
                 let own = square(&tile, [5 * at, 3 * at], false);
                 assert_eq!(places.distance(&own, None), of_all(&places, &own, None));
