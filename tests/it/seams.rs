@@ -1,6 +1,6 @@
 //! Checks the wraps of tiles that repeat by construction: they look like any other boundary.
 //!
-//! Every periodic generator of the workspace draws one period, 32 units of 8 pixels, with 32 seeds. On average and at
+//! Every periodic generator of the workspace draws one period, 32 units of 8 pixels, with 50 seeds. On average and at
 //! every scale, the step across the wrap must equal the step across inner boundaries of the same kind: boundaries of
 //! cells for textures made of cells, and any boundary for textures of control points, which lie anywhere.
 
@@ -20,7 +20,7 @@ const PERIOD: u32 = 32;
 const UNIT: u32 = 8;
 
 /// The number of tiles of a generator that are averaged.
-const N_TILES: u64 = 32;
+const N_TILES: u64 = 50;
 
 /// The number of tiles of a generator that must pass by themselves; of more, chance lets some fail.
 const N_PASSING: usize = 8;
@@ -28,9 +28,9 @@ const N_PASSING: usize = 8;
 /// The number of crops that are averaged: fewer, since their ratios are far from 1.
 const N_CROPS: u64 = 8;
 
-/// The largest allowed standard error of a mean ratio. Most errors are below 0.015; the error of spots is near the
+/// The largest allowed standard error of a mean ratio. Most errors are below 0.01; the error of spots is near the
 /// limit, since they have few edges.
-const LARGEST_ERROR: f64 = 0.04;
+const LARGEST_ERROR: f64 = 0.03;
 
 /// A generator that draws a window of a periodic texture.
 struct Generator {
