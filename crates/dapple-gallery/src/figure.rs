@@ -159,6 +159,7 @@ mod tests {
         let error = figure("figures/pups/fig_99.rs", "").render(8).unwrap_err();
         assert_eq!(error.to_string(), "figure pups-fig-99 made no picture");
     }
+
     #[test]
     fn render_refuses_pictures_of_another_size() {
         let small = |_| {

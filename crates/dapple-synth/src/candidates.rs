@@ -241,8 +241,7 @@ impl Candidates {
             // The sites of a level are the first of the finer one.
             return self.row_beside(coarser, [i, j]);
         }
-        let [x, y] = [coarser % width, coarser / width].map(i64::from);
-        self.row_of_pixel([2 * x + i64::from(i), 2 * y + i64::from(j)])
+        self.row_of_pixel(grid::over(coarser, width, [i, j].map(i64::from)))
     }
 
     /// Writes the rows of all pixels in the rectangle.

@@ -2,6 +2,7 @@
 //!
 //! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, doi 10.1145/383259.383297, section 5.
 
+use crate::grid;
 use crate::ground::{Ground, Sources, UNKNOWN};
 use crate::guides::{self, Targets};
 use crate::kept::Kept;
@@ -175,10 +176,9 @@ fn go_on_with<G: Ground>(
     for ((site, source), _) in sites.filter(|(_, is_kept)| !**is_kept) {
         let pixel = ground.parent(level, site).and_then(|(parent, quarter)| {
             let coarser = coarser.pixels.get(parent as usize)?;
-            let pixel = wider.pixel_over(coarser.load(Ordering::Relaxed), quarter);
-            let pixel = finer.pixel_at(pixel)?;
-            let usable = finer.usable.as_ref();
-            usable.is_none_or(|usable| usable[pixel]).then_some(pixel)
+            let pixel = grid::over(coarser.load(Ordering::Relaxed), wider.size[0], quarter);
+            let pixel = finer.pixel_at(pixel);
+            pixel.filter(|&pixel| finer.is_usable(pixel))
         });
         if let Some(pixel) = pixel {
             source.store(pixel as u32, Ordering::Relaxed);

@@ -293,10 +293,10 @@ impl Exemplar {
         }
     }
 
-    /// The column and row on the finer level of one of the four pixels over a pixel: by whether they are odd.
-    pub(crate) fn pixel_over(&self, pixel: u32, quarter: [i64; 2]) -> [i64; 2] {
-        let [column, row] = [pixel % self.size[0], pixel / self.size[0]].map(i64::from);
-        [2 * column + quarter[0], 2 * row + quarter[1]]
+    /// Whether textures may have a pixel.
+    pub(crate) fn is_usable(&self, pixel: usize) -> bool {
+        let usable = self.usable.as_ref();
+        usable.is_none_or(|usable| usable[pixel])
     }
 
     /// The number of a pixel, which may lie past an edge where the exemplar wraps.

@@ -54,6 +54,14 @@ impl<C: Colors> Grid<C> {
     }
 }
 
+/// The column and row on the finer level of one of the four pixels over a pixel, by whether they are odd; the pixel's level has
+/// as many columns as `width`.
+#[inline]
+pub(crate) fn over(pixel: u32, width: u32, [i, j]: [i64; 2]) -> [i64; 2] {
+    let [column, row] = [pixel % width, pixel / width].map(i64::from);
+    [2 * column + i, 2 * row + j]
+}
+
 /// The columns and the rows of the pixels of a square, and one more of each for places between two pixels.
 ///
 /// The pixel of a place between two or four is the left and upper one.

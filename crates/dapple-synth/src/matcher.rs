@@ -23,7 +23,7 @@ pub(crate) use basis::Basis;
 use dapple_raster::simd;
 use dapple_raster::simd::dispatch;
 use distance::LANES;
-pub(crate) use distance::{PaddedRows, pad};
+pub(crate) use distance::PaddedRows;
 use fearless_simd::{Level, prelude::*};
 use lattice::Lattice;
 use margin::Margin;
@@ -166,7 +166,7 @@ impl Matcher {
         }
         dispatch!(simd::level(), simd => {
             memory.query.clear();
-            pad(query.values, &mut memory.query);
+            distance::pad(query.values, &mut memory.query);
             self.compare(simd, query, rows.iter().copied(), memory)
         })
     }
@@ -183,7 +183,7 @@ impl Matcher {
         }
         dispatch!(level, simd => {
             memory.query.clear();
-            pad(query.values, &mut memory.query);
+            distance::pad(query.values, &mut memory.query);
             self.search(simd, query, memory)
                 .unwrap_or_else(|| self.compare(simd, query, 0..self.rows.len() as u32, memory))
         })

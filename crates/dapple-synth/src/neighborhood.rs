@@ -121,6 +121,12 @@ pub struct Pass {
 }
 
 impl Pass {
+    /// F(7, 1).
+    fn extrapolate(level: usize) -> Self {
+        let parts = vec![Part::new(Shape::Full, 7, Reads::Coarser)];
+        Self { level, parts }
+    }
+
     /// F(side, 0) + F(3, 1).
     fn correct(level: usize, side: u32) -> Self {
         let parts = vec![
@@ -152,8 +158,7 @@ impl Schedule {
             parts: vec![Part::new(Shape::Half, 7, Reads::Same)],
         }];
         for level in (0..coarsest).rev() {
-            let parts = vec![Part::new(Shape::Full, 7, Reads::Coarser)];
-            passes.extend([Pass { level, parts }, Pass::correct(level, 7)]);
+            passes.extend([Pass::extrapolate(level), Pass::correct(level, 7)]);
         }
         Self { passes }
     }
@@ -182,8 +187,7 @@ impl Schedule {
         let coarsest = n_levels.saturating_sub(1);
         let mut passes = Self::of_a_hole(coarsest);
         for level in (0..coarsest).rev() {
-            let parts = vec![Part::new(Shape::Full, 7, Reads::Coarser)];
-            passes.push(Pass { level, parts });
+            passes.push(Pass::extrapolate(level));
             passes.extend(vec![Pass::correct(level, 7); 2]);
         }
         Self { passes }

@@ -10,7 +10,7 @@
 //! Reference: our own.
 
 use crate::guides::Guides;
-use crate::matcher::{PaddedRows, pad};
+use crate::matcher::PaddedRows;
 use crate::{Candidates, CoarserCenter, Edges, Exemplar, Part, Pass, Reads, Shape};
 use dapple_raster::simd;
 use dapple_raster::simd::dispatch;
@@ -27,7 +27,7 @@ const SIDE: u32 = 7;
 const APART: u32 = 5;
 
 /// About how many neighborhoods are compared with all others.
-const N_QUERIES: usize = 128;
+const N_QUERIES: u32 = 128;
 
 impl Exemplar {
     /// How well the surroundings of a pixel are found elsewhere in the exemplar, from 0 (not at all) to 1 (exactly).
@@ -52,12 +52,12 @@ impl Exemplar {
         let Some(details) = Details::new(&self.middle(WINDOW)) else {
             return 0.0;
         };
-        let n_rows = details.neighborhoods.len();
+        let n_rows = details.pixels.len() as u32;
         // Odd, so that no pixels in columns or in rows of four, eight and so on are always passed over.
         let step = (n_rows / N_QUERIES) | 1;
         let mut nearest = Mean::default();
         let mut any = Mean::default();
-        for query in (0..n_rows).step_by(step) {
+        for query in (0..n_rows).step_by(step as usize) {
             let least = dispatch!(simd::level(), simd => details.least_from(simd, query, &mut any));
             if least.is_finite() {
                 nearest.add(least);
@@ -100,10 +100,9 @@ impl Exemplar {
 
 /// The neighborhoods of an image, each without its mean.
 struct Details {
-    neighborhoods: Candidates,
-    /// Their pixels and their rows.
-    pixels: Vec<[u32; 2]>,
     rows: PaddedRows,
+    /// The pixel of each.
+    pixels: Vec<[u32; 2]>,
     size: [u32; 2],
     edges: Edges,
 }
@@ -127,11 +126,10 @@ impl Details {
             }
         }
         Some(Self {
+            rows: PaddedRows::new(dims, &neighborhoods.rows),
             pixels: (0..neighborhoods.len())
                 .map(|row| neighborhoods.pixel(row))
                 .collect(),
-            rows: PaddedRows::new(dims, &neighborhoods.rows),
-            neighborhoods,
             size: image.size,
             edges: image.edges,
         })
@@ -140,14 +138,13 @@ impl Details {
     /// The least squared distance to a neighborhood that lies apart, and infinity if there is none; all of them go into a
     /// mean.
     #[inline(always)]
-    fn least_from<S: Simd>(&self, simd: S, query: usize, mean: &mut Mean) -> f32 {
-        let from = self.pixels[query];
-        let mut values = Vec::new();
-        pad(self.neighborhoods.row(query), &mut values);
+    fn least_from<S: Simd>(&self, simd: S, query: u32, mean: &mut Mean) -> f32 {
+        let from = self.pixels[query as usize];
+        let values = self.rows.row(query);
         let mut least = f32::INFINITY;
         for (row, &pixel) in (0..).zip(&self.pixels) {
             if self.lie_apart(from, pixel) {
-                let distance_sq = self.rows.distance_sq(simd, &values, row);
+                let distance_sq = self.rows.distance_sq(simd, values, row);
                 least = least.min(distance_sq);
                 mean.add(distance_sq);
             }

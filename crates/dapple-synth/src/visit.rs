@@ -3,6 +3,7 @@
 mod order;
 
 use crate::candidates;
+use crate::grid;
 use crate::ground::{Ground, Painted, Rows, Samples, Square, UNKNOWN};
 use crate::kept::Kept;
 use crate::matcher::Query;
@@ -256,7 +257,7 @@ impl<'a, G: Ground> Visit<'a, G> {
             return (painted.source(site as usize) == piece).then_some(piece);
         }
         let (_, quarter) = self.ground.parent(self.level, site)?;
-        let pixel = exemplar.pixel_over(piece, quarter);
+        let pixel = grid::over(piece, self.coarser_width, quarter);
         Some(self.pyramid[self.level].pixel_at(pixel)? as u32)
     }
 

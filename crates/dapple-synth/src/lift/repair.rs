@@ -31,8 +31,8 @@ impl MeshExemplar {
     /// The texture is for [`source`](Self::source) itself. Baked to a map at the texture coordinates of the example, it is
     /// what belongs at the texels that the mask leaves out; all others need no change.
     ///
-    /// Without a schedule in the options it is [`Schedule::repair_on_mesh`]. [`Options::evenness`] has no effect: a small part need
-    /// not use all of the texture.
+    /// Without a schedule in the options it is [`Schedule::repair_on_mesh`]. [`Options::evenness`] has no effect: a small
+    /// part need not use all of the texture.
     ///
     /// # Errors
     ///

@@ -145,8 +145,7 @@ impl Reader<'_> {
     /// Whether textures may have the sites that a neighborhood is made of.
     fn is_usable(&self, site: u32, samples: [&Samples; 2]) -> bool {
         let usable = |step: usize, site: u32| {
-            let usable = &self.pyramid.levels()[self.level + step].usable;
-            usable.as_ref().is_none_or(|usable| usable[site as usize])
+            self.pyramid.levels()[self.level + step].is_usable(site as usize)
         };
         usable(0, site)
             && self.terms.iter().all(|term| {

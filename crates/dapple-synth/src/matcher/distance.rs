@@ -51,10 +51,16 @@ impl PaddedRows {
         self.values.len() / self.stride
     }
 
+    /// A row.
+    #[inline(always)]
+    pub(crate) fn row(&self, row: u32) -> &[[f32; LANES]] {
+        &self.values[row as usize * self.stride..][..self.stride]
+    }
+
     /// [`distance_sq`] of a row and a query filled up alike.
     #[inline(always)]
     pub(crate) fn distance_sq<S: Simd>(&self, simd: S, query: &[[f32; LANES]], row: u32) -> f32 {
-        let row = &self.values[row as usize * self.stride..][..self.stride];
+        let row = self.row(row);
         let mut sums = f32x16::splat(simd, 0.0);
         for (&query, &row) in query.iter().zip(row) {
             let difference = f32x16::simd_from(simd, query) - f32x16::simd_from(simd, row);

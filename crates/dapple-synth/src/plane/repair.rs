@@ -114,10 +114,9 @@ impl PlaneTexture {
             if !starts.is_empty() {
                 (sources, is_kept) = coarser(&sources, &is_kept, ground)?;
             }
-            let usable = exemplar.usable.as_deref();
             let pixel = |(&[column, row], &is_kept): (&[u32; 2], &bool)| {
                 let pixel = row * exemplar.size[0] + column;
-                let is_usable = is_kept || usable.is_none_or(|usable| usable[pixel as usize]);
+                let is_usable = is_kept || exemplar.is_usable(pixel as usize);
                 if is_usable { pixel } else { UNKNOWN }
             };
             let sites = sources.pixels().iter().zip(is_kept.pixels());
@@ -213,10 +212,9 @@ impl Hole {
     /// Gives the sites the piece of the exemplar whose surroundings are most like theirs; nothing if none is as large. Of
     /// several the first row by row.
     fn fill(&self, start: &mut Start, ground: &PlaneGround, level: usize, exemplar: &Exemplar) {
-        let pixel_of = |[column, row]: [i64; 2]| {
-            let pixel = exemplar.pixel_at([column, row])?;
-            let usable = exemplar.usable.as_ref();
-            usable.is_none_or(|usable| usable[pixel]).then_some(pixel)
+        let pixel_of = |place: [i64; 2]| {
+            let pixel = exemplar.pixel_at(place);
+            pixel.filter(|&pixel| exemplar.is_usable(pixel))
         };
         let colors = exemplar.plain();
         let painted: Vec<([i64; 2], &[f32])> = self

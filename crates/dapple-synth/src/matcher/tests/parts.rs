@@ -51,7 +51,7 @@ fn distance_of_padded_rows_is_the_same_bit_for_bit() {
         let (a, b) = numbers.split_at(dims);
         let rows = PaddedRows::new(dims, b);
         let mut padded = Vec::new();
-        pad(a, &mut padded);
+        distance::pad(a, &mut padded);
         for_every_level(|level| {
             let found = dispatch!(level, simd => rows.distance_sq(simd, &padded, 0));
             assert_eq!(

@@ -150,9 +150,7 @@ impl Naive<'_> {
             }
         }
     }
-}
 
-impl Naive<'_> {
     /// What is made on a level begins with what the coarser one goes on to; nothing of it is from the hole or past an edge,
     /// as holes are here.
     fn go_on(&mut self, level: usize) {
