@@ -40,8 +40,8 @@ const EFFORT: Effort = Effort {
 /// For fewer than [`FEW`] rows: what better directions save in searches is less than they cost.
 const LESS: Effort = Effort {
     most: 32,
-    sample: 1024,
-    steps: 3,
+    sample: 512,
+    steps: 2,
 };
 
 /// The number of rows from which on directions are worth more.
