@@ -30,6 +30,13 @@ struct Effort {
     steps: usize,
 }
 
+impl Effort {
+    /// Which part of the rows is the sample: one of so many.
+    fn step(&self, dims: usize, rows: &[f32]) -> usize {
+        (rows.len() / dims).div_ceil(self.sample).max(1)
+    }
+}
+
 /// More directions hold almost nothing of the variance of neighborhoods, and cost as much as the first ones.
 const EFFORT: Effort = Effort {
     most: 64,
@@ -41,7 +48,7 @@ const EFFORT: Effort = Effort {
 const LESS: Effort = Effort {
     most: 32,
     sample: 512,
-    steps: 2,
+    steps: 3,
 };
 
 /// The number of rows from which on directions are worth more.
@@ -71,16 +78,19 @@ impl Basis {
     /// The directions of rows of `dims` finite numbers, for a search.
     pub(crate) fn new(dims: usize, rows: &[f32]) -> Self {
         let is_few = rows.len() < FEW * dims;
-        Self::of(if is_few { LESS } else { EFFORT }, dims, rows)
+        let effort = if is_few { LESS } else { EFFORT };
+        // Odd, so that rows of pixels of an image are not all of the same few columns.
+        Self::of(effort, effort.step(dims, rows) | 1, dims, rows)
     }
 
     /// The directions of rows, at most `most` and those that fill up a group.
     pub(crate) fn with_most(most: usize, dims: usize, rows: &[f32]) -> Self {
-        Self::of(Effort { most, ..EFFORT }, dims, rows)
+        let effort = Effort { most, ..EFFORT };
+        Self::of(effort, effort.step(dims, rows), dims, rows)
     }
 
-    fn of(effort: Effort, dims: usize, rows: &[f32]) -> Self {
-        let step = (rows.len() / dims).div_ceil(effort.sample).max(1);
+    /// The directions of every `step`th row.
+    fn of(effort: Effort, step: usize, dims: usize, rows: &[f32]) -> Self {
         let sample: Vec<&[f32]> = rows.chunks_exact(dims).step_by(step).collect();
         let mean = mean(dims, &sample);
         let sample = centered(&sample, &mean);
