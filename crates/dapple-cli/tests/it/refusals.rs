@@ -78,7 +78,7 @@ const WRONG: [&str; 48] = [
     "synth photo.png --example rock.png --region 0,0,32,32 -o out.png",
     "synth photo.png --example rock.png --map height=height.png --size 16 -o out.png",
     "tile photo.png --seed 3 -o out.png",
-    "synth checker.png --mesh model.obj -o out.stl",
+    "synth checker.png --mesh model.obj -o out.nothing",
     "points white --radius 0.1",
     "points --count 5 -o out.svg",
 ];

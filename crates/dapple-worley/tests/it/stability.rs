@@ -3,7 +3,7 @@
 //! Each test writes its numbers as lines of text, floating-point numbers as their bits. To pin new values, copy the
 //! lines that a failing test prints.
 
-use super::oracle::{METRICS, SCATTERS};
+use super::oracle::SCATTERS;
 use dapple_hash::Seed;
 use dapple_worley::{
     Axes, Combination, Feature, FeatureSet, Metric, OctaveSeeds, Octaves, Radial, RadialCells,
@@ -86,7 +86,13 @@ fn value_stability_sample4() {
 #[test]
 fn value_stability_sample_by_metric_and_scatter() -> Result<(), WorleyError> {
     let mut lines = Vec::new();
-    for (metric, scatter) in METRICS.into_iter().zip(SCATTERS.into_iter().skip(1)) {
+    for (metric, scatter) in [
+        (Metric::Euclidean, SCATTERS[1]),
+        (Metric::Manhattan, SCATTERS[2]),
+        (Metric::Chebyshev, SCATTERS[3]),
+        (Metric::Minkowski(3.0), SCATTERS[4]),
+        (Metric::Minkowski(10.0), SCATTERS[5]),
+    ] {
         let worley = Worley::<2>::new(Seed(7))
             .with_metric(metric)?
             .with_scatter(scatter)?;
