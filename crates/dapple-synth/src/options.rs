@@ -67,7 +67,7 @@ pub enum Coherence {
     /// begins among random colors, and their averages resemble only a few pixels of the exemplar. With 0 those are taken
     /// again and again: the squares of a checker run together where the sweep begins.
     ///
-    /// Measuring the regularity takes some tens of milliseconds.
+    /// Measuring the regularity takes a few milliseconds.
     #[default]
     Auto,
     /// It wins if its squared distance is at most 1 + this times the least; in passes that read no coarser level, where
