@@ -7,6 +7,9 @@ use anyhow::Context;
 use std::path::Path;
 use xshell::{Shell, cmd};
 
+/// The number of targets that run at the same time.
+const AT_ONCE: usize = 2;
+
 /// The running time of each target, in seconds.
 const SECONDS: &str = "10";
 
@@ -32,10 +35,34 @@ pub(super) fn fuzz(shell: &Shell) -> anyhow::Result<()> {
     )
     .env("DAPPLE_FUZZ_SEEDS", &seeds)
     .run()?;
-    for target in targets(shell)? {
-        run(shell, &folder, &target).with_context(|| format!("the fuzz target `{target}`"))?;
+    let built = folder.join("build");
+    cmd!(
+        shell,
+        "cargo +nightly fuzz build --fuzz-dir tests/fuzz --target-dir {built} --sanitizer none"
+    )
+    .quiet()
+    .env_remove("RUSTFLAGS")
+    .run()?;
+    for some in targets(shell)?.chunks(AT_ONCE) {
+        run_together(&folder, some)?;
     }
     Ok(())
+}
+
+/// Runs targets at the same time, each on one core.
+fn run_together(folder: &Path, targets: &[String]) -> anyhow::Result<()> {
+    std::thread::scope(|scope| {
+        let run = |target: &str| {
+            run(&Shell::new()?, folder, target)
+                .with_context(|| format!("the fuzz target `{target}`"))
+        };
+        let runs: Vec<_> = targets
+            .iter()
+            .map(|target| scope.spawn(move || run(target)))
+            .collect();
+        runs.into_iter()
+            .try_for_each(|run| run.join().expect("it does not panic"))
+    })
 }
 
 /// Returns a sentence that names the missing tool, if there is one.
