@@ -31,7 +31,7 @@ struct Effort {
 }
 
 impl Effort {
-    /// Which part of the rows is the sample: one of so many.
+    /// The step from one row of the sample to the next, at least 1.
     fn step(&self, dims: usize, rows: &[f32]) -> usize {
         (rows.len() / dims).div_ceil(self.sample).max(1)
     }
