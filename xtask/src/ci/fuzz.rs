@@ -5,7 +5,7 @@
 
 use anyhow::Context;
 use std::path::Path;
-use xshell::{Shell, cmd};
+use xshell::{Cmd, Shell, cmd};
 
 /// The number of targets that run at the same time.
 const AT_ONCE: usize = 2;
@@ -35,39 +35,45 @@ pub(super) fn fuzz(shell: &Shell) -> anyhow::Result<()> {
     )
     .env("DAPPLE_FUZZ_SEEDS", &seeds)
     .run()?;
-    let built = folder.join("build");
-    cmd!(
-        shell,
-        "cargo +nightly fuzz build --fuzz-dir tests/fuzz --target-dir {built} --sanitizer none"
-    )
-    .quiet()
-    .env_remove("RUSTFLAGS")
-    .run()?;
+    cargo_fuzz(shell, "build", &folder).run()?;
     for some in targets(shell)?.chunks(AT_ONCE) {
-        run_together(&folder, some)?;
+        run_together(shell, &folder, some)?;
     }
     Ok(())
 }
 
 /// Runs targets at the same time, each on one core.
-fn run_together(folder: &Path, targets: &[String]) -> anyhow::Result<()> {
+fn run_together(shell: &Shell, folder: &Path, targets: &[String]) -> anyhow::Result<()> {
     std::thread::scope(|scope| {
-        let run = |target: &str| {
-            run(&Shell::new()?, folder, target)
-                .with_context(|| format!("the fuzz target `{target}`"))
-        };
-        let runs: Vec<_> = targets
-            .iter()
-            .map(|target| scope.spawn(move || run(target)))
-            .collect();
-        runs.into_iter()
-            .try_for_each(|run| run.join().expect("it does not panic"))
+        let runs = targets.iter().map(|target| {
+            // A shell in the same folder, since one cannot be shared.
+            let shell = shell.clone();
+            scope.spawn(move || run(&shell, folder, target))
+        });
+        let runs: Vec<_> = runs.collect();
+        for (run, target) in runs.into_iter().zip(targets) {
+            let done = run.join().expect("it does not panic");
+            done.with_context(|| format!("the fuzz target `{target}`"))?;
+        }
+        Ok(())
     })
+}
+
+/// A command of cargo-fuzz for the targets of this workspace.
+fn cargo_fuzz<'a>(shell: &'a Shell, command: &str, folder: &Path) -> Cmd<'a> {
+    let built = folder.join("build");
+    // The address sanitizer is off: the crates have no unsafe code of their own, and it would take half of the time.
+    let fuzz = cmd!(
+        shell,
+        "cargo +nightly fuzz {command} --fuzz-dir tests/fuzz --target-dir {built} --sanitizer none"
+    );
+    // It is built apart in any case, and all SIMD levels are for the tests.
+    fuzz.quiet().env_remove("RUSTFLAGS")
 }
 
 /// Returns a sentence that names the missing tool, if there is one.
 fn missing(shell: &Shell) -> Option<&'static str> {
-    let works = |command: xshell::Cmd<'_>| {
+    let works = |command: Cmd<'_>| {
         let output = command.quiet().ignore_status().ignore_stderr().output();
         output.is_ok_and(|output| output.status.success())
     };
@@ -98,16 +104,19 @@ fn run(shell: &Shell, folder: &Path, target: &str) -> anyhow::Result<()> {
     shell.create_dir(&learned)?;
     shell.create_dir(&findings)?;
     let prefix = format!("-artifact_prefix={}/{target}-", findings.display());
-    let built = folder.join("build");
-    // The address sanitizer is off: the crates have no unsafe code of their own, and it would take half of the time.
-    let fuzz = cmd!(
-        shell,
-        "cargo +nightly fuzz run --fuzz-dir tests/fuzz --target-dir {built} --sanitizer none {target} {learned} {seeds}"
-    )
-    .args(["--", "-seed=1996", "-max_len=4096", "-print_funcs=0", "-verbosity=0", &prefix])
-    .arg(format!("-max_total_time={SECONDS}"))
-    .arg(format!("-timeout={SECONDS_OF_AN_INPUT}"))
-    .arg(format!("-rss_limit_mb={MEMORY}"));
-    // It is built apart in any case, and all SIMD levels are for the tests.
-    Ok(fuzz.quiet().env_remove("RUSTFLAGS").run()?)
+    let fuzz = cargo_fuzz(shell, "run", folder)
+        .arg(target)
+        .args([&learned, &seeds])
+        .args([
+            "--",
+            "-seed=1996",
+            "-max_len=4096",
+            "-print_funcs=0",
+            "-verbosity=0",
+            &prefix,
+        ])
+        .arg(format!("-max_total_time={SECONDS}"))
+        .arg(format!("-timeout={SECONDS_OF_AN_INPUT}"))
+        .arg(format!("-rss_limit_mb={MEMORY}"));
+    Ok(fuzz.run()?)
 }
