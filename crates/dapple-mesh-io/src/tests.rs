@@ -94,6 +94,10 @@ fn read_all(bytes: &[u8]) {
             assert!(again.is_ok(), "{name}");
         }
     }
+    if let Ok(model) = obj::read_with(bytes, &mut |_| Some(bytes.to_vec())) {
+        let alone = obj::write(&model).expect("it was checked");
+        assert!(obj::read(&alone).is_ok(), "OBJ without its other files");
+    }
 }
 
 #[test]

@@ -63,7 +63,7 @@ fn gray<T: PupsRecipe<Image>, Image>(options: &mut T, image: &Image, time: f64) 
 #[test]
 fn loops_of_all_recipes_join_and_move() {
     let (start, half, end) = (pictures(0.0), pictures(0.5), pictures(1.0));
-    assert!(!start.is_empty(), "all recipes");
+    assert_eq!(start.len(), 14, "all recipes");
     for ((start, half), end) in start.iter().zip(&half).zip(&end) {
         assert_eq!(start, end, "the end is the beginning");
         assert!(start.1 != half.1, "{} does not move", start.0);
