@@ -11,7 +11,7 @@ use crate::profile::{Profile, minus_u};
 use crate::shift::shift_weights;
 use crate::sink::{Planes, Sink};
 use crate::tile::{Strip, Tile, Tiles};
-use fearless_simd::{f32x8, prelude::*};
+use fearless_simd::prelude::*;
 
 /// Columns of the widest tile: a register at the widest level.
 pub(crate) const LANES: usize = 16;
@@ -75,18 +75,16 @@ impl<P: Profile, K: Sink> Splatter<'_, P, K> {
         planes: &mut Planes<K>,
     ) {
         // Where registers have 16 lanes, there are 32 of them.
-        if const { <S::f32s as SimdBase<S>>::LEN < LANES } {
-            self.add_tiles::<S, S::f32s, FEW_ROWS>(simd, member, tiles, planes);
-        } else if member.footprint.n_columns > NARROW {
-            self.add_tiles::<S, S::f32s, ROWS>(simd, member, tiles, planes);
+        if S::f32s::LEN == LANES && member.footprint.n_columns > NARROW {
+            self.add_tiles::<S, ROWS>(simd, member, tiles, planes);
         } else {
-            self.add_tiles::<S, f32x8<S>, FEW_ROWS>(simd, member, tiles, planes);
+            self.add_tiles::<S, FEW_ROWS>(simd, member, tiles, planes);
         }
     }
 
-    /// Adds the weights, in tiles as wide as a register `V` and `N` rows high.
+    /// Adds the weights, in tiles as wide as a register and `N` rows high.
     #[inline(always)]
-    fn add_tiles<S: Simd, V: SimdFloat<S, Element = f32>, const N: usize>(
+    fn add_tiles<S: Simd, const N: usize>(
         &self,
         simd: S,
         member: Member,
@@ -94,26 +92,26 @@ impl<P: Profile, K: Sink> Splatter<'_, P, K> {
         planes: &mut Planes<K>,
     ) {
         let footprint = &member.footprint;
-        let (column, row) = (footprint.first_column(V::LEN), footprint.row as usize);
+        let (column, row) = (footprint.first_column(S::f32s::LEN), footprint.row as usize);
         let n_columns = (footprint.column + footprint.n_columns) as usize - column;
-        let n_columns = n_columns.next_multiple_of(V::LEN);
+        let n_columns = n_columns.next_multiple_of(S::f32s::LEN);
         let n_rows = (footprint.n_rows as usize).next_multiple_of(N);
         tiles.enter::<S, N>(
             simd,
             (member.blocks, member.instance.center),
-            (&self.xs[column..column + n_columns], V::LEN),
+            (&self.xs[column..column + n_columns], S::f32s::LEN),
             &self.ys[row..row + n_rows],
         );
         tiles.sort(simd);
         let mut place = [0; 2];
         while let Some(tile) = tiles.next(simd, &mut place) {
-            self.add_tile::<S, V, N>(simd, member, tiles, tile, planes);
+            self.add_tile::<S, N>(simd, member, tiles, tile, planes);
         }
     }
 
     /// Adds the weights in one tile.
     #[inline(always)]
-    fn add_tile<S: Simd, V: SimdFloat<S, Element = f32>, const N: usize>(
+    fn add_tile<S: Simd, const N: usize>(
         &self,
         simd: S,
         member: Member,
@@ -121,16 +119,16 @@ impl<P: Profile, K: Sink> Splatter<'_, P, K> {
         tile: Tile,
         planes: &mut Planes<K>,
     ) {
-        let x = V::from_slice(simd, &tiles.x(tile)[..V::LEN]);
+        let x = S::f32s::from_slice(simd, &tiles.x(tile)[..S::f32s::LEN]);
         let strips = tiles.strips(tile);
-        let mut weights = [V::splat(simd, 1.0); N];
+        let mut weights = [S::f32s::splat(simd, 1.0); N];
         if tile.active != 0 {
             let ax = &member.blocks[0].x;
             weights = self.products(simd, &strips[0], ax, tile.active, x);
         }
         let blocks = strips.iter().zip(member.blocks).enumerate().skip(1);
         for (index, (strip, block)) in blocks {
-            let products: [V; N] = match member.exponents.get(index) {
+            let products: [S::f32s; N] = match member.exponents.get(index) {
                 Some(exponents) if exponents[0] < 1.0 => {
                     self.faded(simd, strip, &block.x, exponents, x)
                 }
@@ -146,7 +144,7 @@ impl<P: Profile, K: Sink> Splatter<'_, P, K> {
             weights = shift_weights(simd, &weights, shift, x, &y);
         }
         let footprint = &member.footprint;
-        let column = footprint.first_column(V::LEN) + tile.column as usize * V::LEN;
+        let column = footprint.first_column(S::f32s::LEN) + tile.column as usize * S::f32s::LEN;
         let row = footprint.row as usize + tile.strip as usize * N;
         let (sums, lane) = planes.rows(column, row, N);
         let point = member.instance.point;
