@@ -258,7 +258,7 @@ impl PoissonDisk {
 }
 
 /// The SIMD level of this machine, but for 16 lanes, which rows of five neighbors do not fill.
-fn level() -> Level {
+pub(crate) fn level() -> Level {
     let level = Level::new();
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
     if let Some(token) = level.as_avx2() {

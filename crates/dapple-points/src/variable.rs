@@ -18,9 +18,11 @@ mod gentle;
 mod leaf;
 mod rule;
 
+use crate::disk::level;
 use crate::{Domain, PointSet, PointsError, PointsErrorKind};
 use block::{Block, Neighbor, Setting};
 use dapple_hash::{Seed, hash1};
+use dapple_raster::simd::dispatch;
 use dapple_raster::{Varying, parallel};
 pub use density::{RSA_DENSITY, radius_for_count, radius_from_density};
 use fill::Filler;
@@ -135,6 +137,7 @@ fn place_points(
         rule: options.rule,
         seed,
     };
+    let level = level();
     let tree = Tree::new(setting.field, options.point_limit)?;
     check_periods(field.domain, &tree)?;
     let mut blocks = blocks_of(&tree, &setting);
@@ -146,14 +149,14 @@ fn place_points(
             let color = &colors[((first + turn) % n_colors) as usize];
             take_turns(&mut blocks, color, |block, blocks| {
                 block.pull(blocks, &setting);
-                block.throw_round(round as u32, share, &setting);
+                dispatch!(level, _simd => block.throw_round(round as u32, share, &setting));
             });
         }
     }
     for color in &colors {
         take_turns(&mut blocks, color, |block, blocks| {
             block.pull(blocks, &setting);
-            Filler::default().fill(block, &setting);
+            dispatch!(level, _simd => Filler::default().fill(block, &setting));
         });
     }
     collect(*field.domain, blocks)

@@ -4,7 +4,7 @@
 //! be smaller, a second point of a cell goes to a separate list. Most darts fall too close to a point. The quick test
 //! rejects most of these in 32-bit floating point, eight cells at a time, with the smallest radius of the leaf instead
 //! of the dart's own, and a margin for rounding. Only the darts that pass have their radius read and are tested in 64
-//! bits.
+//! bits. In the same way it finds most of the cells that need no filling.
 
 use super::leaf::{Leaf, RadiusField};
 use super::rule::DiskRule;
@@ -183,6 +183,7 @@ impl Block {
     }
 
     /// Throws one dart into each of a share of the open cells.
+    #[inline(always)]
     pub(super) fn throw_round(&mut self, round: u32, share: f64, setting: &Setting<'_>) {
         let random = CellHash::new(
             setting.seed.child("dart", 0),
@@ -267,6 +268,7 @@ impl Block {
     }
 
     /// Whether a place in a cell is certainly too close to a point; the quick test.
+    #[inline(always)]
     fn is_surely_taken(&self, [column, row]: [u16; 2], place: u64) -> bool {
         let scale = (1.0 / self.leaf.radii.least) * self.cell;
         let x = (f32::from(column) + unit_f32(place as u32)) * scale.x as f32;
@@ -279,6 +281,7 @@ impl Block {
     }
 
     /// Whether a point in these rows, counted from that of the slot `corner`, is certainly too close.
+    #[inline(always)]
     fn is_quickly_taken<const N: usize>(
         &self,
         corner: usize,
@@ -288,12 +291,7 @@ impl Block {
     ) -> bool {
         let mut room = [0.0; LANES];
         for row in rows {
-            let from = corner + row * self.stride;
-            let [Some(xs), Some(ys), Some(reaches)] = self
-                .quick
-                .each_ref()
-                .map(|column| column.get(from..).and_then(<[f32]>::first_chunk::<LANES>))
-            else {
+            let Some([xs, ys, reaches]) = self.quick_lanes(corner + row * self.stride) else {
                 return false;
             };
             for lane in 0..LANES {
@@ -307,6 +305,49 @@ impl Block {
             }
         }
         room.iter().any(|&inside| inside > 0.0)
+    }
+
+    /// Whether each quarter of a cell is certainly covered by one point, as the quick test has them.
+    #[inline(always)]
+    pub(super) fn is_surely_covered(&self, [column, row]: [u16; 2]) -> bool {
+        let side = (1.0 / self.leaf.radii.least) * self.cell;
+        let [width, height] = [side.x as f32, side.y as f32];
+        let [left, top] = [f32::from(column) * width, f32::from(row) * height];
+        let first = self.margin - QUICK_REACH;
+        let corner = (usize::from(row) + first) * self.stride + usize::from(column) + first;
+        let mut room = [[0.0; LANES]; 4];
+        for row in 0..=2 * QUICK_REACH {
+            let Some([xs, ys, reaches]) = self.quick_lanes(corner + row * self.stride) else {
+                return false;
+            };
+            for lane in 0..LANES {
+                let x = farthest_sq(xs[lane] - left, width);
+                let y = farthest_sq(ys[lane] - top, height);
+                for quarter in 0..4 {
+                    let inside = reaches[lane] - (x[quarter & 1] + y[quarter >> 1]);
+                    let best = &mut room[quarter][lane];
+                    *best = if inside > *best { inside } else { *best };
+                }
+            }
+        }
+        let mut covered = [false; 4];
+        for quarter in 0..4 {
+            for lane in 0..LANES {
+                covered[quarter] |= room[quarter][lane] > 0.0;
+            }
+        }
+        covered == [true; 4]
+    }
+
+    /// The points of some cells in a row, as the quick test has them.
+    #[inline(always)]
+    fn quick_lanes(&self, from: usize) -> Option<[&[f32; LANES]; 3]> {
+        let [xs, ys, reaches] = &self.quick;
+        Some([
+            xs.get(from..)?.first_chunk()?,
+            ys.get(from..)?.first_chunk()?,
+            reaches.get(from..)?.first_chunk()?,
+        ])
     }
 
     /// Whether a point keeps its distance from all others.
@@ -360,6 +401,14 @@ impl Block {
         }
         count
     }
+}
+
+/// The squared distances from `at` to the farther ends of the first and second half of a side.
+#[inline(always)]
+fn farthest_sq(at: f32, side: f32) -> [f32; 2] {
+    let first = (at - 0.25 * side).abs() + 0.25 * side;
+    let second = (at - 0.75 * side).abs() + 0.25 * side;
+    [first * first, second * second]
 }
 
 /// Two numbers in [0, 1) from 64 bits.

@@ -60,6 +60,7 @@ pub(super) struct Filler {
 
 impl Filler {
     /// Finishes all open cells of a block.
+    #[inline(always)]
     pub(super) fn fill(&mut self, block: &mut Block, setting: &Setting<'_>) {
         for cell in core::mem::take(&mut block.open) {
             if block.error.is_some() {
@@ -69,8 +70,14 @@ impl Filler {
         }
     }
 
+    #[inline(always)]
     fn fill_cell(&mut self, block: &mut Block, cell: [u16; 2], setting: &Setting<'_>) {
-        if !self.start(block, block.min_of(cell), setting.rule) {
+        let min = block.min_of(cell);
+        if block.is_surely_covered(cell) {
+            debug_assert!(!self.start(block, min, setting.rule), "{cell:?} is open");
+            return;
+        }
+        if !self.start(block, min, setting.rule) {
             return;
         }
         let random = CellHash::new(
@@ -108,6 +115,7 @@ impl Filler {
     }
 
     /// Cuts a cell into sixteenths and keeps those that no disc covers; returns whether any are left.
+    #[inline(always)]
     fn start(&mut self, block: &Block, min: DVec2, rule: DiskRule) -> bool {
         let max = min + block.cell;
         let [least, most] = block.leaf.bounds(min, block.cell);
@@ -124,10 +132,10 @@ impl Filler {
             let reach_sq = (reach * reach * (1.0 - MARGIN)) as f32;
             let at = (local.at - min) * scale;
             let xs = farthest_sq(at.x as f32, side.x as f32);
-            let ys = farthest_sq(at.y as f32, side.y as f32).map(|y_sq| reach_sq - y_sq);
+            let ys = farthest_sq(at.y as f32, side.y as f32);
             for row in 0..SIDE {
                 for column in 0..SIDE {
-                    let inside = ys[row] - xs[column];
+                    let inside = (reach_sq - ys[row]) - xs[column];
                     let best = &mut room[row * SIDE + column];
                     *best = if inside > *best { inside } else { *best };
                 }
@@ -194,12 +202,15 @@ impl Filler {
 }
 
 /// The squared distances from `at` to the farther ends of the first parts of length `side` from 0 on.
+#[inline(always)]
 fn farthest_sq(at: f32, side: f32) -> [f32; SIDE] {
-    core::array::from_fn(|part| {
+    let mut squares = [0.0; SIDE];
+    for (part, square) in squares.iter_mut().enumerate() {
         let center = (part as f32 + 0.5) * side;
         let farthest = (at - center).abs() + 0.5 * side;
-        farthest * farthest
-    })
+        *square = farthest * farthest;
+    }
+    squares
 }
 
 /// Whether the disc of one point covers all of a part.
