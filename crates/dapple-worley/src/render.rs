@@ -50,8 +50,15 @@ const F64_LANES: usize = LANES / 2;
 /// The largest number of rows of a band.
 const BAND_ROWS: usize = 64;
 
-/// The largest number of columns of a block.
-const BLOCK_COLUMNS: usize = 128;
+/// The largest number of columns of a block: the wider blocks are, the less is done twice at their borders.
+const BLOCK_COLUMNS: usize = 512;
+
+/// The smallest number of columns of a block that has more cells than [`MANY_CELLS`].
+const FEW_COLUMNS: usize = BLOCK_COLUMNS / 4;
+
+/// The number of cells of a block and around it from which on wide blocks lose more than they gain: the points of so
+/// many fill the second cache of a core.
+const MANY_CELLS: u128 = 1 << 12;
 
 /// A window of a plane through the basis.
 #[derive(Clone, Copy, Debug)]
@@ -82,14 +89,6 @@ impl Output<'_> {
             Self::Values(Values { tone, .. }, _) | Self::Gradients(tone, _) => tone.depth(),
             Self::Features(features) => features.len(),
             Self::Edges(_) => 2,
-        }
-    }
-
-    /// The largest number of columns of a block for this output.
-    fn block_columns(&self) -> usize {
-        match self {
-            Self::Edges(_) => edge::COLUMNS,
-            _ => BLOCK_COLUMNS,
         }
     }
 
@@ -229,14 +228,17 @@ fn render_bands(
         let (together, others) = bands.split_at(n);
         let (out, others_out) = outs.split_at_mut(n);
         let n_columns = first.columns.places.len();
-        let width = out.first().map_or(BLOCK_COLUMNS, Output::block_columns);
+        let block = |start: usize, width: usize| Block {
+            bands: together,
+            level,
+            range: start..n_columns.min(start + width),
+        };
+        let mut width = BLOCK_COLUMNS;
+        while width > FEW_COLUMNS && block(0, width).has_many_cells() {
+            width /= 2;
+        }
         for start in (0..n_columns).step_by(width) {
-            let block = Block {
-                bands: together,
-                level,
-                range: start..n_columns.min(start + width),
-            };
-            block.render(out, memory);
+            block(start, width).render(out, memory);
         }
         (bands, outs) = (others, others_out);
     }

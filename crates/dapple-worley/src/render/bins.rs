@@ -1,8 +1,9 @@
 //! Feature points sorted by the pixels near to them.
 //!
-//! The pixels of a block are covered by tiles of 4 × 4. A point lies in a column of tiles, and in a row of half tiles.
-//! Points are sorted by these, column by column, so that those near to a tile are a run in each of the columns of tiles
-//! near it. The terms of a point are computed once, for the columns of all the tiles that may need it.
+//! The pixels of a block are covered by tiles of 4 × 4. A point lies in a column as wide as a tile, and in a row of half
+//! tiles. Points are sorted by these, column by column, so that those near to a tile are a run in each of the columns near
+//! it: an odd number of columns, which are those of the tiles, or an even number, which begin in the middle of tiles. The
+//! terms of a point are computed once, for the pixels of all the tiles that may need it.
 
 use super::LANES;
 use super::table::{CellBox, numbers, words};
@@ -21,11 +22,16 @@ pub(super) const TILE: usize = 4;
 /// The number of rows of half a tile.
 pub(super) const HALF: usize = TILE / 2;
 
+/// The number of pixels beside a tile in so many columns.
+pub(super) const fn beyond(columns: usize) -> usize {
+    HALF * (columns - 1)
+}
+
 /// The range of points that a tile is compared with.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Reach {
-    /// The number of columns of tiles on either side.
-    pub(super) tiles: usize,
+    /// The number of columns.
+    pub(super) columns: usize,
     /// The number of rows of half tiles on either side.
     pub(super) halves: usize,
     /// The largest joint key along the axes across the picture.
@@ -63,6 +69,31 @@ pub(super) struct Point<const TILES: usize> {
     pub(super) across: f32,
 }
 
+/// Memory for points, by the number of columns that tiles are compared with.
+#[derive(Debug, Default)]
+pub(super) struct PointLists {
+    pub(super) two: Vec<Point<2>>,
+    pub(super) three: Vec<Point<3>>,
+    pub(super) five: Vec<Point<5>>,
+}
+
+/// The points of a block in the order of their places, and the limits within which a row of tiles reads them.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Runs<'a, const TILES: usize> {
+    pub(super) metric: Metric,
+    /// Whether there are axes across the picture.
+    pub(super) is_deep: bool,
+    /// The key from which on keys may be wrong.
+    pub(super) limit: f32,
+    pub(super) starts: &'a [u32],
+    pub(super) n_halves: usize,
+    /// The number of half tiles above and below a tile from which its points are taken.
+    pub(super) halves: usize,
+    pub(super) points: &'a [Point<TILES>],
+    /// The coordinates of the rows.
+    pub(super) rows: &'a [i32],
+}
+
 /// The feature points near to the pixels of a block, first in the order of their cells, then sorted by place.
 #[derive(Debug)]
 pub(super) struct Bins {
@@ -73,16 +104,13 @@ pub(super) struct Bins {
     /// The accumulated terms of the points along the other axes, in the order of the cells; they stay zero in the plane,
     /// since all blocks of a memory belong to one basis.
     across: Vec<f32>,
-    /// The places of the points, in the order of the cells: the column of tiles in the upper half of the word, the row
-    /// of half tiles in the lower half.
+    /// The places of the points, in the order of the cells: the column in the upper half of the word, the index of the
+    /// place in the lower half, which is enough for the 2^12 half tiles of a block and those beside it.
     places: Vec<u32>,
     /// The number of rows of half tiles with points.
-    pub(super) n_halves: usize,
+    n_halves: usize,
     /// The index of the first point of each place, and at the end the number of points.
-    pub(super) starts: Vec<u32>,
-    /// The points in the order of the places, if they are compared with 3 columns of tiles; those for 5 columns follow.
-    pub(super) near: Vec<Point<3>>,
-    pub(super) wide: Vec<Point<5>>,
+    starts: Vec<u32>,
     /// The coordinates of the columns, including those of the tiles beside the block.
     columns: Vec<i32>,
 }
@@ -96,8 +124,6 @@ impl Bins {
             places: Vec::new(),
             n_halves: 0,
             starts: Vec::new(),
-            near: Vec::new(),
-            wide: Vec::new(),
             columns: Vec::new(),
         }
     }
@@ -105,12 +131,12 @@ impl Bins {
     /// Clears the bins for another block with these columns and number of rows.
     pub(super) fn clear(&mut self, columns: &[i32], height: usize, reach: Reach) {
         let width = columns.len();
-        let n_tiles = width.div_ceil(TILE) + 2 * reach.tiles;
+        let n_columns = width.div_ceil(TILE) + reach.columns - 1;
         self.n_halves = 2 * height.div_ceil(TILE) + 2 * reach.halves;
         self.starts.clear();
-        self.starts.resize(n_tiles * self.n_halves + 2, 0);
+        self.starts.resize(n_columns * self.n_halves + 2, 0);
         // The columns past the ends are not used.
-        let more = 2 * TILE * reach.tiles;
+        let more = 2 * beyond(reach.columns);
         self.columns.clear();
         self.columns.resize(more, 0);
         self.columns.extend_from_slice(columns);
@@ -181,7 +207,7 @@ impl Bins {
             self.across.resize(room, 0.0);
         }
         let lanes = i32x16::from_slice(simd, &ASCENDING) << STEP_BITS;
-        let n_tiles = (grid.size[0].div_ceil(TILE) + 2 * reach.tiles) as u32;
+        let n_columns = (grid.size[0].div_ceil(TILE) + reach.columns - 1) as u32;
         for index in 0..most {
             let steps = cells.flat_steps(u32x16::splat(simd, index), lattice);
             let mut points = [lanes; MOST_AXES];
@@ -202,10 +228,10 @@ impl Bins {
                     across = General(metric).accumulate(terms, across);
                 }
             }
-            let column = bin(x, grid.pixel[0], TILE, reach.tiles);
-            let half = bin(rows, grid.pixel[1], HALF, reach.halves);
+            let column = bin(x, grid.pixel[0], TILE, beyond(reach.columns));
+            let half = bin(rows, grid.pixel[1], HALF, HALF * reach.halves);
             let mut matters = numbers.simd_gt(index)
-                & column.simd_lt(n_tiles)
+                & column.simd_lt(n_columns)
                 & half.simd_lt(self.n_halves as u32);
             let to = self.len..self.len + LANES;
             if is_deep {
@@ -214,7 +240,11 @@ impl Bins {
                 across.store_slice(&mut self.across[to]);
             }
             let steps = [x + grid.first[0], rows + grid.first[row_axis]];
-            self.push(matters, steps, column << 16 | half);
+            self.push(
+                matters,
+                steps,
+                column << 16 | (column * self.n_halves as u32 + half),
+            );
         }
     }
 
@@ -232,7 +262,7 @@ impl Bins {
     /// Counts the points of each place, which gives the index at which each place begins.
     pub(super) fn count(&mut self) {
         for &place in &self.places[..self.len] {
-            self.starts[index(place, self.n_halves) + 2] += 1;
+            self.starts[index(place) + 2] += 1;
         }
         let mut end = 0;
         for start in &mut self.starts {
@@ -241,8 +271,30 @@ impl Bins {
         }
     }
 
+    /// Sorts the points by place; `rows` are the coordinates of the rows, and `points` is memory to work in.
+    pub(super) fn runs<'a, const TILES: usize>(
+        &'a mut self,
+        level: Level,
+        grid: &Grid,
+        rows: &'a [i32],
+        points: &'a mut Vec<Point<TILES>>,
+    ) -> Runs<'a, TILES> {
+        let (metric, reach) = (grid.metric, grid.reach);
+        self.sort(level, metric, points);
+        Runs {
+            metric,
+            is_deep: grid.n_axes > 2,
+            limit: metric.tightened(reach.key),
+            starts: &self.starts,
+            n_halves: self.n_halves,
+            halves: reach.halves,
+            points,
+            rows,
+        }
+    }
+
     /// Sorts the points by place, and computes their terms.
-    pub(super) fn sort<const TILES: usize>(
+    fn sort<const TILES: usize>(
         &mut self,
         level: Level,
         metric: Metric,
@@ -279,7 +331,7 @@ impl Bins {
             .zip(&rows[..self.len])
             .zip(&self.across[..self.len]);
         for (((&column, &row), &across), &place) in from.zip(&self.places[..self.len]) {
-            let start = &mut self.starts[index(place, self.n_halves) + 1];
+            let start = &mut self.starts[index(place) + 1];
             let point = &mut points[*start as usize];
             *start += 1;
             let columns = &self.columns[TILE * (place >> 16) as usize..][..TILE * TILES];
@@ -302,18 +354,18 @@ impl Bins {
 const ASCENDING: [i32; LANES] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15];
 
 /// The groups of `pixels` pixels in which sixteen points lie, from their distances to the middle of the first pixel.
-/// The first `around` groups lie before it. The result for a point before those may be the first group or a very large
-/// number.
+/// The first group begins `before` pixels before that pixel. The result for a point before it may be the first group or a
+/// very large number.
 #[inline(always)]
-fn bin<S: Simd>(ahead: i32x16<S>, pixel: f32, pixels: usize, around: usize) -> u32x16<S> {
+fn bin<S: Simd>(ahead: i32x16<S>, pixel: f32, pixels: usize, before: usize) -> u32x16<S> {
     let group = pixels as f32;
     let bins =
-        ahead.to_float::<f32x16<S>>() * (pixel * group).recip() + (around as f32 + 0.5 / group);
+        ahead.to_float::<f32x16<S>>() * (pixel * group).recip() + (before as f32 + 0.5) / group;
     bins.to_int::<i32x16<S>>().bitcast()
 }
 
 /// The index of a place.
 #[inline(always)]
-fn index(place: u32, n_halves: usize) -> usize {
-    (place >> 16) as usize * n_halves + (place & 0xFFFF) as usize
+fn index(place: u32) -> usize {
+    (place & 0xFFFF) as usize
 }

@@ -1,7 +1,7 @@
 //! A block: a few columns of a band, whose feature points are generated once.
 
 use super::area::Area;
-use super::bins::Bins;
+use super::bins::{Bins, PointLists};
 use super::cull::{PixelBox, PointList};
 use super::flat::{Dominance, FlatPoints, culls_dominated};
 use super::kernel::Candidate;
@@ -10,7 +10,7 @@ use super::splat::Splat;
 use super::square::{Guess, Plan};
 use super::table::{CellBox, Table};
 use super::track::Lookup;
-use super::{Band, LANES, Output, Picture};
+use super::{Band, LANES, MANY_CELLS, Output, Picture};
 use crate::LIMIT;
 use crate::features::position;
 use crate::fixed::{MOST_AXES, STEPS};
@@ -64,6 +64,7 @@ pub(super) struct Memory {
     pub(super) runs: Vec<Range<usize>>,
     /// The points sorted by the pixels near to them.
     pub(super) bins: Bins,
+    pub(super) points: PointLists,
     /// The coordinates of the columns of the block and, along the other axes, of the rows of the band, in steps from
     /// the lower corner of the table. The last one is repeated to fill a register.
     pub(super) lines: [Vec<i32>; MOST_AXES],
@@ -92,6 +93,7 @@ impl Memory {
             values: Vec::new(),
             runs: Vec::new(),
             bins: Bins::new(),
+            points: PointLists::default(),
             lines: core::array::from_fn(|_| Vec::new()),
             slices: Vec::new(),
             n_axes: 0,
@@ -334,6 +336,12 @@ impl Block<'_> {
         let is_small = cells.n_cells() <= MOST_CELLS
             && (0..n_axes).all(|axis| cells.side(axis) <= LONGEST_SIDE);
         is_small.then_some(cells)
+    }
+
+    /// Whether the block and the cells around it have more cells than [`MANY_CELLS`].
+    pub(super) fn has_many_cells(&self) -> bool {
+        self.cells(1)
+            .is_none_or(|cells| cells.n_cells() > MANY_CELLS)
     }
 
     /// Fills pixels one by one.

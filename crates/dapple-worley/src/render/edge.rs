@@ -18,18 +18,15 @@ use super::block::{Block, Memory};
 use super::cull::lanes_before;
 use super::planes::{Neighbors, Planes, SLACK};
 use super::square::Guess;
-use super::{BAND_ROWS, LANES, Picture};
+use super::{BAND_ROWS, BLOCK_COLUMNS, LANES, Picture};
 use crate::Metric;
 use crate::fixed::{MOST_AXES, STEP, STEPS};
 use core::ops::Range;
 use dapple_raster::simd::dispatch;
 use fearless_simd::{f32x16, f64x8, i32x16, prelude::*};
 
-/// The largest number of columns of a block: fewer cells lie across the borders of wide blocks.
-pub(super) const COLUMNS: usize = 256;
-
 /// The distance of two rows of values in memory; a row may end anywhere in a register.
-const STRIDE: usize = COLUMNS + LANES;
+const STRIDE: usize = BLOCK_COLUMNS + LANES;
 
 /// The distances within which neighbors of a point are searched, as multiples of the guess of the distance of the
 /// nearest points: first the smaller one, then the larger one if that was not enough.

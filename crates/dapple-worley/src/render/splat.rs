@@ -5,13 +5,12 @@
 //! ([`bins`](super::bins)). This includes all points nearer to a pixel than the edge of these tiles, and the pixel's
 //! keys are right if the `K`-th is smaller than that.
 
-use super::bins::{Bins, Grid, HALF, Point, Reach, TILE};
+use super::bins::{Grid, HALF, PointLists, Reach, Runs, TILE, beyond};
 use super::block::{Block, Memory};
 use super::kernel::{empty, greater, lesser};
 use super::table::CellBox;
 use super::{BLOCK_COLUMNS, LANES};
 use crate::LIMIT;
-use crate::Metric;
 use crate::fixed::{MOST_AXES, STEP, STEP_BITS};
 use crate::levels::wide;
 use crate::metric::{Additive, Exact, General, Kernel, Longest, Measure};
@@ -32,9 +31,8 @@ const FARTHEST: f32 = 3.5;
 /// The largest ratio of the reach to the distance that is needed: past it, other methods are faster.
 const MOST_WASTE: f32 = 4.0;
 
-/// The number of tiles to either side of a tile from which points are taken, the smaller and the larger one.
-const NEAR: usize = 1;
-const WIDE: usize = 2;
+/// The numbers of columns of points that a tile may be compared with.
+const COLUMNS: [usize; 3] = [2, 3, 5];
 
 /// The largest number of half tiles above and below a tile from which points are taken.
 const MOST_HALVES: usize = 8;
@@ -46,7 +44,7 @@ const SPARE: f32 = 1.1;
 /// The parameters of the method for small cells, for a block.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Splat {
-    /// The number of tiles and of half tiles to each side of a tile from which points are taken.
+    /// The number of columns of points that a tile is compared with, and of half tiles above and below it.
     around: [usize; 2],
     /// The distance from any pixel within which all points are compared, in cells.
     pub(super) reach: f32,
@@ -75,8 +73,8 @@ impl Splat {
         // A tile begins half a pixel before its first pixel.
         let reach = |pixel: f32, pixels: usize| (pixels as f32 + 0.5) * pixel.abs() * SURE;
         let useful = distance..FARTHEST.min(MOST_WASTE * distance);
-        for tiles in [NEAR, WIDE] {
-            let along_row = reach(pixel[0], TILE * tiles);
+        for columns in COLUMNS {
+            let along_row = reach(pixel[0], beyond(columns));
             let halves = (1..MOST_HALVES).find(|halves| reach(pixel[1], HALF * halves) >= distance);
             let Some(halves) = halves.filter(|_| useful.contains(&along_row)) else {
                 continue;
@@ -88,7 +86,7 @@ impl Splat {
                 f32::INFINITY
             };
             return Some(Self {
-                around: [tiles, halves],
+                around: [columns, halves],
                 reach: along.min(across),
                 pixel: pixel.map(|cells| cells / STEP),
                 row_axis,
@@ -119,12 +117,17 @@ impl Splat {
         memory: &mut Memory,
     ) {
         let near = self.cells(block, cells, memory);
-        let Memory { bins, lines, .. } = memory;
+        let Memory {
+            bins,
+            points,
+            lines,
+            ..
+        } = memory;
         let basis = block.bands[0].picture.basis;
         let metric = basis.metric();
-        let [tiles, halves] = self.around;
+        let [columns, halves] = self.around;
         let reach = Reach {
-            tiles,
+            columns,
             halves,
             key: metric.term(self.reach),
         };
@@ -144,18 +147,11 @@ impl Splat {
         bins.collect(block.level, basis.lattice(), &near, &grid);
         bins.count();
         let rows = &lines[self.row_axis];
-        if tiles == NEAR {
-            let mut points = core::mem::take(&mut bins.near);
-            bins.sort(block.level, metric, &mut points);
-            let runs = Runs::new(bins, &grid, rows, &points);
-            fill_block::<3>(block, runs, values, out);
-            bins.near = points;
-        } else {
-            let mut points = core::mem::take(&mut bins.wide);
-            bins.sort(block.level, metric, &mut points);
-            let runs = Runs::new(bins, &grid, rows, &points);
-            fill_block::<5>(block, runs, values, out);
-            bins.wide = points;
+        let (level, PointLists { two, three, five }) = (block.level, points);
+        match columns {
+            2 => fill_block(block, bins.runs(level, &grid, rows, two), values, out),
+            3 => fill_block(block, bins.runs(level, &grid, rows, three), values, out),
+            _ => fill_block(block, bins.runs(level, &grid, rows, five), values, out),
         }
     }
 
@@ -222,38 +218,6 @@ fn fill_block<const TILES: usize>(
                     values.put_one(block.bands[0].picture.basis, place, &mut out[row][column]);
                 }
             }
-        }
-    }
-}
-
-/// The points of a block in the order of their places, and the limits within which a row of tiles reads them.
-#[derive(Clone, Copy, Debug)]
-struct Runs<'a, const TILES: usize> {
-    metric: Metric,
-    /// Whether there are axes across the picture.
-    is_deep: bool,
-    /// The key from which on keys may be wrong.
-    limit: f32,
-    starts: &'a [u32],
-    n_halves: usize,
-    /// The number of half tiles above and below a tile from which its points are taken.
-    halves: usize,
-    points: &'a [Point<TILES>],
-    /// The coordinates of the rows.
-    rows: &'a [i32],
-}
-
-impl<'a, const TILES: usize> Runs<'a, TILES> {
-    fn new(bins: &'a Bins, grid: &Grid, rows: &'a [i32], points: &'a [Point<TILES>]) -> Self {
-        Self {
-            metric: grid.metric,
-            is_deep: grid.n_axes > 2,
-            limit: grid.metric.tightened(grid.reach.key),
-            starts: &bins.starts,
-            n_halves: bins.n_halves,
-            halves: grid.reach.halves,
-            points,
-            rows,
         }
     }
 }
