@@ -132,7 +132,7 @@ fn slices_are_pictures_of_their_planes_bit_for_bit() -> Result<(), WorleyError> 
     })?;
     let planes = planes();
     // Several blocks wide and bands high; large cells and small ones.
-    for (size, extent) in [([140, 70], 3.0), ([40, 70], 9.0)] {
+    for (size, extent) in [([530, 70], 12.0), ([40, 70], 9.0)] {
         let window = Window::new(DVec2::ZERO, DVec2::splat(extent), size)?;
         let [mut values, mut sums] = [(); 2]
             .map(|()| Raster::filled([size[0], size[1] * planes.len() as u32], -1.0).unwrap());
@@ -211,6 +211,25 @@ fn slices_of_another_size_are_refused_before_anything_is_drawn() -> Result<(), W
         assert!(right.pixels().iter().all(|&value| value == -1.0));
     }
     texture.render_slices(&window, Vec::new())?;
+    Ok(())
+}
+
+/// Cells from less than a pixel to wider than a block of pixels.
+#[test]
+fn wide_pictures_hold_what_values_are_at_any_size_of_cells() -> Result<(), WorleyError> {
+    let size = [1100, 6];
+    for metric in [Metric::Euclidean, Metric::Chebyshev, Metric::Minkowski(3.0)] {
+        let worley = Worley2::new(Seed(9)).with_metric(metric)?;
+        let mut pixels_per_cell = 0.31;
+        while pixels_per_cell < 400.0 {
+            let extent = DVec2::new(f64::from(size[0]), f64::from(size[1])) / pixels_per_cell;
+            let window = Window::new(DVec2::new(-0.7, 3.2), extent, size)?;
+            for combination in [Combination::F1, Combination::F2_MINUS_F1] {
+                picture_equals_value(&worley, combination, &Plane::default(), &window)?;
+            }
+            pixels_per_cell *= 1.7;
+        }
+    }
     Ok(())
 }
 

@@ -21,7 +21,7 @@ fn is_the_same_with_any_number_of_threads<T: PartialEq + Send>(
 /// Windows of several bands and blocks, with small and with large pixels.
 fn windows() -> Result<[Window; 2], WorleyError> {
     Ok([
-        Window::new(DVec2::new(-3.0, 1e5), DVec2::new(9.0, 7.0), [400, 333])?,
+        Window::new(DVec2::new(-3.0, 1e5), DVec2::new(9.0, 7.0), [700, 333])?,
         Window::new(DVec2::new(0.5, -0.5), DVec2::new(400.0, 450.0), [300, 451])?,
     ])
 }
