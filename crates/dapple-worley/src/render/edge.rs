@@ -174,8 +174,12 @@ impl<'a> Pixels<'a> {
             ends: [0; BAND_ROWS],
             radius_sq: -1.0,
         };
+        // The first row that may have pixels, and the one past the last.
+        let mut rows = [self.n_rows, 0];
         for first in (0..self.n_rows).step_by(LANES) {
-            self.outline(simd, neighbors, first, &mut outline);
+            if self.outline(simd, neighbors, first, &mut outline) {
+                rows = [rows[0].min(first), self.n_rows.min(first + LANES)];
+            }
         }
         if outline.radius_sq < 0.0 {
             return true;
@@ -183,7 +187,7 @@ impl<'a> Pixels<'a> {
         neighbors.pick(simd, outline.radius_sq, planes);
         let sight = Sight::new(neighbors, planes, outline.radius_sq);
         let mut is_enough = true;
-        for row in 0..self.n_rows {
+        for row in rows[0]..rows[1] {
             let columns = outline.starts[row] as usize..outline.ends[row] as usize;
             if !columns.is_empty() {
                 let mut rest = [0.0; MOST_AXES];
@@ -207,6 +211,7 @@ impl<'a> Pixels<'a> {
     }
 
     /// Finds the columns in which sixteen rows may have pixels of a cell, and the distances of these from its point.
+    /// Returns whether the rows are near enough to have any.
     #[inline(always)]
     fn outline<S: Simd>(
         &self,
@@ -214,7 +219,7 @@ impl<'a> Pixels<'a> {
         neighbors: &Neighbors,
         first: usize,
         outline: &mut Outline,
-    ) {
+    ) -> bool {
         let zero = f32x16::splat(simd, 0.0);
         let mut rest = [zero; MOST_AXES];
         let mut rest_sq = zero;
@@ -225,7 +230,7 @@ impl<'a> Pixels<'a> {
         }
         let half = neighbors.reach / 2.0;
         if !rest_sq.simd_le(half * half).any_true() {
-            return;
+            return false;
         }
         let [mut low, mut high] = [zero - half, zero + half];
         for &plane in &neighbors.inner {
@@ -260,6 +265,7 @@ impl<'a> Pixels<'a> {
         let radius_sq = rest_sq + (low * low).max(high * high) + SLACK;
         let radius_sq = end.simd_gt(start).select(radius_sq, zero - 1.0);
         outline.radius_sq = outline.radius_sq.max(radius_sq.reduce_max());
+        true
     }
 }
 
