@@ -1,6 +1,7 @@
 //! Textures that are synthesized on meshes.
 
 mod along;
+mod example_mesh;
 mod surface_guides;
 
 use crate::data;
@@ -23,6 +24,7 @@ use dapple::synth::{
     SynthError, Synthesizer, bake_colors, bake_normals, bake_values, site_model, textured_model,
 };
 use dapple::tile::Map;
+use example_mesh::ExampleMesh;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::path::PathBuf;
@@ -79,10 +81,14 @@ pub(crate) struct Model {
 /// crease : the angle of an edge in degrees above which it is shaded as a crease.
 /// axes : how neighborhoods continue over the surface: `"followed"` or `"carried"`.
 /// matching : the values that are compared, `"appearance"` by default, or `"colors"` as in the paper; always colors with
-///     `guides`.
+///     `guides` or `example_mesh`.
 /// guides : a list of (of_example, of_mesh, weight): numbers in the size of the example, and for the mesh a number for each
 ///     vertex, (n,), or an image that is read at `mesh.uv` and repeats, (rows, columns); parts of the example go where both
 ///     are alike. Weights are as for `synthesize`, and `evenness` has no effect.
+/// example_mesh : the mesh that `exemplar` is the texture of, with `.uv` (m, 3, 2), v down, such as a `MeshFile` or a `Model`:
+///     its texture is lifted onto the other mesh. The `"auto"` of `coherence` is 2 then.
+/// example_sites : the number of points of `example_mesh`, by default `sites`: more make its features larger.
+/// example_directions : (positions, vectors) on `example_mesh`, like `directions`: where nothing else is said, its texture runs down.
 /// seed, edges, levels, coherence, evenness, paper, progress : as for `synthesize`.
 ///
 /// Examples
@@ -96,10 +102,11 @@ pub(crate) struct Model {
 #[pyfunction]
 #[pyo3(signature = (mesh, exemplar, *, texels = 1024, sites = 65536, directions = None, down = [0.0, -1.0, 0.0], symmetry = 1,
     atlas = "charts", padding = None, crease = None, axes = None, matching = None, seed = SeedArgument::default(), edges = "cut", levels = 3,
-    coherence = None, evenness = None, paper = false, guides = Vec::new(), progress = None),
+    coherence = None, evenness = None, paper = false, guides = Vec::new(), example_mesh = None, example_sites = None,
+    example_directions = None, progress = None),
     text_signature = "(mesh, exemplar, *, texels=1024, sites=65536, directions=None, down=(0.0, -1.0, 0.0), symmetry=1, atlas=\"charts\", \
     padding=None, crease=30.0, axes=None, matching=None, seed=0, edges=\"cut\", levels=3, coherence=None, evenness=None, paper=False, \
-    guides=(), progress=None)")]
+    guides=(), example_mesh=None, example_sites=None, example_directions=None, progress=None)")]
 pub(crate) fn synthesize_on<'py>(
     py: Python<'py>,
     mesh: &Bound<'py, PyAny>,
@@ -121,6 +128,9 @@ pub(crate) fn synthesize_on<'py>(
     evenness: Option<f32>,
     paper: bool,
     guides: Vec<Guide<'py>>,
+    example_mesh: Option<&Bound<'py, PyAny>>,
+    example_sites: Option<usize>,
+    example_directions: Option<(Bound<'py, PyAny>, Bound<'py, PyAny>)>,
     progress: Option<&Bound<'py, PyAny>>,
 ) -> Result<Model> {
     let atlas = data::named("atlas", atlas)?;
@@ -139,6 +149,7 @@ pub(crate) fn synthesize_on<'py>(
     check_sizes(&maps)?;
     refuse_alpha(&layout)?;
     let example = guides.of_example(self::exemplar(&maps, edges)?)?;
+    let example_mesh = ExampleMesh::read(example_mesh, example_sites, example_directions)?;
     let options = Matching {
         seed,
         levels,
@@ -152,12 +163,12 @@ pub(crate) fn synthesize_on<'py>(
             .transpose()?,
         paper,
     };
-    let hierarchy = HierarchyOptions {
+    let [hierarchy, sites_of_example] = ["sites", "example sites"].map(|name| HierarchyOptions {
         n_sites: sites,
         n_levels: levels,
-        seed: seed.0.child("sites", 0),
+        seed: seed.0.child(name, 0),
         ..HierarchyOptions::default()
-    };
+    });
     let options = options.options()?;
     let directions = self::directions(directions)?;
     let symmetry: Symmetry = data::named("symmetry", &symmetry.to_string())?;
@@ -186,7 +197,13 @@ pub(crate) fn synthesize_on<'py>(
         let synthesizer = Synthesizer::from_parts(surface, hierarchy, orientation, None)?;
         let columns = guides.at_sites(&synthesizer, &mesh, &repair, &uvs)?;
         let columns: Vec<_> = columns.iter().map(Vec::as_slice).collect();
-        let texture = synthesizer.synthesize_guided(&example, &columns, &options, heard)?;
+        let texture = match example_mesh {
+            None => synthesizer.synthesize_guided(&example, &columns, &options, heard)?,
+            Some(source) => {
+                let lifted = source.textured(&sites_of_example, &example)?;
+                synthesizer.lift(&lifted, &columns, &options, heard)?
+            }
+        };
         let bake = |map: &Map| bake(&synthesizer, &texture, &atlas, &shading, map);
         let baked = maps
             .iter()

@@ -137,6 +137,41 @@ def test_textures_are_those_of_the_command(tmp_path):
     model = dp.synthesize_on(dp.read_model(tmp_path / "torus.ply"), example, texels=256, sites=3000, seed=7)
     model.export(tmp_path / "c.glb")
     assert (tmp_path / "b.glb").read_bytes() == (tmp_path / "c.glb").read_bytes()
+    lift = [COMMAND, "synth", tmp_path / "c.glb", "--seed", "3", "-q", "--example-sites", "2000", *mesh]
+    subprocess.run([*lift, "-o", tmp_path / "d.glb"], check=True)
+    textured = dp.read_model(tmp_path / "c.glb")
+    options = {"texels": 256, "sites": 3000, "seed": 3, "example_mesh": textured, "example_sites": 2000}
+    dp.synthesize_on(dp.read_model(tmp_path / "torus.ply"), textured.texture, **options).export(tmp_path / "e.glb")
+    assert (tmp_path / "d.glb").read_bytes() == (tmp_path / "e.glb").read_bytes()
+
+
+def test_the_texture_of_another_mesh_is_lifted_with_all_its_maps():
+    corners = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
+    target = corners, np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
+    options = {"texels": 128, "sites": 1500, "levels": 2, "example_mesh": MODEL, "example_sites": 3000}
+    lifted = dp.synthesize_on(target, MODEL.maps, **options)
+    assert list(lifted.maps) == list(MATERIAL) and len(lifted.faces) == 4
+    for name in ("albedo", "height", "orm"):
+        before, values = (maps[name].reshape(-1, maps[name][0, 0].size) for maps in (MODEL.maps, lifted.maps))
+        # Values between texels are read, with a rounding.
+        assert (values >= before.min(0) - 1e-6).all() and (values <= before.max(0) + 1e-6).all(), name
+        assert values.std() > 0.5 * before.std(), name
+    alone = dp.synthesize_on(target, MODEL.texture, **options)
+    np.testing.assert_array_equal(alone.texture, lifted.texture)
+    turned = dp.synthesize_on(target, MODEL.texture, **options, example_directions=([[1.4, 0, 0]], [[0, 0, 1]]))
+    assert (turned.texture != alone.texture).any()
+
+
+@pytest.mark.parametrize("options, match", [
+    ({"example_sites": 100}, "without example_mesh"),
+    ({"example_directions": ([[0, 0, 0]], [[0, 1, 0]])}, "without example_mesh"),
+    ({"example_mesh": TORUS}, "no attribute uv"),
+    ({"example_mesh": MODEL, "example_sites": 0}, "0 sites"),
+    ({"example_mesh": MODEL, "example_directions": ([[0, 0, 0]], [[0, 1, 0], [1, 0, 0]])}, "1 positions, but 2 vectors"),
+])
+def test_bad_example_meshes_are_refused(options, match):
+    with pytest.raises(dp.DappleError, match=match):
+        dp.synthesize_on(TORUS, MODEL.texture, texels=128, sites=500, **options)
 
 
 def test_progress_is_told_and_what_it_raises_comes_out():

@@ -1,0 +1,59 @@
+//! An example that is the texture of another mesh.
+
+use super::{directions, own_uvs};
+use crate::error::{Error, Result};
+use crate::meshes::{mesh, vectors};
+use dapple::mesh::{Mesh, Surface};
+use dapple::synth::{Direction, Exemplar, HierarchyOptions, MeshExemplar, Synthesizer};
+use pyo3::prelude::*;
+
+/// A mesh and its texture coordinates.
+pub(super) struct ExampleMesh {
+    mesh: Mesh,
+    uvs: Vec<[f64; 2]>,
+    n_sites: Option<usize>,
+    directions: Vec<Direction>,
+}
+
+impl ExampleMesh {
+    /// Reads the arguments that describe the mesh; nothing without one.
+    pub(super) fn read(
+        example_mesh: Option<&Bound<'_, PyAny>>,
+        n_sites: Option<usize>,
+        directions: Option<(Bound<'_, PyAny>, Bound<'_, PyAny>)>,
+    ) -> Result<Option<Self>> {
+        let Some(example_mesh) = example_mesh else {
+            if n_sites.is_some() || directions.is_some() {
+                let message =
+                    "example_sites and example_directions have no effect without example_mesh";
+                return Err(Error::new("conflict", message));
+            }
+            return Ok(None);
+        };
+        let uvs = example_mesh.getattr("uv").ok().filter(|uvs| !uvs.is_none());
+        let uvs = uvs.ok_or_else(|| Error::new("uv", "the example_mesh has no attribute uv"))?;
+        Ok(Some(Self {
+            mesh: mesh(example_mesh)?,
+            uvs: vectors::<2>("uv", &uvs, &[3, 2])?,
+            n_sites,
+            directions: self::directions(directions)?,
+        }))
+    }
+
+    /// The mesh with points and its texture; `sites` are those of the mesh that gets the texture, but for the seed.
+    pub(super) fn textured(
+        self,
+        sites: &HierarchyOptions,
+        texture: &Exemplar,
+    ) -> Result<MeshExemplar> {
+        let (repaired, repair) = self.mesh.repair();
+        let surface = Surface::new(repaired)?;
+        let uvs = own_uvs(&surface, &self.mesh, &repair, &self.uvs)?;
+        let sites = HierarchyOptions {
+            n_sites: self.n_sites.unwrap_or(sites.n_sites),
+            ..sites.clone()
+        };
+        let source = Synthesizer::new(surface, &self.directions, &sites)?;
+        Ok(MeshExemplar::new(source, &uvs, texture)?)
+    }
+}
