@@ -70,6 +70,11 @@ fn odd_points_have_graphs_or_are_refused() {
 }
 
 #[test]
+fn textures_of_odd_meshes_are_lifted_or_refused() {
+    try_out("lift", 20);
+}
+
+#[test]
 fn broken_lists_are_read_or_refused() {
     try_out("directions", 500);
 }

@@ -5,11 +5,13 @@
 
 mod bytes;
 mod images;
+mod lifting;
 mod meshes;
 mod plane;
 mod recipes;
 
 pub use images::image;
+pub use lifting::lift;
 pub use meshes::{gltf, obj, off, ply};
 pub use plane::points;
 pub use recipes::{directions, recipe};
@@ -20,7 +22,7 @@ use std::error::Error;
 pub type Target = (&'static str, fn(&[u8]), fn() -> Vec<Vec<u8>>);
 
 /// All kinds of inputs.
-pub const TARGETS: [Target; 8] = [
+pub const TARGETS: [Target; 9] = [
     ("image", image, images::seeds),
     ("obj", obj, meshes::obj_seeds),
     ("ply", ply, meshes::ply_seeds),
@@ -28,6 +30,7 @@ pub const TARGETS: [Target; 8] = [
     ("off", off, meshes::off_seeds),
     ("recipe", recipe, recipes::seeds),
     ("points", points, plane::seeds),
+    ("lift", lift, lifting::seeds),
     ("directions", directions, recipes::direction_seeds),
 ];
 

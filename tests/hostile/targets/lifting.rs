@@ -1,0 +1,112 @@
+//! The target for textures of meshes as examples: meshes, texture coordinates and masks of any kind.
+
+use super::accepted;
+use super::bytes::Bytes;
+use core::ops::ControlFlow;
+use dapple::mesh::glam::{DVec2, DVec3};
+use dapple::mesh::{Mesh, Surface};
+use dapple::raster::Raster;
+use dapple::synth::{
+    Atlas, Edges, Exemplar, HierarchyOptions, MeshExemplar, Options, SurfaceTexture, SynthError,
+    Synthesizer, bake_values,
+};
+
+/// The largest numbers of vertices, faces and sites.
+const MOST_VERTICES: u8 = 8;
+const MOST_FACES: u8 = 12;
+const MOST_SITES: u8 = 64;
+/// The side of the texture and of the map.
+const SIDE: u32 = 16;
+
+/// Makes a texture of a mesh the example for the same mesh, or mends it: it is refused, or values are those of the texture.
+pub fn lift(bytes: &[u8]) {
+    let mut bytes = Bytes(bytes);
+    let choice = bytes.byte();
+    let options = Options {
+        n_levels: 1 + usize::from(choice & 1),
+        ..Options::default()
+    };
+    let edges = if choice & 2 == 0 {
+        Edges::Cut
+    } else {
+        Edges::Wrap
+    };
+    let Some(synthesizer) = synthesizer(&mut bytes, options.n_levels) else {
+        return;
+    };
+    let faces = synthesizer.surface().mesh().faces().iter();
+    let uvs = faces.map(|_| [(); 3].map(|()| DVec2::new(bytes.number(), bytes.number())));
+    let uvs: Vec<_> = uvs.collect();
+    let value = |column, row| (column * 7 + row * 3) as f32 % 16.0 / 15.0;
+    let texture = Raster::from_fn([SIDE; 2], value).expect("a small raster");
+    let texture_of_planes = Exemplar::from_planes(&[(&texture, 1.0)], edges);
+    let mut example = texture_of_planes.expect("finite values");
+    if choice & 4 != 0 {
+        let rows = [bytes.byte(), bytes.byte()];
+        let is_used = |column: u32, row: u32| rows[row as usize % 2] >> (column % 8) & 1 != 0;
+        let mask = Raster::from_fn([SIDE; 2], is_used).expect("a small raster");
+        let Some(masked) = accepted(example.with_mask(&mask)) else {
+            return;
+        };
+        example = masked;
+    }
+    let Some(example) = accepted(MeshExemplar::new(synthesizer.clone(), &uvs, &example)) else {
+        return;
+    };
+    let go_on = |_| ControlFlow::Continue(());
+    let lifted = match choice & 8 {
+        0 => synthesizer.lift(&example, &[], &options, go_on),
+        _ => example.repair(&options, go_on),
+    };
+    if let Some(lifted) = accepted(lifted)
+        && let Some(map) = accepted(baked(&synthesizer, &lifted, &texture))
+    {
+        let is_between = |value: &f32| (0.0..=1.0).contains(value);
+        assert!(map.pixels().iter().all(is_between), "values of no texture");
+    }
+}
+
+/// A small mesh with sites, unless it is refused.
+fn synthesizer(bytes: &mut Bytes<'_>, n_levels: usize) -> Option<Synthesizer> {
+    let [n_vertices, n_faces, n_sites] =
+        [MOST_VERTICES, MOST_FACES, MOST_SITES].map(|most| 1 + bytes.byte() % most);
+    let mut position = |_| DVec3::new(bytes.number(), bytes.number(), bytes.number());
+    let positions: Vec<_> = (0..n_vertices).map(&mut position).collect();
+    let faces: Vec<_> = (0..n_faces)
+        .map(|_| [(); 3].map(|()| u32::from(bytes.byte() % n_vertices)))
+        .collect();
+    let (mesh, _) = accepted(Mesh::new(positions, &faces))?.repair();
+    let surface = accepted(Surface::new(mesh))?;
+    let sites = HierarchyOptions {
+        n_sites: n_sites.into(),
+        n_levels,
+        ..HierarchyOptions::default()
+    };
+    accepted(Synthesizer::new(surface, &[], &sites))
+}
+
+/// The texture as a map of the mesh.
+fn baked(
+    synthesizer: &Synthesizer,
+    lifted: &SurfaceTexture,
+    texture: &Raster<f32>,
+) -> Result<Raster<f32>, SynthError> {
+    let atlas = Atlas::uniform(synthesizer.surface(), 4 * SIDE)?;
+    bake_values(synthesizer, lifted, texture, &atlas)
+}
+
+pub(super) fn seeds() -> Vec<Vec<u8>> {
+    // The corners of a tetrahedron at 0 and 1, as the codes of these numbers.
+    let corners = [[0, 0, 0], [2, 0, 0], [0, 2, 0], [0, 0, 2]];
+    let faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+    let seed = |choice: u8| {
+        let mut seed = vec![choice, 3, 3, 47];
+        seed.extend(corners.as_flattened());
+        seed.extend(faces.as_flattened());
+        // Texture coordinates from 0 to 1, in two bytes after their code.
+        seed.extend((0..24_u8).flat_map(|at| [200, at, at.wrapping_mul(53)]));
+        seed.extend([0xf0, 0x7e]);
+        seed
+    };
+    (0..16).map(seed).collect()
+}
