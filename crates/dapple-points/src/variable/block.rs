@@ -330,13 +330,11 @@ impl Block {
                 }
             }
         }
-        let mut covered = [false; 4];
-        for quarter in 0..4 {
-            for lane in 0..LANES {
-                covered[quarter] |= room[quarter][lane] > 0.0;
-            }
+        let mut is_covered = true;
+        for room in room {
+            is_covered &= room.iter().any(|&inside| inside > 0.0);
         }
-        covered == [true; 4]
+        is_covered
     }
 
     /// The points of some cells in a row, as the quick test has them.
