@@ -8,17 +8,17 @@ from typing import Any
 
 import dapple_textures as dp
 
-#: The groups of names, in order; names in no group come last.
+#: The groups of names, in order. Names in no group are textures of control points.
 GROUPS = {
     "Fields": ["worley", "Worley", "gradient_noise", "wavelet_noise", "constant", "Field", "ColorField", "Features"],
     "Points and graphs": ["Domain", "Points", "poisson_disk", "extend_poisson_disk", "nested_poisson_disk", "jittered_grid", "white_noise", "spectrum", "Spectrum", "EmptyCircle", "delaunay", "gabriel", "yao", "k_nearest", "Graph", "Axes"],
-    "Partitions of unity": ["pups", "Partition", "Weights"],
+    "Partitions of unity": ["pups", "Partition", "Weights", "angle_orientations", "biased_labels", "grouped_labels", "outward_orientations", "random_labels", "random_orientations", "random_values", "reference_labels"],
     "Textures of control points": [],
     "Materials": ["Recipe", "read_recipe", "read_recipe_images", "Plan", "MapInfo", "map_names", "shards", "ShardList"],
     "Pictures": ["read_image", "write_image", "write_maps", "decode_image", "encode_image", "ramp", "palettes", "linear_from_srgb", "srgb_from_linear", "normal_map", "ambient_occlusion", "curvature"],
     "Tiles": ["make_tile", "seam_report", "SeamReport", "repeat", "disturb", "lay_tiles", "match_borders", "CornerTiles", "blend", "blend_map", "rank_equalize"],
     "Bands of frequencies": ["wavelet_tile", "wavelet_analyze", "wavelet_synthesize", "wavelet_halve", "wavelet_double", "Bands"],
-    "Synthesis and meshes": ["synthesize", "synthesize_along", "synthesize_on", "Model", "read_model", "MeshFile", "mesh_report"],
+    "Synthesis and meshes": ["synthesize", "repair", "synthesize_along", "synthesize_on", "Model", "read_model", "MeshFile", "mesh_report"],
     "Threads and errors": ["threads", "set_threads", "DappleError"],
 }
 
@@ -27,13 +27,8 @@ def markdown() -> str:
     """Returns all groups, then the modules for arrays too large for one machine."""
     named = {name for names in GROUPS.values() for name in names}
     rest = [name for name in dp.__all__ if name not in named and not name.startswith("_")]
-    textures = [name for name in rest if inspect.isfunction(getattr(dp, name))]
-    groups = GROUPS | {
-        "Partitions of unity": GROUPS["Partitions of unity"] + [name for name in rest if name not in textures],
-        "Textures of control points": textures,
-    }
     parts = []
-    for group, names in groups.items():
+    for group, names in (GROUPS | {"Textures of control points": rest}).items():
         parts += [f"## {group}", *(entry(name, getattr(dp, name)) for name in names if hasattr(dp, name))]
     for module in ("dask", "jobs", "blender"):
         parts += _module(module)

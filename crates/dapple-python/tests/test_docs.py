@@ -85,6 +85,9 @@ def test_the_page_of_the_api_has_all_names():
     names = [name for name in dp.__all__ if not name.startswith("_")]
     assert [name for name in names if f"### `{name}`\n" not in text] == []
     assert "`.render(size, *, extent=None" in text
+    textures = text.split("## Textures of control points\n")[1].split("\n## ")[0]
+    others = [name for name in names if f"### `{name}`\n" in textures and getattr(dp, name).__module__ != "dapple_textures._textures"]
+    assert others == [], "names without a group"
 
 
 def test_the_example_bakes_files(tmp_path):
