@@ -37,6 +37,7 @@ use crate::{
 };
 use dapple_hash::{Seed, hash1};
 use dapple_raster::parallel;
+use dapple_raster::simd::{self, dispatch};
 use glam::Vec2;
 use links::Links;
 
@@ -257,6 +258,7 @@ impl<'a> Appearance<'a> {
         places: &mut [[u32; 2]],
         tell: &mut dyn FnMut(usize) -> Result<(), SynthError>,
     ) -> Result<(), SynthError> {
+        let simd = simd::level();
         let Stage { size, spacing, .. } = self.stages[level];
         let mut costs = Costs::new(size, spacing as u32);
         let usable = self.stages[level].usable_pixels();
@@ -272,7 +274,7 @@ impl<'a> Appearance<'a> {
                     let site = class[at] as usize;
                     let wanted = self.targets.of(level, site as u32);
                     let stage = &self.stages[level];
-                    choose(stage, links, site, places, wanted)
+                    dispatch!(simd, _simd => choose(stage, links, site, places, wanted))
                 };
                 let chosen = parallel::map_at_least(TASK, class.len(), choose);
                 for (&site, choice) in class.iter().zip(chosen) {
@@ -322,6 +324,7 @@ fn quarters(synthesizer: &Synthesizer, coarsest: &[u8], n_levels: usize) -> Vec<
 
 /// The place around which the exemplar looks most like the texture around a site, with guides like the wanted ones. Of equally
 /// good ones the first.
+#[inline(always)]
 fn choose(
     stage: &Stage,
     links: &Links,
@@ -334,21 +337,10 @@ fn choose(
         place: places[site],
         distance_sq: f32::INFINITY,
     };
-    let mut compare = |place: [i64; 2], factor: f32| {
-        let distance_sq =
-            distance_sq(stage, &around, place) + stage.guides_distance_sq(wanted, place);
-        let distance_sq = factor * distance_sq + stage.costs.of(place);
-        if distance_sq < best.distance_sq {
-            best = Choice {
-                place: narrow(place),
-                distance_sq,
-            };
-        }
-    };
     let own = places[site].map(i64::from);
     let mut coherent = [own; MAX_COHERENT];
     let mut n_coherent = 1;
-    compare(own, 1.0);
+    best.compare(stage, &around, wanted, own, 1.0);
     for link in links.of(site).near {
         if link.quarters() != 0 {
             continue;
@@ -359,19 +351,43 @@ fn choose(
         {
             coherent[n_coherent] = place;
             n_coherent += 1;
-            compare(place, 1.0);
+            best.compare(stage, &around, wanted, place, 1.0);
         }
     }
     for &place in &coherent[..n_coherent] {
         if let Some(place) = stage.similar(place) {
-            compare(place, 1.0 + stage.coherence);
+            best.compare(stage, &around, wanted, place, 1.0 + stage.coherence);
         }
     }
     best
 }
 
+impl Choice {
+    /// Takes a place if it is better; its squared distance counts by a factor.
+    #[inline(always)]
+    fn compare(
+        &mut self,
+        stage: &Stage,
+        around: &[Option<[f32; N_FEATURES]>; 4],
+        wanted: &[f32],
+        place: [i64; 2],
+        factor: f32,
+    ) {
+        let distance_sq =
+            distance_sq(stage, around, place) + stage.guides_distance_sq(wanted, place);
+        let distance_sq = factor * distance_sq + stage.costs.of(place);
+        if distance_sq < self.distance_sq {
+            *self = Self {
+                place: narrow(place),
+                distance_sq,
+            };
+        }
+    }
+}
+
 /// The features on the diagonals of a site: of each the mean of what the sites around it go on to there. Nothing where there
 /// are none, as past an edge of the surface.
+#[inline(always)]
 fn around(
     stage: &Stage,
     links: &Links,
@@ -379,23 +395,29 @@ fn around(
     places: &[[u32; 2]],
 ) -> [Option<[f32; N_FEATURES]>; 4] {
     let corners = links.of(site).corners;
-    core::array::from_fn(|corner| {
+    let mut around = [None; 4];
+    for corner in 0..4 {
         let links = corners[corner];
         if links.is_empty() {
-            return None;
+            continue;
         }
-        let diagonal = Vec2::from(DIAGONALS[corner].map(|at| (at * stage.spacing) as f32));
+        let [x, y] = DIAGONALS[corner];
+        let diagonal = Vec2::new((x * stage.spacing) as f32, (y * stage.spacing) as f32);
         let mut sums = [0.0; N_FEATURES];
         for link in links {
             let way = offset_after((diagonal - link.way()).to_array(), link.quarters());
             let place = moved(places[link.site()], way.into());
             let features = stage.turned_features(place, link.quarters());
-            for (sum, value) in sums.iter_mut().zip(features) {
-                *sum += value;
+            for i in 0..N_FEATURES {
+                sums[i] += features[i];
             }
         }
-        Some(sums.map(|sum| sum / links.len() as f32))
-    })
+        for sum in &mut sums {
+            *sum /= links.len() as f32;
+        }
+        around[corner] = Some(sums);
+    }
+    around
 }
 
 /// The features on all diagonals, with their mean in place of those that are missing; nothing if all are.
@@ -411,7 +433,7 @@ fn filled(around: [Option<[f32; N_FEATURES]>; 4]) -> Option<[[f32; N_FEATURES]; 
 }
 
 /// The squared distance of features on the diagonals of a site from those on the diagonals of a place.
-#[inline]
+#[inline(always)]
 fn distance_sq(stage: &Stage, around: &[Option<[f32; N_FEATURES]>; 4], place: [i64; 2]) -> f32 {
     let known = around.iter().zip(DIAGONALS);
     let known = known.filter_map(|(own, diagonal)| Some((own.as_ref()?, diagonal)));
@@ -419,7 +441,7 @@ fn distance_sq(stage: &Stage, around: &[Option<[f32; N_FEATURES]>; 4], place: [i
 }
 
 /// The pixel nearest to where a way from a place leads.
-#[inline]
+#[inline(always)]
 fn moved(place: [u32; 2], way: Vec2) -> [i64; 2] {
     let way = way.round();
     [

@@ -295,33 +295,37 @@ impl Stage {
     }
 
     /// The pixel at a column and row, of which those past the edges are mirrored or wrapped.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn features(&self, place: [i64; 2]) -> &[f32; N_FEATURES] {
         self.turned_features(place, 0)
     }
 
     /// What [`features`](Self::features) returns, with the exemplar turned by quarter turns that its symmetry has.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn turned_features(&self, place: [i64; 2], quarters: u8) -> &[f32; N_FEATURES] {
-        let [column, row] = [0, 1].map(|axis| {
-            let within = (0..i64::from(self.size[axis])).contains(&place[axis]);
-            // The remainder of a division costs more than all else here.
-            match within {
-                true => place[axis] as usize,
-                false => self.wrap.index(place[axis], self.size[axis]) as usize,
-            }
-        });
+        let (column, row) = (self.within(0, place[0]), self.within(1, place[1]));
         &self.features[usize::from(quarters)][row * self.size[0] as usize + column]
     }
 
+    /// A column or row of the exemplar, counted on past its edges.
+    #[inline(always)]
+    fn within(&self, axis: usize, at: i64) -> usize {
+        // The remainder of a division costs more than all else here.
+        if (0..i64::from(self.size[axis])).contains(&at) {
+            at as usize
+        } else {
+            self.wrap.index(at, self.size[axis]) as usize
+        }
+    }
+
     /// The squared distance of features on the diagonals of a pixel from those on the diagonals of a place.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn distance_sq(&self, around: &[[f32; N_FEATURES]; 4], place: [i64; 2]) -> f32 {
         self.distance_sq_of(around.iter().zip(DIAGONALS), place)
     }
 
     /// The squared distance of features on some diagonals of a pixel from those on the same of a place.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn distance_sq_of<'a>(
         &self,
         around: impl Iterator<Item = (&'a [f32; N_FEATURES], [i64; 2])>,
@@ -375,7 +379,7 @@ impl Stage {
     }
 
     /// A place in the exemplar, if textures may go on there.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn usable(&self, mut place: [i64; 2]) -> Option<[i64; 2]> {
         for (at, side) in place.iter_mut().zip(self.size) {
             if !(0..i64::from(side)).contains(at) {
@@ -403,7 +407,7 @@ impl Stage {
     }
 
     /// The place that is to the one most like the grid's nearest as `place` is to that, if it is usable.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn similar(&self, place: [i64; 2]) -> Option<[i64; 2]> {
         let [column, row] = place.map(|at| at / self.step);
         let [width, _] = self.grid();

@@ -8,6 +8,7 @@ use crate::turns::Board;
 use core::ops::Range;
 use core::sync::atomic::{AtomicU32, Ordering};
 use dapple_hash::{hash2, unit_f64};
+use dapple_raster::simd::{self, dispatch};
 use dapple_raster::{Raster, parallel};
 
 /// How often a level is corrected.
@@ -183,22 +184,26 @@ impl Area {
     }
 
     /// The number of a pixel among the places.
-    #[inline]
+    #[inline(always)]
     fn index(&self, [column, row]: [i64; 2]) -> usize {
         let width = self.columns.end - self.columns.start;
         ((row - self.rows.start) * width + column - self.columns.start) as usize
     }
 
     /// The place of a pixel.
-    #[inline]
+    #[inline(always)]
     pub(super) fn at(&self, pixel: [i64; 2]) -> [i64; 2] {
         let [column, row] = &self.places[self.index(pixel)];
         // Of a pixel that another thread writes, the board makes an order.
-        [column, row].map(|at| at.load(Ordering::Relaxed).into())
+        [
+            column.load(Ordering::Relaxed).into(),
+            row.load(Ordering::Relaxed).into(),
+        ]
     }
 
     /// Corrects quarters of the pixels one after the other, but those pixels from which not all is here that is read.
     fn correct(&self, stage: &Stage, quarters: &[[i64; 2]]) {
+        let level = simd::level();
         let turns = self.turns(quarters);
         let mut workers = vec![(); parallel::n_threads()];
         let board = Board::new(0..turns.len(), workers.len());
@@ -206,14 +211,21 @@ impl Area {
             while let Some(turn) = board.take(thread) {
                 let Turn { quarter, row, wait } = turns[turn];
                 board.wait(wait);
-                for column in odd_or_even(&self.columns, quarter[0]) {
-                    let place = narrow(self.corrected(stage, [column, row]));
-                    for (to, at) in self.places[self.index([column, row])].iter().zip(place) {
-                        to.store(at, Ordering::Relaxed);
-                    }
-                }
+                let columns = odd_or_even(&self.columns, quarter[0]);
+                dispatch!(level, _simd => self.correct_row(stage, columns, row));
             }
         });
+    }
+
+    /// Corrects some pixels of a row.
+    #[inline(always)]
+    fn correct_row(&self, stage: &Stage, columns: impl Iterator<Item = i64>, row: i64) {
+        for column in columns {
+            let [across, down] = narrow(self.corrected(stage, [column, row]));
+            let to = &self.places[self.index([column, row])];
+            to[0].store(across, Ordering::Relaxed);
+            to[1].store(down, Ordering::Relaxed);
+        }
     }
 
     /// The rows of quarters. Each waits for those of the quarter before it that it reads, and that read it.
@@ -233,25 +245,17 @@ impl Area {
     }
 
     /// The place around which the exemplar looks most like the texture around a pixel. Of equally good ones the first.
+    #[inline(always)]
     fn corrected(&self, stage: &Stage, [column, row]: [i64; 2]) -> [i64; 2] {
-        let around = self.around(stage, [column, row]);
-        let mut best = (f32::INFINITY, self.at([column, row]));
-        let mut coherent = [best.1; 9];
-        let mut n_coherent = 0;
-        let mut compare = |place: [i64; 2], factor: f32| {
-            let distance_sq = factor * stage.distance_sq(&around, place);
-            let mut distance_sq = distance_sq + stage.costs.of(place);
-            // What is too far already need not be looked for beside the pixel.
-            if distance_sq < best.0
-                && stage.repetition_cost > 0.0
-                && self.repeats(stage, [column, row], place)
-            {
-                distance_sq += stage.repetition_cost;
-            }
-            if distance_sq < best.0 {
-                best = (distance_sq, place);
-            }
+        let mut choice = Choice {
+            stage,
+            area: self,
+            pixel: [column, row],
+            around: self.around(stage, [column, row]),
+            best: (f32::INFINITY, self.at([column, row])),
         };
+        let mut coherent = [choice.best.1; 9];
+        let mut n_coherent = 0;
         for y in -1..=1 {
             for x in -1..=1 {
                 let [across, down] = self.at([column + x, row + y]);
@@ -261,48 +265,89 @@ impl Area {
                 {
                     coherent[n_coherent] = place;
                     n_coherent += 1;
-                    compare(place, 1.0);
+                    choice.compare(place, 1.0);
                 }
             }
         }
         for &place in &coherent[..n_coherent] {
             if let Some(place) = stage.similar(place) {
-                compare(place, 1.0 + stage.coherence);
+                choice.compare(place, 1.0 + stage.coherence);
             }
         }
-        best.1
+        choice.best.1
     }
 
     /// Whether a place is less than half as far from that of a pixel beside the given one as the two pixels are from each
     /// other. Pixels of the same quarter do not count, since they are corrected at the same time.
-    #[inline]
+    #[inline(always)]
     fn repeats(&self, stage: &Stage, [column, row]: [i64; 2], place: [i64; 2]) -> bool {
-        let steps = (-READS..=READS).flat_map(|y| (-READS..=READS).map(move |x| [x, y]));
-        let mut steps = steps.filter(|[x, y]| x % 2 != 0 || y % 2 != 0);
-        let farther = |a: i64, b: i64| a.abs().max(b.abs());
-        steps.any(|[x, y]| {
-            let other = self.at([column + x, row + y]);
-            2 * farther(other[0] - place[0], other[1] - place[1]) < farther(x, y) * stage.spacing
-        })
+        for y in -READS..=READS {
+            for x in -READS..=READS {
+                if x % 2 == 0 && y % 2 == 0 {
+                    continue;
+                }
+                let other = self.at([column + x, row + y]);
+                let apart = (other[0] - place[0]).abs().max((other[1] - place[1]).abs());
+                if 2 * apart < x.abs().max(y.abs()) * stage.spacing {
+                    return true;
+                }
+            }
+        }
+        false
     }
 
     /// The features on the diagonals of a pixel: of each the mean of what it has and what two pixels beyond it, one along
     /// each axis, go on to there.
-    #[inline]
+    #[inline(always)]
     pub(super) fn around(&self, stage: &Stage, [column, row]: [i64; 2]) -> [[f32; N_FEATURES]; 4] {
-        DIAGONALS.map(|[x, y]| {
-            let mut sums = [0.0; N_FEATURES];
+        let mut around = [[0.0; N_FEATURES]; 4];
+        for (sums, [x, y]) in around.iter_mut().zip(DIAGONALS) {
             for [beyond_x, beyond_y] in [[0, 0], [x, 0], [0, y]] {
                 let [across, down] = self.at([column + x + beyond_x, row + y + beyond_y]);
                 let place = [
                     across - beyond_x * stage.spacing,
                     down - beyond_y * stage.spacing,
                 ];
-                for (sum, value) in sums.iter_mut().zip(stage.features(place)) {
-                    *sum += value;
+                let features = stage.features(place);
+                for i in 0..N_FEATURES {
+                    sums[i] += features[i];
                 }
             }
-            sums.map(|sum| sum / 3.0)
-        })
+            for sum in sums {
+                *sum /= 3.0;
+            }
+        }
+        around
+    }
+}
+
+/// The choice of a place for a pixel.
+struct Choice<'a> {
+    stage: &'a Stage,
+    area: &'a Area,
+    pixel: [i64; 2],
+    /// The features on the diagonals of the pixel.
+    around: [[f32; N_FEATURES]; 4],
+    /// The squared distance of the best place up to now, and the place.
+    best: (f32, [i64; 2]),
+}
+
+impl Choice<'_> {
+    /// Takes a place if it is better; its squared distance counts by a factor.
+    #[inline(always)]
+    fn compare(&mut self, place: [i64; 2], factor: f32) {
+        let stage = self.stage;
+        let distance_sq = factor * stage.distance_sq(&self.around, place);
+        let mut distance_sq = distance_sq + stage.costs.of(place);
+        // What is too far already need not be looked for beside the pixel.
+        if distance_sq < self.best.0
+            && stage.repetition_cost > 0.0
+            && self.area.repeats(stage, self.pixel, place)
+        {
+            distance_sq += stage.repetition_cost;
+        }
+        if distance_sq < self.best.0 {
+            self.best = (distance_sq, place);
+        }
     }
 }
