@@ -69,10 +69,10 @@ pub(super) struct Point<const TILES: usize> {
     pub(super) across: f32,
 }
 
-/// Memory for points, by the number of columns that tiles are compared with.
+/// Memory for points, by the number of tiles that they have terms for.
 #[derive(Debug, Default)]
 pub(super) struct PointLists {
-    pub(super) two: Vec<Point<2>>,
+    /// Those that are compared with two or three columns of tiles.
     pub(super) three: Vec<Point<3>>,
     pub(super) five: Vec<Point<5>>,
 }
@@ -135,12 +135,12 @@ impl Bins {
         self.n_halves = 2 * height.div_ceil(TILE) + 2 * reach.halves;
         self.starts.clear();
         self.starts.resize(n_columns * self.n_halves + 2, 0);
-        // The columns past the ends are not used.
+        // The columns past the ends are not used; a point may have terms for one tile more than is compared with it.
         let more = 2 * beyond(reach.columns);
         self.columns.clear();
         self.columns.resize(more, 0);
         self.columns.extend_from_slice(columns);
-        let end = width.next_multiple_of(TILE) + 2 * more;
+        let end = width.next_multiple_of(TILE) + 2 * more + TILE;
         self.columns.resize(end, 0);
     }
 

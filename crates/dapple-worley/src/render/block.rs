@@ -235,7 +235,7 @@ impl Block<'_> {
     /// The parameters of the method for small cells, if it can be used.
     fn splat(&self, out: &Output<'_>, guess: Guess) -> Option<Splat> {
         let is_values = matches!(out, Output::Values(..));
-        Splat::new(self, guess.distance).filter(|_| is_values)
+        Splat::new(self, Self::depth(out), guess.distance).filter(|_| is_values)
     }
 
     /// Fills the pixels of slices that share their candidates.

@@ -5,16 +5,16 @@
 //! ([`bins`](super::bins)). This includes all points nearer to a pixel than the edge of these tiles, and the pixel's
 //! keys are right if the `K`-th is smaller than that.
 
-use super::bins::{Grid, HALF, PointLists, Reach, Runs, TILE, beyond};
+use super::bins::{Grid, HALF, Reach, Runs, TILE, beyond};
 use super::block::{Block, Memory};
 use super::kernel::{empty, greater, lesser};
 use super::table::CellBox;
-use super::{BLOCK_COLUMNS, LANES};
-use crate::LIMIT;
+use super::{BLOCK_COLUMNS, LANES, Picture};
 use crate::fixed::{MOST_AXES, STEP, STEP_BITS};
-use crate::levels::wide;
+use crate::levels::{is_wide, wide};
 use crate::metric::{Additive, Exact, General, Kernel, Longest, Measure};
 use crate::sink::{ValueLanes, Values};
+use crate::{LIMIT, Metric};
 use dapple_raster::simd::baseline;
 use fearless_simd::{Level, f32x4, f32x16, i32x4, prelude::*};
 
@@ -25,13 +25,13 @@ const UNEVEN: f32 = 0.001;
 /// pixels is rounded.
 const SURE: f32 = 0.999;
 
-/// The largest reach, in cells, of the tiles near a tile: past it, other methods are faster.
-const FARTHEST: f32 = 3.5;
+/// The largest reach, in cells, of the tiles near a tile: coordinates that differ by less are exact in `f32`.
+const FARTHEST: f32 = 8.0;
 
-/// The largest ratio of the reach to the distance that is needed: past it, other methods are faster.
-const MOST_WASTE: f32 = 4.0;
+/// The largest ratio of the reach to the distance that is needed: past it, single positions are searched as fast.
+const MOST_WASTE: f32 = 10.0;
 
-/// The numbers of columns of points that a tile may be compared with.
+/// The numbers of columns of points that a tile may be compared with; the first only for flat sums, the most usual case.
 const COLUMNS: [usize; 3] = [2, 3, 5];
 
 /// The largest number of half tiles above and below a tile from which points are taken.
@@ -55,9 +55,9 @@ pub(super) struct Splat {
 }
 
 impl Splat {
-    /// The parameters for a block whose pixels need points as far away as `distance`, if the method can be used.
-    pub(super) fn new(block: &Block<'_>, distance: f32) -> Option<Self> {
-        let section = &block.bands[0].picture.section;
+    /// The parameters for a block whose pixels need `depth` points, as far away as `distance`, if the method can be used.
+    pub(super) fn new(block: &Block<'_>, depth: usize, distance: f32) -> Option<Self> {
+        let Picture { section, basis, .. } = &block.bands[0].picture;
         let row_axis = section.row_axis()?;
         // The terms of the axes across the picture are accumulated before those of the rows.
         if section.n_axes == 4 && row_axis != 1 {
@@ -73,7 +73,9 @@ impl Splat {
         // A tile begins half a pixel before its first pixel.
         let reach = |pixel: f32, pixels: usize| (pixels as f32 + 0.5) * pixel.abs() * SURE;
         let useful = distance..FARTHEST.min(MOST_WASTE * distance);
-        for columns in COLUMNS {
+        let is_flat_sum = section.n_axes == 2 && is_sum(basis.metric());
+        let is_usual = is_flat_sum && depth <= 2 && is_wide(block.level);
+        for &columns in &COLUMNS[usize::from(!is_usual)..] {
             let along_row = reach(pixel[0], beyond(columns));
             let halves = (1..MOST_HALVES).find(|halves| reach(pixel[1], HALF * halves) >= distance);
             let Some(halves) = halves.filter(|_| useful.contains(&along_row)) else {
@@ -147,11 +149,13 @@ impl Splat {
         bins.collect(block.level, basis.lattice(), &near, &grid);
         bins.count();
         let rows = &lines[self.row_axis];
-        let (level, PointLists { two, three, five }) = (block.level, points);
-        match columns {
-            2 => fill_block(block, bins.runs(level, &grid, rows, two), values, out),
-            3 => fill_block(block, bins.runs(level, &grid, rows, three), values, out),
-            _ => fill_block(block, bins.runs(level, &grid, rows, five), values, out),
+        if columns < 5 {
+            let runs = bins.runs(block.level, &grid, rows, &mut points.three);
+            let fill = if columns == 2 { fill_two } else { fill_three };
+            fill_block(block, runs, fill, values, out);
+        } else {
+            let runs = bins.runs(block.level, &grid, rows, &mut points.five);
+            fill_block(block, runs, fill_any, values, out);
         }
     }
 
@@ -169,10 +173,11 @@ impl Splat {
     }
 }
 
-/// Fills the pixels of a block from its points.
-fn fill_block<const TILES: usize>(
+/// Fills the pixels of a block from its points, row of tiles by row of tiles.
+fn fill_block<const SLOTS: usize>(
     block: &Block<'_>,
-    runs: Runs<'_, TILES>,
+    runs: Runs<'_, SLOTS>,
+    fill: fn(Level, Runs<'_, SLOTS>, &mut TileRow<'_>),
     values: &Values,
     out: &mut [&mut [f32]],
 ) {
@@ -198,7 +203,7 @@ fn fill_block<const TILES: usize>(
             pixels,
             unknown: &mut unknown[..n_tiles],
         };
-        fill_tiles(block.level, runs, &mut tiles);
+        fill(block.level, runs, &mut tiles);
         if !is_whole {
             for (pixels, out) in whole_tiles.iter().zip(&mut *out) {
                 out[range.clone()].copy_from_slice(&pixels[..range.len()]);
@@ -233,49 +238,83 @@ struct TileRow<'a> {
     unknown: &'a mut [u16],
 }
 
-/// Fills a row of tiles, with the loop that is compiled for the metric and the number of nearest points.
-fn fill_tiles<const TILES: usize>(level: Level, runs: Runs<'_, TILES>, tiles: &mut TileRow<'_>) {
+/// Whether terms of a metric are added up, and nothing else is done with them.
+fn is_sum(metric: Metric) -> bool {
+    matches!(metric.kernel(), Kernel::Squares | Kernel::Sum)
+}
+
+/// Fills a row of tiles from the points in two columns: in the plane, with sums, one or two nearest points, and wide
+/// registers.
+fn fill_two(level: Level, runs: Runs<'_, 3>, tiles: &mut TileRow<'_>) {
+    let sum = Additive(runs.metric);
+    let _done = match tiles.values.tone.depth() {
+        1 => wide!(level, simd => fill::<_, _, 1, 2, 3, false>(simd, sum, 1, runs, tiles)),
+        _ => wide!(level, simd => fill::<_, _, 2, 2, 3, false>(simd, sum, 2, runs, tiles)),
+    };
+}
+
+/// Fills a row of tiles from the points in three columns.
+fn fill_three(level: Level, runs: Runs<'_, 3>, tiles: &mut TileRow<'_>) {
+    let sum = Additive(runs.metric);
+    let done = match tiles.values.tone.depth() {
+        _ if runs.is_deep || !is_sum(runs.metric) => None,
+        1 => wide!(level, simd => fill::<_, _, 1, 3, 3, false>(simd, sum, 1, runs, tiles)),
+        2 => wide!(level, simd => fill::<_, _, 2, 3, 3, false>(simd, sum, 2, runs, tiles)),
+        _ => None,
+    };
+    if done.is_none() {
+        fill_any(level, runs, tiles);
+    }
+}
+
+/// Fills a row of tiles from the points in as many columns as they have terms for, with the loop that is compiled for the
+/// metric and the number of nearest points.
+fn fill_any<const TILES: usize>(level: Level, runs: Runs<'_, TILES>, tiles: &mut TileRow<'_>) {
     let depth = match tiles.values.tone.depth() {
         depth @ ..=2 => depth,
         _ => LIMIT,
     };
-    let sum = Additive(runs.metric);
-    let done = match (runs.metric.kernel(), depth, runs.is_deep) {
-        (Kernel::Squares | Kernel::Sum, 1, false) => {
-            wide!(level, simd => fill::<_, _, 1, TILES, false>(simd, sum, 1, runs, tiles))
+    let (sum, exact, any) = (
+        Additive(runs.metric),
+        Exact(runs.metric),
+        General(runs.metric),
+    );
+    let done = match (runs.metric.kernel(), depth) {
+        (Kernel::Squares | Kernel::Sum, 1) => {
+            wide!(level, simd => fill::<_, _, 1, TILES, TILES, true>(simd, sum, 1, runs, tiles))
         }
-        (Kernel::Squares | Kernel::Sum, 1, true) => {
-            wide!(level, simd => fill::<_, _, 1, TILES, true>(simd, sum, 1, runs, tiles))
+        (Kernel::Squares | Kernel::Sum, 2) => {
+            wide!(level, simd => fill::<_, _, 2, TILES, TILES, true>(simd, sum, 2, runs, tiles))
         }
-        (Kernel::Squares | Kernel::Sum, 2, false) => {
-            wide!(level, simd => fill::<_, _, 2, TILES, false>(simd, sum, 2, runs, tiles))
+        (Kernel::Longest, ..=2) => {
+            wide!(level, simd => fill::<_, _, 2, TILES, TILES, true>(simd, Longest, depth, runs, tiles))
         }
-        (Kernel::Squares | Kernel::Sum, 2, true) => {
-            wide!(level, simd => fill::<_, _, 2, TILES, true>(simd, sum, 2, runs, tiles))
-        }
-        (Kernel::Longest, ..=2, _) => {
-            wide!(level, simd => fill::<_, _, 2, TILES, true>(simd, Longest, depth, runs, tiles))
-        }
-        (Kernel::General, ..) => None,
+        (Kernel::General, _) => None,
         _ => {
-            let exact = Exact(runs.metric);
-            wide!(level, simd => fill::<_, _, LIMIT, TILES, true>(simd, exact, depth, runs, tiles))
+            wide!(level, simd => fill::<_, _, LIMIT, TILES, TILES, true>(simd, exact, depth, runs, tiles))
         }
     };
     if done.is_none() {
-        let any = General(runs.metric);
-        baseline!(simd => fill::<_, _, LIMIT, TILES, true>(simd, any, depth, runs, tiles));
+        baseline!(simd => fill::<_, _, LIMIT, TILES, TILES, true>(simd, any, depth, runs, tiles));
     }
 }
 
 /// Fills a row of tiles; `depth` is the number of nearest points to find, at most `K`, and `DEEP` is true if there may be
-/// axes across the picture. The tiles that one column of points matters to are held in registers.
+/// axes across the picture. The `TILES` tiles that one column of points matters to are held in registers; points have terms
+/// for `SLOTS` tiles.
 #[inline(always)]
-fn fill<S: Simd, M: Measure, const K: usize, const TILES: usize, const DEEP: bool>(
+fn fill<
+    S: Simd,
+    M: Measure,
+    const K: usize,
+    const TILES: usize,
+    const SLOTS: usize,
+    const DEEP: bool,
+>(
     simd: S,
     measure: M,
     depth: usize,
-    runs: Runs<'_, TILES>,
+    runs: Runs<'_, SLOTS>,
     tiles: &mut TileRow<'_>,
 ) {
     let values = tiles.values.lanes::<S, K>(simd, depth);

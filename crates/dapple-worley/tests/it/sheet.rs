@@ -218,13 +218,20 @@ fn slices_of_another_size_are_refused_before_anything_is_drawn() -> Result<(), W
 #[test]
 fn wide_pictures_hold_what_values_are_at_any_size_of_cells() -> Result<(), WorleyError> {
     let size = [1100, 6];
-    for metric in [Metric::Euclidean, Metric::Chebyshev, Metric::Minkowski(3.0)] {
-        let worley = Worley2::new(Seed(9)).with_metric(metric)?;
+    let metrics = [Metric::Euclidean, Metric::Chebyshev, Metric::Minkowski(3.0)];
+    for (metric, density) in metrics.into_iter().zip([4.0, 0.1, 4.0]) {
+        let scatter = Scatter::Unclamped { density };
+        let worley = Worley2::new(Seed(9)).with_scatter(scatter)?;
+        let worley = worley.with_metric(metric)?;
         let mut pixels_per_cell = 0.31;
         while pixels_per_cell < 400.0 {
             let extent = DVec2::new(f64::from(size[0]), f64::from(size[1])) / pixels_per_cell;
             let window = Window::new(DVec2::new(-0.7, 3.2), extent, size)?;
-            for combination in [Combination::F1, Combination::F2_MINUS_F1] {
+            for combination in [
+                Combination::F1,
+                Combination::F2_MINUS_F1,
+                Combination::F3_MINUS_F1,
+            ] {
                 picture_equals_value(&worley, combination, &Plane::default(), &window)?;
             }
             pixels_per_cell *= 1.7;
