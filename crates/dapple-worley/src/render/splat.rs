@@ -1,9 +1,9 @@
 //! Rendering of small cells: every feature point is compared at the few tiles near it.
 //!
 //! Where a cell has only a few pixels, culling points for each tile takes longer than comparing them. So tiles have 4 ×
-//! 4 pixels, a register, and each is compared with all points that lie in it or in the tiles near it
-//! ([`bins`](super::bins)). This includes all points nearer to a pixel than the edge of these tiles, and the pixel's
-//! keys are right if the `K`-th is smaller than that.
+//! 4 pixels, a register, and each is compared with all points in a rectangle around it ([`bins`](super::bins)). This
+//! includes all points nearer to a pixel than the edge of the rectangle, and the pixel's keys are right if the `K`-th is
+//! smaller than that.
 
 use super::bins::{Grid, HALF, Reach, Runs, TILE, beyond};
 use super::block::{Block, Memory};
@@ -21,11 +21,11 @@ use fearless_simd::{Level, f32x4, f32x16, i32x4, prelude::*};
 /// The largest distance of a pixel from its even position, in pixels: well below the room that [`SURE`] leaves.
 const UNEVEN: f32 = 0.001;
 
-/// The reliable part of the distance from a tile to the edge of the tiles near it: the place of a point among the
+/// The reliable part of the distance from a tile to the edge of the rectangle around it: the place of a point among the
 /// pixels is rounded.
 const SURE: f32 = 0.999;
 
-/// The largest reach, in cells, of the tiles near a tile: coordinates that differ by less are exact in `f32`.
+/// The largest reach, in cells, of the rectangle around a tile: coordinates that differ by less are exact in `f32`.
 const FARTHEST: f32 = 8.0;
 
 /// The largest ratio of the reach to the distance that is needed: past it, single positions are searched as fast.
