@@ -136,11 +136,7 @@ pub(crate) fn synthesize_on<'py>(
     let atlas = data::named("atlas", atlas)?;
     let guides = SurfaceGuides::read(&guides)?;
     let uvs = match atlas == AtlasKind::Uv || guides.have_images() {
-        true => {
-            let uvs = mesh.getattr("uv");
-            let uvs = uvs.map_err(|_| Error::new("uv", "the mesh has no attribute uv"))?;
-            vectors::<2>("uv", &uvs, &[3, 2])?
-        }
+        true => uvs_of("mesh", mesh)?,
         false => Vec::new(),
     };
     let mesh = crate::meshes::mesh(mesh)?;
@@ -253,6 +249,13 @@ fn directions(directions: Option<(Bound<'_, PyAny>, Bound<'_, PyAny>)>) -> Resul
         vector: vector.into(),
     };
     Ok(pairs.map(direction).collect())
+}
+
+/// Reads the texture coordinates of the corners of a mesh, which may have none.
+fn uvs_of(what: &str, mesh: &Bound<'_, PyAny>) -> Result<Vec<[f64; 2]>> {
+    let uvs = mesh.getattr("uv").ok().filter(|uvs| !uvs.is_none());
+    let uvs = uvs.ok_or_else(|| Error::new("uv", format!("the {what} has no attribute uv")))?;
+    vectors::<2>("uv", &uvs, &[3, 2])
 }
 
 /// The mesh's own texture coordinates, for the faces that remain after repair.

@@ -1,8 +1,8 @@
 //! An example that is the texture of another mesh.
 
-use super::{directions, own_uvs};
+use super::{directions, own_uvs, uvs_of};
 use crate::error::{Error, Result};
-use crate::meshes::{mesh, vectors};
+use crate::meshes::mesh;
 use dapple::mesh::{Mesh, Surface};
 use dapple::synth::{Direction, Exemplar, HierarchyOptions, MeshExemplar, Synthesizer};
 use pyo3::prelude::*;
@@ -30,11 +30,9 @@ impl ExampleMesh {
             }
             return Ok(None);
         };
-        let uvs = example_mesh.getattr("uv").ok().filter(|uvs| !uvs.is_none());
-        let uvs = uvs.ok_or_else(|| Error::new("uv", "the example_mesh has no attribute uv"))?;
         Ok(Some(Self {
             mesh: mesh(example_mesh)?,
-            uvs: vectors::<2>("uv", &uvs, &[3, 2])?,
+            uvs: uvs_of("example_mesh", example_mesh)?,
             n_sites,
             directions: self::directions(directions)?,
         }))
