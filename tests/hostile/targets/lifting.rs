@@ -15,8 +15,9 @@ use dapple::synth::{
 const MOST_VERTICES: u8 = 8;
 const MOST_FACES: u8 = 12;
 const MOST_SITES: u8 = 64;
-/// The side of the texture and of the map.
+/// The sides of the texture and of the map.
 const SIDE: u32 = 16;
+const MAP_SIDE: u32 = 64;
 
 /// Makes a texture of a mesh the example for the same mesh, or mends it: it is refused, or values are those of the texture.
 pub fn lift(bytes: &[u8]) {
@@ -91,7 +92,7 @@ fn baked(
     lifted: &SurfaceTexture,
     texture: &Raster<f32>,
 ) -> Result<Raster<f32>, SynthError> {
-    let atlas = Atlas::uniform(synthesizer.surface(), 4 * SIDE)?;
+    let atlas = Atlas::uniform(synthesizer.surface(), MAP_SIDE)?;
     bake_values(synthesizer, lifted, texture, &atlas)
 }
 

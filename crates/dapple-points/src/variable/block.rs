@@ -273,8 +273,7 @@ impl Block {
         let scale = (1.0 / self.leaf.radii.least) * self.cell;
         let x = (f32::from(column) + unit_f32(place as u32)) * scale.x as f32;
         let y = (f32::from(row) + unit_f32((place >> 32) as u32)) * scale.y as f32;
-        let first = self.margin - QUICK_REACH;
-        let corner = (usize::from(row) + first) * self.stride + usize::from(column) + first;
+        let corner = self.quick_corner([column, row]);
         // Nearest rows first; the outer ones are asked only if they have to be.
         self.is_quickly_taken(corner, [2, 1, 3], x, y)
             || self.is_quickly_taken(corner, [0, 4], x, y)
@@ -313,16 +312,15 @@ impl Block {
         let side = (1.0 / self.leaf.radii.least) * self.cell;
         let [width, height] = [side.x as f32, side.y as f32];
         let [left, top] = [f32::from(column) * width, f32::from(row) * height];
-        let first = self.margin - QUICK_REACH;
-        let corner = (usize::from(row) + first) * self.stride + usize::from(column) + first;
+        let corner = self.quick_corner([column, row]);
         let mut room = [[0.0; LANES]; 4];
         for row in 0..=2 * QUICK_REACH {
             let Some([xs, ys, reaches]) = self.quick_lanes(corner + row * self.stride) else {
                 return false;
             };
             for lane in 0..LANES {
-                let x = farthest_sq(xs[lane] - left, width);
-                let y = farthest_sq(ys[lane] - top, height);
+                let x: [f32; 2] = farthest_sq(xs[lane] - left, 0.5 * width);
+                let y: [f32; 2] = farthest_sq(ys[lane] - top, 0.5 * height);
                 for quarter in 0..4 {
                     let inside = reaches[lane] - (x[quarter & 1] + y[quarter >> 1]);
                     let best = &mut room[quarter][lane];
@@ -335,6 +333,13 @@ impl Block {
             is_covered &= room.iter().any(|&inside| inside > 0.0);
         }
         is_covered
+    }
+
+    /// The first slot of those around a cell in which the quick test looks.
+    #[inline(always)]
+    fn quick_corner(&self, [column, row]: [u16; 2]) -> usize {
+        let first = self.margin - QUICK_REACH;
+        (usize::from(row) + first) * self.stride + usize::from(column) + first
     }
 
     /// The points of some cells in a row, as the quick test has them.
@@ -401,12 +406,16 @@ impl Block {
     }
 }
 
-/// The squared distances from `at` to the farther ends of the first and second half of a side.
+/// The squared distances from `at` to the farther ends of the first `N` parts of length `side` from 0 on.
 #[inline(always)]
-fn farthest_sq(at: f32, side: f32) -> [f32; 2] {
-    let first = (at - 0.25 * side).abs() + 0.25 * side;
-    let second = (at - 0.75 * side).abs() + 0.25 * side;
-    [first * first, second * second]
+pub(super) fn farthest_sq<const N: usize>(at: f32, side: f32) -> [f32; N] {
+    let mut squares = [0.0; N];
+    for (part, square) in squares.iter_mut().enumerate() {
+        let center = (part as f32 + 0.5) * side;
+        let farthest = (at - center).abs() + 0.5 * side;
+        *square = farthest * farthest;
+    }
+    squares
 }
 
 /// Two numbers in [0, 1) from 64 bits.

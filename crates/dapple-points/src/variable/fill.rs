@@ -7,7 +7,7 @@
 //! reach it. The radius in a quarter is bounded from below by the last one read and the slope, and read again
 //! only where that bound is too loose for the size of the quarter.
 
-use super::block::{Block, Local, Setting, fractions};
+use super::block::{Block, Local, Setting, farthest_sq, fractions};
 use super::rule::DiskRule;
 use dapple_hash::CellHash;
 use glam::DVec2;
@@ -131,8 +131,8 @@ impl Filler {
             let reach = scale * rule.distance(least, local.radius);
             let reach_sq = (reach * reach * (1.0 - MARGIN)) as f32;
             let at = (local.at - min) * scale;
-            let xs = farthest_sq(at.x as f32, side.x as f32);
-            let ys = farthest_sq(at.y as f32, side.y as f32);
+            let xs: [f32; SIDE] = farthest_sq(at.x as f32, side.x as f32);
+            let ys: [f32; SIDE] = farthest_sq(at.y as f32, side.y as f32);
             for row in 0..SIDE {
                 for column in 0..SIDE {
                     let inside = (reach_sq - ys[row]) - xs[column];
@@ -199,18 +199,6 @@ impl Filler {
         }
         self.parts.push(part);
     }
-}
-
-/// The squared distances from `at` to the farther ends of the first parts of length `side` from 0 on.
-#[inline(always)]
-fn farthest_sq(at: f32, side: f32) -> [f32; SIDE] {
-    let mut squares = [0.0; SIDE];
-    for (part, square) in squares.iter_mut().enumerate() {
-        let center = (part as f32 + 0.5) * side;
-        let farthest = (at - center).abs() + 0.5 * side;
-        *square = farthest * farthest;
-    }
-    squares
 }
 
 /// Whether the disc of one point covers all of a part.

@@ -64,6 +64,7 @@ pub(super) struct Memory {
     pub(super) runs: Vec<Range<usize>>,
     /// The points sorted by the pixels near to them.
     pub(super) bins: Bins,
+    /// The same points in the order of their places.
     pub(super) points: PointLists,
     /// The coordinates of the columns of the block and, along the other axes, of the rows of the band, in steps from
     /// the lower corner of the table. The last one is repeated to fill a register.

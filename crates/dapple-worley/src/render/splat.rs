@@ -10,11 +10,11 @@ use super::block::{Block, Memory};
 use super::kernel::{empty, greater, lesser};
 use super::table::CellBox;
 use super::{BLOCK_COLUMNS, LANES, Picture};
+use crate::LIMIT;
 use crate::fixed::{MOST_AXES, STEP, STEP_BITS};
 use crate::levels::{is_wide, wide};
 use crate::metric::{Additive, Exact, General, Kernel, Longest, Measure};
 use crate::sink::{ValueLanes, Values};
-use crate::{LIMIT, Metric};
 use dapple_raster::simd::baseline;
 use fearless_simd::{Level, f32x4, f32x16, i32x4, prelude::*};
 
@@ -73,7 +73,7 @@ impl Splat {
         // A tile begins half a pixel before its first pixel.
         let reach = |pixel: f32, pixels: usize| (pixels as f32 + 0.5) * pixel.abs() * SURE;
         let useful = distance..FARTHEST.min(MOST_WASTE * distance);
-        let is_flat_sum = section.n_axes == 2 && is_sum(basis.metric());
+        let is_flat_sum = section.n_axes == 2 && basis.metric().is_exact_sum();
         let is_usual = is_flat_sum && depth <= 2 && is_wide(block.level);
         for &columns in &COLUMNS[usize::from(!is_usual)..] {
             let along_row = reach(pixel[0], beyond(columns));
@@ -238,13 +238,8 @@ struct TileRow<'a> {
     unknown: &'a mut [u16],
 }
 
-/// Whether terms of a metric are added up, and nothing else is done with them.
-fn is_sum(metric: Metric) -> bool {
-    matches!(metric.kernel(), Kernel::Squares | Kernel::Sum)
-}
-
-/// Fills a row of tiles from the points in two columns: in the plane, with sums, one or two nearest points, and wide
-/// registers.
+/// Fills a row of tiles from the points in two columns, which are taken in the plane, for sums and one or two nearest points,
+/// and where registers are wide.
 fn fill_two(level: Level, runs: Runs<'_, 3>, tiles: &mut TileRow<'_>) {
     let sum = Additive(runs.metric);
     let _done = match tiles.values.tone.depth() {
@@ -257,7 +252,7 @@ fn fill_two(level: Level, runs: Runs<'_, 3>, tiles: &mut TileRow<'_>) {
 fn fill_three(level: Level, runs: Runs<'_, 3>, tiles: &mut TileRow<'_>) {
     let sum = Additive(runs.metric);
     let done = match tiles.values.tone.depth() {
-        _ if runs.is_deep || !is_sum(runs.metric) => None,
+        _ if runs.is_deep || !runs.metric.is_exact_sum() => None,
         1 => wide!(level, simd => fill::<_, _, 1, 3, 3, false>(simd, sum, 1, runs, tiles)),
         2 => wide!(level, simd => fill::<_, _, 2, 3, 3, false>(simd, sum, 2, runs, tiles)),
         _ => None,
