@@ -98,13 +98,13 @@ impl<'a> Appearance<'a> {
         coarsest: &[u8],
         options: &Options,
     ) -> Result<Self, SynthError> {
-        // Of less than the exemplar, no texture has all parts; what repeats has all of them anyway; and guides say which.
+        // What is smaller than the exemplar has not all of its parts; what repeats has all of them anyway; and guides say which.
         let [width, height] = exemplar.size.map(|side| side as usize);
-        let hierarchy = synthesizer.hierarchy();
-        let is_uneven = hierarchy.sites().len() < width * height
+        let quarters = quarters(synthesizer, coarsest, options.n_levels);
+        let frames = Frames::new(synthesizer, &quarters);
+        let is_uneven = frames.n_pixels() < (width * height) as f64
             || exemplar.n_guides() > 0
             || exemplar.regularity() > REGULAR;
-        let quarters = quarters(synthesizer, coarsest, options.n_levels);
         let symmetry = synthesizer.orientation().symmetry();
         let mut stages = stage::stages(exemplar, &exemplar.guides, symmetry, options.n_levels)?;
         for stage in &mut stages {
@@ -115,9 +115,9 @@ impl<'a> Appearance<'a> {
             };
         }
         Ok(Self {
-            hierarchy,
+            hierarchy: synthesizer.hierarchy(),
             targets,
-            frames: Frames::new(synthesizer, &quarters),
+            frames,
             quarters,
             stages,
             seed: options.seed,

@@ -175,6 +175,12 @@ impl Frames {
         }
     }
 
+    /// How many pixels of the exemplar there is room for.
+    pub(crate) fn n_pixels(&self) -> f64 {
+        let scales = self.of_site.iter().map(|frame| f64::from(frame.scale));
+        scales.map(|scale| 1.0 / (scale * scale)).sum()
+    }
+
     /// By how many quarter turns the exemplar at one site lies turned from how it lies at another one.
     #[inline]
     pub(crate) fn quarters_between(&self, from: usize, to: usize) -> u8 {

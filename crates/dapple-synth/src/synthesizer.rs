@@ -175,9 +175,8 @@ impl Synthesizer {
             targets: Some(&targets),
             ..self.ground(options.axes, options.sources == Sources::SubPixel)
         };
-        let is_plain = options.schedule.is_none() && self.scales.iter().all(|&scale| scale == 1.0);
         let (sources, quarters) = match options.matching {
-            Matching::Appearance if is_plain => {
+            Matching::Appearance if options.schedule.is_none() => {
                 self.by_appearance(&ground, &targets, &pyramid, options, callback)?
             }
             _ => {

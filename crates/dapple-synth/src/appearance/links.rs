@@ -4,19 +4,23 @@
 use crate::endless::stage::DIAGONALS;
 use crate::orientation::offset_before;
 use crate::places::Frames;
-use crate::{Hierarchy, SiteIdx};
+use crate::{Hierarchy, SiteGraph, SiteIdx};
 use dapple_raster::parallel;
 use glam::Vec2;
 
-/// How far along both axes the middle of the sites is that tell of a diagonal, in spacings: beyond the corner, so that a site
+/// How far along both axes the middle of the sites is that tell of a diagonal, in those of a window: beyond the corner, so that a site
 /// sees more than its neighbors.
 ///
 /// Measured on hooks, text, leaves and bricks: with 1.6 windows of the texture are 2 to 5 % nearer to those of the exemplar
 /// than with 1.0.
 const CORNER: f32 = 1.6;
 
-/// How far from there they are at most, in spacings.
+/// How far from there they are at most.
 const REACH: f32 = 1.1;
+
+/// The most spacings of the sites that are read between those of a window. Only the coarsest level has more to a large pixel, and
+/// twelve rings of sites around each would be most of the time.
+const MAX_SPACINGS: f32 = 3.0;
 
 /// Sites that one task links at least.
 const TASK: usize = 256;
@@ -143,31 +147,55 @@ fn add(
             .filter_map(|&other| link(hierarchy, frames, site, other)),
     );
     let mut row = [begin; 5];
-    let mut found: Vec<SiteIdx> = near
-        .iter()
-        .flat_map(|&near| graph.neighbors(near))
-        .copied()
-        .collect();
-    found.extend(near);
-    found.retain(|&other| other != site);
-    found.sort_unstable();
-    found.dedup();
+    let scale = frames.of_site[site.index()].scale;
+    let (found, unit) = around(hierarchy, level, site, scale);
     let found: Vec<Link> = found
         .into_iter()
         .filter_map(|other| link(hierarchy, frames, site, other))
         .collect();
-    let spacing = (1_u64 << level) as f32;
     for (corner, diagonal) in DIAGONALS.iter().enumerate() {
         row[corner + 1] = links.len() as u32;
-        let middle = Vec2::from(diagonal.map(|at| at as f32)) * CORNER * spacing;
+        let middle = Vec2::from(diagonal.map(|at| at as f32)) * CORNER * unit;
         let is_there = |link: &&Link| {
-            let way = link.way();
-            way.distance_squared(middle) < (REACH * spacing) * (REACH * spacing)
+            let way = link.way() * scale;
+            way.distance_squared(middle) < (REACH * unit) * (REACH * unit)
                 && (way * middle).cmpgt(Vec2::ZERO).all()
         };
         links.extend(found.iter().filter(is_there));
     }
     rows.push(row);
+}
+
+/// The sites that may tell of the diagonals of a site where a pixel is `scale` spacings large, and how far apart those are that
+/// a window compares, in spacings of the finest level.
+///
+/// Of the many sites within large pixels, those of a coarser level say as much. Pixels smaller than the spacing are seen through
+/// sites a spacing apart.
+fn around(hierarchy: &Hierarchy, level: usize, site: SiteIdx, scale: f32) -> (Vec<SiteIdx>, f32) {
+    let levels = hierarchy.levels();
+    let mut found = levels[level].graph().neighbors(site).to_vec();
+    let (mut read, mut spacings) = (level, scale);
+    while spacings >= 2.0 && read + 1 < levels.len() {
+        add_ring(levels[read].graph(), site, &mut found);
+        (read, spacings) = (read + 1, 0.5 * spacings);
+        found.retain(|other| other.index() < levels[read].n_sites());
+    }
+    let spacings = spacings.clamp(1.0, MAX_SPACINGS);
+    let n_rings = (2.0 * spacings).ceil() as usize;
+    for _ in 1..n_rings {
+        add_ring(levels[read].graph(), site, &mut found);
+    }
+    (found, spacings * (1_u64 << read) as f32)
+}
+
+/// Adds the sites that those found are connected to, without the site around which they lie, in their order.
+fn add_ring(graph: &SiteGraph, site: SiteIdx, found: &mut Vec<SiteIdx>) {
+    for at in 0..found.len() {
+        found.extend(graph.neighbors(found[at]));
+    }
+    found.retain(|&other| other != site);
+    found.sort_unstable();
+    found.dedup();
 }
 
 /// The way to another site; nothing if it is on another sheet.

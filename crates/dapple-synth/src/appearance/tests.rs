@@ -6,7 +6,7 @@ use crate::endless::stage::{self, DIAGONALS, Stage};
 use crate::guides::Targets;
 use crate::orientation::offset_before;
 use crate::places::{Frame, Frames};
-use crate::shapes::{on_threads, sheet, sites_on, sphere, synthesizer};
+use crate::shapes::{on_threads, sheet, sites_on, sphere, square, synthesizer};
 use crate::{
     Edges, Exemplar, Matching, Options, Orientation, SiteIdx, SurfaceTexture, Symmetry,
     SynthErrorKind, Synthesizer,
@@ -405,6 +405,35 @@ fn progress_goes_over_all_levels_and_can_stop() {
     });
     let kind = stopped.unwrap_err().kind().clone();
     assert!(matches!(kind, SynthErrorKind::Cancelled), "{kind:?}");
+}
+
+#[test]
+fn links_reach_as_far_as_pixels_do() {
+    for (scale, levels, n_most) in [(0.5, 0, 8), (1.4, 0, 14), (2.5, 1, 14), (7.0, 1, 40)] {
+        let flat = synthesizer(square(), 3000, |_, _| DVec3::NEG_Y);
+        let flat = flat.with_scales(vec![scale; 3000]).unwrap();
+        let links = Links::new(flat.hierarchy(), &Frames::new(&flat, &[]), 0);
+        let n_read = flat.hierarchy().levels()[levels].n_sites();
+        // Windows are a pixel wide, or a spacing if that is more, and end after three of the coarsest level.
+        let unit = scale.clamp(1.0, 6.0) / scale;
+        for (site, &at) in flat.hierarchy().sites().positions().iter().enumerate() {
+            let is_inner = (at - DVec3::new(0.5, 0.5, 0.0)).abs().max_element() < 0.2;
+            for (corner, diagonal) in links.of(site).corners.iter().zip(DIAGONALS) {
+                let middle = Vec2::from(diagonal.map(|at| 1.6 * at as f32)) * unit;
+                let range = usize::from(is_inner)..=n_most;
+                assert!(
+                    range.contains(&corner.len()),
+                    "{} sites on a diagonal with {scale}",
+                    corner.len()
+                );
+                for link in *corner {
+                    let off = link.way().distance(middle);
+                    assert!(off < 1.1 * unit + 1e-5, "{link:?} is off by {off}"); // Rounding.
+                    assert!(link.site() < n_read, "{link:?} with {scale}");
+                }
+            }
+        }
+    }
 }
 
 #[test]
