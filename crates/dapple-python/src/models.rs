@@ -28,7 +28,7 @@ use example_mesh::ExampleMesh;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::path::PathBuf;
-use surface_guides::{Guide, SurfaceGuides};
+use surface_guides::{Guide, SitesOfMesh, SurfaceGuides, SurfaceScales};
 
 dapple::raster::named! {
     /// The layout of a mesh in a texture.
@@ -80,8 +80,11 @@ pub(crate) struct Model {
 /// padding : the number of pixels around each piece of the texture that continue it.
 /// crease : the angle of an edge in degrees above which it is shaded as a crease.
 /// axes : how neighborhoods continue over the surface: `"followed"` or `"carried"`.
+/// scales : how large a pixel of the example is, in distances of points, from 1/8 to 8, by default 1: a number for each vertex,
+///     (n,), or an image that is read at `mesh.uv` and repeats, (rows, columns). Or two bounds, between which sizes follow the
+///     directions: features grow where these spread and shrink where they meet, and so they go on there.
 /// matching : the values that are compared, `"appearance"` by default, or `"colors"` as in the paper; always colors with
-///     `guides` or `example_mesh`.
+///     `example_mesh`.
 /// guides : a list of (of_example, of_mesh, weight): numbers in the size of the example, and for the mesh a number for each
 ///     vertex, (n,), or an image that is read at `mesh.uv` and repeats, (rows, columns); parts of the example go where both
 ///     are alike. Weights are as for `synthesize`, and `evenness` has no effect.
@@ -101,10 +104,10 @@ pub(crate) struct Model {
 /// ((64, 64), (2, 3, 2))
 #[pyfunction]
 #[pyo3(signature = (mesh, exemplar, *, texels = 1024, sites = 65536, directions = None, down = [0.0, -1.0, 0.0], symmetry = 1,
-    atlas = "charts", padding = None, crease = None, axes = None, matching = None, seed = SeedArgument::default(), edges = "cut", levels = 3,
+    scales = None, atlas = "charts", padding = None, crease = None, axes = None, matching = None, seed = SeedArgument::default(), edges = "cut", levels = 3,
     coherence = None, evenness = None, paper = false, guides = Vec::new(), example_mesh = None, example_sites = None,
     example_directions = None, progress = None),
-    text_signature = "(mesh, exemplar, *, texels=1024, sites=65536, directions=None, down=(0.0, -1.0, 0.0), symmetry=1, atlas=\"charts\", \
+    text_signature = "(mesh, exemplar, *, texels=1024, sites=65536, directions=None, down=(0.0, -1.0, 0.0), symmetry=1, scales=None, atlas=\"charts\", \
     padding=None, crease=30.0, axes=None, matching=None, seed=0, edges=\"cut\", levels=3, coherence=None, evenness=None, paper=False, \
     guides=(), example_mesh=None, example_sites=None, example_directions=None, progress=None)")]
 pub(crate) fn synthesize_on<'py>(
@@ -116,6 +119,7 @@ pub(crate) fn synthesize_on<'py>(
     directions: Option<(Bound<'py, PyAny>, Bound<'py, PyAny>)>,
     down: [f64; 3],
     symmetry: u8,
+    scales: Option<&Bound<'py, PyAny>>,
     atlas: &str,
     padding: Option<u32>,
     crease: Option<f64>,
@@ -135,12 +139,15 @@ pub(crate) fn synthesize_on<'py>(
 ) -> Result<Model> {
     let atlas = data::named("atlas", atlas)?;
     let guides = SurfaceGuides::read(&guides)?;
-    let uvs = match atlas == AtlasKind::Uv || guides.have_images() {
+    let scales = scales.map(SurfaceScales::read).transpose()?;
+    let needs_uvs = guides.have_images() || scales.as_ref().is_some_and(SurfaceScales::are_image);
+    let uvs = match atlas == AtlasKind::Uv || needs_uvs {
         true => uvs_of("mesh", mesh)?,
         false => Vec::new(),
     };
     let mesh = crate::meshes::mesh(mesh)?;
     guides.check(&mesh)?;
+    scales.iter().try_for_each(|scales| scales.check(&mesh))?;
     let (layout, maps) = pictures::read("exemplar", exemplar)?;
     check_sizes(&maps)?;
     refuse_alpha(&layout)?;
@@ -190,8 +197,16 @@ pub(crate) fn synthesize_on<'py>(
         let is_double_sided = repair.before.back_to_back_faces > 0;
         let hierarchy = Hierarchy::new(&surface, &hierarchy)?;
         let orientation = Orientation::symmetric(&hierarchy, &directions, down.into(), symmetry)?;
-        let synthesizer = Synthesizer::from_parts(surface, hierarchy, orientation, None)?;
-        let columns = guides.at_sites(&synthesizer, &mesh, &repair, &uvs)?;
+        let mut synthesizer = Synthesizer::from_parts(surface, hierarchy, orientation, None)?;
+        if let Some(scales) = &scales {
+            synthesizer = scales.of(synthesizer, &mesh, &repair, &uvs)?;
+        }
+        let columns = guides.at_sites(&SitesOfMesh {
+            synthesizer: &synthesizer,
+            before: &mesh,
+            repair: &repair,
+            uvs: &uvs,
+        })?;
         let columns: Vec<_> = columns.iter().map(Vec::as_slice).collect();
         let texture = match example_mesh {
             None => synthesizer.synthesize_guided(&example, &columns, &options, heard)?,

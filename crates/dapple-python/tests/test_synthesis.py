@@ -7,6 +7,7 @@ import subprocess
 import sys
 import textwrap
 import threading
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -352,6 +353,40 @@ def test_textures_in_the_plane_follow_directions_and_scales():
         assert abs(passes[0] * period / 2 - 1) < 0.2 and passes[1] < 0.3 * passes[0]
 
 
+def test_features_grow_where_scales_or_directions_say():
+    stripes = np.kron(np.arange(8) % 2, np.ones(4))[:, None] * np.ones(32, np.float32)
+    square = SimpleNamespace(
+        vertices=np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]),
+        faces=np.array([[0, 1, 2], [0, 2, 3]]),
+        uv=np.array([[[0, 1], [1, 1], [1, 0]], [[0, 1], [1, 0], [0, 0]]]),
+    )
+    options = {"atlas": "uv", "texels": 128, "sites": 16000, "edges": "wrap", "levels": 2}
+
+    def passes(scales, **more):
+        """How often values pass a half along the columns of the left and the right half."""
+        texture = dp.synthesize_on(square, stripes, scales=scales, **options, **more).texture
+        passes = np.diff(texture > 0.5, axis=0) != 0
+        return passes[:, 8:56].sum(), passes[:, 72:120].sum()
+
+    left, right = passes(None)
+    assert abs(left / right - 1) < 0.1
+    # In the middle of the halves pixels are 1.25 and 1.75 as large.
+    for scales in ([1, 2, 2, 1], np.linspace(1, 2, 64) * np.ones((4, 1))):
+        wide, wider = passes(scales)
+        assert abs(wide / wider / 1.4 - 1) < 0.15 and abs(left / wide / 1.25 - 1) < 0.15
+    # Along rays from a point to the left rows spread in proportion to the distance from it: 0.75 and 1.25 in the middles.
+    at = np.indices((11, 11)).reshape(2, -1).T / 10
+    across = np.stack([at[:, 1] - 0.5, -at[:, 0] - 0.5, np.zeros(121)], 1)
+    at = np.column_stack([at, np.zeros(121)])
+    near, far = passes((0.25, 4), directions=(at, across))
+    assert 1.4 < near / far < 1.9
+    down, right = np.indices((128, 128)) / 128
+    across = np.arctan2(0.5 - down, right + 0.5)
+    texture = dp.synthesize_along(stripes, across, (0.25, 4), edges="wrap", levels=2)
+    passes = np.diff(texture > 0.5, axis=0) != 0
+    assert 1.4 < passes[:, 8:56].sum() / passes[:, 72:120].sum() < 1.9
+
+
 def test_models_are_exported_and_read_back(tmp_path):
     for ending in ("glb", "obj", "ply"):
         (tmp_path / ending).mkdir()
@@ -424,6 +459,12 @@ def test_a_report_counts_what_is_wrong():
         lambda: dp.synthesize_on(TORUS, CELLS, guides=[(HEIGHT, np.zeros((4, 4)), 1)]),
         lambda: dp.synthesize_on(TORUS, CELLS, down=(0, 0, 0), **QUICK),
         lambda: dp.synthesize_on(TORUS, CELLS, symmetry=3),
+        lambda: dp.synthesize_on(TORUS, CELLS, scales=np.ones(287)),
+        lambda: dp.synthesize_on(TORUS, CELLS, scales=np.zeros(288), **QUICK),
+        lambda: dp.synthesize_on(TORUS, CELLS, scales=np.ones((4, 4))),
+        lambda: dp.synthesize_on(TORUS, CELLS, scales=(2, 1), **QUICK),
+        lambda: dp.synthesize_on(TORUS, CELLS, scales=(1, np.nan), **QUICK),
+        lambda: dp.synthesize_along(CELLS, np.zeros((40, 40)), (0, 1)),
         lambda: dp.synthesize_along(CELLS, np.zeros((40, 40)), np.zeros((40, 40))),
         lambda: dp.synthesize_along(CELLS, np.zeros((40, 40)), np.ones((40, 41))),
         lambda: dp.synthesize_along(CELLS, np.full((40, 40), np.nan)),

@@ -64,6 +64,9 @@
 //! ([`Orientation::symmetric`]) turn around fewer and gentler singularities, and textures go on across the places at which
 //! they turn. In the plane, [`synthesize_plane_along`] takes directions and sizes of features from images.
 //!
+//! Where directions spread, rows of features of one size begin, and where they meet, rows end. Features may grow and shrink there
+//! instead: [`Synthesizer::with_conformal_scales`] finds the sizes with which they go on.
+//!
 //! Guides ([`Exemplar::with_guides`]) say where in a texture which part of the exemplar goes: how light it is, so that the
 //! texture shows a picture; or which of several images, which lie [`SideBySide`]. There each may lie [`Turned`], too.
 //!
@@ -190,7 +193,7 @@ pub use orientation::{Direction, Orientation, Symmetry};
 pub use plane::{
     PlaneTexture, synthesize_plane, synthesize_plane_guided, synthesize_plane_with, tile_plane,
 };
-pub use plane_along::{PlaneAlong, synthesize_plane_along};
+pub use plane_along::{PlaneAlong, PlaneScales, synthesize_plane_along};
 pub use side_by_side::SideBySide;
 pub use sites::{
     Blend, Connected, DOWNSAMPLE_STEPS, DOWNSAMPLE_T, Evenness, Hierarchy, HierarchyOptions,

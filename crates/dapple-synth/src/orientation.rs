@@ -23,6 +23,7 @@
 mod comb;
 mod pull;
 mod push;
+mod scales;
 mod smooth;
 mod symmetry;
 #[cfg(test)]

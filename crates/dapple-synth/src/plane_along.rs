@@ -30,11 +30,18 @@ pub struct PlaneAlong {
     pub atlas: Atlas,
 }
 
-/// Makes a texture like an exemplar whose down follows `directions`, in which a pixel of the exemplar has the size `scales`:
-/// two planes of the size of the texture.
+/// How large a pixel of the exemplar is, in pixels of the texture, from 1/8 to 8; what is smaller than 1 loses detail.
+#[derive(Clone, Copy, Debug)]
+pub enum PlaneScales<'a> {
+    /// At every pixel: a plane of the size of the texture.
+    Plane(&'a Raster<f32>),
+    /// As large as the directions ask for, within bounds: see [`Synthesizer::with_conformal_scales`].
+    Conformal([f32; 2]),
+}
+
+/// Makes a texture like an exemplar whose down follows `directions`, a plane of the size of the texture, with pixels of these sizes.
 ///
 /// Directions are angles in radians: at 0 the down of the exemplar points down, and at a quarter turn, π / 2, to the right.
-/// Scales are in pixels of the texture, from 1/8 to 8; what is smaller than 1 loses detail.
 ///
 /// # Errors
 ///
@@ -47,7 +54,7 @@ pub struct PlaneAlong {
 /// ```
 /// use core::ops::ControlFlow;
 /// use dapple_raster::Raster;
-/// use dapple_synth::{Edges, Exemplar, Options, bake_values, synthesize_plane_along};
+/// use dapple_synth::{Edges, Exemplar, Options, PlaneScales, bake_values, synthesize_plane_along};
 ///
 /// // Stripes that lie along the rows in the example, and stand twice as wide in the texture.
 /// let stripes = Raster::from_fn([16, 16], |_, y| f32::from(y / 4 % 2 == 0))?;
@@ -56,7 +63,8 @@ pub struct PlaneAlong {
 /// let twice = Raster::filled([40, 30], 2.0)?;
 /// let options = Options { n_levels: 2, ..Options::default() };
 /// let go_on = |_| ControlFlow::Continue(());
-/// let along = synthesize_plane_along(&exemplar, &right, &twice, &options, go_on)?;
+/// let twice = PlaneScales::Plane(&twice);
+/// let along = synthesize_plane_along(&exemplar, &right, twice, &options, go_on)?;
 /// let image = bake_values(&along.synthesizer, &along.texture, &stripes, &along.atlas)?;
 /// assert_eq!(image.size(), [40, 30]);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -64,12 +72,14 @@ pub struct PlaneAlong {
 pub fn synthesize_plane_along(
     exemplar: &Exemplar,
     directions: &Raster<f32>,
-    scales: &Raster<f32>,
+    scales: PlaneScales<'_>,
     options: &Options,
     callback: impl FnMut(Progress) -> ControlFlow<()>,
 ) -> Result<PlaneAlong, SynthError> {
     let size = directions.size();
-    scales.check_same_size(size)?;
+    if let PlaneScales::Plane(scales) = scales {
+        scales.check_same_size(size)?;
+    }
     check_pixels(size)?;
     for &angle in directions.pixels() {
         SynthError::check(
@@ -85,10 +95,15 @@ pub fn synthesize_plane_along(
         let (sin, cos) = libm::sincos(f64::from(*pixel(directions, at)));
         DVec3::new(sin, -cos, 0.0)
     });
-    let positions = hierarchy.sites().positions().iter();
-    let scales = positions.map(|&at| *pixel(scales, at)).collect();
     let synthesizer = Synthesizer::from_parts(surface, hierarchy, orientation, None)?;
-    let synthesizer = synthesizer.with_scales(scales)?;
+    let synthesizer = match scales {
+        PlaneScales::Plane(scales) => {
+            let positions = synthesizer.hierarchy().sites().positions().iter();
+            let scales = positions.map(|&at| *pixel(scales, at)).collect();
+            synthesizer.with_scales(scales)?
+        }
+        PlaneScales::Conformal(bounds) => synthesizer.with_conformal_scales(bounds)?,
+    };
     let texture = synthesizer.synthesize_with(exemplar, options, callback)?;
     let atlas = Atlas::from_uvs(synthesizer.surface(), &uvs(size, &synthesizer), size, 0)?;
     Ok(PlaneAlong {

@@ -110,6 +110,51 @@ impl Synthesizer {
         Ok(Self { scales, ..self })
     }
 
+    /// These sites with pixels as large as the directions ask for, within bounds, in spacings: larger where rows of features
+    /// spread, and smaller where they meet, so that they go on in place of beginning and ending there (Ray et al. 2006).
+    ///
+    /// As large a part as can be of each connected part of the surface lies between the bounds. Around the singularities of the
+    /// field, where sizes would have no end, they are at one of them, and features still meet.
+    ///
+    /// # Errors
+    ///
+    /// [`SynthErrorKind::Range`] for a bound outside of 1/8 to 8, and for a lower bound above the upper one.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use dapple_mesh::{Mesh, Surface, glam::DVec3};
+    /// use dapple_synth::{Direction, Hierarchy, HierarchyOptions, Orientation, Synthesizer};
+    ///
+    /// let corners = vec![DVec3::ZERO, DVec3::X, DVec3::ONE - DVec3::Z, DVec3::Y];
+    /// let surface = Surface::new(Mesh::new(corners, &[[0, 1, 2], [0, 2, 3]])?)?;
+    /// let hierarchy = Hierarchy::new(&surface, &HierarchyOptions { n_sites: 500, ..Default::default() })?;
+    /// // Rays from a point beside the square: features are as large as they are far from it.
+    /// let rays = Orientation::from_fn(&hierarchy, |at, _| at + DVec3::X);
+    /// let synthesizer = Synthesizer::from_parts(surface, hierarchy, rays, None)?;
+    /// let synthesizer = synthesizer.with_conformal_scales([0.5, 2.0])?;
+    /// # Ok::<(), Box<dyn core::error::Error>>(())
+    /// ```
+    pub fn with_conformal_scales(self, bounds: [f32; 2]) -> Result<Self, SynthError> {
+        let [least, most] = bounds;
+        let range = "from 1/8 to 8";
+        SynthError::check(
+            (0.125..=8.0).contains(&most),
+            "upper scale",
+            most.into(),
+            range,
+        )?;
+        let holds = (0.125..=most).contains(&least);
+        SynthError::check(
+            holds,
+            "lower scale",
+            least.into(),
+            "from 1/8 to the upper one",
+        )?;
+        let scales = self.orientation.conformal_scales(&self.hierarchy, bounds)?;
+        self.with_scales(scales)
+    }
+
     /// Gives every site a color.
     ///
     /// # Errors

@@ -54,6 +54,8 @@ Examples:
   dapple synth checker.png --mesh model.obj --sites 4000 \\
     --directions directions.csv -o checkered.ply
   dapple synth checker.png --mesh model.obj --sites 4000 \\
+    --directions directions.csv --scales 0.5,2 -o grown.glb
+  dapple synth checker.png --mesh model.obj --sites 4000 \\
     --texture-size 512 -o checkered.obj
 
 The example is best 64 to 256 pixels wide: its features should be a tenth of it or

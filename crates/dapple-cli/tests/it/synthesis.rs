@@ -1,6 +1,7 @@
 //! Tests of `dapple synth`: windows, methods, repairs, sources, examples and guides.
 
 use crate::support::{Folder, assert_done, read_gray, stderr};
+use core::ops::Range;
 use dapple::image::{Depth, Limits, read_image, write_gray_png};
 use dapple::raster::Raster;
 use std::fs;
@@ -93,7 +94,13 @@ fn textures_in_the_plane_follow_images_of_directions_and_scales() {
     );
     assert!(scaled != gray("--scale mask.png --scales 1,1"));
     let turned = gray("--directions mask.png --scale mask.png");
-    assert!(turned != scaled && turned != gray("--directions mask.png"));
+    let straight = gray("--directions mask.png");
+    assert!(turned != scaled && turned != straight);
+    assert!(straight != gray("--directions mask.png --scales 0.5,2"));
+    assert!(
+        straight == gray("--directions mask.png --scales 1,1"),
+        "the default"
+    );
     for (more, part) in [
         ("--scale mask.png --size 24", "--size has no effect with"),
         (
@@ -106,11 +113,9 @@ fn textures_in_the_plane_follow_images_of_directions_and_scales() {
         ),
         ("--directions mask.png --scale places.exr", "have one size"),
         ("--scale mask.png --scales 9,9", "from 1/8 to 8"),
-        ("--scales 1,2", "--scale"),
-        (
-            "--scale mask.png --mesh model.obj",
-            "--scale has no effect on a mesh",
-        ),
+        ("--scales 1,2", "--scales has no effect without"),
+        ("--directions mask.png --scales 2,1", "the lower scale is 2"),
+        ("--scales 0.1,1 --mesh model.obj", "from 1/8"),
     ] {
         let line = format!("synth height.png {more} -o none.png");
         let output = run(&line);
@@ -201,9 +206,7 @@ fn examples_go_where_the_map_of_them_says_with_all_their_maps() {
 #[test]
 fn examples_go_where_a_map_on_a_mesh_says() {
     let folder = Folder::with_inputs("which_mesh");
-    let square =
-        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n";
-    fs::write(folder.path("square.obj"), square).unwrap();
+    write_square(&folder);
     let write = |name: &str, size: u32, value: fn(u32, u32) -> f32| {
         let plane = Raster::from_fn([size; 2], value).unwrap();
         write_gray_png(folder.path(name), &plane, Depth::Eight).unwrap();
@@ -225,6 +228,66 @@ fn examples_go_where_a_map_on_a_mesh_says() {
     // But for texels at the border, which is 64 long and has sites at every 1.5 texels.
     let n_obeyed = places.filter(is_obeyed).count();
     assert!(n_obeyed > 64 * 64 - 2 * 64, "{n_obeyed} of 4096");
+}
+
+/// Writes a square whose texture coordinates are its positions.
+fn write_square(folder: &Folder) {
+    let square =
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n";
+    fs::write(folder.path("square.obj"), square).unwrap();
+}
+
+#[test]
+fn features_on_a_mesh_have_the_sizes_of_an_image_or_of_the_directions() {
+    let folder = Folder::with_inputs("scale_mesh");
+    write_square(&folder);
+    let write = |name: &str, value: fn(u32, u32) -> f32| {
+        let plane = Raster::from_fn([32; 2], value).unwrap();
+        write_gray_png(folder.path(name), &plane, Depth::Eight).unwrap();
+    };
+    write("stripes.png", |_, y| f32::from(y % 8 < 4));
+    write("right.png", |x, _| f32::from(x >= 16));
+    // Rays from a point below the square: rows grow toward the top.
+    let rays = "0,1,0,-0.5,1.5,0\n0,0,0,-0.5,0.5,0\n1,1,0,0.5,1.5,0\n1,0,0,0.5,0.5,0\n";
+    fs::write(folder.path("rays.csv"), rays).unwrap();
+    let rows = |more: &str| {
+        let line = format!(
+            "synth stripes.png --edges wrap --mesh square.obj --sites 16000 --atlas uv \
+             --texture-size 128 --force -o out.png {more}"
+        );
+        let words: Vec<_> = line.split_whitespace().collect();
+        assert_done(&folder.run(&words), &line);
+        read_gray(&folder, "out.png")
+    };
+    // How often values pass a half along the columns of a part.
+    let n_passes = |out: &Raster<f32>, columns: Range<u32>, rows: Range<u32>| {
+        let places = rows.flat_map(|y| columns.clone().map(move |x| [x, y]));
+        let value = |x: u32, y: u32| out.row(y)[x as usize] > 0.5;
+        places
+            .filter(|&[x, y]| value(x, y) != value(x, y + 1))
+            .count() as f64
+    };
+    let line = "synth stripes.png --mesh model.obj --scale right.png -o none.glb";
+    let run = folder.run(&line.split(' ').collect::<Vec<_>>());
+    assert_eq!(run.status.code(), Some(1), "no texture coordinates");
+    assert!(
+        stderr(&run).contains("texture coordinates"),
+        "{}",
+        stderr(&run)
+    );
+    let out = rows("--scale right.png --scales 1,2");
+    let ratio = n_passes(&out, 8..56, 8..120) / n_passes(&out, 72..120, 8..120);
+    assert!((1.6..2.4).contains(&ratio), "{ratio} times as many");
+    let [one, of_rays] = ["", "--scales 0.5,2"].map(|more| {
+        let out = rows(&format!("--directions rays.csv {more}"));
+        n_passes(&out, 40..88, 80..120) / n_passes(&out, 40..88, 8..48)
+    });
+    assert!((0.8..1.25).contains(&one), "{one} times as many below");
+    // Of true rays 1.78, the ratio of distances; between directions at the corners alone a field bends less.
+    assert!(
+        (1.25..1.9).contains(&of_rays),
+        "{of_rays} times as many below"
+    );
 }
 
 #[test]

@@ -16,6 +16,7 @@ mod fig_extra_guides;
 mod fig_extra_lifted;
 mod fig_extra_repair;
 mod fig_extra_sharp;
+mod fig_extra_sizes;
 mod fig_extra_symmetry;
 mod hooks;
 mod letter;
@@ -51,6 +52,7 @@ pub(super) const PAPER: Paper = Paper {
         fig_extra_lifted::FIGURE,
         fig_extra_repair::FIGURE,
         fig_extra_sharp::FIGURE,
+        fig_extra_sizes::FIGURE,
         fig_extra_symmetry::FIGURE,
     ],
 };

@@ -1,14 +1,14 @@
 //! Textures in the plane along directions and with scales.
 
 use super::bake;
+use super::surface_guides::bounds;
 use crate::error::Result;
 use crate::pictures;
 use crate::seed::SeedArgument;
 use crate::synthesis::{Coherence, Matching, check_sizes, exemplar};
 use crate::watch;
 use dapple::mesh::CREASE;
-use dapple::raster::Raster;
-use dapple::synth::{PlaneAlong, SynthError, synthesize_plane_along};
+use dapple::synth::{PlaneAlong, PlaneScales, SynthError, synthesize_plane_along};
 use pyo3::prelude::*;
 
 /// A texture that runs along directions, with features of different sizes.
@@ -17,7 +17,8 @@ use pyo3::prelude::*;
 /// ----------
 /// exemplar : as for `synthesize`, without alpha.
 /// directions : (rows, columns), angles in radians: at 0 the example's down is down, at pi / 2 it points to the right.
-/// scales : (rows, columns), how large a pixel of the example is, in pixels of the texture, from 1/8 to 8; by default 1.
+/// scales : (rows, columns), how large a pixel of the example is, in pixels of the texture, from 1/8 to 8; by default 1. Or two
+///     bounds, between which sizes follow the directions: features grow where these spread and shrink where they meet.
 /// seed, edges, levels, coherence, evenness, paper, progress : as for `synthesize`.
 ///
 /// Examples
@@ -50,9 +51,13 @@ pub(crate) fn synthesize_along<'py>(
     super::refuse_alpha(&layout)?;
     let example = self::exemplar(&maps, edges)?;
     let directions = pictures::numbers("directions", directions)?;
-    let scales = match scales {
-        Some(scales) => pictures::numbers("scales", scales)?,
-        None => Raster::filled(directions.size(), 1.0)?,
+    let plane = scales.filter(|scales| bounds(scales).is_none());
+    let plane = plane
+        .map(|scales| pictures::numbers("scales", scales))
+        .transpose()?;
+    let scales = match &plane {
+        Some(plane) => PlaneScales::Plane(plane),
+        None => PlaneScales::Conformal(scales.and_then(bounds).unwrap_or([1.0; 2])),
     };
     let matching = Matching {
         seed,
@@ -65,7 +70,7 @@ pub(crate) fn synthesize_along<'py>(
     };
     let options = matching.options()?;
     let baked = watch::run(py, progress, |heard| {
-        let along = synthesize_plane_along(&example, &directions, &scales, &options, heard)?;
+        let along = synthesize_plane_along(&example, &directions, scales, &options, heard)?;
         let PlaneAlong {
             synthesizer,
             texture,

@@ -1,4 +1,4 @@
-//! The argument `guides` of a texture on a mesh.
+//! Numbers on a mesh: the arguments `guides` and `scales` of a texture on it.
 
 use super::{at_corners, own_uvs};
 use crate::error::{Error, Result};
@@ -7,7 +7,7 @@ use dapple::mesh::glam::DVec2;
 use dapple::mesh::{FaceIdx, Mesh, Repair};
 use dapple::raster::{Raster, Wrap};
 use dapple::synth::{Exemplar, Synthesizer};
-use numpy::{AllowTypeChange, PyArrayLikeDyn};
+use numpy::{AllowTypeChange, PyArrayLike1, PyArrayLikeDyn};
 use pyo3::prelude::*;
 
 /// A guide as the caller gives it: that of the example, that of the mesh, and the weight.
@@ -19,8 +19,15 @@ pub(super) struct SurfaceGuides {
     of_mesh: Vec<OfMesh>,
 }
 
+/// The argument `scales`.
+pub(super) enum SurfaceScales {
+    /// Between two bounds, by the directions.
+    Conformal([f32; 2]),
+    OfMesh(OfMesh),
+}
+
 /// A number for each place on a mesh.
-enum OfMesh {
+pub(super) enum OfMesh {
     /// One for each vertex, and in between those of the corners mixed.
     Vertices(Vec<f32>),
     /// An image that repeats, at the mesh's own texture coordinates.
@@ -33,12 +40,7 @@ impl SurfaceGuides {
         let (mut of_example, mut of_mesh) = (Vec::new(), Vec::new());
         for (example, mesh, weight) in guides {
             of_example.push((pictures::numbers("guides", example)?, *weight));
-            let numbers: PyArrayLikeDyn<'_, f32, AllowTypeChange> = mesh.extract()?;
-            let numbers = numbers.as_array();
-            of_mesh.push(match numbers.ndim() {
-                1 => OfMesh::Vertices(numbers.iter().copied().collect()),
-                _ => OfMesh::Image(pictures::numbers("guides", mesh)?),
-            });
+            of_mesh.push(OfMesh::read("guides", mesh)?);
         }
         Ok(Self {
             of_example,
@@ -48,25 +50,14 @@ impl SurfaceGuides {
 
     /// Whether texture coordinates are needed.
     pub(super) fn have_images(&self) -> bool {
-        let is_image = |guide: &OfMesh| matches!(guide, OfMesh::Image(_));
-        self.of_mesh.iter().any(is_image)
+        self.of_mesh.iter().any(OfMesh::is_image)
     }
 
     /// Refuses numbers for another number of vertices than the mesh has.
     pub(super) fn check(&self, mesh: &Mesh) -> Result<()> {
-        let n_vertices = mesh.positions().len();
-        for guide in &self.of_mesh {
-            if let OfMesh::Vertices(numbers) = guide
-                && numbers.len() != n_vertices
-            {
-                let message = format!(
-                    "a guide has {} numbers, but the mesh has {n_vertices} vertices",
-                    numbers.len()
-                );
-                return Err(Error::new("count", message));
-            }
-        }
-        Ok(())
+        self.of_mesh
+            .iter()
+            .try_for_each(|guide| guide.check("a guide", mesh))
     }
 
     /// An example with its guides.
@@ -76,22 +67,108 @@ impl SurfaceGuides {
         Ok(exemplar.with_guides(&planes)?)
     }
 
-    /// The numbers of each guide at the sites on a mesh that was repaired.
-    pub(super) fn at_sites(
+    /// The numbers of each guide at sites.
+    pub(super) fn at_sites(&self, sites: &SitesOfMesh<'_>) -> Result<Vec<Vec<f32>>> {
+        self.of_mesh
+            .iter()
+            .map(|guide| guide.at_sites(sites))
+            .collect()
+    }
+}
+
+impl SurfaceScales {
+    /// Reads the scales: two bounds, or numbers on the mesh.
+    pub(super) fn read(scales: &Bound<'_, PyAny>) -> Result<Self> {
+        Ok(match bounds(scales) {
+            Some(bounds) => Self::Conformal(bounds),
+            None => Self::OfMesh(OfMesh::read("scales", scales)?),
+        })
+    }
+
+    /// Whether texture coordinates are needed.
+    pub(super) fn are_image(&self) -> bool {
+        matches!(self, Self::OfMesh(numbers) if numbers.is_image())
+    }
+
+    /// Refuses numbers for another number of vertices than the mesh has.
+    pub(super) fn check(&self, mesh: &Mesh) -> Result<()> {
+        match self {
+            Self::Conformal(_) => Ok(()),
+            Self::OfMesh(numbers) => numbers.check("scales", mesh),
+        }
+    }
+
+    /// The sites with pixels of these sizes.
+    pub(super) fn of(
         &self,
-        synthesizer: &Synthesizer,
-        before: &Mesh,
+        synthesizer: Synthesizer,
+        mesh: &Mesh,
         repair: &Repair,
         uvs: &[[f64; 2]],
-    ) -> Result<Vec<Vec<f32>>> {
-        let surface = synthesizer.surface();
-        let uvs = match self.have_images() {
-            true => own_uvs(surface, before, repair, uvs)?,
-            false => Vec::new(),
+    ) -> Result<Synthesizer> {
+        let scales = match self {
+            Self::Conformal(bounds) => return Ok(synthesizer.with_conformal_scales(*bounds)?),
+            Self::OfMesh(numbers) => numbers.at_sites(&SitesOfMesh {
+                synthesizer: &synthesizer,
+                before: mesh,
+                repair,
+                uvs,
+            })?,
         };
-        let points = synthesizer.hierarchy().sites().points();
-        let column = |guide: &OfMesh| match guide {
-            OfMesh::Vertices(numbers) => {
+        Ok(synthesizer.with_scales(scales)?)
+    }
+}
+
+/// The numbers of what has two, which is neither a plane nor a number for each vertex of a mesh.
+pub(super) fn bounds(scales: &Bound<'_, PyAny>) -> Option<[f32; 2]> {
+    let numbers: PyArrayLike1<'_, f32, AllowTypeChange> = scales.extract().ok()?;
+    numbers.as_array().to_vec().try_into().ok()
+}
+
+/// Sites on a mesh that was repaired, and what it was before.
+pub(super) struct SitesOfMesh<'a> {
+    pub(super) synthesizer: &'a Synthesizer,
+    pub(super) before: &'a Mesh,
+    pub(super) repair: &'a Repair,
+    /// The texture coordinates of the mesh before, if an image is read at them.
+    pub(super) uvs: &'a [[f64; 2]],
+}
+
+impl OfMesh {
+    fn read(name: &str, numbers: &Bound<'_, PyAny>) -> Result<Self> {
+        let array: PyArrayLikeDyn<'_, f32, AllowTypeChange> = numbers.extract()?;
+        let array = array.as_array();
+        Ok(match array.ndim() {
+            1 => Self::Vertices(array.iter().copied().collect()),
+            _ => Self::Image(pictures::numbers(name, numbers)?),
+        })
+    }
+
+    fn is_image(&self) -> bool {
+        matches!(self, Self::Image(_))
+    }
+
+    fn check(&self, what: &str, mesh: &Mesh) -> Result<()> {
+        let n_vertices = mesh.positions().len();
+        match self {
+            Self::Vertices(numbers) if numbers.len() != n_vertices => {
+                let message = format!(
+                    "{what} has {} numbers, but the mesh has {n_vertices} vertices",
+                    numbers.len()
+                );
+                Err(Error::new("count", message))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// The numbers at sites.
+    pub(super) fn at_sites(&self, sites: &SitesOfMesh<'_>) -> Result<Vec<f32>> {
+        let SitesOfMesh { before, repair, .. } = *sites;
+        let surface = sites.synthesizer.surface();
+        let points = sites.synthesizer.hierarchy().sites().points();
+        match self {
+            Self::Vertices(numbers) => {
                 let number = |face: FaceIdx, corner: usize| {
                     let vertex = before.faces()[face.index()][corner];
                     f64::from(numbers[vertex.index()])
@@ -109,7 +186,8 @@ impl SurfaceGuides {
                 });
                 Ok(mixed.collect())
             }
-            OfMesh::Image(image) => {
+            Self::Image(image) => {
+                let uvs = own_uvs(surface, before, repair, sites.uvs)?;
                 let size = image.size().map(f64::from);
                 let shown = points.iter().map(|&point| {
                     let corners = uvs[point.face.index()].iter();
@@ -121,7 +199,6 @@ impl SurfaceGuides {
                 });
                 Ok(shown.collect())
             }
-        };
-        self.of_mesh.iter().map(column).collect()
+        }
     }
 }

@@ -446,11 +446,22 @@ fn strands_go_on_from_one_side_to_the_other() {
     let plane = Raster::from_fn([32, 32], |x, y| f32::from(is_strand(x, y))).unwrap();
     let exemplar = Exemplar::from_planes(&[(&plane, 1.0)], Edges::Wrap).unwrap();
     let square = sheet([4; 2], [true; 2], |u, v| DVec3::new(u, v, 0.0));
-    let flat = synthesizer(square, 6000, |_, _| DVec3::NEG_Y);
-    let texture = flat.synthesize(&exemplar, &options()).unwrap();
-    let (n_pieces, n_torn) = pieces(&flat, &texture.transfer(&plane).unwrap());
+    let strands = |flat: &Synthesizer| {
+        let texture = flat.synthesize(&exemplar, &options()).unwrap();
+        pieces(flat, &texture.transfer(&plane).unwrap())
+    };
+    let (n_pieces, n_torn) = strands(&synthesizer(square.clone(), 6000, |_, _| DVec3::NEG_Y));
     assert_eq!(n_torn, 0, "strands with an end within");
     assert!(n_pieces >= 4, "{n_pieces} strands");
+    // From the left they spread to three times the room.
+    let fan = synthesizer(square, 6000, |at, normal| {
+        (at + DVec3::new(0.5, -0.5, 0.0)).cross(normal)
+    });
+    let (_, n_torn) = strands(&fan);
+    assert!(n_torn > 0, "strands of one width begin on the way");
+    let (n_pieces, n_torn) = strands(&fan.with_conformal_scales([0.5, 2.0]).unwrap());
+    assert_eq!(n_torn, 0, "strands with an end within, though they widen");
+    assert!(n_pieces >= 4, "{n_pieces} strands that widen");
 }
 
 /// The pieces of more than 8 connected sites with a value above 0.5, and how many of them do not go from x = 0 to 1 though they

@@ -32,39 +32,55 @@ impl Turning {
         (site, level): (SiteIdx, usize),
         (spacing, half): (f64, i32),
     ) -> Self {
-        let (positions, normals) = (hierarchy.sites().positions(), hierarchy.sites().normals());
-        let vectors = orientation.vectors();
-        let at = site.index();
-        let (down, right) = (vectors[at], normals[at].cross(vectors[at]));
-        // The normal equations of the least squares: turn = x * along P + y * along O.
-        let (mut xx, mut xy, mut yy, mut of_x, mut of_y) = (0.0, 0.0, 0.0, 0.0, 0.0);
-        for other in hierarchy.levels()[level].graph().neighbors(site) {
-            let other = other.index();
-            let step = positions[other] - positions[at];
-            let (x, y) = (step.dot(right), step.dot(down));
-            // The sine of the turn from O here to O there, seen in the tangent plane.
-            let there = orientation.nearest(normals, other, down);
-            let there = DVec2::new(there.dot(down), there.dot(right));
-            let turn = there.normalize_or(DVec2::X).y;
-            xx += x * x;
-            xy += x * y;
-            yy += y * y;
-            of_x += x * turn;
-            of_y += y * turn;
-        }
-        let determinant = xx * yy - xy * xy;
-        // Neighbors on one line say nothing of what is beside it; this is not so for a number that is none either.
-        let is_plane = determinant > 1e-6 * (xx + yy) * (xx + yy);
-        if !is_plane {
+        let Some([right, down]) = turn_rates(hierarchy, orientation, site, level) else {
             return Self::default();
-        }
+        };
         let limit = MOST / f64::from(half.max(1));
         let half_step = |rate: f64| Turn::by((spacing * rate).clamp(-limit, limit) / 2.0);
         Self {
-            right: half_step((yy * of_x - xy * of_y) / determinant),
-            down: half_step((xx * of_y - xy * of_x) / determinant),
+            right: half_step(right),
+            down: half_step(down),
         }
     }
+}
+
+/// How fast the field turns from O to P along P and along O, in radians for a unit of length: what fits it best at the
+/// neighbors of a site. Nothing where they lie on one line.
+pub(crate) fn turn_rates(
+    hierarchy: &Hierarchy,
+    orientation: &Orientation,
+    site: SiteIdx,
+    level: usize,
+) -> Option<[f64; 2]> {
+    let (positions, normals) = (hierarchy.sites().positions(), hierarchy.sites().normals());
+    let vectors = orientation.vectors();
+    let at = site.index();
+    let (down, right) = (vectors[at], normals[at].cross(vectors[at]));
+    // The normal equations of the least squares: turn = x * along P + y * along O.
+    let (mut xx, mut xy, mut yy, mut of_x, mut of_y) = (0.0, 0.0, 0.0, 0.0, 0.0);
+    for other in hierarchy.levels()[level].graph().neighbors(site) {
+        let other = other.index();
+        let step = positions[other] - positions[at];
+        let (x, y) = (step.dot(right), step.dot(down));
+        // The sine of the turn from O here to O there, seen in the tangent plane.
+        let there = orientation.nearest(normals, other, down);
+        let there = DVec2::new(there.dot(down), there.dot(right));
+        let turn = there.normalize_or(DVec2::X).y;
+        xx += x * x;
+        xy += x * y;
+        yy += y * y;
+        of_x += x * turn;
+        of_y += y * turn;
+    }
+    let determinant = xx * yy - xy * xy;
+    // Neighbors on one line say nothing of what is beside it; this is not so for a number that is none either.
+    let is_plane = determinant > 1e-6 * (xx + yy) * (xx + yy);
+    is_plane.then(|| {
+        [
+            (yy * of_x - xy * of_y) / determinant,
+            (xx * of_y - xy * of_x) / determinant,
+        ]
+    })
 }
 
 impl Default for Turn {

@@ -20,6 +20,10 @@ fn filled(value: f32) -> Raster<f32> {
 }
 
 fn along(directions: &Raster<f32>, scales: &Raster<f32>) -> Result<PlaneAlong, SynthError> {
+    along_with(directions, PlaneScales::Plane(scales))
+}
+
+fn along_with(directions: &Raster<f32>, scales: PlaneScales<'_>) -> Result<PlaneAlong, SynthError> {
     let exemplar = Exemplar::from_planes(&[(&stripes(), 1.0)], Edges::Wrap)?;
     let options = Options {
         n_levels: 2,
@@ -84,6 +88,22 @@ fn stripes_grow_with_the_scale() {
 }
 
 #[test]
+fn scales_along_rays_are_as_large_as_they_are_far_from_the_middle() {
+    let rays =
+        Raster::from_fn(SIZE, |x, y| libm::atan2f(x as f32 + 60.5, y as f32 - 29.5)).unwrap();
+    let along = along_with(&rays, PlaneScales::Conformal([0.25, 4.0])).unwrap();
+    let positions = along.synthesizer.hierarchy().sites().positions();
+    let ratios = positions.iter().enumerate().map(|(site, at)| {
+        let distance = at.distance(DVec3::new(-60.0, -30.0, 0.0));
+        f64::from(along.synthesizer.scale(site)) / distance
+    });
+    let (least, most) = ratios.fold((f64::INFINITY, 0.0_f64), |(least, most), ratio| {
+        (least.min(ratio), most.max(ratio))
+    });
+    assert!(most < 1.15 * least, "{least} to {most} for a pixel");
+}
+
+#[test]
 fn scales_of_one_are_as_none() {
     let plain = synthesizer(cap(), 1500, |_, _| DVec3::NEG_Y);
     let scaled = plain.clone().with_scales(vec![1.0; 1500]).unwrap();
@@ -123,7 +143,22 @@ fn bad_fields_are_refused() {
         );
     }
     let plain = synthesizer(cap(), 200, |_, _| DVec3::NEG_Y);
-    assert!(plain.with_scales(vec![1.0; 199]).is_err(), "too few");
+    assert!(
+        plain.clone().with_scales(vec![1.0; 199]).is_err(),
+        "too few"
+    );
+    for bounds in [
+        [0.1, 1.0],
+        [1.0, 9.0],
+        [1.0, 0.5],
+        [f32::NAN, 1.0],
+        [1.0, f32::NAN],
+    ] {
+        assert!(
+            plain.clone().with_conformal_scales(bounds).is_err(),
+            "{bounds:?}"
+        );
+    }
     let none: Result<Raster<f32>, RasterError> = Raster::filled([0, 0], 0.0);
     if let Ok(none) = none {
         assert!(along(&none, &none).is_err(), "no pixels");

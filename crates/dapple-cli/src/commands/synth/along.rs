@@ -11,12 +11,9 @@ use crate::progress::Progress;
 use anyhow::Result;
 use dapple::mesh::CREASE;
 use dapple::raster::Raster;
-use dapple::synth::{PlaneAlong, synthesize_plane_along};
+use dapple::synth::{PlaneAlong, PlaneScales, synthesize_plane_along};
 use serde_json::Value;
 use std::f32::consts::TAU;
-
-/// The scales of black and white where none are given.
-const SCALES: [f32; 2] = [1.0, 2.0];
 
 /// Makes the image, and the maps that follow it.
 pub(super) fn run(args: &Args, context: &Context) -> Result<Exit> {
@@ -27,11 +24,15 @@ pub(super) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let map_outputs = args.claim_maps(&target, format.ending(), &mut job)?;
     job.claim_sidecar(&target)?;
     let input = args.read()?;
-    let [directions, scales] = args.planes()?;
+    let (directions, scales) = args.planes()?;
+    let scales = match (&scales, args.guides.scales) {
+        (Some(scales), _) => PlaneScales::Plane(scales),
+        (None, bounds) => PlaneScales::Conformal(bounds.map_or([1.0; 2], |bounds| bounds.0)),
+    };
     let progress = Progress::bar("synthesizing", STEPS.into(), context);
     let options = args.matching.options(&args.surface);
     let exemplar = &input.exemplar;
-    let along = synthesize_plane_along(exemplar, &directions, &scales, &options, shown(&progress));
+    let along = synthesize_plane_along(exemplar, &directions, scales, &options, shown(&progress));
     let PlaneAlong {
         synthesizer,
         texture,
@@ -61,50 +62,42 @@ impl Args {
     /// Whether a texture in the plane follows images of directions or scales.
     pub(super) fn is_along(&self) -> bool {
         self.surface.mesh.is_none()
-            && (self.surface.directions.is_some() || self.plane.scale.is_some())
+            && (self.surface.directions.is_some() || self.guides.given_for_scales().is_some())
     }
 
-    /// Refuses options that have no effect on a texture along directions and scales.
+    /// Refuses options that have no effect on a texture along directions and scales, and bounds of sizes that follow none.
     pub(super) fn check_along(&self) -> Result<()> {
-        let other = self.plane.given().filter(|&option| option != "scale");
-        let detail = self.detail.as_ref().map(|_| "detail");
-        match other.or(detail).or(self.guides.given()) {
-            Some(option) if self.is_along() => {
-                let message =
-                    format!("--{option} has no effect with --directions and --scale in the plane");
-                Err(usage(message).hint("leave one of them out"))
-            }
-            _ => Ok(()),
+        if !self.is_along() {
+            return Ok(());
         }
+        let other = self.plane.given();
+        let detail = self.detail.as_ref().map(|_| "detail");
+        if let Some(option) = other.or(detail).or(self.guides.given()) {
+            let message =
+                format!("--{option} has no effect with --directions and --scale in the plane");
+            return Err(usage(message).hint("leave one of them out"));
+        }
+        if self.surface.directions.is_none() && self.guides.scale.is_none() {
+            let error = usage("--scales has no effect without --scale or --directions");
+            return Err(
+                error.hint("give an image of sizes or of directions, of the texture's size")
+            );
+        }
+        Ok(())
     }
 
-    /// The angles of directions, and scales, of all pixels.
-    fn planes(&self) -> Result<[Raster<f32>; 2]> {
-        let directions = self.surface.directions.as_deref();
-        let turns = directions.map(|path| read_gray(path, None)).transpose()?;
-        let scale = self.plane.scale.as_deref();
-        let shares = scale.map(|path| read_gray(path, None)).transpose()?;
-        if let (Some(turns), Some(shares), Some(path), Some(first)) =
-            (&turns, &shares, scale, directions)
-        {
-            input::check_size(path, shares.size(), first, turns.size())
+    /// The angles of directions of all pixels, and scales if an image says them.
+    fn planes(&self) -> Result<(Raster<f32>, Option<Raster<f32>>)> {
+        let scales = self.guides.read_scale()?;
+        let Some(first) = self.surface.directions.as_deref() else {
+            let size = scales.as_ref().map(Raster::size).unwrap_or_default();
+            return Ok((Raster::filled(size, 0.0)?, scales));
+        };
+        let turns = read_gray(first, None)?;
+        if let (Some(scales), Some(path)) = (&scales, &self.guides.scale) {
+            input::check_size(path, scales.size(), first, turns.size())
                 .hint("--directions and --scale have one size")?;
         }
-        let size = [&turns, &shares]
-            .into_iter()
-            .flatten()
-            .map(Raster::size)
-            .next();
-        let size = size.unwrap_or_default();
-        let [black, white] = self.plane.scales.map_or(SCALES, |scales| scales.0);
-        let directions = match turns {
-            Some(turns) => turns.map(|turn| turn * TAU),
-            None => Raster::filled(size, 0.0)?,
-        };
-        let scales = match shares {
-            Some(shares) => shares.map(|share| black + (white - black) * share),
-            None => Raster::filled(size, 1.0)?,
-        };
-        Ok([directions, scales])
+        Ok((turns.map(|turn| turn * TAU), scales))
     }
 }

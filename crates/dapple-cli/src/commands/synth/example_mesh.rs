@@ -57,12 +57,14 @@ impl Args {
             return Err(error.hint("add --mesh FILE, the mesh that gets it, or --repair MASK"));
         }
         let plane = self.plane.given().filter(|&option| option != "repair");
+        let scales = self.guides.given_for_scales();
+        let scales = scales.filter(|_| self.surface.mesh.is_none());
         let other = first_given(&[
             ("detail", self.detail.is_some()),
             ("region", self.region.is_some()),
             ("example", !self.guides.examples.is_empty()),
         ]);
-        match plane.or(other) {
+        match plane.or(scales).or(other) {
             Some(option) => {
                 let error = usage(format!("--{option} has no effect: {name} is a mesh"));
                 Err(error.hint(format!("leave out --{option}")))

@@ -4,7 +4,7 @@ use super::Args;
 use super::corners::own_uvs;
 use super::options::first_given;
 use super::reading::gray;
-use crate::args::Region;
+use crate::args::{Numbers, Region};
 use crate::error::Hint;
 use crate::input::{self, Kind, Loaded};
 use crate::words::Word;
@@ -54,9 +54,41 @@ pub(super) struct GuideArgs {
     /// How much --guide counts beside one channel of the colors around a pixel.
     #[arg(long, value_name = "N", requires = "guide", default_value_t = 1.0)]
     guide_weight: f32,
+
+    /// How large a pixel of the example is: an image, black where it is small and white where it is large. A texture in the
+    /// plane has its size; on a mesh it is read at the mesh's own texture coordinates.
+    #[arg(long, value_name = "IMAGE")]
+    pub(super) scale: Option<PathBuf>,
+
+    /// The sizes at black and at white of --scale, from 1/8 to 8, in pixels of the texture or distances of points of a mesh; by
+    /// default 1,2. Without --scale sizes follow the directions, and these are the least and the largest: features grow
+    /// where directions spread and shrink where they meet, and so they go on in place of beginning and ending there.
+    #[arg(long, value_name = "A,B")]
+    pub(super) scales: Option<Numbers<f32, 2>>,
 }
 
+/// The scales of black and white where none are given.
+const SCALES: [f32; 2] = [1.0, 2.0];
+
 impl GuideArgs {
+    /// An option that was given and says how large pixels are.
+    pub(super) fn given_for_scales(&self) -> Option<&'static str> {
+        first_given(&[
+            ("scale", self.scale.is_some()),
+            ("scales", self.scales.is_some()),
+        ])
+    }
+
+    /// The sizes that `--scale` says, if it was given.
+    pub(super) fn read_scale(&self) -> Result<Option<Raster<f32>>> {
+        let Some(path) = &self.scale else {
+            return Ok(None);
+        };
+        let [black, white] = self.scales.map_or(SCALES, |scales| scales.0);
+        let shares = read_gray(path, None)?;
+        Ok(Some(shares.map(|share| black + (white - black) * share)))
+    }
+
     /// An option that was given and asks for a guide.
     pub(super) fn given(&self) -> Option<&'static str> {
         first_given(&[
@@ -175,30 +207,30 @@ fn moments(values: impl Iterator<Item = f32> + Clone) -> [f64; 2] {
     [mean, (values.map(square).sum::<f64>() / n).sqrt()]
 }
 
-/// The values of a guide at all sites of a mesh, by the mesh's own texture coordinates; the image repeats.
+/// The values of images at all sites of a mesh, by the mesh's own texture coordinates; the images repeat.
 pub(super) fn at_sites(
-    guides: &[Guide],
+    images: &[&Raster<f32>],
     synthesizer: &Synthesizer,
     model: &Model,
     repair: &Repair,
 ) -> Result<Vec<Vec<f32>>> {
-    if guides.is_empty() {
+    if images.is_empty() {
         return Ok(Vec::new());
     }
     let surface = synthesizer.surface();
     let uvs = own_uvs(surface, model, repair)
-        .hint("guides are read at texture coordinates: give the mesh some")?;
+        .hint("guides and --scale are read at texture coordinates: give the mesh some")?;
     let points = synthesizer.hierarchy().sites().points();
-    let values = |guide: &Guide| {
-        let size = guide.target.size().map(f64::from);
+    let values = |image: &&Raster<f32>| {
+        let size = image.size().map(f64::from);
         let value = |&point| {
             let weights = surface.weights(point);
             let corners = uvs[point.face.index()].iter().zip(weights);
             let uv = corners.map(|(&uv, weight)| uv * weight).sum::<DVec2>();
             let [column, row] = [uv.x * size[0], uv.y * size[1]].map(|at| at.floor() as i64);
-            *guide.target.at(column, row, [Wrap::Repeat; 2])
+            *image.at(column, row, [Wrap::Repeat; 2])
         };
         points.iter().map(value).collect()
     };
-    Ok(guides.iter().map(values).collect())
+    Ok(images.iter().map(values).collect())
 }

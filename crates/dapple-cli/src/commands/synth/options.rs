@@ -107,14 +107,6 @@ pub(super) struct PlaneArgs {
     #[arg(long, value_name = "CHANNEL", value_parser = Word::<Channel>::all(), conflicts_with_all = ["repair", "replay", "method", "at", "size", "wrap", "evenness", "paper", "which", "guide"])]
     pub(super) repair_channel: Option<Channel>,
 
-    /// How large a pixel of the example is: an image of the texture's size, black where it is small and white where it is large.
-    #[arg(long, value_name = "IMAGE")]
-    pub(super) scale: Option<PathBuf>,
-
-    /// The sizes at black and at white of --scale, in pixels of the texture, from 1/8 to 8; by default 1,2.
-    #[arg(long, value_name = "A,B", requires = "scale")]
-    pub(super) scales: Option<Numbers<f32, 2>>,
-
     /// Also write where in the example each pixel is from: an OpenEXR image, red the column and green the row.
     #[arg(long, value_name = "FILE.exr")]
     pub(super) sources: Option<PathBuf>,
@@ -311,8 +303,6 @@ impl PlaneArgs {
             ("differences", self.differences.is_some()),
             ("origins", self.origins.is_some()),
             ("replay", self.replay.is_some()),
-            // The last, since it can go with a file of directions.
-            ("scale", self.scale.is_some()),
         ])
     }
 

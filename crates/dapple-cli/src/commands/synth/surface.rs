@@ -20,9 +20,9 @@ use dapple::points::glam::DVec3;
 use dapple::raster::Raster;
 use dapple::recipe::MapKind;
 use dapple::synth::{
-    Atlas, Direction, Exemplar, Hierarchy, HierarchyOptions, MeshExemplar, Orientation,
-    SurfaceTexture, SynthError, Synthesizer, bake_colors, bake_colors_alpha, bake_normals,
-    bake_values, site_model, textured_model,
+    Atlas, Direction, Exemplar, Hierarchy, MeshExemplar, Orientation, SurfaceTexture, SynthError,
+    Synthesizer, bake_colors, bake_colors_alpha, bake_normals, bake_values, site_model,
+    textured_model,
 };
 use dapple::tile::Map;
 use serde_json::json;
@@ -87,15 +87,16 @@ pub(super) fn run(args: &Args, mesh: &Path, context: &Context) -> Result<Exit> {
         || repair.before.back_to_back_faces > 0
         || input.base.alpha.is_some();
     let spinner = Progress::spinner("scattering sites", context);
-    let sites = args.surface.sites(&args.matching);
     let directions = directions(args.surface.directions.as_deref())?;
-    let synthesizer = synthesizer(surface, args, &sites, &directions).map_err(advise)?;
+    let synthesizer = synthesizer(surface, args, &directions).map_err(advise)?;
+    let synthesizer = scaled(synthesizer, args, &model, &repair)?;
     let exemplar = example.map(|example| exemplar_of_mesh(args, example, &input.exemplar));
     let exemplar = exemplar.transpose()?;
     drop(spinner);
     let progress = Progress::bar("synthesizing", STEPS.into(), context);
     let options = args.matching.options(&args.surface);
-    let columns = guides::at_sites(&input.guides, &synthesizer, &model, &repair)?;
+    let targets: Vec<_> = input.guides.iter().map(|guide| &guide.target).collect();
+    let columns = guides::at_sites(&targets, &synthesizer, &model, &repair)?;
     let columns: Vec<_> = columns.iter().map(Vec::as_slice).collect();
     let callback = shown(&progress);
     let texture = match &exemplar {
@@ -440,14 +441,31 @@ fn atlas(args: &Args, surface: &Surface, model: &Model, repair: &Repair) -> Resu
 fn synthesizer(
     surface: Surface,
     args: &Args,
-    sites: &HierarchyOptions,
     directions: &[Direction],
 ) -> Result<Synthesizer, SynthError> {
-    let hierarchy = Hierarchy::new(&surface, sites)?;
+    let hierarchy = Hierarchy::new(&surface, &args.surface.sites(&args.matching))?;
     let symmetry = args.surface.symmetry.unwrap_or_default();
     let axis = Orientation::AXIS;
     let orientation = Orientation::symmetric(&hierarchy, directions, axis, symmetry)?;
     Synthesizer::from_parts(surface, hierarchy, orientation, None)
+}
+
+/// The sites with pixels of the sizes that the user asked for.
+fn scaled(
+    synthesizer: Synthesizer,
+    args: &Args,
+    model: &Model,
+    repair: &Repair,
+) -> Result<Synthesizer> {
+    let scaled = match (args.guides.read_scale()?, args.guides.scales) {
+        (Some(scale), _) => {
+            let mut columns = guides::at_sites(&[&scale], &synthesizer, model, repair)?;
+            synthesizer.with_scales(columns.remove(0))
+        }
+        (None, Some(bounds)) => synthesizer.with_conformal_scales(bounds.0),
+        (None, None) => return Ok(synthesizer),
+    };
+    scaled.map_err(advise)
 }
 
 /// The directions that the user gave.

@@ -5,7 +5,6 @@
 //! triangles. Models and exemplars are procedural stand-ins for the paper's. The texture is baked to a map of right
 //! triangles on the model, which has 14,000 of them.
 
-use super::stage::lit;
 use super::subject::SUBJECTS;
 use crate::draw::enlarged;
 use crate::figure::source;
@@ -22,6 +21,7 @@ pub(super) const FIGURE: Figure = Figure {
             "coherence, evenness",
             "auto (2 for puzzle pieces, for all others 2 in the first pass and then 0); 1; 0 in the paper",
         ),
+        ("sizes", "1; tori 0.4 to 1.2, by their directions"),
         ("texture map", "1024²"),
     ],
     source: source!(),
@@ -30,14 +30,9 @@ pub(super) const FIGURE: Figure = Figure {
 
 fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     let panel = |subject: &super::subject::Subject| {
-        let textured = subject.textured(size)?;
-        let mesh = textured.synthesizer.surface().mesh();
-        let mut picture = lit(mesh, &subject.view, [size; 2], |surface| {
-            textured.color(surface)
-        })?;
+        let (mut picture, n_points) = subject.picture(size)?;
         let (exemplar, _) = subject.image()?;
         inset(&mut picture, &enlarged(&exemplar, (size / 5).max(1))?);
-        let n_points = textured.synthesizer.hierarchy().sites().len();
         let label = format!("{}, {n_points} points", subject.name);
         Ok(Panel::color(label, picture))
     };

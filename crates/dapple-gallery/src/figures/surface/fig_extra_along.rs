@@ -12,7 +12,7 @@ use anyhow::Context;
 use core::ops::ControlFlow;
 use dapple_color::LinearRgb;
 use dapple_raster::Raster;
-use dapple_synth::{Edges, Exemplar, Options, bake_colors, synthesize_plane_along};
+use dapple_synth::{Edges, Exemplar, Options, PlaneScales, bake_colors, synthesize_plane_along};
 
 pub(super) const FIGURE: Figure = Figure {
     number: "extra",
@@ -44,17 +44,14 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
         let [x, _] = from_middle(x, y);
         (1.0 + (LARGEST - 1.0) * (x + 0.5)) as f32
     })?;
-    let from_small = Raster::from_fn([LARGE; 2], |x, y| {
-        let [x, y] = from_middle(x, y);
-        (1.0 + (LARGEST - 1.0) * libm::hypot(x, y) * 1.4) as f32
-    })?;
-    let one = Raster::filled([LARGE; 2], 1.0)?;
+    let rightward = PlaneScales::Plane(&rightward);
+    let [one, of_rays] = [[1.0; 2], [0.4, LARGEST as f32]].map(PlaneScales::Conformal);
     let mut panels = Vec::new();
     let [scales, hooks] = [("scales", Edges::Cut), ("woven hooks", Edges::Wrap)];
     for (label, exemplar, directions, sizes) in [
-        ("outward", scales, &outward, &one),
-        ("growing to the right", hooks, &straight, &rightward),
-        ("both", scales, &outward, &from_small),
+        ("outward", scales, &outward, one),
+        ("growing to the right", hooks, &straight, rightward),
+        ("growing outward, as rays spread", scales, &outward, of_rays),
     ] {
         let texture = grown(exemplar, directions, sizes)?;
         panels.push(Panel::color(label, enlarged(&texture, size)?));
@@ -66,7 +63,7 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
 fn grown(
     exemplar: (&str, Edges),
     directions: &Raster<f32>,
-    scales: &Raster<f32>,
+    scales: PlaneScales<'_>,
 ) -> anyhow::Result<Raster<LinearRgb>> {
     let (name, edges) = exemplar;
     let exemplar = EXEMPLARS.iter().find(|found| found.name == name);

@@ -118,6 +118,7 @@ fn on_ball(
         },
         coherence: Coherence::Auto,
         sources: Sources::SubPixel,
+        sizes: None,
         detail: None,
         map_side: (4 * size).max(512),
         mask: Some(layout.mask()?),

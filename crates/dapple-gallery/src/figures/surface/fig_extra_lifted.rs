@@ -49,6 +49,7 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
         sites: sites.clone(),
         coherence: Coherence::Auto,
         sources: Sources::SubPixel,
+        sizes: None,
         detail: None,
         map_side: (2 * size).max(512),
         mask: None,

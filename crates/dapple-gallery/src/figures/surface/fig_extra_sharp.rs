@@ -57,6 +57,7 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
         },
         coherence: Coherence::Auto,
         sources: Sources::SubPixel,
+        sizes: None,
         detail: None,
         map_side: (4 * size).max(512),
         mask: None,

@@ -69,6 +69,7 @@ fn four_sides(
         },
         coherence: Coherence::Auto,
         sources: Sources::SubPixel,
+        sizes: None,
         detail: None,
         map_side: (2 * size).clamp(512, 1024),
         mask: None,

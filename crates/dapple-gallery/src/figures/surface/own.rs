@@ -64,6 +64,7 @@ impl Own {
             sites: self.sites,
             coherence: self.coherence,
             sources: Sources::SubPixel,
+            sizes: None,
             detail: None,
             map_side: self.map_side,
             mask: None,

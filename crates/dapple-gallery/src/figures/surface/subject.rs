@@ -1,7 +1,7 @@
 //! The six models of figure 5 and the textures that they get.
 
 use super::exemplar::{EXEMPLARS, Edges};
-use super::stage::View;
+use super::stage::{View, lit};
 use super::textured::{Job, Textured};
 use anyhow::{Context, Result};
 use dapple_color::LinearRgb;
@@ -28,10 +28,12 @@ pub(crate) struct Subject {
     /// The name of its exemplar.
     exemplar: &'static str,
     /// The number of sites of the finest level at full size, and the number of levels, from table 1.
-    n_sites: usize,
+    pub(crate) n_sites: usize,
     n_levels: usize,
     /// Pairs of a position and the direction of the texture's down there.
     directions: &'static [[DVec3; 2]],
+    /// The bounds of sizes that follow the directions; one size if there are none.
+    pub(crate) sizes: Option<[f32; 2]>,
     pub(crate) view: View,
 }
 
@@ -55,6 +57,7 @@ pub(crate) const RAY: Subject = Subject {
         [DVec3::new(0.0, 0.1, -0.3), DVec3::NEG_Z],
         [DVec3::new(0.05, 0.0, -1.0), DVec3::NEG_Z],
     ],
+    sizes: None,
     view: View {
         eye: DVec3::new(1.1, 2.7, 1.9),
         target: DVec3::new(0.0, 0.0, -0.15),
@@ -62,7 +65,7 @@ pub(crate) const RAY: Subject = Subject {
     },
 };
 
-const OCTOPUS: Subject = Subject {
+pub(crate) const OCTOPUS: Subject = Subject {
     name: "octopus",
     model: models::octopus,
     exemplar: "suckers",
@@ -80,6 +83,7 @@ const OCTOPUS: Subject = Subject {
         [DVec3::new(-0.75, -0.2, -0.3), DVec3::new(-0.9, 0.0, -0.4)],
         [DVec3::new(-0.3, -0.2, -0.75), DVec3::new(-0.4, 0.0, -0.9)],
     ],
+    sizes: None,
     view: View {
         eye: DVec3::new(1.0, 1.6, 3.6),
         target: DVec3::new(0.0, 0.1, 0.0),
@@ -88,7 +92,7 @@ const OCTOPUS: Subject = Subject {
 };
 
 /// The rounded animal: rows of scales go from its ears down to its tail.
-const BUNNY: Subject = Subject {
+pub(crate) const BUNNY: Subject = Subject {
     name: "bunny",
     model: models::bunny,
     exemplar: "scales",
@@ -104,6 +108,7 @@ const BUNNY: Subject = Subject {
         [DVec3::new(0.0, -0.4, 0.5), DVec3::NEG_Y],
         [models::bunny::TAIL, DVec3::NEG_Y],
     ],
+    sizes: None,
     view: View {
         eye: DVec3::new(2.3, 1.1, 2.9),
         target: DVec3::new(0.0, 0.05, 0.0),
@@ -111,7 +116,7 @@ const BUNNY: Subject = Subject {
     },
 };
 
-/// Three blended tori: strands of hooks go around their tubes.
+/// Three blended tori: strands of hooks go around their tubes, which are wider outside than inside.
 pub(crate) const TORI: Subject = Subject {
     name: "tori",
     model: models::blended_tori,
@@ -126,6 +131,7 @@ pub(crate) const TORI: Subject = Subject {
         [DVec3::new(0.55, 0.2, 0.55), DVec3::new(1.0, 0.0, -1.0)],
         [DVec3::new(-0.55, 0.2, -0.55), DVec3::new(-1.0, 0.0, 1.0)],
     ],
+    sizes: Some([0.4, 1.2]),
     view: View {
         eye: DVec3::new(1.7, 1.5, 2.5),
         target: DVec3::ZERO,
@@ -134,7 +140,7 @@ pub(crate) const TORI: Subject = Subject {
 };
 
 /// The zebra: lines of text run along its body.
-const ZEBRA: Subject = Subject {
+pub(crate) const ZEBRA: Subject = Subject {
     name: "zebra",
     model: models::zebra,
     exemplar: "text",
@@ -147,6 +153,7 @@ const ZEBRA: Subject = Subject {
         [DVec3::new(0.2, 0.5, 0.9), DVec3::NEG_Y],
         [DVec3::new(-0.2, 0.5, 0.9), DVec3::Y],
     ],
+    sizes: None,
     view: View {
         eye: DVec3::new(3.6, 0.9, 1.6),
         target: DVec3::new(0.0, 0.0, 0.05),
@@ -154,7 +161,7 @@ const ZEBRA: Subject = Subject {
     },
 };
 
-const ELEPHANT: Subject = Subject {
+pub(crate) const ELEPHANT: Subject = Subject {
     name: "elephant",
     model: models::elephant,
     exemplar: "puzzle pieces",
@@ -167,6 +174,7 @@ const ELEPHANT: Subject = Subject {
         [DVec3::new(0.6, 0.0, -0.2), DVec3::NEG_Y],
         [DVec3::new(-0.6, 0.0, -0.2), DVec3::NEG_Y],
     ],
+    sizes: None,
     view: View {
         eye: DVec3::new(2.6, 1.2, 3.0),
         target: DVec3::new(0.0, 0.0, 0.2),
@@ -219,12 +227,23 @@ impl Subject {
             sites: self.sites(size),
             coherence: Coherence::Auto,
             sources: Sources::SubPixel,
+            sizes: self.sizes,
             detail: None,
             map_side: (TEXELS * size).max(512),
             mask: None,
             guides: Vec::new(),
         };
         job.run()
+    }
+
+    /// Returns a picture of the model with its texture, and the number of sites.
+    pub(super) fn picture(&self, size: u32) -> Result<(Raster<LinearRgb>, usize)> {
+        let textured = self.textured(size)?;
+        let mesh = textured.synthesizer.surface().mesh();
+        let picture = lit(mesh, &self.view, [size; 2], |surface| {
+            textured.color(surface)
+        })?;
+        Ok((picture, textured.synthesizer.hierarchy().sites().len()))
     }
 }
 

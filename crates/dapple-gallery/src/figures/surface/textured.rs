@@ -22,6 +22,8 @@ pub(super) struct Job {
     pub(super) sites: HierarchyOptions,
     pub(super) coherence: Coherence,
     pub(super) sources: Sources,
+    /// The bounds of sizes that follow the directions; one size if there are none.
+    pub(super) sizes: Option<[f32; 2]>,
     /// A larger version of the image that is shown instead.
     pub(super) detail: Option<Raster<LinearRgb>>,
     /// The side of the texture map in texels.
@@ -67,7 +69,10 @@ impl Job {
         let hierarchy = Hierarchy::new(&surface, &self.sites)?;
         let axis = Orientation::AXIS;
         let orientation = Orientation::symmetric(&hierarchy, &self.directions, axis, symmetry)?;
-        let synthesizer = Synthesizer::from_parts(surface, hierarchy, orientation, None)?;
+        let mut synthesizer = Synthesizer::from_parts(surface, hierarchy, orientation, None)?;
+        if let Some(bounds) = self.sizes {
+            synthesizer = synthesizer.with_conformal_scales(bounds)?;
+        }
         let mut exemplar = Exemplar::new(&self.image, self.edges)?;
         if let Some(mask) = &self.mask {
             exemplar = exemplar.with_mask(mask)?;
