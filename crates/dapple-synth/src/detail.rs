@@ -1,19 +1,27 @@
 //! Reading an image between its pixels and at any size of the footprint: a map of the exemplar, or a larger version of it.
 //!
-//! Between pixels values are those of Keys's cubic, kept within the range of the pixels that it reads, so that edges stay
-//! sharp and have no rim. For footprints of more than a pixel there are coarser versions, each the mean of
-//! 2 × 2 pixels of the one before, between which values are mixed.
+//! Between pixels values are those of the cubic of Catmull and Rom, sharpened the more the farther the place is from the pixels, and
+//! kept within the range of the pixels that it reads, so that edges stay sharp and have no rim. For footprints of more than a
+//! pixel there are coarser versions, each the mean of 2 × 2 pixels of the one before, between which values are mixed.
 //!
 //! References: Robert G. Keys, "Cubic Convolution Interpolation for Digital Image Processing", IEEE Transactions on
-//! Acoustics, Speech, and Signal Processing 29, 1981, DOI 10.1109/TASSP.1981.1163711; Lance Williams, "Pyramidal Parametrics", SIGGRAPH 1983, DOI 10.1145/800059.801126.
+//! Acoustics, Speech, and Signal Processing 29, 1981, DOI 10.1109/TASSP.1981.1163711, whose cubic of the third order that of Catmull and
+//! Rom is; Lance Williams, "Pyramidal Parametrics", SIGGRAPH 1983, DOI 10.1145/800059.801126. The sharpening is our own.
 
 use crate::{Edges, SynthError, SynthErrorKind};
 use dapple_raster::{Raster, Wrap, parallel};
 use glam::Vec2;
 
-/// The slope of the cubic at a distance of a pixel. Averaged over places, it keeps 0.93 to 0.98 of the lengths of gradients
-/// of photographs of grass, rock, leaves and bricks; that of Catmull and Rom, -0.5, keeps 0.87 to 0.95.
-const SHARPNESS: f32 = -0.75;
+/// How much is added of what the second differences of pixels lack, halfway between two.
+///
+/// Any mean of pixels has less contrast than they have. Measured on flat textures of photographs with a texel for a pixel, means of
+/// eight seeds: deviations of leaves, rock, grass and bricks are 0.94 to 1.00 times those of the photographs, where those of the
+/// sites are 0.93 to 0.97, and lengths of gradients 0.94 to 1.00. Without it they are 0.85 to 0.96 and 0.79 to 0.91. More of it
+/// makes the borders of pieces in noise steeper than a tenth.
+const SHARPENING: f32 = 0.65;
+
+/// The footprint from which on all of it is added, in pixels: in much smaller ones it would be seen as beads along slanted edges.
+const SHARP: f32 = 0.5;
 
 /// A map with `N` channels, and its coarser versions.
 #[derive(Clone, Debug)]
@@ -67,19 +75,19 @@ impl<const N: usize> Detail<N> {
     pub(crate) fn sample(&self, place: Vec2, footprint: f32) -> [f32; N] {
         let width = footprint * self.factor;
         if width <= 1.0 {
-            return self.cubic(0, place);
+            return self.cubic(0, place, SHARPENING * (width / SHARP).min(1.0));
         }
         let level = libm::log2f(width).min((self.levels.len() - 1) as f32);
         let fine = level as usize;
         let coarse = (fine + 1).min(self.levels.len() - 1);
         let part = level - fine as f32;
-        let [a, b] = [fine, coarse].map(|level| self.cubic(level, place));
+        let [a, b] = [fine, coarse].map(|level| self.cubic(level, place, SHARPENING));
         core::array::from_fn(|channel| a[channel] + part * (b[channel] - a[channel]))
     }
 
-    /// The cubic through the 4 × 4 pixels around a place, in their range.
+    /// The value of the 4 × 4 pixels around a place, in their range.
     #[inline]
-    fn cubic(&self, level: usize, place: Vec2) -> [f32; N] {
+    fn cubic(&self, level: usize, place: Vec2, sharpening: f32) -> [f32; N] {
         let map = &self.levels[level];
         // Exact: the divisor is a power of two.
         let factor = self.factor / (1_u64 << level) as f32;
@@ -91,7 +99,7 @@ impl<const N: usize> Detail<N> {
                 let first = first as i64 - 1;
                 [0, 1, 2, 3].map(|step| self.index(first + step, n))
             });
-        let [across, down] = [part.x, part.y].map(weights);
+        let [across, down] = [part.x, part.y].map(|part| weights(part, sharpening));
         let mut sum = [0.0; N];
         let mut range = [[f32::INFINITY, f32::NEG_INFINITY]; N];
         for (row, down) in rows.into_iter().zip(down) {
@@ -121,13 +129,22 @@ impl<const N: usize> Detail<N> {
     }
 }
 
-/// The weights of four pixels for a place that is `t` past the second one, from 0 to 1.
+/// The weights of four pixels for a place that is `t` past the second one, from 0 to 1: they have the sum 1 and are in balance at the
+/// place, so that ramps stay what they are.
 #[inline]
-fn weights(t: f32) -> [f32; 4] {
+fn weights(t: f32, sharpening: f32) -> [f32; 4] {
     let s = 1.0 - t;
-    let inner = |x: f32| ((SHARPNESS + 2.0) * x - (SHARPNESS + 3.0)) * x * x + 1.0;
-    let outer = |x: f32| SHARPNESS * (((x - 5.0) * x + 8.0) * x - 4.0);
-    [outer(1.0 + t), inner(t), inner(s), outer(1.0 + s)]
+    let outer = |t: f32, s: f32| -0.5 * t * s * s;
+    let inner = |t: f32| (1.5 * t - 2.5) * t * t + 1.0;
+    // The second differences around the two inner pixels, mixed. The square keeps the slope at pixels.
+    let sharper = sharpening * 4.0 * (t * s) * (t * s);
+    let [left, right] = [sharper * s, sharper * t];
+    [
+        outer(t, s) - left,
+        inner(t) + 2.0 * left - right,
+        inner(s) + 2.0 * right - left,
+        outer(s, t) - right,
+    ]
 }
 
 /// The means of 2 × 2 pixels; the last ones of an odd side are repeated.

@@ -210,7 +210,7 @@ fn bake_is_as_sharp_as_the_exemplar() {
     let atlas = atlas(&plane, side);
     let detail = Detail::new(image.map(|&value| [value]), [32; 2], Edges::Wrap).unwrap();
     let enlarged = Raster::from_fn([96; 2], |x, y| {
-        detail.sample(Vec2::new(x as f32, y as f32) / 3.0, 0.0)[0]
+        detail.sample(Vec2::new(x as f32, y as f32) / 3.0, 1.0 / 3.0)[0]
     });
     let want = gradients(&enlarged.unwrap());
     let ratios = [Sources::SubPixel, Sources::Pixel].map(|sources| {
@@ -242,7 +242,7 @@ fn value_stability_magnify() {
     let texels = [[3, 5], [40, 41], [88, 30]].map(|[x, y]: [u32; 2]| baked.row(y)[x as usize]);
     assert_eq!(
         texels.map(f32::to_bits),
-        [1_056_579_885, 1_055_755_833, 1_057_274_105]
+        [1_056_483_936, 1_055_914_601, 1_057_176_652]
     );
 }
 
