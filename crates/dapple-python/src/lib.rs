@@ -57,7 +57,7 @@ mod _native {
     #[pymodule_export]
     use crate::meshes::{mesh_report, read_model};
     #[pymodule_export]
-    use crate::models::{Model, synthesize_along, synthesize_on};
+    use crate::models::{Model, repair_on, synthesize_along, synthesize_on};
     #[pymodule_export]
     use crate::points::{
         _graph_from_description, Domain, Graph, Points, delaunay, extend_poisson_disk, gabriel,

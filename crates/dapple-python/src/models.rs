@@ -2,6 +2,7 @@
 
 mod along;
 mod example_mesh;
+mod repair;
 mod surface_guides;
 
 use crate::data;
@@ -27,6 +28,7 @@ use dapple::tile::Map;
 use example_mesh::ExampleMesh;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+pub(crate) use repair::repair_on;
 use std::path::PathBuf;
 use surface_guides::{Guide, SitesOfMesh, SurfaceGuides, SurfaceScales};
 
@@ -211,7 +213,7 @@ pub(crate) fn synthesize_on<'py>(
         let texture = match example_mesh {
             None => synthesizer.synthesize_guided(&example, &columns, &options, heard)?,
             Some(source) => {
-                let lifted = source.textured(&sites_of_example, &example)?;
+                let (lifted, _) = source.textured(&sites_of_example, &example)?;
                 synthesizer.lift(&lifted, &columns, &options, heard)?
             }
         };

@@ -163,6 +163,39 @@ def test_the_texture_of_another_mesh_is_lifted_with_all_its_maps():
     assert (turned.texture != alone.texture).any()
 
 
+def test_the_texture_of_a_mesh_is_made_again_in_the_hole_alone():
+    maps = MODEL.maps
+    hole = np.hypot(*(np.indices((256, 256)) - 90)) < 30
+    stained = {name: np.where(hole if map.ndim == 2 else hole[..., None], 0, map) for name, map in maps.items()}
+    clean = dp.repair_on(MODEL, stained, hole, sites=3000, levels=2, seed=4)
+    assert list(clean) == list(maps)
+    for name, map in clean.items():
+        np.testing.assert_array_equal(map[~hole], maps[name][~hole])
+    # Black is nowhere in the coat, and it is not taken from the hole.
+    inside = clean["albedo"][hole]
+    assert (inside.sum(-1) > 0).mean() > 0.5 and inside.std() > 0.5 * maps["albedo"].std()
+    alone = dp.repair_on(MODEL, stained["albedo"], hole * 1.0, sites=3000, levels=2, seed=4)
+    np.testing.assert_array_equal(alone, clean["albedo"])
+    with pytest.raises(dp.DappleError, match="no attribute uv"):
+        dp.repair_on(TORUS, stained, hole)
+    with pytest.raises(dp.DappleError):
+        dp.repair_on(MODEL, stained, hole[1:])
+    with pytest.raises(dp.DappleError):
+        dp.repair_on(MODEL, stained, hole * 0 + 1)
+
+
+@pytest.mark.skipif(COMMAND is None, reason="there is no command dapple")
+def test_the_command_repairs_the_texture_of_a_mesh_alike(tmp_path):
+    dp.synthesize_on(TORUS, CELLS, **QUICK).export(tmp_path / "coat.glb")
+    coat = dp.read_model(tmp_path / "coat.glb")
+    hole = (np.hypot(*(np.indices((256, 256)) - 90)) < 30).astype(np.float32)
+    dp.write_image(tmp_path / "hole.png", hole)
+    run = [COMMAND, "synth", "coat.glb", "--repair", "hole.png", "--example-sites", "3000", "--levels", "2", "--seed", "4"]
+    subprocess.run([*run, "--format", "png8", "-o", "clean.png"], cwd=tmp_path, check=True)
+    clean = dp.repair_on(coat, coat.texture, hole, sites=3000, levels=2, seed=4)
+    np.testing.assert_array_equal(dp.srgb_from_linear(clean), dp.srgb_from_linear(dp.read_image(tmp_path / "clean.png")))
+
+
 @pytest.mark.parametrize("options, match", [
     ({"example_sites": 100}, "without example_mesh"),
     ({"example_directions": ([[0, 0, 0]], [[0, 1, 0]])}, "without example_mesh"),

@@ -3,6 +3,7 @@
 use super::{directions, own_uvs, uvs_of};
 use crate::error::{Error, Result};
 use crate::meshes::mesh;
+use dapple::mesh::glam::DVec2;
 use dapple::mesh::{Mesh, Surface};
 use dapple::synth::{Direction, Exemplar, HierarchyOptions, MeshExemplar, Synthesizer};
 use pyo3::prelude::*;
@@ -30,20 +31,30 @@ impl ExampleMesh {
             }
             return Ok(None);
         };
-        Ok(Some(Self {
-            mesh: mesh(example_mesh)?,
-            uvs: uvs_of("example_mesh", example_mesh)?,
-            n_sites,
-            directions: self::directions(directions)?,
-        }))
+        Self::new(example_mesh, "example_mesh", n_sites, directions).map(Some)
     }
 
-    /// The mesh with points and its texture; `sites` are those of the mesh that gets the texture, but for the seed.
+    /// Reads a mesh, which the caller knows by this name, and the directions of its texture.
+    pub(super) fn new(
+        of: &Bound<'_, PyAny>,
+        name: &str,
+        n_sites: Option<usize>,
+        directions: Option<(Bound<'_, PyAny>, Bound<'_, PyAny>)>,
+    ) -> Result<Self> {
+        Ok(Self {
+            mesh: mesh(of)?,
+            uvs: uvs_of(name, of)?,
+            n_sites,
+            directions: self::directions(directions)?,
+        })
+    }
+
+    /// The mesh with points and its texture, and where that is on its faces; `sites` are those of the mesh that gets the texture, but for the seed.
     pub(super) fn textured(
         self,
         sites: &HierarchyOptions,
         texture: &Exemplar,
-    ) -> Result<MeshExemplar> {
+    ) -> Result<(MeshExemplar, Vec<[DVec2; 3]>)> {
         let (repaired, repair) = self.mesh.repair();
         let surface = Surface::new(repaired)?;
         let uvs = own_uvs(&surface, &self.mesh, &repair, &self.uvs)?;
@@ -52,6 +63,6 @@ impl ExampleMesh {
             ..sites.clone()
         };
         let source = Synthesizer::new(surface, &self.directions, &sites)?;
-        Ok(MeshExemplar::new(source, &uvs, texture)?)
+        Ok((MeshExemplar::new(source, &uvs, texture)?, uvs))
     }
 }

@@ -1,0 +1,112 @@
+//! Repair of the texture of a mesh.
+
+use super::example_mesh::ExampleMesh;
+use super::{bake, refuse_alpha};
+use crate::error::Result;
+use crate::pictures;
+use crate::seed::SeedArgument;
+use crate::synthesis::{Coherence, Matching, check_sizes, exemplar};
+use crate::watch;
+use dapple::mesh::CREASE;
+use dapple::raster::Raster;
+use dapple::synth::{Atlas, HierarchyOptions, SynthError};
+use dapple::tile::Map;
+use pyo3::prelude::*;
+
+/// The texture of a mesh in which a part is made again, such as a stain, from what is around it on the mesh.
+///
+/// Parameters
+/// ----------
+/// mesh : anything with `.vertices` (n, 3), `.faces` (m, 3) and `.uv` (m, 3, 2), v down, such as a `MeshFile` or a `Model`.
+/// texture : (rows, columns), or (rows, columns, 3) in linear light, at the texture coordinates of the mesh; or a dictionary of
+///     maps, of which the first is matched and the others follow it.
+/// hole : (rows, columns), at least 0.5 where the texture is made again; nothing is taken from there.
+/// sites : the number of points of the surface that get a color, 1 to 2**28.
+/// directions : (positions, vectors), each (n, 3): which way the texture runs at these positions; elsewhere they are
+///     interpolated, and without any it runs down.
+/// seed, levels, coherence, progress : as for `synthesize`. More levels fill larger holes.
+///
+/// Examples
+/// --------
+/// >>> import numpy as np, dapple_textures as dp
+/// >>> checker = np.kron([[0, 1], [1, 0]], np.ones((8, 8)))
+/// >>> roof = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]), np.array([[0, 1, 2], [0, 2, 3]])
+/// >>> model = dp.synthesize_on(roof, checker, texels=64, sites=500, edges="wrap", levels=2)
+/// >>> hole = np.hypot(*(np.indices((64, 64)) - 32)) < 8
+/// >>> clean = dp.repair_on(model, np.where(hole, 0.5, model.texture), hole, sites=500, levels=2)
+/// >>> bool((clean == model.texture)[~hole].all())
+/// True
+#[pyfunction]
+#[pyo3(signature = (mesh, texture, hole, *, sites = 65536, directions = None, seed = SeedArgument::default(), levels = 3,
+    coherence = None, progress = None),
+    text_signature = "(mesh, texture, hole, *, sites=65536, directions=None, seed=0, levels=3, coherence=None, progress=None)")]
+pub(crate) fn repair_on<'py>(
+    py: Python<'py>,
+    mesh: &Bound<'py, PyAny>,
+    texture: &Bound<'py, PyAny>,
+    hole: &Bound<'py, PyAny>,
+    sites: usize,
+    directions: Option<(Bound<'py, PyAny>, Bound<'py, PyAny>)>,
+    seed: SeedArgument,
+    levels: usize,
+    coherence: Option<Coherence>,
+    progress: Option<&Bound<'py, PyAny>>,
+) -> Result<Bound<'py, PyAny>> {
+    let source = ExampleMesh::new(mesh, "mesh", None, directions)?;
+    let (layout, maps) = pictures::read("texture", texture)?;
+    check_sizes(&maps)?;
+    refuse_alpha(&layout)?;
+    let hole = pictures::numbers("hole", hole)?.map(|&value| value >= 0.5);
+    let usable = hole.map(|is_made| !is_made);
+    let example = exemplar(&maps, "cut")?.with_mask(&usable)?;
+    let sites = HierarchyOptions {
+        n_sites: sites,
+        n_levels: levels,
+        seed: seed.0.child("example sites", 0),
+        ..HierarchyOptions::default()
+    };
+    let matching = Matching {
+        seed,
+        levels,
+        coherence,
+        evenness: None,
+        axes: None,
+        matching: None,
+        paper: false,
+    };
+    let options = matching.options()?;
+    let mended = watch::run(py, progress, |heard| -> Result<Vec<Map>> {
+        let (exemplar, uvs) = source.textured(&sites, &example)?;
+        let repaired = exemplar.repair(&options, heard)?;
+        let surface = exemplar.source().surface();
+        let size = hole.size();
+        let atlas = Atlas::from_uvs(surface, &uvs, size, size[0].max(size[1]))?;
+        let shading = surface.mesh().corner_normals(CREASE);
+        let mended = maps.iter().map(|map| {
+            let new = bake(exemplar.source(), &repaired, &atlas, &shading, map)?;
+            within(&hole, map, &new)
+        });
+        Ok(mended.collect::<core::result::Result<_, SynthError>>()?)
+    })??;
+    layout.python(py, mended)
+}
+
+/// The new texels in the hole, and the old ones elsewhere.
+fn within(hole: &Raster<bool>, old: &Map, new: &Map) -> core::result::Result<Map, SynthError> {
+    Ok(match (old, new) {
+        (Map::Value(old), Map::Value(new)) => Map::Value(mixed(hole, old, new)?),
+        (Map::Color(old), Map::Color(new)) => Map::Color(mixed(hole, old, new)?),
+        (Map::Normal(old), Map::Normal(new)) => Map::Normal(mixed(hole, old, new)?),
+        (other, _) => other.clone(),
+    })
+}
+
+fn mixed<T: Copy>(
+    hole: &Raster<bool>,
+    old: &Raster<T>,
+    new: &Raster<T>,
+) -> core::result::Result<Raster<T>, SynthError> {
+    let new = hole.zip_map(new, |&is_made, &new| (is_made, new))?;
+    let texel = |&(is_made, new): &(bool, T), &old: &T| if is_made { new } else { old };
+    Ok(new.zip_map(old, texel)?)
+}
