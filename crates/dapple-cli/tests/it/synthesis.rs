@@ -230,6 +230,70 @@ fn examples_go_where_a_map_on_a_mesh_says() {
     assert!(n_obeyed > 64 * 64 - 2 * 64, "{n_obeyed} of 4096");
 }
 
+#[test]
+fn colors_of_vertices_say_what_an_image_of_them_says() {
+    let folder = Folder::with_inputs("painted_mesh");
+    // A square that is painted black on the left and white on the right.
+    let header = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
+        property uchar red\nproperty uchar green\nproperty uchar blue\nelement face 1\n\
+        property list uchar int vertex_indices\nend_header\n";
+    let vertices = "0 0 0 0 0 0\n1 0 0 255 255 255\n1 1 0 255 255 255\n0 1 0 0 0 0\n";
+    let square = format!("{header}{vertices}4 0 1 2 3\n");
+    fs::write(folder.path("painted.ply"), square).unwrap();
+    write_square(&folder);
+    let write = |name: &str, value: fn(u32, u32) -> f32| {
+        let plane = Raster::from_fn([40; 2], value).unwrap();
+        write_gray_png(folder.path(name), &plane, Depth::Eight).unwrap();
+    };
+    write("dark.png", |x, y| 0.1 * f32::from((x / 2 + y) % 2 == 0));
+    write("light.png", |x, y| {
+        0.9 + 0.1 * f32::from((x / 2 + y) % 2 == 0)
+    });
+    let run = |more: &str| {
+        let line = format!(
+            "synth dark.png --mesh square.obj --sites 2000 --atlas uv --texture-size 64 --force \
+             -o out.png {more}"
+        );
+        folder.run(&line.split_whitespace().collect::<Vec<_>>())
+    };
+    for more in [
+        "--example light.png --which painted.ply",
+        "--example light.png --guide painted.ply",
+        "--example light.png --which painted.ply --scale painted.ply --scales 1,1",
+    ] {
+        assert_done(&run(more), more);
+        let out = read_gray(&folder, "out.png");
+        let places = (0..64).flat_map(|y| (0..64).map(move |x| [x, y]));
+        let is_obeyed = |&[x, y]: &[u32; 2]| (out.row(y)[x as usize] > 0.5) == (x >= 32);
+        let n_obeyed = places.filter(is_obeyed).count();
+        // A guide of lightness leaves more to the examples near its middle.
+        assert!(n_obeyed > 3700, "{more}: {n_obeyed} of 4096");
+    }
+    for (more, part) in [
+        ("--guide model.obj", "no colors of vertices"),
+        ("--scale painted.ply --mesh model.obj", "of 4 vertices, but"),
+    ] {
+        let line = format!("synth dark.png --mesh square.obj -o none.png {more}");
+        let line = match more.contains("--mesh") {
+            true => line.replacen("--mesh square.obj ", "", 1),
+            false => line,
+        };
+        let output = folder.run(&line.split_whitespace().collect::<Vec<_>>());
+        assert_eq!(output.status.code(), Some(1), "{line}");
+        let text = stderr(&output);
+        assert!(text.contains(part), "{line}: {text}");
+    }
+    let flat = folder.run(&[
+        "synth",
+        "dark.png",
+        "--guide",
+        "painted.ply",
+        "-o",
+        "none.png",
+    ]);
+    assert_eq!(flat.status.code(), Some(2), "a mesh for an image");
+}
+
 /// Writes a square whose texture coordinates are its positions.
 fn write_square(folder: &Folder) {
     let square =

@@ -88,7 +88,7 @@ impl Args {
 
     /// The angles of directions of all pixels, and scales if an image says them.
     fn planes(&self) -> Result<(Raster<f32>, Option<Raster<f32>>)> {
-        let scales = self.guides.read_scale()?;
+        let scales = self.read_scale()?.map(|scales| scales.raster().clone());
         let Some(first) = self.surface.directions.as_deref() else {
             let size = scales.as_ref().map(Raster::size).unwrap_or_default();
             return Ok((Raster::filled(size, 0.0)?, scales));

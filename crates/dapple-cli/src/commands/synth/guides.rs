@@ -2,14 +2,15 @@
 
 use super::Args;
 use super::corners::own_uvs;
+use super::example_mesh::is_mesh;
 use super::options::first_given;
-use super::reading::gray;
+use super::reading::{gray, lightness};
 use crate::args::{Numbers, Region};
-use crate::error::Hint;
+use crate::error::{Hint, usage};
 use crate::input::{self, Kind, Loaded};
 use crate::words::Word;
-use anyhow::Result;
-use dapple::mesh::{Model, Repair};
+use anyhow::{Result, anyhow};
+use dapple::mesh::{Model, Repair, SurfacePoint};
 use dapple::points::glam::DVec2;
 use dapple::raster::{Raster, Wrap};
 use dapple::synth::{SideBySide, Synthesizer, Turned};
@@ -32,13 +33,15 @@ pub(super) struct GuideArgs {
     pub(super) turned: Turned,
 
     /// Which example goes where: black is the first, white the last, and grays are those between. A texture in the plane has
-    /// the size of this image; on a mesh it is read at the mesh's own texture coordinates.
-    #[arg(long, value_name = "IMAGE", requires = "examples", conflicts_with_all = ["size", "repair", "replay"])]
+    /// the size of this image; on a mesh it is read at the mesh's own texture coordinates, or it is the mesh with colors of its
+    /// vertices.
+    #[arg(long, value_name = "IMAGE|MESH", requires = "examples", conflicts_with_all = ["size", "repair", "replay"])]
     which: Option<PathBuf>,
 
     /// A picture that the texture is to look like from afar: light pixels of the example go where it is light. A texture in
-    /// the plane has its size; on a mesh it is read at the mesh's own texture coordinates.
-    #[arg(long, value_name = "IMAGE", conflicts_with_all = ["size", "repair", "replay"])]
+    /// the plane has its size; on a mesh it is read at the mesh's own texture coordinates, or it is the mesh with colors of
+    /// its vertices.
+    #[arg(long, value_name = "IMAGE|MESH", conflicts_with_all = ["size", "repair", "replay"])]
     guide: Option<PathBuf>,
 
     /// Where in the example there is what --guide says, such as heights in both: an image for each example. By default it is
@@ -56,8 +59,9 @@ pub(super) struct GuideArgs {
     guide_weight: f32,
 
     /// How large a pixel of the example is: an image, black where it is small and white where it is large. A texture in the
-    /// plane has its size; on a mesh it is read at the mesh's own texture coordinates.
-    #[arg(long, value_name = "IMAGE")]
+    /// plane has its size; on a mesh it is read at the mesh's own texture coordinates, or it is the mesh with colors of its
+    /// vertices.
+    #[arg(long, value_name = "IMAGE|MESH")]
     pub(super) scale: Option<PathBuf>,
 
     /// The sizes at black and at white of --scale, from 1/8 to 8, in pixels of the texture or distances of points of a mesh; by
@@ -79,16 +83,6 @@ impl GuideArgs {
         ])
     }
 
-    /// The sizes that `--scale` says, if it was given.
-    pub(super) fn read_scale(&self) -> Result<Option<Raster<f32>>> {
-        let Some(path) = &self.scale else {
-            return Ok(None);
-        };
-        let [black, white] = self.scales.map_or(SCALES, |scales| scales.0);
-        let shares = read_gray(path, None)?;
-        Ok(Some(shares.map(|share| black + (white - black) * share)))
-    }
-
     /// An option that was given and asks for a guide.
     pub(super) fn given(&self) -> Option<&'static str> {
         first_given(&[
@@ -104,23 +98,81 @@ const CHOICE_WEIGHT: f32 = 3.0;
 /// How far lightness is averaged: over two pixels the grain of an example is gone, and what it shows is not.
 const LIGHTNESS_BLUR: f64 = 2.0;
 
-/// An image that says which part of the example goes where, and what it is compared with.
+/// What says which part of the example goes where, and what it is compared with.
 pub(super) struct Guide {
     /// Its values at the pixels of the example.
     pub(super) example: Raster<f32>,
     /// Those of the texture.
-    pub(super) target: Raster<f32>,
+    pub(super) target: Values,
     pub(super) weight: f32,
 }
 
+/// Values from place to place.
+#[derive(Clone)]
+pub(super) enum Values {
+    /// At the pixels of a texture in the plane, or at texture coordinates of a mesh.
+    Image(Raster<f32>),
+    /// At the vertices of a mesh, in a row.
+    Vertices(Raster<f32>),
+}
+
+impl Values {
+    /// The image, or the row of a mesh.
+    pub(super) fn raster(&self) -> &Raster<f32> {
+        match self {
+            Self::Image(values) | Self::Vertices(values) => values,
+        }
+    }
+
+    /// The values that these become.
+    fn map(&self, change: impl FnMut(&f32) -> f32) -> Self {
+        match self {
+            Self::Image(values) => Self::Image(values.map(change)),
+            Self::Vertices(values) => Self::Vertices(values.map(change)),
+        }
+    }
+}
+
 impl Args {
+    /// Reads values from place to place: how light an image is or, for a texture on a mesh, the colors of the vertices of that
+    /// mesh are.
+    fn read_values(&self, path: &Path) -> Result<Values> {
+        if !is_mesh(path) {
+            return Ok(Values::Image(read_gray(path, None)?));
+        }
+        let name = input::name(path);
+        if self.surface.mesh.is_none() {
+            let error = usage(format!("{name} is a mesh, and the texture an image"));
+            return Err(error.hint("give an image of the texture's size, or --mesh"));
+        }
+        let Some(colors) = input::model(path)?.colors else {
+            let error = anyhow!("{name} has no colors of vertices");
+            return Err(
+                error.hint("give the mesh with a color for each vertex, such as a PLY file")
+            );
+        };
+        let lightness = colors.iter().map(|color| lightness(&color.color)).collect();
+        let row = Raster::from_vec([colors.len() as u32, 1], lightness)?;
+        Ok(Values::Vertices(row))
+    }
+
+    /// The sizes that `--scale` says, if it was given.
+    pub(super) fn read_scale(&self) -> Result<Option<Values>> {
+        let Some(path) = &self.guides.scale else {
+            return Ok(None);
+        };
+        let [black, white] = self.guides.scales.map_or(SCALES, |scales| scales.0);
+        let shares = self.read_values(path)?;
+        Ok(Some(shares.map(|share| black + (white - black) * share)))
+    }
+
     /// Reads the guides, for examples that lie side by side.
     pub(super) fn read_guides(&self, layout: &SideBySide, example: &Loaded) -> Result<Vec<Guide>> {
         let mut guides = Vec::new();
         let args = &self.guides;
         if let Some(path) = &args.which {
             let last = args.examples.len();
-            let values = read_gray(path, None)?;
+            let values = self.read_values(path)?;
             for image in 0..=last {
                 let is_chosen =
                     |&value: &f32| f32::from((value * last as f32).round() == image as f32);
@@ -132,9 +184,11 @@ impl Args {
             }
         }
         if let Some(path) = &args.guide {
-            let guide = read_gray(path, None)?;
-            if let Some(which) = &args.which {
-                input::check_size(path, guide.size(), which, guides[0].target.size())
+            let guide = self.read_values(path)?;
+            if let (Some(which), Values::Image(guide)) = (&args.which, &guide)
+                && let Values::Image(target) = &guides[0].target
+            {
+                input::check_size(path, guide.size(), which, target.size())
                     .hint("--guide and --which have one size")?;
             }
             let sigma = args.guide_blur.unwrap_or(match args.guide_of.len() {
@@ -142,7 +196,10 @@ impl Args {
                 _ => 0.0,
             });
             let blurred = |image: &Raster<f32>| blur(image, sigma, [Wrap::Mirror; 2]);
-            let guide = blurred(&guide)?;
+            let guide = match guide {
+                Values::Image(image) => Values::Image(blurred(&image)?),
+                vertices => vertices,
+            };
             let (example, target) = if args.guide_of.is_empty() {
                 let lightness = blurred(&gray(example)?)?;
                 let guide = like(&guide, &lightness, &layout.mask()?);
@@ -186,11 +243,11 @@ pub(super) fn read_gray(path: &Path, region: Option<Region>) -> Result<Raster<f3
 }
 
 /// A guide with the mean and the deviation of what it is compared with, where that is used.
-fn like(guide: &Raster<f32>, example: &Raster<f32>, mask: &Raster<bool>) -> Raster<f32> {
+fn like(guide: &Values, example: &Raster<f32>, mask: &Raster<bool>) -> Values {
     let pixels = example.pixels().iter().zip(mask.pixels());
     let used = pixels.filter_map(|(&value, &is_used)| is_used.then_some(value));
     let [mean, deviation] = moments(used);
-    let [own_mean, own_deviation] = moments(guide.pixels().iter().copied());
+    let [own_mean, own_deviation] = moments(guide.raster().pixels().iter().copied());
     let scale = if own_deviation > 0.0 {
         deviation / own_deviation
     } else {
@@ -207,30 +264,47 @@ fn moments(values: impl Iterator<Item = f32> + Clone) -> [f64; 2] {
     [mean, (values.map(square).sum::<f64>() / n).sqrt()]
 }
 
-/// The values of images at all sites of a mesh, by the mesh's own texture coordinates; the images repeat.
+/// Values at all sites of a mesh: of images at the mesh's own texture coordinates, where they repeat, and of vertices in between.
 pub(super) fn at_sites(
-    images: &[&Raster<f32>],
+    values: &[&Values],
     synthesizer: &Synthesizer,
     model: &Model,
     repair: &Repair,
 ) -> Result<Vec<Vec<f32>>> {
-    if images.is_empty() {
-        return Ok(Vec::new());
-    }
     let surface = synthesizer.surface();
-    let uvs = own_uvs(surface, model, repair)
-        .hint("guides and --scale are read at texture coordinates: give the mesh some")?;
     let points = synthesizer.hierarchy().sites().points();
-    let values = |image: &&Raster<f32>| {
-        let size = image.size().map(f64::from);
-        let value = |&point| {
-            let weights = surface.weights(point);
-            let corners = uvs[point.face.index()].iter().zip(weights);
-            let uv = corners.map(|(&uv, weight)| uv * weight).sum::<DVec2>();
-            let [column, row] = [uv.x * size[0], uv.y * size[1]].map(|at| at.floor() as i64);
-            *image.at(column, row, [Wrap::Repeat; 2])
-        };
-        points.iter().map(value).collect()
+    let column = |values: &&Values| match values {
+        Values::Image(image) => {
+            let uvs = own_uvs(surface, model, repair)
+                .hint("guides and --scale are read at texture coordinates: give the mesh some")?;
+            let size = image.size().map(f64::from);
+            let value = |&point: &SurfacePoint| {
+                let weights = surface.weights(point);
+                let corners = uvs[point.face.index()].iter().zip(weights);
+                let uv = corners.map(|(&uv, weight)| uv * weight).sum::<DVec2>();
+                let [column, row] = [uv.x * size[0], uv.y * size[1]].map(|at| at.floor() as i64);
+                *image.at(column, row, [Wrap::Repeat; 2])
+            };
+            Ok(points.iter().map(value).collect())
+        }
+        Values::Vertices(row) => {
+            let (count, needed) = (row.pixels().len(), model.mesh.positions().len());
+            if count != needed {
+                let error =
+                    anyhow!("the colors are of {count} vertices, but the mesh has {needed}");
+                return Err(error.hint("give the mesh itself, with colors"));
+            }
+            let faces = surface.mesh().faces();
+            let value = |&point: &SurfacePoint| {
+                let corners = faces[point.face.index()].iter();
+                let parts = corners.zip(surface.weights(point)).map(|(vertex, weight)| {
+                    let before = repair.vertex_before[vertex.index()];
+                    f64::from(row.pixels()[before.index()]) * weight
+                });
+                parts.sum::<f64>() as f32
+            };
+            Ok(points.iter().map(value).collect())
+        }
     };
-    Ok(images.iter().map(values).collect())
+    values.iter().map(column).collect()
 }

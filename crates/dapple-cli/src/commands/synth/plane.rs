@@ -62,7 +62,7 @@ pub(super) fn run(args: &Args, context: &Context) -> Result<Exit> {
                 .and_then(|whole| whole.repair(exemplar, hole, &options, shown(&progress)))
         }
         (None, None) if !guides.is_empty() => {
-            let targets: Vec<_> = guides.iter().map(|guide| &guide.target).collect();
+            let targets: Vec<_> = guides.iter().map(|guide| guide.target.raster()).collect();
             synthesize_plane_guided(exemplar, &targets, edges, &options, shown(&progress))
         }
         (None, None) => grow(args, exemplar, &progress),

@@ -277,15 +277,17 @@ impl Args {
 
 /// How light the pixels of an image are, as sRGB codes from 0 to 1; gray ones as they are.
 pub(super) fn gray(image: &Loaded) -> Result<Raster<f32>> {
-    let code = |color: &LinearRgb| {
-        let [code, ..] = LinearRgb::gray(color.luminance()).to_srgb::<u16>();
-        f32::from(code) / f32::from(u16::MAX)
-    };
     match &image.map {
         Map::Value(values) => Ok(values.clone()),
-        Map::Color(colors) => Ok(colors.map(code)),
+        Map::Color(colors) => Ok(colors.map(lightness)),
         Map::Normal(_) => bail!("normals are not light or dark"),
     }
+}
+
+/// The code of the gray that is as light as a color.
+pub(super) fn lightness(color: &LinearRgb) -> f32 {
+    let [code, ..] = LinearRgb::gray(color.luminance()).to_srgb::<u16>();
+    f32::from(code) / f32::from(u16::MAX)
 }
 
 /// Images side by side. If some are gray and others colors, all are colors. A larger version of one image stays as it is.

@@ -457,7 +457,7 @@ fn scaled(
     model: &Model,
     repair: &Repair,
 ) -> Result<Synthesizer> {
-    let scaled = match (args.guides.read_scale()?, args.guides.scales) {
+    let scaled = match (args.read_scale()?, args.guides.scales) {
         (Some(scale), _) => {
             let mut columns = guides::at_sites(&[&scale], &synthesizer, model, repair)?;
             synthesizer.with_scales(columns.remove(0))
