@@ -71,7 +71,7 @@ fn odd_points_have_graphs_or_are_refused() {
 
 #[test]
 fn textures_of_odd_meshes_are_lifted_or_refused() {
-    try_out("lift", 20);
+    try_out("lift", 10);
 }
 
 #[test]

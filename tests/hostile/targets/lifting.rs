@@ -1,4 +1,4 @@
-//! The target for textures of meshes as examples: meshes, texture coordinates and masks of any kind.
+//! The target for textures of meshes, and for these as examples: meshes, sizes, texture coordinates and masks of any kind.
 
 use super::accepted;
 use super::bytes::Bytes;
@@ -19,7 +19,8 @@ const MOST_SITES: u8 = 64;
 const SIDE: u32 = 16;
 const MAP_SIDE: u32 = 64;
 
-/// Makes a texture of a mesh the example for the same mesh, or mends it: it is refused, or values are those of the texture.
+/// Makes an image or a texture of a mesh the example for the same mesh, or mends it: it is refused, or values are those of the
+/// texture.
 pub fn lift(bytes: &[u8]) {
     let mut bytes = Bytes(bytes);
     let choice = bytes.byte();
@@ -34,6 +35,15 @@ pub fn lift(bytes: &[u8]) {
     };
     let Some(synthesizer) = synthesizer(&mut bytes, options.n_levels) else {
         return;
+    };
+    let synthesizer = if choice & 32 == 0 {
+        synthesizer
+    } else {
+        let bounds = [(); 2].map(|()| bytes.number() as f32);
+        let Some(scaled) = accepted(synthesizer.with_conformal_scales(bounds)) else {
+            return;
+        };
+        scaled
     };
     let faces = synthesizer.surface().mesh().faces().iter();
     let uvs = faces.map(|_| [(); 3].map(|()| DVec2::new(bytes.number(), bytes.number())));
@@ -51,16 +61,21 @@ pub fn lift(bytes: &[u8]) {
         };
         example = masked;
     }
-    let Some(example) = accepted(MeshExemplar::new(synthesizer.clone(), &uvs, &example)) else {
-        return;
-    };
     let go_on = |_| ControlFlow::Continue(());
-    let lifted = match choice & 8 {
-        0 => synthesizer.lift(&example, &[], &options, go_on),
-        _ => example.repair(&options, go_on),
+    let made = if choice & 16 == 0 {
+        let of_mesh = MeshExemplar::new(synthesizer.clone(), &uvs, &example);
+        let Some(example) = accepted(of_mesh) else {
+            return;
+        };
+        match choice & 8 {
+            0 => synthesizer.lift(&example, &[], &options, go_on),
+            _ => example.repair(&options, go_on),
+        }
+    } else {
+        synthesizer.synthesize_with(&example, &options, go_on)
     };
-    if let Some(lifted) = accepted(lifted)
-        && let Some(map) = accepted(baked(&synthesizer, &lifted, &texture))
+    if let Some(made) = accepted(made)
+        && let Some(map) = accepted(baked(&synthesizer, &made, &texture))
     {
         let is_between = |value: &f32| (0.0..=1.0).contains(value);
         assert!(map.pixels().iter().all(is_between), "values of no texture");
@@ -89,11 +104,11 @@ fn synthesizer(bytes: &mut Bytes<'_>, n_levels: usize) -> Option<Synthesizer> {
 /// The texture as a map of the mesh.
 fn baked(
     synthesizer: &Synthesizer,
-    lifted: &SurfaceTexture,
+    made: &SurfaceTexture,
     texture: &Raster<f32>,
 ) -> Result<Raster<f32>, SynthError> {
     let atlas = Atlas::uniform(synthesizer.surface(), MAP_SIDE)?;
-    bake_values(synthesizer, lifted, texture, &atlas)
+    bake_values(synthesizer, made, texture, &atlas)
 }
 
 pub(super) fn seeds() -> Vec<Vec<u8>> {
@@ -104,10 +119,13 @@ pub(super) fn seeds() -> Vec<Vec<u8>> {
         let mut seed = vec![choice, 3, 3, 47];
         seed.extend(corners.as_flattened());
         seed.extend(faces.as_flattened());
+        if choice & 32 != 0 {
+            seed.extend([4, 5]); // From 0.5 to 2.
+        }
         // Texture coordinates from 0 to 1, in two bytes after their code.
         seed.extend((0..24_u8).flat_map(|at| [200, at, at.wrapping_mul(53)]));
         seed.extend([0xf0, 0x7e]);
         seed
     };
-    (0..16).map(seed).collect()
+    (0..64).map(seed).collect()
 }
