@@ -201,7 +201,7 @@ pub(crate) fn synthesize_on<'py>(
         let orientation = Orientation::symmetric(&hierarchy, &directions, down.into(), symmetry)?;
         let mut synthesizer = Synthesizer::from_parts(surface, hierarchy, orientation, None)?;
         if let Some(scales) = &scales {
-            synthesizer = scales.of(synthesizer, &mesh, &repair, &uvs)?;
+            synthesizer = scales.scaled(synthesizer, &mesh, &repair, &uvs)?;
         }
         let columns = guides.at_sites(&SitesOfMesh {
             synthesizer: &synthesizer,

@@ -48,6 +48,23 @@ pub(crate) struct Matching {
 }
 
 impl Matching {
+    /// Those of a repair.
+    pub(crate) fn of_repair(
+        seed: SeedArgument,
+        levels: usize,
+        coherence: Option<Coherence>,
+    ) -> Self {
+        Self {
+            seed,
+            levels,
+            coherence,
+            evenness: None,
+            axes: None,
+            matching: None,
+            paper: false,
+        }
+    }
+
     /// The options in the form of the library, read like those of the command.
     pub(crate) fn options(self) -> Result<Options> {
         let default = match self.paper {
@@ -289,16 +306,7 @@ pub(crate) fn repair<'py>(
     let hole = pictures::numbers("hole", hole)?.map(|&value| value >= 0.5);
     let usable = hole.map(|is_made| !is_made);
     let exemplar = self::exemplar(&maps, edges)?.with_mask(&usable)?;
-    let matching = Matching {
-        seed,
-        levels,
-        coherence,
-        evenness: None,
-        axes: None,
-        matching: None,
-        paper: false,
-    };
-    let options = matching.options()?;
+    let options = Matching::of_repair(seed, levels, coherence).options()?;
     let texture = watch::run(py, progress, |heard| {
         PlaneTexture::identity(&exemplar)?.repair(&exemplar, &hole, &options, heard)
     })??;

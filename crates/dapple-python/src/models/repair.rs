@@ -65,16 +65,7 @@ pub(crate) fn repair_on<'py>(
         seed: seed.0.child("example sites", 0),
         ..HierarchyOptions::default()
     };
-    let matching = Matching {
-        seed,
-        levels,
-        coherence,
-        evenness: None,
-        axes: None,
-        matching: None,
-        paper: false,
-    };
-    let options = matching.options()?;
+    let options = Matching::of_repair(seed, levels, coherence).options()?;
     let mended = watch::run(py, progress, |heard| -> Result<Vec<Map>> {
         let (exemplar, uvs) = source.textured(&sites, &example)?;
         let repaired = exemplar.repair(&options, heard)?;

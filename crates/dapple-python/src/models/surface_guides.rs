@@ -94,12 +94,12 @@ impl SurfaceScales {
     pub(super) fn check(&self, mesh: &Mesh) -> Result<()> {
         match self {
             Self::Conformal(_) => Ok(()),
-            Self::OfMesh(numbers) => numbers.check("scales", mesh),
+            Self::OfMesh(numbers) => numbers.check("the list of scales", mesh),
         }
     }
 
     /// The sites with pixels of these sizes.
-    pub(super) fn of(
+    pub(super) fn scaled(
         &self,
         synthesizer: Synthesizer,
         mesh: &Mesh,
