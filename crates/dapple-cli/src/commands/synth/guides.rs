@@ -6,7 +6,7 @@ use super::example_mesh::is_mesh;
 use super::options::first_given;
 use super::reading::{gray, lightness};
 use crate::args::{Numbers, Region};
-use crate::error::{Hint, usage};
+use crate::error::Hint;
 use crate::input::{self, Kind, Loaded};
 use crate::words::Word;
 use anyhow::{Result, anyhow};
@@ -142,7 +142,7 @@ impl Args {
         }
         let name = input::name(path);
         if self.surface.mesh.is_none() {
-            let error = usage(format!("{name} is a mesh, and the texture an image"));
+            let error = anyhow!("{name} is a mesh, and the texture an image");
             return Err(error.hint("give an image of the texture's size, or --mesh"));
         }
         let Some(colors) = input::model(path)?.colors else {
