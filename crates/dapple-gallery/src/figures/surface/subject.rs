@@ -65,7 +65,7 @@ pub(crate) const RAY: Subject = Subject {
     },
 };
 
-pub(crate) const OCTOPUS: Subject = Subject {
+const OCTOPUS: Subject = Subject {
     name: "octopus",
     model: models::octopus,
     exemplar: "suckers",
