@@ -142,8 +142,10 @@ pub(crate) fn synthesize_on<'py>(
     let atlas = data::named("atlas", atlas)?;
     let guides = SurfaceGuides::read(&guides)?;
     let scales = scales.map(SurfaceScales::read).transpose()?;
-    let needs_uvs = guides.have_images() || scales.as_ref().is_some_and(SurfaceScales::are_image);
-    let uvs = match atlas == AtlasKind::Uv || needs_uvs {
+    let needs_uvs = atlas == AtlasKind::Uv
+        || guides.have_images()
+        || scales.as_ref().is_some_and(SurfaceScales::are_image);
+    let uvs = match needs_uvs {
         true => uvs_of("mesh", mesh)?,
         false => Vec::new(),
     };
@@ -181,6 +183,10 @@ pub(crate) fn synthesize_on<'py>(
     let cover = |heard: watch::Heard<'_>| -> Result<Model> {
         let (repaired, repair) = mesh.repair();
         let surface = Surface::new(repaired)?;
+        let uvs = match needs_uvs {
+            true => own_uvs(&surface, &mesh, &repair, &uvs)?,
+            false => Vec::new(),
+        };
         let atlas = match (atlas, padding) {
             (AtlasKind::Charts, None) => Atlas::charts(&surface, texels)?,
             (AtlasKind::Charts, Some(padding)) => Atlas::charts_padded(&surface, texels, padding)?,
@@ -191,7 +197,6 @@ pub(crate) fn synthesize_on<'py>(
                 Atlas::uniform_padded(&surface, texels, padding)?
             }
             (AtlasKind::Uv, padding) => {
-                let uvs = own_uvs(&surface, &mesh, &repair, &uvs)?;
                 Atlas::from_uvs(&surface, &uvs, [texels; 2], padding.unwrap_or(texels))?
             }
         };

@@ -104,8 +104,7 @@ impl Synthesizer {
             }));
         }
         for &scale in &scales {
-            let holds = (0.125..=8.0).contains(&scale);
-            SynthError::check(holds, "scale", scale.into(), "from 1/8 to 8")?;
+            check_scale("scale", scale)?;
         }
         Ok(Self { scales, ..self })
     }
@@ -124,7 +123,7 @@ impl Synthesizer {
     ///
     /// ```
     /// use dapple_mesh::{Mesh, Surface, glam::DVec3};
-    /// use dapple_synth::{Direction, Hierarchy, HierarchyOptions, Orientation, Synthesizer};
+    /// use dapple_synth::{Hierarchy, HierarchyOptions, Orientation, Synthesizer};
     ///
     /// let corners = vec![DVec3::ZERO, DVec3::X, DVec3::ONE - DVec3::Z, DVec3::Y];
     /// let surface = Surface::new(Mesh::new(corners, &[[0, 1, 2], [0, 2, 3]])?)?;
@@ -137,20 +136,9 @@ impl Synthesizer {
     /// ```
     pub fn with_conformal_scales(self, bounds: [f32; 2]) -> Result<Self, SynthError> {
         let [least, most] = bounds;
-        let range = "from 1/8 to 8";
-        SynthError::check(
-            (0.125..=8.0).contains(&most),
-            "upper scale",
-            most.into(),
-            range,
-        )?;
-        let holds = (0.125..=most).contains(&least);
-        SynthError::check(
-            holds,
-            "lower scale",
-            least.into(),
-            "from 1/8 to the upper one",
-        )?;
+        check_scale("upper scale", most)?;
+        let (holds, range) = ((0.125..=most).contains(&least), "from 1/8 to the upper one");
+        SynthError::check(holds, "lower scale", least.into(), range)?;
         let scales = self.orientation.conformal_scales(&self.hierarchy, bounds)?;
         self.with_scales(scales)
     }
@@ -336,4 +324,10 @@ impl Synthesizer {
     pub fn sweep(&self) -> &Sweep {
         &self.sweep
     }
+}
+
+/// Refuses a size of a pixel out of the range of sizes.
+fn check_scale(what: &'static str, scale: f32) -> Result<(), SynthError> {
+    let holds = (0.125..=8.0).contains(&scale);
+    SynthError::check(holds, what, scale.into(), "from 1/8 to 8")
 }

@@ -1,6 +1,6 @@
 //! Numbers on a mesh: the arguments `guides` and `scales` of a texture on it.
 
-use super::{at_corners, own_uvs};
+use super::at_corners;
 use crate::error::{Error, Result};
 use crate::pictures;
 use dapple::mesh::glam::DVec2;
@@ -104,7 +104,7 @@ impl SurfaceScales {
         synthesizer: Synthesizer,
         mesh: &Mesh,
         repair: &Repair,
-        uvs: &[[f64; 2]],
+        uvs: &[[DVec2; 3]],
     ) -> Result<Synthesizer> {
         let scales = match self {
             Self::Conformal(bounds) => return Ok(synthesizer.with_conformal_scales(*bounds)?),
@@ -130,8 +130,8 @@ pub(super) struct SitesOfMesh<'a> {
     pub(super) synthesizer: &'a Synthesizer,
     pub(super) before: &'a Mesh,
     pub(super) repair: &'a Repair,
-    /// The texture coordinates of the mesh before, if an image is read at them.
-    pub(super) uvs: &'a [[f64; 2]],
+    /// The texture coordinates of the corners of all faces, if an image is read at them.
+    pub(super) uvs: &'a [[DVec2; 3]],
 }
 
 impl OfMesh {
@@ -187,10 +187,9 @@ impl OfMesh {
                 Ok(mixed.collect())
             }
             Self::Image(image) => {
-                let uvs = own_uvs(surface, before, repair, sites.uvs)?;
                 let size = image.size().map(f64::from);
                 let shown = points.iter().map(|&point| {
-                    let corners = uvs[point.face.index()].iter();
+                    let corners = sites.uvs[point.face.index()].iter();
                     let parts = corners.zip(surface.weights(point));
                     let uv = parts.map(|(&uv, weight)| uv * weight).sum::<DVec2>();
                     let [column, row] =

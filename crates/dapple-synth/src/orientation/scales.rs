@@ -33,6 +33,9 @@ impl Orientation {
         hierarchy: &Hierarchy,
         bounds: [f32; 2],
     ) -> Result<Vec<f32>, SynthError> {
+        if bounds[0] == bounds[1] {
+            return Ok(vec![bounds[0]; hierarchy.sites().len()]);
+        }
         let coarsest = hierarchy.levels().len() - 1;
         let mut logs = self.growth(hierarchy, coarsest);
         let [least, most] = bounds.map(|bound| libm::log(bound.into()));

@@ -1,6 +1,6 @@
 //! Synthesis of an image along directions and with scales that images say.
 
-use super::guides::read_gray;
+use super::guides::{Values, read_gray};
 use super::surface::Covered;
 use super::{Args, STEPS, advise, shown};
 use crate::encode::Format;
@@ -88,7 +88,7 @@ impl Args {
 
     /// The angles of directions of all pixels, and scales if an image says them.
     fn planes(&self) -> Result<(Raster<f32>, Option<Raster<f32>>)> {
-        let scales = self.read_scale()?.map(|scales| scales.raster().clone());
+        let scales = self.read_scale()?.map(Values::into_raster);
         let Some(first) = self.surface.directions.as_deref() else {
             let size = scales.as_ref().map(Raster::size).unwrap_or_default();
             return Ok((Raster::filled(size, 0.0)?, scales));

@@ -108,7 +108,6 @@ pub(super) struct Guide {
 }
 
 /// Values from place to place.
-#[derive(Clone)]
 pub(super) enum Values {
     /// At the pixels of a texture in the plane, or at texture coordinates of a mesh.
     Image(Raster<f32>),
@@ -119,6 +118,13 @@ pub(super) enum Values {
 impl Values {
     /// The image, or the row of a mesh.
     pub(super) fn raster(&self) -> &Raster<f32> {
+        match self {
+            Self::Image(values) | Self::Vertices(values) => values,
+        }
+    }
+
+    /// The image, or the row of a mesh.
+    pub(super) fn into_raster(self) -> Raster<f32> {
         match self {
             Self::Image(values) | Self::Vertices(values) => values,
         }
@@ -273,10 +279,16 @@ pub(super) fn at_sites(
 ) -> Result<Vec<Vec<f32>>> {
     let surface = synthesizer.surface();
     let points = synthesizer.hierarchy().sites().points();
+    let has_images = values
+        .iter()
+        .any(|values| matches!(values, Values::Image(_)));
+    let uvs = has_images
+        .then(|| own_uvs(surface, model, repair))
+        .transpose();
+    let uvs = uvs.hint("guides and --scale are read at texture coordinates: give the mesh some")?;
+    let uvs = uvs.unwrap_or_default();
     let column = |values: &&Values| match values {
         Values::Image(image) => {
-            let uvs = own_uvs(surface, model, repair)
-                .hint("guides and --scale are read at texture coordinates: give the mesh some")?;
             let size = image.size().map(f64::from);
             let value = |&point: &SurfacePoint| {
                 let weights = surface.weights(point);

@@ -19,7 +19,7 @@ pub(super) const FIGURE: Figure = Figure {
     parameters: &[
         ("exemplars", "64²; the hooks repeat"),
         ("textures", "256²"),
-        ("sizes", "from 1 to 2.5"),
+        ("sizes", "1; from 1 to 2.5; from 0.4 to 2.5"),
     ],
     source: source!(),
     render,
