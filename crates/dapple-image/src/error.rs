@@ -32,6 +32,13 @@ dapple_raster::error_kind! {
             /// The name of the feature.
             feature: &'static str,
         } => "{feature} is not supported";
+        /// The data window of an OpenEXR file has no pixel of its display window, so nothing of it is in the picture.
+        Windows {
+            /// The first column and row of the data window, and its numbers of columns and rows.
+            data: [i64; 4],
+            /// The display window, in the same form.
+            display: [i64; 4],
+        } => "the data window ({} × {} pixels at {}, {}) and the display window ({} × {} pixels at {}, {}) have no pixel in common", data[2], data[3], data[0], data[1], display[2], display[3], display[0], display[1];
         /// The image has no pixel.
         Empty {
             /// The numbers of columns and rows.

@@ -1,5 +1,8 @@
 //! Reading OpenEXR: all flat parts, scan lines or tiles, 16- and 32-bit numbers; of several resolutions the largest.
 //!
+//! A plane has the pixels of the display window, as the "Technical Introduction to OpenEXR" defines the picture: what the
+//! data window has beyond is cropped, and pixels outside of the data window are 0.
+//!
 //! Deep data and subsampled channels are errors. The sizes of all parts are checked against the limits before memory
 //! for the pixels is allocated. The codec has assertions that damaged bytes can reach; where a program unwinds on panic
 //! (the default), they are caught here and become [`ImageErrorKind::Damaged`].
@@ -11,7 +14,9 @@ use dapple_raster::Raster;
 use exr::image::read::image::ReadLayers;
 use exr::image::read::layers::ReadChannels;
 use exr::image::{AnyChannels, FlatSamples, Layer};
+use exr::math::Vec2;
 use exr::meta::MetaData;
+use exr::meta::attribute::IntegerBounds;
 use exr::meta::header::Header;
 use std::io::Cursor;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -24,6 +29,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 ///
 /// [`ImageErrorKind::UnknownFormat`] if the bytes do not begin like OpenEXR, [`ImageErrorKind::Damaged`] if they break its
 /// rules or end too soon, [`ImageErrorKind::Unsupported`] for deep data and subsampled channels,
+/// [`ImageErrorKind::Windows`] if the data and display windows have no pixel in common,
 /// [`ImageErrorKind::TooManyPixels`] or [`ImageErrorKind::TooManyBytes`] past a limit.
 pub fn decode_exr(bytes: &[u8], limits: &Limits) -> Result<ExrImage, ImageError> {
     if !bytes.starts_with(&SIGNATURE) {
@@ -47,14 +53,15 @@ fn decode(bytes: &[u8], limits: &Limits) -> Result<ExrImage, ImageError> {
         .non_parallel()
         .from_buffered(Cursor::new(bytes))
         .map_err(refusal)?;
-    let mut layers = image.layer_data;
-    if let [layer] = layers.as_mut_slice() {
+    let mut parts = image.layer_data;
+    if let [layer] = parts.as_mut_slice() {
         // A single part needs no name to be distinguished.
         layer.attributes.layer_name = None;
     }
+    let display = image.attributes.display_window;
     let mut planes = Vec::new();
-    for layer in layers {
-        push_planes(layer, &mut planes)?;
+    for layer in parts {
+        push_planes(layer, display, &mut planes)?;
     }
     Ok(ExrImage { planes })
 }
@@ -76,20 +83,77 @@ fn check_headers(headers: &[Header], limits: &Limits) -> Result<(), ImageError> 
         }
         let size = [header.layer_size.0 as u64, header.layer_size.1 as u64];
         limits.check_pixels(size)?;
-        let pixels = size[0].saturating_mul(size[1]);
+        let display = header.shared_attributes.display_window;
+        let shown = [display.size.0 as u64, display.size.1 as u64];
+        limits.check_pixels(shown)?;
+        check_windows(header.data_window(), display)?;
+        let [pixels, shown] = [size, shown].map(|size| size[0].saturating_mul(size[1]));
+        let pixels = pixels.max(shown);
         bytes = bytes.saturating_add(pixels.saturating_mul(4 * list.len() as u64));
         limits.check_bytes(bytes)?;
     }
     Ok(())
 }
 
-fn push_planes(
-    layer: Layer<AnyChannels<FlatSamples>>,
-    planes: &mut Vec<ExrPlane>,
-) -> Result<(), ImageError> {
+/// Checks that some pixels of the data are in the picture.
+fn check_windows(data: IntegerBounds, display: IntegerBounds) -> Result<(), ImageError> {
+    let corners = |window: IntegerBounds| {
+        let Vec2(x, y) = window.position;
+        let Vec2(width, height) = window.size;
+        [i64::from(x), i64::from(y), width as i64, height as i64]
+    };
+    let (data, display) = (corners(data), corners(display));
+    let is_apart = |axis: usize| {
+        data[axis] + data[axis + 2] <= display[axis]
+            || display[axis] + display[axis + 2] <= data[axis]
+    };
+    if is_apart(0) || is_apart(1) {
+        return Err(ImageError::new(ImageErrorKind::Windows { data, display }));
+    }
+    Ok(())
+}
+
+/// The values of the pixels in the display window, from those of the data window; 0 where there is no data.
+fn shown(
+    values: Vec<f32>,
+    data: IntegerBounds,
+    display: IntegerBounds,
+) -> Result<Raster<f32>, ImageError> {
     // The format has no side past 2^31; if one did not fit, the raster below would report the length.
     let side = |side: usize| u32::try_from(side).unwrap_or(u32::MAX);
-    let size = [side(layer.size.0), side(layer.size.1)];
+    let damaged = |error| ImageError::damaged("OpenEXR", error);
+    let size = [side(display.size.0), side(display.size.1)];
+    if data == display {
+        return Raster::from_vec(size, values).map_err(damaged);
+    }
+    // The first pixel of the display window in the data, and the columns and rows that both windows have.
+    let first = display.position - data.position;
+    let [columns, rows] = [
+        (first.0, display.size.0, data.size.0),
+        (first.1, display.size.1, data.size.1),
+    ]
+    .map(|(first, shown, stored)| {
+        let begin = first.min(0).unsigned_abs() as usize;
+        let end = (stored as i64 - i64::from(first)).clamp(0, shown as i64) as usize;
+        begin..end.max(begin)
+    });
+    let at = |first: i32, place: usize| (i64::from(first) + place as i64) as usize;
+    let mut pixels = vec![0.0; display.size.0 * display.size.1];
+    for row in rows {
+        let line = at(first.1, row) * data.size.0;
+        let from = line + at(first.0, columns.start)..line + at(first.0, columns.end);
+        let to = row * display.size.0;
+        pixels[to + columns.start..to + columns.end].copy_from_slice(&values[from]);
+    }
+    Raster::from_vec(size, pixels).map_err(damaged)
+}
+
+fn push_planes(
+    layer: Layer<AnyChannels<FlatSamples>>,
+    display: IntegerBounds,
+    planes: &mut Vec<ExrPlane>,
+) -> Result<(), ImageError> {
+    let data = IntegerBounds::new(layer.attributes.layer_position, layer.size);
     let part = layer.attributes.layer_name.map(|name| name.to_string());
     for channel in layer.channel_data.list {
         let name = match &part {
@@ -101,8 +165,7 @@ fn push_planes(
             FlatSamples::F16(values) => values.into_iter().map(|value| value.to_f32()).collect(),
             FlatSamples::U32(values) => values.into_iter().map(|value| value as f32).collect(),
         };
-        let values = Raster::from_vec(size, values)
-            .map_err(|error| ImageError::damaged("OpenEXR", error))?;
+        let values = shown(values, data, display)?;
         planes.push(ExrPlane { name, values });
     }
     Ok(())

@@ -23,3 +23,5 @@ mod round_trips;
 mod rows;
 #[cfg(feature = "png")]
 mod strips;
+#[cfg(feature = "exr")]
+mod windows;

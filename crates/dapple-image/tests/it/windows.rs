@@ -1,0 +1,105 @@
+//! Data windows and display windows of OpenEXR files.
+
+use dapple_image::{ImageErrorKind, Limits, decode_exr};
+use exr::image::write::WritableImage;
+use exr::image::{AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Layer};
+use exr::math::Vec2;
+use exr::meta::attribute::IntegerBounds;
+use exr::meta::header::{ImageAttributes, LayerAttributes};
+use std::io::Cursor;
+
+/// The first column and row of a window, and its numbers of columns and rows.
+type Window = [i32; 4];
+
+/// The value of a pixel at a place in the space of the windows; none is 0.
+fn value(x: i32, y: i32) -> f32 {
+    (1000 + 100 * y + x) as f32
+}
+
+/// A file whose pixels have the values of their places.
+fn file(data: Window, display: Window) -> Vec<u8> {
+    let bounds = |[x, y, width, height]: Window| {
+        IntegerBounds::new((x, y), (width as usize, height as usize))
+    };
+    let [x, y, width, height] = data;
+    let places = (y..y + height).flat_map(|y| (x..x + width).map(move |x| value(x, y)));
+    let channel = AnyChannel::new("Y", FlatSamples::F32(places.collect()));
+    let layer = Layer::new(
+        (width as usize, height as usize),
+        LayerAttributes::default().with_position(Vec2(x, y)),
+        Encoding::FAST_LOSSLESS,
+        AnyChannels::sort([channel].into_iter().collect()),
+    );
+    let image = Image::from_layers(ImageAttributes::new(bounds(display)), vec![layer]);
+    let mut bytes = Vec::new();
+    let sink = Cursor::new(&mut bytes);
+    image.write().non_parallel().to_buffered(sink).unwrap();
+    bytes
+}
+
+/// A crop, an overscan, windows that are shifted against each other in eight directions, and places below 0.
+const WINDOWS: [[Window; 2]; 12] = [
+    [[0, 0, 7, 5], [0, 0, 7, 5]],
+    [[24, 20, 16, 10], [0, 0, 64, 64]],
+    [[-16, -16, 96, 96], [0, 0, 64, 64]],
+    [[-3, 0, 7, 5], [0, 0, 7, 5]],
+    [[3, 0, 7, 5], [0, 0, 7, 5]],
+    [[0, -2, 7, 5], [0, 0, 7, 5]],
+    [[0, 2, 7, 5], [0, 0, 7, 5]],
+    [[-6, -4, 7, 5], [0, 0, 7, 5]],
+    [[6, 4, 7, 5], [0, 0, 7, 5]],
+    [[-6, 4, 7, 5], [0, 0, 7, 5]],
+    [[-9, -8, 4, 3], [-10, -10, 7, 5]],
+    [[5, -1, 1, 9], [3, 1, 5, 4]],
+];
+
+#[test]
+fn pixels_are_those_of_the_display_window() {
+    for [data, display] in WINDOWS {
+        let image = decode_exr(&file(data, display), &Limits::default()).unwrap();
+        let found = image.gray().unwrap();
+        let [left, top, width, height] = display;
+        assert_eq!(found.size(), [width as u32, height as u32], "{data:?}");
+        for row in 0..height {
+            for column in 0..width {
+                let (x, y) = (left + column, top + row);
+                let [first, line, columns, rows] = data;
+                let is_stored =
+                    (first..first + columns).contains(&x) && (line..line + rows).contains(&y);
+                let right = if is_stored { value(x, y) } else { 0.0 };
+                let pixel = found.row(row as u32)[column as usize];
+                assert_eq!(pixel, right, "{data:?} {display:?} at {x}, {y}");
+            }
+        }
+    }
+}
+
+#[test]
+fn windows_without_a_common_pixel_are_refused_by_name() {
+    for data in [[7, 0, 4, 5], [-4, 0, 4, 5], [0, 5, 7, 2], [0, -3, 7, 3]] {
+        let error = decode_exr(&file(data, [0, 0, 7, 5]), &Limits::default()).unwrap_err();
+        let kind = ImageErrorKind::Windows {
+            data: data.map(i64::from),
+            display: [0, 0, 7, 5],
+        };
+        assert_eq!(error.kind(), &kind, "{error}");
+        assert!(error.to_string().contains("display window"), "{error}");
+    }
+}
+
+#[test]
+fn limits_hold_for_both_windows() {
+    let read = |data, display, pixels| {
+        let limits = Limits {
+            pixels,
+            ..Limits::default()
+        };
+        decode_exr(&file(data, display), &limits).map_err(|error| error.kind().clone())
+    };
+    let size = [64, 64];
+    let refused = ImageErrorKind::TooManyPixels { size, limit: 4095 };
+    let (small, large) = ([0, 0, 4, 4], [0, 0, 64, 64]);
+    assert!(read(small, large, 4096).is_ok(), "exactly the limit");
+    assert_eq!(read(small, large, 4095), Err(refused.clone()), "display");
+    assert_eq!(read(large, small, 4095), Err(refused), "data");
+}
