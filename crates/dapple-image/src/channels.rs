@@ -1,5 +1,6 @@
 //! The channels of an image, its format and its depth, for reports and decisions.
 
+use crate::exr::Picture;
 use crate::{ExrImage, Image, PngImage, PngPixels};
 use core::fmt;
 
@@ -15,6 +16,8 @@ pub enum Channels {
     Rgb,
     /// Red, green, blue and alpha: [`Image::color_alpha`] reads them.
     Rgba,
+    /// The components X, Y and Z of vectors: [`Image::normals`] reads them.
+    Vectors,
     /// Planes of an OpenEXR file with other names: [`ExrImage::plane`] reads them.
     Planes,
 }
@@ -34,6 +37,7 @@ impl fmt::Display for Channels {
             Self::GrayAlpha => "gray with alpha",
             Self::Rgb => "RGB",
             Self::Rgba => "RGB with alpha",
+            Self::Vectors => "vectors",
             Self::Planes => "named planes",
         })
     }
@@ -95,19 +99,13 @@ impl PngImage {
 
 impl ExrImage {
     fn channels(&self) -> Channels {
-        let layer = self.color_layer();
-        let has = |channel: &str| self.has(&format!("{layer}{channel}"));
-        let has_alpha = has("A");
-        if ["R", "G", "B"].iter().all(|name| has(name)) {
-            if has_alpha {
-                Channels::Rgba
-            } else {
-                Channels::Rgb
-            }
-        } else if self.gray().is_ok() {
-            Channels::Gray
-        } else {
-            Channels::Planes
+        match self.picture() {
+            Ok(Picture::Gray { alpha: None, .. }) => Channels::Gray,
+            Ok(Picture::Gray { .. }) => Channels::GrayAlpha,
+            Ok(Picture::Color { alpha: None, .. }) => Channels::Rgb,
+            Ok(Picture::Color { .. }) => Channels::Rgba,
+            Ok(Picture::Vectors(_)) => Channels::Vectors,
+            Err(_) => Channels::Planes,
         }
     }
 }

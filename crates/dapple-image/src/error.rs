@@ -100,6 +100,23 @@ dapple_raster::error_kind! {
             /// The name of the plane.
             name: String,
         } => "there is no plane named {name:?}";
+        /// The file has no layer of this name.
+        MissingLayer {
+            /// The name of the layer.
+            name: String,
+            /// The names of all layers of the file.
+            layers: Vec<String>,
+        } => "there is no layer named {name:?}; the layers are {}", layers.join(", ");
+        /// The image is of a format that has no layers.
+        NoLayers {
+            /// The name of the format.
+            format: &'static str,
+        } => "{format} has no layers";
+        /// No layer of the file is marked as its picture, or several are.
+        AmbiguousLayer {
+            /// The names of all layers of the file.
+            layers: Vec<String>,
+        } => "it is not clear which layer is the picture; the layers are {}", layers.join(", ");
         /// The names of the planes to write are empty, too long, or not different.
         PlaneName {
             /// The first bad name.

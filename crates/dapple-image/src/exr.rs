@@ -8,6 +8,7 @@
 mod decode;
 #[cfg(feature = "exr")]
 mod encode;
+mod layers;
 #[cfg(feature = "exr")]
 mod shortcut;
 #[cfg(feature = "exr")]
@@ -22,9 +23,12 @@ pub use shortcut::{write_color_alpha_exr, write_color_exr, write_gray_exr};
 #[cfg(feature = "exr")]
 pub(crate) use tiles::TileStream;
 
+pub(crate) use layers::Picture;
+
 use crate::content::Pixel;
+use crate::image::transparent;
 use crate::{ImageError, ImageErrorKind};
-use dapple_color::{LinearRgb, LinearRgba};
+use dapple_color::{Code, LinearRgb, LinearRgba, Normal};
 use dapple_raster::Raster;
 
 /// A channel of an OpenEXR file: a name and numbers.
@@ -69,10 +73,12 @@ impl ExrPlane {
 }
 
 /// The content of an OpenEXR file: its planes, in the order of the file (by name, within each part).
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct ExrImage {
     /// The planes. Those of a named part are named `part.channel`, unless it is the only part of the file.
     pub planes: Vec<ExrPlane>,
+    /// The names of the views, such as the eyes of a stereo image, in lower case: the default view first.
+    pub views: Vec<String>,
 }
 
 impl ExrImage {
@@ -89,66 +95,136 @@ impl ExrImage {
         })
     }
 
-    /// The only plane, or else the plane `Y`.
+    /// The values of a gray picture; alpha is allowed if it is 1 everywhere.
+    ///
+    /// The picture is the only plane of the file, or a plane `Y`; of several layers it is chosen as
+    /// [`to_picture`](Self::to_picture) says.
     ///
     /// # Errors
     ///
-    /// [`ImageErrorKind::Channels`] if there are several and none is `Y`, or if there are also color or alpha planes.
+    /// [`ImageErrorKind::Channels`] if the picture is not gray, or partly transparent, else the errors of
+    /// [`to_picture`](Self::to_picture).
     pub fn gray(&self) -> Result<&Raster<f32>, ImageError> {
-        match self.planes.as_slice() {
-            [plane] => Ok(&plane.values),
-            _ if ["R", "G", "B", "A"].iter().all(|name| !self.has(name)) && self.has("Y") => {
-                self.plane("Y")
+        let needed = "gray";
+        let found = match self.picture()? {
+            Picture::Gray { values, alpha } => {
+                let mut alphas = alpha.into_iter().flat_map(Raster::pixels);
+                return match alphas.all(|&alpha| alpha == 1.0) {
+                    true => Ok(values),
+                    false => Err(transparent(needed)),
+                };
             }
-            _ => Err(ImageError::new(ImageErrorKind::Channels {
-                found: "of several planes",
-                needed: "gray",
-            })),
-        }
+            Picture::Color { .. } => "of several planes",
+            Picture::Vectors(_) => VECTORS,
+        };
+        Err(ImageError::new(ImageErrorKind::Channels { found, needed }))
     }
 
-    /// The colors of the planes `R`, `G`, `B` with the alpha of `A` divided out, or 1 where there is no plane `A`.
+    /// The colors of the picture with the alpha divided out, or 1 where there is none. A gray picture becomes gray colors.
     ///
-    /// Without a plane `R`, the planes of the only layer that has one are used, such as `beauty.R`. A gray image
-    /// becomes gray colors. Where alpha is 0, the color is as in the file.
+    /// Of several layers the picture is chosen as [`to_picture`](Self::to_picture) says. Where alpha is 0, the color is as
+    /// in the file.
     ///
     /// # Errors
     ///
-    /// [`ImageErrorKind::MissingPlane`] if a plane is missing and the image is not gray,
-    /// [`ImageErrorKind::SizeMismatch`] if their sizes differ.
+    /// [`ImageErrorKind::Channels`] if the picture is one of vectors, else the errors of
+    /// [`to_picture`](Self::to_picture).
     pub fn color_alpha(&self) -> Result<Raster<LinearRgba>, ImageError> {
-        if let Ok(gray) = self.gray() {
-            return Ok(gray.map(|&value| LinearRgba::opaque(LinearRgb::gray(value))));
-        }
-        let layer = self.color_layer();
-        let part = |channel: &str| self.plane(&format!("{layer}{channel}"));
-        let [red, green, blue] = [part("R")?, part("G")?, part("B")?];
-        let alpha = part("A").ok();
-        for plane in [Some(green), Some(blue), alpha].into_iter().flatten() {
-            check_size(plane.size(), red.size())?;
-        }
-        let pixel = |at: usize| {
-            let [r, g, b] = [red, green, blue].map(|plane| plane.pixels()[at]);
-            straight([r, g, b], alpha.map_or(1.0, |plane| plane.pixels()[at]))
+        let (colors, alpha) = self.associated()?;
+        let Some(alpha) = alpha else {
+            return Ok(colors.map(|&color| LinearRgba::opaque(color)));
         };
-        let pixels = (0..red.pixels().len()).map(pixel).collect();
-        Raster::from_vec(red.size(), pixels).map_err(|error| ImageError::damaged("OpenEXR", error))
+        let pixels = colors.zip_map(&alpha, |color, &alpha| straight(color.to_array(), alpha));
+        pixels.map_err(|error| ImageError::damaged("OpenEXR", error))
     }
 
-    /// The prefix of the names of the color planes: empty, or the only layer of color with its dot.
-    pub(crate) fn color_layer(&self) -> &str {
-        let layers = self.planes.iter().filter_map(|plane| {
-            let layer = plane.name.strip_suffix("R")?;
-            (layer.is_empty() || layer.ends_with('.')).then_some(layer)
-        });
-        match layers.collect::<Vec<_>>().as_slice() {
-            [layer] => layer,
-            _ => "",
+    /// The colors of the picture as they are in the file, with alpha multiplied into them, and the alpha.
+    ///
+    /// Light may cover nothing: a color with an alpha of 0 is added to what lies below, and has no color that could be
+    /// divided out.
+    ///
+    /// # Errors
+    ///
+    /// The errors of [`color_alpha`](Self::color_alpha).
+    pub fn associated(&self) -> Result<(Raster<LinearRgb>, Option<Raster<f32>>), ImageError> {
+        let ([red, green, blue], alpha) = match self.picture()? {
+            Picture::Gray { values, alpha } => ([values; 3], alpha),
+            Picture::Color { parts, alpha } => (parts, alpha),
+            Picture::Vectors(_) => {
+                let (found, needed) = (VECTORS, "RGB");
+                return Err(ImageError::new(ImageErrorKind::Channels { found, needed }));
+            }
+        };
+        let of = |at: usize| [red, green, blue].map(|plane| plane.pixels()[at]).into();
+        let pixels = (0..red.pixels().len()).map(of).collect();
+        let colors = Raster::from_vec(red.size(), pixels)
+            .map_err(|error| ImageError::damaged("OpenEXR", error))?;
+        Ok((colors, alpha.cloned()))
+    }
+
+    /// The unit vectors of the picture.
+    ///
+    /// Planes `X`, `Y` and `Z` are vectors. Planes of color are vectors, too, if one of their numbers is below 0, and else
+    /// codes from 0 to 1, `(part + 1) / 2`.
+    ///
+    /// # Errors
+    ///
+    /// [`ImageErrorKind::Channels`] if the picture is gray or partly transparent, else the errors of
+    /// [`to_picture`](Self::to_picture).
+    pub fn normals(&self) -> Result<Raster<Normal>, ImageError> {
+        let needed = "a normal map";
+        let (parts, is_signed) = match self.picture()? {
+            Picture::Vectors(parts) => (parts, true),
+            Picture::Color { parts, alpha } => {
+                let mut alphas = alpha.into_iter().flat_map(Raster::pixels);
+                if alphas.any(|&alpha| alpha != 1.0) {
+                    return Err(transparent(needed));
+                }
+                let mut numbers = parts.iter().flat_map(|part| part.pixels());
+                let is_signed = numbers.any(|&number| number < 0.0);
+                (parts, is_signed)
+            }
+            Picture::Gray { .. } => {
+                let found = "gray";
+                return Err(ImageError::new(ImageErrorKind::Channels { found, needed }));
+            }
+        };
+        let vector = |at: usize| {
+            let parts = parts.map(|part| part.pixels()[at]);
+            if is_signed {
+                normalized(parts)
+            } else {
+                // With the precision of 16-bit codes, and normalized by the same rule.
+                Normal::from_codes(parts.map(u16::from_unit))
+            }
+        };
+        let vectors = (0..parts[0].pixels().len()).map(vector).collect();
+        Raster::from_vec(parts[0].size(), vectors)
+            .map_err(|error| ImageError::damaged("OpenEXR", error))
+    }
+
+    /// An image without planes that has all else of this one.
+    fn without_planes(&self) -> Self {
+        Self {
+            planes: Vec::new(),
+            views: self.views.clone(),
         }
     }
+}
 
-    pub(crate) fn has(&self, name: &str) -> bool {
-        self.planes.iter().any(|plane| plane.name == name)
+/// The name of a picture of vectors in errors.
+const VECTORS: &str = "of the vectors X, Y and Z";
+
+/// The unit vector in a direction; that of a flat surface if there is none.
+fn normalized(parts: [f32; 3]) -> Normal {
+    // In f64, squares of f32 neither overflow nor vanish.
+    let [x, y, z] = parts.map(f64::from);
+    let length = (x * x + y * y + z * z).sqrt();
+    if length > 0.0 && length.is_finite() {
+        let [x, y, z] = [x, y, z].map(|part| (part / length) as f32);
+        Normal { x, y, z }
+    } else {
+        Normal::FLAT
     }
 }
 

@@ -1,7 +1,7 @@
 //! Images whose format is recognized by their first bytes.
 
-use crate::{ExrImage, ImageError, ImageErrorKind, Limits, PngImage, file};
-use dapple_color::{LinearRgb, LinearRgba};
+use crate::{ExrImage, ImageError, ImageErrorKind, Limits, PngImage, PngPixels, file};
+use dapple_color::{LinearRgb, LinearRgba, Normal};
 use dapple_raster::Raster;
 use std::path::Path;
 
@@ -134,6 +134,51 @@ impl Image {
         match self {
             Self::Png(image) | Self::Jpeg(image) => Ok(image.color_alpha()),
             Self::Exr(image) => image.color_alpha(),
+        }
+    }
+}
+
+impl Image {
+    /// The unit vectors of a normal map, whatever its colors are said to mean. Alpha of PNG is ignored.
+    ///
+    /// The codes of PNG and JPEG are `(part + 1) / 2`; [`ExrImage::normals`] says what the numbers of OpenEXR are.
+    ///
+    /// # Errors
+    ///
+    /// [`ImageErrorKind::Channels`] if the image is gray, else those of [`ExrImage::normals`].
+    pub fn normals(&self) -> Result<Raster<Normal>, ImageError> {
+        let png = match self {
+            Self::Png(png) | Self::Jpeg(png) => png,
+            Self::Exr(exr) => return exr.normals(),
+        };
+        match &png.pixels {
+            PngPixels::Rgb8(raster) => Ok(raster.map(|&codes| Normal::from_codes(codes))),
+            PngPixels::Rgb16(raster) => Ok(raster.map(|&codes| Normal::from_codes(codes))),
+            PngPixels::Rgba8(raster) => {
+                Ok(raster.map(|&[x, y, z, _]| Normal::from_codes([x, y, z])))
+            }
+            PngPixels::Rgba16(raster) => {
+                Ok(raster.map(|&[x, y, z, _]| Normal::from_codes([x, y, z])))
+            }
+            _ => Err(ImageError::new(ImageErrorKind::Channels {
+                found: "gray",
+                needed: "a normal map",
+            })),
+        }
+    }
+
+    /// The image of one layer of an OpenEXR file with several.
+    ///
+    /// # Errors
+    ///
+    /// [`ImageErrorKind::MissingLayer`] if there is no layer of this name, [`ImageErrorKind::NoLayers`] if it is a PNG or
+    /// JPEG file.
+    pub fn layer(&self, name: &str) -> Result<Self, ImageError> {
+        match self {
+            Self::Exr(image) => image.layer(name).map(Self::Exr),
+            Self::Png(_) | Self::Jpeg(_) => Err(ImageError::new(ImageErrorKind::NoLayers {
+                format: self.format(),
+            })),
         }
     }
 }

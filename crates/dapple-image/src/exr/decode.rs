@@ -7,7 +7,7 @@
 //! for the pixels is allocated. The codec has assertions that damaged bytes can reach; where a program unwinds on panic
 //! (the default), they are caught here and become [`ImageErrorKind::Damaged`].
 
-use super::{ExrImage, ExrPlane};
+use super::{ExrImage, ExrPlane, layers};
 use crate::image::EXR_SIGNATURE as SIGNATURE;
 use crate::{ImageError, ImageErrorKind, Limits};
 use dapple_raster::Raster;
@@ -16,7 +16,7 @@ use exr::image::read::layers::ReadChannels;
 use exr::image::{AnyChannels, FlatSamples, Layer};
 use exr::math::Vec2;
 use exr::meta::MetaData;
-use exr::meta::attribute::IntegerBounds;
+use exr::meta::attribute::{IntegerBounds, Text};
 use exr::meta::header::Header;
 use std::io::Cursor;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -63,7 +63,14 @@ fn decode(bytes: &[u8], limits: &Limits) -> Result<ExrImage, ImageError> {
     for layer in parts {
         push_planes(layer, display, &mut planes)?;
     }
-    Ok(ExrImage { planes })
+    let text = |text: &Text| text.to_string();
+    let attributes = meta.headers.iter().map(|header| &header.own_attributes);
+    let listed = attributes
+        .clone()
+        .filter_map(|of| of.multi_view_names.as_ref());
+    let of_parts = attributes.filter_map(|of| of.view_name.as_ref());
+    let views = layers::views(listed.flatten().map(text), of_parts.map(text));
+    Ok(ExrImage { planes, views })
 }
 
 /// Checks for unsupported features and sizes past the limits, by the headers alone.

@@ -41,7 +41,10 @@ fn planes_are_known_by_their_names() {
     ] {
         let plane = |name: &&str| ExrPlane::new(*name, Raster::filled([1, 1], 0.0).unwrap());
         let planes = names.iter().map(plane).collect();
-        let image = Image::Exr(ExrImage { planes });
+        let image = Image::Exr(ExrImage {
+            planes,
+            ..ExrImage::default()
+        });
         let found = (image.format(), image.channels(), image.bits());
         assert_eq!(found, ("OpenEXR", channels, 32), "{names:?}");
         let has_alpha = channels == Channels::Rgba;

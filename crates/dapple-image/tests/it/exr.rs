@@ -216,6 +216,7 @@ fn of_several_parts_the_only_one_of_color_is_read() {
         let plane = |name: &&str| ExrPlane::new(*name, Raster::filled([1, 1], 0.5).unwrap());
         ExrImage {
             planes: names.iter().map(plane).collect(),
+            ..ExrImage::default()
         }
     };
     let image = planes(&["depth.Z", "beauty.A", "beauty.B", "beauty.G", "beauty.R"]);
@@ -226,11 +227,11 @@ fn of_several_parts_the_only_one_of_color_is_read() {
     assert_eq!(image.color_alpha().unwrap().pixels(), [half]);
     let channels = dapple_image::Image::Exr(image).channels();
     assert_eq!(channels, Channels::Rgba, "as it is read");
-    let two = decode(&colored_parts(&["left", "right"]));
-    let name = "R".to_owned();
+    let layers = ["near", "far"].map(str::to_owned).to_vec();
+    let two = decode(&colored_parts(&["near", "far"]));
     assert_eq!(
         two.color_alpha().unwrap_err().kind(),
-        &ImageErrorKind::MissingPlane { name },
+        &ImageErrorKind::AmbiguousLayer { layers },
         "nobody says which of the two"
     );
 }

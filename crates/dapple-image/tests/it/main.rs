@@ -9,6 +9,8 @@ mod exr;
 mod file;
 #[cfg(feature = "jpeg")]
 mod jpeg;
+#[cfg(feature = "exr")]
+mod layers;
 #[cfg(not(any(feature = "png", feature = "jpeg", feature = "exr")))]
 mod left_out;
 #[cfg(feature = "jpeg")]
