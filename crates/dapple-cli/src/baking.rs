@@ -1,5 +1,6 @@
 //! Baking of recipes: bands of maps, each map into a file of its own.
 
+use crate::args::ReadArgs;
 use crate::encode::Format;
 use crate::error::Hint;
 use crate::input;
@@ -93,7 +94,11 @@ pub(crate) fn read_images(recipe: &Recipe, folder: &Path) -> Result<Images> {
     let mut images = Images::new();
     let hint = "give its node alpha = \"drop\" or alpha = \"over:#rrggbb\"";
     for file in recipe.image_files() {
-        let picture = read_picture(&folder.join(file), recipe.image_alpha(file)?, hint)?;
+        let read = ReadArgs {
+            layer: recipe.image_layer(file)?.map(str::to_owned),
+            ..ReadArgs::default()
+        };
+        let picture = read_picture(&folder.join(file), recipe.image_alpha(file)?, &read, hint)?;
         images.insert(file.to_owned(), picture);
     }
     Ok(images)
@@ -105,8 +110,13 @@ pub(crate) fn read_images(recipe: &Recipe, folder: &Path) -> Result<Images> {
 ///
 /// If it does not exist, or cannot be read; with the hint, if it is partly transparent and there is no option for
 /// alpha.
-pub(crate) fn read_picture(path: &Path, alpha: Option<ImageAlpha>, hint: &str) -> Result<Picture> {
-    let loaded = input::map(path, input::Kind::ByChannels, None, alpha, hint)?;
+pub(crate) fn read_picture(
+    path: &Path,
+    alpha: Option<ImageAlpha>,
+    read: &ReadArgs,
+    hint: &str,
+) -> Result<Picture> {
+    let loaded = input::map(path, input::Kind::ByChannels, None, alpha, read, hint)?;
     Ok(match loaded.map {
         Map::Value(values) => Picture::Numbers(Arc::new(values)),
         Map::Color(colors) => Picture::Colors(Arc::new(colors)),

@@ -2,6 +2,7 @@
 
 use crate::args::RampArg;
 use crate::error::{Hint, usage};
+use crate::input::divided;
 use crate::output::Target;
 use anyhow::Result;
 use dapple::color::{Interpolation, LinearRgb, LinearRgba, Outside, RampSpace};
@@ -180,17 +181,57 @@ pub(crate) fn encode(map: &Map, format: Format) -> Result<Vec<u8>> {
     Ok(sink.into_inner())
 }
 
+/// The alpha of colors.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Cover<'a> {
+    alpha: &'a Raster<f32>,
+    /// Whether alpha is multiplied into the colors.
+    is_associated: bool,
+}
+
+impl<'a> Cover<'a> {
+    /// The alpha of colors, if they have any.
+    pub(crate) fn of(alpha: Option<&'a Raster<f32>>, is_associated: bool) -> Option<Self> {
+        let alpha = alpha?;
+        Some(Self {
+            alpha,
+            is_associated,
+        })
+    }
+
+    /// The alpha of colors into which it is not multiplied.
+    pub(crate) fn straight(alpha: &'a Raster<f32>) -> Self {
+        Self {
+            alpha,
+            is_associated: false,
+        }
+    }
+}
+
 /// Encodes colors and their alpha as the bytes of a file, like [`encode`].
+///
+/// Associated colors are unchanged in EXR, with any alpha. In all other cases alpha is from 0 to 1.
 pub(crate) fn encode_with_alpha(
     colors: &Raster<LinearRgb>,
-    alpha: &Raster<f32>,
+    cover: Cover<'_>,
     format: Format,
 ) -> Result<Vec<u8>> {
-    let pixels = colors.zip_map(alpha, |&color, &alpha| LinearRgba {
-        color,
+    let sink = Cursor::new(Vec::new());
+    if cover.is_associated && format == Format::Exr {
+        let four = |color: &LinearRgb, &alpha: &f32| [color.r, color.g, color.b, alpha];
+        let pixels = colors.zip_map(cover.alpha, four)?;
+        let content = Content::PackedFour;
+        let mut rows = RowWriter::new(sink, pixels.size(), content, format.encoding())?;
+        rows.write_packed_four(pixels.view())?;
+        return Ok(rows.finish()?.into_inner());
+    }
+    let pixels = colors.zip_map(cover.alpha, |color, alpha| LinearRgba {
+        color: match cover.is_associated {
+            true => divided(color, alpha),
+            false => *color,
+        },
         alpha: alpha.clamp(0.0, 1.0),
     })?;
-    let sink = Cursor::new(Vec::new());
     let mut rows = RowWriter::new(sink, pixels.size(), Content::ColorAlpha, format.encoding())?;
     rows.write_color_alpha(pixels.view())?;
     Ok(rows.finish()?.into_inner())

@@ -5,14 +5,16 @@
     reason = "this module is where the command reads files"
 )]
 
-use crate::args::{Alpha, Region};
+use crate::args::{Alpha, ReadArgs, Region};
 use crate::encode::map_raster;
 use crate::error::{Hint, usage};
+use crate::finite::Faults;
 use crate::output::read_back;
 use anyhow::{Context, Error, Result, anyhow};
-use dapple::color::{Code, LinearRgb, LinearRgba, Normal};
+use dapple::color::{Code, LinearRgb, LinearRgba};
 use dapple::image::{
-    ExrImage, Image, ImageError, ImageErrorKind, Limits, PngPixels, decode_image, read_image,
+    Channels, ExrImage, Image, ImageError, ImageErrorKind, Limits, PngPixels, decode_image,
+    read_image,
 };
 use dapple::mesh::{EncodedImage, Model};
 use dapple::mesh_io::{MeshIoErrorKind, read_model, readable_endings};
@@ -46,6 +48,10 @@ pub(crate) struct Loaded {
     pub(crate) map: Map,
     /// The alpha of the pixels, if some are transparent and it is kept.
     pub(crate) alpha: Option<Raster<f32>>,
+    /// Whether alpha is multiplied into the colors, as in OpenEXR, where light may cover nothing.
+    pub(crate) is_associated: bool,
+    /// The numbers of the file that are not finite, and were replaced.
+    pub(crate) faults: Faults,
     /// Whether the file has more than 8 bits per channel.
     pub(crate) is_deep: bool,
     /// Whether the numbers are linear light, as in OpenEXR; in other formats they are sRGB codes.
@@ -58,9 +64,50 @@ impl Loaded {
         Self {
             map: Map::Color(colors),
             alpha: None,
+            is_associated: false,
+            faults: Faults::default(),
             is_deep: false,
             is_linear: false,
         }
+    }
+
+    /// Fails for numbers of the file that are not finite.
+    ///
+    /// # Errors
+    ///
+    /// The first of them, with its channel and its pixel.
+    pub(crate) fn check_finite(&self, path: &Path) -> Result<()> {
+        self.faults.check(&name(path), |_, _| true)
+    }
+
+    /// Multiplies alpha into the colors.
+    ///
+    /// # Errors
+    ///
+    /// If alpha has another size than the colors.
+    pub(crate) fn associate(&mut self) -> Result<()> {
+        if let (Map::Color(colors), Some(alpha), false) =
+            (&mut self.map, &self.alpha, self.is_associated)
+        {
+            *colors = colors.zip_map(alpha, |&color, &alpha| color * alpha)?;
+            self.is_associated = true;
+        }
+        Ok(())
+    }
+
+    /// Divides the colors by alpha, for what has no light without cover. Where alpha is 0, they are as they are.
+    ///
+    /// # Errors
+    ///
+    /// If alpha has another size than the colors.
+    pub(crate) fn divide(&mut self) -> Result<()> {
+        if let (Map::Color(colors), Some(alpha), true) =
+            (&mut self.map, &self.alpha, self.is_associated)
+        {
+            *colors = colors.zip_map(alpha, divided)?;
+            self.is_associated = false;
+        }
+        Ok(())
     }
 
     /// Another map of this image, such as one of its channels, without alpha.
@@ -68,6 +115,8 @@ impl Loaded {
         Self {
             map,
             alpha: None,
+            is_associated: false,
+            faults: self.faults.clone(),
             ..*self
         }
     }
@@ -140,6 +189,7 @@ pub(crate) fn map(
     kind: Kind,
     region: Option<Region>,
     alpha: Option<ImageAlpha>,
+    read: &ReadArgs,
     hint: &str,
 ) -> Result<Loaded> {
     let loaded = map_with_alpha(
@@ -147,6 +197,7 @@ pub(crate) fn map(
         kind,
         region,
         alpha.map_or(Alpha::Keep, Alpha::Without),
+        read,
     )?;
     if loaded.alpha.is_some() {
         let message = format!(
@@ -162,14 +213,61 @@ pub(crate) fn map(
 ///
 /// # Errors
 ///
-/// The errors of [`image`]; channels that do not fit the kind; a part outside of the image.
+/// The errors of [`image`]; channels that do not fit the kind; a part outside of the image; numbers in it that are not
+/// finite.
 pub(crate) fn map_with_alpha(
     path: &Path,
     kind: Kind,
     region: Option<Region>,
     alpha: Alpha,
+    read: &ReadArgs,
 ) -> Result<Loaded> {
-    of_image(&image(path)?, path, kind, region, alpha)
+    let loaded = map_with_faults(path, kind, region, alpha, read)?;
+    loaded.check_finite(path)?;
+    Ok(loaded)
+}
+
+/// Reads an image like [`map_with_alpha`], also if numbers that are not finite had to be replaced: the caller checks
+/// whether it uses these pixels.
+///
+/// # Errors
+///
+/// The errors of [`map_with_alpha`], but for numbers that are not finite.
+pub(crate) fn map_with_faults(
+    path: &Path,
+    kind: Kind,
+    region: Option<Region>,
+    alpha: Alpha,
+    read: &ReadArgs,
+) -> Result<Loaded> {
+    let (image, faults) = picture(path, read)?;
+    let mut loaded = of_image(&image, path, kind, region, alpha)?;
+    loaded.faults = match region {
+        Some(region) => faults.crop(region.first, region.size)?,
+        None => faults,
+    };
+    Ok(loaded)
+}
+
+/// Reads an image: of the layers of an OpenEXR file only the one that is used, with finite numbers.
+fn picture(path: &Path, read: &ReadArgs) -> Result<(Image, Faults)> {
+    let mut image = image(path)?;
+    let mut faults = Faults::default();
+    if let Image::Exr(exr) = &mut image {
+        let of_file = |error| advise(error).context(name(path));
+        let has_layers = exr.planes.iter().any(|plane| plane.name.contains('.'));
+        if let Some(layer) = &read.layer {
+            match exr.layer(layer) {
+                Ok(layer) => *exr = layer,
+                // A file of one layer is read as it is, beside one of several.
+                Err(_) if !has_layers => {}
+                Err(error) => return Err(of_file(error)),
+            }
+        }
+        *exr = exr.to_picture().map_err(of_file)?;
+        faults = Faults::replace(&mut exr.planes, read.nonfinite);
+    }
+    Ok((image, faults))
 }
 
 /// An image in a mesh file, as [`map_with_alpha`] gives one in a file of its own.
@@ -196,6 +294,12 @@ fn of_image(
     region: Option<Region>,
     alpha: Alpha,
 ) -> Result<Loaded> {
+    if kind != Kind::Normals && image.channels() == Channels::Vectors {
+        let message = format!("{} holds vectors, and not values or colors", name(path));
+        return Err(
+            usage(message).hint("give it as a normal map, or name one of its planes: --layer X")
+        );
+    }
     let pixels = if kind != Kind::Normals && image.channels().has_alpha() {
         Some(image.color_alpha().map_err(advise)?)
     } else {
@@ -209,25 +313,42 @@ fn of_image(
         let map = opaque(image, kind).with_context(|| name(path))?;
         return part(path, image, region, map, None);
     };
-    let map = match (alpha, values_beside_alpha(image)) {
+    let associated = match (image, alpha) {
+        // Light that covers nothing has no color that could be divided out.
+        (Image::Exr(exr), Alpha::Keep | Alpha::Without(ImageAlpha::Over(_))) => {
+            Some(exr.associated().map_err(advise)?.0)
+        }
+        _ => None,
+    };
+    let is_associated = associated.is_some() && alpha == Alpha::Keep;
+    let map = match (alpha, values_beside_alpha(image, &pixels)) {
         (Alpha::Without(ImageAlpha::Drop), Some(values)) if kind == Kind::ByChannels => {
             Map::Value(values)
         }
         (Alpha::Keep | Alpha::Without(ImageAlpha::Drop), _) => {
-            Map::Color(pixels.map(|pixel| pixel.color))
+            Map::Color(associated.unwrap_or_else(|| pixels.map(|pixel| pixel.color)))
         }
         (Alpha::Without(ImageAlpha::Over(below)), _) => {
-            Map::Color(pixels.map(|pixel| pixel.color * pixel.alpha + below * (1.0 - pixel.alpha)))
+            let colors =
+                associated.unwrap_or_else(|| pixels.map(|pixel| pixel.color * pixel.alpha));
+            let over = |&color: &LinearRgb, pixel: &LinearRgba| color + below * (1.0 - pixel.alpha);
+            Map::Color(colors.zip_map(&pixels, over)?)
         }
     };
     let alpha = (alpha == Alpha::Keep).then(|| pixels.map(|pixel| pixel.alpha));
-    part(path, image, region, map, alpha)
+    let mut loaded = part(path, image, region, map, alpha)?;
+    loaded.is_associated = is_associated;
+    Ok(loaded)
 }
 
 /// The uncoded values of a gray image with alpha.
-fn values_beside_alpha(image: &Image) -> Option<Raster<f32>> {
-    let Image::Png(png) = image else {
-        return None;
+fn values_beside_alpha(image: &Image, pixels: &Raster<LinearRgba>) -> Option<Raster<f32>> {
+    let png = match image {
+        Image::Png(png) => png,
+        Image::Exr(_) if image.channels() == Channels::GrayAlpha => {
+            return Some(pixels.map(|pixel| pixel.color.r));
+        }
+        _ => return None,
     };
     match &png.pixels {
         PngPixels::GrayAlpha8(raster) => Some(raster.map(|[code, _]| code.to_unit())),
@@ -239,7 +360,7 @@ fn values_beside_alpha(image: &Image) -> Option<Raster<f32>> {
 /// The map of an image whose pixels are all opaque.
 fn opaque(image: &Image, kind: Kind) -> Result<Map> {
     match kind {
-        Kind::Normals => normals(image).map(Map::Normal),
+        Kind::Normals => image.normals().map(Map::Normal).map_err(advise),
         Kind::Colors => image.color().map(Map::Color).map_err(advise),
         Kind::ByChannels => match image.gray() {
             Ok(values) => Ok(Map::Value(values)),
@@ -262,6 +383,8 @@ fn part(
         return Ok(Loaded {
             map,
             alpha,
+            is_associated: false,
+            faults: Faults::default(),
             is_deep,
             is_linear,
         });
@@ -272,6 +395,8 @@ fn part(
             .wrong_value()
             .with_context(|| name(path))?,
         alpha: cropped.transpose().with_context(|| name(path))?,
+        is_associated: false,
+        faults: Faults::default(),
         is_deep,
         is_linear,
     })
@@ -399,34 +524,13 @@ fn crop(map: &Map, region: Region) -> Result<Map> {
     Ok(map_raster!(map, raster => raster.crop(first, size)?))
 }
 
-/// The normals in the channels of an image.
-fn normals(image: &Image) -> Result<Raster<Normal>> {
-    match image {
-        Image::Png(png) | Image::Jpeg(png) => match &png.pixels {
-            PngPixels::Rgb8(raster) => Ok(raster.map(|&codes| Normal::from_codes(codes))),
-            PngPixels::Rgb16(raster) => Ok(raster.map(|&codes| Normal::from_codes(codes))),
-            PngPixels::Rgba8(raster) => {
-                Ok(raster.map(|&[x, y, z, _]| Normal::from_codes([x, y, z])))
-            }
-            PngPixels::Rgba16(raster) => {
-                Ok(raster.map(|&[x, y, z, _]| Normal::from_codes([x, y, z])))
-            }
-            _ => Err(anyhow!(
-                "normals have three channels, and the image is gray"
-            )),
-        },
-        image => {
-            // The parts are the uncoded numbers of the file, from 0 to 1.
-            let parts = image.color()?;
-            Ok(parts.map(|parts| normal(parts.to_array())))
-        }
+/// A color with its alpha divided out, if there is any.
+pub(crate) fn divided(&color: &LinearRgb, &alpha: &f32) -> LinearRgb {
+    if alpha == 0.0 {
+        color
+    } else {
+        LinearRgb::from(color.to_array().map(|part| part / alpha))
     }
-}
-
-/// The unit vector for three parts from 0 to 1.
-fn normal(parts: [f32; 3]) -> Normal {
-    // With the precision of 16-bit codes, and normalized by the same rule.
-    Normal::from_codes(parts.map(u16::from_unit))
 }
 
 /// Adds a hint to frequent errors.
@@ -437,6 +541,9 @@ fn advise(error: ImageError) -> Error {
         }
         ImageErrorKind::MissingPlane { .. } => {
             Some("the planes of an EXR image are R, G and B, or a single one")
+        }
+        ImageErrorKind::MissingLayer { .. } | ImageErrorKind::AmbiguousLayer { .. } => {
+            Some("name one of them with --layer, or in a recipe with layer")
         }
         _ => None,
     };

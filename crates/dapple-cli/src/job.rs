@@ -1,13 +1,14 @@
 //! A run of a subcommand: its files, its messages, and the JSON file beside the output.
 
 use crate::args::{ImageArgs, OutputArgs, Targets};
-use crate::encode::{Format, content, default_format, encode, encode_with_alpha, ramped, range};
+use crate::encode::{
+    Cover, Format, content, default_format, encode, encode_with_alpha, ramped, range,
+};
 use crate::error::{Exit, Hint, usage};
 use crate::output::{OutputIdx, Outputs, Target};
 use crate::progress::Style;
 use anyhow::{Context as _, Result};
 use dapple::image::Content;
-use dapple::raster::Raster;
 use dapple::tile::Map;
 use serde::Serialize;
 use serde_json::Value;
@@ -281,17 +282,17 @@ impl<'a> Job<'a> {
         &mut self,
         output: OutputIdx,
         map: Map,
-        alpha: Option<&Raster<f32>>,
+        cover: Option<Cover<'_>>,
         is_deep: bool,
         args: &ImageArgs,
     ) -> Result<()> {
-        let (Map::Color(colors), Some(alpha)) = (&map, alpha) else {
+        let (Map::Color(colors), Some(cover)) = (&map, cover) else {
             return self.write_image(output, map, is_deep, args);
         };
         let default = default_format(&map, is_deep);
         let format = Format::choose(args.format, self.outputs.target(output), default)?;
         format.check(Content::ColorAlpha, self.target(output))?;
-        self.write(output, &encode_with_alpha(colors, alpha, format)?)?;
+        self.write(output, &encode_with_alpha(colors, cover, format)?)?;
         self.note(output, format, map.size(), range(&map));
         Ok(())
     }

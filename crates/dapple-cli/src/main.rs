@@ -17,6 +17,7 @@ mod encode;
 mod error;
 mod exemplar;
 mod field;
+mod finite;
 mod foresight;
 mod input;
 mod job;

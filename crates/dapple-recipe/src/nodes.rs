@@ -79,6 +79,11 @@ pub(crate) trait NodeKind {
         None
     }
 
+    /// The layer that is read of the image files, if the node sets it.
+    fn layer(&self) -> Option<&str> {
+        None
+    }
+
     /// The texture of control points of a `pups` node.
     fn pups(&self) -> Option<&dyn pups::Texture> {
         None
@@ -198,6 +203,12 @@ impl Node {
     #[must_use]
     pub fn image_alpha(&self) -> Option<ImageAlpha> {
         self.kind().alpha()
+    }
+
+    /// The layer that is read of these files, if the node sets it.
+    #[must_use]
+    pub fn image_layer(&self) -> Option<&str> {
+        self.kind().layer()
     }
 
     /// The inputs of the node, in a fixed order.

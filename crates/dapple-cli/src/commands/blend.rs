@@ -4,12 +4,14 @@ pub(super) mod alpha;
 pub(super) mod layer;
 mod mixing;
 
-use crate::args::{AlphaArgs, ImageArgs, Size};
+use crate::args::{AlphaArgs, ImageArgs, ReadArgs, Size};
+use crate::encode::Cover;
 use crate::error::{Exit, Hint, usage};
 use crate::input::{self, Kind};
 use crate::job::{Context, Job};
 use crate::output::OutputIdx;
 use crate::progress::Progress;
+use alpha::AlphaForm;
 use anyhow::{Context as _, Error, Result};
 use dapple::raster::Raster;
 use dapple::tile::{Layer, Map, TileError, TileErrorKind, blend, blend_by_tile, rank_equalize};
@@ -68,6 +70,10 @@ pub(crate) struct Args {
     alpha: AlphaArgs,
 
     #[command(flatten)]
+    #[serde(flatten)]
+    read: ReadArgs,
+
+    #[command(flatten)]
     mixing: MixingArgs,
 
     /// The size of the blend, in pixels. Images that are smaller are repeated, larger ones cropped. By default all
@@ -89,7 +95,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let mut job = Job::new(context, "blend", &args.image.files);
     let outputs = claim(args, &mut job)?;
     let hint = "--size WxH repeats what is smaller and cuts what is larger";
-    let mut reader = Reader::new(args.size, args.alpha.alpha, hint);
+    let mut reader = Reader::new(args.size, args.alpha.alpha, &args.read, hint);
     let read = args.layers.iter().map(|layer| layer.read(&mut reader));
     let mut materials = read.collect::<Result<Vec<_>>>()?;
     reader.agree(&args.layers, &mut materials)?;
@@ -100,7 +106,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
             material.maps.extend(height);
         }
     }
-    let has_alpha = alpha::multiply(&mut materials)?;
+    let form = alpha::multiply(&mut materials)?;
     let tile = tile(args, &mut reader)?;
     let weights = layer::weights(&materials, materials[0].maps[0].size())?;
     let mut layers = Vec::new();
@@ -120,16 +126,13 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
         None => blend(&layers, &how),
     };
     let mut maps = maps.map_err(advise)?;
-    let mut alpha = if has_alpha {
-        alpha::divide(&mut maps)?
-    } else {
-        None
-    };
+    let alpha = alpha::take(&mut maps, form)?;
+    let mut cover = Cover::of(alpha.as_ref(), form == AlphaForm::Associated);
     drop(progress);
     let is_deep = materials.iter().any(|material| material.is_deep);
     for (map, output) in maps.into_iter().zip(outputs) {
         // The alpha is that of the first map.
-        job.write_with_alpha(output, map, alpha.take().as_ref(), is_deep, &args.image)?;
+        job.write_with_alpha(output, map, cover.take(), is_deep, &args.image)?;
     }
     job.finish(args, Value::Null)?;
     Ok(Exit::Done)
@@ -161,7 +164,7 @@ fn claim(args: &Args, job: &mut Job<'_>) -> Result<Vec<OutputIdx>> {
 }
 
 /// Reads the blend tile, in the size of the blend.
-fn tile(args: &Args, reader: &mut Reader) -> Result<Option<Raster<f32>>> {
+fn tile(args: &Args, reader: &mut Reader<'_>) -> Result<Option<Raster<f32>>> {
     let Some(path) = &args.tile else {
         return Ok(None);
     };

@@ -1,6 +1,6 @@
 //! `dapple blend-map`: a blend tile from the features of a texture.
 
-use crate::args::{Axes, ImageArgs, Region, image_alpha};
+use crate::args::{Axes, ImageArgs, ReadArgs, Region, image_alpha};
 use crate::error::{Exit, Hint};
 use crate::input::{self, ALPHA_HINT, Kind};
 use crate::job::{Context, Job};
@@ -41,6 +41,10 @@ pub(crate) struct Args {
     #[arg(long, value_name = "drop|over:COLOR", value_parser = image_alpha)]
     alpha: Option<ImageAlpha>,
 
+    #[command(flatten)]
+    #[serde(flatten)]
+    read: ReadArgs,
+
     /// The size of the features, such as the diameter of the stones, in pixels, from 1 to 4096.
     #[arg(long, value_name = "PX", default_value_t = 32.0)]
     feature_size: f64,
@@ -73,7 +77,14 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let targets = files.targets("blend-map", &[""], ending)?;
     let outputs = job.claim_images(&targets, args.output.format)?;
     let kind = Kind::ByChannels;
-    let loaded = input::map(&args.image, kind, args.region, args.alpha, ALPHA_HINT)?;
+    let loaded = input::map(
+        &args.image,
+        kind,
+        args.region,
+        args.alpha,
+        &args.read,
+        ALPHA_HINT,
+    )?;
     let wrap = |repeats| if repeats { Wrap::Repeat } else { Wrap::Mirror };
     let options = BlendMap {
         feature_size: args.feature_size,

@@ -2,9 +2,10 @@
 
 mod method;
 
-use super::blend::alpha;
+use super::blend::alpha::{self, AlphaForm};
 use super::blend::layer::{HEIGHT, LayerArg, Material, Reader};
-use crate::args::{AlphaArgs, ImageArgs, Size, seed};
+use crate::args::{AlphaArgs, ImageArgs, ReadArgs, Size, seed};
+use crate::encode::Cover;
 use crate::error::{Exit, Hint, usage};
 use crate::job::{Context, Job};
 use crate::output::OutputIdx;
@@ -63,6 +64,10 @@ pub(crate) struct Args {
     alpha: AlphaArgs,
 
     #[command(flatten)]
+    #[serde(flatten)]
+    read: ReadArgs,
+
+    #[command(flatten)]
     method: MethodArgs,
 
     /// Write the tiles themselves, for a program that lays them out: those of borders with their number from 1 on, as
@@ -90,7 +95,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
         false => vec![String::new()],
     };
     let outputs = claim(args, &sets, &names, &mut job)?;
-    let (materials, has_alpha, is_deep) = read(args)?;
+    let (materials, form, is_deep) = read(args)?;
     let progress = Progress::spinner("cutting", context);
     let tiles = Tiles {
         method,
@@ -104,13 +109,11 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     drop(progress);
     let mut outputs = outputs.into_iter();
     for mut maps in made {
-        let mut alpha = match has_alpha {
-            true => alpha::divide(&mut maps)?,
-            false => None,
-        };
+        let alpha = alpha::take(&mut maps, form)?;
+        let mut cover = Cover::of(alpha.as_ref(), form == AlphaForm::Associated);
         for (map, output) in maps.into_iter().zip(&mut outputs) {
             // The alpha is that of the first map.
-            job.write_with_alpha(output, map, alpha.take().as_ref(), is_deep, &args.image)?;
+            job.write_with_alpha(output, map, cover.take(), is_deep, &args.image)?;
         }
     }
     job.finish(args, Value::Null)?;
@@ -172,12 +175,13 @@ fn claim(
     job.claim_images(&targets, args.image.format)
 }
 
-/// The maps of all tiles, with the height and then alpha last; whether there is alpha, and whether an image has more
-/// than 8 bits.
-fn read(args: &Args) -> Result<(Vec<Vec<Map>>, bool, bool)> {
+/// The maps of all tiles, with the height and then alpha last; the form of alpha, and whether an image has more than 8
+/// bits.
+fn read(args: &Args) -> Result<(Vec<Vec<Map>>, AlphaForm, bool)> {
     let mut reader = Reader::new(
         None,
         args.alpha.alpha,
+        &args.read,
         "tiles and their maps must have the same size",
     );
     let read = args.images.iter().map(|tile| tile.read(&mut reader));
@@ -186,10 +190,10 @@ fn read(args: &Args) -> Result<(Vec<Vec<Map>>, bool, bool)> {
     for material in &mut materials {
         material.maps.extend(material.height.take().map(Map::Value));
     }
-    let has_alpha = alpha::multiply(&mut materials)?;
+    let form = alpha::multiply(&mut materials)?;
     let is_deep = materials.iter().any(|material| material.is_deep);
     let maps = materials.into_iter().map(|material| material.maps);
-    Ok((maps.collect(), has_alpha, is_deep))
+    Ok((maps.collect(), form, is_deep))
 }
 
 /// Adds a hint to frequent errors.

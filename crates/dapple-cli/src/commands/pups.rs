@@ -2,7 +2,7 @@
 
 mod points;
 
-use crate::args::{Extent, ImageArgs, Numbers, image_alpha};
+use crate::args::{Extent, ImageArgs, Numbers, ReadArgs, image_alpha};
 use crate::baking::read_picture;
 use crate::error::{Exit, Hint, usage};
 use crate::field::{Field, FieldArgs, draw, extent_of};
@@ -93,6 +93,10 @@ pub(crate) struct Args {
     /// `over:COLOR` lays the image over a color, such as `over:black`.
     #[arg(long, value_name = "drop|over:COLOR", value_parser = image_alpha, requires = "reference")]
     alpha: Option<ImageAlpha>,
+
+    #[command(flatten)]
+    #[serde(flatten)]
+    read: ReadArgs,
 
     /// Give each place the value of its strongest point alone, for control.
     #[arg(long, help_heading = "Texture")]
@@ -296,7 +300,7 @@ impl Args {
             let error = usage("there is no image to follow");
             return Err(error.hint("give it with --reference FILE"));
         };
-        let picture = read_picture(file, self.alpha, ALPHA_HINT)?;
+        let picture = read_picture(file, self.alpha, &self.read, ALPHA_HINT)?;
         Ok(Images::from([(name.to_owned(), picture)]))
     }
 }

@@ -13,7 +13,7 @@ mod reading;
 mod repair_mesh;
 mod surface;
 
-use crate::args::{AlphaArgs, ImageArgs, Region};
+use crate::args::{AlphaArgs, ImageArgs, ReadArgs, Region};
 use crate::error::{Exit, Hint, usage};
 use crate::job::{Context, Job};
 use crate::output::{OutputIdx, Target};
@@ -101,6 +101,10 @@ pub(crate) struct Args {
     #[command(flatten)]
     #[serde(flatten)]
     alpha: AlphaArgs,
+
+    #[command(flatten)]
+    #[serde(flatten)]
+    read: ReadArgs,
 
     #[command(flatten)]
     plane: PlaneArgs,

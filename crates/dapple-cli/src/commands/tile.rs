@@ -3,9 +3,9 @@
 mod method;
 mod synth;
 
-use crate::args::{AlphaArgs, Axes, ImageArgs, Region, Size};
+use crate::args::{AlphaArgs, Axes, ImageArgs, ReadArgs, Region, Size};
 use crate::commands::info::seams_json;
-use crate::encode::{Format, map_raster};
+use crate::encode::{Cover, Format, map_raster};
 use crate::error::{Exit, Hint, usage};
 use crate::input::{self, Kind, Loaded};
 use crate::job::{Context, Job};
@@ -51,6 +51,10 @@ pub(crate) struct Args {
     #[command(flatten)]
     #[serde(flatten)]
     alpha: AlphaArgs,
+
+    #[command(flatten)]
+    #[serde(flatten)]
+    read: ReadArgs,
 
     #[command(flatten)]
     method: MethodArgs,
@@ -119,6 +123,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
             Some(Map::Value(alpha)) => Some(alpha),
             _ => None,
         };
+        let is_associated = source.loaded.is_associated;
         let Some([output, sheet]) = source.outputs else {
             continue;
         };
@@ -126,10 +131,12 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
         if let Some(sheet) = sheet {
             let alpha = alpha.as_ref().map(twice).transpose()?;
             let map = doubled(&map)?;
-            job.write_with_alpha(sheet, map, alpha.as_ref(), is_deep, &args.image)?;
+            let cover = Cover::of(alpha.as_ref(), is_associated);
+            job.write_with_alpha(sheet, map, cover, is_deep, &args.image)?;
         }
         if let Some(output) = output {
-            job.write_with_alpha(output, map, alpha.as_ref(), is_deep, &args.image)?;
+            let cover = Cover::of(alpha.as_ref(), is_associated);
+            job.write_with_alpha(output, map, cover, is_deep, &args.image)?;
         }
     }
     job.finish(args, report)?;
@@ -153,7 +160,7 @@ fn sources(args: &Args, job: &mut Job<'_>) -> Result<Vec<Source>> {
     let mut sources: Vec<Source> = Vec::new();
     for (path, kind) in inputs {
         let outputs = outputs.next();
-        let loaded = input::map_with_alpha(path, kind, args.region, args.alpha.alpha)?;
+        let loaded = input::map_with_alpha(path, kind, args.region, args.alpha.alpha, &args.read)?;
         let size = loaded.map.size();
         let first = sources.first().map(|source| source.loaded.map.size());
         input::check_size(path, size, paths[0], first.unwrap_or(size))

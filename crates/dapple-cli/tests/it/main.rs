@@ -10,6 +10,7 @@ mod bakes;
 mod batch;
 mod copies;
 mod examples;
+mod exr_inputs;
 mod files;
 mod interrupt;
 mod lifting;

@@ -16,6 +16,10 @@ pub struct ImageNode {
     /// The use of its alpha; by default a partly transparent image is an error.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub alpha: Option<ImageAlpha>,
+    /// The layer of an OpenEXR file with several, such as `ViewLayer.DiffCol`; by default the one without a name,
+    /// `Combined`, `rgba` or `beauty`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub layer: Option<String>,
 }
 
 impl NodeKind for ImageNode {
@@ -25,6 +29,10 @@ impl NodeKind for ImageNode {
 
     fn alpha(&self) -> Option<ImageAlpha> {
         self.alpha
+    }
+
+    fn layer(&self) -> Option<&str> {
+        self.layer.as_deref()
     }
 
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {

@@ -1,6 +1,6 @@
 //! A layer on the command line: `grass.png,weight=mask.png,height=grass_height.png,normal=grass_normal.png`.
 
-use crate::args::{Alpha, Size};
+use crate::args::{Alpha, ReadArgs, Size};
 use crate::encode::map_raster;
 use crate::error::{Hint, usage};
 use crate::input::{self, Kind, Loaded};
@@ -43,6 +43,8 @@ pub(in crate::commands) struct Material {
     pub(in crate::commands) maps: Vec<Map>,
     /// The alpha of the first map, if it is kept.
     pub(in crate::commands) alpha: Option<Raster<f32>>,
+    /// Whether alpha is multiplied into the first map.
+    pub(in crate::commands) is_associated: bool,
     /// The height of the layer.
     pub(in crate::commands) height: Option<Raster<f32>>,
     /// Whether an image has more than 8 bits.
@@ -118,7 +120,7 @@ impl LayerArg {
     /// # Errors
     ///
     /// If one cannot be read.
-    pub(in crate::commands) fn read(&self, reader: &mut Reader) -> Result<Material> {
+    pub(in crate::commands) fn read(&self, reader: &mut Reader<'_>) -> Result<Material> {
         let base = reader.read(&self.path, Kind::ByChannels)?;
         let (mut maps, mut height, mut is_deep) = (vec![base.map], None, base.is_deep);
         for (name, path) in &self.maps {
@@ -145,6 +147,7 @@ impl LayerArg {
         Ok(Material {
             maps,
             alpha: base.alpha,
+            is_associated: base.is_associated,
             height,
             is_deep,
             weight,
@@ -161,23 +164,31 @@ impl LayerArg {
 
 /// A reader of the images of all layers, which have one size in the end.
 #[derive(Debug)]
-pub(in crate::commands) struct Reader {
+pub(in crate::commands) struct Reader<'a> {
     /// The size to which images are repeated or cropped.
     size: Option<Size>,
     /// The handling of alpha.
     alpha: Alpha,
+    /// The options of reading.
+    read: &'a ReadArgs,
     /// The first image that was read, and its size.
     first: Option<(PathBuf, [u32; 2])>,
     /// The hint for images of different sizes.
     hint: &'static str,
 }
 
-impl Reader {
+impl<'a> Reader<'a> {
     /// A reader for images of a size, or of the size of the first image, with a hint for images of another size.
-    pub(in crate::commands) fn new(size: Option<Size>, alpha: Alpha, hint: &'static str) -> Self {
+    pub(in crate::commands) fn new(
+        size: Option<Size>,
+        alpha: Alpha,
+        read: &'a ReadArgs,
+        hint: &'static str,
+    ) -> Self {
         Self {
             size,
             alpha,
+            read,
             first: None,
             hint,
         }
@@ -189,7 +200,7 @@ impl Reader {
     ///
     /// If it cannot be read, or has another size.
     pub(in crate::commands) fn read(&mut self, path: &Path, kind: Kind) -> Result<Loaded> {
-        let mut loaded = input::map_with_alpha(path, kind, None, self.alpha)?;
+        let mut loaded = input::map_with_alpha(path, kind, None, self.alpha, self.read)?;
         if let Some(size) = self.size {
             loaded.map = repeated(&loaded.map, size)?;
             let alpha = loaded.alpha.map(|alpha| repeat(&alpha, size.0));
@@ -375,6 +386,7 @@ mod tests {
         Material {
             maps: vec![Map::Value(Raster::filled([2, 1], 0.0).unwrap())],
             alpha: None,
+            is_associated: false,
             height: None,
             is_deep: false,
             weight,

@@ -1,6 +1,6 @@
 //! The kinds of point sets, and their options.
 
-use crate::args::{Axes, Extent, Numbers, Size, image_alpha, seed};
+use crate::args::{Axes, Extent, Numbers, ReadArgs, Size, image_alpha, seed};
 use crate::error::{Hint, usage};
 use crate::input::{self, ALPHA_HINT, Kind as ImageKind};
 use crate::words::Word;
@@ -78,6 +78,10 @@ pub(super) struct ScatterArgs {
     /// without it, and `over:COLOR` composites the image over a color, such as `over:black`.
     #[arg(long, value_name = "drop|over:COLOR", value_parser = image_alpha, requires = "density")]
     alpha: Option<ImageAlpha>,
+
+    #[command(flatten)]
+    #[serde(flatten)]
+    read: ReadArgs,
 
     /// variable: put more points in darker parts of the image.
     #[arg(long)]
@@ -219,7 +223,7 @@ impl ScatterArgs {
             Some(Density::Image(path)) => path,
         };
         let kind = ImageKind::ByChannels;
-        let values = match input::map(path, kind, None, self.alpha, ALPHA_HINT)?.map {
+        let values = match input::map(path, kind, None, self.alpha, &self.read, ALPHA_HINT)?.map {
             Map::Value(values) => values,
             Map::Color(colors) => colors.map(|color| color.luminance()),
             Map::Normal(normals) => normals.map(|normal| normal.z),

@@ -1,9 +1,9 @@
 //! Synthesis of an image along directions and with scales that images say.
 
-use super::guides::{Values, read_gray};
+use super::guides::Values;
 use super::surface::Covered;
 use super::{Args, STEPS, advise, shown};
-use crate::encode::Format;
+use crate::encode::{Cover, Format};
 use crate::error::{Exit, Hint, usage};
 use crate::input;
 use crate::job::{Context, Job};
@@ -49,7 +49,8 @@ pub(super) fn run(args: &Args, context: &Context) -> Result<Exit> {
     };
     let (base, alpha) = covered.bake_base()?;
     let is_deep = covered.input.base.is_deep;
-    job.write_with_alpha(output, base, alpha.as_ref(), is_deep, &args.image)?;
+    let cover = Cover::of(alpha.as_ref(), false);
+    job.write_with_alpha(output, base, cover, is_deep, &args.image)?;
     for (output, (_, example)) in map_outputs.into_iter().zip(&covered.input.maps) {
         let map = covered.bake(&example.map)?;
         job.write_with_alpha(output, map, None, example.is_deep, &args.image)?;
@@ -93,7 +94,7 @@ impl Args {
             let size = scales.as_ref().map(Raster::size).unwrap_or_default();
             return Ok((Raster::filled(size, 0.0)?, scales));
         };
-        let turns = read_gray(first, None)?;
+        let turns = self.read_gray(first, None)?;
         if let (Some(scales), Some(path)) = (&scales, &self.guides.scale) {
             input::check_size(path, scales.size(), first, turns.size())
                 .hint("--directions and --scale have one size")?;

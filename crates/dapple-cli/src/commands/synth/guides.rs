@@ -144,7 +144,7 @@ impl Args {
     /// mesh are.
     fn read_values(&self, path: &Path) -> Result<Values> {
         if !is_mesh(path) {
-            return Ok(Values::Image(read_gray(path, None)?));
+            return Ok(Values::Image(self.read_gray(path, None)?));
         }
         let name = input::name(path);
         if self.surface.mesh.is_none() {
@@ -212,7 +212,7 @@ impl Args {
                 (lightness, guide)
             } else {
                 let images = args.guide_of.iter();
-                let images = images.map(|path| read_gray(path, self.region));
+                let images = images.map(|path| self.read_gray(path, self.region));
                 let images: Vec<_> = images.collect::<Result<_>>()?;
                 let images: Vec<_> = images.iter().collect();
                 let joined = layout.join(&images, 0.0);
@@ -237,15 +237,18 @@ fn blur_range(text: &str) -> Result<f64, String> {
     }
 }
 
-/// Reads an image as gray values: colors as how light they are.
-pub(super) fn read_gray(path: &Path, region: Option<Region>) -> Result<Raster<f32>> {
-    gray(&input::map(
-        path,
-        Kind::ByChannels,
-        region,
-        None,
-        input::ALPHA_HINT,
-    )?)
+impl Args {
+    /// Reads an image as gray values: colors as how light they are.
+    pub(super) fn read_gray(&self, path: &Path, region: Option<Region>) -> Result<Raster<f32>> {
+        gray(&input::map(
+            path,
+            Kind::ByChannels,
+            region,
+            None,
+            &self.read,
+            input::ALPHA_HINT,
+        )?)
+    }
 }
 
 /// A guide with the mean and the deviation of what it is compared with, where that is used.

@@ -3,7 +3,7 @@
 use super::options::{MethodName, PlaneArgs};
 use super::reading::Input;
 use super::{Args, STEPS, advise, inspect, shown};
-use crate::encode::{Format, map_raster};
+use crate::encode::{Cover, Format, map_raster};
 use crate::error::{Exit, Hint, usage};
 use crate::input;
 use crate::job::{Context, Job};
@@ -74,7 +74,8 @@ pub(super) fn run(args: &Args, context: &Context) -> Result<Exit> {
         let map = follow(&texture, &example.map)?;
         let alpha = example.alpha.as_ref().map(|alpha| texture.transfer(alpha));
         let alpha = alpha.transpose()?;
-        job.write_with_alpha(output, map, alpha.as_ref(), example.is_deep, &args.image)?;
+        let cover = Cover::of(alpha.as_ref(), example.is_associated);
+        job.write_with_alpha(output, map, cover, example.is_deep, &args.image)?;
     }
     if let Some(output) = sources {
         let place = |&[column, row]: &[u32; 2]| LinearRgb::new(column as f32, row as f32, 0.0);

@@ -40,9 +40,16 @@ impl Args {
             .collect();
         let examples = paths.iter().map(|path| self.load(path, Kind::ByChannels));
         let mut examples: Vec<_> = examples.collect::<Result<_>>()?;
+        if self.surface.mesh.is_some() {
+            // On a mesh colors are averaged with their alpha, and textures of models are straight.
+            examples.iter_mut().try_for_each(Loaded::divide)?;
+        }
         let sizes: Vec<_> = examples.iter().map(|example| example.map.size()).collect();
         let layout = SideBySide::new(&sizes)?.with_turned(self.guides.turned)?;
         let hole = self.read_hole(&examples[0])?;
+        for (image, (path, example)) in paths.iter().zip(&examples).enumerate() {
+            self.check_usable(path, example, (path, image), hole.as_ref())?;
+        }
         if self.plane.repair_channel == Some(Channel::Alpha) {
             // What is made again is as opaque as all else.
             examples[0].alpha = None;
@@ -64,10 +71,14 @@ impl Args {
         let exemplar = exemplar.with_guides(&planes).map_err(advise)?;
         let base = match &self.detail {
             None => example,
-            Some(path) => self.load_detail(path, exemplar.size())?,
+            Some(path) => {
+                let detail = self.load_detail(path, exemplar.size())?;
+                detail.check_finite(path)?;
+                detail
+            }
         };
         let shown = self.detail.as_ref().map_or(paths, |path| vec![path]);
-        let maps = self.load_maps(&layout, &shown, base.map.size())?;
+        let maps = self.load_maps(&layout, &shown, base.map.size(), hole.as_ref())?;
         Ok(Input {
             exemplar: self.with_weighted(exemplar, &maps).map_err(advise)?,
             base,
@@ -97,7 +108,9 @@ impl Args {
                 let error = usage(format!("--map {name} is given twice"));
                 return Err(error.hint("leave one of them out"));
             }
-            maps.push((name.clone(), self.load_map(name, path)?));
+            let map = self.load_map(name, path)?;
+            map.check_finite(path)?;
+            maps.push((name.clone(), map));
         }
         let exemplar = self.with_weighted(exemplar, &maps).map_err(advise)?;
         maps.extend(example.maps.iter().cloned());
@@ -117,6 +130,7 @@ impl Args {
         layout: &SideBySide,
         shown: &[&PathBuf],
         size: [u32; 2],
+        hole: Option<&Raster<bool>>,
     ) -> Result<Vec<(String, Loaded)>> {
         let mut maps: Vec<(String, Vec<&PathBuf>)> = Vec::new();
         for MapArg { name, path } in &self.map {
@@ -146,6 +160,11 @@ impl Args {
                 };
                 input::check_size(path, map.map.size(), example, size)
                     .hint("the maps of an example have its size")?;
+                if self.detail.is_none() {
+                    self.check_usable(path, &map, (example, image), hole)?;
+                } else {
+                    map.check_finite(path)?;
+                }
                 images.push(map);
             }
             loaded.push((name, joined(layout, images)?));
@@ -187,6 +206,29 @@ impl Args {
             }
         }
         Ok(exemplar)
+    }
+
+    /// Fails for numbers of an image that are not finite at a pixel that is used: outside of what is made again, and where
+    /// the mask of its example, of this path and index, is white.
+    fn check_usable(
+        &self,
+        path: &Path,
+        image: &Loaded,
+        (example, index): (&Path, usize),
+        hole: Option<&Raster<bool>>,
+    ) -> Result<()> {
+        if image.faults.is_empty() {
+            return Ok(());
+        }
+        let hole = hole.filter(|_| index == 0);
+        let mask = self.mask.get(index);
+        let mask = mask.map(|mask| self.load_mask(mask, example, image.map.size()));
+        let mask = mask.transpose()?;
+        let is_used = |column: u32, row: u32| {
+            let at = |raster: &Raster<bool>| raster.row(row)[column as usize];
+            mask.as_ref().is_none_or(at) && !hole.is_some_and(at)
+        };
+        image.faults.check(&input::name(path), is_used)
     }
 
     /// Which pixels of the examples textures may have, if not all: those of their masks that are not made again.
@@ -241,7 +283,8 @@ impl Args {
     /// Reads a mask as large as an example: whether its pixels are nearer to white than to black.
     fn load_mask(&self, path: &Path, example: &Path, size: [u32; 2]) -> Result<Raster<bool>> {
         let over_black = Alpha::Without(ImageAlpha::Over(LinearRgb::default()));
-        let mask = input::map_with_alpha(path, Kind::ByChannels, self.region, over_black)?.map;
+        let mask =
+            input::map_with_alpha(path, Kind::ByChannels, self.region, over_black, &self.read)?.map;
         input::check_size(path, mask.size(), example, size)
             .hint("a mask of an example has its size")?;
         match mask {
@@ -269,9 +312,9 @@ impl Args {
         Err(error.hint("make the example from it, by a whole number of pixels for one"))
     }
 
-    /// Reads an image.
+    /// Reads an image. The caller checks its numbers that are not finite.
     fn load(&self, path: &Path, kind: Kind) -> Result<Loaded> {
-        input::map_with_alpha(path, kind, self.region, self.alpha.alpha)
+        input::map_with_faults(path, kind, self.region, self.alpha.alpha, &self.read)
     }
 }
 
@@ -296,6 +339,10 @@ fn joined(layout: &SideBySide, mut images: Vec<Loaded>) -> Result<Loaded> {
         return Ok(images.remove(0));
     }
     let is_deep = images.iter().any(|image| image.is_deep);
+    if images.iter().any(|image| image.is_associated) {
+        images.iter_mut().try_for_each(Loaded::associate)?;
+    }
+    let is_associated = images.iter().any(|image| image.is_associated);
     let map = if let Some(values) = all(&images, |map| match map {
         Map::Value(values) => Some(values),
         _ => None,
@@ -332,6 +379,7 @@ fn joined(layout: &SideBySide, mut images: Vec<Loaded>) -> Result<Loaded> {
     joined.map = map;
     joined.alpha = alpha;
     joined.is_deep = is_deep;
+    joined.is_associated = is_associated;
     Ok(joined)
 }
 

@@ -5,7 +5,7 @@ use super::reading::Input;
 use super::surface::{Product, exemplar_of_mesh};
 use super::{Args, STEPS, advise, shown};
 use crate::args::Alpha;
-use crate::encode::{Format, default_format, encode, encode_with_alpha};
+use crate::encode::{Cover, Format, default_format, encode, encode_with_alpha};
 use crate::error::{Exit, Hint, usage};
 use crate::input::{self, Kind, Loaded};
 use crate::job::{Context, Job};
@@ -77,7 +77,10 @@ pub(super) fn run(args: &Args, context: &Context) -> Result<Exit> {
     }
     let (map, alpha) = repaired.mended(&base)?;
     match format {
-        None => job.write_with_alpha(output, map, alpha.as_ref(), base.is_deep, &args.image)?,
+        None => {
+            let cover = Cover::of(alpha.as_ref(), false);
+            job.write_with_alpha(output, map, cover, base.is_deep, &args.image)?;
+        }
         Some(format) => {
             let model = repaired.model(model, &encoded(&map, alpha.as_ref(), base.is_deep)?)?;
             for file in format.write(&model, "")? {
@@ -179,7 +182,9 @@ impl Repaired<'_> {
 fn encoded(map: &Map, alpha: Option<&Raster<f32>>, is_deep: bool) -> Result<EncodedImage> {
     let format = default_format(map, is_deep);
     let bytes = match (map, alpha) {
-        (Map::Color(colors), Some(alpha)) => encode_with_alpha(colors, alpha, format)?,
+        (Map::Color(colors), Some(alpha)) => {
+            encode_with_alpha(colors, Cover::straight(alpha), format)?
+        }
         _ => encode(map, format)?,
     };
     Ok(EncodedImage::new(bytes)?)

@@ -6,7 +6,7 @@ use super::material::{MaterialMaps, alpha_mode, is_of};
 use super::options::AtlasName;
 use super::reading::Input;
 use super::{Args, STEPS, advise, guides, shown};
-use crate::encode::{Format, default_format, encode, encode_with_alpha, ramped};
+use crate::encode::{Cover, Format, default_format, encode, encode_with_alpha, ramped};
 use crate::error::{Exit, Hint, usage};
 use crate::input;
 use crate::job::{Context, Job, eprintln_if_possible};
@@ -371,7 +371,8 @@ fn write(args: &Args, claimed: &Claimed, covered: &Covered, job: &mut Job<'_>) -
         args.displace_mesh(&mut model, synthesizer, texture, &covered.input)?;
         return write_model(format, claimed, &model, job);
     }
-    job.write_with_alpha(claimed.main, base, alpha.as_ref(), is_deep, &args.image)
+    let cover = Cover::of(alpha.as_ref(), false);
+    job.write_with_alpha(claimed.main, base, cover, is_deep, &args.image)
 }
 
 /// The input mesh with its texture. A gray one becomes a color, which is what models have.
@@ -384,7 +385,9 @@ fn model(args: &Args, covered: &Covered, base: &Map, alpha: Option<&Raster<f32>>
     let default = default_format(&base, example.is_deep);
     let format = args.image.format.unwrap_or(default);
     let png = match (&base, alpha) {
-        (Map::Color(colors), Some(alpha)) => encode_with_alpha(colors, alpha, format)?,
+        (Map::Color(colors), Some(alpha)) => {
+            encode_with_alpha(colors, Cover::straight(alpha), format)?
+        }
         _ => encode(&base, format)?,
     };
     let Some(atlas) = &covered.atlas else {

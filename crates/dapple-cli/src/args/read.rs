@@ -1,0 +1,33 @@
+//! The options of reading images: the layer, and numbers that are not finite.
+
+use crate::words::Word;
+use serde::Serialize;
+
+/// The options of subcommands that read images.
+#[derive(clap::Args, Clone, Debug, Default, Serialize)]
+pub(crate) struct ReadArgs {
+    /// The layer to read of OpenEXR images with several, such as `ViewLayer.DiffCol`. By default the one without a
+    /// name, `Combined`, `rgba` or `beauty`, and of several views the first.
+    #[arg(long, value_name = "NAME")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) layer: Option<String>,
+
+    /// What becomes of numbers of OpenEXR images that are NaN or infinite: an error, the mean of the finite pixels
+    /// around, or zero.
+    #[arg(long, value_name = "HOW", value_parser = Word::<NonFinite>::all(), default_value_t = NonFinite::Error)]
+    pub(crate) nonfinite: NonFinite,
+}
+
+dapple::raster::named! {
+    /// The handling of numbers that are NaN or infinite.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    pub(crate) enum NonFinite {
+        /// An error that names the file, the channel and the pixel.
+        #[default]
+        Error = "error",
+        /// The mean of the finite pixels around.
+        Repair = "repair",
+        /// Zero.
+        Zero = "zero",
+    }
+}
