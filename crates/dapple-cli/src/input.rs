@@ -282,7 +282,15 @@ pub(crate) fn embedded(
     alpha: Alpha,
 ) -> Result<Loaded> {
     let image = decode_image(image.bytes(), &Limits::default()).map_err(advise);
-    let image = image.with_context(|| format!("a texture of {}", name(path)))?;
+    let mut image = image.with_context(|| format!("a texture of {}", name(path)))?;
+    let ending = path.extension().unwrap_or_default();
+    if ["glb", "gltf"]
+        .iter()
+        .any(|gltf| ending.eq_ignore_ascii_case(gltf))
+    {
+        // glTF 2.0, 3.8.3: color space information in images must be ignored.
+        image = image.without_color_space();
+    }
     of_image(&image, path, kind, None, alpha)
 }
 
@@ -542,6 +550,9 @@ fn advise(error: ImageError) -> Error {
         ImageErrorKind::MissingPlane { .. } => {
             Some("the planes of an EXR image are R, G and B, or a single one")
         }
+        ImageErrorKind::ColorSpace { .. } => {
+            Some("convert it to sRGB in an image editor, or remove what it says of its colors")
+        }
         ImageErrorKind::MissingLayer { .. } | ImageErrorKind::AmbiguousLayer { .. } => {
             Some("name one of them with --layer, or in a recipe with layer")
         }
@@ -595,4 +606,46 @@ fn similar_names(path: &Path) -> Vec<String> {
         .take(NAMES_MAX)
         .map(|name| folder.join(name).display().to_string())
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Kind, embedded};
+    use crate::args::Alpha;
+    use dapple::color::LinearRgb;
+    use dapple::image::{Transfer, encode_png};
+    use dapple::mesh::EncodedImage;
+    use dapple::raster::Raster;
+    use dapple::tile::Map;
+    use std::path::Path;
+
+    /// The bytes of a PNG image of one color, with the chunk `cICP` for Display P3.
+    fn display_p3(color: [u8; 3]) -> Vec<u8> {
+        let raster = Raster::filled([4, 4], color).unwrap();
+        let mut bytes = encode_png(raster.view(), Transfer::Data).unwrap();
+        // The chunk follows the header, which ends at 33. Its checksum is the CRC-32 of its name and data.
+        let chunk = [
+            b"\0\0\0\x04cICP\x0c\x0d\0\x01".as_slice(),
+            &0x6e03_e3ef_u32.to_be_bytes(),
+        ]
+        .concat();
+        bytes.splice(33..33, chunk);
+        bytes
+    }
+
+    #[test]
+    fn textures_of_gltf_are_srgb_whatever_they_say() {
+        let image = EncodedImage::new(display_p3([0, 255, 0])).unwrap();
+        let color = |path: &str| {
+            let read = embedded(&image, Path::new(path), Kind::Colors, Alpha::Keep).unwrap();
+            match read.map {
+                Map::Color(colors) => colors.pixels()[0],
+                other => panic!("{other:?}"),
+            }
+        };
+        let green = LinearRgb::new(0.0, 1.0, 0.0);
+        assert_eq!(color("a.glb"), green);
+        assert_eq!(color("A.GLTF"), green);
+        assert!(color("a.obj").r < -0.2, "P3 beside BT.709");
+    }
 }

@@ -83,7 +83,7 @@ impl PngImage {
         }
     }
 
-    const fn bits(&self) -> u32 {
+    pub(crate) const fn bits(&self) -> u32 {
         match self.pixels {
             PngPixels::Gray8(_)
             | PngPixels::GrayAlpha8(_)

@@ -100,6 +100,11 @@ dapple_raster::error_kind! {
             /// The name of the plane.
             name: String,
         } => "there is no plane named {name:?}";
+        /// The colors of the file are declared in a way that cannot be converted.
+        ColorSpace {
+            /// The declaration.
+            found: &'static str,
+        } => "the colors are declared by {found}, which cannot be converted";
         /// The file has no layer of this name.
         MissingLayer {
             /// The name of the layer.

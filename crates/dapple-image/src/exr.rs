@@ -1,8 +1,8 @@
 //! OpenEXR files: named planes of `f32`, writing and reading.
 //!
 //! The format is that of the Academy Software Foundation's "OpenEXR File Layout", <https://openexr.com>; the codec is
-//! the crate `exr`. Colors are linear with the primaries of ITU-R BT.709, the default of OpenEXR, and alpha is
-//! multiplied into them in the file, as the format requires.
+//! the crate `exr`. Colors are linear, with the chromaticities of the file or else the primaries of ITU-R BT.709, and alpha
+//! is multiplied into them in the file, as the format requires.
 
 #[cfg(feature = "exr")]
 mod decode;
@@ -25,6 +25,7 @@ pub(crate) use tiles::TileStream;
 
 pub(crate) use layers::Picture;
 
+use crate::color_space::{BT709, bt709_from, times};
 use crate::content::Pixel;
 use crate::image::transparent;
 use crate::{ImageError, ImageErrorKind};
@@ -79,6 +80,8 @@ pub struct ExrImage {
     pub planes: Vec<ExrPlane>,
     /// The names of the views, such as the eyes of a stereo image, in lower case: the default view first.
     pub views: Vec<String>,
+    /// The chromaticities x and y of red, green, blue and white, if the file has them; else they are those of BT.709.
+    pub chromaticities: Option<[[f32; 2]; 4]>,
 }
 
 impl ExrImage {
@@ -147,15 +150,22 @@ impl ExrImage {
     ///
     /// The errors of [`color_alpha`](Self::color_alpha).
     pub fn associated(&self) -> Result<(Raster<LinearRgb>, Option<Raster<f32>>), ImageError> {
-        let ([red, green, blue], alpha) = match self.picture()? {
-            Picture::Gray { values, alpha } => ([values; 3], alpha),
-            Picture::Color { parts, alpha } => (parts, alpha),
+        let ([red, green, blue], alpha, is_color) = match self.picture()? {
+            Picture::Gray { values, alpha } => ([values; 3], alpha, false),
+            Picture::Color { parts, alpha } => (parts, alpha, true),
             Picture::Vectors(_) => {
                 let (found, needed) = (VECTORS, "RGB");
                 return Err(ImageError::new(ImageErrorKind::Channels { found, needed }));
             }
         };
-        let of = |at: usize| [red, green, blue].map(|plane| plane.pixels()[at]).into();
+        let matrix = self.matrix()?.filter(|_| is_color);
+        let of = |at: usize| {
+            let parts = [red, green, blue].map(|plane| plane.pixels()[at]);
+            match &matrix {
+                None => parts.into(),
+                Some(matrix) => times(matrix, parts.map(f64::from)),
+            }
+        };
         let pixels = (0..red.pixels().len()).map(of).collect();
         let colors = Raster::from_vec(red.size(), pixels)
             .map_err(|error| ImageError::damaged("OpenEXR", error))?;
@@ -203,14 +213,39 @@ impl ExrImage {
             .map_err(|error| ImageError::damaged("OpenEXR", error))
     }
 
+    /// The matrix from the colors of the file to those of BT.709, if they differ.
+    fn matrix(&self) -> Result<Option<[[f64; 3]; 3]>, ImageError> {
+        let Some(primaries) = self.chromaticities else {
+            return Ok(None);
+        };
+        let primaries = primaries.map(|point| point.map(f64::from));
+        let numbers = primaries.iter().flatten().zip(BT709.iter().flatten());
+        if numbers
+            .into_iter()
+            .all(|(found, number)| (found - number).abs() < SAME_CHROMATICITY)
+        {
+            return Ok(None);
+        }
+        // Chromaticities have four digits as numbers of 32 bits, but the computation is in 64.
+        let rounded = primaries.map(|point| point.map(|number| (number * 1e6).round() / 1e6));
+        bt709_from(&rounded).map(Some).ok_or_else(|| {
+            let found = "chromaticities that span no colors";
+            ImageError::new(ImageErrorKind::ColorSpace { found })
+        })
+    }
+
     /// An image without planes that has all else of this one.
     fn without_planes(&self) -> Self {
         Self {
             planes: Vec::new(),
             views: self.views.clone(),
+            chromaticities: self.chromaticities,
         }
     }
 }
+
+/// The largest difference of chromaticities that are meant to be the same: they are rounded to four digits.
+const SAME_CHROMATICITY: f64 = 0.000_2;
 
 /// The name of a picture of vectors in errors.
 const VECTORS: &str = "of the vectors X, Y and Z";

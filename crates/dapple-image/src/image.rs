@@ -1,6 +1,6 @@
 //! Images whose format is recognized by their first bytes.
 
-use crate::{ExrImage, ImageError, ImageErrorKind, Limits, PngImage, PngPixels, file};
+use crate::{ColorSpace, ExrImage, ImageError, ImageErrorKind, Limits, PngImage, PngPixels, file};
 use dapple_color::{LinearRgb, LinearRgba, Normal};
 use dapple_raster::Raster;
 use std::path::Path;
@@ -103,10 +103,11 @@ impl Image {
 
     /// The colors of the image in linear light. Gray images become gray colors; alpha is allowed if it is 1 everywhere.
     ///
-    /// PNG and JPEG are read as sRGB, even if the file does not say so, as on the web.
+    /// PNG and JPEG are read by the color space that they declare, and as sRGB if there is none, as on the web.
     ///
     /// # Errors
     ///
+    /// [`ImageErrorKind::ColorSpace`] if this color space cannot be converted,
     /// [`ImageErrorKind::Channels`] if the image is partly transparent, [`ImageErrorKind::MissingPlane`] or
     /// [`ImageErrorKind::SizeMismatch`] if an OpenEXR file does not have three planes of color.
     pub fn color(&self) -> Result<Raster<LinearRgb>, ImageError> {
@@ -124,7 +125,7 @@ impl Image {
 
     /// The colors of the image in linear light with their alpha, which is 1 where the file has none.
     ///
-    /// PNG and JPEG are read as sRGB, even if the file does not say so, as on the web.
+    /// PNG and JPEG are read by the color space that they declare, and as sRGB if there is none, as on the web.
     ///
     /// # Errors
     ///
@@ -132,7 +133,7 @@ impl Image {
     /// of color.
     pub fn color_alpha(&self) -> Result<Raster<LinearRgba>, ImageError> {
         match self {
-            Self::Png(image) | Self::Jpeg(image) => Ok(image.color_alpha()),
+            Self::Png(image) | Self::Jpeg(image) => image.color_alpha(),
             Self::Exr(image) => image.color_alpha(),
         }
     }
@@ -165,6 +166,15 @@ impl Image {
                 needed: "a normal map",
             })),
         }
+    }
+
+    /// The same codes as sRGB, whatever the file says of its colors: the rule of glTF 2.0, section 3.8.3, for textures.
+    #[must_use]
+    pub fn without_color_space(mut self) -> Self {
+        if let Self::Png(image) | Self::Jpeg(image) = &mut self {
+            image.space = ColorSpace::default();
+        }
+        self
     }
 
     /// The image of one layer of an OpenEXR file with several.

@@ -2,16 +2,17 @@
 //!
 //! Reference: ITU-T T.81, "Digital compression and coding of continuous-tone still images", 1992, with JFIF (ITU-T
 //! T.871) and Exif. The codec is the crate `zune-jpeg`, without its SIMD, so that a file has the same pixels on every
-//! machine. Profiles are ignored, and the codes are sRGB. An image with an Exif orientation is turned upright, as in
+//! machine. The color space is that of an ICC profile, else that of Exif, else sRGB. An image with an Exif orientation is turned upright, as in
 //! browsers and editors. Other codings, other depths and CMYK are errors that name the feature.
 //!
 //! Where a program unwinds on panic (the default), a panic of the codec is caught here and becomes
 //! [`ImageErrorKind::Damaged`].
 
+mod exif;
 mod orientation;
 
 use crate::image::JPEG_SIGNATURE as SIGNATURE;
-use crate::{ImageError, ImageErrorKind, Limits, PngImage, PngPixels, Transfer};
+use crate::{ImageError, ImageErrorKind, Limits, PngImage, PngPixels, Transfer, icc};
 use orientation::Orientation;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use zune_jpeg::JpegDecoder;
@@ -33,7 +34,7 @@ const SIDE_LIMIT: usize = 65_535;
 const SAMPLE_BYTES: u64 = 3;
 
 /// Decodes the bytes of a JPEG file to a PNG image of the same pixels: [`PngPixels::Gray8`] or [`PngPixels::Rgb8`],
-/// under the sRGB curve.
+/// with their color space, which is sRGB if the file says nothing else.
 ///
 /// # Errors
 ///
@@ -78,9 +79,12 @@ fn decode(bytes: &[u8], limits: &Limits) -> Result<PngImage, ImageError> {
     limits.check_bytes(SAMPLE_BYTES.saturating_mul(n_samples as u64))?;
     let mut samples = vec![0; n_samples];
     decoder.decode_into(&mut samples).map_err(refusal)?;
-    let orientation = decoder
-        .exif()
-        .map_or_else(Orientation::default, |exif| Orientation::from_exif(exif));
+    let exif = decoder.exif().map(Vec::as_slice).unwrap_or_default();
+    let orientation = Orientation::from_exif(exif);
+    let space = match decoder.icc_profile() {
+        Some(profile) => icc::color_space(&profile),
+        None => exif::color_space(exif),
+    };
     let pixels = match output {
         ColorSpace::Luma => PngPixels::Gray8(orientation.raster([width, height], &samples)?),
         _ => {
@@ -91,6 +95,7 @@ fn decode(bytes: &[u8], limits: &Limits) -> Result<PngImage, ImageError> {
     Ok(PngImage {
         pixels,
         transfer: Transfer::Srgb,
+        space,
     })
 }
 

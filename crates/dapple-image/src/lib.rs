@@ -39,10 +39,13 @@
 )]
 
 mod channels;
+mod color_space;
 mod content;
 mod error;
 mod exr;
 mod file;
+#[cfg(any(feature = "png", feature = "jpeg"))]
+mod icc;
 mod image;
 #[cfg(feature = "jpeg")]
 mod jpeg;
@@ -66,6 +69,7 @@ pub use self::png::{
     write_normal_png, write_png,
 };
 pub use channels::Channels;
+pub use color_space::ColorSpace;
 pub use content::{Content, Depth, Encoding};
 pub use error::{ImageError, ImageErrorKind};
 pub use file::replace;

@@ -14,6 +14,8 @@ mod pixel;
 #[cfg(feature = "png")]
 mod shortcut;
 #[cfg(feature = "png")]
+mod space;
+#[cfg(feature = "png")]
 mod stream;
 mod values;
 

@@ -72,9 +72,9 @@ enough; in between they are interpolated.";
 #[derive(clap::Args, Debug, Serialize)]
 #[command(after_help = format!("{EXAMPLES}\n\n{}", surface::endings()))]
 pub(crate) struct Args {
-    /// The example. PNG and JPEG are sRGB, gray or color, and OpenEXR is linear. Color is matched in sRGB, gray as it is. Or
-    /// another mesh with a texture or with colors of its vertices, whose texture and material --mesh then gets; maps of it are
-    /// at its texture coordinates.
+    /// The example. PNG and JPEG are sRGB unless they declare another color space, and OpenEXR is linear. Color is matched
+    /// in sRGB, gray as it is. Or another mesh with a texture or with colors of its vertices, whose texture and material
+    /// --mesh then gets; maps of it are at its texture coordinates.
     #[arg(value_name = "IMAGE|MESH")]
     exemplar: PathBuf,
 

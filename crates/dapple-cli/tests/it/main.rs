@@ -8,6 +8,7 @@
 mod alpha;
 mod bakes;
 mod batch;
+mod color_inputs;
 mod copies;
 mod examples;
 mod exr_inputs;

@@ -70,7 +70,15 @@ fn decode(bytes: &[u8], limits: &Limits) -> Result<ExrImage, ImageError> {
         .filter_map(|of| of.multi_view_names.as_ref());
     let of_parts = attributes.filter_map(|of| of.view_name.as_ref());
     let views = layers::views(listed.flatten().map(text), of_parts.map(text));
-    Ok(ExrImage { planes, views })
+    let chromaticities = image.attributes.chromaticities.map(|of| {
+        let points = [of.red, of.green, of.blue, of.white];
+        points.map(|Vec2(x, y)| [x, y])
+    });
+    Ok(ExrImage {
+        planes,
+        views,
+        chromaticities,
+    })
 }
 
 /// Checks for unsupported features and sizes past the limits, by the headers alone.

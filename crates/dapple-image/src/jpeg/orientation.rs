@@ -3,14 +3,12 @@
 //! Reference: "Exchangeable image file format for digital still cameras: Exif Version 2.32", CIPA DC-008, 2019, tag 274
 //! of the first directory of its TIFF data. Malformed data means the usual orientation.
 
+use super::exif::Tiff;
 use crate::ImageError;
 use dapple_raster::Raster;
 
 /// The tag of the orientation in a directory.
 const TAG: u16 = 274;
-
-/// The length of an entry in a directory, in bytes.
-const ENTRY: usize = 12;
 
 /// The orientation of the rows and columns of a file in the picture: from 1 (upright) to 8.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -61,30 +59,6 @@ impl Orientation {
 
 /// The number in the entry of the orientation, if there is one.
 fn find(exif: &[u8]) -> Option<u16> {
-    let is_little = match exif.get(..2)? {
-        b"II" => true,
-        b"MM" => false,
-        _ => return None,
-    };
-    let short = |at: usize| {
-        let bytes = exif.get(at..)?.first_chunk::<2>()?;
-        Some(if is_little {
-            u16::from_le_bytes(*bytes)
-        } else {
-            u16::from_be_bytes(*bytes)
-        })
-    };
-    let [first, second] = [short(4)?, short(6)?].map(usize::from);
-    let directory = if is_little {
-        first | second << 16
-    } else {
-        first << 16 | second
-    };
-    let n_entries = short(directory)?;
-    let entries = (0..usize::from(n_entries)).map(|entry| directory + 2 + ENTRY * entry);
-    // The number itself follows tag, type and count, if it is short.
-    entries
-        .take_while(|&at| at < exif.len())
-        .find(|&at| short(at) == Some(TAG))
-        .and_then(|at| short(at + 8))
+    let tiff = Tiff::new(exif)?;
+    tiff.short(tiff.entry(tiff.first()?, TAG)?)
 }

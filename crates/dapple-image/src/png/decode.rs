@@ -4,7 +4,7 @@
 //! [`PngPixels`]; of an animation the first picture is read. The size is checked against the limits before memory for
 //! the pixels is allocated.
 
-use super::{PngImage, PngPixel, PngPixels, Transfer};
+use super::{PngImage, PngPixel, PngPixels, Transfer, space};
 use crate::image::PNG_SIGNATURE as SIGNATURE;
 use crate::{ImageError, ImageErrorKind, Limits};
 use dapple_raster::Raster;
@@ -41,7 +41,12 @@ pub fn decode_png(bytes: &[u8], limits: &Limits) -> Result<PngImage, ImageError>
     reader.finish().map_err(refuse)?;
     let transfer = transfer_of(reader.info());
     let pixels = PngPixels::from_samples(size, reader.output_color_type(), &samples)?;
-    Ok(PngImage { pixels, transfer })
+    let space = space::of(reader.info());
+    Ok(PngImage {
+        pixels,
+        transfer,
+        space,
+    })
 }
 
 /// Checks that the size has pixels, which the codec reports like other damage.
@@ -85,7 +90,6 @@ fn options() -> png::DecodeOptions {
     let mut options = png::DecodeOptions::default();
     options.set_ignore_checksums(false);
     options.set_ignore_text_chunk(true);
-    options.set_ignore_iccp_chunk(true);
     options
 }
 

@@ -1,6 +1,7 @@
 //! The content of a PNG file; JPEG files are read to the same type.
 
 use super::Transfer;
+use crate::ColorSpace;
 use dapple_raster::Raster;
 
 /// The content of a PNG file.
@@ -11,6 +12,8 @@ pub struct PngImage {
     /// [`Transfer::Srgb`] if the file declares it (with the chunk `sRGB`, or a `gAMA` of 0.45455), else
     /// [`Transfer::Data`]; a file without a declaration may still hold color.
     pub transfer: Transfer,
+    /// What the file says of its colors. Gray images and data are the codes of the file, whatever it says.
+    pub space: ColorSpace,
 }
 
 /// Pixels of one of the kinds that PNG has; alpha comes last.

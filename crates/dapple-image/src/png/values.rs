@@ -29,42 +29,75 @@ impl PngImage {
         }
     }
 
-    /// The colors in linear light, with the codes read as sRGB whatever the file says; gray images become gray colors.
+    /// The colors in linear light of ITU-R BT.709, from the color space that the file declares, and else from sRGB. Gray
+    /// images become gray colors under the curve of sRGB, whatever the file says.
     ///
     /// # Errors
     ///
-    /// [`ImageErrorKind::Channels`] if the image is partly transparent.
+    /// [`ImageErrorKind::Channels`] if the image is partly transparent, [`ImageErrorKind::ColorSpace`] if its color space
+    /// cannot be converted.
     pub fn color(&self) -> Result<Raster<LinearRgb>, ImageError> {
         Ok(match &self.pixels {
             PngPixels::Gray8(raster) => raster.map(|&code| gray(code)),
             PngPixels::Gray16(raster) => raster.map(|&code| gray(code)),
             PngPixels::GrayAlpha8(raster) => opaque(raster, "RGB")?.map(|&[code, _]| gray(code)),
             PngPixels::GrayAlpha16(raster) => opaque(raster, "RGB")?.map(|&[code, _]| gray(code)),
-            PngPixels::Rgb8(raster) => raster.map(|&codes| LinearRgb::from_srgb(codes)),
-            PngPixels::Rgb16(raster) => raster.map(|&codes| LinearRgb::from_srgb(codes)),
+            PngPixels::Rgb8(raster) => self.colors(raster, |&codes| codes)?,
+            PngPixels::Rgb16(raster) => self.colors(raster, |&codes| codes)?,
             PngPixels::Rgba8(raster) => {
-                opaque(raster, "RGB")?.map(|&[r, g, b, _]| LinearRgb::from_srgb([r, g, b]))
+                self.colors(opaque(raster, "RGB")?, |&[r, g, b, _]| [r, g, b])?
             }
             PngPixels::Rgba16(raster) => {
-                opaque(raster, "RGB")?.map(|&[r, g, b, _]| LinearRgb::from_srgb([r, g, b]))
+                self.colors(opaque(raster, "RGB")?, |&[r, g, b, _]| [r, g, b])?
             }
         })
     }
 
-    /// The colors in linear light with their alpha, which is 1 where the file has none; the codes of color are read as sRGB
-    /// whatever the file says.
-    #[must_use]
-    pub fn color_alpha(&self) -> Raster<LinearRgba> {
+    /// The colors as [`color`](Self::color) has them, with their alpha, which is 1 where the file has none.
+    ///
+    /// # Errors
+    ///
+    /// [`ImageErrorKind::ColorSpace`] if the color space of the file cannot be converted.
+    pub fn color_alpha(&self) -> Result<Raster<LinearRgba>, ImageError> {
         let all = LinearRgba::opaque;
-        match &self.pixels {
-            PngPixels::Gray8(raster) => raster.map(|&code| all(gray(code))),
-            PngPixels::Gray16(raster) => raster.map(|&code| all(gray(code))),
+        Ok(match &self.pixels {
             PngPixels::GrayAlpha8(raster) => raster.map(gray_alpha),
             PngPixels::GrayAlpha16(raster) => raster.map(gray_alpha),
-            PngPixels::Rgb8(raster) => raster.map(|&codes| all(LinearRgb::from_srgb(codes))),
-            PngPixels::Rgb16(raster) => raster.map(|&codes| all(LinearRgb::from_srgb(codes))),
-            PngPixels::Rgba8(raster) => raster.map(|&codes| LinearRgba::from_srgb(codes)),
-            PngPixels::Rgba16(raster) => raster.map(|&codes| LinearRgba::from_srgb(codes)),
+            PngPixels::Rgba8(raster) => self.colors_alpha(raster)?,
+            PngPixels::Rgba16(raster) => self.colors_alpha(raster)?,
+            _ => self.color()?.map(|&color| all(color)),
+        })
+    }
+
+    fn colors<P: Sync, C: Code + Into<u16>>(
+        &self,
+        raster: &Raster<P>,
+        codes: impl Fn(&P) -> [C; 3] + Sync,
+    ) -> Result<Raster<LinearRgb>, ImageError> {
+        Ok(match self.space.converter(self.max())? {
+            None => raster.map(|pixel| LinearRgb::from_srgb(codes(pixel))),
+            Some(space) => raster.par_map(|pixel| space.color(codes(pixel).map(Into::into))),
+        })
+    }
+
+    fn colors_alpha<C: Code + Into<u16> + Sync>(
+        &self,
+        raster: &Raster<[C; 4]>,
+    ) -> Result<Raster<LinearRgba>, ImageError> {
+        Ok(match self.space.converter(self.max())? {
+            None => raster.map(|&codes| LinearRgba::from_srgb(codes)),
+            Some(space) => raster.par_map(|&[r, g, b, alpha]| LinearRgba {
+                color: space.color([r, g, b].map(Into::into)),
+                alpha: alpha.to_unit(),
+            }),
+        })
+    }
+
+    /// The largest code.
+    fn max(&self) -> u16 {
+        match self.bits() {
+            8 => u8::MAX.into(),
+            _ => u16::MAX,
         }
     }
 }

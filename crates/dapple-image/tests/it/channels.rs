@@ -1,8 +1,8 @@
 //! What images say about their channels.
 
 use dapple_image::{
-    Channels, ExrImage, ExrPlane, Image, Limits, PngImage, PngPixel, PngPixels, Transfer,
-    decode_image, encode_png,
+    Channels, ColorSpace, ExrImage, ExrPlane, Image, Limits, PngImage, PngPixel, PngPixels,
+    Transfer, decode_image, encode_png,
 };
 use dapple_raster::Raster;
 
@@ -25,7 +25,11 @@ fn files_say_what_they_hold() {
     check([1_u16; 4], Channels::Rgba, 16);
     let pixels = PngPixels::Gray8(Raster::filled([1, 1], 0).unwrap());
     let transfer = Transfer::Srgb;
-    let photo = Image::Jpeg(PngImage { pixels, transfer });
+    let photo = Image::Jpeg(PngImage {
+        pixels,
+        transfer,
+        space: ColorSpace::default(),
+    });
     assert_eq!((photo.format(), photo.bits()), ("JPEG", 8), "a photograph");
 }
 

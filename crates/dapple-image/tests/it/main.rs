@@ -4,6 +4,8 @@
 mod arrays;
 #[cfg(feature = "png")]
 mod channels;
+#[cfg(all(feature = "png", feature = "jpeg", feature = "exr"))]
+mod color_space;
 #[cfg(feature = "exr")]
 mod exr;
 mod file;

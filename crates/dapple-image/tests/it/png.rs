@@ -21,7 +21,7 @@ fn crc(bytes: &[u8]) -> u32 {
     !sum
 }
 
-fn chunk(name: &[u8; 4], data: &[u8]) -> Vec<u8> {
+pub(crate) fn chunk(name: &[u8; 4], data: &[u8]) -> Vec<u8> {
     let named = [name.as_slice(), data].concat();
     let length = u32::try_from(data.len()).unwrap();
     [
@@ -33,7 +33,7 @@ fn chunk(name: &[u8; 4], data: &[u8]) -> Vec<u8> {
 }
 
 /// A zlib stream of one stored block.
-fn stored(data: &[u8]) -> Vec<u8> {
+pub(crate) fn stored(data: &[u8]) -> Vec<u8> {
     let length = u16::try_from(data.len()).unwrap();
     let (mut a, mut b) = (1_u32, 0_u32);
     for &byte in data {
@@ -49,7 +49,12 @@ fn stored(data: &[u8]) -> Vec<u8> {
 }
 
 /// A PNG file; `format` is bit depth, color type and interlacing, `lines` are filter bytes and samples as they stand.
-fn naive_png(size: [u32; 2], format: [u8; 3], extra: &[Vec<u8>], lines: &[u8]) -> Vec<u8> {
+pub(crate) fn naive_png(
+    size: [u32; 2],
+    format: [u8; 3],
+    extra: &[Vec<u8>],
+    lines: &[u8],
+) -> Vec<u8> {
     let mut header = size.map(u32::to_be_bytes).concat();
     header.extend([format[0], format[1], 0, 0, format[2]]);
     let mut bytes = SIGNATURE.to_vec();
@@ -77,8 +82,10 @@ fn check_round_trip<P: PngPixel + PartialEq + core::fmt::Debug>(
         let expected = PngImage {
             pixels: wrap(raster.clone()),
             transfer,
+            space: decode(&bytes).space,
         };
         assert_eq!(decode(&bytes), expected, "the round trip");
+        assert!(expected.space.is_srgb(), "{}", expected.space);
     }
 }
 

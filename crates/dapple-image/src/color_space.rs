@@ -1,0 +1,329 @@
+//! What a file says of its colors, and the way from its codes to linear light with the primaries of ITU-R BT.709.
+//!
+//! References: ICC.1:2022 (profiles of three components with a matrix and curves); ITU-T H.273, 2021 (the code points of
+//! `cICP`); the W3C recommendation "Portable Network Graphics (PNG) Specification (Third Edition)", 2025, section 4.3
+//! (`cICP` before `iCCP` before `sRGB` before `gAMA` and `cHRM`); SMPTE RP 177 (matrices from chromaticities). A white
+//! other than D65 is adapted by the method of Bradford, as profiles do, so that white stays white.
+//!
+//! Everything is computed in `f64` with the powers of `libm`, so that it has the same bits on every machine. Colors outside
+//! of BT.709 get components below 0 or above 1.
+
+use crate::{ImageError, ImageErrorKind};
+use core::fmt;
+use dapple_color::LinearRgb;
+
+/// Chromaticities x and y of red, green, blue and white.
+pub(crate) type Primaries = [[f64; 2]; 4];
+
+type Matrix = [[f64; 3]; 3];
+
+/// White of the illuminant D65, as BT.709 and sRGB have it.
+pub(crate) const D65: [f64; 2] = [0.3127, 0.329];
+
+/// The primaries of ITU-R BT.709 and sRGB.
+pub(crate) const BT709: Primaries = [[0.64, 0.33], [0.3, 0.6], [0.15, 0.06], D65];
+
+/// The primaries of Adobe RGB (1998).
+#[cfg(feature = "jpeg")]
+pub(crate) const ADOBE_RGB: Primaries = [[0.64, 0.33], [0.21, 0.71], [0.15, 0.06], D65];
+
+/// The exponent of Adobe RGB (1998), 2 + 51 / 256.
+#[cfg(feature = "jpeg")]
+pub(crate) const ADOBE_GAMMA: f64 = 563.0 / 256.0;
+
+/// White of the connection space of profiles, an approximation of D50 (ICC.1, section 6.3.4.3).
+pub(crate) const D50_XYZ: [f64; 3] = [0.9642, 1.0, 0.8249];
+
+/// The responses of cones in the method of Bradford: Lam, "Metamerism and colour constancy", 1985.
+const BRADFORD: Matrix = [
+    [0.8951, 0.2664, -0.1614],
+    [-0.7502, 1.7135, 0.0367],
+    [0.0389, -0.0685, 1.0296],
+];
+
+/// The largest entry by which the matrix of an sRGB profile differs from the identity: profiles round their numbers and
+/// adapt D65 in different ways.
+const MATRIX_TOLERANCE: f64 = 0.003;
+
+/// What a file says of its colors.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ColorSpace {
+    source: Source,
+    conversion: Conversion,
+}
+
+/// The part of a file that says what its colors are.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) enum Source {
+    /// None.
+    #[default]
+    None,
+    /// The chunk `sRGB` of PNG, or a `gAMA` of 0.45455.
+    Srgb,
+    /// The chunk `cICP` of PNG.
+    Cicp,
+    /// An ICC profile.
+    Icc,
+    /// The chunks `gAMA` and `cHRM` of PNG.
+    Gamma,
+    /// The color space of Exif.
+    Exif,
+}
+
+/// The way from codes to linear light.
+#[derive(Clone, Debug, Default, PartialEq)]
+enum Conversion {
+    /// That of sRGB.
+    #[default]
+    Srgb,
+    /// Curves, and a matrix.
+    Matrix(Box<MatrixSpace>),
+    /// None that is known: the name of what cannot be converted.
+    Unknown(&'static str),
+}
+
+/// Curves of red, green and blue, and the matrix from their light to that of BT.709.
+#[derive(Clone, Debug, PartialEq)]
+struct MatrixSpace {
+    matrix: Matrix,
+    curves: [Curve; 3],
+}
+
+/// A curve from codes to light, both from 0 to 1.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Curve {
+    /// The curve of sRGB.
+    Srgb,
+    /// The inverse of the curve of cameras in ITU-R BT.709.
+    Bt709,
+    /// A power; 1 for light itself.
+    Power(f64),
+    /// `(a x + b)^g + e` from `d` on, and `c x + f` below (ICC.1, section 10.18): g, a, b, c, d, e, f.
+    Parametric([f64; 7]),
+    /// Values at even steps, with straight lines between them.
+    Table(Vec<f64>),
+}
+
+impl Curve {
+    fn light(&self, code: f64) -> f64 {
+        match self {
+            Self::Srgb if code <= 0.040_45 => code / 12.92,
+            Self::Srgb => libm::pow((code + 0.055) / 1.055, 2.4),
+            Self::Bt709 if code < 0.081 => code / 4.5,
+            Self::Bt709 => libm::pow((code + 0.099) / 1.099, 1.0 / 0.45),
+            Self::Power(gamma) if *gamma == 1.0 => code,
+            Self::Power(gamma) => libm::pow(code, *gamma),
+            Self::Parametric([g, a, b, c, d, e, f]) => {
+                if code >= *d {
+                    libm::pow((a * code + b).max(0.0), *g) + e
+                } else {
+                    c * code + f
+                }
+            }
+            Self::Table(values) => {
+                let place = code * (values.len() - 1) as f64;
+                let below = (place as usize).min(values.len() - 1);
+                let above = (below + 1).min(values.len() - 1);
+                values[below] + (values[above] - values[below]) * (place - below as f64)
+            }
+        }
+    }
+
+    /// Whether the curve is that of sRGB, to half of a code of 8 bits.
+    fn is_srgb(&self) -> bool {
+        (0..=255_u8).all(|code| {
+            let code = f64::from(code);
+            let border = |code: f64| Self::Srgb.light(code.clamp(0.0, 255.0) / 255.0);
+            let light = self.light(code / 255.0);
+            // The ends have no neighbor on one side, and are exact in every profile of sRGB.
+            (border(code - 0.5) - 1e-4..=border(code + 0.5) + 1e-4).contains(&light)
+        })
+    }
+}
+
+impl ColorSpace {
+    /// A color space that is declared to be sRGB.
+    #[cfg(any(feature = "png", feature = "jpeg"))]
+    pub(crate) fn srgb(source: Source) -> Self {
+        Self {
+            source,
+            conversion: Conversion::Srgb,
+        }
+    }
+
+    /// A color space that cannot be converted, by its name.
+    pub(crate) fn unknown(source: Source, name: &'static str) -> Self {
+        Self {
+            source,
+            conversion: Conversion::Unknown(name),
+        }
+    }
+
+    /// The color space of primaries and one curve.
+    #[cfg(any(feature = "png", feature = "jpeg"))]
+    pub(crate) fn from_primaries(source: Source, primaries: Primaries, curve: Curve) -> Self {
+        match bt709_from(&primaries) {
+            Some(matrix) => {
+                Self::from_matrix(source, matrix, [curve.clone(), curve.clone(), curve])
+            }
+            None => Self::unknown(source, "chromaticities that span no colors"),
+        }
+    }
+
+    /// The color space of curves and the columns of a profile, in XYZ adapted to D50.
+    pub(crate) fn from_columns(columns: [[f64; 3]; 3], curves: [Curve; 3]) -> Self {
+        let column = |row: usize| columns.map(|column| column[row]);
+        let profile = [0, 1, 2].map(column);
+        let srgb = rgb_to_xyz(&BT709).and_then(|matrix| {
+            let adapted = adapted(xyz_of_white(D65), D50_XYZ)?;
+            inverse(&product(&adapted, &matrix))
+        });
+        match srgb {
+            Some(srgb) => Self::from_matrix(Source::Icc, product(&srgb, &profile), curves),
+            None => Self::unknown(Source::Icc, "a matrix without an inverse"),
+        }
+    }
+
+    fn from_matrix(source: Source, matrix: Matrix, curves: [Curve; 3]) -> Self {
+        let is_near_one = (0..9).all(|at| {
+            let one = f64::from(u8::from(at / 3 == at % 3));
+            (matrix[at / 3][at % 3] - one).abs() < MATRIX_TOLERANCE
+        });
+        let conversion = if is_near_one && curves.iter().all(Curve::is_srgb) {
+            Conversion::Srgb
+        } else {
+            Conversion::Matrix(Box::new(MatrixSpace { matrix, curves }))
+        };
+        Self { source, conversion }
+    }
+
+    /// Whether the colors are those of sRGB, declared or not.
+    #[must_use]
+    pub fn is_srgb(&self) -> bool {
+        self.conversion == Conversion::Srgb
+    }
+
+    /// A function from codes of a depth to linear light of BT.709; `None` for that of sRGB.
+    ///
+    /// # Errors
+    ///
+    /// [`ImageErrorKind::ColorSpace`] if it cannot be converted.
+    pub(crate) fn converter(&self, max: u16) -> Result<Option<Converter>, ImageError> {
+        match &self.conversion {
+            Conversion::Srgb => Ok(None),
+            Conversion::Unknown(name) => {
+                Err(ImageError::new(ImageErrorKind::ColorSpace { found: name }))
+            }
+            Conversion::Matrix(space) => {
+                let scale = f64::from(max);
+                let table = |curve: &Curve| {
+                    let codes = 0..=max;
+                    codes
+                        .map(|code| curve.light(f64::from(code) / scale))
+                        .collect()
+                };
+                let tables = [0, 1, 2].map(|channel| table(&space.curves[channel]));
+                let matrix = space.matrix;
+                Ok(Some(Converter { matrix, tables }))
+            }
+        }
+    }
+}
+
+/// The words for reports: `no color space declared`, `an ICC profile, converted to BT.709`.
+impl fmt::Display for ColorSpace {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let source = match self.source {
+            Source::None => return f.write_str("no color space declared"),
+            Source::Srgb => return f.write_str("marked as sRGB"),
+            Source::Cicp => "cICP",
+            Source::Icc => "an ICC profile",
+            Source::Gamma => "gAMA or cHRM",
+            Source::Exif => "the color space of Exif",
+        };
+        match &self.conversion {
+            Conversion::Srgb => write!(f, "marked as sRGB by {source}"),
+            Conversion::Matrix(_) => write!(f, "colors by {source}, read as BT.709"),
+            Conversion::Unknown(name) => write!(f, "colors by {source}: {name}, which is not read"),
+        }
+    }
+}
+
+/// The conversion of codes to linear light.
+pub(crate) struct Converter {
+    matrix: Matrix,
+    tables: [Vec<f64>; 3],
+}
+
+impl Converter {
+    /// The color of three codes.
+    pub(crate) fn color(&self, codes: [u16; 3]) -> LinearRgb {
+        let light = |channel: usize| self.tables[channel][usize::from(codes[channel])];
+        times(&self.matrix, [0, 1, 2].map(light))
+    }
+}
+
+/// The linear color of BT.709 for one of other primaries.
+pub(crate) fn times(matrix: &Matrix, light: [f64; 3]) -> LinearRgb {
+    apply(matrix, light).map(|part| part as f32).into()
+}
+
+/// The matrix from linear light of primaries to that of BT.709; `None` if they span no colors.
+///
+/// White is adapted, except for the primaries of XYZ itself, whose numbers are what an eye or an instrument sees.
+pub(crate) fn bt709_from(primaries: &Primaries) -> Option<Matrix> {
+    let to_xyz = rgb_to_xyz(primaries)?;
+    let from_xyz = inverse(&rgb_to_xyz(&BT709)?)?;
+    let white = primaries[3];
+    let is_xyz = primaries[..3] == [[1.0, 0.0], [0.0, 1.0], [0.0, 0.0]];
+    if is_xyz || white == D65 {
+        return Some(product(&from_xyz, &to_xyz));
+    }
+    let adapted = adapted(xyz_of_white(white), xyz_of_white(D65))?;
+    Some(product(&from_xyz, &product(&adapted, &to_xyz)))
+}
+
+/// The matrix from linear light of primaries to XYZ, in which white has a luminance of 1.
+fn rgb_to_xyz(primaries: &Primaries) -> Option<Matrix> {
+    let [red, green, blue, white] = primaries;
+    if white[1].is_nan() || white[1] <= 0.0 {
+        return None;
+    }
+    let row = |of: fn([f64; 2]) -> f64| [red, green, blue].map(|&point| of(point));
+    let columns = [row(|[x, _]| x), row(|[_, y]| y), row(|[x, y]| 1.0 - x - y)];
+    let scale = apply(&inverse(&columns)?, xyz_of_white(*white));
+    Some(columns.map(|row| [row[0] * scale[0], row[1] * scale[1], row[2] * scale[2]]))
+}
+
+fn xyz_of_white([x, y]: [f64; 2]) -> [f64; 3] {
+    [x / y, 1.0, (1.0 - x - y) / y]
+}
+
+/// The matrix that adapts one white to another.
+fn adapted(from: [f64; 3], to: [f64; 3]) -> Option<Matrix> {
+    let [from, to] = [from, to].map(|white| apply(&BRADFORD, white));
+    let scaled = [0, 1, 2].map(|row| BRADFORD[row].map(|entry| entry * (to[row] / from[row])));
+    Some(product(&inverse(&BRADFORD)?, &scaled))
+}
+
+fn apply(matrix: &Matrix, [a, b, c]: [f64; 3]) -> [f64; 3] {
+    matrix.map(|row| row[0] * a + row[1] * b + row[2] * c)
+}
+
+fn product(a: &Matrix, b: &Matrix) -> Matrix {
+    let column = |at: usize| apply(a, b.map(|row| row[at]));
+    let columns = [0, 1, 2].map(column);
+    [0, 1, 2].map(|row| columns.map(|column| column[row]))
+}
+
+/// The inverse by cofactors; `None` if there is none.
+fn inverse(m: &Matrix) -> Option<Matrix> {
+    let minor = |r: usize, c: usize| {
+        let [r1, r2, c1, c2] = [(r + 1) % 3, (r + 2) % 3, (c + 1) % 3, (c + 2) % 3];
+        m[r1][c1] * m[r2][c2] - m[r1][c2] * m[r2][c1]
+    };
+    let determinant = m[0][0] * minor(0, 0) + m[0][1] * minor(0, 1) + m[0][2] * minor(0, 2);
+    let inverse = [0, 1, 2].map(|row| [0, 1, 2].map(|column| minor(column, row) / determinant));
+    let is_finite = inverse.iter().flatten().all(|entry| entry.is_finite());
+    (determinant.abs() > 1e-9 && is_finite).then_some(inverse)
+}

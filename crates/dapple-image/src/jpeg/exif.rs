@@ -1,0 +1,101 @@
+//! The data of Exif: a TIFF file without pixels, whose directories have entries by number.
+//!
+//! Reference: "Exchangeable image file format for digital still cameras: Exif Version 2.32", CIPA DC-008, 2019. Damaged
+//! data counts as missing.
+
+use crate::color_space::{ADOBE_GAMMA, ADOBE_RGB, ColorSpace, Curve, Source};
+
+/// The length of an entry in a directory, in bytes.
+const ENTRY: usize = 12;
+
+/// The tag of the place of the directory of Exif.
+const EXIF: u16 = 0x8769;
+
+/// The tag of the color space: 1 for sRGB, 65535 for another one, and from some cameras 2 for Adobe RGB.
+const COLOR_SPACE: u16 = 0xa001;
+
+/// The tag of the place of the directory of interoperability, whose first entry names a rule: `R03` is Adobe RGB ("Design
+/// rule for Camera File system", DCF 2.0).
+const INTEROPERABILITY: u16 = 0xa005;
+
+/// The color space of a photograph.
+pub(super) fn color_space(exif: &[u8]) -> ColorSpace {
+    let is_adobe = || {
+        let tiff = Tiff::new(exif)?;
+        let directory = tiff.place(tiff.first()?, EXIF)?;
+        let space = tiff.short(tiff.entry(directory, COLOR_SPACE)?)?;
+        let rule = || {
+            let rules = tiff.place(directory, INTEROPERABILITY)?;
+            let entry = tiff.entry(rules, 1)?;
+            exif.get(entry..entry + 3)
+        };
+        Some((
+            space,
+            space == 2 || space == u16::MAX && rule() == Some(b"R03"),
+        ))
+    };
+    match is_adobe() {
+        Some((_, true)) => {
+            ColorSpace::from_primaries(Source::Exif, ADOBE_RGB, Curve::Power(ADOBE_GAMMA))
+        }
+        Some((1, false)) => ColorSpace::srgb(Source::Exif),
+        _ => ColorSpace::default(),
+    }
+}
+
+/// The bytes of Exif, from the TIFF header on.
+pub(super) struct Tiff<'a> {
+    bytes: &'a [u8],
+    is_little: bool,
+}
+
+impl<'a> Tiff<'a> {
+    pub(super) fn new(bytes: &'a [u8]) -> Option<Self> {
+        let is_little = match bytes.get(..2)? {
+            b"II" => true,
+            b"MM" => false,
+            _ => return None,
+        };
+        Some(Self { bytes, is_little })
+    }
+
+    /// The number of 16 bits at a place.
+    pub(super) fn short(&self, at: usize) -> Option<u16> {
+        let bytes = self.bytes.get(at..)?.first_chunk::<2>()?;
+        Some(if self.is_little {
+            u16::from_le_bytes(*bytes)
+        } else {
+            u16::from_be_bytes(*bytes)
+        })
+    }
+
+    fn long(&self, at: usize) -> Option<usize> {
+        let [first, second] = [self.short(at)?, self.short(at.checked_add(2)?)?].map(usize::from);
+        Some(if self.is_little {
+            first | second << 16
+        } else {
+            first << 16 | second
+        })
+    }
+
+    /// The place of the first directory.
+    pub(super) fn first(&self) -> Option<usize> {
+        self.long(4)
+    }
+
+    /// The place of the directory that an entry of another one names.
+    fn place(&self, directory: usize, tag: u16) -> Option<usize> {
+        self.long(self.entry(directory, tag)?)
+    }
+
+    /// The place of the value of an entry; values of at most four bytes are in it.
+    pub(super) fn entry(&self, directory: usize, tag: u16) -> Option<usize> {
+        let n_entries = self.short(directory)?;
+        let entries = (0..usize::from(n_entries)).map(|entry| directory + 2 + ENTRY * entry);
+        // The value follows tag, type and count.
+        entries
+            .take_while(|&at| at < self.bytes.len())
+            .find(|&at| self.short(at) == Some(tag))
+            .map(|at| at + 8)
+    }
+}
