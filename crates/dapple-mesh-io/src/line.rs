@@ -1,6 +1,6 @@
 //! Lines of text, for line-based formats.
 
-use super::text::{in_range, parse, words};
+use super::text::{content, in_range, parse, words};
 use crate::MeshIoError;
 use glam::DVec3;
 
@@ -16,9 +16,16 @@ pub(crate) struct Line<'a> {
 }
 
 /// The lines of a text without comments, which begin with `#`, and without empty lines.
-pub(crate) fn lines<'a>(format: &'static str, bytes: &'a [u8]) -> impl Iterator<Item = Line<'a>> {
-    let lines = bytes.split(|&byte| byte == b'\n').zip(1..);
-    lines.filter_map(move |(text, number)| {
+///
+/// Fails for a text that is not in ASCII or UTF-8.
+pub(crate) fn lines<'a>(
+    format: &'static str,
+    bytes: &'a [u8],
+) -> Result<impl Iterator<Item = Line<'a>>, MeshIoError> {
+    let lines = content(format, bytes)?
+        .split(|&byte| byte == b'\n')
+        .zip(1..);
+    Ok(lines.filter_map(move |(text, number)| {
         let words: Vec<_> = words(text.split(|&byte| byte == b'#').next()?).collect();
         (!words.is_empty()).then_some(Line {
             format,
@@ -26,10 +33,24 @@ pub(crate) fn lines<'a>(format: &'static str, bytes: &'a [u8]) -> impl Iterator<
             text,
             words,
         })
-    })
+    }))
 }
 
 impl Line<'_> {
+    /// The first word, which must be ASCII: a keyword with another byte, such as one joined to its numbers by a no-break
+    /// space, would be skipped as unknown, and all later indices would be off by one.
+    pub(crate) fn keyword(&self) -> Result<&[u8], MeshIoError> {
+        let word = self.words[0];
+        if word.is_ascii() {
+            return Ok(word);
+        }
+        let word = String::from_utf8_lossy(word);
+        Err(self.error(format!(
+            "the keyword `{}` is not ASCII",
+            word.escape_debug()
+        )))
+    }
+
     /// Parses the word at an index as a number.
     pub(crate) fn number(&self, at: usize) -> Result<f64, MeshIoError> {
         let word = self.words.get(at).copied();

@@ -27,7 +27,7 @@ use crate::MeshIoError;
 use crate::colors::{self, Coding};
 use crate::line::{Line, lines};
 use crate::polygon::fan;
-use crate::text::{no_vertex, parse};
+use crate::text::{content, no_vertex, parse};
 use dapple_color::{LinearRgb, LinearRgba};
 use dapple_mesh::{Mesh, Model};
 use glam::{DVec2, DVec3};
@@ -93,11 +93,12 @@ pub fn read(bytes: &[u8]) -> Result<Model, MeshIoError> {
 ///
 /// # Errors
 ///
-/// The errors of [`read`]. In other files, only a `Kd` beyond single precision is an error.
+/// The errors of [`read`]. In other files, only a text that is not ASCII or UTF-8, a keyword that is not ASCII, and a `Kd`
+/// beyond single precision are errors.
 pub fn read_with(bytes: &[u8], beside: &mut Beside<'_>) -> Result<Model, MeshIoError> {
     let mut draft = Draft::default();
-    let text = joined(bytes);
-    for line in lines(FORMAT, &text) {
+    let text = joined(content(FORMAT, bytes)?);
+    for line in lines(FORMAT, &text)? {
         draft.add(&line)?;
     }
     if draft.positions.is_empty() && draft.faces.is_empty() {
@@ -146,7 +147,7 @@ fn joined(bytes: &[u8]) -> Cow<'_, [u8]> {
 
 impl Draft {
     fn add(&mut self, line: &Line<'_>) -> Result<(), MeshIoError> {
-        match line.words[0] {
+        match line.keyword()? {
             b"v" => self.add_vertex(line)?,
             b"vt" => {
                 let v = if line.words.len() > 2 {
@@ -233,7 +234,7 @@ impl Draft {
         };
         // Vertices may follow the faces, so the line is searched only now.
         let mut n_faces = 0;
-        for line in lines(FORMAT, text).filter(|line| line.words[0] == b"f") {
+        for line in lines(FORMAT, text)?.filter(|line| line.words[0] == b"f") {
             n_faces += line.words.len().saturating_sub(3);
             if n_faces > face {
                 return Err(line.error(no_vertex(u64::from(corner[0]) + 1, count)));

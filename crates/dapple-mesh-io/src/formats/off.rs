@@ -61,7 +61,7 @@ struct Vertices {
 /// # Ok::<(), dapple_mesh_io::MeshIoError>(())
 /// ```
 pub fn read(bytes: &[u8]) -> Result<Model, MeshIoError> {
-    let mut lines = lines(FORMAT, bytes);
+    let mut lines = lines(FORMAT, bytes)?;
     let Some(mut line) = lines.next() else {
         return Err(MeshIoError::file(FORMAT, "it is empty"));
     };

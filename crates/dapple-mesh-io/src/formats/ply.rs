@@ -27,7 +27,7 @@ use super::{MaterialPlace, MeshFormat, Writer, alone};
 use crate::MeshIoError;
 use crate::colors::{self, Coding};
 use crate::polygon::{fan, strip};
-use crate::text::no_vertex;
+use crate::text::{content, no_vertex};
 use body::Body;
 use dapple_color::LinearRgba;
 use dapple_mesh::{Mesh, Model};
@@ -101,6 +101,7 @@ struct Target {
 /// # Ok::<(), dapple_mesh_io::MeshIoError>(())
 /// ```
 pub fn read(bytes: &[u8]) -> Result<Model, MeshIoError> {
+    let bytes = content(FORMAT, bytes)?;
     let (header, rest) = Header::read(bytes)?;
     let mut body = Body::new(header.encoding, bytes, rest);
     let vertices = header

@@ -1,9 +1,10 @@
 //! The containers of glTF: a GLB file with its chunks, buffers, and data URIs.
 
 use super::document::Document;
-use super::{unsupported, wrong};
+use super::{FORMAT, unsupported, wrong};
 use crate::Beside;
 use crate::MeshIoError;
+use crate::text::content;
 use std::borrow::Cow;
 
 /// The first bytes of a GLB file.
@@ -22,7 +23,7 @@ impl<'a> Container<'a> {
     /// Splits a GLB file into its chunks; any other file counts as JSON.
     pub(super) fn read(bytes: &'a [u8]) -> Result<Self, MeshIoError> {
         if !bytes.starts_with(MAGIC) {
-            let json = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+            let json = content(FORMAT, bytes)?;
             return Ok(Self { json, bin: None });
         }
         let (version, length) = (word(bytes, 4), word(bytes, 8));

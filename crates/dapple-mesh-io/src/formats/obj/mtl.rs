@@ -46,8 +46,8 @@ pub(super) fn material(
 
 /// Adds the materials of a library. Unknown lines are skipped.
 fn read(bytes: &[u8], entries: &mut Vec<Entry>) -> Result<(), MeshIoError> {
-    for line in lines("MTL", bytes) {
-        if line.words[0] == b"newmtl" {
+    for line in lines("MTL", bytes)? {
+        if line.keyword()? == b"newmtl" {
             let name = name(&line);
             entries.push(Entry {
                 name,
