@@ -24,6 +24,14 @@ const REPEAT: u32 = 10497;
 /// The largest number that is written, so that rounding never exceeds the limit of [`Model::check`].
 const PART_MAX: f32 = 1e30f32.next_down();
 
+/// The part of the extent of a mesh by which rounding of its positions to single precision may move a vertex; beyond it,
+/// positions are written relative to an origin.
+const MOVE_MAX: f64 = 1.0 / (1 << 20) as f64;
+/// The ratio of the largest coordinate to the extent up to which an origin would gain less than four bits.
+const FAR: f64 = 16.0;
+/// The largest coordinate of a mesh with an origin, so that the sum of both stays below the limit of positions.
+const COORDINATE_MAX: f64 = 1e29;
+
 /// The binary chunk with its views and accessors.
 #[derive(Default)]
 struct Bin {
@@ -43,7 +51,8 @@ struct Split {
 
 /// Encodes the model as a GLB file.
 ///
-/// Numbers are rounded to `f32`. Vertices keep their numbers; where corners have different texture coordinates or
+/// Numbers are rounded to `f32`. Where that would move a vertex by more than 2^-20 of the extent of the mesh, because the
+/// mesh is far from zero, positions are relative to its center, which is the translation of the node in `f64`. Vertices keep their numbers; where corners have different texture coordinates or
 /// normals, further vertices follow. Faces have the normals of the model, of unit length, or else those of
 /// [`Mesh::vertex_normals`](dapple_mesh::Mesh::vertex_normals); a zero normal, which glTF does not allow, becomes +z.
 /// Colors are clamped to 0 to 1. Without texture coordinates, textures are left out. The material is rough and not
@@ -64,9 +73,13 @@ pub fn write(model: &Model) -> Result<Vec<u8>, MeshIoError> {
         "scenes": [{}],
     });
     if !model.mesh.positions().is_empty() {
-        let primitive = primitive(&*with_vertex_normals(model)?, &mut bin);
+        let origin = origin(model.mesh.positions());
+        let primitive = primitive(&*with_vertex_normals(model)?, origin, &mut bin);
         document["scenes"] = json!([{ "nodes": [0] }]);
-        document["nodes"] = json!([{ "mesh": 0 }]);
+        document["nodes"] = match origin {
+            Some(origin) => json!([{ "mesh": 0, "translation": origin.to_array() }]),
+            None => json!([{ "mesh": 0 }]),
+        };
         document["meshes"] = json!([{ "primitives": [primitive] }]);
         document["materials"] = json!([material(model, &mut bin)]);
         document["accessors"] = bin.accessors.into();
@@ -89,15 +102,51 @@ pub fn write(model: &Model) -> Result<Vec<u8>, MeshIoError> {
     container(document.to_string().into_bytes(), bin.bytes)
 }
 
-/// Adds the columns of a model without corner normals, and returns the primitive that refers to them.
-fn primitive(model: &Model, bin: &mut Bin) -> Value {
+/// The origin of a mesh whose positions are too far from zero for single precision: its center, rounded to a multiple
+/// of a power of two below its extent, from which differences lose few bits or none.
+fn origin(positions: &[DVec3]) -> Option<DVec3> {
+    let first = *positions.first()?;
+    let grow = |[least, most]: [DVec3; 2], at: &DVec3| [least.min(*at), most.max(*at)];
+    let [least, most] = positions.iter().fold([first; 2], grow);
+    let extent = (most - least).max_element();
+    let largest = least.abs().max(most.abs()).max_element();
+    if largest < FAR * extent || largest > COORDINATE_MAX {
+        return None;
+    }
+    let moved = |at: &DVec3| (at - at.map(|part| f64::from(narrow(part)))).abs();
+    let moved = positions.iter().map(|at| moved(at).max_element());
+    if moved.fold(0.0, f64::max) <= MOVE_MAX * extent {
+        return None;
+    }
+    // The power of two has the exponent of the extent, and no fraction.
+    let step = f64::from_bits(extent.to_bits() & f64::INFINITY.to_bits());
+    Some((least.midpoint(most)).map(|part| {
+        let steps = part / step;
+        // Larger numbers are whole already.
+        if steps.abs() < (1u64 << 52) as f64 {
+            (steps + 0.5).floor() * step
+        } else {
+            part
+        }
+    }))
+}
+
+/// Adds the columns of a model without corner normals, with positions from an origin, and returns the primitive that
+/// refers to them.
+fn primitive(model: &Model, origin: Option<DVec3>, bin: &mut Bin) -> Value {
     let mesh = &model.mesh;
     let split = Split::new(model);
     let spread = |vectors: &[DVec3]| -> Vec<[f32; 3]> {
         let part = |&vertex: &usize| vectors[vertex].to_array().map(narrow);
         split.vertex.iter().map(part).collect()
     };
-    let positions = spread(mesh.positions());
+    let positions = match origin {
+        Some(origin) => {
+            let from_origin = mesh.positions().iter().map(|at| at - origin);
+            spread(&from_origin.collect::<Vec<_>>())
+        }
+        None => spread(mesh.positions()),
+    };
     let mut attributes = Map::new();
     attributes.insert("POSITION".into(), bin.floats(&positions).into());
     let last = bin.accessors.len() - 1;
@@ -208,7 +257,7 @@ fn bound(positions: &[[f32; 3]], choose: fn(f32, f32) -> f32) -> [f32; 3] {
 }
 
 /// Joins both chunks to a file; each ends at a multiple of four bytes.
-fn container(mut json: Vec<u8>, mut bin: Vec<u8>) -> Result<Vec<u8>, MeshIoError> {
+pub(super) fn container(mut json: Vec<u8>, mut bin: Vec<u8>) -> Result<Vec<u8>, MeshIoError> {
     json.resize(json.len().next_multiple_of(4), b' ');
     bin.resize(bin.len().next_multiple_of(4), 0);
     let header = 12;
