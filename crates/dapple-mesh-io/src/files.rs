@@ -7,7 +7,7 @@
 
 use crate::formats::{ending, readable_endings, writable_endings};
 use crate::{MeshFormat, MeshIoError, MeshIoErrorKind};
-use dapple_mesh::Model;
+use dapple_mesh::{EncodedImage, Model};
 use std::fs::File;
 use std::io::{self, Read, Write as _};
 use std::path::{Component, Path};
@@ -27,14 +27,28 @@ const BYTES_MAX: u64 = 1 << 32;
 /// has its ending; and the errors of the reader of the format.
 pub fn read_model(path: impl AsRef<Path>) -> Result<Model, MeshIoError> {
     let path = path.as_ref();
-    let Some(format) = MeshFormat::of_path(path) else {
-        let (name, known) = (ending(path), readable_endings().collect::<Vec<_>>());
-        let known = known.join(", ");
-        return Err(MeshIoError::new(MeshIoErrorKind::Format { name, known }));
-    };
+    let format = format_of(path)?;
     let mut left = BYTES_MAX;
     let bytes = read_at_most(path, BYTES_MAX)?;
     format.read(&bytes, &mut |name| beside(path, name, &mut left))
+}
+
+/// Reads a mesh file and encodes it again with the second image of each pair in place of the first, and nothing else
+/// changed, as one file with the [written ending](MeshFormat::written_ending) of its format; `None` if the format holds
+/// no images.
+///
+/// # Errors
+///
+/// The errors of [`read_model`] about files, and those of [`MeshFormat::replace_images`].
+pub fn replace_images(
+    path: impl AsRef<Path>,
+    replaced: &[(EncodedImage, EncodedImage)],
+) -> Result<Option<Vec<u8>>, MeshIoError> {
+    let path = path.as_ref();
+    let format = format_of(path)?;
+    let mut left = BYTES_MAX;
+    let bytes = read_at_most(path, BYTES_MAX)?;
+    format.replace_images(&bytes, &mut |name| beside(path, name, &mut left), replaced)
 }
 
 /// Writes a mesh file, in the format of [`FORMATS`](crate::FORMATS) that is written with the ending of its path.
@@ -60,6 +74,15 @@ pub fn write_model(path: impl AsRef<Path>, model: &Model) -> Result<(), MeshIoEr
         replace(&path.with_file_name(file.name), &file.bytes)?;
     }
     main.map_or(Ok(()), |main| replace(path, &main.bytes))
+}
+
+/// The format with the ending of a path.
+fn format_of(path: &Path) -> Result<&'static MeshFormat, MeshIoError> {
+    MeshFormat::of_path(path).ok_or_else(|| {
+        let (name, known) = (ending(path), readable_endings().collect::<Vec<_>>());
+        let known = known.join(", ");
+        MeshIoError::new(MeshIoErrorKind::Format { name, known })
+    })
 }
 
 /// The error of an ending with which no format is written.

@@ -9,7 +9,7 @@ pub mod off;
 pub mod ply;
 
 use crate::MeshIoError;
-use dapple_mesh::Model;
+use dapple_mesh::{EncodedImage, Model};
 use std::path::Path;
 
 /// All formats, in the order in which texts list them.
@@ -39,7 +39,13 @@ struct Writer {
     material: MaterialPlace,
     /// Encodes the files, the main one last.
     files: fn(&Model, &str) -> Result<Vec<NamedFile>, MeshIoError>,
+    /// Encodes the file that was read, with other images in place of some.
+    replace_images: Option<ReplaceImages>,
 }
+
+/// A function that takes a file, the files beside it, and pairs of an image and its replacement.
+type ReplaceImages =
+    fn(&[u8], &mut Beside<'_>, &[(EncodedImage, EncodedImage)]) -> Result<Vec<u8>, MeshIoError>;
 
 /// The place where a writer puts the material of a model, with its textures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -109,6 +115,24 @@ impl MeshFormat {
     /// The errors of the function `read` of the module of the format.
     pub fn read(&self, bytes: &[u8], beside: &mut Beside<'_>) -> Result<Model, MeshIoError> {
         (self.read)(bytes, beside)
+    }
+
+    /// Encodes a file of this format with the second image of each pair in place of the first, and nothing else changed,
+    /// as one file with [`written_ending`](Self::written_ending); `None` if the format holds no images.
+    ///
+    /// # Errors
+    ///
+    /// The errors of the function `replace_images` of the module of the format.
+    pub fn replace_images(
+        &self,
+        bytes: &[u8],
+        beside: &mut Beside<'_>,
+        replaced: &[(EncodedImage, EncodedImage)],
+    ) -> Result<Option<Vec<u8>>, MeshIoError> {
+        let replace = self.writer.and_then(|writer| writer.replace_images);
+        replace
+            .map(|replace| replace(bytes, beside, replaced))
+            .transpose()
     }
 
     /// Encodes the files of a model, named after `stem`. The main one is the last; files to which it refers come before

@@ -49,5 +49,5 @@ mod test_meshes;
 mod tests;
 
 pub use error::{MeshIoError, MeshIoErrorKind};
-pub use files::{read_model, write_model};
+pub use files::{read_model, replace_images, write_model};
 pub use formats::*;

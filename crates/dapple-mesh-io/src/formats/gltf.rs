@@ -22,6 +22,7 @@
 mod accessor;
 mod container;
 mod document;
+mod images;
 mod scene;
 mod transform;
 mod write;
@@ -29,6 +30,7 @@ mod write;
 #[cfg(test)]
 mod tests;
 
+pub use images::replace_images;
 pub use write::write;
 
 use super::{Beside, MaterialPlace, MeshFormat, Writer, alone};
@@ -36,7 +38,7 @@ use crate::{MeshIoError, MeshIoErrorKind};
 use container::{Container, percent_decoded};
 use dapple_color::LinearRgba;
 use dapple_mesh::{AlphaMode, EncodedImage, Material, Model};
-use document::{Document, Head, TextureInfo};
+use document::{Document, Head, Image, TextureInfo};
 use serde::Deserialize;
 use std::borrow::Cow;
 
@@ -51,6 +53,7 @@ pub(super) const GLTF: MeshFormat = MeshFormat {
         ending: "glb",
         material: MaterialPlace::Inside,
         files: |model, stem| Ok(alone(stem, "glb", write(model)?)),
+        replace_images: Some(replace_images),
     }),
 };
 
@@ -198,11 +201,15 @@ impl Source<'_> {
     fn image(&self, texture: usize, beside: &mut Beside<'_>) -> Option<EncodedImage> {
         let image = self.document.textures.get(texture)?.source?;
         let image = self.document.images.get(image)?;
-        let bytes = match (&image.uri, image.buffer_view) {
-            (Some(uri), _) if uri.starts_with("data:") => container::data(uri)?,
-            (Some(uri), _) => beside(&percent_decoded(uri))?,
-            (None, view) => self.view(view?).ok()?.to_vec(),
-        };
-        EncodedImage::new(bytes).ok()
+        EncodedImage::new(self.image_bytes(image, beside)?).ok()
+    }
+
+    /// The bytes of an image, in any format.
+    fn image_bytes(&self, image: &Image, beside: &mut Beside<'_>) -> Option<Vec<u8>> {
+        match (&image.uri, image.buffer_view) {
+            (Some(uri), _) if uri.starts_with("data:") => container::data(uri),
+            (Some(uri), _) => beside(&percent_decoded(uri)),
+            (None, view) => Some(self.view(view?).ok()?.to_vec()),
+        }
     }
 }

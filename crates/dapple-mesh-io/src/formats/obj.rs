@@ -44,6 +44,7 @@ pub(super) const OBJ: MeshFormat = MeshFormat {
         ending: "obj",
         material: MaterialPlace::Beside,
         files: write_files,
+        replace_images: None,
     }),
 };
 

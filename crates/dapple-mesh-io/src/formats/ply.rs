@@ -45,6 +45,7 @@ pub(super) const PLY: MeshFormat = MeshFormat {
         ending: "ply",
         material: MaterialPlace::Nowhere,
         files: |model, stem| Ok(alone(stem, "ply", write(model)?)),
+        replace_images: None,
     }),
 };
 

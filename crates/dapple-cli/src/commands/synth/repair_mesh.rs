@@ -13,8 +13,8 @@ use crate::output::Target;
 use crate::progress::Progress;
 use anyhow::{Result, bail};
 use dapple::color::{LinearRgba, NormalY};
-use dapple::mesh::{CREASE, EncodedImage, Model};
-use dapple::mesh_io::{MaterialPlace, MeshFormat};
+use dapple::mesh::{CREASE, EncodedImage, Material, Model};
+use dapple::mesh_io::{MaterialPlace, MeshFormat, replace_images};
 use dapple::points::glam::DVec2;
 use dapple::raster::Raster;
 use dapple::synth::{
@@ -82,9 +82,16 @@ pub(super) fn run(args: &Args, context: &Context) -> Result<Exit> {
             job.write_with_alpha(output, map, cover, base.is_deep, &args.image)?;
         }
         Some(format) => {
-            let model = repaired.model(model, &encoded(&map, alpha.as_ref(), base.is_deep)?)?;
-            for file in format.write(&model, "")? {
-                job.write(output, &file.bytes)?;
+            let base = encoded(&map, alpha.as_ref(), base.is_deep)?;
+            let new = repaired.model(model.clone(), &base)?;
+            // A file that holds images stays the same document.
+            match replace_images(&args.exemplar, &replaced(&model.material, &new.material))? {
+                Some(bytes) => job.write(output, &bytes)?,
+                None => {
+                    for file in format.write(&new, "")? {
+                        job.write(output, &file.bytes)?;
+                    }
+                }
             }
         }
     }
@@ -176,6 +183,22 @@ impl Repaired<'_> {
             from.row(row)[column as usize]
         })?)
     }
+}
+
+/// The images of a material with those in their places.
+fn replaced(old: &Material, new: &Material) -> Vec<(EncodedImage, EncodedImage)> {
+    let images = |material: &Material| {
+        let Material {
+            base_color,
+            normal,
+            metallic_roughness,
+            occlusion,
+            ..
+        } = material.clone();
+        [base_color, normal, metallic_roughness, occlusion]
+    };
+    let pairs = images(old).into_iter().zip(images(new));
+    pairs.filter_map(|(old, new)| old.zip(new)).collect()
 }
 
 /// A map as an image in a mesh file.

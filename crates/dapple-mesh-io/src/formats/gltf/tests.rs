@@ -9,6 +9,7 @@ use glam::{DVec2, DVec3};
 use proptest::prelude::*;
 use serde_json::{Value, json};
 
+mod images;
 mod materials;
 mod origin;
 
