@@ -19,8 +19,9 @@
 //!
 //! * Colors of vertices are coded as sRGB in OBJ, PLY and OFF, in whole numbers and in fractions alike, and linear in
 //!   glTF.
-//! * A polygon becomes a fan of triangles around its first corner, which is right for convex ones. One with fewer than
-//!   three corners is left out.
+//! * A convex polygon becomes a fan of triangles around its first corner, and a concave one the triangles of ear clipping
+//!   in its plane. One that crosses itself stays a fan, and is listed in [`Model::left_out`](dapple_mesh::Model::left_out).
+//!   One with fewer than three corners is left out.
 //! * No file makes a reader panic. A reader takes at most 256 bytes of memory for each byte of the file, and of what
 //!   it is given beside it, and 1 GiB more, whatever the file says about its counts.
 //!

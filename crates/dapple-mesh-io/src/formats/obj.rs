@@ -26,7 +26,7 @@ use super::{Beside, MaterialPlace, MeshFormat, Writer};
 use crate::MeshIoError;
 use crate::colors::{self, Coding};
 use crate::line::{Line, lines};
-use crate::polygon::fan;
+use crate::polygon::Polygons;
 use crate::text::{content, no_vertex, parse};
 use dapple_color::{LinearRgb, LinearRgba};
 use dapple_mesh::{Mesh, Model};
@@ -64,6 +64,7 @@ struct Draft {
     uvs: Vec<DVec2>,
     normals: Vec<DVec3>,
     faces: Vec<[Corner; 3]>,
+    polygons: Polygons,
     libraries: Vec<String>,
     /// The name of the material in use, and whether a face uses it.
     material: Option<(String, bool)>,
@@ -194,7 +195,7 @@ impl Draft {
             .iter()
             .map(corner)
             .collect::<Result<Vec<_>, _>>()?;
-        self.faces.extend(fan(&corners));
+        self.polygons.push(&corners, &mut self.faces);
         if let Some((_, used)) = &mut self.material {
             *used = true;
         }
@@ -270,6 +271,10 @@ impl Draft {
         if self.others[1] {
             left_out.push(Model::FURTHER_MATERIALS.to_owned());
         }
+        let ears = core::mem::take(&mut self.polygons);
+        let ears = ears.ears(&self.faces, &self.positions, |[vertex, ..]| vertex);
+        ears.apply(&mut self.faces);
+        left_out.extend(ears.left_out());
         let faces: Vec<_> = self
             .faces
             .iter()

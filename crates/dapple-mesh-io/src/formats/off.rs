@@ -12,7 +12,7 @@ use super::MeshFormat;
 use crate::MeshIoError;
 use crate::colors::{self, Coding};
 use crate::line::{Line, lines};
-use crate::polygon::fan;
+use crate::polygon::Polygons;
 use crate::text::{no_vertex, parse};
 use dapple_color::LinearRgba;
 use dapple_mesh::{Mesh, Model};
@@ -77,7 +77,7 @@ pub fn read(bytes: &[u8]) -> Result<Model, MeshIoError> {
         let line = lines.next().ok_or_else(|| ended("vertices", n_vertices))?;
         vertices.add(header, &line)?;
     }
-    let (mut faces, mut corners) = (Vec::new(), Vec::new());
+    let (mut faces, mut corners, mut polygons) = (Vec::new(), Vec::new(), Polygons::default());
     for _ in 0..n_faces {
         let mut line = lines.next().ok_or_else(|| ended("faces", n_faces))?;
         // A polygon may continue over several lines, and its color is on the last of them.
@@ -90,9 +90,13 @@ pub fn read(bytes: &[u8]) -> Result<Model, MeshIoError> {
         for word in &line.words[1..=count] {
             corners.push(corner(&line, word, n_vertices)?);
         }
-        faces.extend(fan(&corners));
+        polygons.push(&corners, &mut faces);
     }
-    vertices.into_model(header, &faces)
+    let ears = polygons.ears(&faces, &vertices.positions, |vertex| vertex);
+    ears.apply(&mut faces);
+    let mut model = vertices.into_model(header, &faces)?;
+    model.left_out.extend(ears.left_out());
+    Ok(model)
 }
 
 /// Removes the header from its line and parses it.

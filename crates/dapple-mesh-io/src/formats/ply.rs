@@ -26,7 +26,7 @@ pub use write::{write, write_text};
 use super::{MaterialPlace, MeshFormat, Writer, alone};
 use crate::MeshIoError;
 use crate::colors::{self, Coding};
-use crate::polygon::{fan, strip};
+use crate::polygon::{Polygons, fan, strip};
 use crate::text::{content, no_vertex};
 use body::Body;
 use dapple_color::LinearRgba;
@@ -76,6 +76,7 @@ struct Draft {
     colors: Vec<LinearRgba>,
     uvs: Vec<DVec2>,
     faces: Vec<[u32; 3]>,
+    polygons: Polygons,
     face_uvs: Vec<[DVec2; 3]>,
 }
 
@@ -213,7 +214,7 @@ impl Draft {
             for &number in &lists[corners] {
                 polygon.push(self.vertex(number, body)?);
             }
-            self.faces.extend(fan(&polygon));
+            self.polygons.push(&polygon, &mut self.faces);
             if let Some(uvs) = uvs {
                 self.add_face_uvs(&lists[uvs], &polygon, body)?;
             }
@@ -273,7 +274,15 @@ impl Draft {
         Err(body.error(format!("{why}, counted from 0")))
     }
 
-    fn into_model(self) -> Result<Model, MeshIoError> {
+    fn into_model(mut self) -> Result<Model, MeshIoError> {
+        let ears = self
+            .polygons
+            .ears(&self.faces, &self.positions, |vertex| vertex);
+        // Other counts are an error of the model.
+        if self.face_uvs.len() == self.faces.len() {
+            ears.apply(&mut self.face_uvs);
+        }
+        ears.apply(&mut self.faces);
         let mut model = Model::from(Mesh::new(self.positions, &self.faces)?);
         model.normals = (!self.normals.is_empty()).then_some(self.normals);
         model.colors = (!self.colors.is_empty()).then_some(self.colors);
@@ -283,6 +292,7 @@ impl Draft {
             let face = |face: &[u32; 3]| face.map(|vertex| self.uvs[vertex as usize]);
             model.uvs = Some(self.faces.iter().map(face).collect());
         }
+        model.left_out.extend(ears.left_out());
         model.check()?;
         Ok(model)
     }
