@@ -4,12 +4,14 @@
 //!
 //! All triangles of the default scene become one mesh, with the transforms of their nodes applied; without a scene all
 //! nodes count, and each of the copies of their meshes by `EXT_mesh_gpu_instancing`. Triangle strips and fans become
-//! triangles, point primitives only vertices; lines, skins, morph targets and animations are left out. Primitives of
+//! triangles, point primitives only vertices; lines and animations are left out. Skins and morph targets are applied as
+//! the file has them without an animation. Primitives of
 //! one node with the same attributes share their vertices. Where only some primitives have colors or texture
 //! coordinates, the others become white and zero; normals are kept only if all have them. The material is the first
 //! that a primitive has. Textures are copied unchanged if they are PNG or JPEG and use the same texture coordinates as
-//! the base color; their samplers and transforms are left out, as are all properties that [`Material`] lacks, such as a
-//! cutoff of alpha other than one half.
+//! the base color, whose `KHR_texture_transform` is applied to the corners. All else that a file has and a
+//! [`Material`](dapple_mesh::Material) lacks, such as a cutoff of alpha other than one half, is listed in
+//! [`Model::left_out`].
 //!
 //! At a seam of the texture a glTF file has two vertices at one position; [`Mesh::repair`](dapple_mesh::Mesh::repair)
 //! merges them. Texture coordinates belong to corners and are not affected;
@@ -23,7 +25,9 @@ mod accessor;
 mod container;
 mod document;
 mod images;
+mod material;
 mod scene;
+mod skin;
 mod transform;
 mod write;
 
@@ -36,9 +40,8 @@ pub use write::write;
 use super::{Beside, MaterialPlace, MeshFormat, Writer, alone};
 use crate::{MeshIoError, MeshIoErrorKind};
 use container::{Container, percent_decoded};
-use dapple_color::LinearRgba;
-use dapple_mesh::{AlphaMode, EncodedImage, Material, Model};
-use document::{Document, Head, Image, TextureInfo};
+use dapple_mesh::Model;
+use document::{Document, Head, Image};
 use serde::Deserialize;
 use std::borrow::Cow;
 
@@ -57,10 +60,11 @@ pub(super) const GLTF: MeshFormat = MeshFormat {
     }),
 };
 
-/// Extensions that a file may require: instancing is supported, and the others do not matter here, or only add types of
+/// Extensions that a file may require: instancing and transforms of textures are supported, and the others do not matter here, or only add types of
 /// accessors, all of which are read.
-const EXTENSIONS: [&str; 5] = [
+const EXTENSIONS: [&str; 6] = [
     "EXT_mesh_gpu_instancing",
+    "KHR_texture_transform",
     "KHR_mesh_quantization",
     "KHR_materials_unlit",
     "KHR_materials_emissive_strength",
@@ -123,7 +127,10 @@ pub fn read_with(bytes: &[u8], beside: &mut Beside<'_>) -> Result<Model, MeshIoE
             .sum::<usize>();
     let (mut model, material) = scene::read(&source, n_bytes)?;
     if let Some(material) = material {
-        model.material = source.material(material, beside);
+        source.read_material(material, &mut model, beside);
+    }
+    if !source.document.animations.is_empty() {
+        model.left_out.push("the animations".to_owned());
     }
     model.check()?;
     Ok(model)
@@ -150,58 +157,6 @@ impl Source<'_> {
             self.buffers.get(view.buffer)?.get(view.byte_offset..end)
         });
         bytes.ok_or_else(|| wrong(format!("there are no bytes for buffer view {index}")))
-    }
-
-    /// The material with a number; the default if there is none.
-    fn material(&self, index: usize, beside: &mut Beside<'_>) -> Material {
-        let Some(material) = self.document.materials.get(index) else {
-            return Material::default();
-        };
-        let pbr = material.pbr_metallic_roughness.as_deref();
-        let factor = pbr.and_then(|pbr| pbr.base_color_factor);
-        let uvs = self.uvs_of_material(index);
-        let mut image = |info: Option<TextureInfo>| {
-            let info = info.filter(|info| info.tex_coord == uvs)?;
-            self.image(info.index, beside)
-        };
-        Material {
-            base_color_factor: factor.map_or(
-                Material::default().base_color_factor,
-                |[r, g, b, alpha]| {
-                    let color = [r, g, b].into();
-                    LinearRgba { color, alpha }
-                },
-            ),
-            base_color: image(pbr.and_then(|pbr| pbr.base_color_texture)),
-            normal: image(material.normal_texture),
-            metallic_roughness: image(pbr.and_then(|pbr| pbr.metallic_roughness_texture)),
-            occlusion: image(material.occlusion_texture),
-            alpha: match material.alpha_mode.as_deref() {
-                Some("MASK") => AlphaMode::Mask,
-                Some("BLEND") => AlphaMode::Blend,
-                _ => AlphaMode::Opaque,
-            },
-            double_sided: material.double_sided,
-            ..Material::default()
-        }
-    }
-
-    /// The set of texture coordinates that the textures of a material use: that of the base color, else of the normals.
-    fn uvs_of_material(&self, index: usize) -> u32 {
-        let material = self.document.materials.get(index);
-        let pbr = material.and_then(|material| material.pbr_metallic_roughness.as_deref());
-        let info = pbr
-            .and_then(|pbr| pbr.base_color_texture)
-            .or(material.and_then(|material| material.normal_texture))
-            .or(pbr.and_then(|pbr| pbr.metallic_roughness_texture));
-        info.map_or(0, |info| info.tex_coord)
-    }
-
-    /// The image of a texture, if it is PNG or JPEG.
-    fn image(&self, texture: usize, beside: &mut Beside<'_>) -> Option<EncodedImage> {
-        let image = self.document.textures.get(texture)?.source?;
-        let image = self.document.images.get(image)?;
-        EncodedImage::new(self.image_bytes(image, beside)?).ok()
     }
 
     /// The bytes of an image, in any format.

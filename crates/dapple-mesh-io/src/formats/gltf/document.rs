@@ -3,6 +3,8 @@
 //! Rare fields are boxed, so that a long list of empty objects takes little memory.
 
 use serde::Deserialize;
+use serde::de::IgnoredAny;
+use std::collections::BTreeMap;
 
 /// The part of the document that is common to all versions of glTF.
 #[derive(Deserialize)]
@@ -34,6 +36,12 @@ pub(super) struct Document {
     pub(super) textures: Vec<Texture>,
     #[serde(default)]
     pub(super) images: Vec<Image>,
+    #[serde(default)]
+    pub(super) samplers: Vec<Sampler>,
+    #[serde(default)]
+    pub(super) skins: Vec<Skin>,
+    #[serde(default)]
+    pub(super) animations: Vec<IgnoredAny>,
 }
 
 #[derive(Deserialize)]
@@ -50,6 +58,9 @@ pub(super) struct Scene {
 #[derive(Deserialize)]
 pub(super) struct Node {
     pub(super) mesh: Option<usize>,
+    pub(super) skin: Option<usize>,
+    /// The weights of morph targets, in place of those of the mesh.
+    pub(super) weights: Option<Box<[f64]>>,
     #[serde(default)]
     pub(super) children: Vec<usize>,
     pub(super) matrix: Option<Box<[f64; 16]>>,
@@ -68,19 +79,24 @@ pub(super) struct NodeExtensions {
 /// Accessors with a transform for each copy of the mesh of a node.
 #[derive(Deserialize)]
 pub(super) struct Instancing {
-    pub(super) attributes: std::collections::BTreeMap<String, usize>,
+    pub(super) attributes: BTreeMap<String, usize>,
 }
 
 #[derive(Deserialize)]
 pub(super) struct Mesh {
+    /// The weights of morph targets.
+    pub(super) weights: Option<Box<[f64]>>,
     pub(super) primitives: Vec<Primitive>,
 }
 
 #[derive(Deserialize)]
 pub(super) struct Primitive {
-    pub(super) attributes: std::collections::BTreeMap<String, usize>,
+    pub(super) attributes: BTreeMap<String, usize>,
     pub(super) indices: Option<usize>,
     pub(super) material: Option<usize>,
+    /// The morph targets, each with the accessors of the changes of attributes.
+    #[serde(default)]
+    pub(super) targets: Vec<BTreeMap<String, usize>>,
     /// The kind of primitives; triangles if it is missing.
     pub(super) mode: Option<u32>,
 }
@@ -143,6 +159,10 @@ pub(super) struct Material {
     pub(super) alpha_mode: Option<Box<str>>,
     #[serde(default)]
     pub(super) double_sided: bool,
+    pub(super) alpha_cutoff: Option<f64>,
+    pub(super) emissive_factor: Option<Box<[f64; 3]>>,
+    pub(super) emissive_texture: Option<IgnoredAny>,
+    pub(super) extensions: Option<Box<BTreeMap<String, IgnoredAny>>>,
 }
 
 #[derive(Deserialize)]
@@ -151,19 +171,59 @@ pub(super) struct Pbr {
     pub(super) base_color_factor: Option<[f32; 4]>,
     pub(super) base_color_texture: Option<TextureInfo>,
     pub(super) metallic_roughness_texture: Option<TextureInfo>,
+    pub(super) metallic_factor: Option<f64>,
+    pub(super) roughness_factor: Option<f64>,
 }
 
-#[derive(Clone, Copy, Deserialize)]
+#[derive(Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub(super) struct TextureInfo {
     pub(super) index: usize,
     #[serde(default)]
     pub(super) tex_coord: u32,
+    pub(super) extensions: Option<Box<TextureExtensions>>,
+    /// The factor of the slopes of a texture of normals.
+    pub(super) scale: Option<f64>,
+    /// The strength of a texture of occlusion.
+    pub(super) strength: Option<f64>,
+}
+
+#[derive(Deserialize)]
+pub(super) struct TextureExtensions {
+    #[serde(rename = "KHR_texture_transform")]
+    pub(super) transform: Option<TextureTransform>,
+}
+
+/// An affine map of texture coordinates.
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct TextureTransform {
+    pub(super) offset: Option<[f64; 2]>,
+    pub(super) rotation: Option<f64>,
+    pub(super) scale: Option<[f64; 2]>,
+    /// The set of texture coordinates, in place of that of the texture.
+    pub(super) tex_coord: Option<u32>,
 }
 
 #[derive(Deserialize)]
 pub(super) struct Texture {
     pub(super) source: Option<usize>,
+    pub(super) sampler: Option<usize>,
+    pub(super) extensions: Option<Box<BTreeMap<String, IgnoredAny>>>,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct Sampler {
+    pub(super) wrap_s: Option<u32>,
+    pub(super) wrap_t: Option<u32>,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct Skin {
+    pub(super) joints: Vec<usize>,
+    pub(super) inverse_bind_matrices: Option<usize>,
 }
 
 #[derive(Deserialize)]
@@ -171,4 +231,5 @@ pub(super) struct Texture {
 pub(super) struct Image {
     pub(super) uri: Option<String>,
     pub(super) buffer_view: Option<usize>,
+    pub(super) name: Option<String>,
 }

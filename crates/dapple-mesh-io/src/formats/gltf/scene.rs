@@ -2,17 +2,30 @@
 
 use super::accessor::{Budget, Column};
 use super::document::{Instancing, Primitive};
-use super::transform::{cofactors, local, trs};
+use super::material::Placement;
+use super::skin::{Influences, Pose};
+use super::transform::{local, trs};
 use super::{Source, wrong};
 use crate::MeshIoError;
 use crate::polygon::{fan, strip};
 use dapple_color::{LinearRgb, LinearRgba};
 use dapple_mesh::{Mesh, Model};
-use glam::{DMat3, DMat4, DVec2, DVec3};
+use glam::{DAffine2, DMat4, DVec2, DVec3};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The accessors of positions, normals, colors and texture coordinates.
 type Attributes = [Option<usize>; 4];
+
+/// All that the vertices of a primitive are made of.
+struct Vertices<'a> {
+    attributes: Attributes,
+    /// The map of texture coordinates.
+    map: DAffine2,
+    /// The morph targets with their weights, if those are not zero.
+    targets: Vec<(f64, &'a BTreeMap<String, usize>)>,
+    /// The accessors of joints and weights, if the mesh has a skin.
+    influences: Vec<[usize; 2]>,
+}
 
 struct Draft<'a> {
     source: &'a Source<'a>,
@@ -27,6 +40,9 @@ struct Draft<'a> {
     material: Option<usize>,
     /// The materials of faces.
     materials: BTreeSet<Option<usize>>,
+    /// Whether there are lines, and sets of texture coordinates that no texture here uses.
+    has_lines: bool,
+    has_further_uvs: bool,
 }
 
 /// The model without its material, and the number of the material. The file has `n_bytes` bytes, with its buffers.
@@ -44,8 +60,16 @@ pub(super) fn read(
         faces: Vec::new(),
         material: None,
         materials: BTreeSet::new(),
+        has_lines: false,
+        has_further_uvs: false,
     };
     let nodes = &source.document.nodes;
+    let has_skins = nodes.iter().any(|node| node.skin.is_some());
+    let worlds = if has_skins {
+        source.worlds()
+    } else {
+        Vec::new()
+    };
     let mut seen = vec![false; nodes.len()];
     let mut open: Vec<_> = roots(source)?
         .into_iter()
@@ -65,12 +89,16 @@ pub(super) fn read(
         let Some(mesh) = node.mesh else {
             continue;
         };
-        let extensions = node.extensions.as_deref();
+        let weights = node.weights.as_deref();
+        let extensions = node.extensions.as_deref().filter(|_| node.skin.is_none());
         match extensions.and_then(|extensions| extensions.instancing.as_ref()) {
-            None => draft.add_mesh(mesh, transform)?,
+            None => {
+                let pose = source.pose(node, transform, &worlds, &mut draft.budget)?;
+                draft.add_mesh(mesh, weights, &pose)?;
+            }
             Some(instancing) => {
                 for copy in draft.copies(instancing)? {
-                    draft.add_mesh(mesh, transform * copy)?;
+                    draft.add_mesh(mesh, weights, &Pose::Node(transform * copy))?;
                 }
             }
         }
@@ -126,28 +154,36 @@ impl Draft<'_> {
         }))
     }
 
-    fn add_mesh(&mut self, index: usize, transform: DMat4) -> Result<(), MeshIoError> {
+    fn add_mesh(
+        &mut self,
+        index: usize,
+        weights: Option<&[f64]>,
+        pose: &Pose,
+    ) -> Result<(), MeshIoError> {
         let mesh = self.source.document.meshes.get(index);
         let mesh = mesh.ok_or_else(|| wrong(format!("there is no mesh {index}")))?;
-        let turned = DMat3::from_mat4(transform).determinant() < 0.0;
+        let weights = weights.or(mesh.weights.as_deref()).unwrap_or_default();
+        let turned = pose.is_mirrored();
         // The first vertices of the attributes that were added already.
         let mut known = BTreeMap::new();
         for primitive in &mesh.primitives {
             self.budget.take(1)?;
             let mode = primitive.mode.unwrap_or(4);
             if !matches!(mode, 0 | 4..=6) {
+                self.has_lines = true;
                 continue;
             }
-            let attributes = self.attributes(primitive);
-            let Some(positions) = attributes[0] else {
+            let vertices = self.vertices(primitive, weights, pose);
+            let Some(positions) = vertices.attributes[0] else {
                 continue;
             };
             let n_vertices = self.source.count(positions)?;
-            let first = match known.get(&attributes) {
+            let key = vertices.key(primitive);
+            let first = match known.get(&key) {
                 Some(&first) => first,
-                None => self.add_vertices(attributes, transform)?,
+                None => self.add_vertices(&vertices, pose)?,
             };
-            known.insert(attributes, first);
+            known.insert(key, first);
             self.material = self.material.or(primitive.material);
             if mode != 0 {
                 self.materials.insert(primitive.material);
@@ -157,50 +193,98 @@ impl Draft<'_> {
         Ok(())
     }
 
-    fn attributes(&self, primitive: &Primitive) -> Attributes {
-        let set = primitive
-            .material
-            .map_or(0, |material| self.source.uvs_of_material(material));
+    fn vertices<'p>(
+        &mut self,
+        primitive: &'p Primitive,
+        weights: &[f64],
+        pose: &Pose,
+    ) -> Vertices<'p> {
+        let material = primitive.material;
+        let placement =
+            material.map_or(Placement::PLAIN, |material| self.source.placement(material));
         let attribute = |name: &str| primitive.attributes.get(name).copied();
-        let uvs = attribute(&format!("TEXCOORD_{set}"));
-        [
-            attribute("POSITION"),
-            attribute("NORMAL"),
-            attribute("COLOR_0"),
-            uvs,
-        ]
+        let uvs = format!("TEXCOORD_{}", placement.set);
+        let is_further = |name: &String| name.starts_with("TEXCOORD_") && *name != uvs;
+        self.has_further_uvs |= primitive.attributes.keys().any(is_further);
+        let influences = |set: usize| {
+            let joints = attribute(&format!("JOINTS_{set}"))?;
+            Some([joints, attribute(&format!("WEIGHTS_{set}"))?])
+        };
+        let influences = (0..).map_while(influences);
+        let targets = weights.iter().copied().zip(&primitive.targets);
+        Vertices {
+            attributes: [
+                attribute("POSITION"),
+                attribute("NORMAL"),
+                attribute("COLOR_0"),
+                attribute(&uvs),
+            ],
+            map: placement.map,
+            targets: targets.filter(|(weight, _)| *weight != 0.0).collect(),
+            influences: match pose {
+                Pose::Node(_) => Vec::new(),
+                Pose::Skin(_) => influences.collect(),
+            },
+        }
     }
 
-    /// Adds the vertices of attributes, and returns the number of the first.
-    fn add_vertices(
+    /// The vectors of an attribute with those of morph targets.
+    fn vectors(
         &mut self,
-        attributes: Attributes,
-        transform: DMat4,
-    ) -> Result<u32, MeshIoError> {
-        let [positions, normals, colors, uvs] = attributes;
+        name: &str,
+        accessor: Option<usize>,
+        vertices: &Vertices<'_>,
+    ) -> Result<Option<Vec<DVec3>>, MeshIoError> {
+        let Some(column) = self.column(accessor, 3..=3, name == "NORMAL")? else {
+            return Ok(None);
+        };
+        let vectors = column.values.chunks_exact(3).map(DVec3::from_slice);
+        let mut vectors: Vec<_> = vectors.collect();
+        for (weight, target) in &vertices.targets {
+            let Some(moves) = self.column(target.get(name).copied(), 3..=3, false)? else {
+                continue;
+            };
+            if moves.values.len() != column.values.len() {
+                return Err(wrong("attributes of a morph target have different counts"));
+            }
+            let moves = moves.values.chunks_exact(3).map(DVec3::from_slice);
+            for (vector, by) in vectors.iter_mut().zip(moves) {
+                *vector += *weight * by;
+            }
+        }
+        Ok(Some(vectors))
+    }
+
+    /// The joints of vertices.
+    fn influences(&mut self, vertices: &Vertices<'_>) -> Result<Influences, MeshIoError> {
+        let mut influences = Influences::default();
+        for &[joints, weights] in &vertices.influences {
+            let joints = self.source.column(joints, false, &mut self.budget)?;
+            influences.add(joints, self.source.column(weights, true, &mut self.budget)?);
+        }
+        Ok(influences)
+    }
+
+    /// Adds vertices, and returns the number of the first.
+    fn add_vertices(&mut self, vertices: &Vertices<'_>, pose: &Pose) -> Result<u32, MeshIoError> {
+        let [positions, normals, colors, uvs] = vertices.attributes;
         let first = self.positions.len();
         let whole = self.normals.len() == first;
-        if let Some(positions) = self.column(positions, 3..=3, false)? {
-            let vectors = positions.values.chunks_exact(3).map(DVec3::from_slice);
-            // Without a transform all bits are kept, also the sign of zero.
-            if transform == DMat4::IDENTITY {
-                self.positions.extend(vectors);
-            } else {
-                self.positions
-                    .extend(vectors.map(|position| transform.transform_point3(position)));
-            }
+        let mut positions = self
+            .vectors("POSITION", positions, vertices)?
+            .unwrap_or_default();
+        let normals = self.vectors("NORMAL", normals, vertices)?.filter(|_| whole);
+        let mut normals = normals.unwrap_or_default();
+        let influences = self.influences(vertices)?;
+        if !influences.fits(positions.len()) {
+            return Err(wrong(
+                "a vertex has not four joints and weights in each set",
+            ));
         }
+        pose.apply(&influences, &mut positions, &mut normals)?;
+        self.positions.append(&mut positions);
+        self.normals.append(&mut normals);
         let end = self.positions.len();
-        if let Some(normals) = self.column(normals, 3..=3, true)?.filter(|_| whole) {
-            let vectors = normals.values.chunks_exact(3).map(DVec3::from_slice);
-            if transform == DMat4::IDENTITY {
-                self.normals.extend(vectors);
-            } else {
-                let cofactors = cofactors(transform);
-                self.normals
-                    .extend(vectors.map(|normal| (cofactors * normal).normalize_or_zero()));
-            }
-        }
         if let Some(colors) = self.column(colors, 3..=4, true)? {
             self.colors
                 .resize(first, LinearRgba::opaque(LinearRgb::WHITE));
@@ -209,8 +293,13 @@ impl Draft<'_> {
         }
         if let Some(uvs) = self.column(uvs, 2..=2, true)? {
             self.uvs.resize(first, DVec2::ZERO);
-            self.uvs
-                .extend(uvs.values.chunks_exact(2).map(DVec2::from_slice));
+            let uvs = uvs.values.chunks_exact(2).map(DVec2::from_slice);
+            if vertices.map == DAffine2::IDENTITY {
+                self.uvs.extend(uvs);
+            } else {
+                self.uvs
+                    .extend(uvs.map(|uv| vertices.map.transform_point2(uv)));
+            }
         }
         // A longer column would overlap the vertices of the next primitive.
         if [self.normals.len(), self.colors.len(), self.uvs.len()]
@@ -297,7 +386,36 @@ impl Draft<'_> {
         if self.materials.len() > 1 {
             model.left_out.push(Model::FURTHER_MATERIALS.to_owned());
         }
+        for (is_there, what) in [
+            (self.has_lines, "lines"),
+            (self.has_further_uvs, "further sets of texture coordinates"),
+        ] {
+            if is_there {
+                model.left_out.push(what.to_owned());
+            }
+        }
         Ok((model, self.material))
+    }
+}
+
+impl Vertices<'_> {
+    /// What two primitives of a mesh have in common if they share their vertices.
+    fn key(&self, primitive: &Primitive) -> (Attributes, Option<usize>, Vec<Option<usize>>) {
+        let material = primitive
+            .material
+            .filter(|_| self.map != DAffine2::IDENTITY);
+        let targets = self.targets.iter();
+        let targets =
+            targets.flat_map(|(_, target)| [target.get("POSITION"), target.get("NORMAL")]);
+        let influences = self.influences.iter().flatten().copied().map(Some);
+        (
+            self.attributes,
+            material,
+            targets
+                .map(Option::<&usize>::copied)
+                .chain(influences)
+                .collect(),
+        )
     }
 }
 

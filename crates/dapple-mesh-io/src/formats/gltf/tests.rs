@@ -10,6 +10,7 @@ use proptest::prelude::*;
 use serde_json::{Value, json};
 
 mod images;
+mod left_out;
 mod materials;
 mod origin;
 

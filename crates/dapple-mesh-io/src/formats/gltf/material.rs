@@ -1,0 +1,220 @@
+//! Conversion of a material of a glTF file, with what is left out of it.
+
+use super::Source;
+use super::document::{Material as Entry, Pbr, TextureInfo};
+use crate::Beside;
+use dapple_color::LinearRgba;
+use dapple_mesh::{AlphaMode, EncodedImage, Material, Model};
+use glam::{DAffine2, DVec2};
+
+/// The wrap of a texture that repeats, the only one that models have.
+const REPEAT: u32 = 10497;
+/// Texture coordinates beyond 0 to 1 by this much are out of the texture; less is rounding.
+const OUTSIDE: f64 = 1e-4;
+
+/// The texture coordinates that a texture has: the number of their set, and the map that is applied to them.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) struct Placement {
+    pub(super) set: u32,
+    pub(super) map: DAffine2,
+}
+
+impl Placement {
+    /// The first set as it is.
+    pub(super) const PLAIN: Self = Self {
+        set: 0,
+        map: DAffine2::IDENTITY,
+    };
+
+    fn new(info: &TextureInfo) -> Self {
+        let extensions = info.extensions.as_deref();
+        let Some(transform) = extensions.and_then(|extensions| extensions.transform.as_ref())
+        else {
+            return Self {
+                set: info.tex_coord,
+                ..Self::PLAIN
+            };
+        };
+        let angle = transform.rotation.unwrap_or(0.0);
+        let (sin, cos) = (libm::sin(angle), libm::cos(angle));
+        let scale = transform.scale.map_or(DVec2::ONE, DVec2::from_array);
+        Self {
+            set: transform.tex_coord.unwrap_or(info.tex_coord),
+            // Counterclockwise as one sees the texture, although v goes down.
+            map: DAffine2::from_cols(
+                DVec2::new(cos, -sin) * scale.x,
+                DVec2::new(sin, cos) * scale.y,
+                transform.offset.map_or(DVec2::ZERO, DVec2::from_array),
+            ),
+        }
+    }
+}
+
+impl Source<'_> {
+    /// The placement of the textures of a material: that of the base color, else of the normals.
+    pub(super) fn placement(&self, material: usize) -> Placement {
+        let material = self.document.materials.get(material);
+        let pbr = material.and_then(|material| material.pbr_metallic_roughness.as_deref());
+        let info = pbr
+            .and_then(|pbr| pbr.base_color_texture.as_ref())
+            .or(material.and_then(|material| material.normal_texture.as_ref()))
+            .or(pbr.and_then(|pbr| pbr.metallic_roughness_texture.as_ref()));
+        info.map_or(Placement::PLAIN, Placement::new)
+    }
+
+    /// Reads the material with a number into a model that has its texture coordinates.
+    pub(super) fn read_material(&self, index: usize, model: &mut Model, beside: &mut Beside<'_>) {
+        let Some(material) = self.document.materials.get(index) else {
+            return;
+        };
+        let pbr = material.pbr_metallic_roughness.as_deref();
+        let base = pbr.and_then(|pbr| pbr.base_color_texture.as_ref());
+        let factor = pbr.and_then(|pbr| pbr.base_color_factor);
+        let placement = self.placement(index);
+        let left_out = &mut model.left_out;
+        let mut image = |what: &str, info: Option<&TextureInfo>| {
+            let info = info?;
+            if Placement::new(info) == placement {
+                let image = self.image(info.index, beside);
+                return image.map_err(|why| left_out.push(why)).ok();
+            }
+            left_out.push(format!(
+                "the texture of {what}, which has other texture coordinates"
+            ));
+            None
+        };
+        let occlusion = material.occlusion_texture.as_ref();
+        model.material = Material {
+            base_color_factor: factor.map_or(
+                Material::default().base_color_factor,
+                |[r, g, b, alpha]| {
+                    let color = [r, g, b].into();
+                    LinearRgba { color, alpha }
+                },
+            ),
+            base_color: image("colors", base),
+            normal: image("normals", material.normal_texture.as_ref()),
+            metallic_roughness: image(
+                "roughness",
+                pbr.and_then(|pbr| pbr.metallic_roughness_texture.as_ref()),
+            ),
+            occlusion: image("occlusion", occlusion),
+            alpha: match material.alpha_mode.as_deref() {
+                Some("MASK") => AlphaMode::Mask,
+                Some("BLEND") => AlphaMode::Blend,
+                _ => AlphaMode::Opaque,
+            },
+            double_sided: material.double_sided,
+            ..Material::default()
+        };
+        let properties = left_out_of(material);
+        if !properties.is_empty() {
+            model
+                .left_out
+                .push(format!("of the material: {}", properties.join(", ")));
+        }
+        let wrap = base
+            .and_then(|base| self.wrap(base.index))
+            .filter(|_| is_outside(model));
+        if let Some(wrap) = wrap {
+            let what = format!("the wrap {wrap} of the texture, which repeats here");
+            model.left_out.push(what);
+        }
+    }
+
+    /// The name of the wrap of a texture, if it does not repeat.
+    fn wrap(&self, texture: usize) -> Option<&'static str> {
+        let sampler = self.document.textures.get(texture)?.sampler?;
+        let sampler = self.document.samplers.get(sampler)?;
+        let wraps = [sampler.wrap_s, sampler.wrap_t].into_iter().flatten();
+        let wrap = wraps.into_iter().find(|&wrap| wrap != REPEAT)?;
+        Some(if wrap == 33648 {
+            "MIRRORED_REPEAT"
+        } else {
+            "CLAMP_TO_EDGE"
+        })
+    }
+
+    /// The image of a texture; or else the entry of [`Model::left_out`] for it.
+    fn image(&self, index: usize, beside: &mut Beside<'_>) -> Result<EncodedImage, String> {
+        let no_image = || format!("texture {index}, which has no image");
+        let texture = self.document.textures.get(index).ok_or_else(no_image)?;
+        let Some(at) = texture.source else {
+            let extensions = texture.extensions.as_deref();
+            let name = extensions.and_then(|extensions| extensions.keys().next());
+            let named = |name| format!("texture {index}, which only the extension {name} has");
+            return Err(name.map_or_else(no_image, named));
+        };
+        let image = self.document.images.get(at).ok_or_else(no_image)?;
+        let uri = image.uri.as_deref().filter(|uri| !uri.starts_with("data:"));
+        let name = uri
+            .or(image.name.as_deref())
+            .map_or_else(|| at.to_string(), str::to_owned);
+        let Some(bytes) = self.image_bytes(image, beside) else {
+            return Err(format!("the texture {name}, which cannot be read"));
+        };
+        let wrong = |_| format!("the texture {name}, which is neither PNG nor JPEG");
+        EncodedImage::new(bytes).map_err(wrong)
+    }
+}
+
+/// Whether a corner has texture coordinates beyond 0 to 1.
+fn is_outside(model: &Model) -> bool {
+    let mut parts = model
+        .uvs
+        .iter()
+        .flatten()
+        .flatten()
+        .flat_map(|uv| uv.to_array());
+    parts.any(|part| !(-OUTSIDE..=1.0 + OUTSIDE).contains(&part))
+}
+
+/// The names of the properties of a material that a model has no place for, if their values matter.
+fn left_out_of(material: &Entry) -> Vec<&str> {
+    let pbr = material.pbr_metallic_roughness.as_deref();
+    let factor = |of: fn(&Pbr) -> Option<f64>, plain: f64, textured: f64| {
+        let has_texture = pbr.is_some_and(|pbr| pbr.metallic_roughness_texture.is_some());
+        let plain = if has_texture { textured } else { plain };
+        pbr.and_then(of).is_some_and(|factor| factor != plain)
+    };
+    let number = |number: Option<f64>, plain: f64| number.is_some_and(|number| number != plain);
+    let (normal, occlusion) = (&material.normal_texture, &material.occlusion_texture);
+    let is_mask = material.alpha_mode.as_deref() == Some("MASK");
+    let emits = material
+        .emissive_factor
+        .as_deref()
+        .is_some_and(|factor| *factor != [0.0; 3]);
+    let all = [
+        (
+            "metallicFactor",
+            factor(|pbr| pbr.metallic_factor, 0.0, 1.0),
+        ),
+        (
+            "roughnessFactor",
+            factor(|pbr| pbr.roughness_factor, 1.0, 1.0),
+        ),
+        (
+            "scale",
+            number(normal.as_ref().and_then(|info| info.scale), 1.0),
+        ),
+        (
+            "strength",
+            number(occlusion.as_ref().and_then(|info| info.strength), 1.0),
+        ),
+        ("emissiveFactor", emits),
+        (
+            "emissiveTexture",
+            emits && material.emissive_texture.is_some(),
+        ),
+        ("alphaCutoff", is_mask && number(material.alpha_cutoff, 0.5)),
+    ];
+    let properties = all.into_iter().filter(|(_, is_there)| *is_there);
+    let extensions = material
+        .extensions
+        .iter()
+        .flat_map(|extensions| extensions.keys());
+    properties
+        .map(|(name, _)| name)
+        .chain(extensions.map(String::as_str))
+        .collect()
+}
