@@ -39,6 +39,7 @@ mod line;
 mod polygon;
 mod split;
 mod text;
+mod texture;
 
 #[cfg(test)]
 use dapple_mesh::{Mesh, Surface};

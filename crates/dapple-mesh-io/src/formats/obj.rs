@@ -7,9 +7,10 @@
 //! these; the material is the first that a face has. Normals, which OBJ gives to corners, become those of vertices if
 //! no vertex has two, and stay with the corners otherwise; where a corner has none, all are left out. Texture
 //! coordinates and normals that corners name but the file lacks are left out, too, and listed in [`Model::left_out`].
-//! Lines, points and free-form surfaces are left out. Of a material its `Kd` (linear, and only without a texture, since
-//! with one it is seldom meant), `d`, `map_Kd` and `norm` are read and written. A texture that is missing, or neither
-//! PNG nor JPEG, is left out.
+//! Lines, points and free-form surfaces are left out, and listed there. Of a material its `Kd` (linear, and only without a
+//! texture, since with one it is seldom meant), `d`, `map_Kd` and `norm` are read and written. The options `-s` and `-o`
+//! of a texture are applied to the texture coordinates. A texture that is missing, or neither PNG nor JPEG, is left out
+//! and listed, as are other textures and options.
 //!
 //! The reader is ours because of its guarantees: all bits of `f64`, errors that name their line, a list of omitted
 //! parts, and a limit of memory whatever the file says.
@@ -28,10 +29,12 @@ use crate::colors::{self, Coding};
 use crate::line::{Line, lines};
 use crate::polygon::Polygons;
 use crate::text::{content, no_vertex, parse};
+use crate::texture::is_outside;
 use dapple_color::{LinearRgb, LinearRgba};
 use dapple_mesh::{Mesh, Model};
 use glam::{DVec2, DVec3};
 use std::borrow::Cow;
+use std::collections::BTreeSet;
 
 const FORMAT: &str = "OBJ";
 
@@ -66,6 +69,8 @@ struct Draft {
     faces: Vec<[Corner; 3]>,
     polygons: Polygons,
     libraries: Vec<String>,
+    /// The kinds of elements that have no place in a model.
+    skipped: BTreeSet<&'static str>,
     /// The name of the material in use, and whether a face uses it.
     material: Option<(String, bool)>,
     /// Whether another material is in use than the first of a face, and whether a face uses one.
@@ -113,7 +118,18 @@ pub fn read_with(bytes: &[u8], beside: &mut Beside<'_>) -> Result<Model, MeshIoE
     let libraries = core::mem::take(&mut draft.libraries);
     let name = draft.material.take().map(|(name, _)| name);
     let mut model = draft.into_model()?;
-    model.material = mtl::material(&libraries, name.as_deref(), beside)?;
+    let found = mtl::material(&libraries, name.as_deref(), beside)?;
+    if let (Some(map), Some(uvs)) = (found.uv_map, &mut model.uvs) {
+        uvs.iter_mut().flatten().for_each(|uv| *uv = map.apply(*uv));
+    }
+    model.material = found.material;
+    model.left_out.extend(found.left_out);
+    if found.is_clamped && is_outside(&model) {
+        model
+            .left_out
+            .push("the option -clamp of the texture, which repeats here".to_owned());
+    }
+    model.check()?;
     Ok(model)
 }
 
@@ -161,6 +177,9 @@ impl Draft {
             }
             b"vn" => self.normals.push(line.position(1)?),
             b"f" => self.add_face(line)?,
+            b"l" => _ = self.skipped.insert("lines"),
+            b"p" => _ = self.skipped.insert("points"),
+            b"curv" | b"curv2" | b"surf" => _ = self.skipped.insert("free-form surfaces"),
             // Some programs repeat this line for each object.
             b"mtllib" if self.libraries.last() != Some(&name(line)) => {
                 self.libraries.push(name(line));
@@ -268,6 +287,7 @@ impl Draft {
 
     fn into_model(mut self) -> Result<Model, MeshIoError> {
         let mut left_out = self.take_away_missing();
+        left_out.extend(self.skipped.iter().map(|&what| what.to_owned()));
         if self.others[1] {
             left_out.push(Model::FURTHER_MATERIALS.to_owned());
         }

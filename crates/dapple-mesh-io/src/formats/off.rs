@@ -5,7 +5,7 @@
 //! All headers of three dimensions are read: `OFF` with the letters `ST`, `C` and `N` before it, in this order, for
 //! texture coordinates, colors and normals of the vertices, and none at all, which means `OFF`. The counts may follow
 //! the header on its line, even without a space. Colors are three or four numbers, 0 to 255 if a vertex has only whole
-//! ones and else 0 to 1; those of faces are left out. A vertex is on one line; a face may continue over several. The
+//! ones and else 0 to 1; those of faces are left out, and listed in [`Model::left_out`]. A vertex is on one line; a face may continue over several. The
 //! four-dimensional, n-dimensional and binary variants are errors.
 
 use super::MeshFormat;
@@ -78,6 +78,7 @@ pub fn read(bytes: &[u8]) -> Result<Model, MeshIoError> {
         vertices.add(header, &line)?;
     }
     let (mut faces, mut corners, mut polygons) = (Vec::new(), Vec::new(), Polygons::default());
+    let mut has_colors = false;
     for _ in 0..n_faces {
         let mut line = lines.next().ok_or_else(|| ended("faces", n_faces))?;
         // A polygon may continue over several lines, and its color is on the last of them.
@@ -86,6 +87,7 @@ pub fn read(bytes: &[u8]) -> Result<Model, MeshIoError> {
             let more = lines.next();
             line.extend(more.ok_or_else(|| line.error("a face has fewer corners than it says"))?);
         }
+        has_colors |= line.words.len() > count + 1;
         corners.clear();
         for word in &line.words[1..=count] {
             corners.push(corner(&line, word, n_vertices)?);
@@ -96,6 +98,9 @@ pub fn read(bytes: &[u8]) -> Result<Model, MeshIoError> {
     ears.apply(&mut faces);
     let mut model = vertices.into_model(header, &faces)?;
     model.left_out.extend(ears.left_out());
+    if has_colors {
+        model.left_out.push("colors of faces".to_owned());
+    }
     Ok(model)
 }
 

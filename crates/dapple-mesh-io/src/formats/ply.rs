@@ -7,7 +7,8 @@
 //! `x y z`, `nx ny nz`, `red green blue alpha` (also with `diffuse_` before or as `r g b a`) and `s t`, `u v` or
 //! `texture_u texture_v`. Of the element `face`: the list `vertex_indices` or `vertex_index`, and `texcoord` with two
 //! numbers for each corner, which takes precedence over those of vertices. Of the element `tristrips`: the list
-//! `vertex_indices`, in which -1 ends a strip. All other elements and properties are skipped. Colors are coded as sRGB:
+//! `vertex_indices`, in which -1 ends a strip. All other elements are listed in [`Model::left_out`], and other properties
+//! skipped. The comment `TextureFile` names the texture of the base color, as MeshLab writes it. Colors are coded as sRGB:
 //! 0 to 255, for `ushort` 0 to 65535, and for `float` and `double` 0 to 1. As in OBJ, v goes up in the file, so that v
 //! becomes 1 - v.
 //!
@@ -23,11 +24,12 @@ mod tests;
 
 pub use write::{write, write_text};
 
-use super::{MaterialPlace, MeshFormat, Writer, alone};
+use super::{Beside, MaterialPlace, MeshFormat, Writer, alone};
 use crate::MeshIoError;
 use crate::colors::{self, Coding};
 use crate::polygon::{Polygons, fan, strip};
 use crate::text::{content, no_vertex};
+use crate::texture::{shown, texture};
 use body::Body;
 use dapple_color::LinearRgba;
 use dapple_mesh::{Mesh, Model};
@@ -40,7 +42,7 @@ const FORMAT: &str = "PLY";
 pub(super) const PLY: MeshFormat = MeshFormat {
     name: FORMAT,
     endings: &["ply"],
-    read: |bytes, _| read(bytes),
+    read: read_with,
     writer: Some(Writer {
         ending: "ply",
         material: MaterialPlace::Nowhere,
@@ -78,6 +80,7 @@ struct Draft {
     faces: Vec<[u32; 3]>,
     polygons: Polygons,
     face_uvs: Vec<[DVec2; 3]>,
+    left_out: Vec<String>,
 }
 
 /// The column for a property of a vertex, and the coding of a color in it.
@@ -103,6 +106,15 @@ struct Target {
 /// # Ok::<(), dapple_mesh_io::MeshIoError>(())
 /// ```
 pub fn read(bytes: &[u8]) -> Result<Model, MeshIoError> {
+    read_with(bytes, &mut |_| None)
+}
+
+/// Reads a PLY file, and its texture through `beside`.
+///
+/// # Errors
+///
+/// The errors of [`read`]. A missing texture is no error, but listed in [`Model::left_out`].
+pub fn read_with(bytes: &[u8], beside: &mut Beside<'_>) -> Result<Model, MeshIoError> {
     let bytes = content(FORMAT, bytes)?;
     let (header, rest) = Header::read(bytes)?;
     let mut body = Body::new(header.encoding, bytes, rest);
@@ -120,10 +132,21 @@ pub fn read(bytes: &[u8]) -> Result<Model, MeshIoError> {
             "vertex" if draft.positions.is_empty() => draft.read_vertices(element, &mut body)?,
             "face" => draft.read_faces(element, &mut body)?,
             "tristrips" => draft.read_strips(element, &mut body)?,
-            _ => pass_over(element, &mut body)?,
+            _ => {
+                draft.skip(element);
+                pass_over(element, &mut body)?;
+            }
         }
     }
-    draft.into_model()
+    let mut model = draft.into_model()?;
+    if let Some(name) = header.textures.first() {
+        let image = texture(name, beside).map_err(|why| model.left_out.push(why));
+        model.material.base_color = image.ok();
+    }
+    if header.textures.len() > 1 {
+        model.left_out.push(Model::FURTHER_MATERIALS.to_owned());
+    }
+    Ok(model)
 }
 
 /// Skips an element that is not used.
@@ -144,6 +167,14 @@ fn pass_over(element: &Element, body: &mut Body<'_>) -> Result<(), MeshIoError> 
 }
 
 impl Draft {
+    /// Lists an element that is not used.
+    fn skip(&mut self, element: &Element) {
+        if element.count > 0 && !element.properties.is_empty() {
+            let name = shown(&element.name);
+            self.left_out.push(format!("the element {name}"));
+        }
+    }
+
     fn read_vertices(&mut self, element: &Element, body: &mut Body<'_>) -> Result<(), MeshIoError> {
         let targets: Vec<_> = element
             .properties
@@ -292,6 +323,7 @@ impl Draft {
             let face = |face: &[u32; 3]| face.map(|vertex| self.uvs[vertex as usize]);
             model.uvs = Some(self.faces.iter().map(face).collect());
         }
+        model.left_out = self.left_out;
         model.left_out.extend(ears.left_out());
         model.check()?;
         Ok(model)

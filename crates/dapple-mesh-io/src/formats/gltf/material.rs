@@ -3,14 +3,13 @@
 use super::Source;
 use super::document::{Material as Entry, Pbr, TextureInfo};
 use crate::Beside;
+use crate::texture::{encoded, is_outside, shown, unreadable};
 use dapple_color::LinearRgba;
 use dapple_mesh::{AlphaMode, EncodedImage, Material, Model};
 use glam::{DAffine2, DVec2};
 
 /// The wrap of a texture that repeats, the only one that models have.
 const REPEAT: u32 = 10497;
-/// Texture coordinates beyond 0 to 1 by this much are out of the texture; less is rounding.
-const OUTSIDE: f64 = 1e-4;
 
 /// The texture coordinates that a texture has: the number of their set, and the map that is applied to them.
 #[derive(Clone, Copy, PartialEq)]
@@ -109,9 +108,10 @@ impl Source<'_> {
         };
         let properties = left_out_of(material);
         if !properties.is_empty() {
+            let properties = shown(&properties.join(", "));
             model
                 .left_out
-                .push(format!("of the material: {}", properties.join(", ")));
+                .push(format!("properties of the material: {properties}"));
         }
         let wrap = base
             .and_then(|base| self.wrap(base.index))
@@ -142,7 +142,12 @@ impl Source<'_> {
         let Some(at) = texture.source else {
             let extensions = texture.extensions.as_deref();
             let name = extensions.and_then(|extensions| extensions.keys().next());
-            let named = |name| format!("texture {index}, which only the extension {name} has");
+            let named = |name: &String| {
+                format!(
+                    "texture {index}, which only the extension {} has",
+                    shown(name)
+                )
+            };
             return Err(name.map_or_else(no_image, named));
         };
         let image = self.document.images.get(at).ok_or_else(no_image)?;
@@ -151,22 +156,10 @@ impl Source<'_> {
             .or(image.name.as_deref())
             .map_or_else(|| at.to_string(), str::to_owned);
         let Some(bytes) = self.image_bytes(image, beside) else {
-            return Err(format!("the texture {name}, which cannot be read"));
+            return Err(unreadable("texture", &name));
         };
-        let wrong = |_| format!("the texture {name}, which is neither PNG nor JPEG");
-        EncodedImage::new(bytes).map_err(wrong)
+        encoded(&name, bytes)
     }
-}
-
-/// Whether a corner has texture coordinates beyond 0 to 1.
-fn is_outside(model: &Model) -> bool {
-    let mut parts = model
-        .uvs
-        .iter()
-        .flatten()
-        .flatten()
-        .flat_map(|uv| uv.to_array());
-    parts.any(|part| !(-OUTSIDE..=1.0 + OUTSIDE).contains(&part))
 }
 
 /// The names of the properties of a material that a model has no place for, if their values matter.

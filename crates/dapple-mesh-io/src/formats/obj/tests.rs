@@ -182,7 +182,7 @@ fn what_has_neither_vertices_nor_faces_is_no_obj() {
 
 #[test]
 fn material_is_found_beside_the_file() {
-    let library = b"newmtl roof\nKd 1 0 0\nnewmtl wall\nKd 0 0 0\nnewmtl wall #2\nKd .2 .2 .2\nd 0.5\nmap_Kd -s 2 2 -clamp on my textures\\brick wall.png\nnorm missing.png\n";
+    let library = b"newmtl roof\nKd 1 0 0\nnewmtl wall\nKd 0 0 0\nnewmtl wall #2\nKd .2 .2 .2\nd 0.5\nmap_Kd -s 2 2 -clamp on my textures\\brick wall.png\nnorm -s 2 2 missing.png\n";
     let image = b"\x89PNG\r\n\x1a\n...".to_vec();
     let mut asked = Vec::new();
     let model = read_with(QUAD, &mut |name| {
@@ -207,6 +207,12 @@ fn material_is_found_beside_the_file() {
         ..Material::default()
     };
     assert_eq!(model.material, want);
+    let want = [
+        "lines",
+        "the texture missing.png, which cannot be read",
+        "the option -clamp of the texture, which repeats here",
+    ];
+    assert_eq!(model.left_out, want);
     assert_eq!(
         read(QUAD).expect("it is valid").material,
         Material::default(),

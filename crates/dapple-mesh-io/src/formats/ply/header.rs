@@ -8,6 +8,8 @@ use crate::text::{parse, words};
 pub(super) struct Header {
     pub(super) encoding: Encoding,
     pub(super) elements: Vec<Element>,
+    /// The names of textures, which comments have.
+    pub(super) textures: Vec<String>,
 }
 
 /// The encoding of numbers.
@@ -60,6 +62,7 @@ impl Header {
         let mut header = Self {
             encoding: Encoding::Text,
             elements: Vec::new(),
+            textures: Vec::new(),
         };
         let (mut rest, mut number, mut known) = (bytes, 0, false);
         loop {
@@ -75,6 +78,11 @@ impl Header {
                         FORMAT,
                         "line 1: the first line is not `ply`",
                     ));
+                }
+                (_, [b"comment", b"TextureFile", name @ ..]) if !name.is_empty() => {
+                    let name = name.join(b" ".as_slice());
+                    let name = String::from_utf8_lossy(&name).replace('\\', "/");
+                    header.textures.push(name);
                 }
                 (_, [] | [b"comment" | b"obj_info", ..]) => {}
                 (_, [b"format", encoding, _]) if !known => {

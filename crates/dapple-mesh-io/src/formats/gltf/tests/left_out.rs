@@ -304,7 +304,7 @@ fn other_parts_of_a_file_are_listed() {
     });
     let want = [
         "lines",
-        "of the material: metallicFactor, emissiveFactor, alphaCutoff, KHR_materials_sheen",
+        "properties of the material: metallicFactor, emissiveFactor, alphaCutoff, KHR_materials_sheen",
         "the animations",
     ];
     assert_eq!(all, want);
