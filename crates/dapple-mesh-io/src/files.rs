@@ -18,8 +18,8 @@ const BYTES_MAX: u64 = 1 << 32;
 
 /// Reads a mesh file, in the format of [`FORMATS`](crate::FORMATS) with the ending of its path.
 ///
-/// Materials, buffers and textures are read from the same folder and the folders in it, never from outside of it, and
-/// up to 4 GiB in total.
+/// Materials, buffers and textures are read from regular files in the same folder and the folders in it, never from
+/// outside of it, and up to 4 GiB in total.
 ///
 /// # Errors
 ///
@@ -99,7 +99,12 @@ fn beside(path: &Path, name: &str, left: &mut u64) -> Option<Vec<u8>> {
     if !name.components().all(inside) {
         return None;
     }
-    let bytes = read_at_most(&path.with_file_name("").join(name), *left).ok()?;
+    let path = path.with_file_name("").join(name);
+    // A pipe or a device may never end.
+    if !std::fs::metadata(&path).ok()?.is_file() {
+        return None;
+    }
+    let bytes = read_at_most(&path, *left).ok()?;
     *left -= bytes.len() as u64;
     Some(bytes)
 }

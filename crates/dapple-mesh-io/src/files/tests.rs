@@ -117,8 +117,42 @@ fn names_in_a_file_do_not_lead_out_of_its_folder() {
     assert_eq!(left, 4, "six of ten bytes were read");
     assert_eq!(beside(&path, "known", &mut left), None, "too much");
     let absolute = folder.join("secret").display().to_string();
-    for name in ["../secret", "x/../../secret", absolute.as_str(), ""] {
+    for name in ["../secret", "x/../../secret", absolute.as_str(), "", "."] {
         assert_eq!(beside(&path, name, &mut 100), None, "{name}");
     }
+    fs::remove_dir_all(folder).expect("it is there");
+}
+
+#[cfg(unix)]
+#[test]
+fn only_regular_files_are_read_beside_a_file() {
+    let folder = folder("regular");
+    let path = folder.join("a.gltf");
+    // A pipe without a writer never ends.
+    let made = std::process::Command::new("mkfifo")
+        .arg(folder.join("pipe"))
+        .status();
+    assert!(made.expect("every Unix has it").success());
+    std::os::unix::fs::symlink("/dev/zero", folder.join("zero")).expect("it is made");
+    fs::write(folder.join("file"), "beside").expect("it is written");
+    std::os::unix::fs::symlink("file", folder.join("link")).expect("it is made");
+    for name in ["pipe", "zero", "inside"] {
+        assert_eq!(beside(&path, name, &mut 100), None, "{name}");
+    }
+    assert!(
+        beside(&path, "link", &mut 100).is_some(),
+        "a link to a file"
+    );
+    let text = r#"{"asset":{"version":"2.0"},"images":[{"uri":"pipe"}],"textures":[{"source":0}],
+        "materials":[{"normalTexture":{"index":0}}],"buffers":[{"uri":"zero","byteLength":4}],
+        "bufferViews":[{"buffer":0,"byteLength":12}],"nodes":[{"mesh":0}],
+        "accessors":[{"bufferView":0,"componentType":5126,"count":1,"type":"VEC3"}],
+        "meshes":[{"primitives":[{"attributes":{"POSITION":0},"material":0}]}]}"#;
+    fs::write(&path, text).expect("it is written");
+    let error = read_model(&path).expect_err("it is refused").to_string();
+    assert!(
+        error.contains("the bytes of buffer 0 are missing"),
+        "{error}"
+    );
     fs::remove_dir_all(folder).expect("it is there");
 }

@@ -42,7 +42,8 @@ use crate::{MeshIoError, MeshIoErrorKind};
 use container::{Container, percent_decoded};
 use dapple_mesh::Model;
 use document::{Document, Head, Image};
-use serde::Deserialize;
+use serde::de::DeserializeOwned;
+use serde_json::Value;
 use std::borrow::Cow;
 
 const FORMAT: &str = "glTF";
@@ -74,7 +75,8 @@ const EXTENSIONS: [&str; 6] = [
 /// A document with its buffers.
 struct Source<'a> {
     document: Document,
-    buffers: Vec<Cow<'a, [u8]>>,
+    /// The bytes of each buffer; `None` if they are missing, which is an error only where they are used.
+    buffers: Vec<Option<Cow<'a, [u8]>>>,
 }
 
 /// Reads a GLB file, or a glTF file that needs no other file.
@@ -117,12 +119,13 @@ pub fn read_with(bytes: &[u8], beside: &mut Beside<'_>) -> Result<Model, MeshIoE
     if let Some(name) = document.extensions_required.iter().find(unknown) {
         return Err(unsupported(format!("the glTF extension {name}")));
     }
-    let buffers = container.buffers(&document, beside)?;
+    let buffers = container.buffers(&document, beside);
     let source = Source { document, buffers };
     let n_bytes = bytes.len()
         + source
             .buffers
             .iter()
+            .flatten()
             .map(|buffer| buffer.len())
             .sum::<usize>();
     let (mut model, material) = scene::read(&source, n_bytes)?;
@@ -136,8 +139,34 @@ pub fn read_with(bytes: &[u8], beside: &mut Beside<'_>) -> Result<Model, MeshIoE
     Ok(model)
 }
 
-fn parse<'a, T: Deserialize<'a>>(json: &'a [u8]) -> Result<T, MeshIoError> {
-    serde_json::from_slice(json).map_err(|error| wrong(error.to_string()))
+fn parse<T: DeserializeOwned>(json: &[u8]) -> Result<T, MeshIoError> {
+    // A whole number may be written as `1.0`, which few files do.
+    let with_fractions = || {
+        let mut value = serde_json::from_slice(json).ok()?;
+        without_fractions(&mut value);
+        serde_json::from_value(value).ok()
+    };
+    serde_json::from_slice(json)
+        .or_else(|error| with_fractions().ok_or(error))
+        .map_err(|error| wrong(error.to_string()))
+}
+
+/// Turns numbers such as `1.0` into whole ones.
+fn without_fractions(value: &mut Value) {
+    match value {
+        Value::Array(items) => items.iter_mut().for_each(without_fractions),
+        Value::Object(entries) => entries.values_mut().for_each(without_fractions),
+        Value::Number(number) => {
+            // Up to 2^53 they are exact.
+            let whole = number
+                .as_f64()
+                .filter(|number| (0.0..9e15).contains(number));
+            if let Some(whole) = whole.filter(|number| number.fract() == 0.0) {
+                *value = (whole as u64).into();
+            }
+        }
+        _ => {}
+    }
 }
 
 fn unsupported(feature: String) -> MeshIoError {
@@ -152,9 +181,16 @@ impl Source<'_> {
     /// The bytes of a buffer view.
     fn view(&self, index: usize) -> Result<&[u8], MeshIoError> {
         let view = self.document.buffer_views.get(index);
-        let bytes = view.and_then(|view| {
+        let buffer = view.and_then(|view| self.buffers.get(view.buffer));
+        if let (Some(view), Some(None)) = (view, buffer) {
+            return Err(wrong(format!(
+                "the bytes of buffer {} are missing",
+                view.buffer
+            )));
+        }
+        let bytes = view.zip(buffer).and_then(|(view, buffer)| {
             let end = view.byte_offset.checked_add(view.byte_length)?;
-            self.buffers.get(view.buffer)?.get(view.byte_offset..end)
+            buffer.as_ref()?.get(view.byte_offset..end)
         });
         bytes.ok_or_else(|| wrong(format!("there are no bytes for buffer view {index}")))
     }

@@ -58,6 +58,12 @@ impl Source<'_> {
         Ok(self.accessor(index)?.count)
     }
 
+    /// Whether an accessor has no bytes in the file, and so stands for zeros.
+    pub(super) fn is_without_bytes(&self, index: usize) -> Result<bool, MeshIoError> {
+        let accessor = self.accessor(index)?;
+        Ok(accessor.buffer_view.is_none() && accessor.sparse.is_none())
+    }
+
     /// The numbers of an accessor of indices.
     pub(super) fn indices(
         &self,

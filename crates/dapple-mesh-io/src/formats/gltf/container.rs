@@ -42,12 +42,12 @@ impl<'a> Container<'a> {
         Ok(Self { json, bin })
     }
 
-    /// The bytes of all buffers.
+    /// The bytes of all buffers; `None` for one that is missing or too short.
     pub(super) fn buffers(
         &self,
         document: &Document,
         beside: &mut Beside<'_>,
-    ) -> Result<Vec<Cow<'a, [u8]>>, MeshIoError> {
+    ) -> Vec<Option<Cow<'a, [u8]>>> {
         let mut buffers = Vec::new();
         for (i, buffer) in document.buffers.iter().enumerate() {
             let bytes = match &buffer.uri {
@@ -56,11 +56,9 @@ impl<'a> Container<'a> {
                 Some(uri) if uri.starts_with("data:") => data(uri).map(Cow::Owned),
                 Some(uri) => beside(&percent_decoded(uri)).map(Cow::Owned),
             };
-            let whole = bytes.filter(|bytes| bytes.len() >= buffer.byte_length);
-            buffers
-                .push(whole.ok_or_else(|| wrong(format!("the bytes of buffer {i} are missing")))?);
+            buffers.push(bytes.filter(|bytes| bytes.len() >= buffer.byte_length));
         }
-        Ok(buffers)
+        buffers
     }
 }
 

@@ -94,6 +94,7 @@ pub(super) struct Primitive {
     pub(super) attributes: BTreeMap<String, usize>,
     pub(super) indices: Option<usize>,
     pub(super) material: Option<usize>,
+    pub(super) extensions: Option<Box<BTreeMap<String, IgnoredAny>>>,
     /// The morph targets, each with the accessors of the changes of attributes.
     #[serde(default)]
     pub(super) targets: Vec<BTreeMap<String, usize>>,

@@ -6,6 +6,7 @@ use super::{Source, parse, write, wrong};
 use crate::{Beside, MeshIoError};
 use dapple_mesh::EncodedImage;
 use serde_json::{Map, Value, json};
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::ops::Range;
 
@@ -41,7 +42,7 @@ pub fn replace_images(
     if !value.is_object() {
         return Err(wrong("the document is no object"));
     }
-    let buffers = container.buffers(&document, beside)?;
+    let buffers = container.buffers(&document, beside);
     let source = Source { document, buffers };
     let mut draft = Draft {
         uses: BTreeMap::new(),
@@ -127,12 +128,13 @@ impl Draft {
     }
 
     /// Joins all buffers to one. Views, and extensions of views that name a buffer, move with them.
-    fn join_buffers(&mut self, buffers: &[impl AsRef<[u8]>]) {
+    fn join_buffers(&mut self, buffers: &[Option<Cow<'_, [u8]>>]) {
         let mut starts = Vec::new();
         for buffer in buffers {
             self.bin.resize(self.bin.len().next_multiple_of(4), 0);
             starts.push(self.bin.len());
-            self.bin.extend(buffer.as_ref());
+            self.bin
+                .extend(buffer.iter().flat_map(|buffer| buffer.iter()));
         }
         let join = |entries: &mut Map<String, Value>| {
             let Some(&start) = starts

@@ -5,7 +5,7 @@ use super::document::{Instancing, Primitive};
 use super::material::Placement;
 use super::skin::{Influences, Pose};
 use super::transform::{local, trs};
-use super::{Source, wrong};
+use super::{Source, unsupported, wrong};
 use crate::MeshIoError;
 use crate::polygon::{fan, strip};
 use dapple_color::{LinearRgb, LinearRgba};
@@ -177,6 +177,14 @@ impl Draft<'_> {
             let Some(positions) = vertices.attributes[0] else {
                 continue;
             };
+            // Without plain data beside them, compressed ones would read as zeros.
+            if self.source.is_without_bytes(positions)? {
+                let extensions = primitive.extensions.as_deref().into_iter().flatten();
+                let compression = |name: &&String| name.as_str() == "KHR_draco_mesh_compression";
+                if let Some(name) = extensions.map(|(name, _)| name).find(compression) {
+                    return Err(unsupported(format!("the glTF extension {name}")));
+                }
+            }
             let n_vertices = self.source.count(positions)?;
             let key = vertices.key(primitive);
             let first = match known.get(&key) {

@@ -13,6 +13,7 @@ mod images;
 mod left_out;
 mod materials;
 mod origin;
+mod valid;
 
 /// Encodes floats as base64, with the digits of RFC 4648.
 fn base64(bytes: &[u8]) -> String {
