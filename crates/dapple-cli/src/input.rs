@@ -467,6 +467,31 @@ pub(crate) fn model(path: &Path) -> Result<Model> {
     })
 }
 
+/// What a mesh is not used for, as a line for people: what its reader left out, and unit squares that share a texture.
+pub(crate) fn not_used(path: &Path, model: &Model) -> Option<String> {
+    let mut parts = model.left_out.clone();
+    parts.extend(unit_squares(model));
+    let parts = parts.join("; ");
+    (!parts.is_empty()).then(|| format!("{}: not used: {parts}", name(path)))
+}
+
+/// The unit squares of texture coordinates, if there are several.
+pub(crate) fn unit_squares(model: &Model) -> Option<String> {
+    let squares = model.unit_squares();
+    if squares.len() < 2 {
+        return None;
+    }
+    let mut names: Vec<_> = squares.iter().take(NAMES_MAX).map(u32::to_string).collect();
+    if squares.len() > names.len() {
+        names.push("…".to_owned());
+    }
+    Some(format!(
+        "that texture coordinates lie in {} unit squares ({}), since all share one texture",
+        squares.len(),
+        names.join(", ")
+    ))
+}
+
 /// The endings of mesh files, as help texts list them.
 pub(crate) fn mesh_endings() -> String {
     let endings: Vec<_> = readable_endings()

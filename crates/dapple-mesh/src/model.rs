@@ -7,7 +7,10 @@ use crate::mesh::POSITION_MAX;
 use crate::{Mesh, MeshError, MeshErrorKind};
 use dapple_color::{LinearRgb, LinearRgba};
 use glam::{DVec2, DVec3};
+use std::collections::BTreeSet;
 
+/// How far a corner may lie out of the unit square of its face by rounding.
+const UV_SLACK: f64 = 1e-4;
 /// The first bytes of every PNG file.
 const PNG: &[u8] = b"\x89PNG\r\n\x1a\n";
 /// The first bytes of every JPEG file.
@@ -116,6 +119,31 @@ impl Model {
                 .map(|face| face.map(|vertex| normals[vertex.index()]))
                 .collect(),
         )
+    }
+
+    /// The numbers of the unit squares of texture coordinates with faces, in order: 1001 + u + 10 v for the whole parts of
+    /// u and v, v up, as UDIM numbers tiles. Empty if a face lies in several, as it does where a texture repeats, or
+    /// beyond the ten columns of UDIM.
+    #[must_use]
+    pub fn unit_squares(&self) -> Vec<u32> {
+        let mut squares = BTreeSet::new();
+        for corners in self.uvs.iter().flatten() {
+            // In the mean of the corners no rounding leads to a neighbor.
+            let mean = corners.iter().sum::<DVec2>() / 3.0;
+            let square = DVec2::new(mean.x.floor(), (1.0 - mean.y).floor());
+            let least = DVec2::new(square.x, -square.y);
+            let is_inside = |uv: &DVec2| {
+                let within =
+                    (uv - least).clamp(DVec2::splat(-UV_SLACK), DVec2::splat(1.0 + UV_SLACK));
+                within == uv - least
+            };
+            let is_tile = (0.0..10.0).contains(&square.x) && (0.0..900.0).contains(&square.y);
+            if !is_tile || !corners.iter().all(is_inside) {
+                return Vec::new();
+            }
+            squares.insert(1001 + square.x as u32 + 10 * square.y as u32);
+        }
+        squares.into_iter().collect()
     }
 
     /// Whether the columns have the lengths of the mesh and only numbers that a file can hold.
@@ -307,6 +335,41 @@ mod tests {
                 );
             }
         }
+    }
+
+    #[test]
+    fn unit_squares_have_the_numbers_of_udim() {
+        let squares = |corners: [[f64; 2]; 4]| {
+            let [a, b, c, d] = corners.map(DVec2::from_array);
+            let model = Model {
+                uvs: Some(vec![[a, b, c], [a, c, d]]),
+                ..Model::default()
+            };
+            model.unit_squares()
+        };
+        let at = |u: f64, v: f64| [[u, v], [u + 1.0, v], [u + 1.0, v + 1.0], [u, v + 1.0]];
+        // Here v goes down: the square above the first is at -1.
+        assert_eq!(squares(at(0.0, 0.0)), [1001]);
+        assert_eq!(squares(at(1.0, 0.0)), [1002]);
+        assert_eq!(squares(at(0.0, -1.0)), [1011]);
+        assert_eq!(squares(at(9.0, -2.0)), [1030]);
+        assert_eq!(squares(at(1.0 + 1e-6, 0.0)), [1002], "rounded");
+        for far in [
+            at(10.0, 0.0),
+            at(-1.0, 0.0),
+            at(0.0, 1.0),
+            at(0.0, -1e6),
+            at(0.5, 0.0),
+        ] {
+            assert!(squares(far).is_empty(), "{far:?}");
+        }
+        let wide = [[0.0, 0.0], [3.0, 0.0], [3.0, 3.0], [0.0, 3.0]];
+        assert!(squares(wide).is_empty(), "a texture that repeats");
+        assert!(Model::default().unit_squares().is_empty());
+        let mut two = Model::default();
+        let face = |u: f64| [[u, 0.0], [u + 1.0, 0.0], [u, 1.0]].map(DVec2::from_array);
+        two.uvs = Some(vec![face(1.0), face(0.0), face(1.0)]);
+        assert_eq!(two.unit_squares(), [1001, 1002]);
     }
 
     #[test]

@@ -108,6 +108,65 @@ fn a_repair_of_a_mesh_changes_only_texels_that_are_white_in_its_mask() {
     assert_eq!(clean.uvs, read_model(folder.path("shell.glb")).unwrap().uvs);
 }
 
+/// The JSON of a GLB file, which is its first chunk.
+fn document(path: std::path::PathBuf) -> serde_json::Value {
+    let bytes = std::fs::read(path).unwrap();
+    let length = u32::from_le_bytes(bytes[12..16].try_into().unwrap()) as usize;
+    serde_json::from_slice(&bytes[20..20 + length]).unwrap()
+}
+
+#[test]
+fn a_repair_of_a_mesh_keeps_all_of_its_document_but_images() {
+    let folder = Folder::with_inputs("document");
+    // What a model has no place for.
+    let mut before = document(folder.path("shell.glb"));
+    let bytes = std::fs::read(folder.path("shell.glb")).unwrap();
+    let material = &mut before["materials"][0];
+    material["pbrMetallicRoughness"]["metallicFactor"] = 1.into();
+    material["pbrMetallicRoughness"]["roughnessFactor"] = 0.25.into();
+    material["emissiveFactor"] = serde_json::json!([1, 0.5, 0]);
+    material["alphaMode"] = "MASK".into();
+    material["alphaCutoff"] = 0.2.into();
+    before["nodes"][0]["translation"] = serde_json::json!([500000.1, 4649776.3, 120]);
+    before["nodes"][0]["name"] = "shell".into();
+    let mut json = before.to_string().into_bytes();
+    json.resize(json.len().next_multiple_of(4), b' ');
+    let rest = &bytes[20 + u32::from_le_bytes(bytes[12..16].try_into().unwrap()) as usize..];
+    let length = (20 + json.len() + rest.len()) as u32;
+    let head = [
+        &b"glTF\x02\0\0\0"[..],
+        &length.to_le_bytes(),
+        &(json.len() as u32).to_le_bytes(),
+        b"JSON",
+    ];
+    std::fs::write(
+        folder.path("odd.glb"),
+        [&head.concat(), &json, rest].concat(),
+    )
+    .unwrap();
+    let line = "synth odd.glb --repair stain.png --example-sites 6000 -o clean.glb";
+    assert_done(&run(&folder, line), line);
+    let mut after = document(folder.path("clean.glb"));
+    for file in [&mut before, &mut after] {
+        for name in ["images", "bufferViews", "buffers"] {
+            file.as_object_mut().unwrap().remove(name);
+        }
+    }
+    assert_eq!(after, before);
+    let positions = |name: &str| {
+        read_model(folder.path(name))
+            .unwrap()
+            .mesh
+            .positions()
+            .to_vec()
+    };
+    assert_eq!(
+        positions("clean.glb"),
+        positions("odd.glb"),
+        "far from zero, too"
+    );
+}
+
 #[test]
 fn meshes_without_texture_and_options_without_effect_are_refused() {
     let folder = Folder::with_inputs("no-example");

@@ -328,6 +328,57 @@ fn a_repair_is_promised_only_where_synth_makes_one() {
 }
 
 #[test]
+fn synth_and_info_say_what_is_not_used_of_a_mesh() {
+    let folder = Folder::with_inputs("not-used");
+    let quads = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 2 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n\
+        vt 2 0\nvt 2 1\nusemtl a\nf 1/1 2/2 3/3 4/4\nf 2/2 5/5 6/6 3/3\n";
+    fs::write(folder.path("u.obj"), format!("mtllib lost.mtl\n{quads}")).unwrap();
+    fs::write(folder.path("a.mtl"), "newmtl a\nmap_Kd lost.png\n").unwrap();
+    fs::write(folder.path("b.obj"), format!("mtllib a.mtl\n{quads}")).unwrap();
+    fs::write(folder.path("c.mtl"), "newmtl a\nmap_Kd photo.png\n").unwrap();
+    let colored = quads.replace("v 1 1 0\n", "v 1 1 0 1 0 0\n");
+    fs::write(folder.path("c.obj"), format!("mtllib c.mtl\n{colored}")).unwrap();
+    let squares = "2 unit squares (1001, 1002)";
+    let library = "the material library lost.mtl, which cannot be read";
+    for (line, parts) in [
+        ("info u.obj", [library, squares]),
+        (
+            "synth photo.png --mesh u.obj --atlas uv --sites 500 --texture-size 32 -o u.glb",
+            [library, squares],
+        ),
+        (
+            "synth c.obj --mesh u.obj --sites 500 --texture-size 128 -o c.glb",
+            [
+                "c.obj: not used: the colors of vertices beside the texture",
+                squares,
+            ],
+        ),
+        (
+            "synth b.obj --mesh u.obj --sites 500 --texture-size 128 -o b.glb",
+            [
+                "b.obj has neither a texture nor colors",
+                "the texture lost.png, which cannot be read",
+            ],
+        ),
+    ] {
+        let words: Vec<_> = line.split(' ').collect();
+        let run = folder.run(&words);
+        let text = stdout(&run) + &stderr(&run);
+        assert_eq!(
+            run.status.success(),
+            !line.contains("synth b.obj"),
+            "{text}"
+        );
+        for part in parts {
+            assert!(text.contains(part), "{line}: {text}");
+        }
+    }
+    let line = "synth photo.png --mesh u.obj --sites 500 --texture-size 32 --quiet -o q.glb";
+    let words: Vec<_> = line.split(' ').collect();
+    assert_eq!(stderr(&folder.run(&words)), "");
+}
+
+#[test]
 fn info_says_what_was_left_out_of_a_mesh() {
     let folder = Folder::new("left-out");
     fs::write(

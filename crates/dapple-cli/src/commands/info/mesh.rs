@@ -35,6 +35,10 @@ pub(super) fn findings(path: &Path) -> Result<Findings> {
     for what in &model.left_out {
         text += &format!("\n  without {what}");
     }
+    let squares = model.unit_squares();
+    if let Some(what) = input::unit_squares(&model) {
+        text += &format!("\n  without {what}");
+    }
     let area = surface.as_ref().ok().map(Surface::area);
     text += &match &surface {
         Ok(surface) => format!("\n  an area of {:.6}; ready for a texture", surface.area()),
@@ -49,7 +53,7 @@ pub(super) fn findings(path: &Path) -> Result<Findings> {
     let json = json!({
         "file": path.display().to_string(), "kind": "mesh", "counts": Value::Object(counts.collect()),
         "bounds": bounds(&model).map(|ends| ends.map(|end| end.to_array())), "columns": columns,
-        "left_out": model.left_out, "area": area, "is_surface": surface.is_ok(),
+        "left_out": model.left_out, "unit_squares": squares, "area": area, "is_surface": surface.is_ok(),
     });
     Ok(Findings {
         text: text + "\n",

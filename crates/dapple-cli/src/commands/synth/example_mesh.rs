@@ -79,7 +79,7 @@ impl Args {
             return Ok(None);
         }
         let path = &self.exemplar;
-        let model = input::model(path)?;
+        let mut model = input::model(path)?;
         let (mesh, repair) = model.mesh.repair();
         let surface = Surface::new(mesh).with_context(|| input::name(path))?;
         let mut left_out = model.left_out.iter();
@@ -108,9 +108,19 @@ impl Args {
                     "{} has neither a texture nor colors of vertices",
                     input::name(path)
                 );
-                return Err(error.hint("give a textured mesh, such as a GLB with its textures"));
+                let hint = "give a textured mesh, such as a GLB with its textures".to_owned();
+                return Err(error.hint(input::not_used(path, &model).unwrap_or(hint)));
             }
         };
+        // The file of a repaired mesh keeps them.
+        if model.material.base_color.is_some()
+            && model.colors.is_some()
+            && self.plane.repair.is_none()
+        {
+            model
+                .left_out
+                .push("the colors of vertices beside the texture".to_owned());
+        }
         let maps = if model.material.base_color.is_some() {
             self.maps_of(&model)?
         } else {

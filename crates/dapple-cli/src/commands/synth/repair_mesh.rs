@@ -2,7 +2,7 @@
 
 use super::example_mesh::ExampleMesh;
 use super::reading::Input;
-use super::surface::{Product, exemplar_of_mesh};
+use super::surface::{Product, announce, exemplar_of_mesh};
 use super::{Args, STEPS, advise, shown};
 use crate::args::Alpha;
 use crate::encode::{Cover, Format, default_format, encode, encode_with_alpha};
@@ -45,6 +45,7 @@ pub(super) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let Some(example) = args.read_example_mesh()? else {
         bail!("only meshes are repaired here");
     };
+    announce(context, &args.exemplar, &example.model);
     let Input {
         base,
         maps,

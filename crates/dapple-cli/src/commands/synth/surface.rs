@@ -61,6 +61,13 @@ struct Claimed {
     format: Format,
 }
 
+/// Says what of a mesh is not used, unless the command is quiet.
+pub(super) fn announce(context: &Context, path: &Path, model: &Model) {
+    if let Some(line) = input::not_used(path, model).filter(|_| !context.quiet) {
+        eprintln_if_possible(&line);
+    }
+}
+
 /// Covers the mesh.
 pub(super) fn run(args: &Args, mesh: &Path, context: &Context) -> Result<Exit> {
     let mut job = Job::new(context, "synth", &args.image.files);
@@ -71,6 +78,10 @@ pub(super) fn run(args: &Args, mesh: &Path, context: &Context) -> Result<Exit> {
         None => args.read()?,
     };
     let model = input::model(mesh)?;
+    announce(context, mesh, &model);
+    if let Some(example) = &example {
+        announce(context, &args.exemplar, &example.model);
+    }
     let (repaired, repair) = model.mesh.repair();
     if !context.quiet && repair.before != repair.after {
         eprintln_if_possible(&format!("{}: repaired; see dapple info", mesh.display()));
