@@ -7,6 +7,7 @@ pub mod gltf;
 pub mod obj;
 pub mod off;
 pub mod ply;
+pub mod stl;
 
 use crate::MeshIoError;
 use dapple_mesh::{EncodedImage, Model};
@@ -19,6 +20,7 @@ pub static FORMATS: &[MeshFormat] = &[
     #[cfg(feature = "gltf")]
     gltf::GLTF,
     off::OFF,
+    stl::STL,
 ];
 
 /// A format of mesh files.
@@ -37,6 +39,8 @@ struct Writer {
     /// The ending of written files, one of the endings of the format.
     ending: &'static str,
     material: MaterialPlace,
+    /// Whether colors of vertices are written.
+    has_colors: bool,
     /// Encodes the files, the main one last.
     files: fn(&Model, &str) -> Result<Vec<NamedFile>, MeshIoError>,
     /// Encodes the file that was read, with other images in place of some.
@@ -50,7 +54,7 @@ type ReplaceImages =
 /// The place where a writer puts the material of a model, with its textures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MaterialPlace {
-    /// The material is left out; colors of vertices are written.
+    /// The material is left out; [colors of vertices](MeshFormat::has_colors) may be written.
     Nowhere,
     /// The material is in the file of the mesh.
     Inside,
@@ -106,6 +110,12 @@ impl MeshFormat {
     pub fn material_place(&self) -> MaterialPlace {
         self.writer
             .map_or(MaterialPlace::Nowhere, |writer| writer.material)
+    }
+
+    /// Whether the colors of vertices are in a written model.
+    #[must_use]
+    pub fn has_colors(&self) -> bool {
+        self.writer.is_some_and(|writer| writer.has_colors)
     }
 
     /// Reads a file from its bytes, and files to which it refers through `beside`.

@@ -1,4 +1,4 @@
-//! Files of triangle meshes: OBJ with MTL, PLY, glTF and GLB, OFF.
+//! Files of triangle meshes: OBJ with MTL, PLY, glTF and GLB, OFF, STL.
 //!
 //! [`read_model`] and [`write_model`] take a path, whose ending determines the format. All other functions work on
 //! bytes: each format is a module with its functions, and an entry of [`FORMATS`], from which paths, errors and help
@@ -37,6 +37,7 @@ mod formats;
 mod colors;
 mod line;
 mod polygon;
+mod single;
 mod split;
 mod text;
 mod texture;

@@ -71,6 +71,8 @@ fn files() -> Vec<Vec<u8>> {
     );
     files.push(gltf::write(&model()).expect("it is valid"));
     files.push(obj::write(&creased()).expect("it is valid"));
+    files.push(stl::write(&model()).expect("it is valid"));
+    files.push(b"solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid a\n".to_vec());
     files.push(b"STCNOFF # all\n3 1 0\n0 0 0 0 0 1 1 0 0 1 .5 .5\n1 0 0 0 0 1 0 1 0 0 1 1\n0 1 0 0 0 1 255 0 0 255 0 1\n3 0 1 2\n".to_vec());
     files
 }

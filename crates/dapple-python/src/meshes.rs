@@ -113,7 +113,7 @@ pub(crate) fn corners<'py, const N: usize>(
     arrays::array(py, numbers, &[n_faces, 3, N])
 }
 
-/// Reads a mesh file: OBJ, PLY, glTF, GLB or OFF, by its ending.
+/// Reads a mesh file: OBJ, PLY, glTF, GLB, OFF or STL, by its ending.
 ///
 /// Returns
 /// -------

@@ -41,7 +41,7 @@
 //! | colors, normals, occlusion, curvature of heights | [`color`] | [`Palette`](color::Palette), [`normal_map`](color::normal_map) |
 //! | files: PNG and OpenEXR | [`image`] | [`write_color_png`](image::write_color_png), [`read_image`](image::read_image) |
 //! | meshes | [`mesh`] | [`Mesh`](mesh::Mesh), [`Surface`](mesh::Surface) |
-//! | mesh files: OBJ, PLY, glTF, OFF | [`mesh_io`] | [`read_model`](mesh_io::read_model), [`write_model`](mesh_io::write_model) |
+//! | mesh files: OBJ, PLY, glTF, OFF, STL | [`mesh_io`] | [`read_model`](mesh_io::read_model), [`write_model`](mesh_io::write_model) |
 //! | a lit picture of a texture on a thing | [`preview`] | [`Scene`](preview::Scene) |
 //!
 //! All of them use the types of [`raster`] (pixels, and their positions) and [`hash`] (seeds). Vectors are those of

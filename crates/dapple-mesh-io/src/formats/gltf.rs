@@ -56,6 +56,7 @@ pub(super) const GLTF: MeshFormat = MeshFormat {
     writer: Some(Writer {
         ending: "glb",
         material: MaterialPlace::Inside,
+        has_colors: true,
         files: |model, stem| Ok(alone(stem, "glb", write(model)?)),
         replace_images: Some(replace_images),
     }),

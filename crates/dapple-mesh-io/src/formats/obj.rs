@@ -46,6 +46,7 @@ pub(super) const OBJ: MeshFormat = MeshFormat {
     writer: Some(Writer {
         ending: "obj",
         material: MaterialPlace::Beside,
+        has_colors: true,
         files: write_files,
         replace_images: None,
     }),

@@ -46,6 +46,7 @@ pub(super) const PLY: MeshFormat = MeshFormat {
     writer: Some(Writer {
         ending: "ply",
         material: MaterialPlace::Nowhere,
+        has_colors: true,
         files: |model, stem| Ok(alone(stem, "ply", write(model)?)),
         replace_images: None,
     }),

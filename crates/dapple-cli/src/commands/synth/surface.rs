@@ -203,6 +203,9 @@ pub(super) fn endings() -> String {
         let what = match format.material_place() {
             MaterialPlace::Inside => "the mesh with its texture in one file",
             MaterialPlace::Beside => "the mesh, with its material and texture in files beside it",
+            MaterialPlace::Nowhere if !format.has_colors() => {
+                "the sites as a mesh alone, with --displace"
+            }
             MaterialPlace::Nowhere => "the sites as a mesh, with a color for each and no texture",
         };
         if let Some(ending) = format.written_ending() {
@@ -291,6 +294,13 @@ fn claim(
         return Err(usage("a mesh of sites shows no detail").hint("write .glb or .obj"));
     }
     let is_displaced = args.surface.displace.is_some();
+    if let Product::Sites(format) = product
+        && !format.has_colors()
+        && !is_displaced
+    {
+        let error = usage(format!("{} holds no colors", format.name()));
+        return Err(error.hint("add --displace LENGTH, or write .ply"));
+    }
     if matches!(product, Product::Texture) && is_displaced {
         return Err(usage("--displace has no effect on an image").hint("write .glb, .obj or .ply"));
     }

@@ -1,6 +1,7 @@
 //! Encoder of GLB.
 
 use super::container::{BIN, JSON, MAGIC};
+use crate::single::{narrow, origin};
 use crate::split::with_vertex_normals;
 use crate::{MeshIoError, MeshIoErrorKind};
 use dapple_color::LinearRgba;
@@ -20,17 +21,6 @@ const LINEAR: u32 = 9729;
 const LINEAR_MIPMAP_LINEAR: u32 = 9987;
 /// The texture repeats past its edges.
 const REPEAT: u32 = 10497;
-
-/// The largest number that is written, so that rounding never exceeds the limit of [`Model::check`].
-const PART_MAX: f32 = 1e30f32.next_down();
-
-/// The part of the extent of a mesh by which rounding of its positions to single precision may move a vertex; beyond it,
-/// positions are written relative to an origin.
-const MOVE_MAX: f64 = 1.0 / (1 << 20) as f64;
-/// The ratio of the largest coordinate to the extent up to which an origin would gain less than four bits.
-const FAR: f64 = 16.0;
-/// The largest coordinate of a mesh with an origin, so that the sum of both stays below the limit of positions.
-const COORDINATE_MAX: f64 = 1e29;
 
 /// The binary chunk with its views and accessors.
 #[derive(Default)]
@@ -100,35 +90,6 @@ pub fn write(model: &Model) -> Result<Vec<u8>, MeshIoError> {
     // The order without the feature `preserve_order` of serde_json, which any other crate of a program may turn on.
     document.sort_all_objects();
     container(document.to_string().into_bytes(), bin.bytes)
-}
-
-/// The origin of a mesh whose positions are too far from zero for single precision: its center, rounded to a multiple
-/// of a power of two below its extent, from which differences lose few bits or none.
-fn origin(positions: &[DVec3]) -> Option<DVec3> {
-    let first = *positions.first()?;
-    let grow = |[least, most]: [DVec3; 2], at: &DVec3| [least.min(*at), most.max(*at)];
-    let [least, most] = positions.iter().fold([first; 2], grow);
-    let extent = (most - least).max_element();
-    let largest = least.abs().max(most.abs()).max_element();
-    if largest < FAR * extent || largest > COORDINATE_MAX {
-        return None;
-    }
-    let moved = |at: &DVec3| (at - at.map(|part| f64::from(narrow(part)))).abs();
-    let moved = positions.iter().map(|at| moved(at).max_element());
-    if moved.fold(0.0, f64::max) <= MOVE_MAX * extent {
-        return None;
-    }
-    // The power of two has the exponent of the extent, and no fraction.
-    let step = f64::from_bits(extent.to_bits() & f64::INFINITY.to_bits());
-    Some((least.midpoint(most)).map(|part| {
-        let steps = part / step;
-        // Larger numbers are whole already.
-        if steps.abs() < (1u64 << 52) as f64 {
-            (steps + 0.5).floor() * step
-        } else {
-            part
-        }
-    }))
 }
 
 /// Adds the columns of a model without corner normals, with positions from an origin, and returns the primitive that
@@ -239,10 +200,6 @@ fn unit(normal: DVec3) -> DVec3 {
     } else {
         normal.normalize_or(DVec3::Z)
     }
-}
-
-fn narrow(part: f64) -> f32 {
-    (part as f32).clamp(-PART_MAX, PART_MAX)
 }
 
 fn clamped(color: LinearRgba) -> [f32; 4] {

@@ -78,13 +78,13 @@ pub(super) fn material(
         None => entries.first(),
     };
     let mut found = entry.map(|entry| entry.found(beside)).unwrap_or_default();
-    if let (None, Some(name), []) = (entry, name, missing.as_slice()) {
-        if !libraries.is_empty() {
-            missing.push(format!(
-                "the material {}, which no library has",
-                shown(name)
-            ));
-        }
+    if let (None, Some(name), []) = (entry, name, missing.as_slice())
+        && !libraries.is_empty()
+    {
+        missing.push(format!(
+            "the material {}, which no library has",
+            shown(name)
+        ));
     }
     found.left_out.splice(0..0, missing);
     Ok(found)
