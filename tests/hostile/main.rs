@@ -60,6 +60,11 @@ fn broken_off_files_are_read_or_refused() {
 }
 
 #[test]
+fn broken_stl_files_are_read_or_refused() {
+    try_out("stl", 1000);
+}
+
+#[test]
 fn broken_recipes_are_baked_or_refused() {
     try_out("recipe", 20);
 }

@@ -1,4 +1,4 @@
-//! Targets for OBJ, PLY, glTF and OFF.
+//! Targets for OBJ, PLY, glTF, OFF and STL.
 
 use super::accepted;
 use dapple::color::{LinearRgb, LinearRgba};
@@ -44,6 +44,13 @@ pub fn gltf(bytes: &[u8]) {
 /// Reads OFF: a model is refused or can be repaired and laid out. OFF cannot be written.
 pub fn off(bytes: &[u8]) {
     check(io::off::read(bytes), |model| Ok(model.clone()));
+}
+
+/// Reads STL: a model is refused or can be repaired, laid out and written, and stays the same when read again.
+pub fn stl(bytes: &[u8]) {
+    check(io::stl::read(bytes), |model| {
+        io::stl::read(&io::stl::write(model)?)
+    });
 }
 
 fn check(read: Result<Model, MeshIoError>, again: impl Fn(&Model) -> Result<Model, MeshIoError>) {
@@ -134,6 +141,14 @@ pub(super) fn gltf_seeds() -> Vec<Vec<u8>> {
         io::gltf::write(&model()).expect("it is valid"),
         io::gltf::write(&Model::from(model().mesh)).expect("it is valid"),
         text.into(),
+    ]
+}
+
+pub(super) fn stl_seeds() -> Vec<Vec<u8>> {
+    let by_hand = "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 .5\nendloop\nendfacet\nendsolid a\n";
+    vec![
+        io::stl::write(&model()).expect("it is valid"),
+        by_hand.into(),
     ]
 }
 

@@ -12,7 +12,7 @@ mod recipes;
 
 pub use images::image;
 pub use lifting::lift;
-pub use meshes::{gltf, obj, off, ply};
+pub use meshes::{gltf, obj, off, ply, stl};
 pub use plane::points;
 pub use recipes::{directions, recipe};
 
@@ -22,12 +22,13 @@ use std::error::Error;
 pub type Target = (&'static str, fn(&[u8]), fn() -> Vec<Vec<u8>>);
 
 /// All kinds of inputs.
-pub const TARGETS: [Target; 9] = [
+pub const TARGETS: [Target; 10] = [
     ("image", image, images::seeds),
     ("obj", obj, meshes::obj_seeds),
     ("ply", ply, meshes::ply_seeds),
     ("gltf", gltf, meshes::gltf_seeds),
     ("off", off, meshes::off_seeds),
+    ("stl", stl, meshes::stl_seeds),
     ("recipe", recipe, recipes::seeds),
     ("points", points, plane::seeds),
     ("lift", lift, lifting::seeds),
