@@ -51,6 +51,17 @@ impl Map {
         }
     }
 
+    /// The factors of the planes, in the order of [`planes`](Self::planes), when the map is reflected along x and along y.
+    ///
+    /// A slope along the axis of a reflection changes its sign: heights fall where they rose.
+    pub(crate) fn reflections(&self) -> &'static [[f32; 2]] {
+        match self {
+            Self::Value(_) => &[[1.0; 2]],
+            Self::Color(_) => &[[1.0; 2]; 3],
+            Self::Normal(_) => &[[-1.0, 1.0], [1.0, -1.0]],
+        }
+    }
+
     /// The planes of the maps of several materials.
     ///
     /// Fails for materials without maps, with another number of maps than the first, with maps of other kinds or sizes,

@@ -111,7 +111,7 @@ impl Seamless {
     ///
     /// See [`apply_maps`](Self::apply_maps).
     pub fn apply(&self, image: &Raster<f32>) -> Result<Raster<f32>, TileError> {
-        let mut planes = self.planes(core::slice::from_ref(image))?;
+        let mut planes = self.planes(core::slice::from_ref(image), &[[1.0; 2]])?;
         Ok(planes.swap_remove(0))
     }
 
@@ -121,10 +121,12 @@ impl Seamless {
     ///
     /// See [`apply_maps`](Self::apply_maps).
     pub fn apply_color(&self, image: &Raster<LinearRgb>) -> Result<Raster<LinearRgb>, TileError> {
-        color_from_planes(self.planes(&color_planes(image))?)
+        color_from_planes(self.planes(&color_planes(image), &[[1.0; 2]; 3])?)
     }
 
     /// The tiles of all maps of a material, which are cut along the same lines.
+    ///
+    /// Normals are processed as slopes. Where an image is reflected, its normals are those of the reflected heights.
     ///
     /// # Errors
     ///
@@ -135,10 +137,16 @@ impl Seamless {
     /// sizes and options that the method does not allow.
     pub fn apply_maps(&self, maps: &[Map]) -> Result<Vec<Map>, TileError> {
         let planes: Vec<_> = maps.iter().flat_map(Map::planes).collect();
-        Map::all_with_planes(maps, self.planes(&planes)?)
+        let reflections: Vec<_> = maps.iter().flat_map(Map::reflections).copied().collect();
+        Map::all_with_planes(maps, self.planes(&planes, &reflections)?)
     }
 
-    fn planes(&self, planes: &[Raster<f32>]) -> Result<Vec<Raster<f32>>, TileError> {
+    /// The tiles of planes. `reflections` has the factors of each plane when it is reflected along x and along y.
+    fn planes(
+        &self,
+        planes: &[Raster<f32>],
+        reflections: &[[f32; 2]],
+    ) -> Result<Vec<Raster<f32>>, TileError> {
         let size = check_planes(planes)?;
         for (length, repeats) in size.into_iter().zip(self.axes) {
             if repeats && length < 2 {
@@ -155,7 +163,7 @@ impl Seamless {
                 spline_project::tile(&planes, project, self.axes)
             }
             Method::Feather(feather) => feather::tile(planes, feather, self.axes),
-            Method::Mirror => mirror::tile(planes, self.axes),
+            Method::Mirror => mirror::tile(planes, reflections, self.axes),
         }
     }
 }

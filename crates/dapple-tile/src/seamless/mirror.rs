@@ -7,18 +7,34 @@ use crate::TileError;
 use dapple_raster::{Raster, Wrap};
 
 /// The tiles of all planes, twice as large along each axis that repeats.
-pub(crate) fn tile(planes: &[Raster<f32>], axes: [bool; 2]) -> Result<Vec<Raster<f32>>, TileError> {
-    planes.iter().map(|plane| mirrored(plane, axes)).collect()
+///
+/// A reflected half along x is multiplied by the plane's first factor, along y by its second one.
+pub(crate) fn tile(
+    planes: &[Raster<f32>],
+    reflections: &[[f32; 2]],
+    axes: [bool; 2],
+) -> Result<Vec<Raster<f32>>, TileError> {
+    let planes = planes.iter().zip(reflections);
+    planes
+        .map(|(plane, &factors)| mirrored(plane, factors, axes))
+        .collect()
 }
 
-fn mirrored(plane: &Raster<f32>, axes: [bool; 2]) -> Result<Raster<f32>, TileError> {
+fn mirrored(
+    plane: &Raster<f32>,
+    [across, down]: [f32; 2],
+    axes: [bool; 2],
+) -> Result<Raster<f32>, TileError> {
     let side = |axis: usize| match axes[axis] {
         true => plane.size()[axis].saturating_mul(2),
         false => plane.size()[axis],
     };
     Ok(Raster::from_rows([side(0), side(1)], |row| {
+        let down = if row < plane.height() { 1.0 } else { down };
         let row = plane.row(Wrap::Mirror.index(row.into(), plane.height()));
-        row.iter().chain(row.iter().rev()).copied()
+        let left = row.iter().map(move |value| value * down);
+        let right = row.iter().rev().map(move |value| value * down * across);
+        left.chain(right)
     })?)
 }
 
@@ -32,7 +48,8 @@ mod tests {
         for size in [[1, 1], [2, 2], [1, 5], [5, 1], [3, 4]] {
             let image = Raster::from_fn(size, |x, y| (x + 10 * y) as f32).unwrap();
             for axes in [[false; 2], [true, false], [false, true], [true; 2]] {
-                let tiles = tile(&[image.clone(), image.map(|value| -value)], axes).unwrap();
+                let planes = [image.clone(), image.map(|value| -value)];
+                let tiles = tile(&planes, &[[1.0; 2]; 2], axes).unwrap();
                 let [width, height] = [0, 1].map(|axis| size[axis] * (1 + u32::from(axes[axis])));
                 let wrap = [Wrap::Mirror; 2];
                 let expected =

@@ -1,9 +1,10 @@
 //! Properties of every method.
 
 use super::*;
+use crate::test_fields::fbm;
 use crate::{Crossfade, TileErrorKind};
-use dapple_color::Normal;
-use dapple_raster::RasterErrorKind;
+use dapple_color::{HeightPlane, Normal, normal_map};
+use dapple_raster::{RasterErrorKind, Wrap};
 use proptest::prelude::*;
 
 fn ramp(size: [u32; 2]) -> Raster<f32> {
@@ -210,5 +211,93 @@ proptest! {
             prop_assert_eq!(tile.size(), [width, height]);
             prop_assert!(tile.pixels().iter().all(|value| value.is_finite()), "all is finite");
         }
+    }
+}
+
+/// Normals of heights over pixels of a unit of the plane.
+fn normals_of(height: &Raster<f32>, wrap: Wrap) -> Raster<Normal> {
+    let [width, height_px] = height.size().map(f64::from);
+    let plane = HeightPlane {
+        strength: 12.0,
+        extent: [width, height_px].into(),
+        wrap: [wrap; 2],
+    };
+    normal_map(height, &plane.into()).expect("the plane is right")
+}
+
+/// The tile of heights, and the tile of their normals, of one cut.
+fn height_and_normals(seamless: &Seamless, height: &Raster<f32>) -> (Raster<f32>, Raster<Normal>) {
+    let normals = normals_of(height, Wrap::Clamp);
+    let maps = [Map::Value(height.clone()), Map::Normal(normals)];
+    let tiles = seamless.apply_maps(&maps).expect("the size allows it");
+    match <[Map; 2]>::try_from(tiles) {
+        Ok([Map::Value(height), Map::Normal(normals)]) => (height, normals),
+        _ => panic!("maps keep their kinds"),
+    }
+}
+
+#[test]
+fn mirrored_normals_are_those_of_the_mirrored_heights() {
+    let height = fbm(3, [40, 24], false);
+    for axes in [[true; 2], [true, false], [false, true]] {
+        let seamless = Seamless::new(Method::Mirror).with_axes(axes);
+        let (tile, normals) = height_and_normals(&seamless, &height);
+        let expected = normals_of(&tile, Wrap::Repeat);
+        for row in 1..tile.height() - 1 {
+            for column in 1..tile.width() as usize - 1 {
+                // Heights have a crease where they meet their mirror image.
+                let at = [column as u32, row];
+                let meets = |axis: usize| axes[axis] && at[axis].abs_diff(height.size()[axis]) <= 1;
+                if meets(0) || meets(1) {
+                    continue;
+                }
+                let [a, b] = [&normals, &expected].map(|map| map.row(row)[column].to_array());
+                // A slope is rounded to single precision on the way.
+                let is_near = a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-5);
+                assert!(
+                    is_near,
+                    "{axes:?}, column {column}, row {row}: {a:?}, not {b:?}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn steep_normals_of_every_method_lean_as_the_tiled_heights_do() {
+    let height = fbm(5, [96, 80], false);
+    let cut = SoftCut {
+        margin: 16,
+        half_width: 4.0,
+        ..SoftCut::default()
+    };
+    let margin = Feather::Margin {
+        margin: 16,
+        crossfade: Crossfade::Linear,
+    };
+    let methods = every_method().into_iter().map(|method| match method {
+        Method::SoftCut(_) => Method::SoftCut(cut),
+        Method::Feather(Feather::Margin { .. }) => Method::Feather(margin),
+        method => method,
+    });
+    for method in methods {
+        let (tile, normals) = height_and_normals(&Seamless::new(method), &height);
+        let expected = normals_of(&tile, Wrap::Repeat);
+        let (mut n_steep, mut n_wrong) = (0_u32, 0_u32);
+        for (is, right) in normals.pixels().iter().zip(expected.pixels()) {
+            for (is, right) in [(is.x, right.x), (is.y, right.y)] {
+                if right.abs() > 0.3 {
+                    n_steep += 1;
+                    n_wrong += u32::from(is * right < 0.0);
+                }
+            }
+        }
+        assert!(n_steep > 2000, "{method:?}: {n_steep} are steep");
+        // Where images are mixed, normals are mixed too and do not know the slope of the changing weight.
+        let share = f64::from(n_wrong) / f64::from(n_steep);
+        assert!(
+            share < 0.05,
+            "{method:?}: {share} of them lean the wrong way"
+        );
     }
 }
