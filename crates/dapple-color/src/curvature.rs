@@ -79,7 +79,8 @@ impl CurvatureOptions {
 ///
 /// [`NotFinite`](crate::ColorErrorKind::NotFinite) if the strength or the radius is NaN or infinite,
 /// [`Extent`](crate::ColorErrorKind::Extent) if the extent is not above zero and finite,
-/// [`Radius`](crate::ColorErrorKind::Radius) if the radius is negative or more than 16384 pixels.
+/// [`Radius`](crate::ColorErrorKind::Radius) if the radius is negative or more than 16384 pixels,
+/// [`Raster`](crate::ColorErrorKind::Raster) if a raster that does not repeat is too large with the radius at its sides.
 ///
 /// # Examples
 ///
@@ -99,11 +100,19 @@ pub fn curvature(
     height: &Raster<f32>,
     options: &CurvatureOptions,
 ) -> Result<Raster<f32>, ColorError> {
-    curvature_of_part(height, height.size(), options)
+    options.spans(height.size())?;
+    let margin = options.plane.open_margin(options.halo(height.size()));
+    if margin == [0; 2] {
+        return curvature_of_part(height, height.size(), options);
+    }
+    let extended = plane::with_margin(height, margin)?;
+    let bent = curvature_of_part(&extended, height.size(), options)?;
+    Ok(bent.crop(margin, height.size())?)
 }
 
 /// The curvature of a part of a raster of `whole` pixels, whose extent is that of the options; see [`curvature`].
 ///
+/// The wrap of the options chooses the neighbors past the edges of the part; heights do not continue there.
 /// Every pixel that is further from the edges of the part than the [halo](CurvatureOptions::halo) of the whole has the
 /// bits that it has in the whole.
 ///

@@ -45,5 +45,5 @@ pub use normal::{
 };
 pub use occlusion::{OcclusionOptions, ambient_occlusion, ambient_occlusion_of_part};
 pub use palette::Palette;
-pub use plane::HeightPlane;
+pub use plane::{HeightPlane, continue_heights};
 pub use ramp::{ColorRamp, ColorStop, Interpolation, Outside, RampSpace};

@@ -2,15 +2,16 @@
 //!
 //! A height `h` over the plane has the normal `normalize(-s ∂h/∂x, ±s ∂h/∂y, 1)`, with `s` the strength. Rows go down in
 //! dapple, so with Y up (OpenGL) the sign of the second part is plus, with Y down (DirectX) minus. Derivatives of a raster
-//! are central differences over two pixels, `(h[i+1] - h[i-1]) / (2 pixel)`, with the neighbors past an edge given by the
-//! same wrap, per axis, as the height itself has: the normal map of a tile is a tile.
+//! are central differences over two pixels, `(h[i+1] - h[i-1]) / (2 pixel)`. Heights that repeat along an axis have their
+//! neighbors at the opposite edge, so the normal map of a tile is a tile. Others [continue](crate::continue_heights) with
+//! their slope.
 //!
 //! Reference: James F. Blinn, "Simulation of Wrinkled Surfaces", SIGGRAPH 1978, for the perturbed normal.
 //!
 //! Slopes are heights per unit of the *plane*, in which the raster has a stated extent, and not per pixel: twice the
 //! resolution gives the same normals, on finer pixels. Where a part of the slope is not finite the normal is flat.
 
-use crate::{Code, ColorError, HeightPlane};
+use crate::{Code, ColorError, HeightPlane, plane};
 use dapple_raster::Raster;
 use dapple_raster::glam::DVec2;
 
@@ -89,7 +90,8 @@ impl NormalOptions {
 /// # Errors
 ///
 /// [`NotFinite`](crate::ColorErrorKind::NotFinite) if the strength is NaN or infinite,
-/// [`Extent`](crate::ColorErrorKind::Extent) if the extent is not above zero and finite.
+/// [`Extent`](crate::ColorErrorKind::Extent) if the extent is not above zero and finite,
+/// [`Raster`](crate::ColorErrorKind::Raster) if a raster that does not repeat is too large with a pixel more at its sides.
 ///
 /// # Examples
 ///
@@ -108,11 +110,19 @@ pub fn normal_map(
     height: &Raster<f32>,
     options: &NormalOptions,
 ) -> Result<Raster<Normal>, ColorError> {
-    normal_map_of_part(height, height.size(), options)
+    options.check()?;
+    let margin = options.plane.open_margin([1; 2]);
+    if margin == [0; 2] {
+        return normal_map_of_part(height, height.size(), options);
+    }
+    let extended = plane::with_margin(height, margin)?;
+    let normals = normal_map_of_part(&extended, height.size(), options)?;
+    Ok(normals.crop(margin, height.size())?)
 }
 
 /// The normals of a part of a raster of `whole` pixels, whose extent is that of the options; see [`normal_map`].
 ///
+/// The wrap of the options chooses the neighbors past the edges of the part; heights do not continue there.
 /// Every pixel that is further from the edges of the part than a pixel has the bits that it has in the whole.
 ///
 /// # Errors

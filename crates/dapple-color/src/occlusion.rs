@@ -131,13 +131,20 @@ pub fn ambient_occlusion(
     height: &Raster<f32>,
     options: &OcclusionOptions,
 ) -> Result<Raster<f32>, ColorError> {
-    ambient_occlusion_of_part(height, [0; 2], height.size(), options)
+    options.rays(height.size())?;
+    let margin = options.plane.open_margin(options.halo(height.size()));
+    if margin == [0; 2] {
+        return ambient_occlusion_of_part(height, margin, height.size(), options);
+    }
+    let extended = plane::with_margin(height, margin)?;
+    ambient_occlusion_of_part(&extended, margin, height.size(), options)
 }
 
 /// The occlusion of a part of a raster of `whole` pixels, whose extent is that of the options; see
 /// [`ambient_occlusion`]. The result has the pixels between margins of the given columns and rows at each side; the
 /// margins are only read.
 ///
+/// The wrap of the options chooses the heights past the edges of the part; heights do not continue there.
 /// If the margins are the [halo](OcclusionOptions::halo) of the whole, or wider, every pixel has the bits that it has in
 /// the whole.
 ///

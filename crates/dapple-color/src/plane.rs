@@ -24,7 +24,8 @@ pub struct HeightPlane {
     /// The width and height of the raster in the plane, above zero. By default 1 × 1, as in [`Window::unit`]; a raster
     /// with square pixels that is not square needs its true proportions here.
     pub extent: DVec2,
-    /// The wrapping past the edges of the height, along x and y. By default both repeat.
+    /// The wrapping past the edges of the height, along x and y. By default both repeat. Past a side that does not
+    /// repeat, heights continue as [`continue_heights`] says, whichever of the other values is given.
     pub wrap: [Wrap; 2],
 }
 
@@ -64,9 +65,105 @@ impl HeightPlane {
         Ok(())
     }
 
+    /// The margins of a map that depends on `halo` pixels around each, past sides that do not repeat.
+    pub(crate) fn open_margin(&self, halo: [u32; 2]) -> [u32; 2] {
+        [0, 1].map(|axis| match self.wrap[axis] {
+            Wrap::Repeat => 0,
+            Wrap::Clamp | Wrap::Mirror => halo[axis],
+        })
+    }
+
     /// The width and height of a pixel of a raster of `size` pixels.
     pub(crate) fn pixel(&self, size: [u32; 2]) -> DVec2 {
         self.extent / DVec2::new(size[0].max(1).into(), size[1].max(1).into())
+    }
+}
+
+/// Continues heights past the sides of a picture that does not repeat: `h(-k) = 2 h(0) - h(k)`.
+///
+/// The raster has the picture and margins around it. For an axis along which the picture does not repeat, `sides` has its
+/// first pixel and the one past its last, in pixels of the raster; heights outside of these are replaced. Where a margin is
+/// longer than the picture, heights are reflected again, at the other side.
+///
+/// The point reflection at the outermost pixel keeps slopes: a plane stays a plane, so it has one normal, no occlusion and no
+/// curvature up to its last row. Repeated pixels would halve its slope there, and mirrored ones would make a crease.
+/// Heights whose reflection is not in the raster are left as they are.
+pub fn continue_heights(heights: &mut Raster<f32>, sides: [Option<[i64; 2]>; 2]) {
+    let [width, height] = heights.size();
+    if let Some(sides) = sides[0] {
+        let outside = terms_outside(sides, width);
+        parallel::for_each_chunk(heights.pixels_mut(), width as usize, |_, row| {
+            for (column, term) in &outside {
+                row[*column] = term.sum(|at| row[at]);
+            }
+        });
+    }
+    if let Some(sides) = sides[1] {
+        let width = width as usize;
+        for (row, term) in terms_outside(sides, height) {
+            let pixels = heights.pixels_mut();
+            for column in 0..width {
+                pixels[row * width + column] = term.sum(|at| pixels[at * width + column]);
+            }
+        }
+    }
+}
+
+/// The indices of a line of `length` outside of `sides`, each with its height; without those whose sum needs more.
+fn terms_outside([from, end]: [i64; 2], length: u32) -> Vec<(usize, Term)> {
+    let is_outside = |at: &i64| !(from..end).contains(at);
+    let term = |at: i64| Some((at as usize, Term::new(at, [from, end], length)?));
+    (0..i64::from(length))
+        .filter(is_outside)
+        .filter_map(term)
+        .collect()
+}
+
+/// A height past the end of a line, as a sum of heights inside: that at `at` times `sign`, and those at both sides
+/// times their factors.
+struct Term {
+    at: usize,
+    sign: f64,
+    /// The heights at the sides of the reflection, and their factors.
+    ends: [(usize, f64); 2],
+}
+
+impl Term {
+    /// The term of an index, if all heights of its sum are within the line.
+    fn new(index: i64, [from, end]: [i64; 2], length: u32) -> Option<Self> {
+        let last = end
+            .checked_sub(from)?
+            .checked_sub(1)
+            .filter(|&last| last >= 0)?;
+        let period = last.checked_mul(2)?.max(1);
+        let index = index.checked_sub(from)?;
+        let [turns, rest] = [index.div_euclid(period), index.rem_euclid(period)];
+        let is_reflected = rest > last;
+        let at = if is_reflected { period - rest } else { rest };
+        let turns = 2.0 * turns as f64;
+        let (sign, ends) = match is_reflected {
+            true => (-1.0, [-turns, turns + 2.0]),
+            false => (1.0, [-turns, turns]),
+        };
+        // A height that does not count need not be there.
+        let within = |inside: i64, factor: f64| {
+            let inside = from + inside;
+            let is_within = (0..i64::from(length)).contains(&inside);
+            (is_within || factor == 0.0).then_some((inside.max(0) as usize, factor))
+        };
+        Some(Self {
+            at: within(at, sign)?.0,
+            sign,
+            ends: [within(0, ends[0])?, within(last, ends[1])?],
+        })
+    }
+
+    fn sum(&self, height: impl Fn(usize) -> f32) -> f32 {
+        let ends = self.ends.iter().filter(|(_, factor)| *factor != 0.0);
+        let ends: f64 = ends
+            .map(|&(at, factor)| factor * f64::from(height(at)))
+            .sum();
+        (ends + self.sign * f64::from(height(self.at))) as f32
     }
 }
 
@@ -100,6 +197,32 @@ pub(crate) fn index(wrap: Wrap, index: i64, length: u32) -> usize {
     } else {
         wrap.index(index, length) as usize
     }
+}
+
+/// Heights with margins into which they [continue](continue_heights).
+///
+/// # Errors
+///
+/// [`Raster`](ColorErrorKind::Raster) if the raster with its margins is too large.
+pub(crate) fn with_margin(
+    height: &Raster<f32>,
+    margin: [u32; 2],
+) -> Result<Raster<f32>, ColorError> {
+    let size = height.size();
+    let whole = [0, 1].map(|axis| size[axis].saturating_add(margin[axis].saturating_mul(2)));
+    let mut extended = Raster::filled(whole, 0.0)?;
+    let [left, above] = margin;
+    fill_rows(&mut extended, |row, values| {
+        if let Some(row) = row.checked_sub(above).filter(|&row| row < size[1]) {
+            values[left as usize..][..size[0] as usize].copy_from_slice(height.row(row));
+        }
+    });
+    let sides = [0, 1].map(|axis| {
+        let first = i64::from(margin[axis]);
+        (first > 0).then_some([first, first + i64::from(size[axis])])
+    });
+    continue_heights(&mut extended, sides);
+    Ok(extended)
 }
 
 /// Calls `fill` for every row, on all cores where the feature `rayon` is on.

@@ -230,6 +230,18 @@ fn crops_with_the_halo_have_the_same_bits() {
 }
 
 #[test]
+fn a_plane_is_flat_up_to_sides_that_do_not_repeat() {
+    for (height, plane, _) in checks::open_planes() {
+        // The last radius is longer than the raster.
+        for radius in [1.0, 5.0, 40.0] {
+            let bent = curvature(&height, &CurvatureOptions { plane, radius }).unwrap();
+            let is_flat = bent.pixels().iter().all(|&bent| bent == 0.0);
+            assert!(is_flat, "{:?}, {radius}: {bent:?}", plane.wrap);
+        }
+    }
+}
+
+#[test]
 fn grays_are_half_where_it_is_flat() {
     assert_eq!(curvature_to_gray(0.0, 0.1), 0.5, "flat");
     assert_eq!(

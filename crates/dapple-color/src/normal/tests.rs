@@ -114,6 +114,43 @@ fn the_normals_of_a_tile_are_those_of_the_tiling() {
 }
 
 #[test]
+fn a_plane_keeps_its_normal_up_to_sides_that_do_not_repeat() {
+    for (height, plane, slope) in checks::open_planes() {
+        let options = NormalOptions::from(plane);
+        let normals = normal_map(&height, &options).unwrap();
+        // Heights are exact, so the differences are too.
+        let expected = options.normal(slope);
+        for (index, &normal) in normals.pixels().iter().enumerate() {
+            assert_eq!(normal, expected, "{:?}, pixel {index}", plane.wrap);
+        }
+    }
+}
+
+#[test]
+fn normals_past_a_side_are_those_of_the_oracle() {
+    let height = Raster::from_fn([9, 6], |x, y| ((x * 37 + y * 101) % 17) as f32).unwrap();
+    for wrap in [
+        [Wrap::Clamp; 2],
+        [Wrap::Mirror, Wrap::Repeat],
+        [Wrap::Repeat, Wrap::Mirror],
+    ] {
+        let plane = HeightPlane {
+            extent: DVec2::new(9.0, 6.0),
+            wrap,
+            ..HeightPlane::default()
+        };
+        let options = NormalOptions::from(plane);
+        let normals = normal_map(&height, &options).unwrap();
+        for (y, x) in (0..6_i64).flat_map(|y| (0..9_i64).map(move |x| (y, x))) {
+            let z = |dx, dy| checks::continued(&height, [x + dx, y + dy], wrap);
+            let difference = DVec2::new(z(1, 0) - z(-1, 0), z(0, 1) - z(0, -1));
+            let expected = options.normal(difference / 2.0);
+            assert_eq!(normals.row(y as u32)[x as usize], expected, "{x}, {y}");
+        }
+    }
+}
+
+#[test]
 fn wrapping_is_per_axis() {
     let ramp = Raster::from_fn([8, 8], |x, y| (x + y) as f32).unwrap();
     let normal = |wrap| {
@@ -128,7 +165,7 @@ fn wrapping_is_per_axis() {
         .unwrap()
         .row(0)[0]
     };
-    // Around the edge the ramp falls from 7 to 0; clamped, it rises from 0 to 1 over two pixels.
+    // Around the edge the ramp falls from 7 to 0; continued, it rises by 1 each pixel.
     let repeated = normal([Wrap::Repeat; 2]);
     assert!(repeated.x > 0.0 && repeated.y < 0.0, "{repeated:?}");
     let mixed = normal([Wrap::Repeat, Wrap::Clamp]);

@@ -38,6 +38,24 @@ fn rubble(size: [u32; 2]) -> Raster<f32> {
 }
 
 #[test]
+fn a_plane_sees_the_whole_sky_up_to_sides_that_do_not_repeat() {
+    for (height, plane, _) in checks::open_planes() {
+        // The last radius is longer than the raster.
+        for radius in [1.0, 5.0, 40.0] {
+            let options = OcclusionOptions {
+                radius,
+                plane,
+                ..OcclusionOptions::default()
+            };
+            let seen = ambient_occlusion(&height, &options).unwrap();
+            // Arctangents err by 2e-7.
+            let least = seen.pixels().iter().copied().fold(1.0, f32::min);
+            assert!(least > 1.0 - 1e-6, "{:?}, {radius}: {least}", plane.wrap);
+        }
+    }
+}
+
+#[test]
 fn crops_with_the_halo_have_the_same_bits() {
     let [size, first, part] = [[97, 83], [31, 40], [29, 17]];
     let height = rubble(size);

@@ -1,8 +1,8 @@
 //! Checks that the tests of all maps from heights share.
 
 use crate::{ColorErrorKind, HeightPlane};
-use dapple_raster::Raster;
 use dapple_raster::glam::DVec2;
+use dapple_raster::{Raster, Wrap};
 
 /// Checks that a strength that is not finite and a bad extent are errors.
 pub(crate) fn bad_planes_are_refused(refusal: impl Fn(HeightPlane) -> ColorErrorKind) {
@@ -36,6 +36,52 @@ pub(crate) fn bad_radii_are_refused(refusal: impl Fn(f64) -> ColorErrorKind) {
         let is_radius = matches!(refused, ColorErrorKind::Radius { .. });
         assert!(is_radius, "{refused:?}");
     }
+}
+
+/// A height, also past the edges of the raster: reflected at the outermost pixel along an axis that does not repeat, one
+/// reflection after the other.
+pub(crate) fn continued(height: &Raster<f32>, [x, y]: [i64; 2], wrap: [Wrap; 2]) -> f64 {
+    let size = height.size().map(i64::from);
+    for axis in [1, 0] {
+        let (at, last) = ([x, y][axis], size[axis] - 1);
+        if wrap[axis] != Wrap::Repeat && !(0..=last).contains(&at) {
+            let side = if at < 0 { 0 } else { last };
+            let moved = |to: i64| if axis == 0 { [to, y] } else { [x, to] };
+            return 2.0 * continued(height, moved(side), wrap)
+                - continued(height, moved(2 * side - at), wrap);
+        }
+    }
+    f64::from(*height.at(x, y, wrap))
+}
+
+/// The planes of slopes along the axes that do not repeat, for all four combinations, with the wraps of each.
+pub(crate) fn open_planes() -> Vec<(Raster<f32>, HeightPlane, DVec2)> {
+    let size = [21, 14];
+    let mut planes = Vec::new();
+    for open in [Wrap::Clamp, Wrap::Mirror] {
+        for wrap in [
+            [Wrap::Repeat; 2],
+            [open, Wrap::Repeat],
+            [Wrap::Repeat, open],
+            [open; 2],
+        ] {
+            // Steps of whole eighths are exact in single precision.
+            let step = [0, 1].map(|axis| match wrap[axis] {
+                Wrap::Repeat => 0.0,
+                _ => [0.25, -0.625][axis],
+            });
+            let plane = Raster::from_fn(size, |x, y| {
+                (step[0] * f64::from(x) + step[1] * f64::from(y)) as f32
+            });
+            let options = HeightPlane {
+                extent: DVec2::new(size[0].into(), size[1].into()),
+                wrap,
+                ..HeightPlane::default()
+            };
+            planes.push((plane.unwrap(), options, DVec2::from(step)));
+        }
+    }
+    planes
 }
 
 /// Checks that a map has the same bits on one, two and seven threads.
