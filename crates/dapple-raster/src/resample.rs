@@ -1,4 +1,4 @@
-//! Bilinear interpolation of rasters.
+//! Bilinear interpolation of rasters, and means over areas.
 
 use crate::{Raster, Wrap};
 use core::ops::{Add, Mul, Sub};
@@ -25,6 +25,86 @@ impl<T: Texel> Raster<T> {
         let bottom = lerp(at(0, 1), at(1, 1), fx);
         lerp(top, bottom, fy)
     }
+
+    /// The mean over a rectangle around `uv` whose sides are `area`, in the units of `uv`.
+    ///
+    /// Each pixel counts with the part of the rectangle that it covers. Along an axis on which the rectangle is at most a
+    /// pixel long, the value is interpolated as by [`sample_bilinear`](Self::sample_bilinear), and on both axes it is that
+    /// value. A rectangle longer than the raster counts as long as the raster.
+    #[must_use]
+    pub fn sample_area(&self, uv: DVec2, area: DVec2, wrap: [Wrap; 2]) -> T {
+        let size = self.size().map(f64::from);
+        let pixels = area * DVec2::from(size);
+        // A rectangle of a pixel may be longer by a rounding.
+        if !(pixels.x > ONE_PIXEL || pixels.y > ONE_PIXEL) {
+            return self.sample_bilinear(uv, wrap);
+        }
+        let columns = shares(uv.x, pixels.x, size[0]);
+        let rows = shares(uv.y, pixels.y, size[1]);
+        let (first_row, across) = (rows.first, |row: i64| {
+            let at = |column| *self.at(column, row, wrap);
+            mean(columns.first, columns.weights(), at)
+        });
+        mean(first_row, rows.weights(), across)
+    }
+}
+
+/// The length of a rectangle, in pixels, up to which pixels are interpolated.
+const ONE_PIXEL: f64 = 1.0 + 1e-9;
+
+/// The pixels of a line that an interval covers.
+struct Shares {
+    first: i64,
+    /// The ends of the interval, in pixels from the first one.
+    ends: [f64; 2],
+}
+
+/// The pixels that an interval of a line of `size` pixels covers. One of at most a pixel is a pixel long: then the shares
+/// are the factors of linear interpolation.
+fn shares(middle: f64, length: f64, size: f64) -> Shares {
+    let length = if length > ONE_PIXEL {
+        length.min(size)
+    } else {
+        1.0
+    };
+    // Ends are a whole number of 2^-20 of a pixel, so that a boundary of pixels is met in spite of roundings.
+    let [from, end] = [-0.5, 0.5].map(|half| {
+        let end = middle * size + half * length;
+        (end * PARTS + 0.5).floor() / PARTS
+    });
+    let first = from.floor();
+    Shares {
+        first: first as i64,
+        ends: [from - first, end - first],
+    }
+}
+
+/// The resolution of the ends of intervals, in parts of a pixel.
+const PARTS: f64 = (1 << 20) as f64;
+
+impl Shares {
+    /// The shares of the pixels from the first one on; they add up to 1.
+    fn weights(&self) -> impl Iterator<Item = f32> {
+        let [from, end] = self.ends;
+        let length = end - from;
+        let n_pixels = end.ceil().max(1.0) as u32;
+        (0..n_pixels).map(move |pixel| {
+            let pixel = f64::from(pixel);
+            let covered = (end.min(pixel + 1.0) - from.max(pixel)) / length;
+            // A place that is not finite covers nothing, and reads the first pixel.
+            if covered > 0.0 { covered as f32 } else { 0.0 }
+        })
+    }
+}
+
+/// The mean of values by shares that add up to 1; exactly the value where all are equal.
+fn mean<T: Texel>(first: i64, weights: impl Iterator<Item = f32>, at: impl Fn(i64) -> T) -> T {
+    let base = at(first);
+    let mut sum = base;
+    for (offset, weight) in (0..).zip(weights).skip(1) {
+        sum = sum + (at(first.saturating_add(offset)) - base) * weight;
+    }
+    sum
 }
 
 /// The whole-number part and the rest in `[0, 1)`. Past the range of `i64` the fraction is 0.
@@ -57,6 +137,62 @@ mod tests {
                 let uv = DVec2::new((f64::from(column) + 0.5) * (1.0 / f64::from(size)), 0.5);
                 let value = raster.sample_bilinear(uv, [Wrap::Repeat; 2]);
                 assert_eq!(value, column as f32, "of {size}");
+            }
+        }
+    }
+
+    #[test]
+    fn an_area_has_the_mean_of_the_pixels_under_it() {
+        let raster = Raster::from_fn([12, 8], |x, y| ((x * 37 + y * 101) % 17) as f32).unwrap();
+        let mean = |first: [u32; 2], size: [u32; 2]| {
+            let values = (first[1]..first[1] + size[1]).flat_map(|y| {
+                (first[0]..first[0] + size[0]).map(move |x| ((x % 12) * 37 + (y % 8) * 101) % 17)
+            });
+            f64::from(values.sum::<u32>()) / f64::from(size[0] * size[1])
+        };
+        for (first, size) in [
+            ([0, 0], [3, 2]),
+            ([4, 5], [2, 3]),
+            ([10, 7], [4, 5]),
+            ([0, 0], [12, 8]),
+            ([2, 3], [1, 2]),
+        ] {
+            let at = [0, 1].map(|axis| f64::from(2 * first[axis] + size[axis]) / 2.0);
+            let uv = DVec2::from(at) / DVec2::new(12.0, 8.0);
+            let area = DVec2::from(size.map(f64::from)) / DVec2::new(12.0, 8.0);
+            let sampled = raster.sample_area(uv, area, [Wrap::Repeat; 2]);
+            // Single precision; the ends are met within 2^-20 of a pixel.
+            let error = (f64::from(sampled) - mean(first, size)).abs();
+            assert!(error < 1e-4, "{first:?} {size:?}: {sampled}");
+        }
+    }
+
+    #[test]
+    fn an_area_of_at_most_a_pixel_is_interpolated_and_larger_ones_go_on_from_there() {
+        let raster = Raster::from_fn([12, 8], |x, y| ((x * 37 + y * 101) % 17) as f32).unwrap();
+        for step in 0..50 {
+            let uv = DVec2::new(f64::from(step) / 31.0, f64::from(step) / 17.0);
+            let point = raster.sample_bilinear(uv, [Wrap::Mirror; 2]);
+            let sampled = |length: f64| {
+                let area = DVec2::splat(length) / DVec2::new(12.0, 8.0);
+                raster.sample_area(uv, area, [Wrap::Mirror; 2])
+            };
+            assert_eq!(sampled(0.0).to_bits(), point.to_bits());
+            assert_eq!(sampled(1.0).to_bits(), point.to_bits());
+            // A millionth of a pixel more adds as much of values up to 16, and ends are whole numbers of 2^-20.
+            assert!((sampled(1.000_001) - point).abs() < 1e-4);
+        }
+    }
+
+    #[test]
+    fn areas_of_constants_are_exact_and_of_any_place_finite() {
+        let flat = Raster::filled([7, 5], 0.1_f32).unwrap();
+        for place in [0.3, -41.7, 1e300, f64::NAN, f64::INFINITY] {
+            for length in [0.0, 0.31, 1.0, 1e9, f64::INFINITY, f64::NAN] {
+                let uv = DVec2::new(place, 0.2);
+                let area = DVec2::new(length, 0.4);
+                let value = flat.sample_area(uv, area, [Wrap::Repeat, Wrap::Clamp]);
+                assert_eq!(value, 0.1, "{place} {length}");
             }
         }
     }
