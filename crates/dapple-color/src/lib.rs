@@ -23,6 +23,7 @@
 #![forbid(unsafe_code)]
 
 mod arctangent;
+mod bleed;
 mod code;
 mod curvature;
 mod error;
@@ -36,6 +37,7 @@ mod plane;
 mod ramp;
 mod srgb;
 
+pub use bleed::bleed_color;
 pub use code::Code;
 pub use curvature::{CurvatureOptions, curvature, curvature_of_part, curvature_to_gray};
 pub use error::{ColorError, ColorErrorKind};
