@@ -193,10 +193,43 @@ impl Normal {
 
     /// The codes of an image: `round((part + 1) / 2 · max)`, red for x, green for y, blue for z, without any curve.
     ///
-    /// A flat normal becomes (128, 128, 255), or (32768, 32768, 65535) with 16 bits.
+    /// A flat normal becomes (128, 128, 255), or (32768, 32768, 65535) with 16 bits. So does one with parts below 2^-17,
+    /// a quarter of a step of 16 bits, that roundings have left of 0.
     #[must_use]
     pub fn to_codes<C: Code>(self) -> [C; 3] {
-        self.to_array().map(|part| C::from_unit(part * 0.5 + 0.5))
+        self.to_array().map(|part| {
+            let part = if part.abs() < ROUNDING { 0.0 } else { part };
+            C::from_unit(part * 0.5 + 0.5)
+        })
+    }
+
+    /// The normal with those of its parts x and y set to 0 that come from a code next to the middle: 127 or 128 of 8 bits,
+    /// 32767 or 32768 of 16 bits.
+    ///
+    /// No code has the value 0, so images write 128 for it, which is read as a slope of 1/255. Turned or mirrored, that slope
+    /// becomes another code, although a flat surface has no direction. Parts of 8 bits are recognized by their ratios to the
+    /// other parts, which are those of odd numbers up to 255, whatever the length was before it was 1; parts of 16 bits by
+    /// being that small.
+    #[must_use]
+    pub fn centered(self) -> Self {
+        let Self { x, y, z } = self;
+        let is_middle = |part: f32| {
+            part.abs() < STEP_OF_16_BITS
+                || STEPS_OF_8_BITS.contains(&part.abs())
+                    && [x, y, z].into_iter().all(|other| is_odd(other / part))
+        };
+        let parts = [x, y].map(|part| if is_middle(part) { 0.0 } else { part });
+        if parts == [x, y] {
+            return self;
+        }
+        let [x, y] = parts;
+        let length = (x * x + y * y + z * z).sqrt();
+        if length > 0.0 {
+            let [x, y, z] = [x, y, z].map(|part| part / length);
+            Self { x, y, z }
+        } else {
+            Self::FLAT
+        }
     }
 
     /// The unit vector for the codes of an image, as programs read it: `2 code / max - 1`, normalized.
@@ -214,6 +247,22 @@ impl Normal {
             Self::FLAT
         }
     }
+}
+
+/// Parts of normals below this are written as 0. Both codes next to the middle of 16 bits are 2^-16 away from it.
+const ROUNDING: f32 = 1.0 / (1 << 17) as f32;
+
+/// Parts below this are codes next to the middle of 16 bits: these have 2^-16, the next ones three times as much, and the
+/// codes of a vector are within a quarter of a unit vector.
+const STEP_OF_16_BITS: f32 = 1.5 / (1 << 16) as f32;
+
+/// The range of 1/255 over the length of a vector of 8-bit codes, which is near 1.
+const STEPS_OF_8_BITS: core::ops::RangeInclusive<f32> = 0.9 / 255.0..=1.1 / 255.0;
+
+/// Whether a ratio is an odd number, but for the rounding of codes to `f32`: 1e-7 of 1/255, times 255.
+fn is_odd(ratio: f32) -> bool {
+    let rest = (ratio.abs() * 0.5).fract();
+    (rest - 0.5).abs() < 0.01
 }
 
 #[cfg(test)]

@@ -151,6 +151,71 @@ fn normals_past_a_side_are_those_of_the_oracle() {
 }
 
 #[test]
+fn centered_normals_are_flat_where_their_codes_are_next_to_the_middle() {
+    for x in [127_u8, 128] {
+        for y in [127_u8, 128] {
+            let flat = Normal::from_codes([x, y, 255]).centered();
+            assert_eq!(flat, Normal::FLAT, "{x}, {y}");
+            let codes = [x, y].map(|code| u16::from(code) + 32640);
+            let flat = Normal::from_codes([codes[0], codes[1], 65535]).centered();
+            assert_eq!(flat, Normal::FLAT, "{codes:?}");
+            // An image of 8 bits, as 16 bits.
+            let wide = [x, y, 255].map(|code| 257 * u16::from(code));
+            assert_eq!(
+                Normal::from_codes(wide).centered(),
+                Normal::FLAT,
+                "{wide:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn centered_normals_keep_their_codes_elsewhere() {
+    // Every code beside a middle one, with a z of about unit length.
+    for code in 0..=255_u8 {
+        let y = f64::from(code) / 127.5 - 1.0;
+        let z = ((1.0 - y * y).max(0.0).sqrt() * 127.5 + 127.5).round() as u8;
+        for middle in [127, 128] {
+            let normal = Normal::from_codes([middle, code, z]);
+            let centered = normal.centered();
+            let is_middle = [127, 128].contains(&code);
+            assert_eq!(centered.x, 0.0, "{code}");
+            assert_eq!(centered.y == 0.0, is_middle, "{code}");
+            // The vector is shorter by less than 1e-5 of its length.
+            assert!((centered.z - normal.z).abs() < 2e-5, "{code}");
+        }
+        for other in [126, 129, 64, 200] {
+            let normal = Normal::from_codes([other, code.max(129), z]);
+            assert_eq!(normal.centered(), normal, "{other}, {code}");
+        }
+    }
+    // Between the codes of 8 bits, parts of 16 bits and of floats stay.
+    for x in [0.002, 0.0037, 0.0042, 5e-5, -0.003] {
+        let z = (1.0_f32 - x * x - 0.09).sqrt();
+        let normal = Normal { x, y: 0.3, z };
+        assert_eq!(normal.centered(), normal, "{x}");
+    }
+}
+
+#[test]
+fn codes_come_back_and_roundings_of_flat_normals_are_flat() {
+    for code in [126, 127, 128, 129_u8] {
+        let normal = Normal::from_codes([code, 128, 255]);
+        assert_eq!(normal.to_codes::<u8>(), [code, 128, 255]);
+    }
+    for code in [32766, 32767, 32768, 32769_u16] {
+        let normal = Normal::from_codes([code, 32768, 65535]);
+        assert_eq!(normal.to_codes::<u16>(), [code, 32768, 65535]);
+    }
+    for x in [-1e-7, -5e-6, 5e-6] {
+        let normal = Normal { x, ..Normal::FLAT };
+        assert_eq!(normal.to_codes::<u8>(), [128, 128, 255], "{x}");
+        assert_eq!(normal.to_codes::<u16>(), [32768, 32768, 65535], "{x}");
+    }
+}
+
+#[test]
 fn wrapping_is_per_axis() {
     let ramp = Raster::from_fn([8, 8], |x, y| (x + y) as f32).unwrap();
     let normal = |wrap| {
