@@ -5,8 +5,8 @@ use crate::RecipeError;
 use crate::plan::{Builder, Laid, Step};
 use serde::{Deserialize, Serialize};
 
-/// An image, laid over the tile and interpolated between its pixels; past its edges it repeats or is clamped, as the
-/// recipe is.
+/// An image, laid over the tile and interpolated between its pixels, or averaged over each pixel of a smaller bake; past its
+/// edges it repeats or is clamped, as the recipe is.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]

@@ -9,8 +9,8 @@ use dapple_synth::{Edges, Endless, EndlessOptions, Exemplar, PlaneTexture};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// A texture without repetitions, grown from an image of it, laid over the tile and interpolated between its pixels. Along
-/// axes on which the recipe repeats, it does.
+/// A texture without repetitions, grown from an image of it, laid over the tile and interpolated between its pixels, or
+/// averaged over each pixel of a smaller bake. Along axes on which the recipe repeats, it does.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]

@@ -10,24 +10,56 @@ use std::sync::Arc;
 
 /// The positions of an evaluation.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Places<'a> {
+pub(super) struct Places<'a> {
+    pub(super) at: At<'a>,
+    /// The width and height of the area around each position over which images are averaged; zero for points.
+    pub(super) area: DVec2,
+}
+
+/// Positions, in order.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum At<'a> {
     Window(&'a Window),
     Positions(&'a [DVec2]),
 }
 
-impl Places<'_> {
+impl<'a> Places<'a> {
+    /// The pixels of a window, each with its area.
+    pub(super) fn pixels(window: &'a Window) -> Self {
+        Self {
+            at: At::Window(window),
+            area: (window.pixel * window.scale).abs(),
+        }
+    }
+
+    /// The points at the pixel centers of a window.
+    pub(super) fn centers(window: &'a Window) -> Self {
+        Self {
+            at: At::Window(window),
+            area: DVec2::ZERO,
+        }
+    }
+
+    /// Points.
+    pub(super) fn points(positions: &'a [DVec2]) -> Self {
+        Self {
+            at: At::Positions(positions),
+            area: DVec2::ZERO,
+        }
+    }
+
     fn count(&self) -> usize {
-        match self {
-            Self::Window(window) => window.n_pixels(),
-            Self::Positions(positions) => positions.len(),
+        match self.at {
+            At::Window(window) => window.n_pixels(),
+            At::Positions(positions) => positions.len(),
         }
     }
 
     /// All positions, row by row.
     pub(super) fn positions(&self) -> Vec<DVec2> {
-        match self {
-            Self::Positions(positions) => positions.to_vec(),
-            Self::Window(window) => {
+        match self.at {
+            At::Positions(positions) => positions.to_vec(),
+            At::Window(window) => {
                 let rows = (0..window.size[1]).map(|row| window.row_y(row));
                 let row = |y| {
                     (0..window.size[0]).map(move |column| DVec2::new(window.column_x(column), y))
@@ -125,7 +157,7 @@ pub(super) fn window(
         evaluate(
             steps,
             Some(whole),
-            Places::Window(&part),
+            Places::pixels(&part),
             wanted,
             &known.collect::<Vec<_>>(),
         )
@@ -166,21 +198,21 @@ fn step(
         Step::Color(color) => Ok(Values::Colors(vec![*color; count])),
         Step::Field(field) => {
             let mut numbers = vec![0.0; count];
-            match places {
-                Places::Window(window) => {
+            match places.at {
+                At::Window(window) => {
                     let view =
                         RasterViewMut::new(&mut numbers, window.size[0] as usize, window.size)?;
                     field.render(window, view)?;
                 }
-                Places::Positions(positions) => field.sample_many(positions, &mut numbers)?,
+                At::Positions(positions) => field.sample_many(positions, &mut numbers)?,
             }
             Ok(Values::Numbers(numbers))
         }
-        Step::Image(laid) => Ok(laid.at(&places.positions())),
+        Step::Image(laid) => Ok(laid.at(places)),
         Step::Colors(texture) => {
-            let colors = match places {
-                Places::Window(window) => texture.to_raster(window)?.into_pixels(),
-                Places::Positions(positions) => {
+            let colors = match places.at {
+                At::Window(window) => texture.to_raster(window)?.into_pixels(),
+                At::Positions(positions) => {
                     positions.iter().map(|&at| texture.sample(at)).collect()
                 }
             };
@@ -197,8 +229,13 @@ fn step(
         } => {
             let [x, y] = [made(&by[0]), made(&by[1])];
             let shifted = shifted(places.positions(), x, y, *amount);
-            let values =
-                |positions| evaluate(steps, whole, Places::Positions(positions), &[*input], &[]);
+            let values = |positions| {
+                let places = Places {
+                    at: At::Positions(positions),
+                    ..places
+                };
+                evaluate(steps, whole, places, &[*input], &[])
+            };
             let (first, rest) = shifted.split_at(CHUNK_POSITIONS.min(count));
             let rest = rest.chunks(CHUNK_POSITIONS).map(values);
             let chunks: Result<Vec<_>, _> = core::iter::once(values(first)).chain(rest).collect();
@@ -223,17 +260,20 @@ fn shifted(mut positions: Vec<DVec2>, x: &Values, y: &Values, amount: f64) -> Ve
 }
 
 impl Laid {
-    /// The values of the image at positions of the plane.
-    pub(super) fn at(&self, positions: &[DVec2]) -> Values {
+    /// The values of the image at places of the plane: the mean of its pixels over the area of each.
+    pub(super) fn at(&self, places: Places<'_>) -> Values {
         match &self.picture {
-            Picture::Numbers(raster) => Values::Numbers(self.read(raster, positions)),
-            Picture::Colors(raster) => Values::Colors(self.read(raster, positions)),
+            Picture::Numbers(raster) => Values::Numbers(self.read(raster, places)),
+            Picture::Colors(raster) => Values::Colors(self.read(raster, places)),
         }
     }
 
-    fn read<T: Texel>(&self, raster: &Raster<T>, positions: &[DVec2]) -> Vec<T> {
-        let uv = positions.iter().map(|&position| position / self.extent);
-        uv.map(|uv| raster.sample_bilinear(uv, self.wrap)).collect()
+    fn read<T: Texel>(&self, raster: &Raster<T>, places: Places<'_>) -> Vec<T> {
+        let positions = places.positions().into_iter();
+        let uv = positions.map(|position| position / self.extent);
+        let area = places.area / self.extent;
+        uv.map(|uv| raster.sample_area(uv, area, self.wrap))
+            .collect()
     }
 }
 
@@ -268,7 +308,7 @@ mod tests {
         assert_eq!(kept_until(&[d]), [c, c, d, usize::MAX]);
         assert_eq!(kept_until(&[b, d]), [c, usize::MAX, d, usize::MAX]);
         let positions = [DVec2::new(0.25, 0.5)];
-        let places = Places::Positions(&positions);
+        let places = Places::points(&positions);
         let values = evaluate(&steps, None, places, &[b, d, a], &[]).unwrap();
         let values: Vec<_> = values.iter().map(|values| values.numbers()[0]).collect();
         assert_eq!(values, [0.25, 0.75, 0.25]);

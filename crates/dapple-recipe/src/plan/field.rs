@@ -11,6 +11,8 @@ use std::sync::Arc;
 
 /// The number of a node at every position of the plane.
 ///
+/// A position is a point: unlike in a [`Bake`](crate::Bake), images are not averaged over the pixels of a window.
+///
 /// A node may fail for its inputs, such as a blend with weights below 0. Then sampling of many positions and of windows
 /// fails, and [`sample`](Field::sample), which cannot fail, returns NaN.
 #[derive(Clone, Debug)]
@@ -20,6 +22,8 @@ pub struct NodeField {
 }
 
 /// The color of a node at every position of the plane.
+///
+/// A position is a point: unlike in a [`Bake`](crate::Bake), images are not averaged over the pixels of a window.
 #[derive(Clone, Debug)]
 pub struct NodeColors {
     steps: Arc<[Step]>,
@@ -38,7 +42,7 @@ impl NodeField {
 
 impl Field for NodeField {
     fn sample(&self, position: DVec2) -> f32 {
-        match self.values(Places::Positions(&[position])) {
+        match self.values(Places::points(&[position])) {
             Ok(values) => values.numbers().first().copied().unwrap_or(f32::NAN),
             Err(_) => f32::NAN,
         }
@@ -46,7 +50,7 @@ impl Field for NodeField {
 
     fn sample_many(&self, positions: &[DVec2], values: &mut [f32]) -> Result<(), RasterError> {
         RasterError::check_length(values.len(), positions.len())?;
-        let made = self.values(Places::Positions(positions))?;
+        let made = self.values(Places::points(positions))?;
         RasterError::check_length(made.numbers().len(), values.len())?;
         values.copy_from_slice(made.numbers());
         Ok(())
@@ -54,7 +58,7 @@ impl Field for NodeField {
 
     fn render(&self, window: &Window, mut out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
         window.check_size(out.size())?;
-        let made = self.values(Places::Window(window))?;
+        let made = self.values(Places::centers(window))?;
         RasterError::check_length(made.numbers().len(), window.n_pixels())?;
         let rows = made.numbers().chunks(window.size[0] as usize);
         for (line, row) in out.rows_mut().zip(rows) {
@@ -75,7 +79,7 @@ impl NodeColors {
     ///
     /// The errors of the node and its inputs, such as a blend with weights below 0.
     pub fn sample(&self, position: DVec2) -> Result<LinearRgb, RecipeError> {
-        let values = one(&self.steps, Places::Positions(&[position]), self.step)?;
+        let values = one(&self.steps, Places::points(&[position]), self.step)?;
         // There is a value for each position.
         Ok(Arc::unwrap_or_clone(values).into_colors()[0])
     }
@@ -88,7 +92,7 @@ impl NodeColors {
     pub fn to_raster(&self, window: &Window) -> Result<Raster<LinearRgb>, RecipeError> {
         // The size is checked before any values are computed.
         let mut raster = Raster::filled(window.size, LinearRgb::BLACK)?;
-        let values = one(&self.steps, Places::Window(window), self.step)?;
+        let values = one(&self.steps, Places::centers(window), self.step)?;
         let colors = Arc::unwrap_or_clone(values).into_colors();
         raster.pixels_mut().copy_from_slice(&colors);
         Ok(raster)

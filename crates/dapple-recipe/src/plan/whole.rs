@@ -1,7 +1,7 @@
 //! The steps that depend on the whole tile, evaluated beforehand for a picture of a given size.
 
 use super::builder::wrap;
-use super::evaluate::Places;
+use super::evaluate::{At, Places};
 use super::step::{Global, Laid, Step, Tile, ancestors};
 use super::{Picture, Plan};
 use crate::{RecipeError, RecipeErrorKind, Region, Values};
@@ -194,22 +194,20 @@ impl Whole {
         let (Some(tile), Some(Some(picture))) = (self.window, self.pictures.get(index)) else {
             return Err(RecipeError::new(RecipeErrorKind::Global { during: "yet" }));
         };
-        match places {
-            Places::Window(window)
-                if window.origin == tile.origin && window.pixel == tile.pixel =>
-            {
+        match places.at {
+            At::Window(window) if window.origin == tile.origin && window.pixel == tile.pixel => {
                 Ok(match picture {
                     Picture::Numbers(raster) => Values::Numbers(self.pixels(raster, window)),
                     Picture::Colors(raster) => Values::Colors(self.pixels(raster, window)),
                 })
             }
-            places => {
+            _ => {
                 let laid = Laid {
                     picture: picture.clone(),
                     extent: self.extent,
                     wrap: self.wrap,
                 };
-                Ok(laid.at(&places.positions()))
+                Ok(laid.at(places))
             }
         }
     }
