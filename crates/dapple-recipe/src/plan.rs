@@ -420,6 +420,17 @@ impl Plan {
         step::shared(&self.steps, self.channels.height, wanted)
     }
 
+    /// The axes along which heights continue past the sides of the tile.
+    ///
+    /// Along these the recipe does not repeat, and the height depends on a picture, which ends at the sides. Heights made
+    /// of functions alone are known everywhere.
+    pub(crate) fn continues_heights(&self) -> [bool; 2] {
+        let mut above = ancestors(&self.steps, &[self.channels.height]).into_iter();
+        let is_picture =
+            above.any(|index| matches!(self.steps[index], Step::Image(_) | Step::Global(_)));
+        self.wrap.map(|repeats| is_picture && !repeats)
+    }
+
     pub(crate) fn material(&self) -> &Material {
         &self.material
     }

@@ -4,6 +4,7 @@ use super::MapKind;
 use super::maps::{NORMAL_HALO, beside_height, curvature_options, occlusion_options};
 use crate::plan::Known;
 use crate::{Plan, RecipeError, Values, Whole};
+use dapple_color::continue_heights;
 use dapple_raster::{Raster, RasterError, Window};
 use std::sync::Arc;
 
@@ -18,6 +19,8 @@ pub(super) struct Heights {
     wanted: bool,
     /// The halo of the maps, in pixels.
     halo: [u32; 2],
+    /// For each axis along which heights continue past the sides of the tile, its first pixel and the one past its last.
+    sides: [Option<[i64; 2]>; 2],
     /// The steps of the height on which other maps depend, too.
     shared: Vec<usize>,
     /// The lowest rows of the last band, with which the margin of the next one begins.
@@ -41,9 +44,13 @@ pub(super) struct Margined {
 
 impl Heights {
     pub(super) fn new(plan: &Plan, tile: &Window, maps: &[MapKind]) -> Result<Self, RecipeError> {
+        let continues = plan.continues_heights();
+        let side =
+            |axis: usize| [0, 1].map(|end| tile.first[axis] + end * i64::from(tile.size[axis]));
         let mut heights = Self {
             wanted: false,
             halo: [0; 2],
+            sides: [0, 1].map(|axis| continues[axis].then(|| side(axis))),
             shared: plan.shared_with_height(&beside_height(plan, maps)),
             last: None,
         };
@@ -100,9 +107,15 @@ impl Heights {
             Some(Values::Numbers(heights)) => heights,
             _ => Vec::new(),
         };
+        let mut raster = Raster::from_vec(window.size, heights)?;
+        let in_window = |axis: usize| {
+            let sides = self.sides[axis]?;
+            Some(sides.map(|side| side - window.first[axis]))
+        };
+        continue_heights(&mut raster, [0, 1].map(in_window));
         let in_band = |(&step, values)| Ok((step, Arc::new(cropped(values, &window, halo, band)?)));
         Ok(Margined {
-            raster: Some(Raster::from_vec(window.size, heights)?),
+            raster: Some(raster),
             halo,
             shared: steps[1..]
                 .iter()

@@ -3,6 +3,7 @@
 mod bakes;
 mod copies;
 mod memory;
+mod pictures;
 mod points;
 mod program;
 mod refusals;
