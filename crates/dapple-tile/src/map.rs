@@ -51,6 +51,14 @@ impl Map {
         }
     }
 
+    /// The map, with normals [centered](Normal::centered).
+    pub(crate) fn centered(&self) -> Self {
+        match self {
+            Self::Normal(raster) => Self::Normal(raster.map(|normal| normal.centered())),
+            other => other.clone(),
+        }
+    }
+
     /// The factors of the planes, in the order of [`planes`](Self::planes), when the map is reflected along x and along y.
     ///
     /// A slope along the axis of a reflection changes its sign: heights fall where they rose.

@@ -136,7 +136,14 @@ impl Seamless {
     /// [`Wavelet`](TileErrorKind::Wavelet), [`Margin`](TileErrorKind::Margin) or [`Range`](TileErrorKind::Range) for
     /// sizes and options that the method does not allow.
     pub fn apply_maps(&self, maps: &[Map]) -> Result<Vec<Map>, TileError> {
-        let planes: Vec<_> = maps.iter().flat_map(Map::planes).collect();
+        let planes: Vec<_> = match self.method {
+            // Reflected, the slope that is read for a flat normal would be another code.
+            Method::Mirror => maps
+                .iter()
+                .flat_map(|map| map.centered().planes())
+                .collect(),
+            _ => maps.iter().flat_map(Map::planes).collect(),
+        };
         let reflections: Vec<_> = maps.iter().flat_map(Map::reflections).copied().collect();
         Map::all_with_planes(maps, self.planes(&planes, &reflections)?)
     }

@@ -301,3 +301,17 @@ fn steep_normals_of_every_method_lean_as_the_tiled_heights_do() {
         );
     }
 }
+
+#[test]
+fn flat_normals_of_images_are_one_color_when_mirrored() {
+    for code in [127_u8, 128] {
+        let flat = Raster::filled([5, 4], Normal::from_codes([code, 128, 255])).unwrap();
+        let maps = [Map::Normal(flat)];
+        let tiles = Seamless::new(Method::Mirror).apply_maps(&maps).unwrap();
+        let [Map::Normal(tile)] = tiles.as_slice() else {
+            panic!("normals remain normals");
+        };
+        let is_flat = |normal: &Normal| normal.to_codes::<u8>() == [128, 128, 255];
+        assert!(tile.pixels().iter().all(is_flat), "{code}");
+    }
+}
