@@ -29,6 +29,9 @@ use glam::DVec3;
 /// `y` is where green points, in the exemplar and in the result. `shading` has the normals of the corners of all faces by
 /// which the model is shaded, as [`textured_model`](crate::textured_model) takes them. Texels without a face are flat.
 ///
+/// Codes next to the middle of an image count as 0 (see [`Normal::centered`]): turned into the frames of charts, their slope
+/// would show at seams of what is flat.
+///
 /// # Errors
 ///
 /// Those of [`bake_colors`](crate::bake_colors), and [`SynthErrorKind::Count`](crate::SynthErrorKind::Count) unless there
@@ -71,8 +74,8 @@ pub fn bake_normals(
         check_finite("part of a normal", part)?;
     }
     let map = match y {
-        NormalY::OpenGl => map.par_map(|normal| normal.to_array()),
-        NormalY::DirectX => map.par_map(|&normal| turned_over(normal).to_array()),
+        NormalY::OpenGl => map.par_map(|normal| normal.centered().to_array()),
+        NormalY::DirectX => map.par_map(|&normal| turned_over(normal.centered()).to_array()),
     };
     let values = in_space(synthesizer, texture, map, atlas)?;
     let tangents = Tangents::new(surface, atlas, shading);

@@ -169,13 +169,18 @@ impl SideBySide {
 
     /// All normal maps in one, with green up, turned as the images are; flat where no image is.
     ///
+    /// Where images are turned or mirrored, codes next to the middle count as 0 (see [`Normal::centered`]), so that what is
+    /// flat stays one color.
+    ///
     /// # Errors
     ///
     /// Those of [`join`](Self::join).
     pub fn join_normals(&self, images: &[&Raster<Normal>]) -> Result<Raster<Normal>, SynthError> {
         let joined = self.join(images, Normal::FLAT)?;
+        let is_turned = self.parts.iter().any(|part| part.turn != Turn::default());
         Ok(Raster::from_fn(self.size, |column, row| {
             let normal = joined.row(row)[column as usize];
+            let normal = if is_turned { normal.centered() } else { normal };
             let part = self.part_at([column, row]);
             part.map_or(normal, |part| part.turn.normal(normal))
         })?)

@@ -129,8 +129,18 @@ fn flat_normals_stay_flat() {
         Atlas::by_area(sphere.surface(), 300).unwrap(),
     ] {
         for y in [NormalY::OpenGl, NormalY::DirectX] {
-            let map = baked(&sphere, &[Normal::FLAT; N], y, &atlas, &smooth(&sphere)).unwrap();
-            assert!(map.pixels().iter().all(|&normal| normal == Normal::FLAT));
+            // As images of 8 and 16 bits have it, none of whose codes is 0.
+            let read = [
+                Normal::FLAT,
+                Normal::from_codes([128_u8, 128, 255]),
+                Normal::from_codes([127_u8, 128, 255]),
+                Normal::from_codes([32768_u16, 32768, 65535]),
+                Normal::from_codes([32768_u16, 32767, 65535]),
+            ];
+            for flat in read {
+                let map = baked(&sphere, &[flat; N], y, &atlas, &smooth(&sphere)).unwrap();
+                assert!(map.pixels().iter().all(|&normal| normal == Normal::FLAT));
+            }
         }
     }
 }

@@ -3,7 +3,7 @@
 use super::Turned;
 use crate::{Edges, Endless, EndlessOptions, Exemplar, SideBySide};
 use core::ops::ControlFlow;
-use dapple_color::{HeightPlane, NormalOptions, normal_map};
+use dapple_color::{HeightPlane, Normal, NormalOptions, normal_map};
 use dapple_raster::{Named as _, Raster};
 use glam::DVec2;
 
@@ -90,6 +90,32 @@ fn normals_are_those_of_turned_heights() {
                 assert!(apart < 1e-6, "{turned}: {a:?} and {b:?}");
             }
             first += size[0] + 1;
+        }
+    }
+}
+
+#[test]
+fn flat_normals_of_images_are_one_color_however_turned() {
+    let of_8_bits = [[127, 127], [127, 128], [128, 127], [128, 128]]
+        .map(|[x, y]: [u8; 2]| Normal::from_codes([x, y, 255]));
+    let of_16_bits =
+        [[32767, 32768], [32768, 32768]].map(|[x, y]: [u16; 2]| Normal::from_codes([x, y, 65535]));
+    for flat in of_8_bits.into_iter().chain(of_16_bits) {
+        let image = Raster::filled([6, 4], flat).unwrap();
+        for &turned in Turned::ALL {
+            let joined = layout(image.size(), turned)
+                .join_normals(&[&image])
+                .unwrap();
+            for normal in joined.pixels() {
+                match turned {
+                    // Nothing is turned, and nothing changes; between images it is flat.
+                    Turned::None => assert!([flat, Normal::FLAT].contains(normal)),
+                    _ => {
+                        assert_eq!(normal.to_codes::<u8>(), [128, 128, 255]);
+                        assert_eq!(normal.to_codes::<u16>(), [32768, 32768, 65535]);
+                    }
+                }
+            }
         }
     }
 }
