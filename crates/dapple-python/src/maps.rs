@@ -59,7 +59,8 @@ fn plane(
 /// height : (rows, columns).
 /// relief : the height in units of the plane of a value of 1; negative turns hills into dents.
 /// extent : (x, y), or a number for both: the size of the array in the plane, as in `Field.render`; 1 by default.
-/// wrap : the wrapping past the edges: `"repeat"`, `"clamp"` or `"mirror"`, or one for each axis, x first.
+/// wrap : the wrapping past the edges: `"repeat"`, `"clamp"` or `"mirror"`, or one for each axis, x first. Without `"repeat"`, heights
+///     continue past a side with their slope, so that a plane has the same values up to its last row.
 /// y : `"up"` (OpenGL, Blender, glTF) or `"down"` (DirectX).
 ///
 /// Examples
