@@ -5,7 +5,7 @@ use crate::error::{Hint, usage};
 use crate::input::divided;
 use crate::output::Target;
 use anyhow::Result;
-use dapple::color::{Interpolation, LinearRgb, LinearRgba, Outside, RampSpace};
+use dapple::color::{Code, Interpolation, LinearRgb, LinearRgba, Outside, RampSpace, bleed_color};
 use dapple::image::{Content, Depth, Encoding, RowWriter};
 use dapple::raster::Raster;
 use dapple::recipe::{Input, Node, Ramped};
@@ -187,25 +187,47 @@ pub(crate) struct Cover<'a> {
     alpha: &'a Raster<f32>,
     /// Whether alpha is multiplied into the colors.
     is_associated: bool,
+    clear: Clear,
 }
 
 impl<'a> Cover<'a> {
     /// The alpha of colors, if they have any.
-    pub(crate) fn of(alpha: Option<&'a Raster<f32>>, is_associated: bool) -> Option<Self> {
+    pub(crate) fn of(
+        alpha: Option<&'a Raster<f32>>,
+        is_associated: bool,
+        clear: Clear,
+    ) -> Option<Self> {
         let alpha = alpha?;
         Some(Self {
             alpha,
             is_associated,
+            clear,
         })
     }
 
     /// The alpha of colors into which it is not multiplied.
-    pub(crate) fn straight(alpha: &'a Raster<f32>) -> Self {
+    pub(crate) fn straight(alpha: &'a Raster<f32>, clear: Clear) -> Self {
         Self {
             alpha,
             is_associated: false,
+            clear,
         }
     }
+}
+
+/// The color under pixels of alpha 0 in PNG.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Clear {
+    /// It is kept.
+    Keep,
+    /// It is copied from the nearest visible pixel, so that mip levels have no dark rims. The image wraps along some
+    /// axes.
+    Bleed { wraps: [bool; 2] },
+}
+
+impl Clear {
+    /// Colors bleed within an image that does not wrap, as far as is known.
+    pub(crate) const NOT_WRAPPED: Self = Self::Bleed { wraps: [false; 2] };
 }
 
 /// Encodes colors and their alpha as the bytes of a file, like [`encode`].
@@ -225,13 +247,25 @@ pub(crate) fn encode_with_alpha(
         rows.write_packed_four(pixels.view())?;
         return Ok(rows.finish()?.into_inner());
     }
-    let pixels = colors.zip_map(cover.alpha, |color, alpha| LinearRgba {
+    let mut pixels = colors.zip_map(cover.alpha, |color, alpha| LinearRgba {
         color: match cover.is_associated {
             true => divided(color, alpha),
             false => *color,
         },
         alpha: alpha.clamp(0.0, 1.0),
     })?;
+    if let (Clear::Bleed { wraps }, Encoding::Png(depth)) = (cover.clear, format.encoding()) {
+        let is_clear = |alpha: f32| match depth {
+            Depth::Eight => u8::from_unit(alpha) == 0,
+            Depth::Sixteen => u16::from_unit(alpha) == 0,
+        };
+        for pixel in pixels.pixels_mut() {
+            if is_clear(pixel.alpha) {
+                pixel.alpha = 0.0;
+            }
+        }
+        bleed_color(&mut pixels, wraps);
+    }
     let mut rows = RowWriter::new(sink, pixels.size(), Content::ColorAlpha, format.encoding())?;
     rows.write_color_alpha(pixels.view())?;
     Ok(rows.finish()?.into_inner())

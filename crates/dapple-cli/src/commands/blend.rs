@@ -5,7 +5,7 @@ pub(super) mod layer;
 mod mixing;
 
 use crate::args::{AlphaArgs, ImageArgs, ReadArgs, Size};
-use crate::encode::Cover;
+use crate::encode::{Clear, Cover};
 use crate::error::{Exit, Hint, usage};
 use crate::input::{self, Kind};
 use crate::job::{Context, Job};
@@ -127,7 +127,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     };
     let mut maps = maps.map_err(advise)?;
     let alpha = alpha::take(&mut maps, form)?;
-    let mut cover = Cover::of(alpha.as_ref(), form == AlphaForm::Associated);
+    let mut cover = Cover::of(alpha.as_ref(), form == AlphaForm::Associated, Clear::NOT_WRAPPED);
     drop(progress);
     let is_deep = materials.iter().any(|material| material.is_deep);
     for (map, output) in maps.into_iter().zip(outputs) {

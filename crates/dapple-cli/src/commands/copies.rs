@@ -5,7 +5,7 @@ mod method;
 use super::blend::alpha::{self, AlphaForm};
 use super::blend::layer::{HEIGHT, LayerArg, Material, Reader};
 use crate::args::{AlphaArgs, ImageArgs, ReadArgs, Size, seed};
-use crate::encode::Cover;
+use crate::encode::{Clear, Cover};
 use crate::error::{Exit, Hint, usage};
 use crate::job::{Context, Job};
 use crate::output::OutputIdx;
@@ -110,7 +110,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let mut outputs = outputs.into_iter();
     for mut maps in made {
         let alpha = alpha::take(&mut maps, form)?;
-        let mut cover = Cover::of(alpha.as_ref(), form == AlphaForm::Associated);
+        let mut cover = Cover::of(alpha.as_ref(), form == AlphaForm::Associated, Clear::NOT_WRAPPED);
         for (map, output) in maps.into_iter().zip(&mut outputs) {
             // The alpha is that of the first map.
             job.write_with_alpha(output, map, cover.take(), is_deep, &args.image)?;

@@ -5,7 +5,7 @@ mod synth;
 
 use crate::args::{AlphaArgs, Axes, ImageArgs, ReadArgs, Region, Size};
 use crate::commands::info::seams_json;
-use crate::encode::{Cover, Format, map_raster};
+use crate::encode::{Clear, Cover, Format, map_raster};
 use crate::error::{Exit, Hint, usage};
 use crate::input::{self, Kind, Loaded};
 use crate::job::{Context, Job};
@@ -116,6 +116,8 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
         job.say(&format!("auto takes {}", made.candidate.name))?;
     }
 
+    let wraps = args.wrap.flags();
+    let clear = Clear::Bleed { wraps };
     let (report, passes) = reports(args, &sources, &mut made, &job)?;
     for (source, map) in sources.iter().zip(made.tiles) {
         let has_alpha = source.loaded.alpha.is_some();
@@ -131,11 +133,11 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
         if let Some(sheet) = sheet {
             let alpha = alpha.as_ref().map(twice).transpose()?;
             let map = doubled(&map)?;
-            let cover = Cover::of(alpha.as_ref(), is_associated);
+            let cover = Cover::of(alpha.as_ref(), is_associated, clear);
             job.write_with_alpha(sheet, map, cover, is_deep, &args.image)?;
         }
         if let Some(output) = output {
-            let cover = Cover::of(alpha.as_ref(), is_associated);
+            let cover = Cover::of(alpha.as_ref(), is_associated, clear);
             job.write_with_alpha(output, map, cover, is_deep, &args.image)?;
         }
     }

@@ -61,6 +61,46 @@ fn alpha_goes_the_way_of_the_colors_in_tile_and_synth() {
 }
 
 #[test]
+fn color_goes_on_under_alpha_0_but_around_a_hole() {
+    let folder = Folder::new("rims");
+    let leaf = LinearRgba::opaque(LinearRgb::new(0.05, 0.3, 0.02));
+    let is_leaf = |x: u32, y: u32| [x % 48, y % 48].iter().all(|at| (12..36).contains(at));
+    let pixels = Raster::from_fn([96; 2], |x, y| match is_leaf(x, y) {
+        true => leaf,
+        false => LinearRgba::default(),
+    });
+    write_color_alpha_png(folder.path("leaf.png"), &pixels.unwrap(), Depth::Eight).unwrap();
+    let mask = Raster::from_fn([96; 2], |x, y| {
+        LinearRgb::gray(f32::from((40..48).contains(&x) && (40..48).contains(&y)))
+    });
+    write_color_png(folder.path("hole.png"), &mask.unwrap(), Depth::Eight).unwrap();
+    for line in [
+        "tile leaf.png --method periodic --format png8 -o out.png",
+        "tile leaf.png --method mirror --format png16 -o out.png",
+        "synth leaf.png --size 64 --format png8 -o out.png",
+        "synth leaf.png --size 64 --wrap both --format png16 -o out.png",
+        "copies leaf.png --size 200 --format png8 -o out.png",
+        "blend leaf.png --size 100 -o out.png",
+    ] {
+        let line: Vec<_> = line.split(' ').chain(["--force"]).collect();
+        assert_done(&folder.run(&line), &line.join(" "));
+        let pixels = read(&folder, "out.png").color_alpha().unwrap();
+        let clear = pixels.pixels().iter().filter(|pixel| pixel.alpha == 0.0);
+        assert!(clear.clone().count() > 0, "{line:?}: some are clear");
+        for pixel in clear {
+            // The only color that is seen, with 8 bits, and what periodic spreads over it.
+            let gap = (pixel.color.g - 0.3).abs();
+            assert!(gap < 0.03, "{line:?}: {pixel:?}");
+        }
+    }
+    let line = "synth leaf.png --repair hole.png --format png8 -o out.png --force";
+    assert_done(&folder.run(&line.split(' ').collect::<Vec<_>>()), line);
+    let pixels = read(&folder, "out.png").color_alpha().unwrap();
+    let kept = pixels.row(0)[0];
+    assert_eq!(kept, LinearRgba::default(), "around a hole bits are kept");
+}
+
+#[test]
 fn what_is_transparent_lends_no_color_to_a_blend() {
     let folder = Folder::new("transparent-blend");
     let color = |color, alpha| move |_| LinearRgba { color, alpha };

@@ -3,7 +3,7 @@
 use super::guides::Values;
 use super::surface::Covered;
 use super::{Args, STEPS, advise, shown};
-use crate::encode::{Cover, Format};
+use crate::encode::{Clear, Cover, Format};
 use crate::error::{Exit, Hint, usage};
 use crate::input;
 use crate::job::{Context, Job};
@@ -49,7 +49,7 @@ pub(super) fn run(args: &Args, context: &Context) -> Result<Exit> {
     };
     let (base, alpha) = covered.bake_base()?;
     let is_deep = covered.input.base.is_deep;
-    let cover = Cover::of(alpha.as_ref(), false);
+    let cover = Cover::of(alpha.as_ref(), false, Clear::NOT_WRAPPED);
     job.write_with_alpha(output, base, cover, is_deep, &args.image)?;
     for (output, (_, example)) in map_outputs.into_iter().zip(&covered.input.maps) {
         let map = covered.bake(&example.map)?;

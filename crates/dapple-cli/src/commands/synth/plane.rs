@@ -3,7 +3,7 @@
 use super::options::{MethodName, PlaneArgs};
 use super::reading::Input;
 use super::{Args, STEPS, advise, inspect, shown};
-use crate::encode::{Cover, Format, map_raster};
+use crate::encode::{Clear, Cover, Format, map_raster};
 use crate::error::{Exit, Hint, usage};
 use crate::input;
 use crate::job::{Context, Job};
@@ -69,12 +69,19 @@ pub(super) fn run(args: &Args, context: &Context) -> Result<Exit> {
     };
     let texture = texture.map_err(advise)?;
     drop(progress);
+    // Around a hole, pixels keep their bits.
+    let clear = match input.hole {
+        Some(_) => Clear::Keep,
+        None => Clear::Bleed {
+            wraps: edges.map(|edges| edges == Edges::Wrap),
+        },
+    };
     let examples = [base].into_iter().chain(maps.iter().map(|(_, map)| map));
     for (output, example) in [output].into_iter().chain(map_outputs).zip(examples) {
         let map = follow(&texture, &example.map)?;
         let alpha = example.alpha.as_ref().map(|alpha| texture.transfer(alpha));
         let alpha = alpha.transpose()?;
-        let cover = Cover::of(alpha.as_ref(), example.is_associated);
+        let cover = Cover::of(alpha.as_ref(), example.is_associated, clear);
         job.write_with_alpha(output, map, cover, example.is_deep, &args.image)?;
     }
     if let Some(output) = sources {

@@ -5,7 +5,7 @@ use super::reading::Input;
 use super::surface::{Product, announce, exemplar_of_mesh};
 use super::{Args, STEPS, advise, shown};
 use crate::args::Alpha;
-use crate::encode::{Cover, Format, default_format, encode, encode_with_alpha};
+use crate::encode::{Clear, Cover, Format, default_format, encode, encode_with_alpha};
 use crate::error::{Exit, Hint, usage};
 use crate::input::{self, Kind, Loaded};
 use crate::job::{Context, Job};
@@ -79,7 +79,7 @@ pub(super) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let (map, alpha) = repaired.mended(&base)?;
     match format {
         None => {
-            let cover = Cover::of(alpha.as_ref(), false);
+            let cover = Cover::of(alpha.as_ref(), false, Clear::Keep);
             job.write_with_alpha(output, map, cover, base.is_deep, &args.image)?;
         }
         Some(format) => {
@@ -207,7 +207,7 @@ fn encoded(map: &Map, alpha: Option<&Raster<f32>>, is_deep: bool) -> Result<Enco
     let format = default_format(map, is_deep);
     let bytes = match (map, alpha) {
         (Map::Color(colors), Some(alpha)) => {
-            encode_with_alpha(colors, Cover::straight(alpha), format)?
+            encode_with_alpha(colors, Cover::straight(alpha, Clear::Keep), format)?
         }
         _ => encode(map, format)?,
     };

@@ -6,7 +6,7 @@ use super::material::{MaterialMaps, alpha_mode, is_of};
 use super::options::AtlasName;
 use super::reading::Input;
 use super::{Args, STEPS, advise, guides, shown};
-use crate::encode::{Cover, Format, default_format, encode, encode_with_alpha, ramped};
+use crate::encode::{Clear, Cover, Format, default_format, encode, encode_with_alpha, ramped};
 use crate::error::{Exit, Hint, usage};
 use crate::input;
 use crate::job::{Context, Job, eprintln_if_possible};
@@ -392,7 +392,7 @@ fn write(args: &Args, claimed: &Claimed, covered: &Covered, job: &mut Job<'_>) -
         args.displace_mesh(&mut model, synthesizer, texture, &covered.input)?;
         return write_model(format, claimed, &model, job);
     }
-    let cover = Cover::of(alpha.as_ref(), false);
+    let cover = Cover::of(alpha.as_ref(), false, Clear::NOT_WRAPPED);
     job.write_with_alpha(claimed.main, base, cover, is_deep, &args.image)
 }
 
@@ -407,7 +407,7 @@ fn model(args: &Args, covered: &Covered, base: &Map, alpha: Option<&Raster<f32>>
     let format = args.image.format.unwrap_or(default);
     let png = match (&base, alpha) {
         (Map::Color(colors), Some(alpha)) => {
-            encode_with_alpha(colors, Cover::straight(alpha), format)?
+            encode_with_alpha(colors, Cover::straight(alpha, Clear::NOT_WRAPPED), format)?
         }
         _ => encode(&base, format)?,
     };
