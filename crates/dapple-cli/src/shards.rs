@@ -34,6 +34,9 @@ pub(crate) struct List {
     pub(crate) size: [u32; 2],
     /// The columns and rows of a shard.
     pub(crate) shard: [u32; 2],
+    /// The columns and rows that neighboring shards share, as a part of their size.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub(crate) overlap: u32,
     /// The names of the maps.
     maps: Vec<String>,
     /// The number of frames of the loop, if it is one.
@@ -56,6 +59,7 @@ pub(crate) struct Task {
 pub(crate) struct Wanted<'a> {
     pub(crate) size: Size,
     pub(crate) shard: Size,
+    pub(crate) overlap: u32,
     pub(crate) maps: &'a [MapKind],
     pub(crate) frames: Option<u32>,
 }
@@ -79,17 +83,23 @@ impl List {
         let Wanted {
             size,
             shard,
+            overlap,
             maps,
             frames,
         } = wanted;
         let all = (version, recipe, images, size, shard, frames);
+        let described = match overlap {
+            0 => serde_json::to_vec(&all)?,
+            overlap => serde_json::to_vec(&(all, overlap))?,
+        };
         Ok(Self {
             dapple: version.to_owned(),
             recipe: typed.to_owned(),
             name: recipe.name.clone(),
-            sha256: output::sha256(&serde_json::to_vec(&all)?),
+            sha256: output::sha256(&described),
             size: size.0,
             shard: shard.0,
+            overlap: *overlap,
             maps: maps.iter().map(|kind| kind.name().to_owned()).collect(),
             frames: *frames,
         })
@@ -177,10 +187,14 @@ impl List {
     /// If a size is zero.
     pub(crate) fn tasks(&self) -> Result<impl Iterator<Item = Task>> {
         let shards = self.shards()?;
-        let size = Size(self.shard);
+        let (size, overlap, steps) = (Size(self.shard), self.overlap, shards.steps());
         let task = move |frame, region: Region| {
-            let place = [0, 1].map(|axis| region.first[axis] / size.0[axis]);
-            let shard = Shard { place, size };
+            let place = [0, 1].map(|axis| region.first[axis] / steps[axis]);
+            let shard = Shard {
+                place,
+                size,
+                overlap,
+            };
             Task {
                 frame,
                 shard,
@@ -209,8 +223,11 @@ impl List {
     pub(crate) fn row(&self, frame: Option<Frame>, row: u32) -> Result<Vec<Task>> {
         let [columns, _] = self.grid()?;
         let task = |column| {
-            let (place, size) = ([column, row], Size(self.shard));
-            let shard = Shard { place, size };
+            let shard = Shard {
+                place: [column, row],
+                size: Size(self.shard),
+                overlap: self.overlap,
+            };
             let region = shard.region(Size(self.size))?;
             Ok(Task {
                 frame,
@@ -233,6 +250,14 @@ impl List {
     }
 
     fn shards(&self) -> Result<Shards> {
-        Ok(Shards::new(self.size, self.shard)?)
+        Ok(Shards::new(self.size, self.shard)?.with_overlap(self.overlap)?)
     }
+}
+
+#[expect(
+    clippy::trivially_copy_pass_by_ref,
+    reason = "serde passes a reference"
+)]
+fn is_zero(overlap: &u32) -> bool {
+    *overlap == 0
 }

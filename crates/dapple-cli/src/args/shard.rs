@@ -1,4 +1,5 @@
-//! A shard of a picture on the command line: `COLUMN,ROW,WxH`, such as `3,7,2048`.
+//! A shard of a picture on the command line: `COLUMN,ROW,WxH`, such as `3,7,2048`, or `3,7,1009+1` for shards that overlap by a
+//! pixel.
 
 use super::Size;
 use crate::error::usage;
@@ -15,6 +16,8 @@ pub(crate) struct Shard {
     pub(crate) place: [u32; 2],
     /// Columns and rows of a shard, in pixels.
     pub(crate) size: Size,
+    /// The number of columns and rows that neighbors share.
+    pub(crate) overlap: u32,
 }
 
 impl Shard {
@@ -24,7 +27,7 @@ impl Shard {
     ///
     /// If the picture has no such shard.
     pub(crate) fn region(self, picture: Size) -> Result<Region> {
-        let shards = Shards::new(picture.0, self.size.0)?;
+        let shards = Shards::new(picture.0, self.size.0)?.with_overlap(self.overlap)?;
         let [columns, rows] = shards.grid();
         let [column, row] = self.place.map(u64::from);
         let index = (column < columns.into()).then_some(row * u64::from(columns) + column);
@@ -51,9 +54,14 @@ impl FromStr for Shard {
         let (Ok(column), Ok(row)) = (column.parse(), row.parse()) else {
             return Err(wrong());
         };
+        let (size, overlap) = match size.split_once('+') {
+            Some((size, overlap)) => (size, overlap.parse().map_err(|_| wrong())?),
+            None => (size, 0),
+        };
         Ok(Self {
             place: [column, row],
             size: size.parse()?,
+            overlap,
         })
     }
 }
@@ -61,7 +69,11 @@ impl FromStr for Shard {
 impl fmt::Display for Shard {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [column, row] = self.place;
-        write!(f, "{column},{row},{}", self.size)
+        write!(f, "{column},{row},{}", self.size)?;
+        match self.overlap {
+            0 => Ok(()),
+            overlap => write!(f, "+{overlap}"),
+        }
     }
 }
 
@@ -80,10 +92,35 @@ mod tests {
         let shard = Shard {
             place: [3, 1],
             size: Size([64, 32]),
+            overlap: 0,
         };
+        assert_eq!(
+            "3,1,64x32+2".parse(),
+            Ok(Shard {
+                overlap: 2,
+                ..shard
+            })
+        );
+        assert_eq!(
+            Shard {
+                overlap: 2,
+                ..shard
+            }
+            .to_string(),
+            "3,1,64x32+2"
+        );
         assert_eq!("3,1,64x32".parse(), Ok(shard));
         assert_eq!(shard.to_string().parse(), Ok(shard));
-        for text in ["", "3,1", "3,1,0", "-1,1,64", "3,1,64,64", "a,b,c"] {
+        for text in [
+            "",
+            "3,1",
+            "3,1,0",
+            "-1,1,64",
+            "3,1,64,64",
+            "a,b,c",
+            "3,1,64+",
+            "3,1,64+-1",
+        ] {
             assert!(text.parse::<Shard>().is_err(), "{text:?} is no shard");
         }
     }
@@ -97,6 +134,8 @@ mod tests {
         };
         assert_eq!(region("0,0,64"), Some(([0, 0], [64, 64])));
         assert_eq!(region("3,1,64"), Some(([192, 64], [8, 36])));
+        assert_eq!(region("1,1,64+1"), Some(([63, 63], [64, 37])));
+        assert_eq!(region("0,0,64+64"), None, "an overlap of all columns");
         assert_eq!(region("4,0,64"), None, "past the last column");
         assert_eq!(region("0,2,64"), None, "past the last row");
     }

@@ -78,9 +78,9 @@ pub(crate) struct Args {
     #[arg(long, value_name = "X,Y,W,H")]
     region: Option<Region>,
 
-    /// Make only this shard, as `dapple shards` lists it: its column and row, from 0, and the size of all shards. It goes into
-    /// a folder of its list in the output, as EXR, and is not made again if it is there.
-    #[arg(long, value_name = "COLUMN,ROW,WxH", conflicts_with_all = ["region", "preset", "sheet", "preview", "format", "name", "json"])]
+    /// Make only this shard, as `dapple shards` lists it: its column and row, from 0, and the size of all shards, with
+    /// their overlap. It goes into a folder of its list in the output, as EXR, and is not made again if it is there.
+    #[arg(long, value_name = "COLUMN,ROW,WxH[+OVERLAP]", conflicts_with_all = ["region", "preset", "sheet", "preview", "format", "name", "json"])]
     shard: Option<Shard>,
 
     /// The picture of a loop that is made: its number, from 1, and how many there are. By default the first.
@@ -226,6 +226,7 @@ impl Work {
         let wanted = args.shard.map(|shard| Wanted {
             size: args.material.size,
             shard: shard.size,
+            overlap: shard.overlap,
             maps: args.material.map_kinds(),
             frames: args.frame.map(Frame::count),
         });

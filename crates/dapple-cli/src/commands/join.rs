@@ -195,15 +195,17 @@ impl Joined {
         let mut writer =
             RowWriter::new(sink, list.size, content(self.kind), encoding).with_context(failed)?;
         let mut range = [f32::INFINITY, f32::NEG_INFINITY];
-        for row in 0..list.grid()?[1] {
-            let row = list.row(frame, row)?;
+        for number in 0..list.grid()?[1] {
+            // Rows and columns that shards share are taken from the upper and the left one.
+            let shared = if number > 0 { list.overlap } else { 0 };
+            let row = list.row(frame, number)?;
             let height = row.first().map_or(0, |task| task.region.size[1]);
             let shards = parallel::map(row.len(), |at| self.read(folder, list, &row[at]));
             let shards = shards.into_iter().collect::<Result<Vec<_>>>()?;
-            for first in (0..height).step_by(BAND as usize) {
+            for first in (shared..height).step_by(BAND as usize) {
                 let rows = first..height.min(first + BAND);
                 progress.add(rows.len() as u64);
-                let rows = self.band(&shards, list.size[0], rows)?;
+                let rows = self.band(&shards, list, rows)?;
                 range = rows.range(range);
                 let rows = LayerRows::Map(Cow::Owned(rows));
                 rows.write(&mut writer).with_context(failed)?;
@@ -229,13 +231,14 @@ impl Joined {
     }
 
     /// Joins some rows of the picture, from shards side by side.
-    fn band(&self, shards: &[ExrImage], width: u32, rows: Range<u32>) -> Result<MapRows> {
-        let size = [width, rows.end - rows.start];
+    fn band(&self, shards: &[ExrImage], list: &List, rows: Range<u32>) -> Result<MapRows> {
+        let size = [list.size[0], rows.end - rows.start];
         let plane = |name: &str| -> Result<Vec<f32>> {
             let mut values = Vec::with_capacity(size[0] as usize * size[1] as usize);
             for row in rows.clone() {
-                for shard in shards {
-                    values.extend_from_slice(shard.plane(name)?.row(row));
+                for (column, shard) in shards.iter().enumerate() {
+                    let shared = if column > 0 { list.overlap as usize } else { 0 };
+                    values.extend_from_slice(&shard.plane(name)?.row(row)[shared..]);
                 }
             }
             Ok(values)

@@ -37,7 +37,12 @@ arrays may not be that long:
 
 On a render farm with Open Job Description, from a template in this folder:
   openjd check job.json
-  openjd run job.json";
+  openjd run job.json
+
+Terrain tiles of engines share the samples along their borders: shards with --overlap 1 have the same bits there. Pictures of
+1009, 2017, 4033 and 8129 pixels fit Unreal, and of 2^n + 1 Unity. `bake --region` writes single tiles as raw heights:
+  dapple shards flagstone --size 257 --shard 129 --overlap 1 --maps height -o tiles/ > list
+  dapple bake flagstone --size 257 --maps height --region 128,0,129,129 -o x1_y0.r16";
 
 dapple::raster::named! {
     /// The formats of a list of shards.
@@ -66,6 +71,10 @@ pub(crate) struct Args {
     /// The columns and rows of a shard, in pixels; those at the right and at the bottom may have fewer.
     #[arg(long, value_name = "WxH")]
     shard: Size,
+
+    /// The columns and rows that neighboring shards share, as a part of their size: 1 for terrain tiles, whose borders are equal.
+    #[arg(long, value_name = "PX", default_value_t = 0)]
+    overlap: u32,
 
     /// The number of frames of a loop, each of them in shards.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
@@ -100,6 +109,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let wanted = Wanted {
         size: args.material.size,
         shard: args.shard,
+        overlap: args.overlap,
         maps,
         frames: args.frames,
     };

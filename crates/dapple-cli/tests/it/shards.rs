@@ -89,6 +89,42 @@ fn shards_of_runs_that_died_are_resumed_and_joined_to_the_bytes_of_the_whole() {
 }
 
 #[test]
+fn shards_that_overlap_share_their_borders_and_are_joined_to_the_bytes_of_the_whole() {
+    let folder = Folder::with_inputs("overlap");
+    let of = "my-rock.toml --size 129x100 --maps height";
+    let lines = list(
+        &folder,
+        &format!("shards {of} --shard 65 --overlap 1 -o parts/"),
+    );
+    assert_eq!(lines.len(), 4, "two beside each other, and two below them");
+    run_all(&folder, &lines);
+    let text = list(
+        &folder,
+        &format!("shards {of} --shard 65 --overlap 1 -o parts/ --format json"),
+    );
+    let document: serde_json::Value = serde_json::from_str(&text.join("\n")).unwrap();
+    let tile = |index: usize| {
+        let file = document["shards"][index]["files"][0].as_str().unwrap();
+        let path = folder.path("parts").join(file);
+        let image = dapple::image::read_image(path, &dapple::image::Limits::default());
+        image.unwrap().gray().unwrap()
+    };
+    let [left, right, below] = [0, 1, 2].map(tile);
+    assert_eq!(
+        [left.size(), right.size(), below.size()],
+        [[65, 65], [65, 65], [65, 36]]
+    );
+    for row in 0..65 {
+        let [a, b] = [left.row(row)[64], right.row(row)[0]];
+        assert_eq!(a.to_bits(), b.to_bits(), "row {row}");
+    }
+    assert_eq!(left.row(64), below.row(0));
+    list(&folder, "join parts/ -o joined.exr");
+    list(&folder, &format!("bake {of} -o whole.exr"));
+    assert!(bytes(&folder, "joined.exr") == bytes(&folder, "whole.exr"));
+}
+
+#[test]
 fn arrays_and_raw_heights_are_joined_to_the_bytes_of_the_whole() {
     let folder = Folder::new("arrays");
     let of = "rock --size 100x70 --maps height";

@@ -24,6 +24,7 @@ use crate::{RecipeError, Region};
 pub struct Shards {
     size: [u32; 2],
     shard: [u32; 2],
+    overlap: u32,
 }
 
 impl Shards {
@@ -42,7 +43,39 @@ impl Shards {
                 RecipeError::check(side > 0, what, side.into(), "at least 1")?;
             }
         }
-        Ok(Self { size, shard })
+        Ok(Self {
+            size,
+            shard,
+            overlap: 0,
+        })
+    }
+
+    /// Lets neighboring shards share `overlap` columns and rows, which are part of the size of a shard; none by default.
+    /// Terrain tiles share one.
+    ///
+    /// # Errors
+    ///
+    /// [`Range`](crate::RecipeErrorKind::Range) unless a shard has more columns and rows than it shares.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use dapple_recipe::{Region, Shards};
+    ///
+    /// let tiles = Shards::new([2017, 2017], [1009, 1009])?.with_overlap(1)?;
+    /// assert_eq!(tiles.grid(), [2, 2]);
+    /// assert_eq!(tiles.get(1), Some(Region { first: [1008, 0], size: [1009, 1009] }));
+    /// # Ok::<(), dapple_recipe::RecipeError>(())
+    /// ```
+    pub fn with_overlap(self, overlap: u32) -> Result<Self, RecipeError> {
+        let [width, height] = self.shard;
+        RecipeError::check(
+            overlap < width.min(height),
+            "overlap of shards",
+            overlap.into(),
+            "less than the sides of a shard",
+        )?;
+        Ok(Self { overlap, ..self })
     }
 
     /// Columns and rows of the picture.
@@ -60,7 +93,17 @@ impl Shards {
     /// The numbers of shards side by side, and one below the other.
     #[must_use]
     pub fn grid(&self) -> [u32; 2] {
-        [0, 1].map(|axis| self.size[axis].div_ceil(self.shard[axis]))
+        let steps = self.steps();
+        [0, 1].map(|axis| {
+            let shared = self.size[axis].saturating_sub(self.overlap).max(1);
+            shared.div_ceil(steps[axis])
+        })
+    }
+
+    /// The columns and rows from one shard to the next.
+    #[must_use]
+    pub fn steps(&self) -> [u32; 2] {
+        self.shard.map(|side| side - self.overlap)
     }
 
     /// The number of shards, at least 1.
@@ -91,7 +134,8 @@ impl Shards {
     /// The shard in this column and row of the grid.
     fn at(&self, place: [u64; 2]) -> Region {
         // Both fit, since they are within the picture.
-        let first = [0, 1].map(|axis| (place[axis] * u64::from(self.shard[axis])) as u32);
+        let steps = self.steps();
+        let first = [0, 1].map(|axis| (place[axis] * u64::from(steps[axis])) as u32);
         let size = [0, 1].map(|axis| self.shard[axis].min(self.size[axis] - first[axis]));
         Region { first, size }
     }
@@ -128,6 +172,43 @@ mod tests {
             assert!(places.is_sorted(), "{places:?}");
             assert_eq!(places.len() as u64, shards.len());
         }
+    }
+
+    #[test]
+    fn neighbors_share_their_overlap_and_nothing_else() {
+        for (size, shard, overlap) in [
+            ([2017, 2017], [1009, 1009], 1),
+            ([100, 70], [33, 9], 1),
+            ([64, 64], [17, 20], 5),
+            ([7, 3], [100, 2], 1),
+            ([3, 2], [5, 5], 4),
+        ] {
+            let shards = Shards::new(size, shard).unwrap();
+            let shards = shards.with_overlap(overlap).unwrap();
+            let [columns, rows] = shards.grid();
+            let at = |column: u32, row: u32| {
+                let index = u64::from(row) * u64::from(columns) + u64::from(column);
+                shards.get(index).unwrap()
+            };
+            for axis in 0..2 {
+                let count = [columns, rows][axis];
+                let along = |place: u32| match axis {
+                    0 => at(place, 0),
+                    _ => at(0, place),
+                };
+                let end = |region: &Region| region.first[axis] + region.size[axis];
+                assert_eq!(along(0).first[axis], 0);
+                assert_eq!(end(&along(count - 1)), size[axis], "{size:?} {shard:?}");
+                for place in 1..count {
+                    let [before, this] = [along(place - 1), along(place)];
+                    assert_eq!(end(&before), this.first[axis] + overlap);
+                    assert_eq!(before.size[axis], shard[axis], "only the last is cropped");
+                    assert!(this.size[axis] > overlap, "it adds something");
+                }
+            }
+        }
+        let error = Shards::new([9, 9], [4, 5]).unwrap().with_overlap(4);
+        assert!(error.unwrap_err().to_string().contains("overlap"));
     }
 
     #[test]

@@ -89,8 +89,12 @@ pub(super) fn template(args: &Args, options: Vec<String>, list: &List) -> Result
     let mut words = vec!["bake".to_owned(), "{{Param.Recipe}}".to_owned()];
     words.extend(options);
     let size = Size(list.shard);
+    let overlap = match list.overlap {
+        0 => String::new(),
+        overlap => format!("+{overlap}"),
+    };
     words.push(format!(
-        "--shard={{{{Task.Param.Column}}}},{{{{Task.Param.Row}}}},{size}"
+        "--shard={{{{Task.Param.Column}}}},{{{{Task.Param.Row}}}},{size}{overlap}"
     ));
     if let Some(count) = list.frames {
         ranges.push(range("Frame", 1, count));
