@@ -38,6 +38,7 @@
     )
 )]
 
+mod changes;
 mod channels;
 mod color_space;
 mod content;
@@ -68,6 +69,7 @@ pub use self::png::{
     decode_png, encode_png, write_color_alpha_png, write_color_png, write_gray_png,
     write_normal_png, write_png,
 };
+pub use changes::{FileChanges, FileStamp};
 pub use channels::Channels;
 pub use color_space::ColorSpace;
 pub use content::{Content, Depth, Encoding};

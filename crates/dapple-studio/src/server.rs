@@ -3,7 +3,8 @@
 //! It answers on 127.0.0.1 alone, and only to a page that was opened with the secret of this run: see `guard.rs`. Each page
 //! has a session, which answers at once, and a thread that draws, of which only the newest state is kept.
 
-mod disk;
+mod browser;
+mod connections;
 mod exports;
 mod files;
 mod flow;
@@ -15,26 +16,23 @@ mod worker;
 
 use crate::message::{Export, Hello, Mode, Named};
 use crate::{Lit, Renderer, StudioError};
-use axum::Router;
-use axum::extract::{Request, State};
+use axum::extract::Request;
 use axum::http::{Method, StatusCode};
 use axum::response::{IntoResponse as _, Response};
-use axum::serve::ListenerExt as _;
+use browser::Way;
 use dapple::color::LinearRgb;
 use dapple::raster::Raster;
 use dapple::recipe::{Images, Memory, Recipe};
-use disk::Disk;
 use exports::Exports;
 use files::Folder;
 use gallery::Gallery;
 use guard::Guard;
 use std::net::Ipv4Addr;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex};
 use std::time::Duration;
 use tokio::net::TcpListener;
-use tokio::sync::Notify;
+use tokio::sync::{Notify, Semaphore};
 
 /// The program around the server. It reads images and makes files, so that they are those of its other commands.
 pub trait Host: Send + Sync {
@@ -82,6 +80,8 @@ pub struct ExportedFile {
 pub struct ServeOptions {
     /// The port; any free one for 0, which is the default.
     pub port: u16,
+    /// The address of the page in browsers, where a proxy forwards it to the port.
+    pub public_url: Option<String>,
     /// Whether the browser is left alone.
     pub no_open: bool,
     /// Whether the server ends when the last page is closed.
@@ -107,10 +107,16 @@ struct Shared {
     memory: Memory,
     /// Small pictures of recipes, by their texts and sides.
     gallery: Gallery,
-    disk: Disk,
-    n_pages: AtomicUsize,
+    /// The places of pages that are not taken.
+    pages: Arc<Semaphore>,
+    /// Exports are made one after the other, whoever asks: each needs the memory of a bake.
+    exporting: Mutex<()>,
+    way: Way,
     closed: Notify,
 }
+
+/// The most pages at once.
+const MOST_PAGES: usize = 16;
 
 /// How long a page may be gone before a server with `once` ends: a page that is loaded again comes back.
 const GRACE: Duration = Duration::from_secs(2);
@@ -126,7 +132,7 @@ pub fn has_page() -> bool {
 ///
 /// # Errors
 ///
-/// If the port is taken, or the folder cannot be read.
+/// If the port is taken, the public URL is none, or the folder cannot be read.
 pub fn serve(
     options: ServeOptions,
     host: Arc<dyn Host>,
@@ -153,10 +159,13 @@ async fn run(
                 .with_hint("leave --port out for any free one")
         })?;
     let port = listener.local_addr().map_or(port, |address| address.port());
-    let guard = Guard::new(port)?;
+    let guard = Guard::new(port, options.public_url.as_deref())?;
     let url = guard.url();
-    let folder = Folder::new(&options.folder)?;
-    let disk = Disk::new(folder.path());
+    let named = options.recipe.as_deref();
+    let folder = Folder::new(
+        &options.folder,
+        named.filter(|name| name.ends_with(".toml")),
+    )?;
     let no_open = options.no_open;
     let shared = Arc::new(Shared {
         options,
@@ -165,29 +174,25 @@ async fn run(
         exports: Exports::default(),
         memory: Renderer::memory(),
         gallery: Gallery::default(),
-        disk,
         folder,
-        n_pages: AtomicUsize::new(0),
+        pages: Arc::new(Semaphore::new(MOST_PAGES)),
+        exporting: Mutex::default(),
+        way: Way::default(),
         closed: Notify::new(),
     });
     // The first greeting is made while the browser begins.
     drop(std::thread::spawn(Hello::new));
     tell(&url);
     if !no_open {
-        // Where no browser can be opened, the address was told.
-        let _ = open::that_detached(&url);
+        shared.way.open(&url);
+        let shared = shared.clone();
+        drop(tokio::spawn(async move {
+            tokio::time::sleep(browser::LONGEST).await;
+            shared.way.close();
+        }));
     }
-    let end = shared.clone();
-    let router = Router::new().fallback(answer).with_state(shared);
-    // Small messages do not wait for others.
-    let listener = listener.tap_io(|socket| {
-        let _ = socket.set_nodelay(true);
-    });
-    let served =
-        axum::serve(listener, router).with_graceful_shutdown(async move { end.ended().await });
-    served
-        .await
-        .map_err(|error| StudioError::new(format!("the server has ended: {error}")))
+    connections::serve(listener, shared).await;
+    Ok(())
 }
 
 impl Shared {
@@ -210,7 +215,7 @@ impl Shared {
                 continue;
             }
             tokio::time::sleep(GRACE).await;
-            if self.n_pages.load(Ordering::SeqCst) == 0 {
+            if self.pages.available_permits() == MOST_PAGES {
                 return;
             }
         }
@@ -218,17 +223,17 @@ impl Shared {
 }
 
 /// Answers a request.
-async fn answer(State(shared): State<Arc<Shared>>, request: Request) -> Response {
+async fn answer(shared: Arc<Shared>, request: Request) -> Response {
     let mut response = match shared.guard.check(&request) {
         Err(refusal) => (StatusCode::FORBIDDEN, refusal).into_response(),
-        Ok(()) => route(shared.clone(), request).await,
+        Ok(()) => route(shared, request).await,
     };
-    shared.guard.protect(response.headers_mut());
+    Guard::protect(response.headers_mut());
     response
 }
 
 async fn route(shared: Arc<Shared>, request: Request) -> Response {
-    if request.method() != Method::GET {
+    if !matches!(*request.method(), Method::GET | Method::HEAD) {
         return StatusCode::METHOD_NOT_ALLOWED.into_response();
     }
     let path = request.uri().path().to_owned();

@@ -23,10 +23,14 @@ Examples:
   dapple studio flagstone
   dapple studio my-rock.toml
   dapple studio --port 7878 --no-open giraffe
+  dapple studio --port 7878 --no-open --public-url https://name-7878.example/ giraffe
 
 The page shows the maps of a recipe while it is changed, as text, by sliders or as a graph. It is
-served to this machine alone, under the address that is printed, and ends with Ctrl-C. Files are
-read from the recipe's folder, and written only when they are saved.";
+served to this machine alone, under the address that is printed, and ends with Ctrl-C. Recipes and
+images are read from the recipe's folder, and recipes are written only when they are saved.
+
+A forwarded port (ssh, containers) needs no option: open the printed address with that port. Give
+--public-url where a proxy has a name of its own. Keep the address to yourself: it opens the page.";
 
 /// The warning of a program that was built without the page.
 const NO_PAGE: &str = "warning: this program was built without the page: `cargo xtask studio` in the repository of dapple builds \
@@ -51,6 +55,12 @@ pub(crate) struct PageArgs {
     /// The port; by default any free one.
     #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true)]
     port: u16,
+
+    /// The page's address in the browser, where a proxy forwards it to the port.
+    ///
+    /// A forwarded port of localhost needs none.
+    #[arg(long, value_name = "URL")]
+    public_url: Option<String>,
 
     /// Open no browser, only print the address.
     #[arg(long)]
@@ -94,6 +104,7 @@ impl PageArgs {
         let has_page = self.dist.is_some() || has_page();
         let options = ServeOptions {
             port: self.port,
+            public_url: self.public_url.clone(),
             no_open: self.no_open,
             once: self.once,
             mode,

@@ -4,11 +4,9 @@ use super::bake;
 use crate::baking::read_recipe;
 use crate::error::{Exit, report};
 use crate::job::{Context, eprintln_if_possible};
-use anyhow::{Context as _, Result, anyhow};
-use notify::{Event, RecommendedWatcher, RecursiveMode, Watcher};
-use std::ffi::OsString;
+use anyhow::Result;
+use dapple::image::FileChanges;
 use std::path::{Path, PathBuf};
-use std::sync::mpsc::{Receiver, channel};
 use std::time::Duration;
 
 const EXAMPLES: &str = "\
@@ -23,8 +21,8 @@ With -o each save is baked small first, so that something can be seen at once, a
 
 /// The longer side of the first bake after a save, in pixels.
 const SMALL: u32 = 256;
-/// The time without changes after which files are read: programs write in several steps.
-const QUIET: Duration = Duration::from_millis(60);
+/// Time between two looks at the files.
+const LOOK: Duration = Duration::from_millis(60);
 
 /// Bake a recipe again at every save of it or of its images, small first.
 #[derive(clap::Args, Debug)]
@@ -53,17 +51,12 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
             .page
             .serve(Some(&recipe.to_string_lossy()), mode, context);
     }
-    let (sender, changes) = channel();
-    let watcher = notify::recommended_watcher(move |event| {
-        // If the receiver is gone, the process is about to end.
-        let _ = sender.send(event);
-    });
-    let mut watcher = watcher.context("changes of files cannot be watched")?;
     let sizes = args.bake.sizes(SMALL);
     let mut may_replace = args.bake.may_replace();
     loop {
-        let names = watch(&mut watcher, recipe)?;
-        let mut has_changed = false;
+        let files = files_of(recipe);
+        // Before they are read: what is written from now on is a change.
+        let mut changes = FileChanges::new(&files);
         for &size in &sizes {
             match bake::run(&args.bake.at(size, may_replace), context) {
                 Ok(_) => may_replace = true,
@@ -73,59 +66,26 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
                 }
                 Err(error) => return Err(error),
             }
-            has_changed = changes.try_iter().any(|event| is_of(&event, &names));
-            if has_changed {
+            if changes.has_changed() {
                 break;
             }
         }
-        if !has_changed {
-            wait(&changes, &names)?;
+        while !changes.look(&files) {
+            std::thread::sleep(LOOK);
         }
-        // A file that is written in several steps is read once.
-        while changes.recv_timeout(QUIET).is_ok() {}
         if !context.quiet {
             eprintln_if_possible(&format!("{} has changed", recipe.display()));
         }
     }
 }
 
-/// Watches the folders of a recipe and its images, and returns the names of these files.
-fn watch(watcher: &mut RecommendedWatcher, recipe: &Path) -> Result<Vec<OsString>> {
+/// The files of a recipe: its own, and its images.
+fn files_of(recipe: &Path) -> Vec<PathBuf> {
     let mut files = vec![recipe.to_owned()];
     // The images of a recipe that cannot be read are not known yet.
     if let Ok((content, folder)) = read_recipe(&recipe.to_string_lossy()) {
         let images = content.image_files();
         files.extend(images.into_iter().map(|file| folder.join(file)));
     }
-    let mut names = Vec::new();
-    for file in &files {
-        let folder = match file.parent() {
-            Some(folder) if !folder.as_os_str().is_empty() => folder,
-            _ => Path::new("."),
-        };
-        // Programs replace files by new ones, so the folder is watched.
-        let watched = watcher.watch(folder, RecursiveMode::NonRecursive);
-        watched.with_context(|| format!("{} cannot be watched", folder.display()))?;
-        names.extend(file.file_name().map(OsString::from));
-    }
-    Ok(names)
-}
-
-/// Waits until one of the files has changed.
-fn wait(changes: &Receiver<notify::Result<Event>>, names: &[OsString]) -> Result<()> {
-    let mut events = changes.iter();
-    match events.find(|event| is_of(event, names)) {
-        Some(_) => Ok(()),
-        None => Err(anyhow!("changes of files are no longer reported")),
-    }
-}
-
-/// Whether a change is to the content of one of the files.
-fn is_of(event: &notify::Result<Event>, names: &[OsString]) -> bool {
-    let Ok(event) = event else { return false };
-    let is_named = |path: &PathBuf| {
-        path.file_name()
-            .is_some_and(|name| names.iter().any(|other| other == name))
-    };
-    !event.kind.is_access() && event.paths.iter().any(is_named)
+    files
 }

@@ -83,3 +83,50 @@ fn every_save_is_baked_and_a_mistake_leaves_the_files() {
     fs::rename(folder.path("aside"), &recipe).unwrap();
     wait_for(&mut watching, &height, 0.75, "a save after a mistake");
 }
+
+#[test]
+#[cfg(unix)]
+fn saves_through_links_are_baked_while_another_file_changes_all_the_time() {
+    use std::sync::atomic::{AtomicBool, Ordering};
+    let folder = Folder::new("watch-link");
+    let path = |name: &str| folder.path(name);
+    fs::create_dir(path("real")).unwrap();
+    for name in ["real/a.toml", "real/b.toml"] {
+        fs::write(path(name), flat("0.25")).unwrap();
+    }
+    let link = |to: &str| {
+        let _ = fs::remove_file(path("own.toml"));
+        std::os::unix::fs::symlink(to, path("own.toml")).unwrap();
+    };
+    link("real/a.toml");
+    let words = [
+        "watch", "own.toml", "-o", "out/", "--size", "300x200", "--maps", "height", "--quiet",
+    ];
+    let child = folder
+        .command(&words)
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    let mut watching = Watching(child);
+    let height = path("out/own_height.png");
+    let is_over = AtomicBool::new(false);
+    std::thread::scope(|scope| {
+        scope.spawn(|| {
+            while !is_over.load(Ordering::SeqCst) {
+                fs::write(path("log.txt"), "more").unwrap();
+                std::thread::sleep(Duration::from_millis(10));
+            }
+        });
+        wait_for(&mut watching, &height, 0.25, "the first bake");
+        fs::write(path("real/a.toml"), flat("0.5")).unwrap();
+        wait_for(&mut watching, &height, 0.5, "a save in place");
+        fs::write(path("real/aside"), flat("0.75")).unwrap();
+        fs::rename(path("real/aside"), path("real/a.toml")).unwrap();
+        wait_for(&mut watching, &height, 0.75, "a save by renaming");
+        link("real/b.toml");
+        wait_for(&mut watching, &height, 0.25, "a link that leads elsewhere");
+        fs::write(path("real/b.toml"), flat("0.125")).unwrap();
+        wait_for(&mut watching, &height, 0.125, "a save where it leads then");
+        is_over.store(true, Ordering::SeqCst);
+    });
+}

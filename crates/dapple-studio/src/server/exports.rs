@@ -3,6 +3,7 @@
 use super::ExportedFile;
 use super::page::content_type;
 use crate::message::FileSize;
+use axum::body::Bytes;
 use axum::http::StatusCode;
 use axum::http::header::{CONTENT_DISPOSITION, CONTENT_TYPE};
 use axum::response::{IntoResponse as _, Response};
@@ -21,7 +22,8 @@ pub(super) struct Exports {
 #[derive(Default)]
 struct Made {
     count: u64,
-    exports: VecDeque<(String, Vec<ExportedFile>)>,
+    /// The content of a file is shared with the downloads of it.
+    exports: VecDeque<(String, Vec<(String, Bytes)>)>,
 }
 
 impl Exports {
@@ -31,7 +33,9 @@ impl Exports {
             name: file.name.clone(),
             bytes: file.bytes.len(),
         });
-        let sizes = sizes.collect();
+        let sizes: Vec<_> = sizes.collect();
+        let files = files.into_iter().map(|file| (file.name, file.bytes.into()));
+        let files = files.collect();
         let mut made = self.lock();
         made.count += 1;
         let id = made.count.to_string();
@@ -50,13 +54,12 @@ impl Exports {
         let made = self.lock();
         let export = made.exports.iter().find(|(known, _)| known == id);
         let file =
-            export.and_then(|(_, files)| files.iter().find(|file| is_name(name, &file.name)));
-        let Some(file) = file else {
+            export.and_then(|(_, files)| files.iter().find(|(known, _)| is_name(name, known)));
+        let Some((name, bytes)) = file else {
             return StatusCode::NOT_FOUND.into_response();
         };
         // Names are made of plain characters: those of recipes and maps.
-        let plain: String = file
-            .name
+        let plain: String = name
             .chars()
             .map(|c| {
                 if c.is_ascii_graphic() && c != '"' && c != '\\' {
@@ -67,13 +70,13 @@ impl Exports {
             })
             .collect();
         let headers = [
-            (CONTENT_TYPE, content_type(&file.name).to_owned()),
+            (CONTENT_TYPE, content_type(name).to_owned()),
             (
                 CONTENT_DISPOSITION,
                 format!("attachment; filename=\"{plain}\""),
             ),
         ];
-        (headers, file.bytes.clone()).into_response()
+        (headers, bytes.clone()).into_response()
     }
 
     fn lock(&self) -> MutexGuard<'_, Made> {

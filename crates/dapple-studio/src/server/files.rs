@@ -10,15 +10,19 @@ use crate::StudioError;
 use axum::http::StatusCode;
 use axum::http::header::CONTENT_TYPE;
 use axum::response::{IntoResponse as _, Response};
+use dapple::image::FileStamp;
 use dapple::recipe::{MAX_TEXT, Recipe};
 use sha2::{Digest as _, Sha256};
 use std::fs::{self, File};
 use std::io::Read as _;
 use std::path::{Component, Path, PathBuf};
+use toml_edit::DocumentMut;
 
-/// A folder, without what links in it lead to elsewhere.
+/// A folder, without what is hidden and what links in it lead to elsewhere.
 pub(super) struct Folder {
     path: PathBuf,
+    /// The recipe that the user named: it is read and written wherever it is linked from, and whatever it contains.
+    named: Option<String>,
 }
 
 /// The most recipes that are listed.
@@ -29,7 +33,7 @@ const IMAGES: [&str; 4] = ["png", "exr", "jpg", "jpeg"];
 const MOST_IMAGE_BYTES: u64 = 1 << 28;
 
 impl Folder {
-    pub(super) fn new(path: &Path) -> Result<Self, StudioError> {
+    pub(super) fn new(path: &Path, named: Option<&str>) -> Result<Self, StudioError> {
         let path = if path.as_os_str().is_empty() {
             Path::new(".")
         } else {
@@ -39,7 +43,8 @@ impl Folder {
         let path = path.map_err(|error| {
             StudioError::new(format!("the folder of the recipe cannot be read: {error}"))
         })?;
-        Ok(Self { path })
+        let named = named.map(str::to_owned);
+        Ok(Self { path, named })
     }
 
     pub(super) fn path(&self) -> &Path {
@@ -55,21 +60,16 @@ impl Folder {
             .take(4 * MOST_RECIPES)
             .collect();
         names.sort();
-        // Other programs have files in TOML, too.
-        let is_recipe = |name: &String| {
-            self.read(name)
-                .is_ok_and(|(text, _)| text.contains("dapple"))
-        };
         names
             .into_iter()
-            .filter(is_recipe)
+            .filter(|name| self.read(name).is_ok())
             .take(MOST_RECIPES)
             .collect()
     }
 
     /// The text and the hash of a recipe.
     pub(super) fn read(&self, name: &str) -> Result<(String, String), StudioError> {
-        let path = self.inside(Path::new(name))?;
+        let path = self.recipe(name)?;
         let cannot = |error: &dyn std::fmt::Display| {
             StudioError::new(format!("{name} cannot be read: {error}"))
         };
@@ -84,6 +84,9 @@ impl Folder {
         let hash = hash(&bytes);
         let text =
             String::from_utf8(bytes).map_err(|_| StudioError::new(format!("{name} is no text")))?;
+        if !self.is_named(name) && !is_recipe(&text) {
+            return Err(no_recipe(name));
+        }
         Ok((text, hash))
     }
 
@@ -95,30 +98,24 @@ impl Folder {
         seen: Option<&str>,
         overwrite: bool,
     ) -> Result<String, StudioError> {
-        let is_plain = |c: char| c.is_alphanumeric() || " _-.".contains(c);
-        let is_name =
-            name.ends_with(".toml") && !name.starts_with('.') && name.chars().all(is_plain);
-        if !is_name || name.len() > 200 {
-            let error = StudioError::new(format!("{name:?} is no name for a recipe"));
-            return Err(
-                error.with_hint("take letters, digits, `_` and `-`, and let it end in .toml")
-            );
+        if !self.is_named(name) {
+            check_name(name)?;
+            if !is_recipe(text) {
+                return Err(no_recipe("the text"));
+            }
         }
         if text.len() > MAX_TEXT {
             return Err(StudioError::new("the text is longer than 4 MiB"));
         }
-        let path = self.path.join(name);
-        if let Ok(found) = fs::symlink_metadata(&path) {
-            if !found.is_file() {
-                return Err(StudioError::new(format!(
-                    "{name} is no file that can be replaced"
-                )));
-            }
+        let mut path = self.path.join(name);
+        if fs::symlink_metadata(&path).is_ok() {
             let (_, hash) = self.read(name)?;
             if !overwrite && seen != Some(&hash) {
                 let message = format!("{name} has changed since it was read, or is there already");
                 return Err(StudioError::new(message).with_reason("changed_on_disk"));
             }
+            // What a link leads to is replaced, and not the link.
+            path = self.recipe(name)?;
         }
         dapple::image::replace(&path, text.as_bytes())
             .map_err(|error| StudioError::new(format!("{name} cannot be written: {error}")))?;
@@ -134,21 +131,21 @@ impl Folder {
         Ok(())
     }
 
-    /// When the images of a recipe were written last, to know whether they have changed.
-    pub(super) fn image_times(
-        &self,
-        recipe: &Recipe,
-    ) -> Vec<(String, Option<std::time::SystemTime>)> {
-        let time = |file: &str| {
-            fs::metadata(self.path.join(file))
-                .and_then(|data| data.modified())
-                .ok()
-        };
-        recipe
-            .image_files()
-            .into_iter()
-            .map(|file| (file.to_owned(), time(file)))
+    /// The images of a recipe, and how their files were found, to know whether they have changed.
+    pub(super) fn image_stamps(&self, recipe: &Recipe) -> Vec<(PathBuf, Option<FileStamp>)> {
+        let files = self.image_paths(recipe).into_iter();
+        files
+            .map(|file| {
+                let stamp = FileStamp::of(&file);
+                (file, stamp)
+            })
             .collect()
+    }
+
+    /// The paths of the images of a recipe.
+    pub(super) fn image_paths(&self, recipe: &Recipe) -> Vec<PathBuf> {
+        let files = recipe.image_files().into_iter();
+        files.map(|file| self.path.join(file)).collect()
     }
 
     /// An image, for the page.
@@ -168,27 +165,105 @@ impl Folder {
         }
     }
 
-    /// The path of a file in the folder, wherever links lead.
+    /// Whether a name is that of the recipe that the user named.
+    fn is_named(&self, name: &str) -> bool {
+        self.named.as_deref() == Some(name)
+    }
+
+    /// The path of a recipe, wherever links lead.
+    fn recipe(&self, name: &str) -> Result<PathBuf, StudioError> {
+        if self.is_named(name) {
+            let path = self.path.join(name).canonicalize();
+            let path =
+                path.map_err(|error| StudioError::new(format!("{name} cannot be read: {error}")))?;
+            if path.is_file() {
+                return Ok(path);
+            }
+        }
+        if !name.ends_with(".toml") {
+            return Err(no_recipe(name));
+        }
+        self.inside(Path::new(name))
+    }
+
+    /// The path of a file in the folder, wherever links lead; not of one that is hidden, there or here.
     fn inside(&self, file: &Path) -> Result<PathBuf, StudioError> {
-        let outside = || {
-            StudioError::new(format!(
-                "{} is not in the folder of the recipe",
-                file.display()
-            ))
-        };
+        let outside = |why: &str| StudioError::new(format!("{} {why}", file.display()));
+        let elsewhere = "is not in the folder of the recipe";
         let is_within = file
             .components()
             .all(|part| matches!(part, Component::Normal(_)));
         if !is_within || file.as_os_str().is_empty() {
-            return Err(outside());
+            return Err(outside(elsewhere));
         }
         let path = self.path.join(file).canonicalize();
         let path = path.map_err(|error| {
             StudioError::new(format!("{} cannot be read: {error}", file.display()))
         })?;
-        let is_file = path.starts_with(&self.path) && path.is_file();
-        if is_file { Ok(path) } else { Err(outside()) }
+        let Ok(within) = path.strip_prefix(&self.path) else {
+            return Err(outside(elsewhere));
+        };
+        if is_hidden(file) || is_hidden(within) {
+            return Err(outside("is hidden, or in a hidden folder"));
+        }
+        if path.is_file() {
+            Ok(path)
+        } else {
+            Err(outside("is no file"))
+        }
     }
+}
+
+/// Whether a part of a path begins with a dot.
+fn is_hidden(path: &Path) -> bool {
+    path.components()
+        .any(|part| part.as_os_str().as_encoded_bytes().starts_with(b"."))
+}
+
+/// Whether a text is a recipe: it has the key `dapple`, and other programs' files in TOML have not. A text that is no
+/// TOML, as long as somebody writes it, has a line with this key before its first table.
+fn is_recipe(text: &str) -> bool {
+    if let Ok(document) = text.parse::<DocumentMut>() {
+        return document.contains_key("dapple");
+    }
+    let is_key = |line: &str| {
+        let rest = line.trim_start_matches('\u{feff}').trim_start();
+        rest.strip_prefix("dapple")
+            .is_some_and(|rest| rest.trim_start().starts_with('='))
+    };
+    text.lines()
+        .take_while(|line| !line.trim_start().starts_with('['))
+        .any(is_key)
+}
+
+fn no_recipe(name: &str) -> StudioError {
+    StudioError::new(format!("{name} is no recipe"))
+        .with_hint("a recipe is a file that ends in .toml and has `dapple = 1` at its top")
+}
+
+/// Refuses a name for a new recipe that means something to a system or a shell.
+fn check_name(name: &str) -> Result<(), StudioError> {
+    let is_plain = |c: char| c.is_alphanumeric() || " _-.".contains(c);
+    let is_name = name.ends_with(".toml")
+        && !name.starts_with('.')
+        && name.chars().all(is_plain)
+        && name.len() <= 200;
+    let wrong = || StudioError::new(format!("{name:?} is no name for a recipe"));
+    if !is_name {
+        let hint = "take letters, digits, `_` and `-`, and let it end in .toml";
+        return Err(wrong().with_hint(hint));
+    }
+    // Windows has devices of these names, whatever follows a dot.
+    let stem = name.split('.').next().unwrap_or_default().trim_end();
+    let stem = stem.to_ascii_uppercase();
+    let is_numbered = ["COM", "LPT"].iter().any(|port| {
+        let number = stem.strip_prefix(port);
+        number.is_some_and(|number| number.chars().count() == 1 && number.parse::<u8>().is_ok())
+    });
+    if is_numbered || ["CON", "PRN", "AUX", "NUL"].contains(&stem.as_str()) {
+        return Err(wrong().with_hint("Windows keeps this name for a device"));
+    }
+    Ok(())
 }
 
 fn check_ending(name: &str) -> Result<(), StudioError> {

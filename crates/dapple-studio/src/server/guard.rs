@@ -1,29 +1,37 @@
 //! Who may ask: only a page of this server, opened with the secret of this run.
 //!
-//! A page of another site can send requests to 127.0.0.1, and by a name of its own that leads there even read the answers.
-//! So the name of the host must be ours, a request that says where it comes from must come from our page, and what shows
-//! anything of the user needs the secret, which is in no request that another page could see or make.
+//! A page of another site can send requests to 127.0.0.1, and by a name of its own that leads there (DNS rebinding) even
+//! read the answers. So a request must name a loopback host, which nobody else can own, with any port, since a port may
+//! be forwarded; or the host of the public URL. Its origin must be that host, and what shows anything of the user needs
+//! the secret, which is in no request that another page could see or make.
 
 use crate::StudioError;
 use axum::extract::Request;
 use axum::http::header::{
     CACHE_CONTROL, CONTENT_SECURITY_POLICY, HOST, ORIGIN, REFERRER_POLICY, X_CONTENT_TYPE_OPTIONS,
 };
-use axum::http::{HeaderMap, HeaderName, HeaderValue};
+use axum::http::{HeaderMap, HeaderName, HeaderValue, Uri};
 use std::fmt::Write as _;
+use std::net::Ipv4Addr;
 
 /// The secret of a run, and the names that the server has.
 pub(super) struct Guard {
     port: u16,
     token: String,
+    public: Option<PublicUrl>,
 }
 
 /// The header in which the secret may be.
 const TOKEN_HEADER: &str = "x-dapple-token";
 
+/// What a page may load, run and connect to: this server alone. `'self'` is the origin that the browser sees, and its
+/// sockets, whatever port is forwarded.
+const POLICY: &str = "default-src 'self'; img-src 'self' blob: data:; worker-src 'self' blob:; \
+    connect-src 'self'; object-src 'none'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+
 impl Guard {
     /// A guard with a new secret of 128 bits.
-    pub(super) fn new(port: u16) -> Result<Self, StudioError> {
+    pub(super) fn new(port: u16, public_url: Option<&str>) -> Result<Self, StudioError> {
         let mut bytes = [0; 16];
         getrandom::fill(&mut bytes).map_err(|error| {
             StudioError::new(format!("the system gives no random numbers: {error}"))
@@ -32,37 +40,46 @@ impl Guard {
             write!(token, "{byte:02x}").unwrap_or_default();
             token
         });
-        Ok(Self { port, token })
+        Ok(Self {
+            port,
+            token,
+            public: public_url.map(PublicUrl::new).transpose()?,
+        })
     }
 
     /// The address to open. The secret is in its fragment, which browsers do not send.
     pub(super) fn url(&self) -> String {
-        format!("http://127.0.0.1:{}/#t={}", self.port, self.token)
+        let token = &self.token;
+        match &self.public {
+            Some(public) => format!("{}#t={token}", public.url),
+            None => format!("http://127.0.0.1:{}/#t={token}", self.port),
+        }
     }
 
-    /// Refuses a request from elsewhere.
-    pub(super) fn check(&self, request: &Request) -> Result<(), &'static str> {
+    /// Refuses a request from elsewhere, and says what to do.
+    pub(super) fn check(&self, request: &Request) -> Result<(), String> {
         let headers = request.headers();
         let path = request.uri().path();
-        if !one(headers, HOST).is_some_and(|host| self.is_ours(host)) {
-            return Err("the host is not this server");
-        }
+        let Some(host) = one(headers, HOST).filter(|host| self.is_ours(host)) else {
+            return Err(self.wrong_host());
+        };
         match one(headers, ORIGIN) {
-            Some(origin)
-                if !origin
-                    .strip_prefix("http://")
-                    .is_some_and(|host| self.is_ours(host)) =>
-            {
-                return Err("the request comes from another page");
+            Some(origin) if !self.is_origin_of(origin, host) => {
+                return Err(
+                    "The request comes from another page: its Origin is not its Host. Where a proxy changes one of \
+                     them, give its address to `dapple studio --public-url URL`.\n"
+                        .to_owned(),
+                );
             }
             None if path == "/ws" || headers.contains_key(ORIGIN) => {
-                return Err("the request does not say where it comes from");
+                return Err(
+                    "The request does not say where it comes from: it has no Origin.\n".to_owned(),
+                );
             }
             _ => {}
         }
-        let site = headers.get("sec-fetch-site").map(HeaderValue::as_bytes);
-        if !matches!(site, None | Some(b"same-origin" | b"none")) {
-            return Err("the request comes from another site");
+        if !is_from_here(headers, path) {
+            return Err("The request comes from another site.\n".to_owned());
         }
         let is_open = !["/ws", "/export/", "/image/"]
             .iter()
@@ -70,20 +87,16 @@ impl Guard {
         if is_open || self.has_token(request) {
             return Ok(());
         }
-        Err("the secret of this run is missing or wrong; open the address that the command printed")
+        Err(
+            "The secret of this run is missing or wrong: open the address that the command printed, with all that \
+             follows #.\n"
+                .to_owned(),
+        )
     }
 
     /// Adds the headers that keep others from using a response.
-    pub(super) fn protect(&self, headers: &mut HeaderMap) {
-        let port = self.port;
-        let policy = format!(
-            "default-src 'self'; img-src 'self' blob: data:; worker-src 'self' blob:; \
-             connect-src 'self' ws://127.0.0.1:{port} ws://localhost:{port}; object-src 'none'; base-uri 'none'; \
-             form-action 'none'; frame-ancestors 'none'"
-        );
-        if let Ok(policy) = HeaderValue::from_str(&policy) {
-            headers.insert(CONTENT_SECURITY_POLICY, policy);
-        }
+    pub(super) fn protect(headers: &mut HeaderMap) {
+        headers.insert(CONTENT_SECURITY_POLICY, HeaderValue::from_static(POLICY));
         headers.insert(X_CONTENT_TYPE_OPTIONS, HeaderValue::from_static("nosniff"));
         headers.insert(REFERRER_POLICY, HeaderValue::from_static("no-referrer"));
         headers.insert(CACHE_CONTROL, HeaderValue::from_static("no-store"));
@@ -94,8 +107,29 @@ impl Guard {
     }
 
     fn is_ours(&self, host: &str) -> bool {
+        let is_public = |public: &PublicUrl| public.authority == public.shortened(host);
+        is_loopback(host) || self.public.as_ref().is_some_and(is_public)
+    }
+
+    /// Whether an origin is that of a host, or of the public URL, whose proxy may call this server by another name.
+    fn is_origin_of(&self, origin: &str, host: &str) -> bool {
+        let authority = ["http://", "https://"]
+            .iter()
+            .find_map(|scheme| origin.strip_prefix(scheme));
+        let is_public = |public: &PublicUrl| {
+            origin.eq_ignore_ascii_case(&format!("{}://{}", public.scheme, public.authority))
+        };
+        authority.is_some_and(|authority| authority.eq_ignore_ascii_case(host))
+            || self.public.as_ref().is_some_and(is_public)
+    }
+
+    fn wrong_host(&self) -> String {
         let port = self.port;
-        host == format!("127.0.0.1:{port}") || host == format!("localhost:{port}")
+        format!(
+            "dapple studio does not answer to this name. Open http://127.0.0.1:{port}/ or http://localhost:{port}/, with \
+             what follows # in the address that the command printed; a forwarded port may be another.\nWhere a proxy has a \
+             name of its own, start the studio with it: dapple studio --public-url https://NAME/\n"
+        )
     }
 
     fn has_token(&self, request: &Request) -> bool {
@@ -109,6 +143,77 @@ impl Guard {
             .or(query)
             .is_some_and(|given| is_same(given, &self.token))
     }
+}
+
+/// The address of the page in browsers, where a proxy forwards it.
+struct PublicUrl {
+    /// The address of the page, which ends with a slash.
+    url: String,
+    scheme: &'static str,
+    /// The host in lowercase, with its port unless that is the default of the scheme.
+    authority: String,
+}
+
+impl PublicUrl {
+    fn new(url: &str) -> Result<Self, StudioError> {
+        let wrong = || {
+            StudioError::new(format!("{url:?} is no address of a page"))
+                .with_hint("give it as in the browser: https://name.example/ or http://name.example:8080/path/")
+        };
+        let uri: Uri = url.parse().map_err(|_| wrong())?;
+        let scheme = match uri.scheme_str() {
+            Some("http") => "http",
+            Some("https") => "https",
+            _ => return Err(wrong()),
+        };
+        let authority = uri.authority().ok_or_else(wrong)?.as_str();
+        if authority.contains('@') || uri.query().is_some() || url.contains('#') {
+            return Err(wrong());
+        }
+        let authority = shortened(scheme, authority);
+        let path = uri.path().trim_end_matches('/');
+        Ok(Self {
+            url: format!("{scheme}://{authority}{path}/"),
+            scheme,
+            authority,
+        })
+    }
+
+    /// A host as browsers write it under the scheme of this address.
+    fn shortened(&self, host: &str) -> String {
+        shortened(self.scheme, host)
+    }
+}
+
+/// A host in lowercase, without a port that is the default of its scheme.
+fn shortened(scheme: &str, host: &str) -> String {
+    let default = if scheme == "https" { ":443" } else { ":80" };
+    let host = host.to_ascii_lowercase();
+    host.strip_suffix(default).unwrap_or(&host).to_owned()
+}
+
+/// Whether a host is this machine, by a name that no server of names can lead elsewhere; with any port, or none.
+fn is_loopback(host: &str) -> bool {
+    let is_port = |port: &str| !port.is_empty() && port.bytes().all(|digit| digit.is_ascii_digit());
+    let name = match host.rsplit_once(':') {
+        Some((name, port)) if is_port(port) => name,
+        _ => host,
+    };
+    let is_address = |name: &str| {
+        name.parse::<Ipv4Addr>()
+            .is_ok_and(|address| address.is_loopback())
+    };
+    name.eq_ignore_ascii_case("localhost") || name == "[::1]" || is_address(name)
+}
+
+/// Whether the browser says that a request comes from our page, or from a person: by an address that was typed, or by a
+/// link that opens the page itself, which shows nothing without the secret.
+fn is_from_here(headers: &HeaderMap, path: &str) -> bool {
+    let of = |name: &str| headers.get(name).map(HeaderValue::as_bytes);
+    let opens_page = path == "/"
+        && of("sec-fetch-mode") == Some(b"navigate")
+        && of("sec-fetch-dest") == Some(b"document");
+    opens_page || matches!(of("sec-fetch-site"), None | Some(b"same-origin" | b"none"))
 }
 
 /// The only value of a header.

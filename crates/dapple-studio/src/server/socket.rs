@@ -1,7 +1,6 @@
 //! The socket of a page: messages in, messages and pictures out.
 
 use super::Shared;
-use super::disk::QUIET;
 use super::files::decoded;
 use super::flow::Flow;
 use super::worker::{Sample, Worker};
@@ -11,38 +10,41 @@ use axum::extract::ws::{Message, WebSocket, WebSocketUpgrade};
 use axum::extract::{FromRequestParts as _, Request as HttpRequest};
 use axum::http::StatusCode;
 use axum::response::{IntoResponse as _, Response};
+use dapple::image::FileChanges;
 use dapple::recipe::{MAX_TEXT, Recipe};
+use std::path::PathBuf;
 use std::sync::Arc;
-use std::sync::atomic::Ordering;
+use std::time::Duration;
 use tokio::sync::mpsc::unbounded_channel;
+use tokio::time::{MissedTickBehavior, interval};
 
 /// The most bytes of a message: a text of the largest recipe, with the signs that JSON adds.
 const MAX_MESSAGE: usize = 2 * MAX_TEXT;
-/// The most pages at once.
-const MOST_PAGES: usize = 16;
+/// Time between two looks at the files that a page shows.
+const LOOK: Duration = Duration::from_millis(100);
 
 /// Makes a socket of a request.
 pub(super) async fn upgrade(shared: Arc<Shared>, request: HttpRequest) -> Response {
     let (mut parts, _) = request.into_parts();
-    match WebSocketUpgrade::from_request_parts(&mut parts, &()).await {
-        Err(refusal) => refusal.into_response(),
-        Ok(_) if shared.n_pages.load(Ordering::SeqCst) >= MOST_PAGES => {
-            StatusCode::SERVICE_UNAVAILABLE.into_response()
-        }
-        Ok(upgrade) => {
-            let view = view_of(parts.uri.query().unwrap_or_default());
-            let upgrade = upgrade
-                .max_message_size(MAX_MESSAGE)
-                .max_frame_size(MAX_MESSAGE);
-            upgrade.on_upgrade(move |socket| async move {
-                shared.n_pages.fetch_add(1, Ordering::SeqCst);
-                // A page that has gone says so by its socket, and there is nobody to tell.
-                let _ = Page::serve(shared.clone(), socket, view).await;
-                shared.n_pages.fetch_sub(1, Ordering::SeqCst);
-                shared.closed.notify_one();
-            })
-        }
-    }
+    let upgrade = match WebSocketUpgrade::from_request_parts(&mut parts, &()).await {
+        Ok(upgrade) => upgrade,
+        Err(refusal) => return refusal.into_response(),
+    };
+    // The place is taken before the answer, so that pages that come together do not take the same one.
+    let Ok(place) = shared.pages.clone().try_acquire_owned() else {
+        return StatusCode::SERVICE_UNAVAILABLE.into_response();
+    };
+    let view = view_of(parts.uri.query().unwrap_or_default());
+    let upgrade = upgrade
+        .max_message_size(MAX_MESSAGE)
+        .max_frame_size(MAX_MESSAGE);
+    upgrade.on_upgrade(move |socket| async move {
+        shared.way.close();
+        // A page that has gone says so by its socket, and there is nobody to tell.
+        let _ = Page::serve(shared.clone(), socket, view).await;
+        drop(place);
+        shared.closed.notify_one();
+    })
 }
 
 /// The view that an address asks for: what a page shows at first, which is drawn while the page is loaded.
@@ -62,6 +64,7 @@ struct Page {
     flow: Flow,
     /// The file that is open, with the hash of what was read or written last.
     file: Option<(String, String)>,
+    changes: FileChanges,
 }
 
 /// The socket has ended.
@@ -86,12 +89,14 @@ impl Page {
         view: Option<View>,
     ) -> Result<(), Ended> {
         let (sender, mut outputs) = unbounded_channel();
-        let mut changes = shared.disk.changes();
+        let mut looks = interval(LOOK);
+        looks.set_missed_tick_behavior(MissedTickBehavior::Delay);
         let mut page = Self {
             worker: Worker::new(shared.clone(), sender)?,
             session: Session::new(),
             flow: Flow::default(),
             file: None,
+            changes: FileChanges::default(),
             shared,
             socket,
         };
@@ -103,11 +108,9 @@ impl Page {
                     None => return Ok(()),
                 },
                 Some(output) = outputs.recv() => page.pass_on(output).await?,
-                Ok(()) = changes.changed() => {
-                    tokio::time::sleep(QUIET).await;
-                    changes.mark_unchanged();
+                _ = looks.tick() => if page.looks_other() {
                     page.compare_with_disk().await?;
-                }
+                },
             }
         }
     }
@@ -270,6 +273,17 @@ impl Page {
             .map(builtin)
             .chain(files)
             .collect()
+    }
+
+    /// Whether the file of the page or an image of its recipe has changed, and is quiet again.
+    fn looks_other(&mut self) -> bool {
+        let folder = &self.shared.folder;
+        let file = self.file.iter().map(|(name, _)| folder.path().join(name));
+        let mut files: Vec<PathBuf> = file.collect();
+        if let Ok(recipe) = self.session.document().recipe() {
+            files.extend(folder.image_paths(recipe));
+        }
+        self.changes.look(&files)
     }
 
     /// Tells the page if the file or an image of it has changed.

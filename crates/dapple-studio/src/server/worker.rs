@@ -1,24 +1,28 @@
-//! The thread that draws what one page shows. What is drawn is always the newest; what was asked for besides comes before.
+//! The threads of one page. One draws what the page shows: always the newest; reports that were asked for come before.
+//! The other makes the files of exports, which take long.
 
 use super::Shared;
 use crate::message::{Export, Output, Reply};
 use crate::render::{Job, Renderer, World};
 use crate::{Lit, Shown, StudioError, Task, Variant};
 use dapple::color::LinearRgb;
+use dapple::image::FileStamp;
 use dapple::raster::Raster;
 use dapple::recipe::{Images, Recipe};
 use std::collections::VecDeque;
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::PathBuf;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
-use std::time::{Instant, SystemTime};
+use std::time::Instant;
 use tokio::sync::mpsc::UnboundedSender;
 
-/// The work that waits for the thread.
+/// The work that waits for the threads.
 #[derive(Default)]
 struct Queue {
     job: Option<Job>,
     tasks: VecDeque<Task>,
+    exports: VecDeque<Task>,
     /// The pictures of the strip that was asked for last.
     variants: VecDeque<Variant>,
     /// Small pictures for which there is time when nothing else is to be done.
@@ -33,7 +37,7 @@ pub(super) struct Sample {
     pub(super) side: u32,
 }
 
-/// The end of the thread that a page holds.
+/// The end of the threads that a page holds.
 pub(super) struct Worker {
     inside: Arc<Inside>,
 }
@@ -49,10 +53,10 @@ struct Inside {
     images: Mutex<Loaded>,
 }
 
-/// The images of the last recipe, and when their files were written.
+/// The images of the last recipe, and how their files were found.
 #[derive(Default)]
 struct Loaded {
-    times: Vec<(String, Option<SystemTime>)>,
+    stamps: Vec<(PathBuf, Option<FileStamp>)>,
     images: Images,
 }
 
@@ -77,30 +81,38 @@ impl Worker {
             output,
             images: Mutex::default(),
         });
-        let of_thread = inside.clone();
-        let thread = std::thread::Builder::new().name("studio".to_owned());
-        let spawned = thread.spawn(move || of_thread.run());
+        // Its end tells the threads to end, also where the second one cannot be started.
+        let worker = Self { inside };
+        worker.spawn("studio", Inside::run)?;
+        worker.spawn("studio export", Inside::run_exports)?;
+        Ok(worker)
+    }
+
+    fn spawn(&self, name: &str, run: fn(&Inside)) -> Result<(), StudioError> {
+        let inside = self.inside.clone();
+        let thread = std::thread::Builder::new().name(name.to_owned());
+        let spawned = thread.spawn(move || run(&inside));
         spawned.map_err(|error| StudioError::new(format!("no thread can be started: {error}")))?;
-        Ok(Self { inside })
+        Ok(())
     }
 
     /// Draws this next, in place of what waits and of what is being drawn.
     pub(super) fn draw(&self, job: Job) {
         self.inside.newest.store(job.generation, Ordering::SeqCst);
         self.inside.lock().job = Some(job);
-        self.inside.changed.notify_one();
+        self.inside.changed.notify_all();
     }
 
     /// Makes the pictures of a strip when there is time, in place of those of the strip before.
     pub(super) fn vary(&self, variants: Vec<Variant>) {
         self.inside.lock().variants = variants.into();
-        self.inside.changed.notify_one();
+        self.inside.changed.notify_all();
     }
 
     /// Makes small pictures when there is time.
     pub(super) fn sample(&self, samples: Vec<Sample>) {
         self.inside.lock().samples = samples.into();
-        self.inside.changed.notify_one();
+        self.inside.changed.notify_all();
     }
 
     /// The images of a recipe.
@@ -111,15 +123,19 @@ impl Worker {
     /// Does this as well.
     pub(super) fn ask(&self, task: Task) {
         let mut queue = self.inside.lock();
-        if queue.tasks.len() >= MOST_TASKS {
+        if queue.tasks.len() + queue.exports.len() >= MOST_TASKS {
             drop(queue);
             let error = StudioError::new("too much is asked for at once");
             self.inside.put(Reply::refused(task.what(), &error).into());
             return;
         }
-        queue.tasks.push_back(task);
+        if task.what() == "export" {
+            queue.exports.push_back(task);
+        } else {
+            queue.tasks.push_back(task);
+        }
         drop(queue);
-        self.inside.changed.notify_one();
+        self.inside.changed.notify_all();
     }
 }
 
@@ -131,7 +147,7 @@ impl Drop for Worker {
             ..Queue::default()
         };
         drop(queue);
-        self.inside.changed.notify_one();
+        self.inside.changed.notify_all();
     }
 }
 
@@ -157,19 +173,58 @@ impl Inside {
                 Next::Vary(_) => "strip",
                 Next::Sample(_) => "gallery",
             };
-            // A defect in a method must not end the server while somebody works.
-            let done = catch_unwind(AssertUnwindSafe(|| match next {
+            let is_done = self.attempt(what, || match next {
                 Next::Draw(job) => renderer.draw(&job, self),
                 Next::Do(task) => self.perform(&task),
                 Next::Vary(variant) => renderer.draw_variant(&variant, self),
                 Next::Sample(sample) => self.show(&sample),
-            }));
-            if done.is_err() {
+            });
+            if !is_done {
                 renderer = Renderer::new(&self.shared.memory);
-                let error = StudioError::new("this failed, which is a defect of dapple");
-                self.put(Reply::refused(what, &error).into());
             }
         }
+    }
+
+    fn run_exports(&self) {
+        while let Some(task) = self.next_export() {
+            let exporting = &self.shared.exporting;
+            let one = exporting.lock().unwrap_or_else(PoisonError::into_inner);
+            // The page may have been closed while others were at it.
+            if self.lock().is_over {
+                return;
+            }
+            self.attempt(task.what(), || self.perform(&task));
+            drop(one);
+        }
+    }
+
+    /// Does something, and returns whether it was done. A defect in a method must not end the server while somebody works.
+    fn attempt(&self, what: &str, work: impl FnOnce()) -> bool {
+        let is_done = catch_unwind(AssertUnwindSafe(work)).is_ok();
+        if !is_done {
+            let error = StudioError::new("this failed, which is a defect of dapple");
+            self.put(Reply::refused(what, &error).into());
+        }
+        is_done
+    }
+
+    /// Waits for the next export; none when the page is closed.
+    fn next_export(&self) -> Option<Task> {
+        let mut queue = self.lock();
+        loop {
+            if queue.is_over {
+                return None;
+            }
+            if let Some(task) = queue.exports.pop_front() {
+                return Some(task);
+            }
+            queue = self.wait(queue);
+        }
+    }
+
+    fn wait<'a>(&self, queue: MutexGuard<'a, Queue>) -> MutexGuard<'a, Queue> {
+        let woken = self.changed.wait(queue);
+        woken.unwrap_or_else(PoisonError::into_inner)
     }
 
     fn next(&self) -> Option<Next> {
@@ -190,10 +245,7 @@ impl Inside {
             if let Some(sample) = queue.samples.pop_front() {
                 return Some(Next::Sample(sample));
             }
-            queue = self
-                .changed
-                .wait(queue)
-                .unwrap_or_else(PoisonError::into_inner);
+            queue = self.wait(queue);
         }
     }
 
@@ -227,11 +279,11 @@ impl World for Inside {
             return Ok(Images::new());
         }
         self.shared.of_images(recipe)?;
-        let times = self.shared.folder.image_times(recipe);
+        let stamps = self.shared.folder.image_stamps(recipe);
         let mut loaded = self.images.lock().unwrap_or_else(PoisonError::into_inner);
-        if loaded.times != times {
+        if loaded.stamps != stamps {
             let images = self.shared.images(recipe)?;
-            *loaded = Loaded { times, images };
+            *loaded = Loaded { stamps, images };
         }
         Ok(loaded.images.clone())
     }

@@ -5,6 +5,10 @@
     reason = "tests look at the files of the server, and at the clock"
 )]
 
+#[cfg(feature = "server")]
+mod access;
+#[cfg(feature = "server")]
+mod connections;
 mod drawing;
 mod messages;
 mod points;

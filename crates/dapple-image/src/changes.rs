@@ -1,0 +1,165 @@
+//! Changes of files, found by looking at them again and again.
+//!
+//! Events of the system are no help where it counts: they miss what is written through a link and on network mounts, and
+//! report every other file of a folder. Looking at a few files costs microseconds.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::time::SystemTime;
+
+/// The size, the time of the last write, and the identity of a file: they differ when its content was changed.
+///
+/// Links are followed, so that the stamp is that of the content which is read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FileStamp {
+    bytes: u64,
+    modified: Option<SystemTime>,
+    /// The device and the inode, where there are any: a file that took the place of another differs in it.
+    identity: Option<[u64; 2]>,
+}
+
+impl FileStamp {
+    /// The stamp of the file at `path`; none if it cannot be found.
+    #[must_use]
+    pub fn of(path: &Path) -> Option<Self> {
+        let found = fs::metadata(path).ok()?;
+        Some(Self {
+            bytes: found.len(),
+            modified: found.modified().ok(),
+            identity: identity(&found),
+        })
+    }
+}
+
+#[cfg(unix)]
+#[expect(
+    clippy::unnecessary_wraps,
+    reason = "other systems have none without opening the file"
+)]
+fn identity(found: &fs::Metadata) -> Option<[u64; 2]> {
+    use std::os::unix::fs::MetadataExt as _;
+    Some([found.dev(), found.ino()])
+}
+
+#[cfg(not(unix))]
+fn identity(_: &fs::Metadata) -> Option<[u64; 2]> {
+    None
+}
+
+/// Decides when changed files are read: once they stay as they are from one look to the next, since programs write in
+/// several steps, and at the latest after [`LONGEST`](Self::LONGEST) looks.
+#[derive(Clone, Debug, Default)]
+pub struct FileChanges {
+    seen: BTreeMap<PathBuf, Option<FileStamp>>,
+    /// Number of looks since the first change that was not reported yet; 0 if there is none.
+    n_looks: u32,
+}
+
+impl FileChanges {
+    /// Number of looks after which a change is reported even if the files keep changing.
+    pub const LONGEST: u32 = 12;
+
+    /// Remembers the files as they are now.
+    #[must_use]
+    pub fn new(files: &[PathBuf]) -> Self {
+        let mut changes = Self::default();
+        changes.look(files);
+        changes
+    }
+
+    /// Whether a file differs from how it was at the last look.
+    #[must_use]
+    pub fn has_changed(&self) -> bool {
+        let mut seen = self.seen.iter();
+        seen.any(|(path, stamp)| FileStamp::of(path) != *stamp)
+    }
+
+    /// Looks at these files, and returns whether changes of them are to be read now. Files that were not among those of
+    /// the last look count from now on.
+    pub fn look(&mut self, files: &[PathBuf]) -> bool {
+        let stamps = files.iter().map(|file| (file.clone(), FileStamp::of(file)));
+        let now: BTreeMap<_, _> = stamps.collect();
+        let has_changed = now.iter().any(|(file, stamp)| {
+            let before = self.seen.get(file);
+            before.is_some_and(|before| before != stamp)
+        });
+        self.seen = now;
+        if has_changed || self.n_looks > 0 {
+            self.n_looks += 1;
+        }
+        let is_over = self.n_looks > 0 && (!has_changed || self.n_looks >= Self::LONGEST);
+        if is_over {
+            self.n_looks = 0;
+        }
+        is_over
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![expect(
+        clippy::disallowed_methods,
+        reason = "files are changed to be looked at"
+    )]
+
+    use super::FileChanges;
+    use std::fs;
+
+    #[test]
+    fn changes_are_reported_when_files_are_quiet_and_at_the_latest_after_some_looks() {
+        let folder = tempfile::tempdir().unwrap();
+        let files = [folder.path().join("a"), folder.path().join("b")];
+        fs::write(&files[0], "1").unwrap();
+        let mut changes = FileChanges::new(&files);
+        assert!(!changes.has_changed());
+        assert!(!changes.look(&files));
+        // One that was not there, and one that is longer.
+        for (file, text) in [(&files[1], "1"), (&files[0], "12")] {
+            fs::write(file, text).unwrap();
+            assert!(changes.has_changed());
+            assert!(!changes.look(&files), "it may be written still");
+            assert!(changes.look(&files));
+            assert!(!changes.look(&files), "it is reported once");
+        }
+        // Another file of the folder does not count.
+        fs::write(folder.path().join("c"), "1").unwrap();
+        assert!(!changes.look(&files) && !changes.look(&files));
+        // One that changes all the time.
+        let n_looks = (1..).find(|&count| {
+            fs::write(&files[0], "x".repeat(count)).unwrap();
+            changes.look(&files)
+        });
+        assert_eq!(n_looks, Some(FileChanges::LONGEST as usize));
+        fs::remove_file(&files[0]).unwrap();
+        assert!(!changes.look(&files));
+        assert!(changes.look(&files));
+    }
+
+    #[test]
+    #[cfg(unix)]
+    fn changes_through_a_link_and_of_the_link_are_seen() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = |name: &str| folder.path().join(name);
+        fs::create_dir(path("real")).unwrap();
+        fs::write(path("real/a"), "1").unwrap();
+        fs::write(path("real/b"), "1").unwrap();
+        std::os::unix::fs::symlink("real/a", path("link")).unwrap();
+        let files = [path("link")];
+        let mut changes = FileChanges::new(&files);
+        let mut is_seen = |what: &str| {
+            assert!(changes.has_changed(), "{what}");
+            assert!(!changes.look(&files) && changes.look(&files), "{what}");
+        };
+        fs::write(path("real/a"), "12").unwrap();
+        is_seen("written in place");
+        fs::write(path("real/aside"), "21").unwrap();
+        fs::rename(path("real/aside"), path("real/a")).unwrap();
+        is_seen("replaced by another file of the same size");
+        fs::remove_file(path("link")).unwrap();
+        std::os::unix::fs::symlink("real/b", path("link")).unwrap();
+        is_seen("the link leads elsewhere");
+        fs::write(path("real/b"), "123").unwrap();
+        is_seen("written where it leads now");
+    }
+}
