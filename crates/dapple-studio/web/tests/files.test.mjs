@@ -4,6 +4,7 @@ import { mkdtempSync, readFileSync, writeFileSync } from 'node:fs';
 import { request } from 'node:http';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
+import { pathToFileURL } from 'node:url';
 import { after, describe, test } from 'node:test';
 import { dapple, endBrowser, open, serve, settled, skip, text } from './harness.mjs';
 
@@ -108,6 +109,50 @@ describe('files', { skip, timeout: 120_000 }, () => {
       await page.getByRole('button', { name: 'Shuffle the seed' }).click();
       await settled(page);
       assert.notEqual(await text(page), before);
+    } finally {
+      studio.end();
+    }
+  });
+
+  test('a page goes on with its own text in another run, whose address is pasted into its tab', async () => {
+    const first = await serve(['mine.toml'], 'studio', folder());
+    const { port } = new URL(first.url);
+    let second;
+    try {
+      const page = await open(first.url);
+      await settled(page);
+      await page.getByRole('spinbutton', { name: 'Seed', exact: true }).fill('31');
+      await page.keyboard.press('Tab');
+      await settled(page);
+      const before = await text(page);
+      first.child.removeAllListeners('exit');
+      first.child.kill();
+      await page.getByText('run it again with the same --port').waitFor();
+      second = await serve(['--port', port, 'mine.toml'], 'studio', first.folder);
+      await page.getByText('paste the address that it printed').waitFor();
+      assert.equal(await text(page), before);
+      await page.evaluate((url) => void (location.href = url), second.url);
+      await page.locator('.status .bad').waitFor({ state: 'detached' });
+      await settled(page);
+      assert.equal(await text(page), before);
+      assert.equal(new URL(page.url()).hash, '', 'the secret leaves the address');
+      await page.getByRole('button', { name: 'Shuffle the seed' }).click();
+      await settled(page);
+      assert.notEqual(await text(page), before);
+    } finally {
+      first.end();
+      second?.end();
+    }
+  });
+
+  test('a file that leads to the address opens the page', async () => {
+    const studio = await serve(['mine.toml'], 'studio', folder());
+    const way = join(studio.folder, 'way.html');
+    try {
+      writeFileSync(way, `<!doctype html><meta http-equiv=refresh content="0;url=${studio.url}">`);
+      const page = await open(pathToFileURL(way).href);
+      await page.waitForURL(/^http/);
+      await settled(page);
     } finally {
       studio.end();
     }

@@ -42,15 +42,18 @@ export class Socket implements Transport {
   #socket: WebSocket | null = null;
   #waiting: Request[] = [];
   #closed = false;
+  #again: ReturnType<typeof setTimeout> | undefined;
   /** Whether it was open once: a page that comes back asks again for what it shows. */
   #opened = false;
 
   /** `ready` is over when there is a page, which hears. */
   constructor(
-    private readonly token: string,
+    private token: string,
     private readonly ready: Promise<void>,
   ) {
     this.#connect();
+    // The address of a new run, pasted into this tab, differs from that of the last one in what follows # alone.
+    addEventListener('hashchange', () => this.#renew());
   }
 
   send(message: Request): void {
@@ -59,7 +62,7 @@ export class Socket implements Transport {
   }
 
   exportUrl(id: string, name: string): string {
-    return `/export/${encodeURIComponent(id)}/${encodeURIComponent(name)}?t=${encodeURIComponent(this.token)}`;
+    return `export/${encodeURIComponent(id)}/${encodeURIComponent(name)}?t=${encodeURIComponent(this.token)}`;
   }
 
   close(): void {
@@ -67,10 +70,23 @@ export class Socket implements Transport {
     this.#socket?.close();
   }
 
+  /** Goes on with the token of the address, if it is another one. */
+  #renew(): void {
+    const given = token();
+    if (given === this.token || this.#closed) return;
+    this.token = given;
+    clearTimeout(this.#again);
+    const before = this.#socket;
+    this.#connect();
+    before?.close();
+  }
+
   #connect(): void {
-    const scheme = location.protocol === 'https:' ? 'wss' : 'ws';
     const view = this.#opened ? '' : `&view=${encodeURIComponent(JSON.stringify(FIRST))}`;
-    const socket = new WebSocket(`${scheme}://${location.host}/ws?t=${encodeURIComponent(this.token)}${view}`);
+    // Beside the page, since a proxy may have put it below a path.
+    const url = new URL(`ws?t=${encodeURIComponent(this.token)}${view}`, location.href);
+    url.protocol = location.protocol === 'https:' ? 'wss:' : 'ws:';
+    const socket = (this.#socket = new WebSocket(url));
     let opened = false;
     socket.binaryType = 'arraybuffer';
     const tell = (then: () => void) => void this.ready.then(then);
@@ -85,12 +101,22 @@ export class Socket implements Transport {
         tell(() => this.onmessage(message));
       } else tell(() => this.onpicture(frame(data)));
     };
-    socket.onclose = () => {
+    socket.onclose = async () => {
+      if (this.#closed || this.#socket !== socket) return;
       this.#waiting = [];
-      if (this.#closed) return;
-      tell(() => this.onstate(opened || this.token !== '' ? 'closed' : 'refused'));
-      setTimeout(() => this.#connect(), AGAIN);
+      const state = !opened && (await answers()) ? 'refused' : 'closed';
+      if (this.#closed || this.#socket !== socket) return;
+      tell(() => this.onstate(state));
+      this.#again = setTimeout(() => this.#connect(), AGAIN);
     };
-    this.#socket = socket;
+  }
+}
+
+/** Whether there is a server: where it refuses the socket, it has another secret. */
+async function answers(): Promise<boolean> {
+  try {
+    return (await fetch(location.pathname, { method: 'HEAD' })).ok;
+  } catch {
+    return false;
   }
 }
