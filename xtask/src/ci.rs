@@ -24,6 +24,8 @@ pub(crate) enum Step {
     Doc,
     /// The house rules, as in `cargo xtask tidy`.
     Tidy,
+    /// The texts of the licenses of other people's crates, as in `cargo xtask licenses --check`.
+    Licenses,
     /// Every published crate alone: without features, with each of its features, and the tests of threads without them.
     Features,
     /// The package of every published crate, as a registry would get it.
@@ -42,12 +44,13 @@ pub(crate) enum Step {
 
 impl Step {
     /// All steps, in the order in which CI runs them.
-    pub(crate) const ALL: [Self; 12] = [
+    pub(crate) const ALL: [Self; 13] = [
         Self::Test,
         Self::Fmt,
         Self::Clippy,
         Self::Doc,
         Self::Tidy,
+        Self::Licenses,
         Self::Features,
         Self::Package,
         Self::Exchange,
@@ -65,6 +68,7 @@ impl Step {
             Self::Clippy => "clippy",
             Self::Doc => "doc",
             Self::Tidy => "tidy",
+            Self::Licenses => "licenses",
             Self::Features => "features",
             Self::Package => "package",
             Self::Exchange => "exchange",
@@ -102,6 +106,7 @@ fn run(shell: &Shell, step: Step) -> anyhow::Result<()> {
             cmd!(shell, "cargo doc --workspace --no-deps").env("RUSTDOCFLAGS", "-D warnings")
         }
         Step::Tidy => return tidy::tidy(shell),
+        Step::Licenses => return crate::licenses::licenses(shell, true),
         Step::Features => return features(shell),
         Step::Package => return package(shell),
         Step::Exchange => return exchange::exchange(shell),

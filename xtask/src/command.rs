@@ -26,9 +26,10 @@ Usage: cargo xtask <command>
   studio [argument...]  build the page of the studio with Node, and open it; arguments are those of `dapple studio`
   web [--out DIR]       build the studio without a server, for any host of files, into target/web/
   golden [--bless]      compare the golden images of tests/golden/, or rewrite them
+  licenses [--check]    rewrite the texts of the licenses of other people's crates, or compare them
   tidy                  check the house rules: layers, lints, headers, lengths, figures.lock
   ci [step...]          what CI runs, or some of its steps: test fmt clippy doc tidy
-                      features package exchange page web python fuzz";
+                      licenses features package exchange page web python fuzz";
 
 /// A command of `cargo xtask` with its arguments.
 #[derive(Debug, PartialEq)]
@@ -53,6 +54,11 @@ pub(crate) enum Command {
     Golden {
         /// Rewrite the images instead of comparing them.
         bless: bool,
+    },
+    /// Rewrite or compare the texts of the licenses of other people's crates.
+    Licenses {
+        /// Compare the texts instead of rewriting them.
+        check: bool,
     },
     /// Check the house rules.
     Tidy,
@@ -80,11 +86,14 @@ pub(crate) fn parse(mut parser: Parser) -> anyhow::Result<Command> {
         "golden" => Ok(Command::Golden {
             bless: flag(parser, &name, "bless")?,
         }),
+        "licenses" => Ok(Command::Licenses {
+            check: flag(parser, &name, "check")?,
+        }),
         "tidy" => nothing_more(parser, Command::Tidy),
         "ci" => ci(parser),
         "help" => nothing_more(parser, Command::Help),
         _ => bail!(
-            "there is no command `{name}`; there are gallery, docs-images, bench, studio, web, golden, tidy, ci and help"
+            "there is no command `{name}`; there are gallery, docs-images, bench, studio, web, golden, licenses, tidy, ci and help"
         ),
     }
 }
@@ -172,6 +181,10 @@ mod tests {
             Ok(Command::Ci(vec![Step::Fmt, Step::Tidy]))
         );
         assert_eq!(command(&["ci"]), Ok(Command::Ci(Step::ALL.to_vec())));
+        assert_eq!(
+            command(&["licenses", "--check"]),
+            Ok(Command::Licenses { check: true })
+        );
         let out = Some("a".into());
         assert_eq!(command(&["web", "--out", "a"]), Ok(Command::Web { out }));
         for help in [&[][..], &["help"], &["--help"], &["-h"]] {

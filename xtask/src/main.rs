@@ -1,4 +1,4 @@
-//! The chores of the workspace: `cargo xtask gallery`, `docs-images`, `bench`, `studio`, `web`, `golden`, `tidy` and `ci`.
+//! The chores of the workspace: `cargo xtask gallery`, `docs-images`, `bench`, `studio`, `web`, `golden`, `licenses`, `tidy` and `ci`.
 //!
 //! It depends on none of our crates, so that it starts quickly; commands that need them run `cargo run --release`.
 
@@ -6,6 +6,7 @@
 
 mod ci;
 mod command;
+mod licenses;
 mod run;
 mod tidy;
 mod web;
@@ -35,6 +36,7 @@ fn perform(command: &Command) -> anyhow::Result<()> {
         Command::Studio(arguments) => run::studio(&shell, arguments),
         Command::Web { out } => web::web(&shell, out.clone()),
         Command::Golden { bless } => run::golden(&shell, *bless),
+        Command::Licenses { check } => licenses::licenses(&shell, *check),
         Command::Tidy => tidy::tidy(&shell),
         Command::Ci(steps) => ci::ci(&shell, steps),
         Command::Help => {

@@ -7,6 +7,7 @@ mod completions;
 mod copies;
 mod info;
 mod join;
+mod licenses;
 mod man;
 mod noise;
 mod points;
@@ -49,6 +50,7 @@ pub(crate) enum Command {
     Info(info::Args),
     Completions(completions::Args),
     Man(man::Args),
+    Licenses(licenses::Args),
 }
 
 /// Runs a subcommand.
@@ -78,5 +80,6 @@ pub(crate) fn run(command: &Command, context: &Context) -> Result<Exit> {
         Command::Info(args) => info::run(args, context),
         Command::Completions(args) => completions::run(args),
         Command::Man(args) => man::run(args, context),
+        Command::Licenses(args) => licenses::run(args),
     }
 }

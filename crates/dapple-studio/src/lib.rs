@@ -53,7 +53,7 @@ pub use picture::{Picture, Shown, rgba};
 pub use render::{Job, Lit, MAX_SIDE, Renderer, World, map_kinds};
 pub use sample::sample;
 #[cfg(feature = "server")]
-pub use server::{ExportedFile, Host, ServeOptions, has_page, serve};
+pub use server::{ExportedFile, Host, ServeOptions, has_page, page_licenses, serve};
 pub use session::{ImagesOf, Session};
 pub use strip::Variant;
 pub use task::{ExportOf, Task};

@@ -127,6 +127,12 @@ pub fn has_page() -> bool {
     page::is_built()
 }
 
+/// The texts of the licenses of other people's code in the page, if the page is part of this program.
+#[must_use]
+pub fn page_licenses() -> Option<&'static str> {
+    page::licenses()
+}
+
 /// Serves the page until the process ends or, with [`once`](ServeOptions::once), until the last page is closed. Gives the
 /// address to `tell` as soon as it can be opened.
 ///

@@ -85,6 +85,8 @@ export default defineConfig(({ mode }) => ({
     assetsInlineLimit: 0,
     chunkSizeWarningLimit: 800,
     cssCodeSplit: false,
+    // The licenses of all that is in the page, which are served with it.
+    license: { fileName: 'licenses.md' },
     rollupOptions: {
       output: {
         entryFileNames: 'assets/studio.js',

@@ -5,7 +5,7 @@
 use crate::support::{Folder, assert_done, stdout};
 use std::fs;
 
-const SUBCOMMANDS: [&str; 19] = [
+const SUBCOMMANDS: [&str; 20] = [
     "bake",
     "watch",
     "studio",
@@ -25,6 +25,7 @@ const SUBCOMMANDS: [&str; 19] = [
     "info",
     "completions",
     "man",
+    "licenses",
 ];
 
 /// Returns the lines of a help text that are commands; a line that ends with a backslash continues.
@@ -131,6 +132,25 @@ fn examples_of_info_completions_and_man_run() {
     run_examples(&["info"]);
     run_examples(&["completions"]);
     run_examples(&["man"]);
+}
+
+#[test]
+fn licenses_name_every_crate_and_its_terms() {
+    run_examples(&["licenses"]);
+    let folder = Folder::new("licenses");
+    let output = folder.run(&["licenses"]);
+    assert_done(&output, "licenses");
+    let text = stdout(&output);
+    // Crates under several kinds of terms, and on several systems.
+    for part in [
+        "\nserde 1.",
+        "\nlebe 0.",
+        "\nwindows-sys 0.",
+        "Permission is hereby granted, free of charge",
+        "Redistributions in binary form must reproduce",
+    ] {
+        assert!(text.contains(part), "{part}");
+    }
 }
 
 #[test]

@@ -17,6 +17,12 @@ pub(super) fn is_built() -> bool {
     found(FILES, "index.html").is_some()
 }
 
+/// The texts of the licenses in the page.
+pub(super) fn licenses() -> Option<&'static str> {
+    let (text, _) = found(FILES, "licenses.md")?;
+    std::str::from_utf8(text).ok()
+}
+
 /// A file as it is, or compressed under its name with `.gz`, and which of these it is.
 fn found<'a>(files: &[(&str, &'a [u8])], name: &str) -> Option<(&'a [u8], bool)> {
     files.iter().find_map(|(known, bytes)| {

@@ -1,0 +1,196 @@
+//! `cargo xtask licenses`: the texts of the licenses of other people's crates, which ship with the command and the wheel.
+//!
+//! The texts are those in the packages, as Cargo has them on this machine: no service is asked and nothing is compiled, so
+//! that CI compares the whole of each file. cargo-about finds licenses in the same files, but takes minutes to compile.
+
+use anyhow::{Context, bail};
+use serde_json::Value;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+use xshell::{Shell, cmd};
+
+/// What ships: its manifest, its package, and the file of the texts.
+const SHIPPED: [(&str, &str, &str); 2] = [
+    (
+        "Cargo.toml",
+        "dapple-cli",
+        "crates/dapple-cli/THIRD-PARTY.txt",
+    ),
+    (
+        "crates/dapple-python/Cargo.toml",
+        "dapple-python",
+        "crates/dapple-python/THIRD-PARTY.txt",
+    ),
+];
+
+const HEAD: &str = "\
+Licenses of the crates of other people in this program.
+Made by `cargo xtask licenses` from the packages that Cargo.lock names; not edited by hand.
+Where a crate may be used under one of several licenses, it is used under that of MIT.
+";
+
+const RULE: &str =
+    "================================================================================";
+
+/// The license of MIT, for packages that name it and have no file of it.
+const MIT: &str = "\
+Permission is hereby granted, free of charge, to any person obtaining a copy of this software and associated
+documentation files (the \"Software\"), to deal in the Software without restriction, including without limitation the
+rights to use, copy, modify, merge, publish, distribute, sublicense, and/or sell copies of the Software, and to permit
+persons to whom the Software is furnished to do so, subject to the following conditions:
+
+The above copyright notice and this permission notice shall be included in all copies or substantial portions of the
+Software.
+
+THE SOFTWARE IS PROVIDED \"AS IS\", WITHOUT WARRANTY OF ANY KIND, EXPRESS OR IMPLIED, INCLUDING BUT NOT LIMITED TO THE
+WARRANTIES OF MERCHANTABILITY, FITNESS FOR A PARTICULAR PURPOSE AND NONINFRINGEMENT. IN NO EVENT SHALL THE AUTHORS OR
+COPYRIGHT HOLDERS BE LIABLE FOR ANY CLAIM, DAMAGES OR OTHER LIABILITY, WHETHER IN AN ACTION OF CONTRACT, TORT OR
+OTHERWISE, ARISING FROM, OUT OF OR IN CONNECTION WITH THE SOFTWARE OR THE USE OR OTHER DEALINGS IN THE SOFTWARE.
+";
+
+/// Writes the files, or compares them.
+pub(crate) fn licenses(shell: &Shell, check: bool) -> anyhow::Result<()> {
+    for (manifest, package, file) in SHIPPED {
+        let json = cmd!(
+            shell,
+            "cargo metadata --format-version 1 --locked --manifest-path {manifest}"
+        );
+        let metadata = serde_json::from_str(&json.quiet().read()?)?;
+        let text = texts(shell, &metadata, package).with_context(|| package.to_owned())?;
+        if !check {
+            shell.write_file(file, text)?;
+        } else if shell.read_file(file).ok().as_deref() != Some(&text) {
+            bail!("{file} is not that of Cargo.lock: run `cargo xtask licenses`");
+        }
+    }
+    Ok(())
+}
+
+/// The file of a package: each text once, after the crates that have it.
+fn texts(shell: &Shell, metadata: &Value, package: &str) -> anyhow::Result<String> {
+    let mut texts: BTreeMap<String, Vec<String>> = BTreeMap::new();
+    for package in shipped(metadata, package)? {
+        let of = |key: &str| package[key].as_str().unwrap_or_default();
+        let line = format!(
+            "{} {}  {}  {}",
+            of("name"),
+            of("version"),
+            of("license"),
+            of("repository")
+        );
+        let text = license(shell, package).with_context(|| line.clone())?;
+        texts
+            .entry(text)
+            .or_default()
+            .push(line.trim_end().to_owned());
+    }
+    let mut texts: Vec<_> = texts.into_iter().collect();
+    texts.sort_by(|(_, a), (_, b)| a.cmp(b));
+    let mut all = HEAD.to_owned();
+    for (text, crates) in texts {
+        all += &format!("\n{RULE}\n{}\n\n{text}\n", crates.join("\n"));
+    }
+    Ok(all)
+}
+
+/// The packages of registries that are compiled into a package on any platform, by name and version.
+fn shipped<'a>(metadata: &'a Value, root: &str) -> anyhow::Result<Vec<&'a Value>> {
+    let by_id = |list: &'a Value| -> BTreeMap<&str, &Value> {
+        let items = list.as_array().into_iter().flatten();
+        items
+            .filter_map(|item| Some((item["id"].as_str()?, item)))
+            .collect()
+    };
+    let (packages, nodes) = (
+        by_id(&metadata["packages"]),
+        by_id(&metadata["resolve"]["nodes"]),
+    );
+    let found = packages.iter().find(|(_, package)| package["name"] == root);
+    let (root, _) = found.with_context(|| format!("there is no package {root}"))?;
+    let (mut seen, mut waiting) = (BTreeSet::new(), vec![*root]);
+    while let Some(id) = waiting.pop() {
+        if !seen.insert(id) {
+            continue;
+        }
+        let needed = nodes.get(id).and_then(|node| node["deps"].as_array());
+        for dependency in needed.into_iter().flatten() {
+            let mut kinds = dependency["dep_kinds"].as_array().into_iter().flatten();
+            // Without a kind it is neither of tests nor of build scripts.
+            if kinds.any(|kind| kind["kind"].is_null()) {
+                waiting.extend(dependency["pkg"].as_str());
+            }
+        }
+    }
+    let mut shipped: Vec<_> = seen
+        .iter()
+        .filter_map(|id| packages.get(id).copied())
+        .collect();
+    shipped.retain(|package| !package["source"].is_null());
+    shipped.sort_by_key(|package| (package["name"].as_str(), package["version"].as_str()));
+    Ok(shipped)
+}
+
+/// The text of the license of a package.
+fn license(shell: &Shell, package: &Value) -> anyhow::Result<String> {
+    let terms = package["license"].as_str().unwrap_or_default();
+    let folder = Path::new(package["manifest_path"].as_str().unwrap_or_default());
+    let mut files = license_files(shell, folder.parent().unwrap_or(folder))?;
+    // Of licenses to choose from, MIT's. What holds besides (AND) is kept.
+    let may_choose = terms.contains("MIT") && (terms.contains(" OR ") || terms.contains('/'));
+    let is_mit = |path: &PathBuf| name(path).contains("mit");
+    if may_choose && !terms.contains(" AND ") && files.iter().any(is_mit) {
+        files.retain(is_mit);
+    }
+    let mut texts = Vec::new();
+    for file in files {
+        texts.push(plain(&shell.read_file(file)?));
+    }
+    if !texts.is_empty() {
+        return Ok(texts.join("\n\n"));
+    }
+    if !terms.contains("MIT") {
+        bail!("the package has no license file");
+    }
+    let authors = package["authors"].as_array().into_iter().flatten();
+    let authors: Vec<_> = authors.filter_map(Value::as_str).collect();
+    let name = package["name"].as_str().unwrap_or_default();
+    let holders = if authors.is_empty() {
+        format!("the authors of {name}")
+    } else {
+        authors.join(", ")
+    };
+    Ok(plain(&format!(
+        "MIT License\n\nCopyright (c) {holders}\n\n{MIT}"
+    )))
+}
+
+/// The files of licenses and notices at the top of a package.
+fn license_files(shell: &Shell, folder: &Path) -> anyhow::Result<Vec<PathBuf>> {
+    let starts = [
+        "license",
+        "licence",
+        "copying",
+        "copyright",
+        "notice",
+        "unlicense",
+    ];
+    let mut files = shell.read_dir(folder)?;
+    files.retain(|path| path.is_file() && starts.iter().any(|start| name(path).starts_with(start)));
+    files.sort();
+    Ok(files)
+}
+
+fn name(path: &Path) -> String {
+    let name = path.file_name().unwrap_or_default();
+    name.to_string_lossy().to_lowercase()
+}
+
+/// A text without what differs between systems and editors: ends of lines, and spaces before them.
+fn plain(text: &str) -> String {
+    let lines: Vec<_> = text
+        .trim_start_matches('\u{feff}')
+        .lines()
+        .map(str::trim_end)
+        .collect();
+    lines.join("\n").trim_matches('\n').to_owned()
+}
