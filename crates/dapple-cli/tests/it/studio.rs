@@ -204,6 +204,59 @@ fn a_watched_recipe_is_shown_where_no_output_is_named() {
 }
 
 #[test]
+#[cfg(unix)]
+fn the_browser_is_given_a_private_file_and_not_the_secret() {
+    use std::os::unix::fs::PermissionsExt as _;
+    let folder = Folder::new("studio-browser");
+    for name in ["bin", "tmp"] {
+        fs::create_dir(folder.path(name)).unwrap();
+    }
+    // Under every name of a program that opens browsers.
+    for name in [
+        "xdg-open",
+        "gio",
+        "gnome-open",
+        "kde-open",
+        "open",
+        "wslview",
+    ] {
+        let program = folder.path("bin").join(name);
+        fs::write(
+            &program,
+            "#!/bin/sh\nprintf '%s' \"$*\" > told.new\nmv told.new told\n",
+        )
+        .unwrap();
+        fs::set_permissions(program, fs::Permissions::from_mode(0o755)).unwrap();
+    }
+    let mut command = folder.command(&["studio", "rock"]);
+    let path = std::env::var("PATH").unwrap();
+    command
+        .env("PATH", format!("{}:{path}", folder.path("bin").display()))
+        .env("TMPDIR", folder.path("tmp"))
+        .env("HOME", folder.path("tmp"));
+    let studio = Studio::new(command);
+    let begun = std::time::Instant::now();
+    while !folder.path("told").exists() {
+        assert!(begun.elapsed() < Duration::from_secs(60), "no browser");
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    let told = fs::read_to_string(folder.path("told")).unwrap();
+    assert!(!told.contains(&studio.token), "{told}");
+    let way = folder.path("tmp").join(told.rsplit('/').next().unwrap());
+    assert!(told.ends_with(&way.display().to_string()), "{told}");
+    assert_eq!(
+        fs::metadata(&way).unwrap().permissions().mode() & 0o777,
+        0o600
+    );
+    let url = format!("http://127.0.0.1:{}/#t={}", studio.port, studio.token);
+    assert!(fs::read_to_string(&way).unwrap().contains(&url));
+    // It is removed when the page is there.
+    let mut page = studio.page();
+    until(&mut page, "hello");
+    assert!(!way.exists());
+}
+
+#[test]
 fn with_once_it_ends_when_the_last_page_is_closed() {
     let folder = Folder::new("studio-once");
     let mut studio = Studio::new(folder.command(&["studio", "--no-open", "--once", "cow"]));
