@@ -1,20 +1,23 @@
 //! Directions as text: lines of numbers (CSV), and JSON behind the feature `json`. No file is touched here.
 
-use crate::{Direction, SynthError, SynthErrorKind};
+#[cfg(feature = "json")]
+use crate::SynthErrorKind;
+use crate::{Direction, SynthError, TableRow, parse_table};
 use glam::DVec3;
 
-/// The numbers of a line: a position and a vector.
-const N_FIELDS: usize = 6;
+/// The columns of a table: a position and a vector.
+const COLUMNS: [&str; 6] = ["x", "y", "z", "dx", "dy", "dz"];
 
 impl Direction {
     /// Reads directions from lines `x,y,z,dx,dy,dz`: a position and a vector.
     ///
-    /// Blank lines and lines that begin with `#` are left out, and so is the first other line if none of its fields is a
-    /// number.
+    /// Blank lines and lines that begin with `#` are left out. If no field of the first other line is a number, it is a
+    /// header, whose names may be in another order.
     ///
     /// # Errors
     ///
-    /// [`SynthErrorKind::Text`] with the number of the line that does not have six finite numbers.
+    /// [`SynthErrorKind::Text`](crate::SynthErrorKind::Text) with the number of the line that is a wrong header or does not
+    /// have six finite numbers.
     ///
     /// # Examples
     ///
@@ -26,80 +29,43 @@ impl Direction {
     /// # Ok::<(), dapple_synth::SynthError>(())
     /// ```
     pub fn parse_csv(text: &str) -> Result<Vec<Self>, SynthError> {
-        let mut directions = Vec::new();
-        let mut may_be_header = true;
-        // Some editors put a byte order mark before the first line.
-        let text = text.trim_start_matches('\u{feff}');
-        for (line, row) in (1..).zip(text.lines()) {
-            let row = row.trim();
-            if row.is_empty() || row.starts_with('#') {
-                continue;
-            }
-            let is_header = row
-                .split(',')
-                .all(|field| field.trim().parse::<f64>().is_err());
-            if may_be_header && is_header {
-                may_be_header = false;
-                continue;
-            }
-            may_be_header = false;
-            directions.push(parse_row(row, line)?);
-        }
-        Ok(directions)
+        let rows = parse_table(text, &[&COLUMNS])?.into_iter();
+        let direction = |row: TableRow| {
+            let [x, y, z, dx, dy, dz] = row.numbers[..] else {
+                return None;
+            };
+            Some(Self {
+                at: DVec3::new(x, y, z),
+                vector: DVec3::new(dx, dy, dz),
+            })
+        };
+        // Every row of a table has the columns of its form.
+        Ok(rows.filter_map(direction).collect())
     }
 
     /// Reads directions from a JSON array of objects such as `{"at": [0, 1, 2], "vector": [0, 0, -1]}`.
     ///
     /// # Errors
     ///
-    /// [`SynthErrorKind::Text`] with the number of the line that is not as it should be.
+    /// [`SynthErrorKind::Text`](crate::SynthErrorKind::Text) with the number of the line that is not as it should be.
     #[cfg(feature = "json")]
     pub fn parse_json(text: &str) -> Result<Vec<Self>, SynthError> {
+        // Some editors put a byte order mark before the first line.
+        let text = text.trim_start_matches('\u{feff}');
         serde_json::from_str(text).map_err(|error| refused("JSON", error.line(), error.to_string()))
     }
 }
 
-fn parse_row(row: &str, line: usize) -> Result<Direction, SynthError> {
-    let mut numbers = [0.0; N_FIELDS];
-    let mut count = 0;
-    for field in row.split(',').map(str::trim) {
-        let Some(number) = field
-            .parse::<f64>()
-            .ok()
-            .filter(|number| number.is_finite())
-        else {
-            return Err(refused(
-                "CSV",
-                line,
-                format!("{field:?} is not a finite number"),
-            ));
-        };
-        if let Some(place) = numbers.get_mut(count) {
-            *place = number;
-        }
-        count += 1;
-    }
-    if count != N_FIELDS {
-        return Err(refused(
-            "CSV",
-            line,
-            format!("there are {count} numbers, but 6 are needed"),
-        ));
-    }
-    let [x, y, z, dx, dy, dz] = numbers;
-    Ok(Direction {
-        at: DVec3::new(x, y, z),
-        vector: DVec3::new(dx, dy, dz),
-    })
-}
-
+#[cfg(feature = "json")]
 fn refused(format: &'static str, line: usize, why: String) -> SynthError {
     SynthError::new(SynthErrorKind::Text { format, line, why })
 }
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use super::Direction;
+    use crate::{SynthError, SynthErrorKind};
+    use glam::DVec3;
 
     fn line_of(error: &SynthError) -> usize {
         match error.kind() {
@@ -114,6 +80,8 @@ mod tests {
         let plain = Direction::parse_csv(rows).unwrap();
         let headed = Direction::parse_csv(&format!("\u{feff}x,y,z,dx,dy,dz\n{rows}")).unwrap();
         assert_eq!(plain, headed);
+        let permuted = "dx,dy,dz,x,y,z\n4,5,6,1,2,3\n0,0,1,-1e2,0.5,0\n";
+        assert_eq!(Direction::parse_csv(permuted).unwrap(), plain);
         assert_eq!(plain.len(), 2);
         assert_eq!(plain[0].vector, DVec3::new(4.0, 5.0, 6.0));
         assert_eq!(plain[1].at, DVec3::new(-100.0, 0.5, 0.0));
@@ -129,14 +97,15 @@ mod tests {
     #[test]
     fn csv_errors_name_the_line() {
         for (text, line) in [
-            ("x,y\nx,y\n", 2),
+            ("x,y\nx,y\n", 1),
+            ("a,b,c,d,e,f\n1,2,3,4,5,6", 1),
             ("1,2,3,4,5", 1),
             ("# a\n1,2,3,4,5,6,7", 2),
             ("1,2,3,4,5,6\n1,2,3,4,5,\n", 2),
             ("1,2,3,4,5,NaN", 1),
             ("1,2,3,4,5,6\n\n1,2,inf,4,5,6", 3),
             ("x,y,3", 1),
-            ("1;2;3;4;5;6\n7;8;9;1;2;3", 2),
+            ("1;2;3;4;5;6\n7;8;9;1;2;3", 1),
         ] {
             let error = Direction::parse_csv(text).unwrap_err();
             assert_eq!(line_of(&error), line, "{text:?}: {error}");
@@ -155,6 +124,8 @@ mod tests {
         let directions = Direction::parse_json(text).unwrap();
         assert_eq!(directions[0].at, DVec3::new(1.0, 2.0, 3.0));
         assert_eq!(directions[0].vector, DVec3::new(0.0, 0.5, -10.0));
+        let marked = format!("\u{feff}{text}");
+        assert_eq!(Direction::parse_json(&marked), Ok(directions));
         assert_eq!(Direction::parse_json("[]"), Ok(vec![]));
         for (text, line) in [
             ("[\n{\"at\": [1, 2], \"vector\": [0, 0, 1]}]", 2),

@@ -167,6 +167,7 @@ mod solve;
 mod surface_texture;
 mod sweep;
 mod synthesizer;
+mod table;
 mod turned;
 mod turns;
 mod usage;
@@ -203,4 +204,5 @@ pub use sites::{
 pub use surface_texture::SurfaceTexture;
 pub use sweep::Sweep;
 pub use synthesizer::{Synthesizer, synthesize};
+pub use table::{TableRow, parse_table};
 pub use turned::Turned;

@@ -4,6 +4,7 @@ use crate::input;
 use anyhow::{Context as _, Result, bail};
 use dapple::pups::glam::DVec3;
 use dapple::recipe::ControlPoint;
+use dapple::synth::{TableRow, parse_table};
 use std::path::Path;
 
 /// Reads control points; `-` is standard input. Text that begins with `[` is JSON.
@@ -25,40 +26,25 @@ pub(crate) fn read(path: &Path) -> Result<Vec<ControlPoint>> {
     Ok(points)
 }
 
-/// The points of CSV; empty lines, lines that begin with `#`, and a first line of names are left out.
+/// The columns of a control point, without and with an orientation.
+const FORMS: [&[&str]; 2] = [&["x", "y", "value"], &["x", "y", "value", "ox", "oy"]];
+
+/// The points of CSV.
 fn csv(text: &str) -> Result<Vec<ControlPoint>> {
-    let mut points = Vec::new();
-    for (line, text) in (1..).zip(text.lines()) {
-        let text = text.trim();
-        let is_heading = points.is_empty() && text.starts_with(|c: char| c.is_ascii_alphabetic());
-        if text.is_empty()
-            || text.starts_with('#')
-            || (is_heading && !text.starts_with("nan") && !text.starts_with("inf"))
-        {
-            continue;
-        }
-        points.push(point(text).with_context(|| format!("line {line}"))?);
-    }
-    Ok(points)
+    let rows = parse_table(text, &FORMS)?.into_iter();
+    rows.map(|row| point(&row)).collect()
 }
 
-fn point(text: &str) -> Result<ControlPoint> {
-    let numbers: Vec<f64> = text
-        .split(',')
-        .map(|part| part.trim().parse())
-        .collect::<Result<_, _>>()
-        .with_context(|| format!("{text:?}"))?;
+fn point(row: &TableRow) -> Result<ControlPoint> {
+    let TableRow { line, numbers, .. } = row;
     // Values are in single precision.
-    if !numbers.iter().all(|&number| (number as f32).is_finite()) {
-        bail!("{text:?} has a number that is not finite");
+    if let Some(number) = numbers.iter().find(|&&number| !(number as f32).is_finite()) {
+        bail!("line {line}: {number:e} is too large");
     }
     let (x, y, value, orientation) = match numbers[..] {
         [x, y, value] => (x, y, value, None),
         [x, y, value, ox, oy] => (x, y, value, Some(DVec3::new(ox, oy, 0.0))),
-        _ => bail!(
-            "{text:?} has {} numbers; a control point has x,y,value or x,y,value,ox,oy",
-            numbers.len()
-        ),
+        _ => bail!("line {line} has {} numbers", numbers.len()),
     };
     Ok(ControlPoint {
         x,
