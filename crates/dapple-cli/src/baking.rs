@@ -6,7 +6,7 @@ use crate::error::Hint;
 use crate::input;
 use crate::job::Job;
 use crate::layers::{Image, LayerRows, Layers};
-use crate::output::{OutputIdx, Target, cannot_be_written};
+use crate::output::{OutputIdx, Sink, Target, cannot_be_written};
 use crate::progress::Progress;
 use crate::words::with_dashes;
 use anyhow::{Context as _, Error, Result};
@@ -17,7 +17,6 @@ use dapple::recipe::{
 };
 use dapple::tile::Map;
 use serde_json::{Value, json};
-use std::fs::File;
 use std::io::{BufWriter, Cursor, Write};
 use std::path::Path;
 use std::sync::Arc;
@@ -259,7 +258,7 @@ pub(crate) fn advise_shard(error: RecipeError) -> Error {
 /// A file that receives an image row by row, and its name for errors.
 struct Writer {
     target: Target,
-    rows: RowWriter<BufWriter<File>>,
+    rows: RowWriter<BufWriter<Sink>>,
 }
 
 /// The rows of an image for a file, and for 2 x 2 copies of it.

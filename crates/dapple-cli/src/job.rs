@@ -2,17 +2,16 @@
 
 use crate::args::{ImageArgs, OutputArgs, Targets};
 use crate::encode::{
-    Cover, Format, content, default_format, encode, encode_with_alpha, ramped, range,
+    Cover, Format, content, default_format, encode, encode_with_alpha, n_clipped_of, ramped, range,
 };
-use crate::error::{Exit, Hint, usage};
-use crate::output::{OutputIdx, Outputs, Target};
+use crate::error::{Exit, Hint, printable, usage};
+use crate::output::{OutputIdx, Outputs, Sink, Target};
 use crate::progress::Style;
 use anyhow::{Context as _, Result};
 use dapple::image::Content;
 use dapple::tile::Map;
 use serde::Serialize;
 use serde_json::Value;
-use std::fs::File;
 use std::io::{self, BufWriter, IsTerminal, Write};
 use std::path::Path;
 
@@ -231,7 +230,7 @@ impl<'a> Job<'a> {
     /// # Errors
     ///
     /// The errors of [`Outputs::writer`].
-    pub(crate) fn writer(&self, output: OutputIdx) -> Result<BufWriter<File>> {
+    pub(crate) fn writer(&self, output: OutputIdx) -> Result<BufWriter<Sink>> {
         self.outputs.writer(output)
     }
 

@@ -1,9 +1,11 @@
 //! The files of a run: claimed before the work starts, written under temporary names, and all moved to their places at
 //! the end.
 //!
-//! Each file is written under a temporary name in its folder. When all of them are complete they are renamed, one right
-//! after the other: a reader finds the old file or the whole new one, however the command ends. Without `--force` no
-//! existing file is replaced: this is checked when a file is claimed, before hours of work, and again when it is renamed.
+//! Each file is written under a temporary name in its folder. When all of them are complete they are flushed to the disk
+//! and renamed, one right after the other, and then their folders are flushed: a reader finds the old file or the whole
+//! new one, however the command or the machine ends. Documents that name other files come after these. Without `--force`
+//! no existing file is replaced: this is checked when a file is claimed, before hours of work, and again when it is
+//! renamed.
 //!
 //! Standard output, devices and pipes get their bytes at the end.
 
@@ -16,15 +18,21 @@ mod registry;
 mod temporary;
 
 pub(crate) use registry::exit_without_rubbish;
-use temporary::Temporary;
+pub(crate) use temporary::Sink;
+use temporary::{Spool, Temporary};
 
 use crate::error::{Hint, usage};
 use anyhow::{Context, Error, Result, anyhow, bail};
+use dapple::image::{remove_left_behind, sync_folder};
 use sha2::{Digest, Sha256};
+use std::collections::BTreeSet;
 use std::fmt;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
+
+/// The most missing folders that are made for an output.
+const FOLDERS_MAX: usize = 64;
 
 /// The target of an output.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -61,7 +69,14 @@ pub(crate) struct Outputs {
 struct Pending {
     target: Target,
     place: Place,
-    temporary: Temporary,
+    content: Bytes,
+}
+
+/// The bytes of an output before they reach their destination.
+#[derive(Debug)]
+enum Bytes {
+    File(Temporary),
+    Stream(Spool),
 }
 
 /// The final destination of the bytes.
@@ -103,6 +118,17 @@ impl Target {
         match self {
             Self::Stdout => Self::Stdout,
             Self::Path(path) => Self::Path(path.with_extension(ending)),
+        }
+    }
+
+    /// When the file is renamed: files that are named by others first, then materials, then documents and the JSON file
+    /// with checksums.
+    fn turn(&self) -> u8 {
+        match self.ending().as_str() {
+            "mtl" => 1,
+            "mtlx" | "obj" | "gltf" => 2,
+            "json" => 3,
+            _ => 0,
         }
     }
 
@@ -164,11 +190,9 @@ impl Outputs {
     ///
     /// # Errors
     ///
-    /// If it cannot be made, for example because a file has its name.
+    /// If it cannot be made, for example because a file has its name, or if too many parents are missing.
     pub(crate) fn make_folder(&mut self, folder: &Path) -> Result<()> {
-        let missing = |folder: &&Path| !folder.as_os_str().is_empty() && !folder.exists();
-        let missing: Vec<_> = folder.ancestors().take_while(missing).collect();
-        for folder in missing.into_iter().rev() {
+        for folder in missing_folders(folder)?.into_iter().rev() {
             registry::make_folder(folder)
                 .with_context(|| format!("{}: the folder cannot be made", folder.display()))?;
             self.folders.push(folder.to_owned());
@@ -183,10 +207,15 @@ impl Outputs {
     ///
     /// # Errors
     ///
-    /// If it cannot be made, for example because a file has its name.
+    /// The errors of [`make_folder`](Self::make_folder).
     pub(crate) fn make_lasting_folder(folder: &Path) -> Result<()> {
-        let made = fs::create_dir_all(folder);
-        made.with_context(|| format!("{}: the folder cannot be made", folder.display()))
+        let failed = || format!("{}: the folder cannot be made", folder.display());
+        let missing = missing_folders(folder)?;
+        fs::create_dir_all(folder).with_context(failed)?;
+        for parent in missing.into_iter().filter_map(Path::parent) {
+            sync_folder(parent).with_context(failed)?;
+        }
+        Ok(())
     }
 
     /// Creates the temporary file of an output.
@@ -199,25 +228,21 @@ impl Outputs {
         if self.files.iter().any(|file| file.place == place) {
             bail!("{target} would be written twice");
         }
-        let temporary = match &place {
+        let content = match &place {
             Place::File(path) => {
-                temporary::remove_left_behind(path);
+                remove_left_behind(path);
                 if !self.force && path.symlink_metadata().is_ok() {
                     return Err(exists(target));
                 }
-                Temporary::beside(path).map_err(|error| no_room(path, error))?
+                Bytes::File(Temporary::beside(path).map_err(|error| no_room(path, error))?)
             }
             // There is no folder beside it, and its bytes are copied anyway.
-            Place::Stdout | Place::Device(_) => {
-                let path = std::env::temp_dir().join("dapple");
-                temporary::remove_left_behind(&path);
-                Temporary::beside(&path).map_err(|error| no_room(&path, error))?
-            }
+            Place::Stdout | Place::Device(_) => Bytes::Stream(Spool::new()),
         };
         self.files.push(Pending {
             target: target.clone(),
             place,
-            temporary,
+            content,
         });
         Ok(OutputIdx(self.files.len() - 1))
     }
@@ -227,13 +252,9 @@ impl Outputs {
     /// # Errors
     ///
     /// If the operating system has no further handle.
-    pub(crate) fn writer(&self, output: OutputIdx) -> Result<BufWriter<File>> {
-        let Pending {
-            target, temporary, ..
-        } = &self.files[output.0];
-        let file = temporary.file().try_clone();
-        let file = file.with_context(|| cannot_be_written(target))?;
-        Ok(BufWriter::with_capacity(1 << 18, file))
+    pub(crate) fn writer(&self, output: OutputIdx) -> Result<BufWriter<Sink>> {
+        let sink = self.files[output.0].sink()?;
+        Ok(BufWriter::with_capacity(1 << 18, sink))
     }
 
     /// Writes the whole content of a claimed file.
@@ -258,13 +279,12 @@ impl Outputs {
     ///
     /// If it cannot be read back.
     pub(crate) fn content(&self, output: OutputIdx) -> Result<Content> {
-        let Pending {
-            target, temporary, ..
-        } = &self.files[output.0];
-        read_back(temporary.file()).with_context(|| format!("{target} cannot be read back"))
+        let file = &self.files[output.0];
+        let content = read_back(file.sink()?);
+        content.with_context(|| format!("{} cannot be read back", file.target))
     }
 
-    /// Moves all files to their places.
+    /// Moves all files to their places, where they are on the disk when this returns.
     ///
     /// # Errors
     ///
@@ -272,19 +292,29 @@ impl Outputs {
     /// are in their places already.
     pub(crate) fn commit(mut self) -> Result<()> {
         for file in &self.files {
-            file.copy_if_stream()
+            file.complete()
                 .with_context(|| cannot_be_written(&file.target))?;
         }
+        self.files.sort_by_key(|file| file.target.turn());
         let mut held = registry::hold();
         let mut placed: Vec<Target> = Vec::new();
+        let mut changed = BTreeSet::new();
+        changed.extend(self.folders.iter().filter_map(|folder| parent(folder)));
         // After an error, the files that are still in the list are removed with `self`.
         while !self.files.is_empty() {
             let file = self.files.remove(0);
-            let Place::File(path) = &file.place else {
-                file.temporary.remove(&mut held);
+            let (Place::File(path), Bytes::File(temporary)) = (&file.place, file.content) else {
                 continue;
             };
-            if let Err(error) = file.temporary.put(&mut held, path, self.force) {
+            if let Err(error) = temporary.put(&mut held, path, self.force) {
+                return Err(not_placed(&file.target, error, &placed));
+            }
+            changed.extend(parent(path));
+            let next = self.files.first().map(|file| file.target.turn());
+            // The names of one turn are on the disk before a document names them.
+            if next != Some(file.target.turn())
+                && let Err(error) = changed.iter().try_for_each(|folder| sync_folder(folder))
+            {
                 return Err(not_placed(&file.target, error, &placed));
             }
             placed.push(file.target);
@@ -300,7 +330,9 @@ impl Drop for Outputs {
     fn drop(&mut self) {
         let mut held = registry::hold();
         for file in self.files.drain(..) {
-            file.temporary.remove(&mut held);
+            if let Bytes::File(temporary) = file.content {
+                temporary.remove(&mut held);
+            }
         }
         for folder in self.folders.drain(..).rev() {
             // A folder that is not empty stays.
@@ -311,31 +343,56 @@ impl Drop for Outputs {
 }
 
 impl Pending {
-    /// Copies the bytes to a stream, where a rename is not possible.
-    fn copy_if_stream(&self) -> io::Result<()> {
-        let mut from = self.temporary.file();
-        from.seek(SeekFrom::Start(0))?;
-        match &self.place {
-            Place::File(_) => Ok(()),
-            Place::Stdout => {
-                let mut to = io::stdout().lock();
-                io::copy(&mut from, &mut to)?;
-                to.flush()
+    /// What the bytes are written to and read from.
+    fn sink(&self) -> Result<Sink> {
+        match &self.content {
+            Bytes::File(temporary) => {
+                let file = temporary.file().try_clone();
+                Ok(Sink::File(
+                    file.with_context(|| cannot_be_written(&self.target))?,
+                ))
             }
-            Place::Device(path) => {
-                io::copy(&mut from, &mut File::options().write(true).open(path)?)?;
-                Ok(())
-            }
+            Bytes::Stream(spool) => Ok(Sink::from(spool)),
         }
     }
+
+    /// Flushes a file to the disk. Copies the bytes to a stream, where a rename is not possible.
+    fn complete(&self) -> io::Result<()> {
+        match (&self.place, &self.content) {
+            (Place::File(path), Bytes::File(temporary)) => temporary.sync(path),
+            (Place::Device(path), Bytes::Stream(spool)) => {
+                spool.copy_to(&mut File::options().write(true).open(path)?)
+            }
+            (_, Bytes::Stream(spool)) => {
+                let mut to = io::stdout().lock();
+                spool.copy_to(&mut to)?;
+                to.flush()
+            }
+            (_, Bytes::File(_)) => Ok(()),
+        }
+    }
+}
+
+/// The folder of a file or of a folder; an empty path is the current folder.
+fn parent(path: &Path) -> Option<PathBuf> {
+    path.parent().map(Path::to_owned)
+}
+
+/// The folder and those of its parents that do not exist, the innermost first.
+fn missing_folders(folder: &Path) -> Result<Vec<&Path>> {
+    let is_missing = |folder: &&Path| !folder.as_os_str().is_empty() && !folder.exists();
+    let missing = folder.ancestors().take_while(is_missing);
+    let missing: Vec<_> = missing.take(FOLDERS_MAX + 1).collect();
+    if missing.len() > FOLDERS_MAX {
+        let message = format!("the output is in more than {FOLDERS_MAX} folders that do not exist");
+        return Err(usage(message).hint("make its folder first, or give a shorter path"));
+    }
+    Ok(missing)
 }
 
 /// The final destination of a target, as far as it is known now.
 fn place(target: &Target) -> Result<Place> {
     let Target::Path(path) = target else {
-        if is_stdout_closed() {
-            return Err(anyhow!("standard output is closed").hint("give a file with -o"));
-        }
         return Ok(Place::Stdout);
     };
     match fs::metadata(path) {
@@ -360,24 +417,6 @@ fn place(target: &Target) -> Result<Place> {
         }
         Err(_) => Ok(Place::File(path.clone())),
     }
-}
-
-/// Whether standard output was closed when the process began. Then the null device is open in its place, also for
-/// reading; it is not readable if the user redirects the output to it.
-#[cfg(unix)]
-fn is_stdout_closed() -> bool {
-    use std::os::{fd::AsFd, unix::fs::MetadataExt};
-    let is_readable_null = || -> io::Result<bool> {
-        let mut file = File::from(io::stdout().as_fd().try_clone_to_owned()?);
-        let is_null = file.metadata()?.rdev() == fs::metadata("/dev/null")?.rdev();
-        Ok(is_null && file.read(&mut [0]).is_ok())
-    };
-    is_readable_null().unwrap_or(false)
-}
-
-#[cfg(not(unix))]
-fn is_stdout_closed() -> bool {
-    false
 }
 
 /// The error message for a target to which nothing can be written.
@@ -421,7 +460,7 @@ fn not_placed(target: &Target, error: io::Error, placed: &[Target]) -> Error {
 /// # Errors
 ///
 /// If the operating system fails.
-pub(crate) fn read_back(mut file: &File) -> io::Result<Content> {
+pub(crate) fn read_back(mut file: impl Read + Seek) -> io::Result<Content> {
     file.seek(SeekFrom::Start(0))?;
     let mut hash = Sha256::new();
     let mut block = vec![0; 1 << 18];

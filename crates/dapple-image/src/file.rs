@@ -1,7 +1,13 @@
 //! Access to files: reading a whole file within a limit, and replacing one as a whole.
 //!
-//! A file is written under a temporary name beside its own and then renamed. So no program ever sees half of it, and
-//! the previous content remains if writing fails.
+//! A file is written under a temporary name beside its own, `.dapple-XXXXXX.part`, and then renamed. So no program ever
+//! sees half of it, and the previous content remains if writing fails. Before the rename the bytes are flushed to the
+//! disk, and after it the folder is: once a write has been reported as done, a power cut leaves the new file, and before
+//! that the old one or the new one, never an empty one. (Pillai et al., "All File Systems Are Not Created Equal", OSDI
+//! 2014, names what goes wrong without these steps.)
+//!
+//! The process that writes a file holds a lock on it, which the operating system releases however the process ends. A
+//! temporary file without a lock was left behind, and [`remove_left_behind`] removes it.
 
 #![expect(
     clippy::disallowed_methods,
@@ -9,27 +15,225 @@
 )]
 
 use crate::{ImageError, ImageErrorKind};
-use std::fs::{self, File};
+use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, Read, Write};
 use std::path::Path;
-use tempfile::Builder;
+use tempfile::{Builder, NamedTempFile};
 
-/// All bytes of a file with at most `limit` bytes.
+/// The beginning of the temporary names.
+const PREFIX: &str = ".dapple-";
+/// The end of the temporary names.
+const SUFFIX: &str = ".part";
+
+/// All bytes of a regular file with at most `limit` bytes.
 pub(crate) fn read(path: &Path, limit: u64) -> Result<Vec<u8>, ImageError> {
     let io = |error: io::Error| ImageError::new(ImageErrorKind::Io).because(error);
-    let mut bytes = Vec::new();
-    // The length of a device or a pipe is unknown, so the reader stops by itself, one byte past the limit.
-    File::open(path)
-        .and_then(|file| file.take(limit.saturating_add(1)).read_to_end(&mut bytes))
-        .map_err(|error| io(error).at(path))?;
-    if bytes.len() as u64 > limit {
-        let bytes = bytes.len() as u64;
-        return Err(ImageError::new(ImageErrorKind::TooManyBytes { bytes, limit }).at(path));
-    }
-    Ok(bytes)
+    let too_many = |bytes| ImageError::new(ImageErrorKind::TooManyBytes { bytes, limit });
+    let read = || {
+        let file = open_regular(path).map_err(io)?;
+        let bytes = file.metadata().map_err(io)?.len();
+        if bytes > limit {
+            return Err(too_many(bytes));
+        }
+        // The length of some files of the system is unknown, so the reader stops by itself, one byte past the limit.
+        let mut content = Vec::with_capacity(usize::try_from(bytes).unwrap_or(0));
+        let mut file = file.take(limit.saturating_add(1));
+        file.read_to_end(&mut content).map_err(io)?;
+        match content.len() as u64 {
+            bytes if bytes > limit => Err(too_many(bytes)),
+            _ => Ok(content),
+        }
+    };
+    read().map_err(|error: ImageError| error.at(path))
 }
 
-/// Replaces the content of the file at `path` with `bytes`: it changes from the old to the new content at once.
+/// Opens a regular file for reading; links are followed. It never waits, as opening a named pipe does.
+///
+/// # Errors
+///
+/// [`io::ErrorKind::InvalidInput`] for a device, a pipe, a socket or a folder, else the errors of the system.
+pub fn open_regular(path: impl AsRef<Path>) -> io::Result<File> {
+    let path = path.as_ref();
+    check_regular(&fs::metadata(path)?)?;
+    let mut options = File::options();
+    options.read(true);
+    // The file may have been replaced by a pipe meanwhile.
+    let file = without_waiting(&mut options).open(path)?;
+    check_regular(&file.metadata()?)?;
+    Ok(file)
+}
+
+fn check_regular(found: &fs::Metadata) -> io::Result<()> {
+    if found.is_file() {
+        return Ok(());
+    }
+    let what = if found.is_dir() {
+        "it is a folder, and not a regular file"
+    } else {
+        "it is a device, a pipe or a socket, and not a regular file"
+    };
+    Err(io::Error::new(io::ErrorKind::InvalidInput, what))
+}
+
+/// Lets a pipe or a device be opened at once.
+fn without_waiting(options: &mut OpenOptions) -> &mut OpenOptions {
+    #[cfg(unix)]
+    std::os::unix::fs::OpenOptionsExt::custom_flags(options, libc::O_NONBLOCK);
+    options
+}
+
+/// A file that is written under a temporary name in its final folder, and then renamed. It is removed if it is dropped
+/// before that.
+///
+/// The steps are those of a commit: write all bytes into [`file`](Self::file), [`sync`](Self::sync),
+/// [`rename`](Self::rename), then [`sync_folder`]. Several files are renamed one right after the other when all of them
+/// are synced.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_image::{AtomicFile, sync_folder};
+/// use std::io::Write;
+///
+/// let folder = tempfile::tempdir()?;
+/// let path = folder.path().join("heights.bin");
+/// let new = AtomicFile::beside(&path)?;
+/// new.file().write_all(b"all of it")?;
+/// new.sync(&path)?;
+/// assert!(!path.exists());
+/// new.rename(&path, true)?;
+/// sync_folder(folder.path())?;
+/// assert_eq!(std::fs::read(&path)?, b"all of it");
+/// # Ok::<(), std::io::Error>(())
+/// ```
+#[derive(Debug)]
+pub struct AtomicFile(NamedTempFile);
+
+impl AtomicFile {
+    /// Creates and locks an empty file in the folder of `path`. Its permissions are those of any new file.
+    ///
+    /// # Errors
+    ///
+    /// If the system fails, for example because there is no such folder.
+    pub fn beside(path: &Path) -> io::Result<Self> {
+        let mut builder = Builder::new();
+        let file = builder.prefix(PREFIX).suffix(SUFFIX);
+        Ok(Self(file.make_in(folder(path), create_locked)?))
+    }
+
+    /// The temporary path.
+    #[must_use]
+    pub fn temporary_path(&self) -> &Path {
+        self.0.path()
+    }
+
+    /// The file, open for reading and writing.
+    #[must_use]
+    pub fn file(&self) -> &File {
+        self.0.as_file()
+    }
+
+    /// Flushes the bytes to the disk. If there is a file at `path`, its permissions are taken over before.
+    ///
+    /// # Errors
+    ///
+    /// If the system fails, for example because the disk is full.
+    pub fn sync(&self, path: &Path) -> io::Result<()> {
+        if let Ok(found) = fs::metadata(path) {
+            self.file().set_permissions(found.permissions())?;
+        }
+        tolerate_unsupported(self.file().sync_all())
+    }
+
+    /// Renames the file to `path`. An existing file is replaced only if `may_replace`.
+    ///
+    /// # Errors
+    ///
+    /// [`io::ErrorKind::AlreadyExists`] if there is a file that may not be replaced, else the errors of the system.
+    pub fn rename(self, path: &Path, may_replace: bool) -> io::Result<()> {
+        if may_replace {
+            self.0.persist(path)?;
+            return Ok(());
+        }
+        if let Err(refused) = self.0.persist_noclobber(path) {
+            // Not every file system can rename without replacing. There, the name is checked before the rename.
+            if refused.error.kind() == io::ErrorKind::AlreadyExists {
+                return Err(refused.error);
+            }
+            if path.symlink_metadata().is_ok() {
+                return Err(io::ErrorKind::AlreadyExists.into());
+            }
+            refused.file.persist(path)?;
+        }
+        Ok(())
+    }
+}
+
+/// Flushes the names in a folder to the disk: files that were renamed in it, and folders that were made in it.
+///
+/// Systems other than Unix flush names on their own. A folder that may not be read is left to the system, too.
+///
+/// # Errors
+///
+/// If the disk fails.
+pub fn sync_folder(path: &Path) -> io::Result<()> {
+    if !cfg!(unix) {
+        return Ok(());
+    }
+    let path = if path.as_os_str().is_empty() {
+        Path::new(".")
+    } else {
+        path
+    };
+    match File::open(path) {
+        Ok(folder) => tolerate_unsupported(folder.sync_all()),
+        Err(error) if error.kind() == io::ErrorKind::PermissionDenied => Ok(()),
+        Err(error) => Err(error),
+    }
+}
+
+/// Treats a file system that cannot flush as one that has nothing to flush.
+fn tolerate_unsupported(synced: io::Result<()>) -> io::Result<()> {
+    use io::ErrorKind::{InvalidInput, Unsupported};
+    match synced {
+        Err(error) if matches!(error.kind(), InvalidInput | Unsupported) => Ok(()),
+        synced => synced,
+    }
+}
+
+/// Removes the temporary files that ended processes have left in the folder of `path`. Errors are ignored: a folder that
+/// cannot be read is reported when the file is written.
+pub fn remove_left_behind(path: &Path) {
+    let Ok(entries) = fs::read_dir(folder(path)) else {
+        return;
+    };
+    for entry in entries.flatten() {
+        let name = entry.file_name();
+        let name = name.as_encoded_bytes();
+        let is_ours = name.starts_with(PREFIX.as_bytes()) && name.ends_with(SUFFIX.as_bytes());
+        // Somebody else may have given such a name to a link or to a pipe, which would be waited for.
+        if !is_ours || !entry.file_type().is_ok_and(|found| found.is_file()) {
+            continue;
+        }
+        // Opened for writing, since some file systems only lock files open for writing.
+        let mut options = File::options();
+        options.write(true);
+        #[cfg(unix)]
+        std::os::unix::fs::OpenOptionsExt::custom_flags(
+            &mut options,
+            libc::O_NONBLOCK | libc::O_NOFOLLOW,
+        );
+        // The lock is held during the removal, or else another process could lock the file in between.
+        if let Ok(file) = options.open(entry.path())
+            && file.try_lock().is_ok()
+        {
+            let _ = fs::remove_file(entry.path());
+        }
+    }
+}
+
+/// Replaces the content of the file at `path` with `bytes`: it changes from the old to the new content at once, and is on
+/// the disk when this returns.
 ///
 /// An existing file keeps its permissions; if `path` is a link, the file that it leads to is replaced.
 ///
@@ -43,14 +247,29 @@ pub fn replace(path: &Path, bytes: &[u8]) -> Result<(), ImageError> {
 
 fn write_and_rename(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let path = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
-    let folder = path.parent().unwrap_or(Path::new(""));
-    // Created here, so that its permissions are those of any new file.
-    let create = |path: &Path| File::options().write(true).create_new(true).open(path);
-    let mut file = Builder::new().prefix(".dapple-").make_in(folder, create)?;
-    file.as_file_mut().write_all(bytes)?;
-    if let Ok(found) = fs::metadata(&path) {
-        file.as_file().set_permissions(found.permissions())?;
+    let new = AtomicFile::beside(&path)?;
+    new.file().write_all(bytes)?;
+    new.sync(&path)?;
+    new.rename(&path, true)?;
+    sync_folder(folder(&path))
+}
+
+/// The folder of a file.
+fn folder(path: &Path) -> &Path {
+    match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
     }
-    file.persist(path)?;
-    Ok(())
+}
+
+/// Creates a file and locks it. Its permissions are those of any new file.
+fn create_locked(path: &Path) -> io::Result<File> {
+    let mut options = File::options();
+    let file = options.read(true).write(true).create_new(true).open(path)?;
+    match file.try_lock() {
+        // Without locks, no process takes a file for one that was left behind.
+        Ok(()) | Err(TryLockError::Error(_)) if path.exists() => Ok(file),
+        // Another process has removed it as left behind, so that another name is tried.
+        _ => Err(io::ErrorKind::AlreadyExists.into()),
+    }
 }

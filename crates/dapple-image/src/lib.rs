@@ -66,14 +66,14 @@ pub use self::jpeg::decode_jpeg;
 pub use self::png::{PngImage, PngPixel, PngPixels, Transfer};
 #[cfg(feature = "png")]
 pub use self::png::{
-    decode_png, encode_png, write_color_alpha_png, write_color_png, write_gray_png,
-    write_normal_png, write_png,
+    decode_png, encode_png, write_color_alpha_png, write_color_png,
+    write_gray_png, write_normal_png, write_png,
 };
 pub use changes::{FileChanges, FileStamp};
 pub use channels::Channels;
 pub use color_space::ColorSpace;
 pub use content::{Content, Depth, Encoding};
 pub use error::{ImageError, ImageErrorKind};
-pub use file::replace;
+pub use file::{AtomicFile, open_regular, remove_left_behind, replace, sync_folder};
 pub use limits::Limits;
 pub use rows::RowWriter;

@@ -9,7 +9,7 @@ use crate::formats::{ending, readable_endings, writable_endings};
 use crate::{MeshFormat, MeshIoError, MeshIoErrorKind};
 use dapple_mesh::{EncodedImage, Model};
 use std::fs::File;
-use std::io::{self, Read, Write as _};
+use std::io::{self, Read};
 use std::path::{Component, Path};
 
 /// The largest number of bytes that are read of a file, and of all files beside it. The length of a device or a pipe is
@@ -53,8 +53,9 @@ pub fn replace_images(
 
 /// Writes a mesh file, in the format of [`FORMATS`](crate::FORMATS) that is written with the ending of its path.
 ///
-/// A file is written under a temporary name and then renamed, so that no program ever sees half of it. Files to which
-/// it refers, such as materials and textures, are written beside it first, under the same stem.
+/// A file is written under a temporary name, flushed to the disk and then renamed, so that no program ever sees half of
+/// it, and a power cut leaves the old or the new one. Files to which it refers, such as materials and textures, are
+/// written beside it first, under the same stem.
 ///
 /// # Errors
 ///
@@ -126,25 +127,16 @@ fn failed(path: &Path, error: &io::Error) -> MeshIoError {
     MeshIoError::new(MeshIoErrorKind::Io { path, why })
 }
 
-/// Replaces the content of the file at `path` with `bytes`: it changes from the old to the new content at once.
-///
-/// An existing file keeps its permissions; if `path` is a link, the file that it leads to is replaced.
+/// Replaces the content of the file at `path` with `bytes`, at once and for good: see [`dapple_image::replace`].
 fn replace(path: &Path, bytes: &[u8]) -> Result<(), MeshIoError> {
-    let replaced = || {
-        let path = std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
-        // Created here, so that its permissions are those of any new file.
-        let create = |path: &Path| File::options().write(true).create_new(true).open(path);
-        let mut builder = tempfile::Builder::new();
-        let folder = path.parent().unwrap_or(Path::new(""));
-        let mut file = builder.prefix(".dapple-").make_in(folder, create)?;
-        file.as_file_mut().write_all(bytes)?;
-        if let Ok(found) = std::fs::metadata(&path) {
-            file.as_file().set_permissions(found.permissions())?;
-        }
-        file.persist(path)?;
-        Ok(())
-    };
-    replaced().map_err(|error| failed(path, &error))
+    dapple_image::replace(path, bytes).map_err(|error| {
+        let why = match std::error::Error::source(&error) {
+            Some(cause) => cause.to_string(),
+            None => error.to_string(),
+        };
+        let path = path.display().to_string();
+        MeshIoError::new(MeshIoErrorKind::Io { path, why })
+    })
 }
 
 #[cfg(all(test, feature = "gltf"))]

@@ -292,9 +292,6 @@ impl Work {
         };
         let bake = Bake::new(&plan, &options).map_err(|error| refused(error).wrong_value())?;
         claimed.write(&mut job, bake, recipe, progress)?;
-        if args.shard.is_some() {
-            claimed.sync(&job)?;
-        }
         if let (Some((output, format)), Some(thing)) = (claimed.preview, args.preview) {
             let picture = preview::picture(recipe, images, time, thing)?;
             job.write_map(output, &Map::Color(picture), format)?;

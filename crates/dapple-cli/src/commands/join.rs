@@ -6,7 +6,7 @@ use crate::error::{Exit, Hint, usage};
 use crate::input;
 use crate::job::{Context, Job};
 use crate::layers::LayerRows;
-use crate::output::{OutputIdx, Target, cannot_be_written};
+use crate::output::{OutputIdx, Sink, Target, cannot_be_written};
 use crate::progress::Progress;
 use crate::shards::{List, Task};
 use crate::words::Word;
@@ -18,7 +18,6 @@ use dapple::recipe::{MapKind, MapRows, Region};
 use serde::Serialize;
 use serde_json::Value;
 use std::borrow::Cow;
-use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -260,7 +259,7 @@ impl Joined {
     }
 }
 
-fn finish(writer: RowWriter<BufWriter<File>>) -> Result<()> {
+fn finish(writer: RowWriter<BufWriter<Sink>>) -> Result<()> {
     Ok(writer.finish()?.flush()?)
 }
 

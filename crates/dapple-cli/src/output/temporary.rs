@@ -1,113 +1,126 @@
-//! A file under a temporary name, in the folder of its final name.
-//!
-//! Its name is `.dapple-`, six letters and `.part`. Its process holds a lock on it, which the operating system releases
-//! however the process ends. So a file without a lock was left behind, for example by `kill -9`, and the next run that
-//! writes into the same folder removes it.
-
-#![expect(
-    clippy::disallowed_methods,
-    reason = "this module makes and renames files"
-)]
+//! The bytes of an output until its run is done: a file under a temporary name in the folder of its final name, or, for
+//! streams, memory.
 
 use super::registry::{self, Held};
-use std::fs::{self, File, TryLockError};
-use std::io;
+use dapple::image::AtomicFile;
+use std::fs::File;
+use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::Path;
-use tempfile::{Builder, NamedTempFile};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use tempfile::SpooledTempFile;
 
-/// The beginning of the temporary names.
-const PREFIX: &str = ".dapple-";
-/// The end of the temporary names.
-const SUFFIX: &str = ".part";
+/// The most bytes of a stream that are kept in memory. More are moved to a file without a name in the folder for
+/// temporary files.
+const MEMORY: usize = 1 << 26;
 
-/// An open temporary file with a lock on it.
+/// A temporary file that an interrupt removes.
 #[derive(Debug)]
-pub(super) struct Temporary(NamedTempFile);
+pub(super) struct Temporary(AtomicFile);
 
 impl Temporary {
     /// A new file in the folder of `path`.
     pub(super) fn beside(path: &Path) -> io::Result<Self> {
         let mut held = registry::hold();
-        let mut builder = Builder::new();
-        let file = builder.prefix(PREFIX).suffix(SUFFIX);
-        let file = file.make_in(folder(path), create_locked)?;
-        held.push(file.path().to_owned());
+        let file = AtomicFile::beside(path)?;
+        held.push(file.temporary_path().to_owned());
         Ok(Self(file))
     }
 
     /// The file.
     pub(super) fn file(&self) -> &File {
-        self.0.as_file()
+        self.0.file()
     }
 
-    /// Renames it to `path`; an existing file is replaced only with `force`, and keeps its permissions.
+    /// Flushes the file to the disk, before it becomes the one at `path`.
+    pub(super) fn sync(&self, path: &Path) -> io::Result<()> {
+        self.0.sync(path)
+    }
+
+    /// Renames it to `path`; an existing file is replaced only with `force`.
     pub(super) fn put(self, held: &mut Held, path: &Path, force: bool) -> io::Result<()> {
-        registry::forget(held, self.0.path());
-        if force {
-            if let Ok(found) = fs::metadata(path) {
-                self.file().set_permissions(found.permissions())?;
-            }
-            self.0.persist(path)?;
-            return Ok(());
-        }
-        if let Err(refused) = self.0.persist_noclobber(path) {
-            // Not every file system can rename without replacing. There, the name is checked before the rename.
-            if refused.error.kind() == io::ErrorKind::AlreadyExists {
-                return Err(refused.error);
-            }
-            if path.symlink_metadata().is_ok() {
-                return Err(io::ErrorKind::AlreadyExists.into());
-            }
-            refused.file.persist(path)?;
-        }
-        Ok(())
+        registry::forget(held, self.0.temporary_path());
+        self.0.rename(path, force)
     }
 
     /// Removes the file.
     pub(super) fn remove(self, held: &mut Held) {
-        registry::forget(held, self.0.path());
+        registry::forget(held, self.0.temporary_path());
     }
 }
 
-/// Removes the temporary files that ended processes have left in the folder of `path`.
-pub(super) fn remove_left_behind(path: &Path) {
-    // A folder that cannot be read is reported when the file is written.
-    let Ok(entries) = fs::read_dir(folder(path)) else {
-        return;
-    };
-    for entry in entries.flatten() {
-        let name = entry.file_name();
-        let name = name.as_encoded_bytes();
-        if !name.starts_with(PREFIX.as_bytes()) || !name.ends_with(SUFFIX.as_bytes()) {
-            continue;
+/// The bytes of a stream, such as standard output, until the run is done.
+#[derive(Clone, Debug)]
+pub(super) struct Spool(Arc<Mutex<SpooledTempFile>>);
+
+impl Spool {
+    /// A stream without bytes.
+    pub(super) fn new() -> Self {
+        Self(Arc::new(Mutex::new(SpooledTempFile::new(MEMORY))))
+    }
+
+    /// Passes all bytes on, from the first.
+    pub(super) fn copy_to(&self, to: &mut dyn Write) -> io::Result<()> {
+        let mut bytes = self.lock();
+        bytes.seek(SeekFrom::Start(0))?;
+        io::copy(&mut *bytes, to)?;
+        Ok(())
+    }
+
+    fn lock(&self) -> MutexGuard<'_, SpooledTempFile> {
+        // Bytes that were written half are an error of the thread that wrote them.
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// What an output is written to.
+#[derive(Debug)]
+pub(crate) enum Sink {
+    /// A temporary file.
+    File(File),
+    /// A stream.
+    Stream(StreamSink),
+}
+
+/// The bytes of a stream.
+#[derive(Debug)]
+pub(crate) struct StreamSink(Spool);
+
+impl From<&Spool> for Sink {
+    fn from(spool: &Spool) -> Self {
+        Self::Stream(StreamSink(spool.clone()))
+    }
+}
+
+impl Read for Sink {
+    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+        match self {
+            Self::File(file) => file.read(bytes),
+            Self::Stream(stream) => stream.0.lock().read(bytes),
         }
-        // Opened for writing, since some file systems only lock files open for writing.
-        let file = File::options().write(true).open(entry.path());
-        // The lock is held during the removal, or else another process could lock the file in between.
-        if let Ok(file) = file
-            && file.try_lock().is_ok()
-        {
-            let _ = fs::remove_file(entry.path());
+    }
+}
+
+impl Write for Sink {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        match self {
+            Self::File(file) => file.write(bytes),
+            Self::Stream(stream) => stream.0.lock().write(bytes),
+        }
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        match self {
+            Self::File(file) => file.flush(),
+            Self::Stream(stream) => stream.0.lock().flush(),
         }
     }
 }
 
-/// The folder of a file.
-fn folder(path: &Path) -> &Path {
-    match path.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder,
-        _ => Path::new("."),
-    }
-}
-
-/// Creates a file and locks it. Its permissions are those of any new file.
-fn create_locked(path: &Path) -> io::Result<File> {
-    let mut options = File::options();
-    let file = options.read(true).write(true).create_new(true).open(path)?;
-    match file.try_lock() {
-        // Without locks, no process takes a file for one that was left behind.
-        Ok(()) | Err(TryLockError::Error(_)) if path.exists() => Ok(file),
-        // Another process has removed it as left behind, so that another name is tried.
-        _ => Err(io::ErrorKind::AlreadyExists.into()),
+impl Seek for Sink {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        match self {
+            Self::File(file) => file.seek(to),
+            Self::Stream(stream) => stream.0.lock().seek(to),
+        }
     }
 }

@@ -156,6 +156,37 @@ fn names_may_be_as_long_as_the_file_system_has_them() {
     fs::remove_dir_all(folder).unwrap();
 }
 
+#[test]
+fn documents_are_placed_after_what_they_name() {
+    let folder = folder("documents");
+    let names = ["a.json", "a.mtlx", "a.obj", "a.mtl", "a_b.png", "a.gltf"];
+    // The last one that is placed cannot be, since a file has appeared; the message lists the others in their order.
+    let placed = |last: &str| {
+        let mut outputs = Outputs::new(false);
+        for name in names {
+            let output = claim(&mut outputs, &folder.join(name));
+            outputs.write(output, b"new").unwrap();
+        }
+        fs::write(folder.join(last), b"theirs").unwrap();
+        let error = format!("{:#}", outputs.commit().unwrap_err());
+        for name in names {
+            let _ = fs::remove_file(folder.join(name));
+        }
+        let (_, list) = error.split_once("was written: ").unwrap_or_default();
+        let (list, _) = list.split_once(": ").unwrap_or((list, ""));
+        let names = list
+            .split(", ")
+            .map(|path| path.rsplit('/').next().unwrap_or(""));
+        names.map(str::to_owned).collect::<Vec<_>>()
+    };
+    assert_eq!(
+        placed("a.json"),
+        ["a_b.png", "a.mtl", "a.mtlx", "a.obj", "a.gltf"]
+    );
+    assert_eq!(placed("a.mtlx"), ["a_b.png", "a.mtl"]);
+    fs::remove_dir_all(folder).unwrap();
+}
+
 #[cfg(unix)]
 #[test]
 fn permissions_of_a_replaced_file_are_kept() {

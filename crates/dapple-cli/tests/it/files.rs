@@ -1,6 +1,6 @@
 //! Written files, and protection against overwriting.
 
-use crate::support::{Folder, assert_done, assert_refused, stdout};
+use crate::support::{Folder, assert_done, assert_refused, stderr, stdout};
 use dapple::image::{Image, Limits, decode_image, read_image};
 use std::fs;
 use std::process::Stdio;
@@ -191,12 +191,32 @@ fn a_reader_that_goes_away_is_no_error() {
 
 #[cfg(unix)]
 #[test]
-fn a_closed_standard_output_is_no_place_for_a_picture() {
-    let folder = Folder::with_inputs("closed");
-    let closed = folder.shell("dapple tile photo.png -o - >&-");
-    assert_refused(&closed, 1, "standard output is closed", "closed");
-    let away = folder.shell("dapple tile photo.png -o - >/dev/null");
-    assert_done(&away, "thrown away");
+fn what_is_thrown_away_was_written() {
+    let folder = Folder::with_inputs("away");
+    // Programs open the null device for reading, too, to throw away an output: Python's `DEVNULL`, for example. A closed
+    // output cannot be told from it, since the null device is opened in its place when a process begins.
+    for away in [">/dev/null", "1<>/dev/null", ">&-"] {
+        let output = folder.shell(&format!("dapple tile photo.png -o - {away}"));
+        assert_done(&output, away);
+        let output = folder.shell(&format!("dapple info photo.png --check {away}"));
+        assert_eq!(output.status.code(), Some(3), "{away}: {}", stderr(&output));
+    }
+}
+
+#[test]
+fn a_document_comes_after_the_files_that_it_names() {
+    let folder = Folder::new("document");
+    let line = "bake flagstone --size 16 -o a.mtlx";
+    assert_done(&folder.run(&line.split(' ').collect::<Vec<_>>()), line);
+    let n_images = folder.names().len() - 1;
+    for name in folder.names() {
+        fs::remove_file(folder.path(&name)).unwrap();
+    }
+    // Over a file system that fails at an image, the document is not there.
+    fs::create_dir(folder.path("b_height.png")).unwrap();
+    let output = folder.run(&["bake", "flagstone", "--size", "16", "-o", "b.mtlx"]);
+    assert_refused(&output, 1, "b_height.png", "a folder in the way");
+    assert_eq!(folder.names(), ["b_height.png"], "{n_images} images before");
 }
 
 #[cfg(unix)]

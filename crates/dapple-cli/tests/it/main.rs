@@ -10,6 +10,7 @@ mod bakes;
 mod batch;
 mod color_inputs;
 mod copies;
+mod durable;
 mod examples;
 mod exr_inputs;
 mod files;

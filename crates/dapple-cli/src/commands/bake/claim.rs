@@ -9,10 +9,10 @@ use crate::encode::Format;
 use crate::error::{Hint, usage};
 use crate::job::Job;
 use crate::layers::{Image, Layers};
-use crate::output::{OutputIdx, Outputs, Target, cannot_be_written};
+use crate::output::{OutputIdx, Outputs, Target};
 use crate::progress::Progress;
 use crate::shards::List;
-use anyhow::{Context as _, Error, Result};
+use anyhow::{Error, Result};
 use dapple::recipe::{Bake, MapKind, Recipe};
 use std::path::Path;
 
@@ -193,15 +193,6 @@ impl Claimed {
             }
         }
         kinds
-    }
-
-    /// Waits until the images are on the disk, so that what gets its name is whole even if the machine fails.
-    pub(super) fn sync(&self, job: &Job<'_>) -> Result<()> {
-        for file in &self.files {
-            let synced = job.writer(file.output)?.get_ref().sync_all();
-            synced.with_context(|| cannot_be_written(job.target(file.output)))?;
-        }
-        Ok(())
     }
 
     /// Writes the images, and the document that is made of them.
