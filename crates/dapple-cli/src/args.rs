@@ -37,6 +37,10 @@ pub(crate) struct Common {
     #[arg(long, global = true, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=1024))]
     pub(crate) threads: u16,
 
+    /// The largest number of pixels of an image that is read [default: 2^28, which is 16384 x 16384].
+    #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    pub(crate) max_pixels: Option<u64>,
+
     /// How progress is shown on standard error: as a bar on a terminal and as lines elsewhere, or always as lines, or
     /// as lines of JSON.
     #[arg(long, global = true, value_name = "STYLE", value_parser = Word::<Style>::all(), default_value_t = Style::Auto)]

@@ -169,8 +169,35 @@ fn refused_number(error: &Error) -> Option<f64> {
     })
 }
 
-/// The only option with this number, as it was typed.
-fn option_with(number: f64, arguments: &[String]) -> Option<String> {
+/// The first cause of this type.
+pub(crate) fn cause<T: std::error::Error + 'static>(error: &Error) -> Option<&T> {
+    let mut causes = error.chain();
+    causes.find_map(|found| match found.downcast_ref() {
+        // A refusal passes for the error in it, which the chain therefore lacks.
+        Some(Refusal { error, .. }) => cause(error),
+        None => found.downcast_ref(),
+    })
+}
+
+/// Options whose number has another name in messages.
+const OTHER_NAMES: [(&str, &str); 4] = [
+    ("--persistence", "gain"),
+    ("--radius", "radii"),
+    ("--share", "width of the cuts"),
+    ("--spacing", "radius"),
+];
+
+/// Whether a message is about the number of an option: it has the words of the option, or its other name.
+fn is_about(message: &str, option: &str) -> bool {
+    let words = option.trim_start_matches('-').replace('-', " ");
+    let mut names = OTHER_NAMES.iter().filter(|(other, _)| *other == option);
+    message.contains(&words) || names.any(|(_, name)| message.contains(name))
+}
+
+/// The only option that the message is about and that has this number, as it was typed. Other options may have the same
+/// number, such as `--threads 1`.
+fn option_with(number: f64, message: &str, arguments: &[String]) -> Option<String> {
+    let is_same = |part: f64| part == number || (part.is_nan() && number.is_nan());
     let holds = |value: &str| {
         let mut parts = value.split([',', 'x']).map(str::parse);
         // Some numbers are stored with fewer digits.

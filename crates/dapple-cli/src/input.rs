@@ -7,26 +7,32 @@
 
 use crate::args::{Alpha, ReadArgs, Region};
 use crate::encode::map_raster;
-use crate::error::{Hint, usage};
+use crate::error::{Hint, cause, usage};
 use crate::finite::Faults;
 use crate::output::read_back;
 use anyhow::{Context, Error, Result, anyhow};
 use dapple::color::{Code, LinearRgb, LinearRgba};
 use dapple::image::{
     Channels, ExrImage, Image, ImageError, ImageErrorKind, Limits, PngPixels, decode_image,
-    read_image,
+    decode_npy, decode_png_region, decode_r16, read_image,
 };
 use dapple::mesh::{EncodedImage, Model};
 use dapple::mesh_io::{MeshIoErrorKind, read_model, readable_endings};
 use dapple::raster::Raster;
 use dapple::recipe::{ImageAlpha, similar_words};
 use dapple::tile::Map;
+use serde::Deserialize;
 use std::fs;
 use std::io::{self, Read};
 use std::path::Path;
+use std::sync::OnceLock;
 
 /// The largest number of bytes of a text.
 const TEXT_MAX: u64 = 1 << 28;
+/// The character that some editors put before a text.
+const BYTE_ORDER_MARK: char = '\u{feff}';
+/// The number of bytes by which formats of images are told apart.
+const SIGNATURE_MAX: u64 = 16;
 /// The largest number of similar names in an error message.
 const NAMES_MAX: usize = 3;
 
@@ -39,6 +45,24 @@ pub(crate) enum Kind {
     Colors,
     /// Normals: `2 code / max - 1`.
     Normals,
+}
+
+/// The largest number of pixels of an image that is read, if `--max-pixels` was given.
+static MAX_PIXELS: OnceLock<u64> = OnceLock::new();
+
+/// Sets the largest number of pixels of images that are read, for the whole process.
+pub(crate) fn set_max_pixels(pixels: u64) {
+    // Only the first call has an effect, and there is only one.
+    let _ = MAX_PIXELS.set(pixels);
+}
+
+/// The limits of images that are read.
+fn limits() -> Limits {
+    let default = Limits::default();
+    let pixels = MAX_PIXELS.get().copied().unwrap_or(default.pixels);
+    // Four channels of 32 bits.
+    let bytes = default.bytes.max(pixels.saturating_mul(16));
+    Limits { pixels, bytes }
 }
 
 /// An image that was read, with its properties.
@@ -162,17 +186,148 @@ impl Loaded {
 ///
 /// If the file does not exist, has another format, or is empty or damaged.
 pub(crate) fn image(path: &Path) -> Result<Image> {
-    let limits = Limits::default();
+    let limits = limits();
     if path == Path::new("-") {
-        let mut bytes = Vec::new();
-        let mut stdin = io::stdin().lock().take(limits.bytes);
-        stdin.read_to_end(&mut bytes).context("standard input")?;
-        return decode_image(&bytes, &limits)
-            .map_err(advise)
-            .context("standard input");
+        return of_stream(&mut io::stdin().lock(), &limits).context("standard input");
     }
     check_file(path, "an image")?;
+    if !path.is_file() {
+        // A pipe, such as `<(…)` of a shell.
+        let opened = fs::File::open(path).map_err(Error::new);
+        let decoded = opened.and_then(|mut pipe| of_stream(&mut pipe, &limits));
+        return decoded.with_context(|| name(path));
+    }
     read_image(path, &limits).map_err(advise)
+}
+
+/// What `dapple info` reads: an image, or an array or heights as the command writes them.
+#[derive(Debug)]
+pub(crate) enum Content {
+    /// An image.
+    Image(Image),
+    /// The channels of a NumPy array.
+    Array(Vec<Raster<f32>>),
+    /// Raw heights.
+    Raw(Raster<u16>),
+}
+
+/// Numbers that were read, as they are in their file.
+#[derive(Debug)]
+pub(crate) struct Numbers {
+    pub(crate) content: Content,
+    /// Whether only the pixels of the region were read.
+    pub(crate) is_part: bool,
+}
+
+/// Reads an image, a NumPy array, or raw heights with the JSON file beside them. Of an image with too many pixels the
+/// region alone is read, where the format allows it.
+///
+/// # Errors
+///
+/// The errors of [`image`], and raw heights without a size.
+pub(crate) fn numbers(path: &Path, region: Option<Region>) -> Result<Numbers> {
+    let ending = path.extension().unwrap_or_default().to_string_lossy();
+    let content = match ending.to_ascii_lowercase().as_str() {
+        "npy" => {
+            let bytes = whole(path, "an array")?;
+            let channels = decode_npy(&bytes, &limits()).map_err(advise);
+            Content::Array(channels.with_context(|| name(path))?)
+        }
+        "r16" => {
+            let size = raw_size(path)?;
+            let bytes = whole(path, "raw heights")?;
+            let codes = decode_r16(&bytes, size, &limits()).map_err(advise);
+            Content::Raw(codes.with_context(|| name(path))?)
+        }
+        _ => {
+            let (image, is_part) = image_or_region(path, region)?;
+            let content = Content::Image(image);
+            return Ok(Numbers { content, is_part });
+        }
+    };
+    let is_part = false;
+    Ok(Numbers { content, is_part })
+}
+
+/// Reads an image; or only a region of it, if it has too many pixels and is a PNG. The second value says which.
+fn image_or_region(path: &Path, region: Option<Region>) -> Result<(Image, bool)> {
+    let error = match (image(path), region) {
+        (Ok(image), _) => return Ok((image, false)),
+        (Err(error), Some(region)) if exceeded_limit(&error).is_some() && path.is_file() => {
+            let bytes = whole(path, "an image")?;
+            let part = decode_png_region(&bytes, region.first, region.size, &limits());
+            match part {
+                Ok(part) => return Ok((Image::Png(part), true)),
+                Err(other) if matches!(other.kind(), ImageErrorKind::UnknownFormat) => error,
+                Err(other) => {
+                    let is_outside = matches!(other.kind(), ImageErrorKind::Outside { .. });
+                    let error = Error::new(other).context(name(path));
+                    return Err(if is_outside {
+                        error.wrong_value()
+                    } else {
+                        error
+                    });
+                }
+            }
+        }
+        (Err(error), _) => error,
+    };
+    Err(error)
+}
+
+/// The limit of pixels that an image exceeds, if this is the reason of the error.
+pub(crate) fn exceeded_limit(error: &Error) -> Option<u64> {
+    match cause::<ImageError>(error)?.kind() {
+        ImageErrorKind::TooManyPixels { limit, .. } => Some(*limit),
+        _ => None,
+    }
+}
+
+/// All bytes of a regular file.
+fn whole(path: &Path, what: &str) -> Result<Vec<u8>> {
+    check_file(path, what)?;
+    let limit = limits().bytes;
+    let mut bytes = Vec::new();
+    dapple::image::open_regular(path)
+        .and_then(|file| file.take(limit.saturating_add(1)).read_to_end(&mut bytes))
+        .with_context(|| format!("{} cannot be read", path.display()))?;
+    if bytes.len() as u64 > limit {
+        return Err(anyhow!("{} has more than {limit} bytes", path.display()));
+    }
+    Ok(bytes)
+}
+
+/// The size of raw heights, from the JSON file beside them.
+fn raw_size(path: &Path) -> Result<[u32; 2]> {
+    #[derive(Deserialize)]
+    struct Size {
+        width: u32,
+        height: u32,
+    }
+    check_file(path, "raw heights")?;
+    let beside = path.with_extension("json");
+    let size = text(&beside).and_then(|text| Ok(serde_json::from_str::<Size>(&text)?));
+    let Size { width, height } = size
+        .with_context(|| format!("the size of {} is not known", path.display()))
+        .hint(format!(
+            "{} beside it says it: {{\"width\": …, \"height\": …}}",
+            beside.display()
+        ))?;
+    Ok([width, height])
+}
+
+/// Decodes the image in a stream, which is read on only if it begins like an image: it may never end.
+fn of_stream(stream: &mut dyn Read, limits: &Limits) -> Result<Image> {
+    let mut bytes = Vec::new();
+    stream.take(SIGNATURE_MAX).read_to_end(&mut bytes)?;
+    if let Err(error) = decode_image(&bytes, limits)
+        && matches!(error.kind(), ImageErrorKind::UnknownFormat)
+    {
+        return Err(advise(error));
+    }
+    let left = limits.bytes.saturating_sub(bytes.len() as u64);
+    stream.take(left).read_to_end(&mut bytes)?;
+    decode_image(&bytes, limits).map_err(advise)
 }
 
 /// The hint for an image with alpha where an option handles it.
@@ -240,7 +395,8 @@ pub(crate) fn map_with_faults(
     alpha: Alpha,
     read: &ReadArgs,
 ) -> Result<Loaded> {
-    let (image, faults) = picture(path, read)?;
+    let (image, faults, is_part) = picture(path, region, read)?;
+    let region = region.filter(|_| !is_part);
     let mut loaded = of_image(&image, path, kind, region, alpha)?;
     loaded.faults = match region {
         Some(region) => faults.crop(region.first, region.size)?,
@@ -249,9 +405,14 @@ pub(crate) fn map_with_faults(
     Ok(loaded)
 }
 
-/// Reads an image: of the layers of an OpenEXR file only the one that is used, with finite numbers.
-fn picture(path: &Path, read: &ReadArgs) -> Result<(Image, Faults)> {
-    let mut image = image(path)?;
+/// Reads an image: of the layers of an OpenEXR file only the one that is used, with finite numbers. The last value says
+/// whether the image is the region alone, as in [`image_or_region`].
+fn picture(
+    path: &Path,
+    region: Option<Region>,
+    read: &ReadArgs,
+) -> Result<(Image, Faults, bool)> {
+    let (mut image, is_part) = image_or_region(path, region)?;
     let mut faults = Faults::default();
     if let Image::Exr(exr) = &mut image {
         let of_file = |error| advise(error).context(name(path));
@@ -267,7 +428,7 @@ fn picture(path: &Path, read: &ReadArgs) -> Result<(Image, Faults)> {
         *exr = exr.to_picture().map_err(of_file)?;
         faults = Faults::replace(&mut exr.planes, read.nonfinite);
     }
-    Ok((image, faults))
+    Ok((image, faults, is_part))
 }
 
 /// An image in a mesh file, as [`map_with_alpha`] gives one in a file of its own.
@@ -281,7 +442,7 @@ pub(crate) fn embedded(
     kind: Kind,
     alpha: Alpha,
 ) -> Result<Loaded> {
-    let image = decode_image(image.bytes(), &Limits::default()).map_err(advise);
+    let image = decode_image(image.bytes(), &limits()).map_err(advise);
     let mut image = image.with_context(|| format!("a texture of {}", name(path)))?;
     let ending = path.extension().unwrap_or_default();
     if ["glb", "gltf"]
@@ -520,7 +681,22 @@ pub(crate) fn text(path: &Path) -> Result<String> {
     if bytes.len() as u64 > TEXT_MAX {
         return Err(anyhow!("{} has more than {TEXT_MAX} bytes", path.display()));
     }
-    String::from_utf8(bytes).map_err(|_| anyhow!("{} is not a text in UTF-8", path.display()))
+    decoded(bytes).with_context(|| name(path))
+}
+
+/// The text in some bytes in UTF-8, without a byte order mark.
+fn decoded(bytes: Vec<u8>) -> Result<String> {
+    let found = match bytes.as_slice() {
+        // The mark of UTF-32 in little endian begins like that of UTF-16.
+        [0xff, 0xfe, 0, 0, ..] | [0, 0, 0xfe, 0xff, ..] => Some("UTF-32"),
+        [0xff, 0xfe, ..] | [0xfe, 0xff, ..] => Some("UTF-16"),
+        _ => None,
+    };
+    if let Some(found) = found {
+        return Err(anyhow!("the text is in {found}, and not in UTF-8").hint("save it as UTF-8"));
+    }
+    let text = String::from_utf8(bytes).map_err(|_| anyhow!("it is not a text in UTF-8"))?;
+    Ok(text.trim_start_matches(BYTE_ORDER_MARK).to_owned())
 }
 
 /// Reads the planes of an EXR image of this size.
@@ -546,7 +722,7 @@ pub(crate) fn exr(path: &Path, size: [u32; 2]) -> Result<ExrImage> {
 /// If there is no such file, or it cannot be read.
 pub(crate) fn sha256(path: &Path) -> Result<String> {
     check_file(path, "an image")?;
-    let content = fs::File::open(path).and_then(|file| read_back(&file));
+    let content = dapple::image::open_regular(path).and_then(read_back);
     let content = content.with_context(|| format!("{} cannot be read", path.display()))?;
     Ok(content.sha256)
 }
@@ -581,6 +757,9 @@ fn advise(error: ImageError) -> Error {
         ImageErrorKind::MissingLayer { .. } | ImageErrorKind::AmbiguousLayer { .. } => {
             Some("name one of them with --layer, or in a recipe with layer")
         }
+        ImageErrorKind::TooManyPixels { .. } => Some(
+            "add --max-pixels N to read larger images, or --region X,Y,W,H for a part of a PNG",
+        ),
         _ => None,
     };
     match hint {
@@ -607,10 +786,39 @@ fn check_file(path: &Path, what: &str) -> Result<()> {
     if found.is_dir() {
         return Err(anyhow!("{} is a folder, and not {what}", path.display()));
     }
+    if is_device(&found) {
+        return Err(anyhow!("{} is a device, and not {what}", path.display()));
+    }
     if found.is_file() && found.len() == 0 {
         return Err(anyhow!("{} is empty, and not {what}", path.display()));
     }
     Ok(())
+}
+
+/// Whether a file is a device or a socket, from which reading may never end. A pipe is none: the user has made it.
+#[cfg(unix)]
+fn is_device(found: &fs::Metadata) -> bool {
+    use std::os::unix::fs::FileTypeExt;
+    let kind = found.file_type();
+    kind.is_char_device() || kind.is_block_device() || kind.is_socket()
+}
+
+#[cfg(not(unix))]
+fn is_device(_: &fs::Metadata) -> bool {
+    false
+}
+
+/// Checks that a path that a file names, and not the command line, is a regular file. Pipes and devices of others could
+/// let the command wait for ever.
+///
+/// # Errors
+///
+/// If it exists and is no regular file.
+pub(crate) fn check_regular(path: &Path, what: &str) -> Result<()> {
+    check_file(path, what)?;
+    dapple::image::open_regular(path)
+        .map(drop)
+        .with_context(|| format!("{} cannot be read as {what}", path.display()))
 }
 
 /// Similar names in the folder of a path, the most similar first.

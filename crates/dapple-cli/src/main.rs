@@ -53,6 +53,9 @@ fn run(cli: &Cli, arguments: &[String]) -> Result<Exit> {
         .num_threads(cli.common.threads.into())
         .build_global()
         .context("the threads cannot be started")?;
+    if let Some(pixels) = cli.common.max_pixels {
+        input::set_max_pixels(pixels);
+    }
     let context = Context {
         quiet: cli.common.quiet,
         progress: cli.common.progress,

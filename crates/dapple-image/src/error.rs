@@ -67,6 +67,15 @@ dapple_raster::error_kind! {
             /// The longest allowed side, in pixels.
             limit: u32,
         } => "an image of {} × {} pixels does not fit into {format}: the limit is {limit} a side", size[0], size[1];
+        /// The part to read reaches out of the image.
+        Outside {
+            /// The first column and row of the part.
+            first: [u32; 2],
+            /// The numbers of columns and rows of the part.
+            size: [u32; 2],
+            /// The numbers of columns and rows of the image.
+            image: [u32; 2],
+        } => "a part of {} × {} pixels at {},{} reaches out of the image of {} × {}", size[0], size[1], first[0], first[1], image[0], image[1];
         /// The rows to write have another width than the image.
         RowWidth {
             /// The width of the rows, in pixels.

@@ -45,6 +45,7 @@ mod content;
 mod error;
 mod exr;
 mod file;
+mod header;
 #[cfg(any(feature = "png", feature = "jpeg"))]
 mod icc;
 mod image;
@@ -66,7 +67,7 @@ pub use self::jpeg::decode_jpeg;
 pub use self::png::{PngImage, PngPixel, PngPixels, Transfer};
 #[cfg(feature = "png")]
 pub use self::png::{
-    decode_png, encode_png, write_color_alpha_png, write_color_png,
+    decode_png, decode_png_region, encode_png, write_color_alpha_png, write_color_png,
     write_gray_png, write_normal_png, write_png,
 };
 pub use changes::{FileChanges, FileStamp};
@@ -75,5 +76,7 @@ pub use color_space::ColorSpace;
 pub use content::{Content, Depth, Encoding};
 pub use error::{ImageError, ImageErrorKind};
 pub use file::{AtomicFile, open_regular, remove_left_behind, replace, sync_folder};
+pub use header::{ImageHeader, read_header};
 pub use limits::Limits;
+pub use raw::{decode_npy, decode_r16};
 pub use rows::RowWriter;

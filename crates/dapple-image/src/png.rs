@@ -20,7 +20,7 @@ mod stream;
 mod values;
 
 #[cfg(feature = "png")]
-pub use decode::decode_png;
+pub use decode::{decode_png, decode_png_region};
 #[cfg(feature = "png")]
 pub use encode::{encode_png, write_png};
 pub use image::{PngImage, PngPixels};

@@ -1,10 +1,14 @@
-//! Files of plain numbers, NumPy arrays and raw heights, written row by row.
+//! Files of plain numbers, NumPy arrays and raw heights: written row by row, and read as a whole.
 //!
 //! Reference: NumPy Developers, "A Simple File Format for NumPy Arrays" (`numpy.lib.format`), version 1.0; there is no
 //! standard for raw heights, which the terrain importers of Unity and Unreal call RAW and r16: codes of 16 bits, the low
 //! byte first, the top row first, without a header.
 
 use crate::content::Pixel;
+mod read;
+
+pub use read::{decode_npy, decode_r16};
+
 use crate::limits::check_side;
 use crate::{ImageError, ImageErrorKind};
 use dapple_color::Code;

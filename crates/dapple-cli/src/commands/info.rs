@@ -4,13 +4,14 @@ mod channels;
 mod mesh;
 
 use crate::args::{Axes, OutputArgs, Region, Size};
-use crate::error::{Exit, Hint};
+use crate::error::{Exit, Hint, printable};
 use crate::input;
 use crate::job::{Context, Job};
 use crate::output::Target;
 use crate::words::Word;
-use anyhow::{Context as _, Result};
+use anyhow::{Context as _, Error, Result};
 use channels::{Channel, channels, format};
+use dapple::image::{ImageHeader, read_header};
 use dapple::mesh_io::MeshFormat;
 use dapple::tile::{ChannelReport, SeamOptions, SeamReports};
 use serde::Serialize;
@@ -24,7 +25,8 @@ Examples:
   dapple info grain.png --check --wrap x
   dapple info model.obj
 
-Numbers are those of the file: code / max in PNG, from 0 to 1, and as they are in EXR.
+Numbers are those of the file: code / max in PNG and .r16, from 0 to 1, and as they are in EXR and .npy. An .r16 has
+its size in the JSON file beside it. Of images with more pixels than --max-pixels only size and format are read.
 A seam ratio near 1 says that the step across the wrap is like the steps inside, between
 means of 1, 2, 4 and 8 pixels. An image does not pass if, in any of its channels, the seam
 stands out by 2.5 standard deviations or more among the boundaries inside.";
@@ -113,7 +115,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let text = if is_json {
         serde_json::to_string_pretty(&reports)?
     } else {
-        texts.join("\n")
+        printable(&texts.join("\n")).into_owned()
     };
     job.write(output, format!("{text}\n").as_bytes())?;
     job.finish(args, Value::Null)?;
@@ -151,9 +153,13 @@ pub(super) fn seams_json(reports: &SeamReports) -> Value {
 }
 
 fn image_findings(path: &Path, args: &Args) -> Result<Findings> {
-    let image = input::image(path)?;
-    let mut channels = channels(&image).with_context(|| input::name(path))?;
-    if let Some(Region { first, size }) = args.region {
+    let image = match input::numbers(path, args.region) {
+        Ok(image) => image,
+        Err(error) if args.region.is_none() => return header_findings(path, error),
+        Err(error) => return Err(error),
+    };
+    let mut channels = channels(&image.content).with_context(|| input::name(path))?;
+    if let Some(Region { first, size }) = args.region.filter(|_| !image.is_part) {
         for channel in &mut channels {
             let part = channel.values.crop(first, size);
             channel.values = part.wrong_value().with_context(|| input::name(path))?;
@@ -176,7 +182,7 @@ fn image_findings(path: &Path, args: &Args) -> Result<Findings> {
     let size = channels
         .first()
         .map_or([0; 2], |channel| channel.values.size());
-    let format = format(&image);
+    let format = format(&image.content);
     let mut text = format!(
         "{}: {} × {} pixels, {format}",
         input::name(path),
@@ -203,5 +209,35 @@ fn image_findings(path: &Path, args: &Args) -> Result<Findings> {
         text: text + "\n",
         json,
         is_good: n_not_finite == 0 && seams.is_none_or(|report| report.passes()),
+    })
+}
+
+/// The findings about an image with too many pixels: what its header says.
+fn header_findings(path: &Path, error: Error) -> Result<Findings> {
+    let Some(limit) = input::exceeded_limit(&error) else {
+        return Err(error);
+    };
+    let Ok(ImageHeader {
+        format, size, bits, ..
+    }) = read_header(path)
+    else {
+        return Err(error);
+    };
+    let [width, height] = size;
+    let bits = bits.map_or(String::new(), |bits| format!(", {bits} bits per channel"));
+    let name = input::name(path);
+    let text = format!(
+        "{name}: {width} × {height} pixels, {format}{bits}\n  \
+        pixels were not read, since there are more than {limit}; see --max-pixels and --region\n"
+    );
+    let json = json!({
+        "file": name, "kind": "image", "format": format!("{format}{bits}"), "size": size,
+        "channels": null, "transparency": null, "seams": null,
+    });
+    Ok(Findings {
+        text,
+        json,
+        // What was not looked at does not pass.
+        is_good: false,
     })
 }

@@ -14,6 +14,8 @@ mod durable;
 mod examples;
 mod exr_inputs;
 mod files;
+mod foreign;
+mod inspections;
 mod interrupt;
 mod lifting;
 mod meshes;

@@ -21,11 +21,7 @@ pub fn decode_png(bytes: &[u8], limits: &Limits) -> Result<PngImage, ImageError>
     if !bytes.starts_with(&SIGNATURE) {
         return Err(ImageError::new(ImageErrorKind::UnknownFormat));
     }
-    let mut decoder = png::Decoder::new_with_options(Cursor::new(bytes), options());
-    decoder.set_limits(png::Limits {
-        bytes: usize::try_from(limits.bytes).unwrap_or(usize::MAX),
-    });
-    decoder.set_transformations(png::Transformations::EXPAND);
+    let mut decoder = decoder(bytes, limits);
     let refuse = |error| refusal(error, limits);
     check_not_empty(bytes)?;
     let header = decoder.read_header_info().map_err(refuse)?;
@@ -47,6 +43,75 @@ pub fn decode_png(bytes: &[u8], limits: &Limits) -> Result<PngImage, ImageError>
         transfer,
         space,
     })
+}
+
+/// Decodes a part of a PNG file, row by row: `size` pixels from column and row `first`. Only the part has to be within the
+/// limits, and rows below it are not read, not even for damage.
+///
+/// # Errors
+///
+/// The errors of [`decode_png`]; [`ImageErrorKind::Outside`] if the part reaches out of the image;
+/// [`ImageErrorKind::Unsupported`] for an interlaced file, whose rows do not follow each other.
+pub fn decode_png_region(
+    bytes: &[u8],
+    first: [u32; 2],
+    size: [u32; 2],
+    limits: &Limits,
+) -> Result<PngImage, ImageError> {
+    if !bytes.starts_with(&SIGNATURE) {
+        return Err(ImageError::new(ImageErrorKind::UnknownFormat));
+    }
+    check_not_empty(bytes)?;
+    let refuse = |error| refusal(error, limits);
+    let mut reader = decoder(bytes, limits).read_info().map_err(refuse)?;
+    check_palette(reader.info())?;
+    let image = [reader.info().width, reader.info().height];
+    let reaches_out =
+        |axis: usize| u64::from(first[axis]) + u64::from(size[axis]) > u64::from(image[axis]);
+    if reaches_out(0) || reaches_out(1) {
+        return Err(ImageError::new(ImageErrorKind::Outside {
+            first,
+            size,
+            image,
+        }));
+    }
+    if reader.info().interlaced {
+        let feature = "a part of an interlaced PNG image";
+        return Err(ImageError::new(ImageErrorKind::Unsupported { feature }));
+    }
+    limits.check_pixels(size.map(u64::from))?;
+    let row_length = reader.output_line_size(image[0]).unwrap_or(usize::MAX);
+    // Rows are whole numbers of bytes, since fewer than 8 bits are expanded.
+    let pixel_length = row_length / image[0] as usize;
+    let [left, width] = [first[0], size[0]].map(|columns| columns as usize * pixel_length);
+    limits.check_bytes((width as u64).saturating_mul(size[1].into()))?;
+    let mut samples = Vec::with_capacity(width * size[1] as usize);
+    for row in 0..first[1] + size[1] {
+        let Some(data) = reader.next_row().map_err(refuse)? else {
+            return Err(ImageError::damaged("PNG", "rows are missing"));
+        };
+        if row >= first[1] {
+            samples.extend_from_slice(&data.data()[left..left + width]);
+        }
+    }
+    let transfer = transfer_of(reader.info());
+    let pixels = PngPixels::from_samples(size, reader.output_color_type(), &samples)?;
+    let space = space::of(reader.info());
+    Ok(PngImage {
+        pixels,
+        transfer,
+        space,
+    })
+}
+
+/// The codec for some bytes, which resolves palettes and fewer than 8 bits.
+fn decoder<'a>(bytes: &'a [u8], limits: &Limits) -> png::Decoder<Cursor<&'a [u8]>> {
+    let mut decoder = png::Decoder::new_with_options(Cursor::new(bytes), options());
+    decoder.set_limits(png::Limits {
+        bytes: usize::try_from(limits.bytes).unwrap_or(usize::MAX),
+    });
+    decoder.set_transformations(png::Transformations::EXPAND);
+    decoder
 }
 
 /// Checks that the size has pixels, which the codec reports like other damage.

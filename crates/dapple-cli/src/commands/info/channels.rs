@@ -1,5 +1,6 @@
 //! The channels of an image in its file, and their statistics.
 
+use crate::input::Content;
 use anyhow::Result;
 use dapple::color::Code;
 use dapple::image::{ColorSpace, Image, PngPixels};
@@ -12,6 +13,9 @@ use std::fmt;
 const BINS: u32 = 24;
 /// The bars of a histogram, from an empty part to the fullest.
 const BARS: [char; 9] = [' ', '▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
+
+/// The smallest width of the column of names.
+const NAME_MIN: usize = 9;
 
 const GRAY: [&str; 1] = ["gray"];
 const GRAY_ALPHA: [&str; 2] = ["gray", "alpha"];
@@ -73,17 +77,16 @@ impl Channel {
         counts.iter().map(bar).collect()
     }
 
-    fn line(&self) -> String {
+    /// The line of the table, whose first column is as wide as the longest name.
+    fn line(&self, width: usize) -> String {
         let statistics = self.values.statistics();
-        let mut line = format!(
-            "\n  {:<12}{:>10.4}{:>10.4}{:>10.4}{:>10.4}  |{}|",
-            self.name,
-            statistics.min,
-            statistics.max,
-            statistics.mean,
-            statistics.deviation,
-            self.bars()
-        );
+        let [min, max] = [statistics.min, statistics.max].map(f64::from);
+        let numbers = [min, max, statistics.mean, statistics.deviation].map(number);
+        let mut line = format!("\n  {:<width$}", self.name);
+        for number in numbers {
+            line += &format!(" {number:>11}");
+        }
+        line += &format!("  |{}|", self.bars());
         let n_nan = self.n_nan();
         for (count, what) in [
             (n_nan, "NaN"),
@@ -102,9 +105,23 @@ impl Channel {
 /// # Errors
 ///
 /// If the channels have no known names.
-pub(super) fn channels(image: &Image) -> Result<Vec<Channel>> {
-    Ok(match image {
-        Image::Png(png) | Image::Jpeg(png) => match &png.pixels {
+pub(super) fn channels(content: &Content) -> Result<Vec<Channel>> {
+    Ok(match content {
+        Content::Raw(codes) => split(&codes.map(|&code| [code]), GRAY),
+        Content::Array(rasters) => {
+            let names: &[&str] = match rasters.len() {
+                1 => &GRAY,
+                2 => &GRAY_ALPHA,
+                3 => &RGB,
+                _ => &RGBA,
+            };
+            let channel = |(name, values): (&&str, &Raster<f32>)| Channel {
+                name: (*name).to_owned(),
+                values: values.clone(),
+            };
+            names.iter().zip(rasters).map(channel).collect()
+        }
+        Content::Image(Image::Png(png) | Image::Jpeg(png)) => match &png.pixels {
             PngPixels::Gray8(raster) => split(&raster.map(|&code| [code]), GRAY),
             PngPixels::Gray16(raster) => split(&raster.map(|&code| [code]), GRAY),
             PngPixels::GrayAlpha8(raster) => split(raster, GRAY_ALPHA),
@@ -114,19 +131,24 @@ pub(super) fn channels(image: &Image) -> Result<Vec<Channel>> {
             PngPixels::Rgba8(raster) => split(raster, RGBA),
             PngPixels::Rgba16(raster) => split(raster, RGBA),
         },
-        Image::Exr(exr) => {
+        Content::Image(Image::Exr(exr)) => {
             let channel = |plane: &dapple::image::ExrPlane| Channel {
                 name: plane.name.clone(),
                 values: plane.values.clone(),
             };
             exr.planes.iter().map(channel).collect()
         }
-        other => split(&other.color()?.map(|color| color.to_srgb::<u8>()), RGB),
+        Content::Image(other) => split(&other.color()?.map(|color| color.to_srgb::<u8>()), RGB),
     })
 }
 
 /// The format of an image, in words.
-pub(super) fn format(image: &Image) -> String {
+pub(super) fn format(content: &Content) -> String {
+    let image = match content {
+        Content::Raw(_) => return "raw heights of 16 bits".to_owned(),
+        Content::Array(_) => return "NumPy array".to_owned(),
+        Content::Image(image) => image,
+    };
     let (name, bits) = (image.format(), image.bits());
     match image {
         Image::Png(png) | Image::Jpeg(png) if png.space != ColorSpace::default() => {
@@ -185,14 +207,27 @@ pub(super) fn transparency(channels: &[Channel]) -> Option<Transparency> {
 
 /// A line for each channel, below a header; each begins with a line end.
 pub(super) fn table(channels: &[Channel]) -> String {
-    let mut table = format!(
-        "\n  {:<12}{:>10}{:>10}{:>10}{:>10}  histogram from min to max",
-        "", "min", "max", "mean", "deviation"
-    );
+    let names = channels.iter().map(|channel| channel.name.chars().count());
+    let width = names.max().unwrap_or(0).max(NAME_MIN);
+    let mut table = format!("\n  {:<width$}", "");
+    for heading in ["min", "max", "mean", "deviation"] {
+        table += &format!(" {heading:>11}");
+    }
+    table += "  histogram from min to max";
     for channel in channels {
-        table += &channel.line();
+        table += &channel.line(width);
     }
     table
+}
+
+/// A number in at most 11 characters: with four decimals, or with a power of ten if these show nothing or too much of it.
+fn number(number: f64) -> String {
+    let size = number.abs();
+    if size != 0.0 && size.is_finite() && !(1e-3..1e4).contains(&size) {
+        format!("{number:.4e}")
+    } else {
+        format!("{number:.4}")
+    }
 }
 
 fn split<C: Code, const N: usize>(raster: &Raster<[C; N]>, names: [&str; N]) -> Vec<Channel> {
@@ -205,7 +240,7 @@ fn split<C: Code, const N: usize>(raster: &Raster<[C; N]>, names: [&str; N]) -> 
 
 #[cfg(test)]
 mod tests {
-    use super::{BARS, BINS, Channel, Transparency, transparency};
+    use super::{BARS, BINS, Channel, Transparency, number, table, transparency};
     use dapple::raster::Raster;
 
     fn channel(values: Vec<f32>) -> Channel {
@@ -244,6 +279,42 @@ mod tests {
         assert_eq!(
             found.to_string(),
             "alpha: 60.0 % of the pixels are transparent, 20.0 % partly so"
+        );
+    }
+
+    #[test]
+    fn numbers_neither_collide_nor_vanish() {
+        for (of, expected) in [
+            (0.0, "0.0000"),
+            (0.5, "0.5000"),
+            (-0.001, "-0.0010"),
+            (1e-5, "1.0000e-5"),
+            (9999.0, "9999.0000"),
+            (65504.0, "6.5504e4"),
+            (f64::from(f32::MIN), "-3.4028e38"),
+            (-f64::from(f32::MIN_POSITIVE), "-1.1755e-38"),
+            (f64::NAN, "NaN"),
+        ] {
+            assert_eq!(number(of), expected);
+            assert!(number(of).len() <= 11, "{of}");
+        }
+        let name = "ViewLayer.Combined.R".to_owned();
+        let wide = Channel {
+            name,
+            ..channel(vec![0.0, 65504.0])
+        };
+        let text = table(&[wide]);
+        let line = text.lines().last().unwrap();
+        let words: Vec<_> = line.split_whitespace().take(5).collect();
+        assert_eq!(
+            words,
+            [
+                "ViewLayer.Combined.R",
+                "0.0000",
+                "6.5504e4",
+                "3.2752e4",
+                "3.2752e4"
+            ]
         );
     }
 

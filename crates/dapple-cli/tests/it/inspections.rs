@@ -1,0 +1,251 @@
+//! What the command says of files: sizes past the limit, arrays and heights, tables of numbers, loops and clipping.
+
+use crate::support::{Folder, assert_done, assert_refused, stderr, stdout};
+use dapple::image::{Depth, Limits, read_image, write_gray_exr, write_gray_png};
+use dapple::raster::Raster;
+use std::fs;
+
+/// Values of all places, each another one.
+fn places(size: [u32; 2]) -> Raster<f32> {
+    let n_pixels = (size[0] * size[1]) as f32;
+    Raster::from_fn(size, |x, y| (y * size[0] + x) as f32 / n_pixels).unwrap()
+}
+
+fn run(folder: &Folder, line: &str) -> std::process::Output {
+    folder.run(&line.split(' ').collect::<Vec<_>>())
+}
+
+/// The checksum of a chunk of PNG: CRC-32 of ISO 3309, bit by bit.
+fn crc(bytes: &[u8]) -> u32 {
+    let step = |crc: u32, bit: u32| (crc >> 1) ^ (0xedb8_8320 * ((crc ^ bit) & 1));
+    let byte = |crc, &byte: &u8| (0..8).fold(crc, |crc, at| step(crc, u32::from(byte >> at)));
+    !bytes.iter().fold(!0, byte)
+}
+
+/// The beginning of a PNG file of any size, without pixels.
+fn png_header(size: [u32; 2]) -> Vec<u8> {
+    let mut chunk = b"IHDR".to_vec();
+    chunk.extend(size.iter().flat_map(|side| side.to_be_bytes()));
+    chunk.extend([16, 0, 0, 0, 0]);
+    let crc = crc(&chunk).to_be_bytes();
+    [b"\x89PNG\r\n\x1a\n\0\0\0\x0d", &chunk[..], &crc].concat()
+}
+
+#[test]
+fn images_past_the_limit_are_described_by_their_headers() {
+    let folder = Folder::new("headers");
+    fs::write(folder.path("huge.png"), png_header([16_400, 16_400])).unwrap();
+    let output = run(&folder, "info huge.png");
+    assert_done(&output, "a header");
+    let text = stdout(&output);
+    assert!(
+        text.contains("16400 × 16400 pixels, PNG, 16 bits per channel"),
+        "{text}"
+    );
+    assert!(text.contains("more than 268435456"), "{text}");
+    write_gray_exr(folder.path("a.exr"), &places([64, 32])).unwrap();
+    let output = run(&folder, "info a.exr --max-pixels 2047 --format json");
+    assert_done(&output, "a header of EXR");
+    let json: serde_json::Value = serde_json::from_str(&stdout(&output)).unwrap();
+    assert_eq!(json[0]["size"], serde_json::json!([64, 32]));
+    assert!(json[0]["channels"].is_null(), "{json}");
+    // What was not looked at passes no check.
+    let output = run(&folder, "info a.exr --max-pixels 2047 --check");
+    assert_eq!(output.status.code(), Some(3));
+    let output = run(&folder, "info a.exr --max-pixels 2048");
+    assert!(stdout(&output).contains("deviation"), "{}", stdout(&output));
+}
+
+#[test]
+fn regions_of_images_past_the_limit_are_read_by_rows() {
+    let folder = Folder::new("rows");
+    for (name, depth) in [("a.png", Depth::Eight), ("b.png", Depth::Sixteen)] {
+        write_gray_png(folder.path(name), &places([64, 48]), depth).unwrap();
+        let whole = read_image(folder.path(name), &Limits::default()).unwrap();
+        let expected = whole.gray().unwrap().crop([40, 30], [24, 18]).unwrap();
+        let line = format!("tile {name} --method mirror --region 40,30,24,18 -o out-{name}");
+        assert_done(&run(&folder, &line), "as a whole");
+        let line = format!(
+            "tile {name} --method mirror --region 40,30,24,18 --max-pixels 500 -o rows-{name}"
+        );
+        assert_done(&run(&folder, &line), "by rows");
+        let [out, rows] =
+            ["out", "rows"].map(|of| fs::read(folder.path(&format!("{of}-{name}"))).unwrap());
+        assert_eq!(out, rows, "{name}");
+        let output = run(
+            &folder,
+            &format!("info {name} --region 40,30,24,18 --max-pixels 500 --format json"),
+        );
+        let json: serde_json::Value = serde_json::from_str(&stdout(&output)).unwrap();
+        assert_eq!(json[0]["size"], serde_json::json!([24, 18]));
+        let max = expected.statistics().max;
+        assert_eq!(
+            json[0]["channels"][0]["max"],
+            serde_json::json!(max),
+            "{json}"
+        );
+    }
+    let line = "info a.png --region 40,30,25,18 --max-pixels 500";
+    assert_refused(
+        &run(&folder, line),
+        2,
+        "reaches out of the image of 64 × 48",
+        line,
+    );
+    let line = "tile a.png -o c.png --max-pixels 500";
+    assert_refused(&run(&folder, line), 1, "hint: add --max-pixels N", line);
+    let line = "info a.png --region 0,0,40,40 --max-pixels 500";
+    assert_refused(&run(&folder, line), 1, "limit of 500 pixels", line);
+}
+
+#[test]
+fn arrays_and_heights_of_the_command_are_described() {
+    let folder = Folder::new("arrays");
+    let size = "--size 48";
+    for name in ["h.exr", "h.npy", "h.r16", "h.png"] {
+        let line = format!("worley {size} -o {name}");
+        assert_done(&run(&folder, &line), &line);
+    }
+    let channel = |name: &str| {
+        let output = run(&folder, &format!("info {name} --format json"));
+        assert_done(&output, name);
+        let json: serde_json::Value = serde_json::from_str(&stdout(&output)).unwrap();
+        assert_eq!(json[0]["size"], serde_json::json!([48, 48]), "{name}");
+        json[0]["channels"][0].clone()
+    };
+    let exr = channel("h.exr");
+    let npy = channel("h.npy");
+    for key in ["min", "max", "mean", "deviation"] {
+        assert_eq!(npy[key], exr[key], "{key} of the same numbers");
+    }
+    assert_eq!(
+        channel("h.r16")["mean"],
+        channel("h.png")["mean"],
+        "the same codes"
+    );
+    fs::remove_file(folder.path("h.json")).unwrap();
+    let output = run(&folder, "info h.r16");
+    assert_refused(
+        &output,
+        1,
+        "the size of h.r16 is not known",
+        "without its size",
+    );
+    fs::write(folder.path("h.json"), r#"{"width": 48, "height": 49}"#).unwrap();
+    let output = run(&folder, "info h.r16");
+    assert_refused(
+        &output,
+        1,
+        "4608 bytes, and 48 × 49 heights have 4704",
+        "another size",
+    );
+    let bytes = fs::read(folder.path("h.npy")).unwrap();
+    for end in [5, 40, 127, bytes.len() - 1] {
+        fs::write(folder.path("cut.npy"), &bytes[..end]).unwrap();
+        assert_refused(&run(&folder, "info cut.npy"), 1, "cut.npy", "cut off");
+    }
+}
+
+#[test]
+fn columns_of_tables_go_by_their_names() {
+    let folder = Folder::with_inputs("columns");
+    let draw = |text: &str| {
+        fs::write(folder.path("p.csv"), text).unwrap();
+        run(
+            &folder,
+            "pups control --points p.csv --size 16 --force -o p.png",
+        )
+    };
+    let plain = draw("x,y,value\n0.25,0.5,0.1\n0.75,0.25,0.9\n");
+    assert_done(&plain, "plain");
+    let expected = fs::read(folder.path("p.png")).unwrap();
+    for text in [
+        "value,y,x\n0.1,0.5,0.25\n0.9,0.25,0.75\n",
+        "\u{feff}x,y,value\n0.25,0.5,0.1\n0.75,0.25,0.9\n",
+        "\u{feff}[{\"x\": 0.25, \"y\": 0.5, \"value\": 0.1}, {\"x\": 0.75, \"y\": 0.25, \"value\": 0.9}]",
+    ] {
+        assert_done(&draw(text), text);
+        assert_eq!(fs::read(folder.path("p.png")).unwrap(), expected, "{text}");
+    }
+    for (text, part) in [
+        (
+            "x,y,level\n1,2,3\n",
+            "x,y,value or x,y,value,ox,oy are needed",
+        ),
+        (
+            "0,25;0,25;0,1\n",
+            "semicolons, but commas are needed, and decimals are written with a point",
+        ),
+        ("1\t2\t3\n", "tabs"),
+        ("\"1\",2,3\n", "quotes"),
+    ] {
+        assert_refused(&draw(text), 1, part, text);
+    }
+    let wide: Vec<u8> = "x,y,value\n1,2,3\n"
+        .encode_utf16()
+        .flat_map(u16::to_le_bytes)
+        .collect();
+    let wide = [&[0xff, 0xfe], &wide[..]].concat();
+    fs::write(folder.path("p.csv"), &wide).unwrap();
+    let output = run(&folder, "pups control --points p.csv --size 16 -o q.png");
+    assert_refused(&output, 1, "the text is in UTF-16", "UTF-16");
+    let recipe = run(&folder, "recipe flagstone -o plain.json");
+    assert_done(&recipe, "a recipe in JSON");
+    let text = fs::read_to_string(folder.path("plain.json")).unwrap();
+    fs::write(folder.path("marked.json"), format!("\u{feff}{text}")).unwrap();
+    let output = run(&folder, "bake marked.json --size 8 --maps height -o m.png");
+    assert_done(&output, "a recipe with a mark");
+}
+
+#[test]
+fn a_loop_in_which_nothing_moves_is_named() {
+    let folder = Folder::new("still");
+    let line = "bake flagstone --size 8 --maps height --frames 3 -o a/";
+    let output = run(&folder, line);
+    assert_done(&output, line);
+    let text = stderr(&output);
+    assert_eq!(
+        text.matches("nothing in this recipe moves").count(),
+        1,
+        "{text}"
+    );
+    let frame =
+        |number| fs::read(folder.path(&format!("a/flagstone_height_00{number}.png"))).unwrap();
+    assert!(
+        frame(1) == frame(2) && frame(1) == frame(3),
+        "all are equal"
+    );
+    let moving = "dapple = 1\nname = \"m\"\n[nodes.a.worley]\nmotion = { cells = 1 }\n[material]\nheight = \"a\"\n";
+    fs::write(folder.path("m.toml"), moving).unwrap();
+    let line = "bake m.toml --size 8 --maps height --frames 2 -o b/";
+    let output = run(&folder, line);
+    assert_done(&output, line);
+    assert!(!stderr(&output).contains("moves"), "{}", stderr(&output));
+}
+
+#[test]
+fn heavy_clipping_is_said_with_its_share() {
+    let folder = Folder::new("clipping");
+    // Three of four values are above 1.
+    let values = Raster::from_fn([16, 16], |x, _| x as f32 / 4.0 + 0.001).unwrap();
+    write_gray_exr(folder.path("h.exr"), &values).unwrap();
+    let recipe =
+        "dapple = 1\nname = \"c\"\n[nodes.a.image]\nfile = \"h.exr\"\n[material]\nheight = \"a\"\n";
+    fs::write(folder.path("c.toml"), recipe).unwrap();
+    for (output, is_said) in [
+        ("c.r16", true),
+        ("c.png", true),
+        ("c.exr", false),
+        ("c.npy", false),
+    ] {
+        for line in [
+            format!("bake c.toml --size 16 --maps height --force -o {output}"),
+            format!("blend h.exr --force -o {output}"),
+        ] {
+            let run = run(&folder, &line);
+            assert_done(&run, &line);
+            let text = stderr(&run);
+            assert_eq!(text.contains("75.0 % of them"), is_said, "{line}: {text}");
+        }
+    }
+}

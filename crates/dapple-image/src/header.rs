@@ -1,0 +1,94 @@
+//! Sizes of images of any size, by the first bytes of their files.
+//!
+//! Reference: PNG Specification, third edition (W3C, 2025), section 11.2.1; OpenEXR, "The OpenEXR File Layout".
+
+use crate::image::{EXR_SIGNATURE, JPEG_SIGNATURE, PNG_SIGNATURE};
+use crate::{ImageError, ImageErrorKind, Limits, file, read_image};
+use std::io::Read;
+use std::path::Path;
+
+/// The number of bytes of a PNG file up to the end of its header: the signature, the length and the name of the chunk, and
+/// 13 bytes of content.
+const PNG_HEADER: usize = 8 + 8 + 13;
+
+/// The size and the format of an image, without its pixels.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ImageHeader {
+    /// The name of the format: PNG, JPEG or OpenEXR.
+    pub format: &'static str,
+    /// The numbers of columns and rows.
+    pub size: [u64; 2],
+    /// The number of bits of a channel, where the first bytes say it.
+    pub bits: Option<u32>,
+}
+
+/// Reads the size and the format of an image file, without its pixels, so that it may be of any size.
+///
+/// Of PNG the header is read. Other formats are read up to their size, after which all pixels are too many.
+///
+/// # Errors
+///
+/// The errors of [`read_image`](crate::read_image) but [`ImageErrorKind::TooManyPixels`].
+pub fn read_header(path: impl AsRef<Path>) -> Result<ImageHeader, ImageError> {
+    let path = path.as_ref();
+    let io = |error| ImageError::new(ImageErrorKind::Io).because(error).at(path);
+    let file = file::open_regular(path).map_err(io)?;
+    let mut first = Vec::new();
+    file.take(PNG_HEADER as u64)
+        .read_to_end(&mut first)
+        .map_err(io)?;
+    let format = if first.starts_with(&PNG_SIGNATURE) {
+        return png(&first).map_err(|error| error.at(path));
+    } else if first.starts_with(&JPEG_SIGNATURE) {
+        "JPEG"
+    } else if first.starts_with(&EXR_SIGNATURE) {
+        "OpenEXR"
+    } else {
+        return Err(ImageError::new(ImageErrorKind::UnknownFormat).at(path));
+    };
+    // With a limit below every image, decoding ends at the size.
+    let limits = Limits {
+        pixels: 0,
+        ..Limits::default()
+    };
+    let Err(error) = read_image(path, &limits) else {
+        return Err(ImageError::damaged(format, "it has no pixels").at(path));
+    };
+    match *error.kind() {
+        ImageErrorKind::TooManyPixels { size, .. } => Ok(ImageHeader {
+            format,
+            size,
+            bits: None,
+        }),
+        _ => Err(error),
+    }
+}
+
+/// The header of a PNG file.
+fn png(first: &[u8]) -> Result<ImageHeader, ImageError> {
+    let header = first.get(12..PNG_HEADER);
+    let Some(header) = header.and_then(|header| header.strip_prefix(b"IHDR")) else {
+        return Err(ImageError::damaged(
+            "PNG",
+            "it does not begin with a header",
+        ));
+    };
+    let number = |digits: &[u8]| {
+        let shifted = |number, &digit: &u8| number << 8 | u64::from(digit);
+        digits.iter().fold(0, shifted)
+    };
+    let size = [number(&header[..4]), number(&header[4..8])];
+    if size.contains(&0) {
+        return Err(ImageError::new(ImageErrorKind::Empty { size }));
+    }
+    // Colors of a palette have 8 bits.
+    let bits = match header[9] {
+        3 => 8,
+        _ => header[8].into(),
+    };
+    Ok(ImageHeader {
+        format: "PNG",
+        size,
+        bits: Some(bits),
+    })
+}
