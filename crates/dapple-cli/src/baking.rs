@@ -93,11 +93,13 @@ pub(crate) fn read_images(recipe: &Recipe, folder: &Path) -> Result<Images> {
     let mut images = Images::new();
     let hint = "give its node alpha = \"drop\" or alpha = \"over:#rrggbb\"";
     for file in recipe.image_files() {
+        let path = folder.join(file);
+        input::check_regular(&path, "an image")?;
         let read = ReadArgs {
             layer: recipe.image_layer(file)?.map(str::to_owned),
             ..ReadArgs::default()
         };
-        let picture = read_picture(&folder.join(file), recipe.image_alpha(file)?, &read, hint)?;
+        let picture = read_picture(&path, recipe.image_alpha(file)?, &read, hint)?;
         images.insert(file.to_owned(), picture);
     }
     Ok(images)

@@ -9,13 +9,15 @@ use crate::args::{Frame, Shard, Size, file_name};
 use crate::error::Hint;
 use crate::input;
 use crate::output::{self, Outputs, Target};
-use anyhow::{Context as _, Result, anyhow};
+use anyhow::{Context as _, Error, Result, anyhow};
 use dapple::recipe::{MapKind, Recipe, Region, Shards};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
 /// The file of a list.
 const FILE: &str = "shards.json";
+/// The most files of a list: those of all shards, maps and frames.
+const FILES_MAX: u64 = 1 << 20;
 /// The number of digits of the checksum in the name of a folder.
 const DIGITS: usize = 12;
 
@@ -92,7 +94,7 @@ impl List {
             0 => serde_json::to_vec(&all)?,
             overlap => serde_json::to_vec(&(all, overlap))?,
         };
-        Ok(Self {
+        let list = Self {
             dapple: version.to_owned(),
             recipe: typed.to_owned(),
             name: recipe.name.clone(),
@@ -102,7 +104,12 @@ impl List {
             overlap: *overlap,
             maps: maps.iter().map(|kind| kind.name().to_owned()).collect(),
             frames: *frames,
-        })
+        };
+        let counted = list.check_count();
+        counted
+            .hint("take larger shards, as in --shard 2048")
+            .wrong_value()?;
+        Ok(list)
     }
 
     /// The list in a folder, if there is one.
@@ -115,10 +122,36 @@ impl List {
         if !path.exists() {
             return Ok(None);
         }
+        input::check_regular(&path, "a list of shards")?;
         let text = input::text(&path)?;
-        let list = serde_json::from_str(&text);
+        let list = serde_json::from_str(&text).map_err(Error::new);
+        let list = list.and_then(|list: Self| list.checked());
         let list = list.with_context(|| format!("{} is no list of shards", path.display()))?;
         Ok(Some(list))
+    }
+
+    /// The list, if its folder can exist and its files can be looked for.
+    fn checked(self) -> Result<Self> {
+        let is_digit = |c: char| c.is_ascii_hexdigit();
+        if self.sha256.len() != 64 || !self.sha256.chars().all(is_digit) {
+            return Err(anyhow!("{:?} is no checksum", self.sha256));
+        }
+        if self.maps.is_empty() {
+            return Err(anyhow!("it has no maps"));
+        }
+        self.check_count()?;
+        Ok(self)
+    }
+
+    /// Fails for a list of more files than anybody can look for.
+    fn check_count(&self) -> Result<()> {
+        let n_files = self.n_tasks()?.saturating_mul(self.maps.len() as u64);
+        if n_files <= FILES_MAX {
+            return Ok(());
+        }
+        Err(anyhow!(
+            "there are {n_files} files of shards, but the limit is {FILES_MAX}"
+        ))
     }
 
     /// Writes the list into a folder; `may_replace` allows it to replace a list of other shards.

@@ -101,11 +101,17 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
 fn check_whole(folder: &Path, list: &List, kinds: &[MapKind]) -> Result<()> {
     let mut named = Vec::new();
     let [mut n_missing, mut n_files] = [0_u64; 2];
+    // The last folder that was looked at, and whether it is there. Without it none of its files is looked for.
+    let mut last = (PathBuf::new(), false);
     for Task { frame, shard, .. } in list.tasks()? {
         for &kind in kinds {
             n_files += 1;
             let path = folder.join(list.file(frame, shard.place, kind));
-            if path.exists() {
+            let of_row = path.parent().unwrap_or(folder);
+            if of_row != last.0 {
+                last = (of_row.to_owned(), of_row.is_dir());
+            }
+            if last.1 && path.exists() {
                 continue;
             }
             n_missing += 1;
