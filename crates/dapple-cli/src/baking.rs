@@ -232,6 +232,10 @@ pub(crate) fn format(asked: Option<Format>, target: &Target) -> Result<Format> {
 }
 
 /// Adds a hint to an error of a recipe.
+/// What is said of a loop of a recipe without motion.
+pub(crate) const STILL: &str = "note: nothing in this recipe moves, so that all pictures of the loop are equal; \
+    see `motion` in `dapple recipe --reference`";
+
 pub(crate) fn advise(error: RecipeError) -> Error {
     let hint = match error.kind() {
         RecipeErrorKind::Global { .. } => {

@@ -83,6 +83,8 @@ pub struct Plan {
     material: Material,
     limits: PlanLimits,
     memory: Option<Memory>,
+    /// Whether a node changes with time.
+    moves: bool,
     /// The number of each step in the memory.
     ids: Arc<[StepId]>,
 }
@@ -242,6 +244,7 @@ impl Plan {
             material: recipe.material.clone(),
             limits: *limits,
             memory: memory.cloned(),
+            moves: builder.moves,
             ids: builder.ids.into(),
         };
         check_steps(&plan.steps, limits).map_err(|(step, error)| plan.within(step, error))?;
@@ -252,6 +255,12 @@ impl Plan {
     #[must_use]
     pub fn extent(&self) -> DVec2 {
         self.extent
+    }
+
+    /// Whether a node changes with time. If none does, all pictures of a loop are equal.
+    #[must_use]
+    pub fn moves(&self) -> bool {
+        self.moves
     }
 
     /// The window that covers the tile with `size` pixels. It may have more pixels than a raster.

@@ -42,6 +42,8 @@ impl Recipe {
     /// The errors of [`from_toml`](Self::from_toml).
     pub fn from_json(text: &str) -> Result<Self, RecipeError> {
         check_length(text)?;
+        // Some editors put a byte order mark before the text, which JSON does not allow.
+        let text = text.trim_start_matches('\u{feff}');
         let content: Content = serde_json::from_str(text).map_err(|error| {
             let (line, column) = (error.line(), error.column());
             let full = error.to_string();

@@ -10,7 +10,7 @@ mod presets;
 mod recipes;
 
 use crate::args::{Frame, OutputArgs, Region, Shard, Size};
-use crate::baking::{advise, advise_shard, read_images, read_recipe, report};
+use crate::baking::{STILL, advise, advise_shard, read_images, read_recipe, report};
 use crate::encode::Format;
 use crate::error::{Exit, Hint, usage};
 use crate::foresight::foresee;
@@ -284,6 +284,9 @@ impl Work {
             None => Plan::new(recipe, images, time),
         };
         let plan = plan.map_err(|error| args.material.blame(error))?;
+        if args.frames.is_some() && args.frame.is_none_or(Frame::is_first) && !plan.moves() {
+            job.note_work(STILL);
+        }
         let options = args.options(claimed.map_kinds())?;
         foresee(&plan, &options, &claimed.images, &job)?;
         let refused = match args.shard {

@@ -4,7 +4,7 @@ mod openjd;
 
 use super::bake::MaterialArgs;
 use crate::args::Size;
-use crate::baking::{advise_shard, read_images, read_recipe};
+use crate::baking::{STILL, advise_shard, read_images, read_recipe};
 use crate::error::{Exit, Hint, usage};
 use crate::job::{Context, eprintln_if_possible};
 use crate::shards::{List, Task, Wanted};
@@ -118,6 +118,9 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let plan = Plan::new(&recipe, &images, 0.0).map_err(|error| args.material.blame(error))?;
     let first = list.tasks()?.next().map(|task| task.region);
     check(&plan, args, first)?;
+    if args.frames.is_some() && !plan.moves() && !context.quiet {
+        eprintln_if_possible(STILL);
+    }
     list.write(&args.output, args.force)?;
     let mut options = args.material.words();
     if context.threads > 0 {

@@ -28,6 +28,8 @@ pub(crate) struct Builder<'a> {
     shared_parts: Parts,
     /// Whether the current node has used the time.
     asks_time: Cell<bool>,
+    /// Whether a node has used the time.
+    pub(super) moves: bool,
     pub(super) steps: Vec<Step>,
     /// The number of the description of each step, if there is a memory.
     pub(super) ids: Vec<StepId>,
@@ -54,6 +56,7 @@ impl<'a> Builder<'a> {
             memory,
             shared_parts: memory.map_or_else(Parts::keeping, |memory| memory.parts().clone()),
             asks_time: Cell::new(false),
+            moves: false,
             steps: Vec::new(),
             ids: Vec::new(),
             names: IndexMap::new(),
@@ -76,6 +79,7 @@ impl<'a> Builder<'a> {
             Some((id, false)) if self.asks_time.get() => memory.at_time(id, self.time),
             Some((id, _)) => id,
         });
+        self.moves |= self.asks_time.get() || before.is_some_and(|(_, is_timed)| is_timed);
         if let (Some(memory), Some(id), false) = (self.memory, id, is_known) {
             memory.keep_source(id, &step);
         }
