@@ -127,7 +127,8 @@ pub(crate) fn report(error: &Error, arguments: &[String]) -> Exit {
     let exit = exit(error);
     if exit != Exit::Done {
         let option = match exit {
-            Exit::Usage => refused_number(error).and_then(|number| option_with(number, arguments)),
+            Exit::Usage => refused_number(error)
+                .and_then(|number| option_with(number, &text(error, None), arguments)),
             _ => None,
         };
         let text = text(error, option.as_deref());
@@ -202,7 +203,7 @@ fn option_with(number: f64, message: &str, arguments: &[String]) -> Option<Strin
         let mut parts = value.split([',', 'x']).map(str::parse);
         // Some numbers are stored with fewer digits.
         parts.any(|part| {
-            part.is_ok_and(|part: f64| part == number || f64::from(part as f32) == number)
+            part.is_ok_and(|part: f64| is_same(part) || is_same(f64::from(part as f32)))
         })
     };
     let mut found = Vec::new();
@@ -216,7 +217,7 @@ fn option_with(number: f64, message: &str, arguments: &[String]) -> Option<Strin
             (None, Some(value)) => (word.as_str(), value.as_str()),
             (None, None) => continue,
         };
-        if holds(value) {
+        if holds(value) && is_about(message, option) {
             found.push(format!("{option} {value}"));
         }
     }
@@ -301,11 +302,44 @@ mod tests {
 
     #[test]
     fn the_option_of_a_number_is_found_if_it_is_the_only_one() {
-        let typed = "pups --size 0x8 --spacing 0 --gain=0.5 -o out.png".split(' ');
-        let typed: Vec<_> = typed.map(str::to_owned).collect();
-        assert_eq!(option_with(0.5, &typed).as_deref(), Some("--gain 0.5"));
-        assert_eq!(option_with(0.0, &typed), None, "there are two");
-        assert_eq!(option_with(3.0, &typed), None, "there is none");
+        let typed = "pups --threads 1 --size 0x8 --spacing 0 --gain=0.5 --relief nan --feature-size 1 --gain 2 --gain 2";
+        let typed: Vec<_> = typed.split(' ').map(str::to_owned).collect();
+        let option = |number, message| option_with(number, message, &typed);
+        assert_eq!(
+            option(0.5, "the gain is 0.5").as_deref(),
+            Some("--gain 0.5")
+        );
+        assert_eq!(
+            option(0.0, "the radius is 0").as_deref(),
+            Some("--spacing 0")
+        );
+        assert_eq!(
+            option(f64::NAN, "the relief is NaN").as_deref(),
+            Some("--relief nan")
+        );
+        let message = "the feature size is 1";
+        assert_eq!(option(1.0, message).as_deref(), Some("--feature-size 1"));
+        assert_eq!(
+            option(1.0, "the side of the exemplar is 1"),
+            None,
+            "not the threads"
+        );
+        assert_eq!(option(2.0, "the gain is 2"), None, "there are two");
+        assert_eq!(option(3.0, "the gain is 3"), None, "there is none");
+    }
+
+    #[test]
+    fn control_characters_are_printed_as_their_codes() {
+        for (text, expected) in [
+            ("a line\n\tand é, ▁", "a line\n\tand é, ▁"),
+            ("a\u{1b}[31mred.png", "a\\u{1b}[31mred.png"),
+            (
+                "\r\u{7}\u{7f}\u{9b}\u{202e}",
+                "\\u{d}\\u{7}\\u{7f}\\u{9b}\\u{202e}",
+            ),
+        ] {
+            assert_eq!(printable(text), expected);
+        }
     }
 
     #[test]

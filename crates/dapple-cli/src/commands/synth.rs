@@ -244,8 +244,14 @@ fn advise(error: SynthError) -> Error {
         SynthErrorKind::Exemplar { .. } => {
             "take a larger example, fewer --levels, or --edges wrap if it repeats"
         }
-        SynthErrorKind::Range { what, .. } if what.contains("side") => {
+        SynthErrorKind::Range { what, .. } if *what == "side of the texture map" => {
             "take a larger --texture-size, a smaller --padding, or a mesh with fewer faces"
+        }
+        SynthErrorKind::Range { what, .. } if *what == "side of a wrapping texture" => {
+            "take another --size, or fewer --levels"
+        }
+        SynthErrorKind::Range { what, .. } if *what == "side of the exemplar" => {
+            "take a larger example, or fewer --levels"
         }
         SynthErrorKind::Period { .. } => "take another --size, fewer --levels, or --method sweep",
         SynthErrorKind::Source { .. } => "give sources in an example of this size",

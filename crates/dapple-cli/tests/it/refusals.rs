@@ -1,6 +1,9 @@
 //! Tests of errors: inputs that are missing, empty, folders, unreadable or of another kind; and invalid outputs.
 
 use crate::support::{Folder, assert_refused, stderr, stdout};
+use dapple::color::LinearRgb;
+use dapple::image::{Depth, write_color_png};
+use dapple::raster::Raster;
 use std::fs;
 
 /// Each subcommand that reads a file, with `INPUT` for the file under test. All other inputs exist.
@@ -84,7 +87,7 @@ const WRONG: [&str; 48] = [
 ];
 
 /// Command lines with a value that a library rejects, and a part of the message.
-const LIMITS: [(&str, &str); 24] = [
+const LIMITS: [(&str, &str); 28] = [
     ("bake flagston -o out/", "flagstone"),
     (
         "bake flagstone --region 60,0,8,8 --size 64 -o out/",
@@ -97,6 +100,16 @@ const LIMITS: [(&str, &str); 24] = [
     ),
     ("bake stone-and-grass --banded --size 64 -o out/", "whole"),
     ("bake flagstone --relief 1e300 -o out/", "from -1e6 to 1e6"),
+    ("bake flagstone --relief nan -o out/", "--relief nan: "),
+    ("bake flagstone --relief inf -o out/", "--relief inf: "),
+    (
+        "tile dot.png --method synth --threads 1 -o out.png",
+        "error: the side of the exemplar is 1, ",
+    ),
+    (
+        "worley --threads 3 --gain 3 --octaves 2 -o out.png",
+        "--gain 3: ",
+    ),
     ("worley --density 1000 -o out.png", "--density 1000: "),
     ("pups cow --spacing 0 -o out.png", "--spacing 0: "),
     ("worley --octaves 2 --gain -3 -o out.png", "--gain -3: "),
@@ -291,6 +304,8 @@ fn wrong_usage_exits_with_2() {
 #[test]
 fn values_that_a_library_refuses_are_wrong_usage_and_named_as_typed() {
     let folder = Folder::with_inputs("limits");
+    let dot = Raster::filled([1, 1], LinearRgb::WHITE).unwrap();
+    write_color_png(folder.path("dot.png"), &dot, Depth::Eight).unwrap();
     for (line, part) in LIMITS {
         let output = folder.run(&words(line));
         assert_refused(&output, 2, part, line);

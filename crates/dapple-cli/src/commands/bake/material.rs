@@ -66,8 +66,9 @@ impl MaterialArgs {
 
     /// The refusal of a plan, as wrong usage if it is about the relief that was typed.
     pub(in crate::commands) fn blame(&self, error: RecipeError) -> Error {
-        let is_typed = matches!(error.kind(), RecipeErrorKind::Range { value, .. } if self.relief == Some(*value));
-        match is_typed {
+        // The recipe has the relief that was typed, which may be NaN, and so equal to nothing.
+        let is_of_relief = matches!(error.kind(), RecipeErrorKind::Range { what: "relief", .. });
+        match is_of_relief && self.relief.is_some() {
             true => advise(error).wrong_value(),
             false => advise(error),
         }
