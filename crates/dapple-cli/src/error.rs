@@ -7,6 +7,7 @@ use dapple::recipe::{RecipeError, RecipeErrorKind};
 use dapple::synth::{SynthError, SynthErrorKind};
 use dapple::tile::{TileError, TileErrorKind};
 use dapple::worley::{WorleyError, WorleyErrorKind};
+use std::borrow::Cow;
 use std::fmt;
 use std::io::{self, Write};
 use std::process::ExitCode;
@@ -16,7 +17,7 @@ use std::process::ExitCode;
 pub(crate) enum Exit {
     /// The work is done.
     Done = 0,
-    /// The work failed; no file was written.
+    /// The work failed; files that were reported before are whole, and no others were written.
     Failed = 1,
     /// The command line was invalid; clap exits with the same code.
     Usage = 2,
@@ -30,10 +31,10 @@ pub(crate) enum Exit {
 pub(crate) const EXIT_CODES: &str = "\
 Exit codes:
   0    done
-  1    refused or failed: nothing was written
-  2    wrong usage, or a value out of its range
+  1    refused or failed: nothing was written but the files that were reported before
+  2    wrong usage: an option, or a value that an option does not take
   3    done, but a quality that --check asks for is not there
-  130  interrupted: nothing was written";
+  130  interrupted: each file is the old one or the whole new one";
 
 impl From<Exit> for ExitCode {
     fn from(exit: Exit) -> Self {
@@ -133,7 +134,7 @@ pub(crate) fn report(error: &Error, arguments: &[String]) -> Exit {
         };
         let text = text(error, option.as_deref());
         // If even this cannot be written, the exit code must suffice.
-        let _ = io::stderr().lock().write_all(text.as_bytes());
+        let _ = io::stderr().lock().write_all(printable(&text).as_bytes());
     }
     exit
 }
@@ -261,6 +262,25 @@ fn text(error: &Error, option: Option<&str>) -> String {
     text
 }
 
+/// A text for a terminal: control characters, which names of files and texts of recipes may have, are written as
+/// `\u{1b}`, and so are those that turn the direction of writing. Line ends and tabs remain.
+pub(crate) fn printable(text: &str) -> Cow<'_, str> {
+    let turns = |c: char| matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+    let is_odd = |c: char| (c.is_control() && c != '\n' && c != '\t') || turns(c);
+    if !text.contains(is_odd) {
+        return Cow::Borrowed(text);
+    }
+    let mut safe = String::with_capacity(text.len() + 16);
+    for c in text.chars() {
+        if is_odd(c) {
+            safe.extend(c.escape_unicode());
+        } else {
+            safe.push(c);
+        }
+    }
+    Cow::Owned(safe)
+}
+
 fn is_broken_pipe(error: &Error) -> bool {
     let io_errors = error
         .chain()
@@ -272,7 +292,7 @@ fn is_broken_pipe(error: &Error) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::{Exit, Hint, exit, option_with, text, usage};
+    use super::{Exit, Hint, exit, option_with, printable, text, usage};
     use anyhow::{Context, anyhow};
     use std::io;
 

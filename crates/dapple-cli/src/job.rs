@@ -396,7 +396,7 @@ impl<'a> Job<'a> {
 /// If standard output cannot be written.
 pub(crate) fn say(text: &str) -> Result<()> {
     let mut stdout = io::stdout().lock();
-    stdout.write_all(text.as_bytes())?;
+    stdout.write_all(printable(text).as_bytes())?;
     stdout.write_all(b"\n")?;
     Ok(stdout.flush()?)
 }
@@ -426,7 +426,7 @@ pub(crate) fn put_text(
 
 /// Prints to standard error, and ignores errors.
 pub(crate) fn eprintln_if_possible(text: &str) {
-    let _ = writeln!(io::stderr().lock(), "{text}");
+    let _ = writeln!(io::stderr().lock(), "{}", printable(text));
 }
 
 /// The line about a written file, as JSON.
