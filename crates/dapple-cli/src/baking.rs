@@ -152,6 +152,7 @@ pub(crate) fn write(
         rows.map.finish()?;
         let format = file.image.format;
         job.note(file.output, format, size, rows.range);
+        job.note_clipped(file.output, rows.n_clipped);
         if let (Some(writer), Some(sheet)) = (rows.sheet, file.sheet) {
             writer.finish()?;
             job.note(sheet, format, size.map(|side| 2 * side), rows.range);
@@ -231,11 +232,11 @@ pub(crate) fn format(asked: Option<Format>, target: &Target) -> Result<Format> {
     Format::choose(asked, target, Format::Png16)
 }
 
-/// Adds a hint to an error of a recipe.
 /// What is said of a loop of a recipe without motion.
 pub(crate) const STILL: &str = "note: nothing in this recipe moves, so that all pictures of the loop are equal; \
     see `motion` in `dapple recipe --reference`";
 
+/// Adds a hint to an error of a recipe.
 pub(crate) fn advise(error: RecipeError) -> Error {
     let hint = match error.kind() {
         RecipeErrorKind::Global { .. } => {
@@ -276,6 +277,10 @@ struct Rows {
     is_noted: bool,
     /// The smallest and the largest number written so far.
     range: [f32; 2],
+    /// The number of pixels written so far that the format clips.
+    n_clipped: u64,
+    /// Whether the format clips numbers.
+    clips: bool,
 }
 
 impl Rows {
@@ -290,6 +295,8 @@ impl Rows {
             sheet: sheet.transpose()?,
             is_noted: job.has_sidecar(),
             range: [f32::INFINITY, f32::NEG_INFINITY],
+            n_clipped: 0,
+            clips: !file.image.format.keeps_numbers(),
         })
     }
 
@@ -297,6 +304,9 @@ impl Rows {
         self.map.write(rows)?;
         if self.is_noted {
             self.range = rows.range(self.range);
+        }
+        if self.clips {
+            self.n_clipped += rows.n_clipped();
         }
         self.write_sheet(rows)
     }

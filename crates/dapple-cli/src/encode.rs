@@ -288,6 +288,28 @@ pub(crate) fn content(map: &Map) -> Content {
     }
 }
 
+/// The number of pixels with a part below 0 or above 1, by more than half a code of 16 bits.
+pub(crate) fn n_clipped<T: Sync, const N: usize>(
+    raster: &Raster<T>,
+    parts: impl Fn(&T) -> [f32; N],
+) -> u64 {
+    const HALF_CODE: f32 = 0.5 / 65_535.0;
+    let is_outside = |part: &f32| *part < -HALF_CODE || *part > 1.0 + HALF_CODE;
+    let pixels = raster.pixels().iter();
+    pixels
+        .filter(|pixel| parts(pixel).iter().any(is_outside))
+        .count() as u64
+}
+
+/// The number of pixels of a map that an image of whole numbers clips.
+pub(crate) fn n_clipped_of(map: &Map) -> u64 {
+    match map {
+        Map::Value(raster) => n_clipped(raster, |number| [*number]),
+        Map::Color(raster) => n_clipped(raster, |color| color.to_array()),
+        Map::Normal(_) => 0,
+    }
+}
+
 /// The smallest and the largest finite number of a map, over all channels; normals are from -1 to 1.
 pub(crate) fn range(map: &Map) -> [f32; 2] {
     let fold = |range: [f32; 2], value: f32| {

@@ -62,8 +62,16 @@ struct FileRecord {
     /// The smallest and the largest number, before they were clamped and rounded for the file.
     #[serde(skip_serializing_if = "Option::is_none")]
     range: Option<[f32; 2]>,
+    /// The number of pixels with a number that the format clips.
+    #[serde(skip_serializing_if = "is_zero")]
+    clipped: u64,
     bytes: u64,
     sha256: String,
+}
+
+/// Whether nothing was clipped.
+fn is_zero(count: &u64) -> bool {
+    *count == 0
 }
 
 /// The content of the JSON file beside the output.
@@ -89,7 +97,17 @@ struct RawSize {
     bpp: u32,
 }
 
+/// The smallest share of clipped pixels that is said.
+const CLIPPED_MIN: f64 = 0.01;
+
 impl FileRecord {
+    /// The share of clipped pixels, from 0 to 1, if it is heavy.
+    fn clipped_share(&self) -> Option<f64> {
+        let [width, height] = self.size?;
+        let share = self.clipped as f64 / (f64::from(width) * f64::from(height));
+        (share >= CLIPPED_MIN).then_some(share)
+    }
+
     /// The size of raw heights.
     fn raw_size(&self) -> Option<RawSize> {
         let [width, height] = self.size.filter(|_| self.format == Some(Format::R16))?;
@@ -205,7 +223,17 @@ impl<'a> Job<'a> {
         format.check(content(map), self.target(output))?;
         self.write(output, &encode(map, format)?)?;
         self.note(output, format, map.size(), range(map));
+        if !format.keeps_numbers() {
+            self.note_clipped(output, n_clipped_of(map));
+        }
         Ok(())
+    }
+
+    /// Records how many pixels of an image have numbers that its format clips.
+    pub(crate) fn note_clipped(&mut self, output: OutputIdx, n_pixels: u64) {
+        for (_, record) in self.files.iter_mut().filter(|(at, _)| *at == output) {
+            record.clipped = n_pixels;
+        }
     }
 
     /// The options of the files.
@@ -293,6 +321,9 @@ impl<'a> Job<'a> {
         format.check(Content::ColorAlpha, self.target(output))?;
         self.write(output, &encode_with_alpha(colors, cover, format)?)?;
         self.note(output, format, map.size(), range(&map));
+        if !format.keeps_numbers() {
+            self.note_clipped(output, n_clipped_of(&map));
+        }
         Ok(())
     }
 
@@ -431,8 +462,13 @@ pub(crate) fn eprintln_if_possible(text: &str) {
 
 /// The line about a written file, as JSON.
 fn told_as_json(record: &FileRecord) -> String {
-    serde_json::json!({ "wrote": record.file, "size": record.size, "format": record.format })
-        .to_string()
+    let mut line = serde_json::json!({
+        "wrote": record.file, "size": record.size, "format": record.format
+    });
+    if let Some(share) = record.clipped_share() {
+        line["clipped"] = share.into();
+    }
+    line.to_string()
 }
 
 /// The line about a written file.
@@ -443,7 +479,13 @@ fn told(record: &FileRecord) -> String {
     match (size, format) {
         (Some([width, height]), Some(format)) => {
             let (_, depth) = format.depth();
-            format!("wrote {file}: {width} × {height} pixels, {depth}")
+            let clipped = record.clipped_share().map_or(String::new(), |share| {
+                let percent = 100.0 * share;
+                format!(
+                    "; {percent:.1} % of them are below 0 or above 1 and were clipped, which .exr and .npy keep"
+                )
+            });
+            format!("wrote {file}: {width} × {height} pixels, {depth}{clipped}")
         }
         _ => format!("wrote {file}"),
     }

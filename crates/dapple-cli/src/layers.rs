@@ -1,6 +1,7 @@
 //! The content of the channels of an image: a map, or several maps packed into one image.
 
 use crate::encode::Format;
+use crate::encode::n_clipped;
 use anyhow::{Result, anyhow};
 use dapple::image::{Content, ImageError, RowWriter};
 use dapple::raster::Raster;
@@ -158,6 +159,20 @@ impl LayerRows<'_> {
                     [min.min(number), max.max(number)]
                 })
             }
+        }
+    }
+
+    /// The number of pixels with a number below 0 or above 1, which images of whole numbers cannot hold.
+    pub(crate) fn n_clipped(&self) -> u64 {
+        match self {
+            Self::Map(rows) => match rows.as_ref() {
+                MapRows::Gray(rows) => n_clipped(rows, |number| [*number]),
+                MapRows::Color(rows) => n_clipped(rows, |color| color.to_array()),
+                // The parts of a unit vector fit.
+                MapRows::Normal(_) => 0,
+                MapRows::Packed(rows) => n_clipped(rows, |parts| *parts),
+            },
+            Self::Rgba(rows) => n_clipped(rows, |parts| *parts),
         }
     }
 

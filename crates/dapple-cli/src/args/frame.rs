@@ -20,6 +20,11 @@ impl Frame {
         pictures.map(move |number| count.map(|count| Self { number, count }))
     }
 
+    /// Whether this is the first frame of the loop.
+    pub(crate) fn is_first(self) -> bool {
+        self.number == 1
+    }
+
     /// The elapsed part of the loop before this frame, from 0 to below 1.
     pub(crate) fn time(self) -> f64 {
         f64::from(self.number - 1) / f64::from(self.count)

@@ -200,6 +200,7 @@ impl Joined {
         let mut writer =
             RowWriter::new(sink, list.size, content(self.kind), encoding).with_context(failed)?;
         let mut range = [f32::INFINITY, f32::NEG_INFINITY];
+        let mut n_clipped = 0;
         for number in 0..list.grid()?[1] {
             // Rows and columns that shards share are taken from the upper and the left one.
             let shared = if number > 0 { list.overlap } else { 0 };
@@ -213,11 +214,15 @@ impl Joined {
                 let rows = self.band(&shards, list, rows)?;
                 range = rows.range(range);
                 let rows = LayerRows::Map(Cow::Owned(rows));
+                if !self.format.keeps_numbers() {
+                    n_clipped += rows.n_clipped();
+                }
                 rows.write(&mut writer).with_context(failed)?;
             }
         }
         finish(writer).with_context(failed)?;
         job.note(self.output, self.format, list.size, range);
+        job.note_clipped(self.output, n_clipped);
         Ok(())
     }
 
