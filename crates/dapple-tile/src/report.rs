@@ -15,6 +15,7 @@
 //! infinite: a quotient is 1 where both of its parts are zero, and at most [`MOST`](SeamReport::MOST).
 
 mod channels;
+mod clipped;
 mod local;
 mod mirrored;
 mod octaves;
@@ -30,6 +31,7 @@ pub use verdict::Fault;
 
 use crate::map::check_finite;
 use crate::{TileError, TileErrorKind};
+use clipped::{Ends, PLAIN_SLOPES};
 use dapple_raster::{Raster, Wrap};
 
 /// Options of a report: the measured seams, and the boundaries they are compared with.
@@ -122,8 +124,12 @@ pub struct DetailKept {
     /// with clear shapes, and less for copied parts. `None` for images of less than 24 pixels along a side, and for a
     /// flat source.
     pub strangeness: Option<f64>,
-    /// The share of samples at or past 0 or 1, less that of the source, at least 0; 0 for a source that exceeds 0 or 1
-    /// itself. Such a tile is clipped there before its seams are measured, as in an image file.
+    /// The share of the samples that the method clipped, from 0 to 1.
+    ///
+    /// These are samples that lie past 0 or 1 by more than half a code of 8 bits; at either end at most as many as the
+    /// tile has there beyond the share of the source. Samples that are exactly 0 or 1, as in a tile that was read from a
+    /// file, were not clipped by the method as far as can be known. It is 0 for a source that exceeds 0 or 1 itself;
+    /// any other tile is cut off at 0 and 1 before its seams are measured, as in an image file.
     pub clipped: f64,
     /// Whether both sides of the wrap are mirror images along an axis that repeats, and those of the source are not.
     pub is_mirrored: bool,
@@ -163,7 +169,11 @@ impl SeamReport {
     ) -> Result<Self, TileError> {
         check_finite(source)?;
         check_finite(tile)?;
-        let (clipped, shown) = clip(source, tile);
+        let [source_ends, tile_ends] =
+            [source, tile].map(|image| Ends::of(image.pixels().iter().copied(), PLAIN_SLOPES));
+        let range = source.statistics();
+        let is_within = range.min >= 0.0 && range.max <= 1.0;
+        let shown = is_within.then(|| tile.map(|value| value.clamp(0.0, 1.0)));
         let report = Self::of(shown.as_ref().unwrap_or(tile), options)?;
         let strangeness =
             strange::strangeness(source, shown.as_ref().unwrap_or(tile), options.axes)?;
@@ -175,7 +185,7 @@ impl SeamReport {
                 contrast: quotient(kept, all),
                 source_lowest_local_detail: local::lowest_detail(source, [Wrap::Mirror; 2]),
                 strangeness,
-                clipped,
+                clipped: Ends::clipped(&source_ends, &tile_ends),
                 is_mirrored: mirrored::is_mirrored(tile, options.axes)?
                     && !mirrored::is_mirrored(source, options.axes)?,
             }),
@@ -220,24 +230,6 @@ impl SeamOptions {
         self.axes
             .map(|repeats| if repeats { Wrap::Repeat } else { Wrap::Mirror })
     }
-}
-
-/// The share of clipped samples, and the clipped tile, for a source from 0 to 1.
-fn clip(source: &Raster<f32>, tile: &Raster<f32>) -> (f64, Option<Raster<f32>>) {
-    let range = source.statistics();
-    if range.min < 0.0 || range.max > 1.0 {
-        return (0.0, None);
-    }
-    let share = |image: &Raster<f32>| {
-        let pixels = image.pixels();
-        let ends = pixels
-            .iter()
-            .filter(|&&value| value <= 0.0 || value >= 1.0)
-            .count();
-        ends as f64 / pixels.len() as f64
-    };
-    let clipped = (share(tile) - share(source)).max(0.0);
-    (clipped, Some(tile.map(|value| value.clamp(0.0, 1.0))))
 }
 
 /// The quotient `part / whole` of two numbers that are not negative: 1 if both are zero, and at most

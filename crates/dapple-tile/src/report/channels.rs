@@ -1,5 +1,6 @@
 //! Reports of all channels of a map, with one verdict.
 
+use super::clipped::{Ends, SRGB_SLOPES};
 use super::{SeamOptions, SeamReport};
 use crate::{Map, TileError};
 use core::fmt;
@@ -76,9 +77,23 @@ impl SeamReports {
                 report: SeamReport::beside(&source, &tile, options)?,
             })
         });
-        Ok(Self {
+        let mut reports = Self {
             channels: reports.collect::<Result<_, TileError>>()?,
-        })
+        };
+        if let (Map::Color(source), Map::Color(tile)) = (source, tile) {
+            // Shown colors end at 0 and 1, so that linear light tells what was clipped.
+            for ((of, source), tile) in reports
+                .channels
+                .iter_mut()
+                .zip(color_ends(source))
+                .zip(color_ends(tile))
+            {
+                if let Some(kept) = &mut of.report.kept {
+                    kept.clipped = Ends::clipped(&source, &tile);
+                }
+            }
+        }
+        Ok(reports)
     }
 
     /// The reports, one for each channel.
@@ -161,6 +176,12 @@ fn channels(map: &Map) -> Result<Vec<(&'static str, Raster<f32>)>, TileError> {
             ]
         }
     })
+}
+
+/// The samples of red, green and blue at the ends of the range.
+fn color_ends(colors: &Raster<LinearRgb>) -> [Ends; 3] {
+    let channels: [fn(&LinearRgb) -> f32; 3] = [|color| color.r, |color| color.g, |color| color.b];
+    channels.map(|channel| Ends::of(colors.pixels().iter().map(channel), SRGB_SLOPES))
 }
 
 #[cfg(test)]

@@ -1,8 +1,9 @@
 //! Whole reports: their numbers, text and limits.
 
-use super::{Fault, SeamOptions, SeamReport};
+use super::{Fault, SeamOptions, SeamReport, SeamReports};
 use crate::test_fields::gravel;
-use crate::{Crossfade, Feather, Method, Seamless, SoftCut, TileError, TileErrorKind};
+use crate::{Crossfade, Feather, Map, Method, Seamless, SoftCut, TileError, TileErrorKind};
+use dapple_color::LinearRgb;
 use dapple_hash::{Seed, hash2, unit_f32};
 use dapple_raster::Raster;
 use proptest::prelude::*;
@@ -102,6 +103,63 @@ fn faults_name_what_crossfades_and_mirrors_do() {
     assert!(faults(&grain, feather).contains(&Fault::Soft));
     assert!(faults(&source, half).contains(&Fault::Ghosts));
     assert!(faults(&source, Method::Mirror).contains(&Fault::Mirrored));
+}
+
+/// A black disk with a radius of 60 pixels in noise from 0.3 to 0.7, which no mean of two values leaves.
+fn disk_in_noise() -> Raster<f32> {
+    let grain = noise([256; 2], 7);
+    Raster::from_fn([256; 2], |x, y| {
+        let [dx, dy] = [x, y].map(|at| i64::from(at) - 128);
+        match dx * dx + dy * dy {
+            0..3600 => 0.0,
+            _ => 0.3 + 0.4 * grain.row(y)[x as usize],
+        }
+    })
+    .unwrap()
+}
+
+#[test]
+fn black_of_the_source_is_not_clipped_by_a_method_that_crops() {
+    let source = disk_in_noise();
+    let tile = Seamless::new(Method::SoftCut(SoftCut::default()))
+        .apply(&source)
+        .unwrap();
+    let black = |image: &Raster<f32>| {
+        let pixels = image.pixels().iter();
+        pixels.filter(|value| **value <= 0.0).count()
+    };
+    // All of the disk is still there, as 22.5 % of the tile where it was 17.2 % of the source.
+    assert_eq!((tile.size(), black(&tile)), ([224; 2], black(&source)));
+    let report = SeamReport::beside(&source, &tile, &SeamOptions::default()).unwrap();
+    assert_eq!(report.kept.as_ref().unwrap().clipped, 0.0, "{report}");
+    // Shown colors end at 0 and 1, so that they are counted in linear light.
+    let [source, tile] = [source, tile]
+        .map(|image| Map::Color(image.map(|&value| LinearRgb::new(value, value, 0.5))));
+    let report = SeamReports::beside(&source, &tile, &SeamOptions::default()).unwrap();
+    for of in report.channels() {
+        let kept = of.report.kept.as_ref().unwrap();
+        assert_eq!(kept.clipped, 0.0, "{}: {report}", of.channel);
+    }
+}
+
+#[test]
+fn samples_of_colors_past_the_range_are_clipped() {
+    let source = Raster::filled([64; 2], LinearRgb::new(0.5, 0.5, 0.5)).unwrap();
+    let tile = Raster::from_fn([64; 2], |x, _| match x {
+        0..16 => LinearRgb::new(1.2, 0.5, -0.1),
+        _ => LinearRgb::new(0.5, 0.5, 0.5),
+    });
+    let maps = [source, tile.unwrap()].map(Map::Color);
+    let report = SeamReports::beside(&maps[0], &maps[1], &SeamOptions::default()).unwrap();
+    let clipped = |index: usize| {
+        report.channels()[index]
+            .report
+            .kept
+            .as_ref()
+            .unwrap()
+            .clipped
+    };
+    assert_eq!([0, 1, 2].map(clipped), [0.25, 0.0, 0.25]);
 }
 
 #[test]
