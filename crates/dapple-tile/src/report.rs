@@ -124,6 +124,11 @@ pub struct DetailKept {
     /// with clear shapes, and less for copied parts. `None` for images of less than 24 pixels along a side, and for a
     /// flat source.
     pub strangeness: Option<f64>,
+    /// The strangeness of both images at half of their size, where a square covers 16 × 16 pixels.
+    ///
+    /// Pieces that end at a seam, as the courses of a wall, are found at this size. `None` for images of less than 48
+    /// pixels along a side, and for a flat source.
+    pub coarse_strangeness: Option<f64>,
     /// The share of the samples that the method clipped, from 0 to 1.
     ///
     /// These are samples that lie past 0 or 1 by more than half a code of 8 bits; at either end at most as many as the
@@ -175,8 +180,10 @@ impl SeamReport {
         let is_within = range.min >= 0.0 && range.max <= 1.0;
         let shown = is_within.then(|| tile.map(|value| value.clamp(0.0, 1.0)));
         let report = Self::of(shown.as_ref().unwrap_or(tile), options)?;
-        let strangeness =
-            strange::strangeness(source, shown.as_ref().unwrap_or(tile), options.axes)?;
+        let strangeness = |scale| {
+            strange::strangeness(source, shown.as_ref().unwrap_or(tile), options.axes, scale)
+        };
+        let (fine, coarse) = (strangeness(1)?, strangeness(2)?);
         let [kept, all] = [tile, source].map(|image| image.statistics().deviation);
         Ok(Self {
             kept: Some(DetailKept {
@@ -184,7 +191,8 @@ impl SeamReport {
                 octaves: octaves::kept(source, tile),
                 contrast: quotient(kept, all),
                 source_lowest_local_detail: local::lowest_detail(source, [Wrap::Mirror; 2]),
-                strangeness,
+                strangeness: fine,
+                coarse_strangeness: coarse,
                 clipped: Ends::clipped(&source_ends, &tile_ends),
                 is_mirrored: mirrored::is_mirrored(tile, options.axes)?
                     && !mirrored::is_mirrored(source, options.axes)?,

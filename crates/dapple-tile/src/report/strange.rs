@@ -5,6 +5,9 @@
 //! of a good match depends on the picture: squares of the source are compared with the rest of the source. The measure
 //! is the mean distance of the tile's squares to their nearest match, as a multiple of that of the source's squares.
 //!
+//! The measure is taken at two scales. A cut through grass is found in squares of 8 × 8 pixels; a course of bricks that ends
+//! at the cut looks like any other joint there, and only larger squares have nothing like it in the source.
+//!
 //! Most places are left out by the means of the quarters of their squares: the squared distance of two quarters is at least
 //! 16 times the square of how far their means are apart (Cauchy and Schwarz).
 //!
@@ -51,22 +54,25 @@ type Square = [f32; (SIDE * SIDE) as usize];
 /// The first columns and rows of the quarters of a square.
 const QUARTERS: [[usize; 2]; 4] = [[0, 0], [HALF, 0], [0, HALF], [HALF, HALF]];
 
-/// [`DetailKept::strangeness`](super::DetailKept::strangeness): the strangest of all zones; `None` if an image is too small.
+/// The strangeness at a scale, where each value of a square is the mean of `scale` × `scale` pixels: the strangest of all
+/// zones; `None` if an image is too small or the source is flat.
 pub(super) fn strangeness(
     source: &Raster<f32>,
     tile: &Raster<f32>,
     axes: [bool; 2],
+    scale: u32,
 ) -> Result<Option<f64>, TileError> {
     let sides = source.size().into_iter().chain(tile.size());
-    if sides.min().unwrap_or(0) < 3 * SIDE {
+    if sides.min().unwrap_or(0) < 3 * SIDE * scale {
         return Ok(None);
     }
-    let places = Places::new(source);
-    let usual = places.usual();
-    let deviation = source.statistics().deviation;
+    let reduced = reduced(source, scale)?;
+    let deviation = reduced.statistics().deviation;
     if deviation == 0.0 {
         return Ok(None);
     }
+    let places = Places::new(&reduced);
+    let usual = places.usual();
     let usual = usual.max(LEAST_DISTANCE * deviation * f64::from(SIDE));
     let mut most: f64 = 0.0;
     for (axis, _) in axes.iter().enumerate().filter(|(_, repeats)| **repeats) {
@@ -74,25 +80,49 @@ pub(super) fn strangeness(
             0 => tile.clone(),
             _ => transpose(tile)?,
         };
-        for zone in zones(&turned, axis == 1) {
+        for zone in zones(&turned, axis == 1, scale) {
             most = most.max(quotient(places.mean_distance(&zone), usual));
         }
     }
     Ok(Some(most))
 }
 
+/// The means of squares of `scale` × `scale` pixels. Pixels of the last columns and rows that fill no square are left out.
+fn reduced(source: &Raster<f32>, scale: u32) -> Result<Raster<f32>, TileError> {
+    let size = source.size().map(|side| side / scale);
+    let wrap = [Wrap::Clamp; 2];
+    Ok(Raster::from_fn(size, |x, y| {
+        mean_at(source, [x, y].map(|at| i64::from(at * scale)), scale, wrap)
+    })?)
+}
+
+/// The mean of `scale` × `scale` pixels from a corner on.
+fn mean_at(image: &Raster<f32>, [x, y]: [i64; 2], scale: u32, wrap: [Wrap; 2]) -> f32 {
+    let mut sum = 0.0;
+    for row in 0..i64::from(scale) {
+        for column in 0..i64::from(scale) {
+            sum += f64::from(*image.at(x + column, y + row, wrap));
+        }
+    }
+    (sum / f64::from(scale * scale)) as f32
+}
+
 /// Squares across the wrap of the columns, and squares beside it; transposed back if the tile was transposed.
-fn zones(tile: &Raster<f32>, is_turned: bool) -> [Vec<Square>; 2] {
+fn zones(tile: &Raster<f32>, is_turned: bool, scale: u32) -> [Vec<Square>; 2] {
     let [width, height] = tile.size();
-    let beside = (width / BESIDE).saturating_sub(SIDE).max(1);
-    let across = |index: u32| i64::from(width - 1 - index % (SIDE - 1));
-    let from = |column: i64, index: u32| square(tile, [column, spread(index, height)], is_turned);
+    let beside = (width / scale / BESIDE).saturating_sub(SIDE).max(1);
+    let from = |column: i64, index: u32| {
+        let row = spread(index, height / scale) * i64::from(scale);
+        square(tile, [column, row], is_turned, scale)
+    };
+    let across = |index: u32| i64::from(width) - i64::from(scale * (1 + index % (SIDE - 1)));
+    let after = |index: u32| i64::from(scale * (index % beside));
     [
         (0..SQUARES)
             .map(|index| from(across(index), index))
             .collect(),
         (0..SQUARES)
-            .map(|index| from((index % beside).into(), index))
+            .map(|index| from(after(index), index))
             .collect(),
     ]
 }
@@ -104,8 +134,8 @@ fn spread(index: u32, side: u32) -> i64 {
     ((part * u64::from(side)) >> 32) as i64
 }
 
-/// The pixels of a square from its corner on, of a tile that repeats.
-fn square(tile: &Raster<f32>, corner: [i64; 2], is_turned: bool) -> Square {
+/// The values of a square from its corner on, of a tile that repeats.
+fn square(tile: &Raster<f32>, corner: [i64; 2], is_turned: bool, scale: u32) -> Square {
     core::array::from_fn(|index| {
         let (row, column) = (
             index as i64 / i64::from(SIDE),
@@ -116,7 +146,9 @@ fn square(tile: &Raster<f32>, corner: [i64; 2], is_turned: bool) -> Square {
         } else {
             [column, row]
         };
-        *tile.at(corner[0] + x, corner[1] + y, [Wrap::Repeat; 2])
+        let [x, y] = [x, y].map(|at| at * i64::from(scale));
+        let wrap = [Wrap::Repeat; 2];
+        mean_at(tile, [corner[0] + x, corner[1] + y], scale, wrap)
     })
 }
 
@@ -224,7 +256,7 @@ impl<'a> Places<'a> {
                 spread(index.wrapping_mul(7) + 3, columns),
                 spread(index, rows),
             ];
-            let own = square(self.source, corner, false);
+            let own = square(self.source, corner, false, 1);
             self.distance(&own, Some(corner.map(|at| at as usize)))
         })
     }
@@ -375,7 +407,7 @@ mod tests {
     fn of(method: Method) -> f64 {
         let source = gravel(4, [128; 2], false);
         let tile = Seamless::new(method).apply(&source).unwrap();
-        strangeness(&source, &tile, [true; 2]).unwrap().unwrap()
+        strangeness(&source, &tile, [true; 2], 1).unwrap().unwrap()
     }
 
     /// The distance of a square from the nearest of all places of a lattice.
@@ -390,7 +422,7 @@ mod tests {
             .map(|at| at.map(|at| at * places.step))
             .filter(|&at| !meets(at));
         let apart = |corner: [usize; 2]| {
-            let other = square(places.source, corner.map(|at| at as i64), false);
+            let other = square(places.source, corner.map(|at| at as i64), false, 1);
             let squares = own
                 .iter()
                 .zip(&other)
@@ -416,10 +448,10 @@ mod tests {
             let places = Places::new(&source);
             let tile = gravel(5, [64; 2], true).map(|value| factor * value + offset);
             for at in 0..12 {
-                let own = square(&tile, [5 * at, 3 * at], false);
+                let own = square(&tile, [5 * at, 3 * at], false, 1);
                 assert_eq!(places.distance(&own, None), of_all(&places, &own, None));
                 let corner = [at as usize + 2, 2 * at as usize];
-                let own = square(&source, corner.map(|at| at as i64), false);
+                let own = square(&source, corner.map(|at| at as i64), false, 1);
                 let (found, expected) = (
                     places.distance(&own, Some(corner)),
                     of_all(&places, &own, Some(corner)),
@@ -442,16 +474,30 @@ mod tests {
     #[test]
     fn a_picture_that_repeats_is_not_strange_beside_itself() {
         let tile = fbm(2, [96, 64], true);
-        let strangeness = strangeness(&tile, &tile, [true; 2]).unwrap().unwrap();
+        let strangeness = strangeness(&tile, &tile, [true; 2], 1).unwrap().unwrap();
         // Squares inside are found exactly, and those across the wrap match like any others.
         assert!(strangeness < 1.12, "{strangeness}");
     }
 
     #[test]
+    fn means_of_one_pixel_are_its_bits() {
+        let source = gravel(4, [61, 37], false);
+        assert_eq!(super::reduced(&source, 1).unwrap(), source);
+        let halved = super::reduced(&source, 2).unwrap();
+        assert_eq!(halved.size(), [30, 18]);
+        let of = |x, y| f64::from(source.row(y)[x]);
+        let mean = (of(4, 6) + of(5, 6) + of(4, 7) + of(5, 7)) / 4.0;
+        assert_eq!(halved.row(3)[2], mean as f32);
+    }
+
+    #[test]
     fn small_and_flat_sources_are_not_compared() {
         let flat = Raster::filled([64; 2], 0.5).unwrap();
-        assert_eq!(strangeness(&flat, &flat, [true; 2]), Ok(None));
+        assert_eq!(strangeness(&flat, &flat, [true; 2], 1), Ok(None));
         let small = fbm(2, [20, 64], true);
-        assert_eq!(strangeness(&small, &small, [true; 2]), Ok(None));
+        assert_eq!(strangeness(&small, &small, [true; 2], 1), Ok(None));
+        let small = fbm(2, [47, 64], true);
+        assert!(strangeness(&small, &small, [true; 2], 1).unwrap().is_some());
+        assert_eq!(strangeness(&small, &small, [true; 2], 2), Ok(None));
     }
 }

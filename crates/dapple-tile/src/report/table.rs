@@ -70,8 +70,13 @@ impl DetailKept {
         }
         let contrast = number(self.contrast);
         write!(f, "\n{:<22}{contrast:>CELL$}", "contrast kept")?;
-        let strange = self.strangeness.map_or_else(|| NOTHING.to_owned(), number);
-        write!(f, "\n{:<22}{strange:>CELL$}", "strangeness")?;
+        let [fine, coarse] = [self.strangeness, self.coarse_strangeness]
+            .map(|of| of.map_or_else(|| NOTHING.to_owned(), number));
+        write!(
+            f,
+            "\n{:<22}{fine:>CELL$}  (of 16 px {coarse})",
+            "strangeness"
+        )?;
         let clipped = format!("{:.1} %", 100.0 * self.clipped);
         write!(f, "\n{:<22}{clipped:>CELL$}", "clipped")
     }

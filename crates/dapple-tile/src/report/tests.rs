@@ -163,6 +163,53 @@ fn samples_of_colors_past_the_range_are_clipped() {
 }
 
 #[test]
+fn a_good_cut_passes_where_the_source_is_clipped() {
+    // Strong contrast, as of a wet photograph: a quarter of the samples is black or white.
+    let source = gravel(4, [160; 2], false).map(|value| (2.0 * value - 0.5).clamp(0.0, 1.0));
+    let ends = source.pixels().iter();
+    let ends = ends
+        .filter(|value| **value <= 0.0 || **value >= 1.0)
+        .count();
+    assert!(ends > 160 * 160 / 4, "{ends}");
+    let tile = Seamless::new(Method::SoftCut(SoftCut::default()))
+        .apply(&source)
+        .unwrap();
+    let report = SeamReport::beside(&source, &tile, &SeamOptions::default()).unwrap();
+    assert!(report.passes(), "{report}");
+}
+
+/// Upright bricks of 22 × 60 pixels whose joints lean more and more to the right, as seen from one side.
+fn leaning_bricks() -> Raster<f32> {
+    Raster::from_fn([192; 2], |x, y| {
+        let [x, y] = [f64::from(x), f64::from(y)];
+        let across = (x - 96.0) / (1.0 + y / 400.0) / 22.0;
+        let column = across.floor();
+        let down = (y + 27.0 * column) / 60.0;
+        let joint = |at: f64, width: f64| {
+            let from = (at - at.round()).abs();
+            ((width - from) / width * 3.0).clamp(0.0, 1.0)
+        };
+        let grain = f64::from(unit_f32(hash2(Seed(8), [x as i64, y as i64], 0) as u32));
+        let joint = joint(across, 0.1).max(joint(down, 0.04));
+        (0.2 + 0.4 * joint + 0.12 * grain) as f32
+    })
+    .unwrap()
+}
+
+#[test]
+fn courses_that_break_at_a_cut_are_strange_at_a_coarse_scale() {
+    let source = leaning_bricks();
+    let tile = Seamless::new(Method::SoftCut(SoftCut::default()))
+        .apply(&source)
+        .unwrap();
+    let report = SeamReport::beside(&source, &tile, &SeamOptions::default()).unwrap();
+    // Squares of 8 × 8 pixels find all pieces of bricks and joints elsewhere.
+    let fine = report.kept.as_ref().and_then(|kept| kept.strangeness);
+    assert!(fine.is_some_and(|fine| fine < 0.8), "{report}");
+    assert!(report.faults().contains(&Fault::Strange), "{report}");
+}
+
+#[test]
 fn a_frame_of_one_color_and_a_soft_seam_are_no_faults() {
     let framed = Raster::from_fn([64; 2], |x, y| match x.min(y).min(63 - x).min(63 - y) {
         0..6 => 1.0,
@@ -262,7 +309,7 @@ seam stands out by       1 px: 185 2 px: 91.33 4 px: 44.87 8 px: 21.47
 lowest local detail              0.707  (of the source 0.707)
 detail kept                  1/2: 0.25       1/4: 0.25       1/8: 0.25
 contrast kept                     0.50
-strangeness                      58.59
+strangeness                      58.59  (of 16 px 12.84)
 clipped                          0.0 %";
     assert_eq!(report.to_string(), expected);
 }
@@ -300,6 +347,7 @@ proptest! {
                 .chain(kept.octaves)
                 .chain(report.seams.iter().filter_map(|seam| seam.stands_out))
                 .chain(kept.strangeness)
+                .chain(kept.coarse_strangeness)
                 .chain([kept.contrast, report.lowest_local_detail, kept.source_lowest_local_detail])
                 .chain([kept.clipped, report.badness()]);
             for number in numbers {

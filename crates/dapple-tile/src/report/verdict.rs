@@ -1,6 +1,6 @@
 //! The verdict: the faults of a tile, by the numbers of its report.
 //!
-//! The limits were set on 2 × 2 copies of 13 photographs, made to repeat in 10 ways, that were judged by eye first.
+//! The limits were set on 2 × 2 copies of 16 photographs, made to repeat in 9 ways, that were judged by eye first.
 
 use super::{DetailKept, SeamReport};
 use core::fmt;
@@ -14,11 +14,18 @@ const SOFTEST: f64 = 0.85;
 /// The smallest power that the third octave must keep. A mean of two pictures keeps half of it.
 const THIRD_OCTAVE: f64 = 0.65;
 
+/// The smallest contrast of a tile whose third octave is weak: a mean of two pictures loses both, and a part of a pattern
+/// may lack one octave.
+const CONTRAST: f64 = 0.9;
+
 /// The largest distance of squares at the seam from the source, as a multiple of that of the source from itself.
-const STRANGEST: f64 = 1.12;
+const STRANGEST: f64 = 0.84;
+
+/// The largest such distance at half of the size.
+const COARSE_STRANGEST: f64 = 0.97;
 
 /// The largest share of clipped samples.
-const CLIPPED: f64 = 0.004;
+const CLIPPED: f64 = 0.04;
 
 /// The smallest width of the means for which a seam must have been measured, in pixels.
 const LEAST_WIDTH: u32 = 4;
@@ -143,6 +150,9 @@ impl DetailKept {
             .copied()
             .unwrap_or(self.contrast * self.contrast);
         let share = self.clipped;
+        let strange = |of: Option<f64>, limit: f64| of.unwrap_or(0.0) / limit;
+        let strangeness = strange(self.strangeness, STRANGEST)
+            .max(strange(self.coarse_strangeness, COARSE_STRANGEST));
         [
             (
                 over(
@@ -151,8 +161,11 @@ impl DetailKept {
                 ),
                 Fault::Soft,
             ),
-            (over(THIRD_OCTAVE, power), Fault::Ghosts),
-            (self.strangeness.unwrap_or(0.0) / STRANGEST, Fault::Strange),
+            (
+                over(THIRD_OCTAVE, power).min(over(CONTRAST, self.contrast)),
+                Fault::Ghosts,
+            ),
+            (strangeness, Fault::Strange),
             (share / CLIPPED, Fault::Clipped { share }),
             (if self.is_mirrored { 2.0 } else { 0.0 }, Fault::Mirrored),
         ]
