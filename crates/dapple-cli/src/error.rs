@@ -32,7 +32,7 @@ pub(crate) const EXIT_CODES: &str = "\
 Exit codes:
   0    done
   1    refused or failed: nothing was written but the files that were reported before
-  2    wrong usage: an option, or a value that an option does not take
+  2    wrong usage, or a value that is out of its range before the work
   3    done, but a quality that --check asks for is not there
   130  interrupted: each file is the old one or the whole new one";
 

@@ -64,7 +64,7 @@ fn diagnostic(
     let [from, to] = document.span(bytes);
     let hint = match error.kind() {
         RecipeErrorKind::NoImage { .. } => Some("images lie in the folder of the recipe"),
-        RecipeErrorKind::Global { .. } => Some("no warp may ask a node that sees the whole tile"),
+        RecipeErrorKind::Global { .. } => Some("it has values in a bake of the whole tile alone"),
         _ => None,
     };
     Diagnostic {

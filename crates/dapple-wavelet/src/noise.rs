@@ -34,7 +34,7 @@ pub(crate) use white::white_raster;
 
 /// Noise without low frequencies: a tile of B-spline coefficients, evaluated at any position, in one band or several.
 ///
-/// A band has 85 % of its power between ¼ and ½ cycles per cell, counted along the axis where the frequency is highest.
+/// A band has about 84 % of its power between ¼ and ½ cycles per cell, counted along the axis where the frequency is highest.
 /// About half of the rest is above and half below, and less than a ten-thousandth of all is below ⅛.
 ///
 /// Values are nearly normal. Over all positions and seeds their mean is 0 and their variance 1. At one position the

@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Warp {
-    /// The node that is sampled at the displaced positions. It must not depend on the whole tile.
+    /// The node that is sampled at the displaced positions. A node that depends on the whole tile is interpolated between its pixels.
     pub input: Input,
     /// The displacement to the right, as a multiple of the amount: a number.
     pub x: Input,
