@@ -229,6 +229,11 @@ impl GradientNoise<2> {
     /// The sum of this noise at several scales, `Σ gain^i · shape(noise_i(lacunarity^i · position))`, where each octave has a
     /// seed of its own.
     ///
+    /// It is not divided by the sum of the weights, `w = Σ |gain|^i` ([`Fractal::weight`]). For gains from 0 to 1, values are
+    /// from `-w` to `w` for [`Sum`](FractalShape::Sum), and from 0 to `w` for [`Ridged`](FractalShape::Ridged) and
+    /// [`Billow`](FractalShape::Billow). At positions that are whole numbers of cells every octave of a whole lacunarity
+    /// is 0, so that sums are 0 there, too; sample half a cell aside.
+    ///
     /// # Errors
     ///
     /// [`Range`](dapple_raster::RasterErrorKind::Range) unless there are 1 to 32 octaves, the gain is from -1 to 1, the

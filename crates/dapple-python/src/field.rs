@@ -296,18 +296,24 @@ impl Field {
     }
 
     /// Fractional Brownian motion of this field: the sum of octaves, each finer and lower than the one before.
+    ///
+    /// With w = 1 + gain + gain**2 + …, values from -b to b have sums from -w * b to w * b, for a gain from 0 to 1.
     #[pyo3(signature = (octaves = 6, *, gain = 0.5, lacunarity = 2.0))]
     fn fbm(&self, octaves: u32, gain: f64, lacunarity: f64) -> Result<Self> {
         self.fractal(octaves, gain, lacunarity, FractalShape::Sum)
     }
 
     /// The sum of octaves of `1 - |value|`: ridges where values cross 0.
+    ///
+    /// With w = 1 + gain + gain**2 + …, values from -b to b have sums from w * (1 - b) to w, for a gain from 0 to 1.
     #[pyo3(signature = (octaves = 6, *, gain = 0.5, lacunarity = 2.0))]
     fn ridged(&self, octaves: u32, gain: f64, lacunarity: f64) -> Result<Self> {
         self.fractal(octaves, gain, lacunarity, FractalShape::Ridged)
     }
 
     /// The sum of octaves of `|value|`: creases, and round hills between them (turbulence).
+    ///
+    /// With w = 1 + gain + gain**2 + …, values from -b to b have sums from 0 to w * b, for a gain from 0 to 1.
     #[pyo3(signature = (octaves = 6, *, gain = 0.5, lacunarity = 2.0))]
     fn billow(&self, octaves: u32, gain: f64, lacunarity: f64) -> Result<Self> {
         self.fractal(octaves, gain, lacunarity, FractalShape::Billow)

@@ -92,7 +92,11 @@ impl Volume for GradientNoise4 {
 /// Perlin's gradient noise: smooth bumps of one size, after "Improving Noise" (2002), with a seed and exact periods.
 ///
 /// Positions are in cells. The mean is 0; values are from -1 to 1 in the plane, and at most 1.04 and 1.54 from 0 in three
-/// and four dimensions. Without octaves, the standard deviation is 0.31, 0.27 and 0.29.
+/// and four dimensions. Without octaves, the standard deviation is 0.31, 0.27 and 0.29. At positions whose coordinates are
+/// all whole numbers the value is 0: sample between them, for instance half a cell aside.
+///
+/// Octaves are summed and not divided by the sum w of their heights, 1 + gain + gain**2 + … (1.94 for 5 octaves and a gain of
+/// 0.5): with a gain from 0 to 1, values are from -w to w for the shape "sum", and from 0 to w for "ridged" and "billow".
 ///
 /// Parameters
 /// ----------

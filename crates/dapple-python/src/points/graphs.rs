@@ -232,7 +232,9 @@ fn direction(symmetric: bool) -> Direction {
 /// vide", 1934).
 ///
 /// `points` are `Points`, or an array (n, 2) in `domain`; by default the domain of an array is the smallest rectangle
-/// around it, which does not wrap. All decisions are exact; copies of points across axes that wrap count.
+/// around it, which does not wrap. Positions are snapped to a lattice first, whose step is between 2**-50 and 2**-49 of the
+/// larger side of the domain; all decisions are exact for the snapped positions. So points closer than a step may coincide,
+/// which is an error of the kind "coincident". Copies of points across axes that wrap count.
 ///
 /// Examples
 /// --------
