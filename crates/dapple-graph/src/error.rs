@@ -9,13 +9,14 @@ dapple_raster::error! {
     GraphError,
     /// The cause of a [`GraphError`], with the limit and the value.
     GraphErrorKind {
-        /// Two points lie at the same place, so that no direction leads from one to the other.
+        /// Two points lie at the same place once positions are snapped (see [`Graph`](crate::Graph)), so that no direction
+        /// leads from one to the other.
         Coincident {
             /// The point with the smaller index.
             first: PointIdx,
             /// The other point.
             second: PointIdx,
-        } => "points {} and {} coincide, but an axis needs a direction", first.0, second.0;
+        } => "points {} and {} coincide, but an axis needs a direction (positions are snapped to 2^-50 to 2^-49 of the domain's larger side)", first.0, second.0;
         /// The adjacency has another number of rows than there are points.
         Rows {
             /// The number of rows.

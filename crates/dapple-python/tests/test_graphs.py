@@ -103,6 +103,15 @@ def test_bad_graphs_are_refused_with_their_kind() -> None:
         dp.k_nearest([[0, 0], [1, 1]], 1.5)
 
 
+def test_points_closer_than_a_step_coincide_and_the_error_says_so() -> None:
+    assert "2**-50" in (dp.delaunay.__doc__ or "")
+    # The step is between 1e13 * 2**-50 and 1e13 * 2**-49: 0.0089 to 0.0178.
+    with pytest.raises(dp.DappleError, match=r"points 0 and 1 coincide.*2\^-50") as error:
+        dp.delaunay([[0, 0], [0.003, 0], [0, 1], [1e13, 0]])
+    assert error.value.kind == "coincident"
+    assert len(dp.delaunay([[0, 0], [0.02, 0], [0, 1], [1e13, 0]]).triangles()) > 0
+
+
 def test_threads_do_not_change_graphs() -> None:
     before = dp.threads()
     points = dp.white_noise(dp.Domain(1), 20_000, seed=2)

@@ -231,3 +231,22 @@ fn bad_input_is_refused() {
         expected
     );
 }
+
+#[test]
+fn points_closer_than_a_step_of_the_lattice_coincide_and_the_error_says_so() {
+    let domain = Domain {
+        origin: DVec2::ZERO,
+        size: DVec2::splat(1e13),
+        wrap: [false; 2],
+    };
+    // 1e13 is between 2^43 and 2^44, so that the step is 2^-6.
+    let graph = |x: f64| {
+        let positions = [[0.0, 0.0], [x, 0.0], [0.0, 1.0], [9e12, 0.0]];
+        let points = PointSet::new(domain, positions.map(DVec2::from).to_vec()).unwrap();
+        delaunay(&points).map(|_| ())
+    };
+    let error = graph(0.005).unwrap_err().to_string();
+    assert!(error.contains("points 0 and 1 coincide"), "{error}");
+    assert!(error.contains("2^-50"), "{error}");
+    assert_eq!(graph(0.02), Ok(()));
+}

@@ -38,12 +38,15 @@ crate::named! {
     #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
     #[non_exhaustive]
     pub enum FractalShape {
-        /// The values as they are: fractional Brownian motion.
+        /// The values as they are: fractional Brownian motion. Octaves from `-b` to `b` have sums from `-w·b` to `w·b`, where
+        /// `w` is [`Fractal::weight`].
         #[default]
         Sum = "sum",
-        /// `1 - |value|`: ridges where values go through 0.
+        /// `1 - |value|`: ridges where values go through 0. Octaves from `-b` to `b` have sums from `w·(1 - b)` to `w`, for
+        /// a gain that is not negative.
         Ridged = "ridged",
-        /// `|value|`: creases where values go through 0, and round hills between them; Perlin called it turbulence.
+        /// `|value|`: creases where values go through 0, and round hills between them; Perlin called it turbulence. Octaves
+        /// from `-b` to `b` have sums from 0 to `w·b`, for a gain that is not negative.
         Billow = "billow",
     }
 }
@@ -97,7 +100,7 @@ impl<F: Field> Fractal<F> {
     }
 
     /// The sum of the absolute weights: octaves with values from -1 to 1 have sums from minus this number to this
-    /// number.
+    /// number (see [`FractalShape`] for other shapes).
     #[must_use]
     pub fn weight(&self) -> f32 {
         let weights = self.weights.iter().map(|weight| f64::from(weight.abs()));
