@@ -25,6 +25,8 @@ dapple_raster::error! {
             path: String,
             /// The error of the operating system, as text.
             why: String,
+            /// The number of the error, if it is one of the operating system.
+            code: Option<i32>,
         } => "{path}: {why}";
         /// No format with this name can be read, or none can be written.
         Format {

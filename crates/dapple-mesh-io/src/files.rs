@@ -123,8 +123,11 @@ fn read_at_most(path: &Path, limit: u64) -> Result<Vec<u8>, MeshIoError> {
 }
 
 fn failed(path: &Path, error: &io::Error) -> MeshIoError {
-    let (path, why) = (path.display().to_string(), error.to_string());
-    MeshIoError::new(MeshIoErrorKind::Io { path, why })
+    MeshIoError::new(MeshIoErrorKind::Io {
+        path: path.display().to_string(),
+        why: error.to_string(),
+        code: error.raw_os_error(),
+    })
 }
 
 /// Replaces the content of the file at `path` with `bytes`, at once and for good: see [`dapple_image::replace`].
