@@ -24,6 +24,6 @@ pub use input::Input;
 pub use nodes::*;
 pub use plan::{Images, Memory, NodeColors, NodeField, Picture, Plan, PlanLimits, Whole};
 pub use recipe::{Material, Recipe, SCHEMA};
-pub use text::MAX_TEXT;
+pub use text::{MAX_TEXT, read_options};
 pub use values::Values;
 pub use words::similar_words;

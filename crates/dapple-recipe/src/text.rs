@@ -119,6 +119,30 @@ impl PupsNode {
     }
 }
 
+/// Reads options in the form of a recipe from a value of JSON.
+///
+/// # Errors
+///
+/// [`Text`](RecipeErrorKind::Text) for keys and values that the options do not have, with the nearest valid word.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_recipe::read_options;
+/// use dapple_worley::Scatter;
+/// use serde_json::json;
+///
+/// let scatter: Scatter = read_options(&json!({ "poisson": { "density": 2 } }))?;
+/// assert!(matches!(scatter, Scatter::Poisson { .. }));
+/// let error = read_options::<Scatter>(&json!({ "poison": { "density": 2 } })).unwrap_err();
+/// assert_eq!(error.nearest(), Some("poisson"));
+/// # Ok::<(), dapple_recipe::RecipeError>(())
+/// ```
+pub fn read_options<T: serde::de::DeserializeOwned>(value: &Value) -> Result<T, RecipeError> {
+    let content = Content::deserialize(value).map_err(|error| text_error(&error.to_string()))?;
+    T::deserialize(&content).map_err(|refusal| text_error(&refusal.message))
+}
+
 /// Fails for a recipe of another version, before all other errors.
 fn check_version(content: &Content) -> Result<(), RecipeError> {
     let version = match content.get("dapple") {
@@ -148,10 +172,30 @@ fn text_error(message: &str) -> RecipeError {
     }
 }
 
-/// The message with names of Rust types at its end replaced by the expected form of text.
+/// The message in words of the texts: without names of Rust types and of the parts of their readers.
 fn plain(message: &str) -> String {
+    if let Some(name) = message.strip_prefix("missing field ") {
+        return format!("{name} is missing");
+    }
     let Some((found, expected)) = message.rsplit_once(", expected ") else {
         return message.to_owned();
+    };
+    let wrong = ["invalid type: ", "invalid value: "].map(|prefix| found.strip_prefix(prefix));
+    let found = match wrong.into_iter().flatten().next() {
+        Some("map") => "found a table".to_owned(),
+        Some("sequence") => "found a list".to_owned(),
+        Some("unit value" | "null" | "Option value") => "found nothing".to_owned(),
+        Some(other) => {
+            let (kind, value) = other.split_once(' ').unwrap_or((other, ""));
+            match kind {
+                "integer" => format!("found the number {value}"),
+                "string" => format!("found the text {value}"),
+                "boolean" => format!("found {value}"),
+                "floating" => format!("found the number {}", value.trim_start_matches("point ")),
+                _ => format!("found {other}"),
+            }
+        }
+        None => found.to_owned(),
     };
     let expected = match expected.split(' ').next() {
         Some("struct" | "map") => "a table",

@@ -147,10 +147,7 @@ impl<'de> Deserializer<'de> for &'de Content {
         visitor: V,
     ) -> Result<V::Value, Refusal> {
         match self {
-            Content::Text(word) => {
-                let word: StrDeserializer<'_, Refusal> = word.as_str().into_deserializer();
-                visitor.visit_enum(word)
-            }
+            Content::Text(word) => visitor.visit_enum(Word(word)),
             Content::Table(table) => match &table[..] {
                 [(name, value)] => visitor.visit_enum(Variant { name, value }),
                 _ => Err(Refusal::custom(format_args!(
@@ -239,6 +236,53 @@ impl<'de> MapAccess<'de> for Entries<'de> {
         self.next += 1;
         let value = seed.deserialize(value);
         value.map_err(|refusal| refusal.inside(Part::Key(name.clone())))
+    }
+}
+
+/// A word, which is a variant of an enum without options.
+struct Word<'de>(&'de str);
+
+impl<'de> EnumAccess<'de> for Word<'de> {
+    type Error = Refusal;
+    type Variant = Self;
+
+    fn variant_seed<V: DeserializeSeed<'de>>(self, seed: V) -> Result<(V::Value, Self), Refusal> {
+        let word: StrDeserializer<'_, Refusal> = self.0.into_deserializer();
+        Ok((seed.deserialize(word)?, self))
+    }
+}
+
+impl<'de> VariantAccess<'de> for Word<'de> {
+    type Error = Refusal;
+
+    fn unit_variant(self) -> Result<(), Refusal> {
+        Ok(())
+    }
+
+    fn newtype_variant_seed<T: DeserializeSeed<'de>>(self, _: T) -> Result<T::Value, Refusal> {
+        Err(Refusal::custom(format_args!(
+            "`{0}` is written with a value: a table with the one key `{0}`",
+            self.0
+        )))
+    }
+
+    fn tuple_variant<V: Visitor<'de>>(self, _: usize, _: V) -> Result<V::Value, Refusal> {
+        Err(Refusal::custom(format_args!(
+            "`{0}` is written with a list: a table with the one key `{0}`",
+            self.0
+        )))
+    }
+
+    fn struct_variant<V: Visitor<'de>>(
+        self,
+        names: &'static [&'static str],
+        _: V,
+    ) -> Result<V::Value, Refusal> {
+        Err(Refusal::custom(format_args!(
+            "`{0}` is written with options: a table with the one key `{0}`, whose value is a table of {1}",
+            self.0,
+            names.join(", ")
+        )))
     }
 }
 

@@ -1,6 +1,6 @@
 //! Recipes read from text and written to it, and errors with their place.
 
-use dapple_recipe::{MAX_TEXT, Place, Recipe, RecipeErrorKind};
+use dapple_recipe::{MAX_TEXT, Place, Recipe, RecipeError, RecipeErrorKind};
 
 const STONES: &str = "dapple = 1\n\n[nodes.cells.worley]\nvalue = \"f2_minus_f1\"\nfrequency = 8\n\n[material]\nheight = \"cells\"\n";
 
@@ -69,6 +69,34 @@ fn a_wrong_value_is_told_without_names_of_types() {
             "{wrong}: {error}"
         );
     }
+}
+
+#[test]
+fn options_are_read_by_themselves_with_the_words_of_recipes() {
+    use dapple_recipe::read_options;
+    use dapple_worley::{Metric, Octaves, Scatter};
+    use serde_json::json;
+
+    let refused =
+        |error: RecipeError| (error.kind().to_string(), error.nearest().map(str::to_owned));
+    let octaves = |value| refused(read_options::<Octaves>(&value).unwrap_err());
+    let (message, _) = octaves(json!(4));
+    assert_eq!(message, "found the number `4`, expected a table");
+    let (_, nearest) = octaves(json!({ "count": 4, "gian": 0.5 }));
+    assert_eq!(nearest.as_deref(), Some("gain"));
+    let scatter = |value| refused(read_options::<Scatter>(&value).unwrap_err()).0;
+    let needed = "is written with options: a table with the one key `jittered`, whose value is a table of jitter";
+    assert_eq!(scatter(json!("jittered")), format!("`jittered` {needed}"));
+    assert_eq!(scatter(json!({ "jittered": {} })), "`jitter` is missing");
+    let (message, _) = refused(read_options::<Metric>(&json!("minkowski")).unwrap_err());
+    assert_eq!(
+        message,
+        "`minkowski` is written with a value: a table with the one key `minkowski`"
+    );
+    assert_eq!(
+        read_options::<Metric>(&json!("manhattan")).unwrap(),
+        Metric::Manhattan
+    );
 }
 
 #[test]
