@@ -4,7 +4,7 @@
 //! of the library, and are copied otherwise.
 
 use crate::error::{Error, Result};
-use crate::threads;
+use crate::watch::{self, Stop};
 use dapple::raster::Raster;
 use numpy::ndarray::{ArrayD, IxDyn};
 use numpy::{
@@ -13,6 +13,16 @@ use numpy::{
 };
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
+
+/// Loads NumPy with its tables of functions, which the first array would load otherwise: a signal that comes then, after
+/// long work, would make that array a panic.
+pub(crate) fn load(py: Python<'_>) -> Result<()> {
+    py.import("numpy")?;
+    let array = numpy::PyArray1::<f32>::zeros(py, 0, false);
+    // Borrows are counted in a table that all packages share.
+    drop(array.try_readwrite().map_err(PyErr::from)?);
+    Ok(())
+}
 
 /// Values as an array of a shape, without a copy.
 pub(crate) fn array<'py, T: Element>(
@@ -25,20 +35,20 @@ pub(crate) fn array<'py, T: Element>(
     Ok(array.into_pyarray(py).into_any())
 }
 
-/// An array of a shape whose values are written by `fill`: a new one, or `out`.
+/// An array of a shape whose values are written by `fill`, in parts: a new one, or `out`.
 pub(crate) fn filled<'py>(
     py: Python<'py>,
     shape: &[usize],
     out: Option<Bound<'py, PyAny>>,
-    fill: impl FnOnce(&mut [f32]) -> Result<()> + Send,
+    fill: impl FnOnce(&mut [f32], &Stop) -> Result<()> + Send,
 ) -> Result<Bound<'py, PyAny>> {
     let Some(out) = out else {
         let n_values = shape.iter().product();
-        let values = threads::run(py, || -> Result<Vec<f32>> {
+        let values = watch::within(py, |stop| {
             let mut values = zeros(n_values)?;
-            fill(&mut values)?;
+            fill(&mut values, stop)?;
             Ok(values)
-        })??;
+        })?;
         return array(py, values, shape);
     };
     let kind = |out: &Bound<'_, PyAny>| match out.cast::<PyUntypedArray>() {
@@ -63,7 +73,7 @@ pub(crate) fn filled<'py>(
     let values = memory.as_slice_mut().ok().filter(|_| is_ordered);
     let values =
         values.ok_or_else(|| Error::new("order", "`out` is not in C order without gaps"))?;
-    threads::run(py, || fill(values))??;
+    watch::within(py, |stop| fill(values, stop))?;
     drop(memory);
     Ok(out.into_any())
 }

@@ -26,10 +26,10 @@ fn filter(options: Option<&Bound<'_, PyDict>>) -> Result<SplineFilter> {
 fn each<'py>(
     py: Python<'py>,
     image: &Bound<'py, PyAny>,
-    step: impl Fn(&Raster<f32>) -> core::result::Result<Raster<f32>, WaveletError> + Send,
+    step: impl Fn(&Raster<f32>) -> core::result::Result<Raster<f32>, WaveletError> + Send + 'static,
 ) -> Result<Bound<'py, PyAny>> {
     let planes = Pixels::read("image", image)?.planes()?;
-    let planes = threads::run(py, || {
+    let planes = threads::run(py, move || {
         planes
             .iter()
             .map(step)
@@ -44,10 +44,23 @@ fn each<'py>(
 ///
 /// Parameters
 /// ----------
-/// image : (rows, columns) or (rows, columns, channels); sides that repeat must be even.
-/// borders : the extension past the edges: `"periodic"` or `"mirror"`, or one for each axis, x first.
-/// options : `degree` (`"constant"`, `"linear"`, `"quadratic"`, `"cubic"`), `phase` (`"centered"`, `"cook_de_rose"`), `fit`
+/// image : array_like
+///     (rows, columns) or (rows, columns, channels); sides that repeat must be even.
+/// borders : {"periodic", "mirror"} or a pair of them, default "periodic"
+///     The extension past the edges: `"periodic"` or `"mirror"`, or one for each axis, x first.
+/// **options : str
+///     `degree` (`"constant"`, `"linear"`, `"quadratic"`, `"cubic"`), `phase` (`"centered"`, `"cook_de_rose"`), `fit`
 ///     (`"function"`, `"coefficients"`).
+///
+/// Returns
+/// -------
+/// numpy.ndarray of float32
+///     The result, as described above.
+///
+/// Raises
+/// ------
+/// DappleError
+///     If an argument is refused; the message names the limit and the value.
 ///
 /// Examples
 /// --------
@@ -65,15 +78,31 @@ pub(crate) fn wavelet_halve<'py>(
 ) -> Result<Bound<'py, PyAny>> {
     let borders = per_axis("borders", borders, Border::Periodic)?;
     let filter = filter(options)?;
-    each(py, image, |plane| filter.down(plane, borders))
+    each(py, image, move |plane| filter.down(plane, borders))
 }
 
 /// An image of twice the size that is the same spline, (2 rows, 2 columns[, channels]).
 ///
 /// Parameters
 /// ----------
-/// image, borders, options : as for `wavelet_halve`, which restores the image.
-/// size : (rows, columns) of the result; needed if a mirrored side is odd.
+/// image : array_like
+///     As for `wavelet_halve`, which restores the image.
+/// size : int or tuple of int or None, default None
+///     (rows, columns) of the result; needed if a mirrored side is odd.
+/// borders : {"periodic", "mirror"} or a pair of them, default "periodic"
+///     As for `wavelet_halve`, which restores the image.
+/// **options : str
+///     As for `wavelet_halve`, which restores the image.
+///
+/// Returns
+/// -------
+/// numpy.ndarray of float32
+///     The result, as described above.
+///
+/// Raises
+/// ------
+/// DappleError
+///     If an argument is refused; the message names the limit and the value.
 ///
 /// Examples
 /// --------
@@ -93,7 +122,7 @@ pub(crate) fn wavelet_double<'py>(
 ) -> Result<Bound<'py, PyAny>> {
     let borders = per_axis("borders", borders, Border::Periodic)?;
     let (filter, size) = (filter(options)?, size.map(self::size).transpose()?);
-    each(py, image, |plane| {
+    each(py, image, move |plane| {
         let doubled = plane.size().map(|side| side.saturating_mul(2));
         filter.up(plane, size.unwrap_or(doubled), borders)
     })
@@ -103,12 +132,24 @@ pub(crate) fn wavelet_double<'py>(
 ///
 /// Parameters
 /// ----------
-/// image, borders, options : as for `wavelet_halve`.
-/// levels : the number of times it is halved; sides that repeat are multiples of 2**levels.
+/// image : array_like
+///     As for `wavelet_halve`.
+/// levels : int, default 1
+///     The number of times it is halved; sides that repeat are multiples of 2**levels.
+/// borders : {"periodic", "mirror"} or a pair of them, default "periodic"
+///     As for `wavelet_halve`.
+/// **options : str
+///     As for `wavelet_halve`.
 ///
 /// Returns
 /// -------
-/// `Bands(details, coarse)`, from which `wavelet_synthesize` reconstructs the image.
+/// Bands
+///     `Bands(details, coarse)`, from which `wavelet_synthesize` reconstructs the image.
+///
+/// Raises
+/// ------
+/// DappleError
+///     If an argument is refused; the message names the limit and the value.
 ///
 /// Examples
 /// --------
@@ -132,7 +173,7 @@ pub(crate) fn wavelet_analyze<'py>(
     let borders = per_axis("borders", borders, Border::Periodic)?;
     let filter = filter(options)?;
     let planes = Pixels::read("image", image)?.planes()?;
-    let bands = threads::run(py, || {
+    let bands = threads::run(py, move || {
         let bands = planes
             .iter()
             .map(|plane| filter.analyze(plane, levels, borders));
@@ -158,7 +199,22 @@ pub(crate) fn wavelet_analyze<'py>(
 ///
 /// Parameters
 /// ----------
-/// bands : (details, coarse): a list of images, finest first, and the coarse rest.
+/// bands : tuple of (sequence of array_like, array_like)
+///     (details, coarse): a list of images, finest first, and the coarse rest.
+/// borders : {"periodic", "mirror"} or a pair of them, default "periodic"
+///     What lies outside of the image.
+/// **options : str
+///     Options of the method.
+///
+/// Returns
+/// -------
+/// numpy.ndarray of float32
+///     The result, as described above.
+///
+/// Raises
+/// ------
+/// DappleError
+///     If an argument is refused; the message names the limit and the value.
 #[pyfunction]
 #[pyo3(signature = (bands, *, borders = None, **options),
     text_signature = "(bands, *, borders=\"periodic\", **options)")]
@@ -189,7 +245,7 @@ pub(crate) fn wavelet_synthesize<'py>(
             channel.details.push(plane);
         }
     }
-    let planes = threads::run(py, || {
+    let planes = threads::run(py, move || {
         let planes = channels
             .iter()
             .map(|bands| filter.synthesize(bands, borders));
@@ -205,9 +261,22 @@ pub(crate) fn wavelet_synthesize<'py>(
 ///
 /// Parameters
 /// ----------
-/// size : (rows, columns), or a number for both: multiples of 2**n for n weights.
-/// weights : of 1 to 16 bands, finest first: band b has its power between 2**-b / 4 and 2**-b / 2 cycles per pixel.
-/// seed : int, from 0 to 2**64 - 1.
+/// size : int or tuple of int
+///     (rows, columns), or a number for both: multiples of 2**n for n weights.
+/// weights : sequence of float, default [1.0]
+///     Of 1 to 16 bands, finest first: band b has its power between 2**-b / 4 and 2**-b / 2 cycles per pixel.
+/// seed : int, default 0
+///     From 0 to 2**64 - 1.
+///
+/// Returns
+/// -------
+/// numpy.ndarray of float32
+///     The result, as described above.
+///
+/// Raises
+/// ------
+/// DappleError
+///     If an argument is refused; the message names the limit and the value.
 ///
 /// Examples
 /// --------
@@ -225,6 +294,8 @@ pub(crate) fn wavelet_tile<'py>(
     seed: SeedArgument,
 ) -> Result<Bound<'py, PyAny>> {
     let size = self::size(size)?;
-    let tile = threads::run(py, || dapple::wavelet::wavelet_tile(size, &weights, seed.0))??;
+    let tile = threads::run(py, move || {
+        dapple::wavelet::wavelet_tile(size, &weights, seed.0)
+    })??;
     arrays::numbers(py, tile)
 }

@@ -18,10 +18,24 @@ use pyo3::prelude::*;
 ///
 /// Parameters
 /// ----------
-/// texture : (rows, columns), or (rows, columns, 3) in linear light.
-/// feature_size : the size of the features, such as the diameter of stones, in pixels, from 1 to 4096.
-/// contrast : the steepness of the map around its median, at least 0.
-/// wrap : the wrapping past the edges: `"repeat"`, `"clamp"` or `"mirror"`, or one for each axis, x first.
+/// texture : array_like
+///     (rows, columns), or (rows, columns, 3) in linear light.
+/// feature_size : float, default 32.0
+///     The size of the features, such as the diameter of stones, in pixels, from 1 to 4096.
+/// contrast : float, default 1.0
+///     The steepness of the map around its median, at least 0.
+/// wrap : {"repeat", "clamp", "mirror"} or a pair of them, default "repeat"
+///     The wrapping past the edges: `"repeat"`, `"clamp"` or `"mirror"`, or one for each axis, x first.
+///
+/// Returns
+/// -------
+/// numpy.ndarray of float32
+///     The result, as described above.
+///
+/// Raises
+/// ------
+/// DappleError
+///     If an argument is refused; the message names the limit and the value.
 ///
 /// Examples
 /// --------
@@ -45,14 +59,14 @@ pub(crate) fn blend_map<'py>(
         wrap: per_axis("wrap", wrap, Wrap::Repeat)?,
     };
     let (_, maps) = pictures::read("texture", texture)?;
-    let map = match maps.as_slice() {
-        [Map::Value(values)] => threads::run(py, || options.apply(values))??,
-        [Map::Color(colors)] => threads::run(py, || options.apply_color(colors))??,
+    let map = threads::run(py, move || match maps.as_slice() {
+        [Map::Value(values)] => Ok(options.apply(values)?),
+        [Map::Color(colors)] => Ok(options.apply_color(colors)?),
         _ => {
             let message = "the texture of a blend map is numbers, or colors without alpha";
-            return Err(Error::new("channels", message));
+            Err(Error::new("channels", message))
         }
-    };
+    })??;
     arrays::numbers(py, map)
 }
 
@@ -60,14 +74,30 @@ pub(crate) fn blend_map<'py>(
 ///
 /// Parameters
 /// ----------
-/// layers : images of one size, or dictionaries of maps with the same names. Where only one layer has a weight, the
-///     result is that layer.
-/// weights : for each layer a number or (rows, columns), at least 0; 1 by default.
-/// heights : for each layer (rows, columns) or None.
-/// tile : a blend tile, (rows, columns), from 0 to 1; see `blend_map`.
-/// weighting : `"given"` uses the weights unchanged; `{"height": {"depth": 0.1}}` shows the higher layer; `{"mask":
-///     {"gain": 8}}` cuts the tile at thresholds: the first layer lies where it is lowest.
-/// mixing : `"linear"`, `"keep_variance"`, or `{"pyramid": {"levels": 4}}`, which mixes in bands.
+/// layers : iterable of dict of array_like or iterable of array_like
+///     Images of one size, or dictionaries of maps with the same names. Where only one layer has a weight, the result
+///     is that layer.
+/// weights : iterable of array_like or None, default None
+///     For each layer a number or (rows, columns), at least 0; 1 by default.
+/// heights : iterable of array_like or None, default None
+///     For each layer (rows, columns) or None.
+/// tile : array_like or None, default None
+///     A blend tile, (rows, columns), from 0 to 1; see `blend_map`.
+/// weighting : str or dict, default "given"
+///     `"given"` uses the weights unchanged; `{"height": {"depth": 0.1}}` shows the higher layer; `{"mask": {"gain":
+///     8}}` cuts the tile at thresholds: the first layer lies where it is lowest.
+/// mixing : str or dict, default "linear"
+///     `"linear"`, `"keep_variance"`, or `{"pyramid": {"levels": 4}}`, which mixes in bands.
+///
+/// Returns
+/// -------
+/// dict or numpy.ndarray of float32
+///     The result, as described above.
+///
+/// Raises
+/// ------
+/// DappleError
+///     If an argument is refused; the message names the limit and the value.
 ///
 /// Examples
 /// --------
@@ -107,9 +137,10 @@ pub(crate) fn blend<'py>(
         weighting: data::options_or("weighting", weighting, Default::default())?,
         mixing: data::options_or("mixing", mixing, Default::default())?,
     };
-    let maps = threads::run(py, || -> core::result::Result<Vec<Map>, TileError> {
+    let kinds = layout.clone();
+    let maps = threads::run(py, move || -> core::result::Result<Vec<Map>, TileError> {
         for maps in &mut layers {
-            multiply(&layout, maps, |color, alpha| color * alpha)?;
+            multiply(&kinds, maps, |color, alpha| color * alpha)?;
         }
         let layers = layers.iter().zip(&weights).zip(&heights);
         let layers = layers.map(|((maps, weight), height)| Layer {
@@ -122,7 +153,7 @@ pub(crate) fn blend<'py>(
             Some(tile) => dapple::tile::blend_by_tile(&layers, tile, &how)?,
             None => dapple::tile::blend(&layers, &how)?,
         };
-        multiply(&layout, &mut maps, |color, alpha| match alpha > 0.0 {
+        multiply(&kinds, &mut maps, |color, alpha| match alpha > 0.0 {
             true => LinearRgb::from(color.to_array().map(|part| part / alpha)),
             false => LinearRgb::BLACK,
         })?;

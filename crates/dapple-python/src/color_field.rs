@@ -2,11 +2,12 @@
 
 use crate::arrays::{self, Positions};
 use crate::error::Result;
-use crate::field::Field;
+use crate::field::{FIRST, Field};
 use crate::function::{Made, Reduced, position};
-use crate::grid::{Grid, GridArguments};
+use crate::grid::{Grid, GridArguments, default_extent};
 use crate::pups::{Values, Vectors};
 use crate::threads;
+use crate::watch;
 use dapple::raster::parallel;
 use pyo3::prelude::*;
 use std::sync::Arc;
@@ -26,8 +27,11 @@ const CHUNK: usize = 1024;
 
 /// Makes the field of a description: a `ColorField` if it has channels, else a `Field`.
 pub(crate) fn object(py: Python<'_>, made: Made) -> Result<Py<PyAny>> {
-    let vectors = threads::run(py, || made.vectors())??;
-    Ok(match vectors {
+    let (made, vectors) = threads::run(py, move || {
+        let vectors = made.vectors();
+        (made, vectors)
+    })?;
+    Ok(match vectors? {
         Some(vectors) => Py::new(py, ColorField { made, vectors })?.into_any(),
         None => Py::new(py, Field::new(made)?)?.into_any(),
     })
@@ -53,9 +57,37 @@ impl ColorField {
         self.vectors.period().to_vec()
     }
 
+    /// The extent of a picture for which none is given.
+    fn _default_extent(&self) -> Vec<f64> {
+        default_extent(&self.vectors.period(), &[1.0; 2])
+    }
+
     /// The values at the pixels of an array: float32 of the shape (rows, columns, channels).
     ///
     /// The parameters are those of `Field.render`.
+    ///
+    /// Parameters
+    /// ----------
+    /// size : int or tuple of int
+    ///     (rows, columns), or a number for both.
+    /// extent : float or tuple of float or None, default None
+    ///     The size of the rectangle of the array, x first, as in `Field.render`.
+    /// origin : float or tuple of float or None, default None
+    ///     The corner of the first pixel, x first.
+    /// window : tuple of slice or None, default None
+    ///     The part to compute, a slice for each axis of `size`.
+    /// out : numpy.ndarray of float32 or None, default None
+    ///     Memory for the values, an array in C order; a new one by default.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray of float32
+    ///     The result, as described above.
+    ///
+    /// Raises
+    /// ------
+    /// DappleError
+    ///     If an argument is refused; the message names the limit and the value.
     #[pyo3(signature = (size, *, extent = None, origin = None, window = None, out = None))]
     #[expect(clippy::too_many_arguments, reason = "they are keywords")]
     fn render<'py>(
@@ -73,16 +105,38 @@ impl ColorField {
             origin,
             window,
         };
-        let grid = Grid::new(&arguments, &self.vectors.period())?;
+        let grid = Grid::new(&arguments, &self._default_extent())?;
         grid.n_values()?;
         let shape = [&grid.shape()[..], &[self.vectors.n_channels()]].concat();
         let window = grid.plane();
-        arrays::filled(py, &shape, out, |values| {
-            Ok(self.vectors.render(&window, values)?)
+        let row = window.size[0] as usize * self.vectors.n_channels();
+        let first = FIRST / row.max(1);
+        arrays::filled(py, &shape, out, |values, stop| {
+            watch::in_parts(stop, window.size[1] as usize, first, |rows| {
+                let size = [window.size[0], rows.len() as u32];
+                let part = window.crop([0, rows.start as i64], size)?;
+                let values = &mut values[rows.start * row..rows.end * row];
+                Ok(self.vectors.render(&part, values)?)
+            })
         })
     }
 
     /// The values at positions of the shape (…, 2), x first: float32 of the shape (…, channels).
+    ///
+    /// Parameters
+    /// ----------
+    /// positions : array_like
+    ///     Positions of the shape (…, axes), x first.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray of float32
+    ///     The result, as described above.
+    ///
+    /// Raises
+    /// ------
+    /// DappleError
+    ///     If an argument is refused; the message names the limit and the value.
     fn sample<'py>(
         &self,
         py: Python<'py>,
@@ -91,14 +145,19 @@ impl ColorField {
         let positions = Positions::read(positions, 2)?;
         let n_channels = self.vectors.n_channels();
         let shape = [&positions.shape[..], &[n_channels]].concat();
-        arrays::filled(py, &shape, None, |values| {
-            parallel::for_each_chunk(values, CHUNK * n_channels, |chunk, values| {
-                let places = positions.numbers[chunk * CHUNK * 2..].chunks_exact(2);
-                for (vector, place) in values.chunks_exact_mut(n_channels).zip(places) {
-                    self.vectors.sample(position(place), vector);
-                }
-            });
-            Ok(())
+        let count = positions.numbers.len() / 2;
+        arrays::filled(py, &shape, None, |values, stop| {
+            watch::in_parts(stop, count, FIRST, |part| {
+                let numbers = &positions.numbers[part.start * 2..];
+                let values = &mut values[part.start * n_channels..part.end * n_channels];
+                parallel::for_each_chunk(values, CHUNK * n_channels, |chunk, values| {
+                    let places = numbers[chunk * CHUNK * 2..].chunks_exact(2);
+                    for (vector, place) in values.chunks_exact_mut(n_channels).zip(places) {
+                        self.vectors.sample(position(place), vector);
+                    }
+                });
+                Ok(())
+            })
         })
     }
 

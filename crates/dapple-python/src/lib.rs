@@ -57,7 +57,7 @@ mod _native {
     #[pymodule_export]
     use crate::meshes::{mesh_report, read_model};
     #[pymodule_export]
-    use crate::models::{Model, repair_on, synthesize_along, synthesize_on};
+    use crate::models::{_model_from_parts, Model, repair_on, synthesize_along, synthesize_on};
     #[pymodule_export]
     use crate::points::{
         _graph_from_description, Domain, Graph, Points, delaunay, extend_poisson_disk, gabriel,
@@ -81,10 +81,12 @@ mod _native {
         seam_report,
     };
 
+    use crate::arrays;
     use pyo3::prelude::*;
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        arrays::load(module.py())?;
         // Attributes that an error does not set are None.
         let error = module.getattr("DappleError")?;
         for attribute in ["kind", "node", "hint"] {

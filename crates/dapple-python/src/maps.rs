@@ -6,6 +6,7 @@ use crate::error::{Error, Result};
 use crate::grid::pair;
 use crate::pictures::{Content, Kind, numbers};
 use crate::threads;
+use crate::watch;
 use dapple::color::{
     Code, ColorRamp, ColorStop, CurvatureOptions, HeightPlane, Interpolation, LinearRgb,
     NormalOptions, NormalY, OcclusionOptions, Outside, Palette, RampSpace,
@@ -56,12 +57,28 @@ fn plane(
 ///
 /// Parameters
 /// ----------
-/// height : (rows, columns).
-/// relief : the height in units of the plane of a value of 1; negative turns hills into dents.
-/// extent : (x, y), or a number for both: the size of the array in the plane, as in `Field.render`; 1 by default.
-/// wrap : the wrapping past the edges: `"repeat"`, `"clamp"` or `"mirror"`, or one for each axis, x first. Without `"repeat"`, heights
-///     continue past a side with their slope, so that a plane has the same values up to its last row.
-/// y : `"up"` (OpenGL, Blender, glTF) or `"down"` (DirectX).
+/// height : array_like
+///     (rows, columns).
+/// relief : float, default 1.0
+///     The height in units of the plane of a value of 1; negative turns hills into dents.
+/// extent : float or tuple of float or None, default None
+///     (x, y), or a number for both: the size of the array in the plane, as in `Field.render`; 1 by default.
+/// wrap : {"repeat", "clamp", "mirror"} or a pair of them, default "repeat"
+///     The wrapping past the edges: `"repeat"`, `"clamp"` or `"mirror"`, or one for each axis, x first.
+///     Without `"repeat"`, heights continue past a side with their slope, so that a plane has the same values up to its
+///     last row.
+/// y : {"up", "down"}, default "up"
+///     `"up"` (OpenGL, Blender, glTF) or `"down"` (DirectX).
+///
+/// Returns
+/// -------
+/// numpy.ndarray of float32
+///     The result, as described above.
+///
+/// Raises
+/// ------
+/// DappleError
+///     If an argument is refused; the message names the limit and the value.
 ///
 /// Examples
 /// --------
@@ -92,7 +109,7 @@ pub(crate) fn normal_map<'py>(
     let plane = plane(relief, extent, wrap)?;
     let height = numbers("height", height)?;
     let options = NormalOptions { plane, y };
-    let normals = threads::run(py, || dapple::color::normal_map(&height, &options))??;
+    let normals = threads::run(py, move || dapple::color::normal_map(&height, &options))??;
     let kind = Kind {
         content: Content::Normal,
         n_channels: 3,
@@ -107,9 +124,28 @@ pub(crate) fn normal_map<'py>(
 ///
 /// Parameters
 /// ----------
-/// height, relief, extent, wrap : as for `normal_map`.
-/// radius : the distance within which heights occlude the sky, in units of the plane.
-/// fade : the outer part of the radius over which occlusion fades, from 0 to 1.
+/// height : array_like
+///     As for `normal_map`.
+/// relief : float, default 1.0
+///     As for `normal_map`.
+/// extent : float or tuple of float or None, default None
+///     As for `normal_map`.
+/// wrap : {"repeat", "clamp", "mirror"} or a pair of them, default "repeat"
+///     As for `normal_map`.
+/// radius : float, default 0.0625
+///     The distance within which heights occlude the sky, in units of the plane.
+/// fade : float, default 0.5
+///     The outer part of the radius over which occlusion fades, from 0 to 1.
+///
+/// Returns
+/// -------
+/// numpy.ndarray of float32
+///     The result, as described above.
+///
+/// Raises
+/// ------
+/// DappleError
+///     If an argument is refused; the message names the limit and the value.
 ///
 /// Examples
 /// --------
@@ -137,7 +173,9 @@ pub(crate) fn ambient_occlusion<'py>(
         fade,
     };
     let height = numbers("height", height)?;
-    let seen = threads::run(py, || dapple::color::ambient_occlusion(&height, &options))??;
+    let seen = threads::run(py, move || {
+        dapple::color::ambient_occlusion(&height, &options)
+    })??;
     arrays::numbers(py, seen)
 }
 
@@ -147,8 +185,26 @@ pub(crate) fn ambient_occlusion<'py>(
 ///
 /// Parameters
 /// ----------
-/// height, relief, extent, wrap : as for `normal_map`.
-/// radius : the radius of the differences, in units of the plane; at least one pixel.
+/// height : array_like
+///     As for `normal_map`.
+/// relief : float, default 1.0
+///     As for `normal_map`.
+/// extent : float or tuple of float or None, default None
+///     As for `normal_map`.
+/// wrap : {"repeat", "clamp", "mirror"} or a pair of them, default "repeat"
+///     As for `normal_map`.
+/// radius : float, default 0.0078125
+///     The radius of the differences, in units of the plane; at least one pixel.
+///
+/// Returns
+/// -------
+/// numpy.ndarray of float32
+///     The result, as described above.
+///
+/// Raises
+/// ------
+/// DappleError
+///     If an argument is refused; the message names the limit and the value.
 ///
 /// Examples
 /// --------
@@ -172,7 +228,7 @@ pub(crate) fn curvature<'py>(
     let plane = plane(relief, extent, wrap)?;
     let options = CurvatureOptions { plane, radius };
     let height = numbers("height", height)?;
-    let bent = threads::run(py, || dapple::color::curvature(&height, &options))??;
+    let bent = threads::run(py, move || dapple::color::curvature(&height, &options))??;
     arrays::numbers(py, bent)
 }
 
@@ -180,12 +236,27 @@ pub(crate) fn curvature<'py>(
 ///
 /// Parameters
 /// ----------
-/// values : (rows, columns).
-/// colors : the name of a palette (see `palettes`); or a list of colors, evenly from 0 to 1; or of (position, color). A
+/// values : array_like
+///     (rows, columns).
+/// colors : str, sequence of object or numpy.ndarray, default "gray"
+///     The name of a palette (see `palettes`); or a list of colors, evenly from 0 to 1; or of (position, color). A
 ///     color is `"#rrggbb"` in sRGB, or three linear numbers.
-/// space : the space in which colors are mixed: `"oklab"`, `"srgb"` or `"linear"`.
-/// interpolation : `"linear"`, `"smooth"` or `"stepped"`.
-/// outside : the colors before the first and after the last position: `"clamp"` or `"repeat"`.
+/// space : {"oklab", "srgb", "linear"}, default "oklab"
+///     The space in which colors are mixed: `"oklab"`, `"srgb"` or `"linear"`.
+/// interpolation : {"linear", "smooth", "stepped"}, default "linear"
+///     `"linear"`, `"smooth"` or `"stepped"`.
+/// outside : {"clamp", "repeat"}, default "clamp"
+///     The colors before the first and after the last position: `"clamp"` or `"repeat"`.
+///
+/// Returns
+/// -------
+/// numpy.ndarray of float32
+///     The result, as described above.
+///
+/// Raises
+/// ------
+/// DappleError
+///     If an argument is refused; the message names the limit and the value.
 ///
 /// Examples
 /// --------
@@ -220,7 +291,7 @@ pub(crate) fn ramp<'py>(
         )?)
         .with_outside(data::named::<Outside>("outside", outside)?);
     let values = numbers("values", values)?;
-    let colors = threads::run(py, || ramp.apply(&values))?;
+    let colors = threads::run(py, move || ramp.apply(&values))?;
     let kind = Kind::new("ramp", Some(Content::Color), 3)?;
     kind.array(py, vec![Map::Color(colors)])
 }
@@ -269,6 +340,11 @@ fn color(color: &Value) -> Result<LinearRgb> {
 
 /// The palettes of `ramp`: the colors of each name, (n, 3) in linear light, from low values to high ones.
 ///
+/// Returns
+/// -------
+/// dict
+///     The result, as described above.
+///
 /// Examples
 /// --------
 /// >>> import dapple_textures as dp
@@ -293,8 +369,20 @@ pub(crate) fn palettes(py: Python<'_>) -> Result<Bound<'_, PyDict>> {
 ///
 /// Parameters
 /// ----------
-/// linear : linear light from 0 to 1.
-/// depth : 8 for uint8, 16 for uint16.
+/// linear : array_like
+///     Linear light from 0 to 1.
+/// depth : {8} or {16}, default 8
+///     8 for uint8, 16 for uint16.
+///
+/// Returns
+/// -------
+/// numpy.ndarray of uint8 or numpy.ndarray of uint16
+///     The result, as described above.
+///
+/// Raises
+/// ------
+/// DappleError
+///     If an argument is refused; the message names the limit and the value.
 ///
 /// Examples
 /// --------
@@ -321,6 +409,21 @@ pub(crate) fn srgb_from_linear<'py>(
 /// The linear light of sRGB codes, of any shape, float32: uint8 from 0 to 255, or uint16 from 0 to 65535 (IEC 61966-2-1).
 ///
 /// `srgb_from_linear` restores every code. Alpha is not coded with this curve: divide it by the largest code.
+///
+/// Parameters
+/// ----------
+/// codes : numpy.ndarray of uint8 or numpy.ndarray of uint16
+///     Codes of sRGB, uint8 or uint16.
+///
+/// Returns
+/// -------
+/// numpy.ndarray of float32
+///     The result, as described above.
+///
+/// Raises
+/// ------
+/// DappleError
+///     If an argument is refused; the message names the limit and the value.
 ///
 /// Examples
 /// --------
@@ -349,9 +452,12 @@ fn codes<'py, T: Element + Copy + Sync, U: Element + Send>(
     code: fn(T) -> U,
 ) -> Result<Bound<'py, PyAny>> {
     let view = array.as_array();
-    let made: Vec<U> = threads::run(py, || match view.to_slice() {
-        Some(values) => values.par_iter().map(|&value| code(value)).collect(),
-        None => view.iter().map(|&value| code(value)).collect(),
+    // One pass over memory: it is waited for.
+    let made: Vec<U> = watch::within(py, |_| {
+        Ok(match view.to_slice() {
+            Some(values) => values.par_iter().map(|&value| code(value)).collect(),
+            None => view.iter().map(|&value| code(value)).collect(),
+        })
     })?;
     arrays::array(py, made, array.shape())
 }

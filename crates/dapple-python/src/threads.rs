@@ -1,6 +1,7 @@
 //! The threads of the package: a pool of its own, which a forked process makes anew.
 
 use crate::error::{Error, Result};
+use crate::watch;
 use pyo3::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -24,10 +25,13 @@ const VARIABLE: &str = "DAPPLE_THREADS";
 /// The largest number of threads.
 const MOST: usize = 1024;
 
-/// Runs `work` on the threads of the package and without the interpreter, and returns its result.
-pub(crate) fn run<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> Result<T> {
-    let pool = pool(py)?;
-    Ok(py.detach(|| pool.install(work)))
+/// Runs `work` on the threads of the package and without the interpreter, and returns its result, unless a signal
+/// raises an exception; then the work is left behind ([`watch`]).
+pub(crate) fn run<T: Send + 'static>(
+    py: Python<'_>,
+    work: impl FnOnce() -> T + Send + 'static,
+) -> Result<T> {
+    watch::run(py, None, |_, _| work())
 }
 
 /// The pool of this process.
@@ -57,6 +61,15 @@ pub(crate) fn pool(_py: Python<'_>) -> Result<Arc<ThreadPool>> {
     Ok(pool)
 }
 
+/// Leaves a pool to the work on it, so that the next call has a new one. The threads end with their work.
+pub(crate) fn leave(busy: &Arc<ThreadPool>) {
+    let mut threads = THREADS.lock().unwrap_or_else(PoisonError::into_inner);
+    let is_it = |(_, pool): &(u32, Arc<ThreadPool>)| Arc::ptr_eq(pool, busy);
+    if threads.pool.as_ref().is_some_and(is_it) {
+        threads.pool = None;
+    }
+}
+
 /// The number of threads in the environment; 0 if it is not set.
 fn from_environment() -> Result<usize> {
     let Ok(text) = std::env::var(VARIABLE) else {
@@ -70,6 +83,11 @@ fn from_environment() -> Result<usize> {
 }
 
 /// The number of threads on which calls work.
+///
+/// Returns
+/// -------
+/// int
+///     The number.
 #[pyfunction]
 pub(crate) fn threads(py: Python<'_>) -> Result<usize> {
     Ok(pool(py)?.current_num_threads())
@@ -79,6 +97,16 @@ pub(crate) fn threads(py: Python<'_>) -> Result<usize> {
 ///
 /// By default it is the number in the environment variable `DAPPLE_THREADS`, or one for each core. Workers of a cluster
 /// that run one task on each core set it to 1.
+///
+/// Parameters
+/// ----------
+/// count : int
+///     The number of them.
+///
+/// Raises
+/// ------
+/// DappleError
+///     If an argument is refused; the message names the limit and the value.
 #[pyfunction]
 pub(crate) fn set_threads(count: &Bound<'_, PyAny>) -> Result<()> {
     let number = count.extract().ok().filter(|&number| number <= MOST);

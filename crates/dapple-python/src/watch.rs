@@ -1,56 +1,149 @@
-//! Long calls that show their progress and stop at Ctrl-C.
+//! Calls that stop at Ctrl-C and show their progress.
 //!
 //! The work is done on the threads of the package. The calling thread waits for it, and periodically takes the
 //! interpreter to run the handlers of signals, which only the main thread may do, and the callback for the progress.
+//!
+//! A thread cannot be stopped from outside. Work that owns its data ([`run`]) is left behind when a handler raises an
+//! exception: the call ends at once, and the work ends when it looks at [`Stop`] next, or else when it is done; the next
+//! call has new threads. Work that writes into memory of the caller ([`within`]) is waited for, and comes in parts of
+//! some milliseconds ([`in_parts`]).
 
 use crate::error::{Error, Result};
 use crate::threads;
-use core::ops::ControlFlow;
+use core::ops::{ControlFlow, Range};
 use core::sync::atomic::{AtomicBool, Ordering};
 use core::time::Duration;
 use dapple::synth::Progress;
 use pyo3::prelude::*;
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::time::Instant;
 
 /// The time between checks for signals.
-const PERIOD: Duration = Duration::from_millis(50);
+const PERIOD: Duration = Duration::from_millis(25);
+
+/// The time for a part of work: far below a period, and far above the time to begin one.
+const PART: Duration = Duration::from_millis(10);
 
 /// A callback for the progress of a synthesis, which can stop it.
 pub(crate) type Heard<'a> = &'a mut dyn FnMut(Progress) -> ControlFlow<()>;
 
+/// Whether the result of some work is no longer wanted.
+#[derive(Default)]
+pub(crate) struct Stop(AtomicBool);
+
+impl Stop {
+    /// Whether the work should end.
+    fn is_set(&self) -> bool {
+        self.0.load(Ordering::Relaxed)
+    }
+
+    /// Ends the work with an error, which nobody sees, if its result is no longer wanted.
+    pub(crate) fn check(&self) -> Result<()> {
+        match self.is_set() {
+            true => Err(Error::new("interrupted", "the call was interrupted")),
+            false => Ok(()),
+        }
+    }
+}
+
+/// A message of work to the thread that waits for it.
+enum Message<T> {
+    /// The part of the work done, from 0 to 1.
+    Part(f64),
+    /// The result, or the panic that ended the work.
+    Done(std::thread::Result<T>),
+}
+
 /// Runs `work` on the threads of the package and without the interpreter, and returns its result, unless a signal or
 /// `progress` raises an exception. `progress` is called with the part of the work done, from 0 to 1.
-pub(crate) fn run<T: Send>(
+pub(crate) fn run<T: Send + 'static>(
     py: Python<'_>,
     progress: Option<&Bound<'_, PyAny>>,
-    work: impl FnOnce(Heard<'_>) -> T + Send,
+    work: impl FnOnce(Heard<'_>, &Stop) -> T + Send + 'static,
 ) -> Result<T> {
     let pool = threads::pool(py)?;
     let progress = progress.map(|progress| progress.clone().unbind());
-    let stop = AtomicBool::new(false);
-    let (mut made, mut heard) = (None, Ok(()));
-    py.detach(|| {
+    let stop = Arc::new(Stop::default());
+    let (sender, receiver) = channel();
+    let ended = Arc::clone(&stop);
+    pool.spawn(move || {
+        let mut tell = |steps: Progress| {
+            // After an exception nobody receives the progress.
+            let _ = sender.send(Message::Part(part(steps)));
+            match ended.is_set() {
+                true => ControlFlow::Break(()),
+                false => ControlFlow::Continue(()),
+            }
+        };
+        // A panic in a spawned task would end the process.
+        let made = catch_unwind(AssertUnwindSafe(|| work(&mut tell, &ended)));
+        let _ = sender.send(Message::Done(made));
+    });
+    match py.detach(move || listen(&receiver, progress.as_ref())) {
+        Ok(Some(Ok(made))) => Ok(made),
+        Ok(Some(Err(panic))) => resume_unwind(panic),
+        Ok(None) => Err(Error::new("threads", "the work was not done")),
+        Err(error) => {
+            stop.0.store(true, Ordering::Relaxed);
+            threads::leave(&pool);
+            Err(error.into())
+        }
+    }
+}
+
+/// Runs work that borrows on the threads of the package and without the interpreter. After an exception it is waited
+/// for, so `work` must look at [`Stop`] often.
+pub(crate) fn within<T: Send>(
+    py: Python<'_>,
+    work: impl FnOnce(&Stop) -> Result<T> + Send,
+) -> Result<T> {
+    let pool = threads::pool(py)?;
+    let stop = Stop::default();
+    let mut made = None;
+    let heard = py.detach(|| {
         let (made, stop) = (&mut made, &stop);
-        let (sender, receiver) = channel();
+        let (sender, receiver) = channel::<Message<()>>();
         pool.in_place_scope(|scope| {
             scope.spawn(move |_| {
-                let mut tell = |steps: Progress| {
-                    // After the first exception nobody receives the progress.
-                    let _ = sender.send(part(steps));
-                    match stop.load(Ordering::Relaxed) {
-                        true => ControlFlow::Break(()),
-                        false => ControlFlow::Continue(()),
-                    }
-                };
-                *made = Some(work(&mut tell));
+                *made = Some(work(stop));
+                // The end of the channel is the end of the work.
+                drop(sender);
             });
-            heard = listen(&receiver, progress.as_ref());
-            stop.store(heard.is_err(), Ordering::Relaxed);
-        });
+            let heard = listen(&receiver, None);
+            stop.0.store(heard.is_err(), Ordering::Relaxed);
+            heard.map(drop)
+        })
     });
     heard?;
-    made.ok_or_else(|| Error::new("threads", "the work was not done"))
+    made.unwrap_or_else(|| Err(Error::new("threads", "the work was not done")))
+}
+
+/// Does the work of a number of items in parts that take some milliseconds, until its result is no longer wanted.
+/// `first` is the number of items of the first part.
+#[expect(
+    clippy::disallowed_methods,
+    reason = "the clock decides how many items come at once, and no value depends on it"
+)]
+pub(crate) fn in_parts(
+    stop: &Stop,
+    count: usize,
+    first: usize,
+    mut work: impl FnMut(Range<usize>) -> Result<()>,
+) -> Result<()> {
+    let (mut begin, mut size) = (0, first.max(1));
+    while begin < count {
+        stop.check()?;
+        let end = begin.saturating_add(size).min(count);
+        let start = Instant::now();
+        work(begin..end)?;
+        // The next part takes about the wanted time if its items are like those of this one.
+        let ratio = PART.as_secs_f64() / start.elapsed().as_secs_f64().max(1e-9);
+        size = ((size as f64 * ratio.clamp(0.05, 4.0)) as usize).max(1);
+        begin = end;
+    }
+    Ok(())
 }
 
 /// The part of a synthesis that is done; all passes count the same.
@@ -64,14 +157,18 @@ fn part(steps: Progress) -> f64 {
     clippy::disallowed_methods,
     reason = "the clock says when to look for signals, and no value depends on it"
 )]
-fn listen(parts: &Receiver<f64>, progress: Option<&Py<PyAny>>) -> PyResult<()> {
+fn listen<T>(
+    messages: &Receiver<Message<T>>,
+    progress: Option<&Py<PyAny>>,
+) -> PyResult<Option<std::thread::Result<T>>> {
     let mut looked = Instant::now();
     let mut part = None;
     loop {
-        match parts.recv_timeout(PERIOD.saturating_sub(looked.elapsed())) {
-            Ok(done) => part = Some(done),
+        match messages.recv_timeout(PERIOD.saturating_sub(looked.elapsed())) {
+            Ok(Message::Done(made)) => return Ok(Some(made)),
+            Ok(Message::Part(done)) => part = Some(done),
             Err(RecvTimeoutError::Timeout) => {}
-            Err(RecvTimeoutError::Disconnected) => return Ok(()),
+            Err(RecvTimeoutError::Disconnected) => return Ok(None),
         }
         if looked.elapsed() < PERIOD {
             continue;

@@ -96,11 +96,25 @@ impl dapple::raster::Field for Section {
 ///
 /// Parameters
 /// ----------
-/// seed : int, from 0 to 2**64 - 1.
-/// dims : 2 or 3 axes.
-/// period : the number of cells after which it repeats, an even number of at least 4: one number, or one for each axis,
-///     x first. The tile is kept in memory: 4 bytes for each of its cells.
-/// weights : the weight of each band, coarsest first; each is twice as fine as the one before. 1 to 16 of them.
+/// seed : int, default 0
+///     From 0 to 2**64 - 1.
+/// dims : int, default 2
+///     2 or 3 axes.
+/// period : int or tuple of int, default 64
+///     The number of cells after which it repeats, an even number of at least 4: one number, or one for each axis, x
+///     first. The tile is kept in memory: 4 bytes for each of its cells.
+/// weights : sequence of float, default [1.0]
+///     The weight of each band, coarsest first; each is twice as fine as the one before. 1 to 16 of them.
+///
+/// Returns
+/// -------
+/// Field
+///     The field.
+///
+/// Raises
+/// ------
+/// DappleError
+///     If an argument is refused; the message names the limit and the value.
 ///
 /// Examples
 /// --------

@@ -13,9 +13,17 @@ use pyo3::types::PyBool;
 ///
 /// Parameters
 /// ----------
-/// size : width and height, above 0 and at most 1e300: one number for both, or (x, y).
-/// origin : the corner with the smallest coordinates, (x, y).
-/// wrap : whether the axes wrap: a bool for both, or (x, y).
+/// size : float or tuple of float
+///     Width and height, above 0 and at most 1e300: one number for both, or (x, y).
+/// origin : float or tuple of float, default (0.0, 0.0)
+///     The corner with the smallest coordinates, (x, y).
+/// wrap : bool, tuple of bool or sequence of bool, default True
+///     Whether the axes wrap: a bool for both, or (x, y).
+///
+/// Raises
+/// ------
+/// DappleError
+///     If an argument is refused; the message names the limit and the value.
 ///
 /// Examples
 /// --------

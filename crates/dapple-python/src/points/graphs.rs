@@ -53,7 +53,8 @@ pub(crate) struct Graph {
 
 impl Graph {
     fn new(py: Python<'_>, points: Arc<PointSet>, made: GraphMade) -> Result<Self> {
-        let graph = threads::run(py, || made.build(&points))??;
+        let set = Arc::clone(&points);
+        let graph = threads::run(py, move || made.build(&set))??;
         Ok(Self {
             points,
             made,
@@ -72,8 +73,8 @@ impl Graph {
     }
 
     /// The graph.
-    pub(crate) fn graph(&self) -> &dapple::graph::Graph {
-        &self.graph
+    pub(crate) fn graph(&self) -> Arc<dapple::graph::Graph> {
+        Arc::clone(&self.graph)
     }
 
     /// Each edge once: the first point, and its axis there. Edges of a graph that is not symmetric have one end only.
@@ -96,8 +97,9 @@ impl Graph {
                 "only the graph of `delaunay` has triangles",
             ));
         }
-        Ok(threads::run(py, || {
-            dapple::graph::delaunay_triangles(&self.points)
+        let points = Arc::clone(&self.points);
+        Ok(threads::run(py, move || {
+            dapple::graph::delaunay_triangles(&points)
         })??)
     }
 }
@@ -128,11 +130,21 @@ impl Graph {
 
     /// Each edge once, as pairs of points: int64 of the shape (m, 2). In a symmetric graph the smaller index is first;
     /// else an edge leads from the first to the second.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray of int64
+    ///     The result, as described above.
     fn edges<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyAny>> {
         indices(py, self.each_edge().map(|(from, axis)| [from, axis.to.0]))
     }
 
     /// The vector of each edge, from its first point to its second, around axes that wrap: float64 of the shape (m, 2).
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray of float64
+    ///     The result, as described above.
     fn vectors<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyAny>> {
         let vectors: Vec<DVec2> = self.each_edge().map(|(_, axis)| axis.vector).collect();
         set::positions(py, &vectors)
@@ -143,6 +155,11 @@ impl Graph {
     ///
     /// `scipy.sparse.csr_array((lengths, indices, indptr))` is the matrix of a graph on a domain without wrapping; with
     /// wrapping, pairs may occur more than once.
+    ///
+    /// Returns
+    /// -------
+    /// Axes
+    ///     The neighbors.
     fn axes<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyAny>> {
         let offsets: Vec<i64> = self.graph.offsets().iter().map(|&at| at.into()).collect();
         let axes = self.graph.all_axes();
@@ -160,6 +177,11 @@ impl Graph {
     /// The triangles of Delaunay's triangulation, as points: int64 of the shape (t, 3), in the direction from x to y.
     ///
     /// Where more than three points lie on an empty circle, one of several triangulations is chosen.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray of int64
+    ///     The result, as described above.
     fn triangles<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyAny>> {
         let triangles = self.each_triangle(py)?;
         indices(
@@ -172,6 +194,11 @@ impl Graph {
 
     /// The corners of the triangles: float64 of the shape (t, 3, 2). Where axes wrap, the second and the third corner
     /// may lie outside of the domain, so that a triangle is in one piece.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray of float64
+    ///     The result, as described above.
     fn corners<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyAny>> {
         let triangles = self.each_triangle(py)?;
         let corners = triangles.iter().flat_map(|triangle| {
@@ -236,6 +263,23 @@ fn direction(symmetric: bool) -> Direction {
 /// larger side of the domain; all decisions are exact for the snapped positions. So points closer than a step may coincide,
 /// which is an error of the kind "coincident". Copies of points across axes that wrap count.
 ///
+/// Parameters
+/// ----------
+/// points : array_like or Points
+///     Points, or an array of the shape (n, 2).
+/// domain : Domain or None, default None
+///     The domain of the points; by default that of `Points`, and the rectangle around an array.
+///
+/// Returns
+/// -------
+/// Graph
+///     The graph.
+///
+/// Raises
+/// ------
+/// DappleError
+///     If an argument is refused; the message names the limit and the value.
+///
 /// Examples
 /// --------
 /// >>> import dapple_textures as dp
@@ -259,6 +303,23 @@ pub(crate) fn delaunay(
 ///
 /// `points` and `domain` are those of `delaunay`.
 ///
+/// Parameters
+/// ----------
+/// points : array_like or Points
+///     Points, or an array of the shape (n, 2).
+/// domain : Domain or None, default None
+///     The domain of the points; by default that of `Points`, and the rectangle around an array.
+///
+/// Returns
+/// -------
+/// Graph
+///     The graph.
+///
+/// Raises
+/// ------
+/// DappleError
+///     If an argument is refused; the message names the limit and the value.
+///
 /// Examples
 /// --------
 /// >>> import dapple_textures as dp
@@ -279,6 +340,27 @@ pub(crate) fn gabriel(
 ///
 /// `points` and `domain` are those of `delaunay`. `cones` is from 1 to 32; with `symmetric`, every edge leads both
 /// ways.
+///
+/// Parameters
+/// ----------
+/// points : array_like or Points
+///     Points, or an array of the shape (n, 2).
+/// cones : int, default 6
+///     The number of cones, from 1 to 32.
+/// symmetric : bool, default False
+///     Whether every edge leads both ways.
+/// domain : Domain or None, default None
+///     The domain of the points; by default that of `Points`, and the rectangle around an array.
+///
+/// Returns
+/// -------
+/// Graph
+///     The graph.
+///
+/// Raises
+/// ------
+/// DappleError
+///     If an argument is refused; the message names the limit and the value.
 ///
 /// Examples
 /// --------
@@ -302,6 +384,27 @@ pub(crate) fn yao(
 /// The graph in which each point leads to the `k` nearest ones, 1 to 4096.
 ///
 /// `points` and `domain` are those of `delaunay`; with `symmetric`, every edge leads both ways.
+///
+/// Parameters
+/// ----------
+/// points : array_like or Points
+///     Points, or an array of the shape (n, 2).
+/// k : int
+///     The number of neighbors, from 1 to 4096.
+/// symmetric : bool, default False
+///     Whether every edge leads both ways.
+/// domain : Domain or None, default None
+///     The domain of the points; by default that of `Points`, and the rectangle around an array.
+///
+/// Returns
+/// -------
+/// Graph
+///     The graph.
+///
+/// Raises
+/// ------
+/// DappleError
+///     If an argument is refused; the message names the limit and the value.
 ///
 /// Examples
 /// --------

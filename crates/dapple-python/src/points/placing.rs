@@ -59,14 +59,30 @@ fn places(domain: &dapple::points::Domain, count: u32) -> [u32; 2] {
 ///
 /// Parameters
 /// ----------
-/// domain : the domain of the points; distances are measured around axes that wrap.
-/// distance : the smallest distance of two points, above 0. If it varies, its slope must be below 1; a larger slope is
-///     the error "too_steep".
-/// density : points per area: a distance of sqrt(0.697 / density). With `count` it is given up to a factor, may be 0,
-///     and may change as abruptly as in a photograph: points thin out slowly around dense parts.
-/// count : the approximate number of points.
-/// rule : the distance of two points with different ones: "average", "larger" or "smaller".
-/// seed : int, from 0 to 2**64 - 1.
+/// domain : Domain
+///     The domain of the points; distances are measured around axes that wrap.
+/// distance : float, dict, Field, array_like or None, default None
+///     The smallest distance of two points, above 0. If it varies, its slope must be below 1; a larger slope is the
+///     error "too_steep".
+/// density : float, dict, Field, array_like or None, default None
+///     Points per area: a distance of sqrt(0.697 / density). With `count` it is given up to a factor, may be 0, and may
+///     change as abruptly as in a photograph: points thin out slowly around dense parts.
+/// count : int or None, default None
+///     The approximate number of points.
+/// rule : {"average", "larger", "smaller"}, default "average"
+///     The distance of two points with different ones: "average", "larger" or "smaller".
+/// seed : int, default 0
+///     From 0 to 2**64 - 1.
+///
+/// Returns
+/// -------
+/// Points
+///     The points.
+///
+/// Raises
+/// ------
+/// DappleError
+///     If an argument is refused; the message names the limit and the value.
 ///
 /// Examples
 /// --------
@@ -114,13 +130,34 @@ pub(crate) fn poisson_disk(
             return Err(Error::new("conflict", message));
         }
     };
-    let set = threads::run(py, || wanted.place(domain, &options, seed.0))??;
+    let set = threads::run(py, move || wanted.place(domain, &options, seed.0))??;
     Ok(Points::new(set))
 }
 
 /// A maximal Poisson-disk set that begins with given points, which are at least `distance` apart.
 ///
 /// `points` are `Points`, or an array (n, 2) in `domain`; by default the domain of an array is the rectangle around it.
+///
+/// Parameters
+/// ----------
+/// points : array_like or Points
+///     Points, or an array of the shape (n, 2).
+/// distance : float
+///     The distance, in units of the domain.
+/// domain : Domain or None, default None
+///     The domain of the points; by default that of `Points`, and the rectangle around an array.
+/// seed : int, default 0
+///     From 0 to 2**64 - 1.
+///
+/// Returns
+/// -------
+/// Points
+///     The points.
+///
+/// Raises
+/// ------
+/// DappleError
+///     If an argument is refused; the message names the limit and the value.
 ///
 /// Examples
 /// --------
@@ -139,7 +176,7 @@ pub(crate) fn extend_poisson_disk(
     seed: SeedArgument,
 ) -> Result<Points> {
     let given = Points::read(points, domain)?;
-    let set = threads::run(py, || {
+    let set = threads::run(py, move || {
         dapple::points::extend_poisson_disk(&given, distance, seed.0)
     })??;
     Ok(Points::new(set))
@@ -148,6 +185,25 @@ pub(crate) fn extend_poisson_disk(
 /// Maximal Poisson-disk sets for distances that do not grow, coarsest first; each begins with the points of the one before.
 ///
 /// For twice the points, divide the distance by the square root of two.
+///
+/// Parameters
+/// ----------
+/// domain : Domain
+///     The domain of the points; by default that of `Points`, and the rectangle around an array.
+/// distances : sequence of float
+///     The distances, from the largest to the smallest.
+/// seed : int, default 0
+///     From 0 to 2**64 - 1.
+///
+/// Returns
+/// -------
+/// list of Points
+///     The result.
+///
+/// Raises
+/// ------
+/// DappleError
+///     If an argument is refused; the message names the limit and the value.
 ///
 /// Examples
 /// --------
@@ -164,8 +220,9 @@ pub(crate) fn nested_poisson_disk(
     distances: Vec<f64>,
     seed: SeedArgument,
 ) -> Result<Vec<Points>> {
-    let nested = threads::run(py, || {
-        dapple::points::nested_poisson_disk(domain.0, &distances, seed.0)
+    let domain = domain.0;
+    let nested = threads::run(py, move || {
+        dapple::points::nested_poisson_disk(domain, &distances, seed.0)
     })??;
     let levels = (0..nested.lengths().len()).filter_map(|level| nested.level(level));
     Ok(levels.map(Points::new).collect())
@@ -175,10 +232,24 @@ pub(crate) fn nested_poisson_disk(
 ///
 /// Parameters
 /// ----------
-/// domain : the domain of the points.
-/// cells : columns and rows, (x, y), or a number for both.
-/// jitter : the distance from the center of the cell, from 0 to 1, anywhere in it.
-/// seed : int, from 0 to 2**64 - 1.
+/// domain : Domain
+///     The domain of the points.
+/// cells : int or tuple of int
+///     Columns and rows, (x, y), or a number for both.
+/// jitter : float, default 1.0
+///     The distance from the center of the cell, from 0 to 1, anywhere in it.
+/// seed : int, default 0
+///     From 0 to 2**64 - 1.
+///
+/// Returns
+/// -------
+/// Points
+///     The points.
+///
+/// Raises
+/// ------
+/// DappleError
+///     If an argument is refused; the message names the limit and the value.
 ///
 /// Examples
 /// --------
@@ -200,13 +271,33 @@ pub(crate) fn jittered_grid(
         Ok(cells) => [cells; 2],
         Err(_) => cells.extract()?,
     };
-    let set = threads::run(py, || {
-        dapple::points::jittered_grid(domain.0, cells, jitter, seed.0)
+    let domain = domain.0;
+    let set = threads::run(py, move || {
+        dapple::points::jittered_grid(domain, cells, jitter, seed.0)
     })??;
     Ok(Points::new(set))
 }
 
 /// Independent random points of uniform density; those of a smaller count are the first of a larger one.
+///
+/// Parameters
+/// ----------
+/// domain : Domain
+///     The domain of the points; by default that of `Points`, and the rectangle around an array.
+/// count : int
+///     The number of them.
+/// seed : int, default 0
+///     From 0 to 2**64 - 1.
+///
+/// Returns
+/// -------
+/// Points
+///     The points.
+///
+/// Raises
+/// ------
+/// DappleError
+///     If an argument is refused; the message names the limit and the value.
 ///
 /// Examples
 /// --------
@@ -221,6 +312,9 @@ pub(crate) fn white_noise(
     count: u32,
     seed: SeedArgument,
 ) -> Result<Points> {
-    let set = threads::run(py, || dapple::points::white_noise(domain.0, count, seed.0))??;
+    let domain = domain.0;
+    let set = threads::run(py, move || {
+        dapple::points::white_noise(domain, count, seed.0)
+    })??;
     Ok(Points::new(set))
 }

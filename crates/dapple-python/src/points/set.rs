@@ -18,8 +18,15 @@ use std::sync::Arc;
 ///
 /// Parameters
 /// ----------
-/// array : positions of the shape (n, 2), x first. Along axes that wrap they are brought into the domain.
-/// domain : their domain; by default the smallest rectangle around them, which does not wrap.
+/// array : array_like
+///     Positions of the shape (n, 2), x first. Along axes that wrap they are brought into the domain.
+/// domain : Domain or None, default None
+///     Their domain; by default the smallest rectangle around them, which does not wrap.
+///
+/// Raises
+/// ------
+/// DappleError
+///     If an argument is refused; the message names the limit and the value.
 ///
 /// Examples
 /// --------
@@ -150,13 +157,25 @@ impl Points {
 
     /// The smallest distance of two points, around axes that wrap where that is shorter; None for fewer than two
     /// points.
+    ///
+    /// Returns
+    /// -------
+    /// float or None
+    ///     The result.
     fn minimum_distance(&self, py: Python<'_>) -> Result<Option<f64>> {
-        threads::run(py, || self.set.minimum_distance())
+        let set = self.set();
+        threads::run(py, move || set.minimum_distance())
     }
 
     /// The largest circle without a point in it whose center lies in the domain, or None without points.
+    ///
+    /// Returns
+    /// -------
+    /// EmptyCircle or None
+    ///     The result.
     fn largest_empty_circle<'py>(&self, py: Python<'py>) -> Result<Option<Bound<'py, PyAny>>> {
-        let circle = threads::run(py, || self.set.largest_empty_circle())?;
+        let set = self.set();
+        let circle = threads::run(py, move || set.largest_empty_circle())?;
         let circle = circle.map(|circle| {
             let center = <(f64, f64)>::from(circle.center);
             arrays::result(py, "EmptyCircle", (center, circle.radius))
@@ -165,12 +184,43 @@ impl Points {
     }
 
     /// The mean number of other points within a distance of a point.
+    ///
+    /// Parameters
+    /// ----------
+    /// distance : float
+    ///     The distance, in units of the domain.
+    ///
+    /// Returns
+    /// -------
+    /// float
+    ///     The number.
+    ///
+    /// Raises
+    /// ------
+    /// DappleError
+    ///     If an argument is refused; the message names the limit and the value.
     fn mean_neighbor_count(&self, py: Python<'_>, distance: f64) -> Result<f64> {
-        threads::run(py, || self.set.mean_neighbor_count(distance))
+        let set = self.set();
+        threads::run(py, move || set.mean_neighbor_count(distance))
     }
 
     /// The number of points per square of side `distance`: 0.697 for random points that keep this distance until no more
     /// fit, at most 1.155.
+    ///
+    /// Parameters
+    /// ----------
+    /// distance : float
+    ///     The distance, in units of the domain.
+    ///
+    /// Returns
+    /// -------
+    /// float
+    ///     The number.
+    ///
+    /// Raises
+    /// ------
+    /// DappleError
+    ///     If an argument is refused; the message names the limit and the value.
     fn normalized_density(&self, distance: f64) -> f64 {
         self.set.normalized_density(distance)
     }
@@ -233,9 +283,22 @@ impl Points {
 ///
 /// Parameters
 /// ----------
-/// points : Points, or a list of them with the same domain, which must wrap along both axes.
-/// highest_frequency : the highest frequency of the spectrum, above 0.
-/// ring_width : the width of a ring, above 0.
+/// points : array_like, Points or list of Points
+///     Points, or a list of them with the same domain, which must wrap along both axes.
+/// highest_frequency : float, default 2.0
+///     The highest frequency of the spectrum, above 0.
+/// ring_width : float, default 0.05
+///     The width of a ring, above 0.
+///
+/// Returns
+/// -------
+/// Spectrum
+///     The spectrum.
+///
+/// Raises
+/// ------
+/// DappleError
+///     If an argument is refused; the message names the limit and the value.
 ///
 /// Examples
 /// --------
@@ -263,7 +326,7 @@ pub(crate) fn spectrum<'py>(
         highest_frequency,
         ring_width,
     };
-    let rings = threads::run(py, || dapple::points::spectrum(&sets, &options))??.rings;
+    let rings = threads::run(py, move || dapple::points::spectrum(&sets, &options))??.rings;
     let column = |number: &dyn Fn(&dapple::points::SpectrumRing) -> f64| {
         let numbers: Vec<f64> = rings.iter().map(number).collect();
         arrays::array(py, numbers, &[rings.len()])

@@ -28,6 +28,23 @@ fn vectors<'py>(py: Python<'py>, vectors: Vec<DVec3>) -> Result<Bound<'py, PyAny
 
 /// Independent random values from 0 to below 1, float32 of the shape (count,): those that the textures use.
 ///
+/// Parameters
+/// ----------
+/// count : int
+///     The number of them.
+/// seed : int, default 0
+///     From 0 to 2**64 - 1.
+///
+/// Returns
+/// -------
+/// numpy.ndarray of float32
+///     The result, as described above.
+///
+/// Raises
+/// ------
+/// DappleError
+///     If an argument is refused; the message names the limit and the value.
+///
 /// Examples
 /// --------
 /// >>> import dapple_textures as dp
@@ -45,6 +62,25 @@ pub(crate) fn random_values(
 }
 
 /// Independent random labels from 0 to below `n_labels`, all equally probable, int64 of the shape (count,).
+///
+/// Parameters
+/// ----------
+/// count : int
+///     The number of them.
+/// n_labels : int
+///     The number of labels.
+/// seed : int, default 0
+///     From 0 to 2**64 - 1.
+///
+/// Returns
+/// -------
+/// numpy.ndarray of int64
+///     The result, as described above.
+///
+/// Raises
+/// ------
+/// DappleError
+///     If an argument is refused; the message names the limit and the value.
 ///
 /// Examples
 /// --------
@@ -76,6 +112,27 @@ fn check_count(count: usize) -> Result<()> {
 ///
 /// `probability` is a number from 0 to 1, a ramp, an array over the domain, or a `Field`, as in `poisson_disk`.
 ///
+/// Parameters
+/// ----------
+/// points : array_like or Points
+///     Points, or an array of the shape (n, 2).
+/// probability : float, dict, Field or array_like
+///     The probability of label 1: it may vary over the domain.
+/// domain : Domain or None, default None
+///     The domain of the points; by default that of `Points`, and the rectangle around an array.
+/// seed : int, default 0
+///     From 0 to 2**64 - 1.
+///
+/// Returns
+/// -------
+/// numpy.ndarray of int64
+///     The result, as described above.
+///
+/// Raises
+/// ------
+/// DappleError
+///     If an argument is refused; the message names the limit and the value.
+///
 /// Examples
 /// --------
 /// >>> import dapple_textures as dp
@@ -96,7 +153,7 @@ pub(crate) fn biased_labels<'py>(
 ) -> Result<Bound<'py, PyAny>> {
     let points = Points::read(points, domain)?;
     let probability = varying("probability", probability, points.domain())?;
-    let found = threads::run(py, || {
+    let found = threads::run(py, move || {
         dapple::pups::biased_labels(&points, &probability, seed.0)
     })??;
     labels(py, &found)
@@ -105,6 +162,25 @@ pub(crate) fn biased_labels<'py>(
 /// Labels of groups of points that a graph connects, int64 of the shape (n,), from 0 without gaps.
 ///
 /// A group has from `sizes[0]` to `sizes[1]` points, 1 to 16, or fewer if this is impossible.
+///
+/// Parameters
+/// ----------
+/// graph : Graph
+///     A graph of the points; Delaunay's by default.
+/// sizes : tuple of int, default (3, 4)
+///     The smallest and the largest number of points in a group.
+/// seed : int, default 0
+///     From 0 to 2**64 - 1.
+///
+/// Returns
+/// -------
+/// numpy.ndarray of int64
+///     The result, as described above.
+///
+/// Raises
+/// ------
+/// DappleError
+///     If an argument is refused; the message names the limit and the value.
 ///
 /// Examples
 /// --------
@@ -119,8 +195,9 @@ pub(crate) fn grouped_labels<'py>(
     sizes: [u32; 2],
     seed: SeedArgument,
 ) -> Result<Bound<'py, PyAny>> {
-    let found = threads::run(py, || {
-        dapple::pups::grouped_labels(graph.graph(), sizes, seed.0)
+    let graph = graph.graph();
+    let found = threads::run(py, move || {
+        dapple::pups::grouped_labels(&graph, sizes, seed.0)
     })??;
     labels(py, &found)
 }
@@ -128,6 +205,27 @@ pub(crate) fn grouped_labels<'py>(
 /// Random labels 0 and 1 by a gray image, int64 of the shape (n,): 1 with the probability of the pixel under the point.
 ///
 /// `image` has the shape (rows, columns) and values from 0 to 1; it covers the domain of the points.
+///
+/// Parameters
+/// ----------
+/// points : array_like or Points
+///     Points, or an array of the shape (n, 2).
+/// image : array_like
+///     An image.
+/// domain : Domain or None, default None
+///     The domain of the points; by default that of `Points`, and the rectangle around an array.
+/// seed : int, default 0
+///     From 0 to 2**64 - 1.
+///
+/// Returns
+/// -------
+/// numpy.ndarray of int64
+///     The result, as described above.
+///
+/// Raises
+/// ------
+/// DappleError
+///     If an argument is refused; the message names the limit and the value.
 ///
 /// Examples
 /// --------
@@ -148,13 +246,30 @@ pub(crate) fn reference_labels<'py>(
 ) -> Result<Bound<'py, PyAny>> {
     let points = Points::read(points, domain)?;
     let image = ReferenceImage::new(arrays::raster("image", image)?)?;
-    let found = threads::run(py, || {
+    let found = threads::run(py, move || {
         dapple::pups::reference_labels(&points, &image, seed.0)
     })?;
     labels(py, &found)
 }
 
 /// Independent random unit vectors, uniform on the sphere: float64 of the shape (count, 3).
+///
+/// Parameters
+/// ----------
+/// count : int
+///     The number of them.
+/// seed : int, default 0
+///     From 0 to 2**64 - 1.
+///
+/// Returns
+/// -------
+/// numpy.ndarray of float64
+///     The result, as described above.
+///
+/// Raises
+/// ------
+/// DappleError
+///     If an argument is refused; the message names the limit and the value.
 ///
 /// Examples
 /// --------
@@ -174,6 +289,25 @@ pub(crate) fn random_orientations(
 
 /// Unit vectors in the plane that point away from a center (x, y), by the shortest way around axes that wrap: float64 of
 /// the shape (n, 3).
+///
+/// Parameters
+/// ----------
+/// points : array_like or Points
+///     Points, or an array of the shape (n, 2).
+/// center : tuple of float
+///     (x, y).
+/// domain : Domain or None, default None
+///     The domain of the points; by default that of `Points`, and the rectangle around an array.
+///
+/// Returns
+/// -------
+/// numpy.ndarray of float64
+///     The result, as described above.
+///
+/// Raises
+/// ------
+/// DappleError
+///     If an argument is refused; the message names the limit and the value.
 ///
 /// Examples
 /// --------
@@ -200,6 +334,25 @@ pub(crate) fn outward_orientations<'py>(
 ///
 /// `angle` is a number, a ramp, an array over the domain, or a `Field`, as in `poisson_disk`.
 ///
+/// Parameters
+/// ----------
+/// points : array_like or Points
+///     Points, or an array of the shape (n, 2).
+/// angle : float, dict, Field or array_like
+///     In radians, from x to y.
+/// domain : Domain or None, default None
+///     The domain of the points; by default that of `Points`, and the rectangle around an array.
+///
+/// Returns
+/// -------
+/// numpy.ndarray of float64
+///     The result, as described above.
+///
+/// Raises
+/// ------
+/// DappleError
+///     If an argument is refused; the message names the limit and the value.
+///
 /// Examples
 /// --------
 /// >>> import dapple_textures as dp
@@ -218,6 +371,8 @@ pub(crate) fn angle_orientations<'py>(
     let angle = varying("angle", angle, points.domain())?;
     vectors(
         py,
-        threads::run(py, || dapple::pups::angle_orientations(&points, &angle))??,
+        threads::run(py, move || {
+            dapple::pups::angle_orientations(&points, &angle)
+        })??,
     )
 }

@@ -6,7 +6,7 @@ use crate::color_field;
 use crate::data;
 use crate::error::{Error, Result};
 use crate::function::{Made, position};
-use crate::grid::{Grid, GridArguments};
+use crate::grid::{Grid, GridArguments, default_extent};
 use crate::points::{Domain, Graph, GraphMade, Points};
 use crate::seed::SeedArgument;
 use crate::shared::{Build, Shared};
@@ -75,19 +75,33 @@ impl Build for PupsMade {
 ///
 /// Parameters
 /// ----------
-/// points : Points, or an array (n, 2) in `domain`.
-/// domain : the domain of an array of points; by default the smallest rectangle around it, which does not wrap.
-/// graph : a graph of the points; Delaunay's by default.
-/// axis_scale : the length of axes as a multiple of their edges, above 0.5 and at most 16. Up to 1 the field equals the
-///     value at a control point; above it is smoother.
-/// weight : the falloff of the weight: "cubic", "quintic", or {"oscillating": {"dips": 3, "depth": 0.5}} with 1 to 16
-///     dips and a depth of 0 to 0.99.
-/// orientations : the direction in which the weight of each point leans: None, "random" (drawn from `seed`), an array
-///     (n, 2) or (n, 3) of vectors, {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle": radians}.
-/// strength : how strongly orientations shift weights, from 0 to below 1.
-/// fade : the length of the border that an axis leaves on its point's cell, as a fraction of its edge, below which the
+/// points : array_like or Points
+///     Points, or an array (n, 2) in `domain`.
+/// domain : Domain or None, default None
+///     The domain of an array of points; by default the smallest rectangle around it, which does not wrap.
+/// graph : Graph or None, default None
+///     A graph of the points; Delaunay's by default.
+/// axis_scale : float, default 1.0
+///     The length of axes as a multiple of their edges, above 0.5 and at most 16. Up to 1 the field equals the value at
+///     a control point; above it is smoother.
+/// weight : {"cubic", "quintic"} or dict, default "cubic"
+///     The falloff of the weight: "cubic", "quintic", or {"oscillating": {"dips": 3, "depth": 0.5}} with 1 to 16 dips
+///     and a depth of 0 to 0.99.
+/// orientations : {"none", "random"}, dict, array_like or None, default None
+///     The direction in which the weight of each point leans: None, "random" (drawn from `seed`), an array (n, 2) or
+///     (n, 3) of vectors, {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle": radians}.
+/// strength : float, default 0.5
+///     How strongly orientations shift weights, from 0 to below 1.
+/// fade : float, default 0.0
+///     The length of the border that an axis leaves on its point's cell, as a fraction of its edge, below which the
 ///     axis fades, from 0, never, to 1. With 0.25 the field changes smoothly if points move.
-/// seed : int, from 0 to 2**64 - 1.
+/// seed : int, default 0
+///     From 0 to 2**64 - 1.
+///
+/// Raises
+/// ------
+/// DappleError
+///     If an argument is refused; the message names the limit and the value.
 ///
 /// Examples
 /// --------
@@ -138,7 +152,8 @@ impl NetArguments<'_, '_> {
                 fade: self.fade,
             },
         });
-        let pups = threads::run(py, || net.get())??;
+        let work = net.clone();
+        let pups = threads::run(py, move || work.get())??;
         Ok(Partition { net, pups })
     }
 
@@ -225,6 +240,23 @@ impl Partition {
     ///
     /// With `labels`, a whole number for each point, `values` are those of the labels, and every position has the value
     /// of the label of its strongest point: cells with sharp borders. `labels=range(n)` makes each point a cell.
+    ///
+    /// Parameters
+    /// ----------
+    /// values : array_like
+    ///     The values: an array.
+    /// labels : sequence of int, numpy.ndarray of int or None, default None
+    ///     A label for each point; the values are then those of labels.
+    ///
+    /// Returns
+    /// -------
+    /// Field or ColorField
+    ///     The field; a `ColorField` for values with channels.
+    ///
+    /// Raises
+    /// ------
+    /// DappleError
+    ///     If an argument is refused; the message names the limit and the value.
     #[pyo3(signature = (values, *, labels = None))]
     fn field(
         &self,
@@ -246,16 +278,31 @@ impl Partition {
     /// i are `indices[indptr[i]:indptr[i + 1]]` and `weights[…]`, as in `scipy.sparse.csr_array`.
     ///
     /// A point may occur more than once if its copies across axes that wrap have weights.
+    ///
+    /// Parameters
+    /// ----------
+    /// positions : array_like
+    ///     Positions of the shape (…, axes), x first.
+    ///
+    /// Returns
+    /// -------
+    /// Weights
+    ///     The weights.
+    ///
+    /// Raises
+    /// ------
+    /// DappleError
+    ///     If an argument is refused; the message names the limit and the value.
     fn weights<'py>(
         &self,
         py: Python<'py>,
         positions: &Bound<'py, PyAny>,
     ) -> Result<Bound<'py, PyAny>> {
         let positions = Positions::read(positions, 2)?.numbers;
-        let rows = threads::run(py, || {
+        let pups = self.pups.clone();
+        let rows = threads::run(py, move || {
             parallel::map_at_least(256, positions.len() / 2, |index| {
-                self.pups
-                    .weights(position(&positions[2 * index..2 * index + 2]))
+                pups.weights(position(&positions[2 * index..2 * index + 2]))
             })
         })?;
         let mut offsets = vec![0_i64];
@@ -280,6 +327,27 @@ impl Partition {
     /// labels of the pixels.
     ///
     /// The parameters are those of `Field.render`.
+    ///
+    /// Parameters
+    /// ----------
+    /// size : int or tuple of int
+    ///     (rows, columns), or a number for both.
+    /// extent : float or tuple of float or None, default None
+    ///     The size of the rectangle of the array, x first, as in `Field.render`.
+    /// origin : float or tuple of float or None, default None
+    ///     The corner of the first pixel, x first.
+    /// window : tuple of slice or None, default None
+    ///     The part to compute, a slice for each axis of `size`.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray of uint32
+    ///     The result, as described above.
+    ///
+    /// Raises
+    /// ------
+    /// DappleError
+    ///     If an argument is refused; the message names the limit and the value.
     #[pyo3(signature = (size, *, extent = None, origin = None, window = None))]
     fn strongest<'py>(
         &self,
@@ -295,12 +363,14 @@ impl Partition {
             origin,
             window,
         };
-        let grid = Grid::new(&arguments, &self.pups.domain().period())?;
+        let extent = default_extent(&self.pups.domain().period(), &[1.0; 2]);
+        let grid = Grid::new(&arguments, &extent)?;
         let (n_values, window) = (grid.n_values()?, grid.plane());
-        let points = threads::run(py, || -> Result<Vec<PointIdx>> {
+        let pups = self.pups.clone();
+        let points = threads::run(py, move || -> Result<Vec<PointIdx>> {
             let mut points = vec![PointIdx(0); n_values];
             let view = RasterViewMut::new(&mut points, window.size[0] as usize, window.size)?;
-            self.pups.render_strongest(&window, view)?;
+            pups.render_strongest(&window, view)?;
             Ok(points)
         })??;
         let points: Vec<u32> = points.into_iter().map(|point| point.0).collect();
@@ -337,7 +407,8 @@ impl Partition {
 pub(crate) fn _partition_from_description(py: Python<'_>, description: &str) -> Result<Partition> {
     let net: core::result::Result<Shared<NetMade>, _> = serde_json::from_str(description);
     let net = net.map_err(|error| Error::new("description", error.to_string()))?;
-    let pups = threads::run(py, || net.get())??;
+    let work = net.clone();
+    let pups = threads::run(py, move || work.get())??;
     Ok(Partition { net, pups })
 }
 
@@ -345,6 +416,41 @@ pub(crate) fn _partition_from_description(py: Python<'_>, description: &str) -> 
 /// Mould, "Partition of Unity Parametrics for Texture Synthesis" (2013).
 ///
 /// It equals `Partition(points, …).field(values, labels=labels)`, with the same parameters.
+///
+/// Parameters
+/// ----------
+/// points : array_like or Points
+///     Points, or an array of the shape (n, 2).
+/// values : array_like
+///     The values: an array.
+/// labels : sequence of int, numpy.ndarray of int or None, default None
+///     A label for each point; the values are then those of labels.
+/// domain : Domain or None, default None
+///     The domain of the points; by default that of `Points`, and the rectangle around an array.
+/// graph : Graph or None, default None
+///     A graph of the points; Delaunay's by default.
+/// axis_scale : float, default 1.0
+///     The length of the axes of a point in units of the distances to its neighbors.
+/// weight : {"cubic", "quintic"} or dict, default "cubic"
+///     How the weight of a point falls off.
+/// orientations : {"none", "random"}, dict, array_like or None, default None
+///     Directions in which the weights lean: "random", a dictionary, or an array of rows of 2 or 3 numbers.
+/// strength : float, default 0.5
+///     How far the weights lean, from 0 to 1.
+/// fade : float, default 0.0
+///     From 0, off, to 1: neighbors that share a short border count less.
+/// seed : int, default 0
+///     From 0 to 2**64 - 1.
+///
+/// Returns
+/// -------
+/// Field or ColorField
+///     The field; a `ColorField` for values with channels.
+///
+/// Raises
+/// ------
+/// DappleError
+///     If an argument is refused; the message names the limit and the value.
 ///
 /// Examples
 /// --------

@@ -131,11 +131,7 @@ fn kind(name: &str) -> Result<&'static Kind> {
     let found = KINDS.iter().find(|kind| kind.name == name);
     found.ok_or_else(|| {
         let names: Vec<&str> = KINDS.iter().map(|kind| kind.name).collect();
-        let message = format!(
-            "the texture is `{name}`, but it must be one of {}",
-            names.join(", ")
-        );
-        Error::new("name", message)
+        data::unknown_name("texture", name, &names)
     })
 }
 

@@ -9,6 +9,7 @@ use crate::function::Made;
 use crate::grid::{Grid, GridArguments, size as size_of};
 use crate::shared::Shared;
 use crate::threads;
+use crate::watch::{self, Stop};
 use dapple::color::{LinearRgb, Normal};
 use dapple::recipe::{
     Bake, BakeOptions, Images, MapKind, MapRows, Picture, Plan as RustPlan, Recipe as RustRecipe,
@@ -33,13 +34,15 @@ impl Plan {
         images: Images,
         time: f64,
     ) -> Result<Self> {
-        let plan = threads::run(py, || RustPlan::new(&recipe, &images, time))??;
-        Ok(Self {
-            recipe,
-            images,
-            time,
-            plan,
-        })
+        threads::run(py, move || -> Result<Self> {
+            let plan = RustPlan::new(&recipe, &images, time)?;
+            Ok(Self {
+                recipe,
+                images,
+                time,
+                plan,
+            })
+        })?
     }
 }
 
@@ -82,38 +85,39 @@ fn flat<T>(pixels: Vec<T>, numbers: impl Fn(T) -> [f32; 3]) -> Vec<f32> {
         .into_flattened()
 }
 
-/// Gathers the numbers of all bands of maps, as a dictionary of arrays.
-fn gather<'py>(
-    py: Python<'py>,
-    mut bake: Bake<'_>,
-    maps: &[MapKind],
-) -> Result<Bound<'py, PyDict>> {
+/// Bakes all bands of maps, until the result is no longer wanted; returns the columns and rows, too.
+fn bake_all(
+    plan: &RustPlan,
+    options: &BakeOptions,
+    stop: &Stop,
+) -> Result<([usize; 2], Vec<Gathered>)> {
+    let bake = Bake::new(plan, options)?;
     let [columns, rows] = bake.size().map(|side| side as usize);
     let n_values = |map| columns * rows * kind_of(map).n_channels;
     let empty = |&map| Gathered {
         map,
         values: Vec::new(),
     };
-    let mut gathered: Vec<_> = maps.iter().map(empty).collect();
-    loop {
-        let is_more = threads::run(py, || {
-            let Some(band) = bake.next() else {
-                return Ok(false);
-            };
-            for (gathered, (map, rows)) in gathered.iter_mut().zip(band?.maps) {
-                debug_assert_eq!(
-                    gathered.map, map,
-                    "maps come in the order in which they were asked for"
-                );
-                gathered.push(rows, n_values(map))?;
-            }
-            Ok::<_, Error>(true)
-        })??;
-        if !is_more {
-            break;
+    let mut gathered: Vec<_> = options.maps.iter().map(empty).collect();
+    for band in bake {
+        stop.check()?;
+        for (gathered, (map, rows)) in gathered.iter_mut().zip(band?.maps) {
+            debug_assert_eq!(
+                gathered.map, map,
+                "maps come in the order in which they were asked for"
+            );
+            gathered.push(rows, n_values(map))?;
         }
-        py.check_signals()?;
     }
+    Ok(([columns, rows], gathered))
+}
+
+/// The baked maps as a dictionary of arrays.
+fn dictionary<'py>(
+    py: Python<'py>,
+    [columns, rows]: [usize; 2],
+    gathered: Vec<Gathered>,
+) -> Result<Bound<'py, PyDict>> {
     let dictionary = PyDict::new(py);
     for Gathered { map, values } in gathered {
         let shape = [rows, columns, kind_of(map).n_channels];
@@ -131,7 +135,7 @@ fn region(size: &Bound<'_, PyAny>, window: &Bound<'_, PyAny>) -> Result<Region> 
         origin: None,
         window: Some(window),
     };
-    let window = Grid::new(&arguments, &[None, None])?.plane();
+    let window = Grid::new(&arguments, &[1.0; 2])?.plane();
     let inside = |first: i64| {
         u32::try_from(first)
             .map_err(|_| Error::new("window", "the window begins before the picture"))
@@ -149,11 +153,24 @@ impl Plan {
     ///
     /// Parameters
     /// ----------
-    /// size : (rows, columns) of the whole tile, or a number for both. It may be far larger than memory.
-    /// maps : the name of a map, or the names of several, each once: see `map_names`.
-    /// window : the part to bake, such as `np.s_[100:150, 33:94]`: bit for bit the crop of the whole. It must lie
-    ///     inside.
-    /// as_xarray : return an `xarray.Dataset` with coordinates in units of the plane instead of a dictionary.
+    /// size : int or tuple of int
+    ///     (rows, columns) of the whole tile, or a number for both. It may be far larger than memory.
+    /// maps : str or iterable of str, default "height"
+    ///     The name of a map, or the names of several, each once: see `map_names`.
+    /// window : tuple of slice or None, default None
+    ///     The part to bake, such as `np.s_[100:150, 33:94]`: bit for bit the crop of the whole. It must lie inside.
+    /// as_xarray : bool, default False
+    ///     Return an `xarray.Dataset` with coordinates in units of the plane instead of a dictionary.
+    ///
+    /// Returns
+    /// -------
+    /// dict or xarray.Dataset
+    ///     The result, as described above.
+    ///
+    /// Raises
+    /// ------
+    /// DappleError
+    ///     If an argument is refused; the message names the limit and the value.
     #[pyo3(signature = (size, maps = None, *, window = None, as_xarray = false),
         text_signature = "(self, size, maps='height', *, window=None, as_xarray=False)")]
     fn bake<'py>(
@@ -170,8 +187,10 @@ impl Plan {
             maps: maps.map_or(Ok(vec![MapKind::Height]), self::maps)?,
             ..BakeOptions::default()
         };
-        let bake = threads::run(py, || Bake::new(&self.plan, &options))??;
-        let maps = gather(py, bake, &options.maps)?;
+        let (plan, wanted) = (self.plan.clone(), options.clone());
+        let (sides, gathered) =
+            watch::run(py, None, move |_, stop| bake_all(&plan, &wanted, stop))??;
+        let maps = dictionary(py, sides, gathered)?;
         if !as_xarray {
             return Ok(maps.into_any());
         }
@@ -216,6 +235,21 @@ impl Plan {
     }
 
     /// The numbers of a node as a field, by its name; those of the height of the material by default.
+    ///
+    /// Parameters
+    /// ----------
+    /// node : str or None, default None
+    ///     The name of the node; the height of the material by default.
+    ///
+    /// Returns
+    /// -------
+    /// Field
+    ///     The field.
+    ///
+    /// Raises
+    /// ------
+    /// DappleError
+    ///     If an argument is refused; the message names the limit and the value.
     #[pyo3(signature = (node = None))]
     fn field(&self, node: Option<String>) -> Result<Field> {
         if !self.images.is_empty() {

@@ -11,6 +11,23 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 ///
 /// A shard is a part that one machine bakes; the last ones of a row and of a column are cropped at the border. They are
 /// those of `dapple shards`.
+///
+/// Parameters
+/// ----------
+/// size : int or tuple of int
+///     (rows, columns), or a number for both.
+/// shard : int or tuple of int
+///     The size of a shard, (rows, columns) or a number for both.
+///
+/// Returns
+/// -------
+/// ShardList
+///     The shards.
+///
+/// Raises
+/// ------
+/// DappleError
+///     If an argument is refused; the message names the limit and the value.
 #[pyfunction]
 pub(crate) fn shards(size: &Bound<'_, PyAny>, shard: &Bound<'_, PyAny>) -> Result<ShardList> {
     let shards = Shards::new(size_of(size)?, size_of(shard)?)?;

@@ -4,8 +4,12 @@ use super::CellsMade;
 use super::texture::{Texture, plane};
 use crate::error::{Error, Result};
 use crate::generators::array;
+use crate::watch::{self, Stop};
 use dapple::raster::{RasterViewMut, Window};
 use dapple::worley::{Axes, FeatureView, LIMIT, Space, Vector};
+
+/// The number of positions between two looks for an interruption.
+const PART: usize = 1 << 15;
 
 pub(super) fn check_count(count: usize) -> Result<()> {
     if (1..=LIMIT).contains(&count) {
@@ -27,24 +31,31 @@ pub(super) struct Found {
 pub(super) fn find<const N: usize, const K: usize>(
     made: &CellsMade,
     positions: &[f64],
+    stop: &Stop,
 ) -> Result<Found>
 where
     Axes: Space<N>,
 {
     let basis = made.basis::<N>()?;
-    let features = dapple::raster::parallel::map_at_least(256, positions.len() / N, |index| {
-        let position: [f64; N] = core::array::from_fn(|axis| positions[index * N + axis]);
-        basis.sample::<K>(position)
-    });
-    let features = features.as_flattened();
-    Ok(Found {
-        distance: features.iter().map(|feature| feature.distance).collect(),
-        vector: features
-            .iter()
-            .flat_map(|feature| feature.vector.into())
-            .collect(),
-        id: features.iter().map(|feature| feature.id).collect(),
-    })
+    let mut found = Found {
+        distance: Vec::new(),
+        vector: Vec::new(),
+        id: Vec::new(),
+    };
+    for positions in positions.chunks(N * PART) {
+        stop.check()?;
+        let features = dapple::raster::parallel::map_at_least(256, positions.len() / N, |index| {
+            let position: [f64; N] = core::array::from_fn(|axis| positions[index * N + axis]);
+            basis.sample::<K>(position)
+        });
+        for feature in features.as_flattened() {
+            let vector: [f64; N] = feature.vector.into();
+            found.distance.push(feature.distance);
+            found.vector.extend(vector);
+            found.id.push(feature.id);
+        }
+    }
+    Ok(found)
 }
 
 /// The planes of the nearest feature points, those of the nearest first.
@@ -60,6 +71,7 @@ pub(super) fn draw<const N: usize, const K: usize>(
     rest: &[f64],
     wanted: [bool; 3],
     n_values: usize,
+    stop: &Stop,
 ) -> Result<Drawn>
 where
     Axes: Space<N>,
@@ -68,24 +80,32 @@ where
     let mut distance = wanted[0].then(|| vec![0.0_f32; K * n_values]);
     let mut vector = wanted[1].then(|| vec![[0.0_f32; N]; K * n_values]);
     let mut id = wanted[2].then(|| vec![0_u64; K * n_values]);
-    let mut views: [FeatureView<'_, N>; K] = core::array::from_fn(|_| FeatureView::default());
     let stride = window.size[0] as usize;
-    if let Some(values) = &mut distance {
-        for (view, values) in views.iter_mut().zip(values.chunks_mut(n_values)) {
-            view.distance = Some(RasterViewMut::new(values, stride, window.size)?);
+    watch::in_parts(stop, window.size[1] as usize, PART / stride, |rows| {
+        let size = [window.size[0], rows.len() as u32];
+        let part = window.crop([0, rows.start as i64], size)?;
+        let pixels = rows.start * stride..rows.end * stride;
+        let mut views: [FeatureView<'_, N>; K] = core::array::from_fn(|_| FeatureView::default());
+        if let Some(values) = &mut distance {
+            for (view, values) in views.iter_mut().zip(values.chunks_mut(n_values)) {
+                let values = &mut values[pixels.clone()];
+                view.distance = Some(RasterViewMut::new(values, stride, size)?);
+            }
         }
-    }
-    if let Some(values) = &mut vector {
-        for (view, values) in views.iter_mut().zip(values.chunks_mut(n_values)) {
-            view.vector = Some(RasterViewMut::new(values, stride, window.size)?);
+        if let Some(values) = &mut vector {
+            for (view, values) in views.iter_mut().zip(values.chunks_mut(n_values)) {
+                let values = &mut values[pixels.clone()];
+                view.vector = Some(RasterViewMut::new(values, stride, size)?);
+            }
         }
-    }
-    if let Some(values) = &mut id {
-        for (view, values) in views.iter_mut().zip(values.chunks_mut(n_values)) {
-            view.id = Some(RasterViewMut::new(values, stride, window.size)?);
+        if let Some(values) = &mut id {
+            for (view, values) in views.iter_mut().zip(values.chunks_mut(n_values)) {
+                let values = &mut values[pixels.clone()];
+                view.id = Some(RasterViewMut::new(values, stride, size)?);
+            }
         }
-    }
-    basis.render_features(&plane::<N>(rest), window, views)?;
+        Ok(basis.render_features(&plane::<N>(rest), &part, views)?)
+    })?;
     Ok(Drawn {
         distance,
         vector: vector.map(Vec::into_flattened),
@@ -93,7 +113,11 @@ where
     })
 }
 
-pub(super) fn gradients<const N: usize>(made: &CellsMade, positions: &[f64]) -> Result<Vec<f64>>
+pub(super) fn gradients<const N: usize>(
+    made: &CellsMade,
+    positions: &[f64],
+    stop: &Stop,
+) -> Result<Vec<f64>>
 where
     Axes: Space<N>,
 {
@@ -108,12 +132,17 @@ where
             ));
         }
     };
-    let gradients = dapple::raster::parallel::map_at_least(256, positions.len() / N, |index| {
-        let position: [f64; N] = core::array::from_fn(|axis| positions[index * N + axis]);
-        let gradient: [f64; N] = gradient(position.into()).into();
-        gradient
-    });
-    Ok(gradients.into_flattened())
+    let mut gradients = Vec::new();
+    for positions in positions.chunks(N * PART) {
+        stop.check()?;
+        let part = dapple::raster::parallel::map_at_least(256, positions.len() / N, |index| {
+            let position: [f64; N] = core::array::from_fn(|axis| positions[index * N + axis]);
+            let gradient: [f64; N] = gradient(position.into()).into();
+            gradient
+        });
+        gradients.extend(part.into_flattened());
+    }
+    Ok(gradients)
 }
 
 /// The positions and ids of the feature points of a cell.
