@@ -5,10 +5,11 @@ use crate::color_field;
 use crate::error::{Error, Result};
 use crate::function::{Function, Made, Reduced, position};
 use crate::generators::Worley;
-use crate::grid::{Grid, GridArguments, pair};
+use crate::grid::{Grid, GridArguments, default_extent, numbers};
 use crate::shared::Shared;
 use crate::threads;
-use dapple::raster::{Field as _, FractalShape, PairOperation, RasterViewMut, parallel};
+use crate::watch::{self, Stop};
+use dapple::raster::{Field as _, FractalShape, PairOperation, RasterViewMut, Window, parallel};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use std::sync::Arc;
@@ -27,11 +28,19 @@ pub(crate) struct Field {
 /// The number of positions that a thread takes at a time.
 const CHUNK: usize = 4096;
 
+/// The number of values that are computed before the first look for signals.
+pub(crate) const FIRST: usize = 1 << 14;
+
+/// The largest number of columns that are rendered at a time.
+const STRIP: u32 = 1 << 17;
+
 impl Field {
     /// Makes the field of a description, on the threads of the package.
     pub(crate) fn new(made: Made) -> Result<Self> {
         let made = Shared::new(made);
-        let function = Python::attach(|py| threads::run(py, || made.get()))??.function;
+        let work = made.clone();
+        let built = Python::attach(|py| threads::run(py, move || work.get()))??;
+        let function = built.function;
         Ok(Self { made, function })
     }
 
@@ -49,18 +58,49 @@ impl Field {
     }
 
     /// Writes the values at the pixels of a grid into memory of the right length.
-    fn fill(&self, grid: &Grid, values: &mut [f32]) -> Result<()> {
+    fn fill(&self, grid: &Grid, values: &mut [f32], stop: &Stop) -> Result<()> {
         let window = grid.plane();
+        let planes = grid.planes();
+        let n_pixels = window.n_pixels();
         match &self.function {
             Function::Plane(field) => {
-                field.render(
-                    &window,
-                    RasterViewMut::new(values, window.size[0] as usize, window.size)?,
-                )?;
+                fill_rows(&window, values, stop, |window, view| {
+                    Ok(field.render(window, view)?)
+                })?;
             }
-            Function::Space(volume) => volume.render(&window, &grid.planes(), values)?,
+            // Small planes are rendered together.
+            Function::Space(volume) if n_pixels <= FIRST => {
+                watch::in_parts(stop, planes.len(), FIRST / n_pixels.max(1), |part| {
+                    let values = &mut values[part.start * n_pixels..part.end * n_pixels];
+                    Ok(volume.render(&window, &planes[part], values)?)
+                })?;
+            }
+            Function::Space(volume) => {
+                for (plane, values) in planes.iter().zip(values.chunks_mut(n_pixels)) {
+                    let slice = volume.slice(plane);
+                    fill_rows(&window, values, stop, |window, view| {
+                        Ok(slice.render(window, view)?)
+                    })?;
+                }
+            }
         }
         Ok(())
+    }
+
+    /// Writes the values at some positions.
+    fn sample_chunk<'a>(&self, places: impl Iterator<Item = &'a [f64]>, values: &mut [f32]) {
+        match &self.function {
+            Function::Plane(field) => {
+                let places: Vec<_> = places.take(values.len()).map(position).collect();
+                // The lengths are equal, and there are no other errors.
+                let _ = field.sample_many(&places, values);
+            }
+            Function::Space(volume) => {
+                for (value, place) in values.iter_mut().zip(places) {
+                    *value = volume.sample(place);
+                }
+            }
+        }
     }
 
     /// Combines this field and another field or number, value by value.
@@ -100,6 +140,27 @@ impl Field {
     }
 }
 
+/// Writes the values at the pixels of a window in parts: some rows of a strip of columns each.
+fn fill_rows(
+    window: &Window,
+    values: &mut [f32],
+    stop: &Stop,
+    render: impl Fn(&Window, RasterViewMut<'_, f32>) -> Result<()>,
+) -> Result<()> {
+    let width = window.size[0] as usize;
+    for left in (0..window.size[0]).step_by(STRIP as usize) {
+        let columns = STRIP.min(window.size[0] - left);
+        let first = FIRST / columns as usize;
+        watch::in_parts(stop, window.size[1] as usize, first, |rows| {
+            let size = [columns, rows.len() as u32];
+            let part = window.crop([left.into(), rows.start as i64], size)?;
+            let values = &mut values[rows.start * width + left as usize..];
+            render(&part, RasterViewMut::new(values, width, size)?)
+        })?;
+    }
+    Ok(())
+}
+
 /// A field, or a number as a field.
 pub(crate) struct Operand(Shared<Made>);
 
@@ -129,6 +190,21 @@ pub(crate) fn _field_from_description(py: Python<'_>, description: &str) -> Resu
 }
 
 /// A number as a field.
+///
+/// Parameters
+/// ----------
+/// value : float
+///     The number.
+///
+/// Returns
+/// -------
+/// Field
+///     The field.
+///
+/// Raises
+/// ------
+/// DappleError
+///     If an argument is refused; the message names the limit and the value.
 #[pyfunction]
 pub(crate) fn constant(value: f32) -> Result<Field> {
     Field::new(Made::Constant(value))
@@ -149,18 +225,39 @@ impl Field {
         self.periods()
     }
 
+    /// The extent of a picture for which none is given.
+    fn _default_extent(&self) -> Vec<f64> {
+        let shown = self.made.made().shown();
+        default_extent(&self.periods(), &[shown[0], shown[1], shown[0], shown[0]])
+    }
+
     /// The values at the pixels of an array, float32.
     ///
     /// Parameters
     /// ----------
-    /// size : (rows, columns), or a number for all axes; (z, rows, columns) of three axes, (w, z, rows, columns) of four.
-    /// extent : (x, y), the size of the rectangle of the array, in units of the field; one period by default, and 1
-    ///     where there is none. (x, y, z) for three axes and (x, y, z, w) for four.
-    /// origin : (x, y) of the corner of the first pixel, with z and w as for `extent`; 0 by default.
-    /// window : the part to compute, such as `np.s_[100:150, 33:94]`, a slice for each axis of `size`: bit for bit the
-    ///     crop of the whole. It may lie outside: negative numbers are before the array, and not at its end as in
-    ///     NumPy.
-    /// out : memory for the values, a float32 array in C order; a new array by default.
+    /// size : int or tuple of int
+    ///     (rows, columns), or a number for all axes; (z, rows, columns) of three axes, (w, z, rows, columns) of four.
+    /// extent : float or tuple of float or None, default None
+    ///     (x, y), the size of the rectangle of the array, in units of the field; one period by default. Where there is
+    ///     none, 8 cells of `worley` and `gradient_noise`, and 1 for other fields. (x, y, z) for three axes and (x, y,
+    ///     z, w) for four.
+    /// origin : float or tuple of float or None, default None
+    ///     (x, y) of the corner of the first pixel, with z and w as for `extent`; 0 by default.
+    /// window : tuple of slice or None, default None
+    ///     The part to compute, such as `np.s_[100:150, 33:94]`, a slice for each axis of `size`: bit for bit the crop
+    ///     of the whole. It may lie outside: negative numbers are before the array, and not at its end as in NumPy.
+    /// out : numpy.ndarray of float32 or None, default None
+    ///     Memory for the values, a float32 array in C order; a new array by default.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray of float32
+    ///     The result, as described above.
+    ///
+    /// Raises
+    /// ------
+    /// DappleError
+    ///     If an argument is refused; the message names the limit and the value.
     #[pyo3(signature = (size, *, extent = None, origin = None, window = None, out = None))]
     fn render<'py>(
         &self,
@@ -178,13 +275,30 @@ impl Field {
                 origin,
                 window,
             },
-            &self.periods(),
+            &self._default_extent(),
         )?;
         grid.n_values()?;
-        arrays::filled(py, &grid.shape(), out, |values| self.fill(&grid, values))
+        arrays::filled(py, &grid.shape(), out, |values, stop| {
+            self.fill(&grid, values, stop)
+        })
     }
 
     /// The values at positions of the shape (…, ndim), x first: float32 of the shape (…).
+    ///
+    /// Parameters
+    /// ----------
+    /// positions : array_like
+    ///     Positions of the shape (…, axes), x first.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray of float32
+    ///     The result, as described above.
+    ///
+    /// Raises
+    /// ------
+    /// DappleError
+    ///     If an argument is refused; the message names the limit and the value.
     fn sample<'py>(
         &self,
         py: Python<'py>,
@@ -192,27 +306,34 @@ impl Field {
     ) -> Result<Bound<'py, PyAny>> {
         let n_axes = self.ndim();
         let positions = Positions::read(positions, n_axes)?;
-        arrays::filled(py, &positions.shape, None, |values| {
-            parallel::for_each_chunk(values, CHUNK, |chunk, values| {
-                let places = positions.numbers[chunk * CHUNK * n_axes..].chunks_exact(n_axes);
-                match &self.function {
-                    Function::Plane(field) => {
-                        let places: Vec<_> = places.take(values.len()).map(position).collect();
-                        // The lengths are equal, and there are no other errors.
-                        let _ = field.sample_many(&places, values);
-                    }
-                    Function::Space(volume) => {
-                        for (value, place) in values.iter_mut().zip(places) {
-                            *value = volume.sample(place);
-                        }
-                    }
-                }
-            });
-            Ok(())
+        arrays::filled(py, &positions.shape, None, |values, stop| {
+            watch::in_parts(stop, values.len(), FIRST, |part| {
+                let numbers = &positions.numbers[part.start * n_axes..part.end * n_axes];
+                parallel::for_each_chunk(&mut values[part], CHUNK, |chunk, values| {
+                    let places = numbers[chunk * CHUNK * n_axes..].chunks_exact(n_axes);
+                    self.sample_chunk(places, values);
+                });
+                Ok(())
+            })
         })
     }
 
     /// The plane of the first two axes at fixed further coordinates: `slice(z)` for three axes, `slice(z, w)` for four.
+    ///
+    /// Parameters
+    /// ----------
+    /// *rest : float
+    ///     The further coordinates.
+    ///
+    /// Returns
+    /// -------
+    /// Field
+    ///     The field.
+    ///
+    /// Raises
+    /// ------
+    /// DappleError
+    ///     If an argument is refused; the message names the limit and the value.
     #[pyo3(signature = (*rest))]
     fn slice(&self, rest: Vec<f64>) -> Result<Self> {
         Self::new(Made::Slice {
@@ -221,25 +342,71 @@ impl Field {
         })
     }
 
-    /// This field at positions times a frequency: one number, or (x, y).
+    /// This field at positions times a frequency: one number, or one for each axis, x first.
+    ///
+    /// Parameters
+    /// ----------
+    /// frequency : float or tuple of float
+    ///     One number, or one for each axis, x first.
+    ///
+    /// Returns
+    /// -------
+    /// Field
+    ///     The field.
+    ///
+    /// Raises
+    /// ------
+    /// DappleError
+    ///     If an argument is refused; the message names the limit and the value.
     fn frequency(&self, frequency: &Bound<'_, PyAny>) -> Result<Self> {
-        let frequency = pair("frequency", frequency)?.to_array();
+        let frequency = numbers("frequency", frequency, self.ndim())?;
         Self::new(Made::Frequency {
             field: self.made.clone(),
             frequency,
         })
     }
 
-    /// This field at positions plus an offset (x, y).
+    /// This field at positions plus an offset, x first.
+    ///
+    /// Parameters
+    /// ----------
+    /// offset : float or tuple of float
+    ///     One number, or one for each axis, x first.
+    ///
+    /// Returns
+    /// -------
+    /// Field
+    ///     The field.
+    ///
+    /// Raises
+    /// ------
+    /// DappleError
+    ///     If an argument is refused; the message names the limit and the value.
     fn offset(&self, offset: &Bound<'_, PyAny>) -> Result<Self> {
-        let offset = pair("offset", offset)?.to_array();
+        let offset = numbers("offset", offset, self.ndim())?;
         Self::new(Made::Offset {
             field: self.made.clone(),
             offset,
         })
     }
 
-    /// This field at positions rotated by an angle about the origin, in radians, from x to y.
+    /// This field at positions rotated by an angle about the origin, in radians, from x to y; about the
+    /// further axes in space.
+    ///
+    /// Parameters
+    /// ----------
+    /// angle : float
+    ///     In radians, from x to y.
+    ///
+    /// Returns
+    /// -------
+    /// Field
+    ///     The field.
+    ///
+    /// Raises
+    /// ------
+    /// DappleError
+    ///     If an argument is refused; the message names the limit and the value.
     fn rotate(&self, angle: f64) -> Result<Self> {
         Self::new(Made::Rotate {
             field: self.made.clone(),
@@ -247,7 +414,27 @@ impl Field {
         })
     }
 
-    /// This field at positions moved by `amount` times the values of the fields `x` and `y` (domain warping).
+    /// This field at positions moved by `amount` times the values of the fields `x` and `y` (domain warping); in
+    /// space, positions move within their plane.
+    ///
+    /// Parameters
+    /// ----------
+    /// x : Field
+    ///     The field of displacements along x.
+    /// y : Field
+    ///     The field of displacements along y.
+    /// amount : float
+    ///     The factor of the displacements.
+    ///
+    /// Returns
+    /// -------
+    /// Field
+    ///     The field.
+    ///
+    /// Raises
+    /// ------
+    /// DappleError
+    ///     If an argument is refused; the message names the limit and the value.
     fn warp(&self, x: &Self, y: &Self, amount: f64) -> Result<Self> {
         Self::new(Made::Warp {
             field: self.made.clone(),
@@ -258,6 +445,23 @@ impl Field {
     }
 
     /// This field with the range `old` of its values mapped linearly to the range `new`, also beyond it.
+    ///
+    /// Parameters
+    /// ----------
+    /// old : sequence of float
+    ///     The range of values that is mapped.
+    /// new : sequence of float, optional
+    ///     The range that it becomes.
+    ///
+    /// Returns
+    /// -------
+    /// Field
+    ///     The field.
+    ///
+    /// Raises
+    /// ------
+    /// DappleError
+    ///     If an argument is refused; the message names the limit and the value.
     #[pyo3(signature = (old, new = [0.0, 1.0]), text_signature = "(self, old, new=(0.0, 1.0))")]
     fn remap(&self, old: [f32; 2], new: [f32; 2]) -> Result<Self> {
         Self::new(Made::Remap {
@@ -268,6 +472,23 @@ impl Field {
     }
 
     /// This field with values below `low` and above `high` replaced by these.
+    ///
+    /// Parameters
+    /// ----------
+    /// low : float, default 0.0
+    ///     The lower bound.
+    /// high : float, default 1.0
+    ///     The upper bound.
+    ///
+    /// Returns
+    /// -------
+    /// Field
+    ///     The field.
+    ///
+    /// Raises
+    /// ------
+    /// DappleError
+    ///     If an argument is refused; the message names the limit and the value.
     #[pyo3(signature = (low = 0.0, high = 1.0))]
     fn clamp(&self, low: f32, high: f32) -> Result<Self> {
         Self::new(Made::Clamp {
@@ -277,16 +498,63 @@ impl Field {
     }
 
     /// The smaller of this field and another field or number, everywhere.
+    ///
+    /// Parameters
+    /// ----------
+    /// other : Field or float
+    ///     A field or a number.
+    ///
+    /// Returns
+    /// -------
+    /// Field
+    ///     The field.
+    ///
+    /// Raises
+    /// ------
+    /// DappleError
+    ///     If an argument is refused; the message names the limit and the value.
     fn minimum(&self, other: Operand) -> Result<Self> {
         self.with(other, PairOperation::Minimum, true)
     }
 
     /// The larger of this field and another field or number, everywhere.
+    ///
+    /// Parameters
+    /// ----------
+    /// other : Field or float
+    ///     A field or a number.
+    ///
+    /// Returns
+    /// -------
+    /// Field
+    ///     The field.
+    ///
+    /// Raises
+    /// ------
+    /// DappleError
+    ///     If an argument is refused; the message names the limit and the value.
     fn maximum(&self, other: Operand) -> Result<Self> {
         self.with(other, PairOperation::Maximum, true)
     }
 
     /// Interpolates from this field, where `by` is 0, to another field or number, where it is 1.
+    ///
+    /// Parameters
+    /// ----------
+    /// to : Field or float
+    ///     A field or a number.
+    /// by : Field or float
+    ///     The weight, from 0 to 1: a field or a number.
+    ///
+    /// Returns
+    /// -------
+    /// Field
+    ///     The field.
+    ///
+    /// Raises
+    /// ------
+    /// DappleError
+    ///     If an argument is refused; the message names the limit and the value.
     fn mix(&self, to: Operand, by: Operand) -> Result<Self> {
         Self::new(Made::Mix {
             from: self.made.clone(),
@@ -298,6 +566,25 @@ impl Field {
     /// Fractional Brownian motion of this field: the sum of octaves, each finer and lower than the one before.
     ///
     /// With w = 1 + gain + gain**2 + …, values from -b to b have sums from -w * b to w * b, for a gain from 0 to 1.
+    ///
+    /// Parameters
+    /// ----------
+    /// octaves : int, default 6
+    ///     The number of octaves.
+    /// gain : float, default 0.5
+    ///     The ratio of the heights of an octave and the one before.
+    /// lacunarity : float, default 2.0
+    ///     The ratio of the frequencies of an octave and the one before.
+    ///
+    /// Returns
+    /// -------
+    /// Field
+    ///     The field.
+    ///
+    /// Raises
+    /// ------
+    /// DappleError
+    ///     If an argument is refused; the message names the limit and the value.
     #[pyo3(signature = (octaves = 6, *, gain = 0.5, lacunarity = 2.0))]
     fn fbm(&self, octaves: u32, gain: f64, lacunarity: f64) -> Result<Self> {
         self.fractal(octaves, gain, lacunarity, FractalShape::Sum)
@@ -306,6 +593,25 @@ impl Field {
     /// The sum of octaves of `1 - |value|`: ridges where values cross 0.
     ///
     /// With w = 1 + gain + gain**2 + …, values from -b to b have sums from w * (1 - b) to w, for a gain from 0 to 1.
+    ///
+    /// Parameters
+    /// ----------
+    /// octaves : int, default 6
+    ///     The number of octaves.
+    /// gain : float, default 0.5
+    ///     The ratio of the heights of an octave and the one before.
+    /// lacunarity : float, default 2.0
+    ///     The ratio of the frequencies of an octave and the one before.
+    ///
+    /// Returns
+    /// -------
+    /// Field
+    ///     The field.
+    ///
+    /// Raises
+    /// ------
+    /// DappleError
+    ///     If an argument is refused; the message names the limit and the value.
     #[pyo3(signature = (octaves = 6, *, gain = 0.5, lacunarity = 2.0))]
     fn ridged(&self, octaves: u32, gain: f64, lacunarity: f64) -> Result<Self> {
         self.fractal(octaves, gain, lacunarity, FractalShape::Ridged)
@@ -314,6 +620,25 @@ impl Field {
     /// The sum of octaves of `|value|`: creases, and round hills between them (turbulence).
     ///
     /// With w = 1 + gain + gain**2 + …, values from -b to b have sums from 0 to w * b, for a gain from 0 to 1.
+    ///
+    /// Parameters
+    /// ----------
+    /// octaves : int, default 6
+    ///     The number of octaves.
+    /// gain : float, default 0.5
+    ///     The ratio of the heights of an octave and the one before.
+    /// lacunarity : float, default 2.0
+    ///     The ratio of the frequencies of an octave and the one before.
+    ///
+    /// Returns
+    /// -------
+    /// Field
+    ///     The field.
+    ///
+    /// Raises
+    /// ------
+    /// DappleError
+    ///     If an argument is refused; the message names the limit and the value.
     #[pyo3(signature = (octaves = 6, *, gain = 0.5, lacunarity = 2.0))]
     fn billow(&self, octaves: u32, gain: f64, lacunarity: f64) -> Result<Self> {
         self.fractal(octaves, gain, lacunarity, FractalShape::Billow)

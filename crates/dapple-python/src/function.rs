@@ -4,6 +4,7 @@
 
 use crate::error::{Error, Result};
 use crate::generators::{CellsMade, GradientMade, WaveletMade};
+use crate::grid::CELLS;
 use crate::pups::{PupsMade, TextureMade};
 use crate::recipe::NodeMade;
 use crate::shared::{Build, Shared};
@@ -52,6 +53,86 @@ pub(crate) trait Volume: Send + Sync {
     }
 }
 
+impl Function {
+    /// The number of axes.
+    fn n_axes(&self) -> usize {
+        match self {
+            Self::Plane(_) => 2,
+            Self::Space(volume) => volume.period().len(),
+        }
+    }
+}
+
+/// Returns a part of a composition in a plane: its index, and the change of each further coordinate.
+type Part<'a> = &'a dyn Fn(usize, &dyn Fn(usize, f64) -> f64) -> Arc<dyn Field>;
+
+/// A function that is composed of others: in each plane of space it is the composition of their planes.
+struct Composed {
+    made: Made,
+    parts: Vec<Function>,
+    n_axes: usize,
+}
+
+impl Composed {
+    /// The plane along the first two axes at fixed further coordinates.
+    fn plane(&self, rest: &[f64]) -> Result<Arc<dyn Field>> {
+        let part = |index: usize, change: &dyn Fn(usize, f64) -> f64| match &self.parts[index] {
+            Function::Plane(field) => Arc::clone(field),
+            Function::Space(volume) => {
+                let rest = rest.iter().enumerate();
+                let rest: Vec<f64> = rest.map(|(axis, &at)| change(axis, at)).collect();
+                volume.slice(&rest)
+            }
+        };
+        self.made.of_planes(&part, 0)
+    }
+}
+
+impl Volume for Composed {
+    fn period(&self) -> Vec<Option<f64>> {
+        // The periods along further axes follow from those of the parts as they do in a plane of these axes.
+        let part = |index: usize, _: &dyn Fn(usize, f64) -> f64| {
+            let mut period = [Some(0.0); 2];
+            if let Function::Space(volume) = &self.parts[index] {
+                for (period, further) in period.iter_mut().zip(&volume.period()[2..]) {
+                    *period = *further;
+                }
+            }
+            let field: Arc<dyn Field> = Arc::new(Repeating(period));
+            field
+        };
+        let of = |made: Result<Arc<dyn Field>>| made.map_or([None; 2], |plane| plane.period());
+        let plane = of(self.plane(&vec![0.0; self.n_axes - 2]));
+        let further = of(self.made.of_planes(&part, 2));
+        [plane, further].concat()[..self.n_axes].to_vec()
+    }
+
+    fn sample(&self, position: &[f64]) -> f32 {
+        let [x, y, rest @ ..] = position else {
+            return f32::NAN;
+        };
+        self.slice(rest).sample(DVec2::new(*x, *y))
+    }
+
+    fn slice(&self, rest: &[f64]) -> Arc<dyn Field> {
+        // The same composition was made before, at other coordinates.
+        self.plane(rest).unwrap_or_else(|_| Arc::new(f32::NAN))
+    }
+}
+
+/// A field of which only the periods are known.
+struct Repeating([Option<f64>; 2]);
+
+impl Field for Repeating {
+    fn sample(&self, _: DVec2) -> f32 {
+        0.0
+    }
+
+    fn period(&self) -> [Option<f64>; 2] {
+        self.0
+    }
+}
+
 /// The description of a field.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -75,12 +156,12 @@ pub(crate) enum Made {
     /// A field at positions times a frequency.
     Frequency {
         field: Shared<Made>,
-        frequency: [f64; 2],
+        frequency: Vec<f64>,
     },
     /// A field at positions plus an offset.
     Offset {
         field: Shared<Made>,
-        offset: [f64; 2],
+        offset: Vec<f64>,
     },
     /// A field at positions rotated by an angle.
     Rotate { field: Shared<Made>, angle: f64 },
@@ -213,6 +294,24 @@ impl Made {
         }
     }
 
+    /// The width and height that a picture shows where the field has no period: some cells of noise, and otherwise 1.
+    pub(crate) fn shown(&self) -> [f64; 2] {
+        match self {
+            Self::Worley(_) | Self::GradientNoise(_) => [CELLS; 2],
+            Self::Frequency { field, frequency } => {
+                let inner = field.made().shown();
+                [0, 1].map(|axis| match frequency[axis].abs() {
+                    frequency if frequency > 0.0 => inner[axis] / frequency,
+                    _ => inner[axis],
+                })
+            }
+            _ => self.parts().into_iter().fold([1.0; 2], |shown, part| {
+                let part = part.made().shown();
+                [shown[0].max(part[0]), shown[1].max(part[1])]
+            }),
+        }
+    }
+
     /// Checks that all numbers are finite, since descriptions cannot hold others.
     fn check_numbers(&self) -> Result<()> {
         let numbers = match self {
@@ -251,61 +350,99 @@ impl Made {
 
     /// Makes the function of this description.
     fn function(&self) -> Result<Function> {
-        let field: Arc<dyn Field> = match self {
-            Self::Constant(number) => Arc::new(*number),
+        match self {
+            Self::Constant(number) => return Ok(Function::Plane(Arc::new(*number))),
             Self::Worley(made) => return made.build(),
             Self::GradientNoise(made) => return made.build(),
             Self::WaveletNoise(made) => return made.get(),
-            Self::Pups(made) => made.get()?.numbers()?,
-            Self::Texture(made) => made.get()?.numbers()?,
+            Self::Pups(made) => return Ok(Function::Plane(made.get()?.numbers()?)),
+            Self::Texture(made) => return Ok(Function::Plane(made.get()?.numbers()?)),
             Self::Node(made) => return made.get(),
-            Self::Slice { field, rest } => match field.get()?.function {
-                Function::Space(volume) if volume.period().len() == rest.len() + 2 => {
-                    volume.slice(rest)
-                }
-                _ => {
-                    return Err(Error::new(
+            Self::Slice { field, rest } => {
+                return match field.get()?.function {
+                    Function::Space(volume) if volume.period().len() == rest.len() + 2 => {
+                        Ok(Function::Plane(volume.slice(rest)))
+                    }
+                    _ => Err(Error::new(
                         "axes",
                         format!(
                             "a slice at {} further coordinates is of a field with as many axes more than two",
                             rest.len()
                         ),
-                    ));
-                }
-            },
-            Self::Frequency { field, frequency } => {
-                Arc::new(field.plane()?.frequency_xy((*frequency).into()))
+                    )),
+                };
             }
-            Self::Offset { field, offset } => Arc::new(field.plane()?.offset((*offset).into())),
-            Self::Rotate { field, angle } => Arc::new(field.plane()?.rotate(*angle)),
-            Self::Warp {
-                field,
-                x,
-                y,
-                amount,
-            } => Arc::new(field.plane()?.warp(x.plane()?, y.plane()?, *amount)),
-            Self::Remap { field, from, to } => Arc::new(field.plane()?.remap(*from, *to)?),
-            Self::Clamp { field, bounds } => Arc::new(clamped(field.plane()?, *bounds)?),
-            Self::Absolute(field) => Arc::new(field.plane()?.map(f32::abs)),
-            Self::Pair {
-                first,
-                second,
-                operation,
-            } => Arc::new(first.plane()?.with(second.plane()?, *operation)),
-            Self::Mix { from, to, by } => Arc::new(from.plane()?.mix(to.plane()?, by.plane()?)),
+            _ => {}
+        }
+        let parts = self.parts().into_iter();
+        let parts: Vec<Function> = parts
+            .map(|part| Ok(part.get()?.function))
+            .collect::<Result<_>>()?;
+        let n_axes = parts.iter().map(Function::n_axes).max().unwrap_or(2);
+        // A field of the plane is the same in every plane of space.
+        if parts
+            .iter()
+            .any(|part| ![2, n_axes].contains(&part.n_axes()))
+        {
+            return Err(Error::new(
+                "axes",
+                "fields of three and of four axes are not combined: take a `slice(…)`, or fields of the same number of axes",
+            ));
+        }
+        let composed = Composed {
+            made: self.clone(),
+            parts,
+            n_axes,
+        };
+        let plane = composed.plane(&vec![0.0; n_axes - 2])?;
+        Ok(match n_axes {
+            2 => Function::Plane(plane),
+            _ => Function::Space(Arc::new(composed)),
+        })
+    }
+
+    /// Composes fields of a plane along two axes, of which `first` is the first. `part` returns a part by its index, at
+    /// further coordinates that are changed by a function of their index and value.
+    fn of_planes(&self, part: Part<'_>, first: usize) -> Result<Arc<dyn Field>> {
+        let same = |index| part(index, &|_, at| at);
+        // Along axes that the field does not have, nothing changes.
+        let along = |numbers: &[f64], default: f64| -> DVec2 {
+            [0, 1]
+                .map(|axis| numbers.get(first + axis).copied().unwrap_or(default))
+                .into()
+        };
+        Ok(match self {
+            Self::Frequency { frequency, .. } => {
+                let inner = part(0, &|axis, at| at * frequency[axis + 2]);
+                Arc::new(inner.frequency_xy(along(frequency, 1.0)))
+            }
+            Self::Offset { offset, .. } => {
+                let inner = part(0, &|axis, at| at + offset[axis + 2]);
+                Arc::new(inner.offset(along(offset, 0.0)))
+            }
+            // It turns about the axes after the first two.
+            Self::Rotate { angle, .. } if first == 0 => Arc::new(same(0).rotate(*angle)),
+            Self::Warp { amount, .. } => Arc::new(same(0).warp(same(1), same(2), *amount)),
+            Self::Remap { from, to, .. } => Arc::new(same(0).remap(*from, *to)?),
+            Self::Clamp { bounds, .. } => Arc::new(clamped(same(0), *bounds)?),
+            Self::Absolute(_) => Arc::new(same(0).map(f32::abs)),
+            Self::Pair { operation, .. } => Arc::new(same(0).with(same(1), *operation)),
+            Self::Mix { .. } => Arc::new(same(0).mix(same(1), same(2))),
             Self::Fractal {
-                field,
                 octaves,
                 gain,
                 lacunarity,
                 shape,
+                ..
             } => {
-                let octave = field.plane()?;
-                let octaves = core::iter::repeat_n(octave, *octaves as usize);
+                let scales = core::iter::successors(Some(1.0), |scale| Some(scale * lacunarity));
+                let octaves = scales
+                    .take(*octaves as usize)
+                    .map(|scale| part(0, &|_, at| at * scale));
                 Arc::new(Fractal::new(octaves, *gain, *lacunarity, *shape)?)
             }
-        };
-        Ok(Function::Plane(field))
+            _ => same(0),
+        })
     }
 
     /// The description as text.

@@ -32,15 +32,12 @@ pub(crate) struct GridArguments<'a, 'py> {
 }
 
 impl Grid {
-    /// Makes the grid for the arguments. `period` is the default extent.
-    pub(crate) fn new(arguments: &GridArguments<'_, '_>, period: &[Option<f64>]) -> Result<Self> {
-        let n_axes = period.len();
+    /// Makes the grid for the arguments, with an extent that [`default_extent`] returns.
+    pub(crate) fn new(arguments: &GridArguments<'_, '_>, extent: &[f64]) -> Result<Self> {
+        let n_axes = extent.len();
         let sizes = sizes(arguments.size, n_axes)?;
         let extents = match arguments.extent {
-            None => period
-                .iter()
-                .map(|period| period.filter(|&period| period > 0.0).unwrap_or(1.0))
-                .collect(),
+            None => extent.to_vec(),
             Some(extent) => numbers("extent", extent, n_axes)?,
         };
         let origins = match arguments.origin {
@@ -131,6 +128,16 @@ impl Axis {
     }
 }
 
+/// The number of cells that are shown along an axis without a period.
+pub(crate) const CELLS: f64 = 8.0;
+
+/// The extent of a picture for which none is given: one period along each axis, and `shown` where there is none.
+pub(crate) fn default_extent(period: &[Option<f64>], shown: &[f64]) -> Vec<f64> {
+    let axes = period.iter().zip(shown);
+    axes.map(|(period, &shown)| period.filter(|&period| period > 0.0).unwrap_or(shown))
+        .collect()
+}
+
 /// One value for all axes, or one for each; `None` for other data.
 pub(crate) fn per_axis<'py, T>(data: &Bound<'py, PyAny>, n_axes: usize) -> Option<Vec<T>>
 where
@@ -162,7 +169,7 @@ pub(crate) fn size(size: &Bound<'_, PyAny>) -> Result<[u32; 2]> {
 }
 
 /// Numbers along axes: one for all, or one for each.
-fn numbers(what: &str, data: &Bound<'_, PyAny>, n_axes: usize) -> Result<Vec<f64>> {
+pub(crate) fn numbers(what: &str, data: &Bound<'_, PyAny>, n_axes: usize) -> Result<Vec<f64>> {
     per_axis(data, n_axes).ok_or_else(|| {
         let message = format!(
             "the {what} is {data:?}, but it must be a number, or {n_axes} numbers, x first"

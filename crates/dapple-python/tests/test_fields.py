@@ -267,7 +267,7 @@ def test_cell_points_are_found_as_features():
         (lambda: dp.wavelet_noise(period=10**6), "range", "2^27"),
         (lambda: dp.worley().fbm(33), "range", "1 to 32"),
         (lambda: dp.worley().slice(1.0), "axes", "slice"),
-        (lambda: dp.worley(dims=3) + 1, "axes", "slice"),
+        (lambda: dp.worley(dims=3) + dp.worley(dims=4), "axes", "slice"),
         (lambda: dp.worley().clamp(2, 1), "range", "bounds"),
         (lambda: dp.worley().remap((1, 1)), "range", "length"),
         (lambda: dp.worley().render((0, 5)), "size", "at least 1"),
@@ -362,3 +362,29 @@ def test_seeds_are_whole_numbers_of_64_bits():
     for seed in (1.5, "7", None):
         with pytest.raises(TypeError, match="whole number"):
             dp.worley(seed=seed)
+
+
+@pytest.mark.parametrize("dims", [2, 3])
+def test_without_a_period_some_cells_are_shown(dims):
+    cells = dp.worley(seed=1, value="cell_value", dims=dims)
+    shape = (32,) * dims
+    assert np.array_equal(cells.render(shape), cells.render(shape, extent=8))
+    # A cell has 3 points in the mean: 8 cells along an axis show some hundreds.
+    assert len(np.unique(cells.render(shape))) > 100
+
+
+def test_the_default_extent_is_that_of_the_cells():
+    cells, noise = dp.worley(seed=1), dp.gradient_noise(seed=2)
+    window = {"window": np.s_[3:9, 5:7]}
+    for field, extent in [
+        (cells + 1, 8),
+        (noise.fbm(3), 8),
+        (noise.frequency((4, 2)), (2, 4)),
+        (dp.gradient_noise(period=(6, None)), (6, 8)),
+        (dp.constant(0.5).mix(cells, noise), 8),
+        (dp.noise(dp.Domain(1, wrap=False), spacing=0.2), 1),
+        (dp.noise(dp.Domain(3), spacing=0.4), 3),
+    ]:
+        assert np.array_equal(field.render(16, **window), field.render(16, extent=extent, **window))
+    features = cells.render_features(16, outputs=["id"])
+    assert np.array_equal(features.id, cells.render_features(16, outputs=["id"], extent=8).id)

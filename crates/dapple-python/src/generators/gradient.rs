@@ -48,7 +48,7 @@ impl GradientMade {
             }
             _ if self.octaves.is_some() => Err(Error::new(
                 "axes",
-                "octaves of gradient noise are of two axes; sum slices for more",
+                "`octaves` of gradient noise are of two axes; take `fbm` for three and four",
             )),
             3 => Ok(Function::Space(Arc::new(
                 GradientNoise3::new(self.seed).with_period(array(&self.period)?)?,
@@ -100,14 +100,31 @@ impl Volume for GradientNoise4 {
 ///
 /// Parameters
 /// ----------
-/// seed : int, from 0 to 2**64 - 1.
-/// dims : 2, 3 or 4 axes.
-/// period : the number of cells after which it repeats exactly: one number, or one for each axis, x first; None for an
-///     axis along which it does not.
-/// octaves : the number of octaves that are summed (fBm), each with a seed of its own; 1 to 32. Two axes only.
-/// gain : the ratio of the heights of an octave and the one before, -1 to 1.
-/// lacunarity : the ratio of the frequencies of an octave and the one before, 1 to 16; whole if there is a period.
-/// shape : "sum", "ridged" or "billow" (turbulence).
+/// seed : int, default 0
+///     From 0 to 2**64 - 1.
+/// dims : int, default 2
+///     2, 3 or 4 axes.
+/// period : int or tuple of int or None, default None
+///     The number of cells after which it repeats exactly: one number, or one for each axis, x first; None for an axis
+///     along which it does not.
+/// octaves : int or None, default None
+///     The number of octaves that are summed (fBm), each with a seed of its own; 1 to 32. Two axes only.
+/// gain : float, default 0.5
+///     The ratio of the heights of an octave and the one before, -1 to 1.
+/// lacunarity : float, default 2.0
+///     The ratio of the frequencies of an octave and the one before, 1 to 16; whole if there is a period.
+/// shape : {"sum", "ridged", "billow"}, default "sum"
+///     "sum", "ridged" or "billow" (turbulence).
+///
+/// Returns
+/// -------
+/// Field
+///     The field.
+///
+/// Raises
+/// ------
+/// DappleError
+///     If an argument is refused; the message names the limit and the value.
 ///
 /// Examples
 /// --------
