@@ -26,7 +26,10 @@ pub(crate) fn options_or<T: DeserializeOwned>(
 
 /// Converts data to options of a type.
 pub(crate) fn read<T: DeserializeOwned>(what: &str, data: Value) -> Result<T> {
-    serde_json::from_value(data).map_err(|error| Error::new("options", format!("{what}: {error}")))
+    dapple::recipe::read_options(&data).map_err(|error| {
+        let message = format!("{what}: {}", error.kind());
+        Error::new("options", message).with_near(error.nearest().map(str::to_owned))
+    })
 }
 
 /// Converts Python data to JSON text, each entry on a line of its own, in the order of the dictionaries.
@@ -156,11 +159,15 @@ fn number(data: &Bound<'_, PyAny>, depth: usize) -> Result<Value> {
 
 /// The value with a name, for a kind of values with names.
 pub(crate) fn named<T: dapple::raster::Named>(what: &str, name: &str) -> Result<T> {
-    T::from_name(name).ok_or_else(|| {
-        let names = T::NAMES.join(", ");
-        Error::new(
-            "name",
-            format!("the {what} is `{name}`, but it must be one of {names}"),
-        )
-    })
+    T::from_name(name).ok_or_else(|| unknown_name(what, name, T::NAMES))
+}
+
+/// The error of a name that is not one of some, with the nearest of them.
+pub(crate) fn unknown_name(what: &str, name: &str, known: &[&str]) -> Error {
+    let message = format!(
+        "the {what} is `{name}`, but it must be one of {}",
+        known.join(", ")
+    );
+    let near = dapple::recipe::similar_words(name, known.iter().copied());
+    Error::new("name", message).with_near(near.first().map(|near| (*near).to_owned()))
 }

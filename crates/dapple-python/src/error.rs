@@ -2,11 +2,13 @@
 
 use dapple::{
     color::ColorError, graph::GraphError, image::ImageError, mesh::MeshError, mesh_io::MeshIoError,
-    points::PointsError, pups::PupsError, raster::RasterError, recipe::RecipeError,
-    synth::SynthError, tile::TileError, wavelet::WaveletError, worley::WorleyError,
+    mesh_io::MeshIoErrorKind, points::PointsError, pups::PupsError, raster::RasterError,
+    recipe::RecipeError, synth::SynthError, tile::TileError, wavelet::WaveletError,
+    worley::WorleyError,
 };
-use pyo3::exceptions::PyValueError;
+use pyo3::exceptions::{PyOSError, PyValueError};
 use pyo3::prelude::*;
+use std::path::Path;
 
 pyo3::create_exception!(
     dapple_textures,
@@ -66,6 +68,19 @@ impl Error {
         }
     }
 
+    /// An error of the operating system by its number: a `FileNotFoundError`, `IsADirectoryError`, or another `OSError`.
+    pub(crate) fn of_system(code: i32, path: Option<&Path>) -> Self {
+        Self::Python(Python::attach(|py| {
+            let make = || -> PyResult<PyErr> {
+                let text = py.import("os")?.call_method1("strerror", (code,))?;
+                // Called as a class, since it returns the subclass for the number.
+                let class = py.get_type::<PyOSError>();
+                Ok(PyErr::from_value(class.call1((code, text, path))?))
+            };
+            make().unwrap_or_else(|error| error)
+        }))
+    }
+
     /// An error of a crate; its kind is the name of the enum variant.
     fn of(kind: &impl core::fmt::Debug, message: &impl ToString) -> Self {
         Self::new(&snake_case(&format!("{kind:?}")), message.to_string())
@@ -97,9 +112,7 @@ macro_rules! refusals {
 refusals!(
     ColorError,
     GraphError,
-    ImageError,
     MeshError,
-    MeshIoError,
     PointsError,
     PupsError,
     RasterError,
@@ -108,6 +121,30 @@ refusals!(
     WaveletError,
     WorleyError,
 );
+
+impl From<ImageError> for Error {
+    fn from(error: ImageError) -> Self {
+        let source = std::error::Error::source(&error);
+        let cause = source.and_then(|source| source.downcast_ref::<std::io::Error>());
+        match cause.and_then(std::io::Error::raw_os_error) {
+            Some(code) => Self::of_system(code, error.path()),
+            None => Self::of(error.kind(), &error),
+        }
+    }
+}
+
+impl From<MeshIoError> for Error {
+    fn from(error: MeshIoError) -> Self {
+        match error.kind() {
+            MeshIoErrorKind::Io {
+                path,
+                code: Some(code),
+                ..
+            } => Self::of_system(*code, Some(Path::new(path))),
+            _ => Self::of(error.kind(), &error),
+        }
+    }
+}
 
 impl From<RecipeError> for Error {
     fn from(error: RecipeError) -> Self {

@@ -5,6 +5,7 @@ use crate::error::{Error, Result};
 use crate::pictures::{Content, Kind, Pixels};
 use crate::recipe::content_of;
 use crate::threads;
+use crate::watch::{self, Stop};
 use dapple::color::{Code, LinearRgb, LinearRgba, Normal};
 use dapple::image::{self, Depth, Encoding, Image, Limits, PngPixels, RowWriter};
 use dapple::raster::{Raster, RasterView};
@@ -168,12 +169,30 @@ fn normals(image: &Image) -> Result<Raster<Normal>> {
 ///
 /// Parameters
 /// ----------
-/// path : the file.
-/// content : the content, if the channels do not show it: `"gray"`, `"color"` (a gray image, too), `"normal"` (unit
-///     vectors of a normal map), or `"data"` (all channels uncoded, such as occlusion, roughness and metallic).
-/// alpha : None keeps it if a pixel is not opaque; `"keep"` always; `"drop"` removes it; `"over:#808080"` composites
-///     the image over a color.
-/// max_pixels, max_bytes : the limits; a larger image is an error before memory is allocated for it.
+/// path : str or os.PathLike
+///     The file.
+/// content : {"gray", "color", "normal", "data"} or None, default None
+///     The content, if the channels do not show it: `"gray"`, `"color"` (a gray image, too), `"normal"` (unit vectors
+///     of a normal map), or `"data"` (all channels uncoded, such as occlusion, roughness and metallic).
+/// alpha : str or None, default None
+///     None keeps it if a pixel is not opaque; `"keep"` always; `"drop"` removes it; `"over:#808080"` composites the
+///     image over a color.
+/// max_pixels : int, default 268435456
+///     The limits; a larger image is an error before memory is allocated for it.
+/// max_bytes : int, default 4294967296
+///     The limits; a larger image is an error before memory is allocated for it.
+///
+/// Returns
+/// -------
+/// numpy.ndarray of float32
+///     The result, as described above.
+///
+/// Raises
+/// ------
+/// DappleError
+///     If an argument is refused; the message names the limit and the value.
+/// OSError
+///     If the system cannot read or write the file: `FileNotFoundError` if it does not exist.
 ///
 /// Examples
 /// --------
@@ -198,11 +217,34 @@ pub(crate) fn read_image<'py>(
         bytes: max_bytes,
     };
     let reading = Reading::new(content, alpha)?;
-    let (kind, maps) = threads::run(py, || reading.maps(&image::read_image(path, &limits)?))??;
+    let (kind, maps) = threads::run(py, move || reading.maps(&image::read_image(path, &limits)?))??;
     kind.array(py, maps)
 }
 
 /// Decodes the bytes of an image file to an array; see `read_image`.
+///
+/// Parameters
+/// ----------
+/// data : bytes
+///     A recipe as nested dictionaries and lists.
+/// content : {"gray", "color", "normal", "data"} or None, default None
+///     What the numbers are, as in `read_image`.
+/// alpha : str or None, default None
+///     What is done with alpha, as in `read_image`.
+/// max_pixels : int, default 268435456
+///     The largest number of pixels that is read.
+/// max_bytes : int, default 4294967296
+///     The largest number of bytes of a file and of its pixels.
+///
+/// Returns
+/// -------
+/// numpy.ndarray of float32
+///     The result, as described above.
+///
+/// Raises
+/// ------
+/// DappleError
+///     If an argument is refused; the message names the limit and the value.
 ///
 /// Examples
 /// --------
@@ -225,7 +267,10 @@ pub(crate) fn decode_image<'py>(
         bytes: max_bytes,
     };
     let reading = Reading::new(content, alpha)?;
-    let (kind, maps) = threads::run(py, || reading.maps(&image::decode_image(data, &limits)?))??;
+    let data = data.to_vec();
+    let (kind, maps) = threads::run(py, move || {
+        reading.maps(&image::decode_image(&data, &limits)?)
+    })??;
     kind.array(py, maps)
 }
 
@@ -236,11 +281,22 @@ pub(crate) fn decode_image<'py>(
 ///
 /// Parameters
 /// ----------
-/// path : the file.
-/// image : (rows, columns), or (rows, columns, 3 or 4), floating point.
-/// content : `"gray"`, `"color"`, `"normal"` or `"data"`; by default gray for one channel and color for more. Color is
-///     linear here and in EXR and NPY, and sRGB in PNG. Normals are `(part + 1) / 2` in PNG and EXR. Data is unchanged.
-/// depth : 8 or 16 bits of PNG; 8 by default for color, 16 for all other content.
+/// path : str or os.PathLike
+///     The file.
+/// image : array_like
+///     (rows, columns), or (rows, columns, 3 or 4), floating point.
+/// content : {"gray", "color", "normal", "data"} or None, default None
+///     `"gray"`, `"color"`, `"normal"` or `"data"`; by default gray for one channel and color for more. Color is linear
+///     here and in EXR and NPY, and sRGB in PNG. Normals are `(part + 1) / 2` in PNG and EXR. Data is unchanged.
+/// depth : {8, 16} or None, default None
+///     8 or 16 bits of PNG; 8 by default for color, 16 for all other content.
+///
+/// Raises
+/// ------
+/// DappleError
+///     If an argument is refused; the message names the limit and the value.
+/// OSError
+///     If the system cannot read or write the file: `FileNotFoundError` if it does not exist.
 ///
 /// Examples
 /// --------
@@ -270,11 +326,28 @@ pub(crate) fn write_image(
 ///
 /// Parameters
 /// ----------
-/// folder : the folder for the files.
-/// maps : a dictionary of maps, as `Plan.bake` returns it.
-/// name : the beginning of the file names: `rock` for `rock_normal.png`; by default they are the names of the maps.
-/// format : `"png"`, `"exr"` or `"npy"`.
-/// depth : 8 or 16 bits of PNG; 8 by default for color, 16 for all other content.
+/// folder : str or os.PathLike
+///     The folder for the files.
+/// maps : dict of array_like
+///     A dictionary of maps, as `Plan.bake` returns it.
+/// name : str or None, default None
+///     The beginning of the file names: `rock` for `rock_normal.png`; by default they are the names of the maps.
+/// format : {"png", "exr", "npy"}, default "png"
+///     `"png"`, `"exr"` or `"npy"`.
+/// depth : {8, 16} or None, default None
+///     8 or 16 bits of PNG; 8 by default for color, 16 for all other content.
+///
+/// Returns
+/// -------
+/// list of Path
+///     The result.
+///
+/// Raises
+/// ------
+/// DappleError
+///     If an argument is refused; the message names the limit and the value.
+/// OSError
+///     If the system cannot read or write the file: `FileNotFoundError` if it does not exist.
 ///
 /// Examples
 /// --------
@@ -311,9 +384,12 @@ pub(crate) fn write_maps(
         Err(Error::new("name", message))
     });
     let files = files.collect::<Result<Vec<_>>>()?;
-    fs::create_dir_all(&folder).map_err(|error| {
-        let message = format!("{} cannot be made: {error}", folder.display());
-        Error::new("io", message)
+    fs::create_dir_all(&folder).map_err(|error| match error.raw_os_error() {
+        Some(code) => Error::of_system(code, Some(&folder)),
+        None => Error::new(
+            "io",
+            format!("{} cannot be made: {error}", folder.display()),
+        ),
     })?;
     for (file, (map, image)) in files.iter().zip(&maps) {
         let content = content_of(map).map(|content| content.to_string());
@@ -323,6 +399,27 @@ pub(crate) fn write_maps(
 }
 
 /// Encodes an array as the bytes of an image file; see `write_image`.
+///
+/// Parameters
+/// ----------
+/// image : array_like
+///     An image.
+/// format : {"png", "exr", "npy", "r16"}, default "png"
+///     The format of the bytes.
+/// content : {"gray", "color", "normal", "data"} or None, default None
+///     What the numbers are, as in `read_image`.
+/// depth : {8, 16} or None, default None
+///     The number of bits.
+///
+/// Returns
+/// -------
+/// bytes
+///     The bytes.
+///
+/// Raises
+/// ------
+/// DappleError
+///     If an argument is refused; the message names the limit and the value.
 ///
 /// Examples
 /// --------
@@ -354,7 +451,7 @@ fn encoded(
     let kind = Kind::new("image", content.transpose()?, pixels.n_channels)?;
     let encoding = encoding(format, kind, depth)?;
     let (size, values) = (pixels.size, pixels.values());
-    threads::run(py, || encode(kind, size, &values, encoding))?
+    watch::within(py, |stop| encode(kind, size, &values, encoding, stop))
 }
 
 /// The encoding of numbers in a format.
@@ -394,6 +491,7 @@ pub(crate) fn encode(
     size: [u32; 2],
     values: &[f32],
     encoding: Encoding,
+    stop: &Stop,
 ) -> Result<Vec<u8>> {
     let sink = Cursor::new(Vec::new());
     let content = match (kind.content, kind.n_channels) {
@@ -416,7 +514,9 @@ pub(crate) fn encode(
         z: at[2],
     };
     let width = size[0] as usize;
-    for band in values.chunks((width * kind.n_channels).max(1) * BAND) {
+    let n_rows = (BAND / width.max(1)).max(1);
+    for band in values.chunks((width * kind.n_channels).max(1) * n_rows) {
+        stop.check()?;
         let height = band.len() / (width * kind.n_channels).max(1);
         let size = [size[0], height as u32];
         match content {
@@ -444,5 +544,5 @@ pub(crate) fn encode(
     Ok(rows.finish()?.into_inner())
 }
 
-/// The number of rows that are converted to colors at a time.
-const BAND: usize = 256;
+/// The number of pixels that are converted to colors and encoded at a time.
+const BAND: usize = 1 << 18;

@@ -25,8 +25,18 @@ use std::sync::Arc;
 
 /// A material as data: named nodes, and the maps that use them.
 ///
-/// It is made from a dictionary, or read from a text. `plan` prepares it for baking. The nodes and their options are
-/// those of the command, in `docs/reference.md`.
+/// It is made from a dictionary, or read from a text. `plan` prepares it for baking. `Recipe.reference()` describes all
+/// nodes and their options, or one node, as in `print(dp.Recipe.reference("worley"))`.
+///
+/// Parameters
+/// ----------
+/// data : dict
+///     A recipe as nested dictionaries and lists.
+///
+/// Raises
+/// ------
+/// DappleError
+///     If an argument is refused; the message names the limit and the value.
 ///
 /// Examples
 /// --------
@@ -96,6 +106,21 @@ impl Recipe {
     }
 
     /// Reads a recipe from a text in TOML.
+    ///
+    /// Parameters
+    /// ----------
+    /// text : str
+    ///     The text.
+    ///
+    /// Returns
+    /// -------
+    /// Recipe
+    ///     The recipe.
+    ///
+    /// Raises
+    /// ------
+    /// DappleError
+    ///     If an argument is refused; the message names the limit and the value.
     #[staticmethod]
     fn from_toml(text: &str) -> Result<Self> {
         Ok(Self {
@@ -104,6 +129,21 @@ impl Recipe {
     }
 
     /// Reads a recipe from a text in JSON.
+    ///
+    /// Parameters
+    /// ----------
+    /// text : str
+    ///     The text.
+    ///
+    /// Returns
+    /// -------
+    /// Recipe
+    ///     The recipe.
+    ///
+    /// Raises
+    /// ------
+    /// DappleError
+    ///     If an argument is refused; the message names the limit and the value.
     #[staticmethod]
     fn from_json(text: &str) -> Result<Self> {
         Ok(Self {
@@ -112,6 +152,21 @@ impl Recipe {
     }
 
     /// The built-in recipe with a name.
+    ///
+    /// Parameters
+    /// ----------
+    /// name : str
+    ///     The name.
+    ///
+    /// Returns
+    /// -------
+    /// Recipe
+    ///     The recipe.
+    ///
+    /// Raises
+    /// ------
+    /// DappleError
+    ///     If an argument is refused; the message names the limit and the value.
     #[staticmethod]
     fn builtin(name: &str) -> Result<Self> {
         Ok(Self {
@@ -120,22 +175,92 @@ impl Recipe {
     }
 
     /// The names of the built-in recipes.
+    ///
+    /// Returns
+    /// -------
+    /// list of str
+    ///     The result.
     #[staticmethod]
     fn builtin_names() -> Vec<&'static str> {
         RustRecipe::builtin_names().collect()
     }
 
+    /// The reference of recipes as a text in Markdown: every option with its range and default.
+    ///
+    /// Parameters
+    /// ----------
+    /// node : str or None, default None
+    ///     Str or None, default None The kind of a node, such as "worley"; None for the whole reference.
+    ///
+    /// Returns
+    /// -------
+    /// str
+    ///     The reference, or the section of the node.
+    ///
+    /// Raises
+    /// ------
+    /// DappleError
+    ///     If no node has this name.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import dapple_textures as dp
+    /// >>> dp.Recipe.reference("worley").splitlines()[0]
+    /// '### `worley`'
+    #[staticmethod]
+    #[pyo3(signature = (node = None))]
+    fn reference(node: Option<&str>) -> Result<String> {
+        let reference = RustRecipe::reference();
+        let Some(node) = node else {
+            return Ok(reference);
+        };
+        let nodes = section(&reference, "## Nodes").unwrap_or_default();
+        let found = section(nodes, &format!("### `{node}`"));
+        found.map(str::to_owned).ok_or_else(|| {
+            let names = nodes.lines().filter_map(|line| line.strip_prefix("### `"));
+            let names: Vec<&str> = names.map(|name| name.trim_end_matches('`')).collect();
+            data::unknown_name("node", node, &names)
+        })
+    }
+
+    /// The JSON Schema of recipes as a dictionary, for editors and checkers.
+    ///
+    /// Returns
+    /// -------
+    /// dict
+    ///     The schema.
+    #[staticmethod]
+    fn schema(py: Python<'_>) -> Result<Bound<'_, PyAny>> {
+        let schema = RustRecipe::schema().to_string();
+        Ok(py.import("json")?.call_method1("loads", (schema,))?)
+    }
+
     /// The recipe as TOML.
+    ///
+    /// Returns
+    /// -------
+    /// str
+    ///     The text.
     fn to_toml(&self) -> Result<String> {
         Ok(self.recipe.to_toml()?)
     }
 
     /// The recipe as JSON.
+    ///
+    /// Returns
+    /// -------
+    /// str
+    ///     The text.
     fn to_json(&self) -> Result<String> {
         Ok(self.recipe.to_json()?)
     }
 
     /// The recipe as a dictionary.
+    ///
+    /// Returns
+    /// -------
+    /// dict
+    ///     The result, as described above.
     fn to_dict<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyAny>> {
         Ok(py
             .import("json")?
@@ -143,6 +268,21 @@ impl Recipe {
     }
 
     /// This recipe with another seed, from 0 to 2**64 - 1.
+    ///
+    /// Parameters
+    /// ----------
+    /// seed : int
+    ///     From 0 to 2**64 - 1.
+    ///
+    /// Returns
+    /// -------
+    /// Recipe
+    ///     The recipe.
+    ///
+    /// Raises
+    /// ------
+    /// DappleError
+    ///     If an argument is refused; the message names the limit and the value.
     fn with_seed(&self, seed: SeedArgument) -> Self {
         let recipe = RustRecipe {
             seed: seed.0,
@@ -197,9 +337,21 @@ impl Recipe {
     ///
     /// Parameters
     /// ----------
-    /// images : the images by name (see `image_files`): arrays (rows, columns) of numbers or (rows, columns, 3) of
-    ///     linear colors, floating point.
-    /// time : the elapsed part of a loop, for nodes that move: 0 and 1 are the same.
+    /// images : dict or None, default None
+    ///     The images by name (see `image_files`): arrays (rows, columns) of numbers or (rows, columns, 3) of linear
+    ///     colors, floating point.
+    /// time : float, default 0.0
+    ///     The elapsed part of a loop, for nodes that move: 0 and 1 are the same.
+    ///
+    /// Returns
+    /// -------
+    /// Plan
+    ///     The plan.
+    ///
+    /// Raises
+    /// ------
+    /// DappleError
+    ///     If an argument is refused; the message names the limit and the value.
     #[pyo3(signature = (*, images = None, time = 0.0))]
     fn plan(&self, py: Python<'_>, images: Option<&Bound<'_, PyDict>>, time: f64) -> Result<Plan> {
         let mut pictures = Images::new();
@@ -263,6 +415,16 @@ impl Recipe {
         let near: Vec<String> = near.extract()?;
         Err(Error::new("unknown_image", message).with_near(near.into_iter().next()))
     }
+}
+
+/// The section of a text in Markdown with a heading, up to the next heading of its level or above.
+fn section<'a>(text: &'a str, heading: &str) -> Option<&'a str> {
+    let level = heading.bytes().take_while(|&byte| byte == b'#').count();
+    let start = text.find(&format!("\n{heading}\n"))? + 1;
+    let after = start + heading.len();
+    let ends =
+        (1..=level).filter_map(|level| text[after..].find(&format!("\n{} ", "#".repeat(level))));
+    Some(text[start..ends.min().map_or(text.len(), |end| after + end)].trim_end())
 }
 
 /// Reads an image of a recipe from an array.

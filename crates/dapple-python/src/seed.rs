@@ -1,7 +1,8 @@
 //! Seeds.
 
+use crate::error::Error;
 use dapple::hash::Seed;
-use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 
 /// A whole number from 0 to 2^64 - 1, of Python or of NumPy.
@@ -17,9 +18,8 @@ impl<'py> FromPyObject<'_, 'py> for SeedArgument {
             PyTypeError::new_err(format!("a seed is a whole number, not {kind}"))
         })?;
         let seed = number.extract().map_err(|_| {
-            PyValueError::new_err(format!(
-                "the seed is {number}, but it must be from 0 to 2^64 - 1"
-            ))
+            let message = format!("the seed is {number}, but it must be from 0 to 2^64 - 1");
+            PyErr::from(Error::new("seed", message))
         })?;
         Ok(Self(Seed(seed)))
     }

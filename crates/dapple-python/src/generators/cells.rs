@@ -9,9 +9,9 @@ use crate::data;
 use crate::error::{Error, Result};
 use crate::field::Field;
 use crate::function::{Function, Made};
-use crate::grid::{Grid, GridArguments};
+use crate::grid::{CELLS, Grid, GridArguments, default_extent};
 use crate::seed::SeedArgument;
-use crate::threads;
+use crate::watch;
 use dapple::hash::Seed;
 use dapple::recipe::WorleyValue;
 use dapple::worley::{Axes, Metric, Octaves, Scatter, Space, Worley as Basis};
@@ -98,10 +98,14 @@ impl CellsMade {
         let WorleyValue::Combination(combination) = self.value else {
             let is_edges = self.value == WorleyValue::EdgeDistance;
             if self.octaves.is_some() || self.range != CellsRange::Plain {
-                return Err(Error::new(
-                    "conflict",
-                    "`cell_value` and `edge_distance` have neither `octaves` nor a `range`",
-                ));
+                let message = match (is_edges, self.range) {
+                    (true, CellsRange::Normalized) => {
+                        "the range of `edge_distance` is not measured, so it cannot be normalized: take `remap`"
+                    }
+                    (true, _) => "`edge_distance` has neither `octaves` nor a `range`",
+                    (false, _) => "`cell_value` has neither `octaves` nor a `range`",
+                };
+                return Err(Error::new("conflict", message));
             }
             if is_edges && self.metric != Metric::Euclidean {
                 return Err(Error::new(
@@ -166,18 +170,36 @@ impl Worley {
 ///
 /// Parameters
 /// ----------
-/// seed : int, from 0 to 2**64 - 1.
-/// dims : 2, 3 or 4 axes.
-/// value : "f1" to "f4" (distance to the nearest, second, … feature point), a difference such as "f2_minus_f1",
+/// seed : int, default 0
+///     From 0 to 2**64 - 1.
+/// dims : int, default 2
+///     2, 3 or 4 axes.
+/// value : str or sequence of float, default "f1"
+///     "f1" to "f4" (distance to the nearest, second, … feature point), a difference such as "f2_minus_f1",
 ///     "cell_value" (a random number from 0 to 1 for each cell), "edge_distance" (to the nearest border of a cell), or
 ///     the four coefficients of F1 to F4.
-/// metric : "euclidean", "manhattan", "chebyshev", or {"minkowski": 3}.
-/// scatter : {"poisson": {"density": 3}}, the paper's; {"unclamped": {"density": 3}}; {"jittered": {"jitter": 1}}, one
-///     point in each cell.
-/// period : the number of cells after which it repeats exactly: one number, or one for each axis, x first; None for an
-///     axis along which it does not.
-/// octaves : a fractal sum, {"count": 6, "lacunarity": 2, "gain": 0.5, "seeds": "own"}.
-/// range : the two values that are mapped to 0 and 1.
+/// metric : {"euclidean", "manhattan", "chebyshev"} or dict, default "euclidean"
+///     "euclidean", "manhattan", "chebyshev", or {"minkowski": 3}.
+/// scatter : dict or None, default None
+///     {"poisson": {"density": 3}}, the paper's; {"unclamped": {"density": 3}}; {"jittered": {"jitter": 1}}, one point
+///     in each cell.
+/// period : int or tuple of int or None, default None
+///     The number of cells after which it repeats exactly: one number, or one for each axis, x first; None for an axis
+///     along which it does not.
+/// octaves : dict or None, default None
+///     A fractal sum, {"count": 6, "lacunarity": 2, "gain": 0.5, "seeds": "own"}.
+/// range : tuple of float or None, default None
+///     The two values that are mapped to 0 and 1.
+///
+/// Returns
+/// -------
+/// Worley
+///     The cells.
+///
+/// Raises
+/// ------
+/// DappleError
+///     If an argument is refused; the message names the limit and the value.
 ///
 /// Examples
 /// --------
@@ -238,8 +260,18 @@ macro_rules! with_counts {
 
 #[pymethods]
 impl Worley {
-    /// These cells with values mapped so that about 0 to 1 is their range, which was measured.
+    /// These cells with values mapped so that about 0 to 1 is their range, which was measured. Cell values are returned as
+    /// they are; edge distances have no measured range.
+    ///
+    /// Returns
+    /// -------
+    /// Worley
+    ///     The cells.
     fn normalized(&self, py: Python<'_>) -> Result<Py<Self>> {
+        // Cell values are from 0 to 1 as they are.
+        if self.made.value == WorleyValue::CellValue {
+            return Self::with(py, self.made.clone());
+        }
         if self.made.range != CellsRange::Plain {
             return Err(Error::new("no_range", "the range was set before"));
         }
@@ -257,6 +289,23 @@ impl Worley {
     /// `positions` has the shape (…, dims), x first, in cells; `count` is from 1 to 4. The result has `distance` (…,
     /// count), float32, in cells in the metric; `vector` (…, count, dims), float64, from the feature point to the
     /// position; `id` (…, count), uint64, the id of the point.
+    ///
+    /// Parameters
+    /// ----------
+    /// positions : array_like
+    ///     Positions of the shape (…, axes), x first.
+    /// count : int, default 1
+    ///     The number of them.
+    ///
+    /// Returns
+    /// -------
+    /// Features
+    ///     The feature points.
+    ///
+    /// Raises
+    /// ------
+    /// DappleError
+    ///     If an argument is refused; the message names the limit and the value.
     #[pyo3(signature = (positions, *, count = 1))]
     fn features<'py>(
         &self,
@@ -266,8 +315,9 @@ impl Worley {
     ) -> Result<Bound<'py, PyAny>> {
         check_count(count)?;
         let positions = Positions::read(positions, self.made.dims)?;
-        let found = threads::run(py, || {
-            with_counts!(self.made.dims, count, find(&self.made, &positions.numbers))
+        let (made, numbers) = (self.made.clone(), positions.numbers);
+        let found = watch::run(py, None, move |_, stop| {
+            with_counts!(made.dims, count, find(&made, &numbers, stop))
         })??;
         let shape = [&positions.shape[..], &[count]].concat();
         let vectors = [&shape[..], &[self.made.dims]].concat();
@@ -284,6 +334,33 @@ impl Worley {
     /// `outputs` names the planes to compute; the others are None. With `count` points their shapes are (count, rows,
     /// columns) and, for vectors, (count, rows, columns, dims), float32. Fields of more than two axes are cut at the
     /// further coordinates `at`.
+    ///
+    /// Parameters
+    /// ----------
+    /// size : int or tuple of int
+    ///     (rows, columns), or a number for both.
+    /// count : int, default 1
+    ///     The number of them.
+    /// outputs : sequence of {"distance", "vector", "id"}, optional
+    ///     The planes to compute.
+    /// extent : float or tuple of float or None, default None
+    ///     The size of the rectangle of the array, x first, as in `Field.render`.
+    /// origin : float or tuple of float or None, default None
+    ///     The corner of the first pixel, x first.
+    /// window : tuple of slice or None, default None
+    ///     The part to compute, a slice for each axis of `size`.
+    /// at : sequence of float or None, default None
+    ///     The further coordinates of a field of more than two axes; 0 by default.
+    ///
+    /// Returns
+    /// -------
+    /// Features
+    ///     The feature points.
+    ///
+    /// Raises
+    /// ------
+    /// DappleError
+    ///     If an argument is refused; the message names the limit and the value.
     #[pyo3(signature = (size, *, count = 1, outputs = None, extent = None, origin = None, window = None, at = None),
         text_signature = "(self, size, *, count=1, outputs=('distance', 'vector', 'id'), extent=None, origin=None, window=None, at=None)")]
     #[expect(clippy::too_many_arguments, reason = "they are keywords")]
@@ -311,7 +388,7 @@ impl Worley {
                 origin,
                 window,
             },
-            &period,
+            &default_extent(&period, &[CELLS; 2]),
         )?;
         let rest = at.unwrap_or_else(|| vec![0.0; dims - 2]);
         if rest.len() != dims - 2 {
@@ -324,24 +401,20 @@ impl Worley {
         }
         let names = outputs.unwrap_or_else(|| OUTPUTS.map(str::to_owned).to_vec());
         if let Some(name) = names.iter().find(|name| !OUTPUTS.contains(&name.as_str())) {
-            let message = format!(
-                "the output is `{name}`, but it must be one of {}",
-                OUTPUTS.join(", ")
-            );
-            return Err(Error::new("name", message));
+            return Err(data::unknown_name("output", name, &OUTPUTS));
         }
         let wanted = OUTPUTS.map(|output| names.iter().any(|name| name == output));
         let shape = [&[count][..], &grid.shape()].concat();
         let n_values = grid.n_values()?;
         let window = grid.plane();
-        let work = || {
+        let made = self.made.clone();
+        let drawn = watch::run(py, None, move |_, stop| {
             with_counts!(
                 dims,
                 count,
-                draw(&self.made, &window, &rest, wanted, n_values)
+                draw(&made, &window, &rest, wanted, n_values, stop)
             )
-        };
-        let drawn = threads::run(py, work)??;
+        })??;
         let vectors = [&shape[..], &[dims]].concat();
         let arrays = (
             drawn
@@ -363,22 +436,53 @@ impl Worley {
     /// The gradients of the value at positions of the shape (…, dims), per cell: float64 of the same shape.
     ///
     /// On the borders between cells the gradient jumps. Cell values and edge distances have none.
+    ///
+    /// Parameters
+    /// ----------
+    /// positions : array_like
+    ///     Positions of the shape (…, axes), x first.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray of float64
+    ///     The result, as described above.
+    ///
+    /// Raises
+    /// ------
+    /// DappleError
+    ///     If an argument is refused; the message names the limit and the value.
     fn gradient<'py>(
         &self,
         py: Python<'py>,
         positions: &Bound<'py, PyAny>,
     ) -> Result<Bound<'py, PyAny>> {
         let positions = Positions::read(positions, self.made.dims)?;
-        let gradients = threads::run(py, || match self.made.dims {
-            2 => gradients::<2>(&self.made, &positions.numbers),
-            3 => gradients::<3>(&self.made, &positions.numbers),
-            _ => gradients::<4>(&self.made, &positions.numbers),
+        let (made, numbers) = (self.made.clone(), positions.numbers);
+        let gradients = watch::run(py, None, move |_, stop| match made.dims {
+            2 => gradients::<2>(&made, &numbers, stop),
+            3 => gradients::<3>(&made, &numbers, stop),
+            _ => gradients::<4>(&made, &numbers, stop),
         })??;
         let shape = [&positions.shape[..], &[self.made.dims]].concat();
         arrays::array(py, gradients, &shape)
     }
 
     /// The feature points of a cell, as (positions, ids): float64 of the shape (n, dims), in cells, and uint64.
+    ///
+    /// Parameters
+    /// ----------
+    /// cell : sequence of int
+    ///     The numbers of the cell, x first.
+    ///
+    /// Returns
+    /// -------
+    /// tuple of (numpy.ndarray of float64, numpy.ndarray of uint64)
+    ///     The result, as described above.
+    ///
+    /// Raises
+    /// ------
+    /// DappleError
+    ///     If an argument is refused; the message names the limit and the value.
     fn cell_points<'py>(
         &self,
         py: Python<'py>,

@@ -1,5 +1,6 @@
 //! The maps of a material: their names and contents.
 
+use crate::data;
 use crate::error::{Error, Result};
 use crate::pictures::{Content, Kind};
 use dapple::recipe::MapKind;
@@ -52,13 +53,8 @@ pub(super) fn maps(names: &Bound<'_, PyAny>) -> Result<Vec<MapKind>> {
 
 /// The map with a name.
 fn map(name: &str) -> Result<MapKind> {
-    MapKind::from_name(name).ok_or_else(|| {
-        let names = MapKind::ALL.map(MapKind::name).join(", ");
-        Error::new(
-            "name",
-            format!("the map is `{name}`, but it must be one of {names}"),
-        )
-    })
+    MapKind::from_name(name)
+        .ok_or_else(|| data::unknown_name("map", name, &MapKind::ALL.map(MapKind::name)))
 }
 
 /// All maps by their names, as `MapInfo`.
@@ -82,6 +78,11 @@ pub(crate) fn _map_info(py: Python<'_>) -> Result<Bound<'_, PyDict>> {
 }
 
 /// The names of all maps of a material.
+///
+/// Returns
+/// -------
+/// list of str
+///     The result.
 #[pyfunction]
 pub(crate) fn map_names() -> Vec<&'static str> {
     MapKind::ALL.map(MapKind::name).to_vec()
