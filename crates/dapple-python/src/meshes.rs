@@ -37,19 +37,30 @@ pub(crate) fn vectors<const N: usize>(
 
 /// Reads a mesh from an object with `.vertices` and `.faces`, or a pair of arrays.
 pub(crate) fn mesh(data: &Bound<'_, PyAny>) -> Result<Mesh> {
-    let (vertices, faces): (Bound<'_, PyAny>, Bound<'_, PyAny>) =
-        if data.hasattr("vertices")? && data.hasattr("faces")? {
-            (data.getattr("vertices")?, data.getattr("faces")?)
-        } else {
-            data.extract().map_err(|_| {
-                let message = format!(
-                    "a mesh has `.vertices` and `.faces`, or is a pair of arrays, and not {}",
-                    data.get_type()
-                );
-                Error::new("type", message)
-            })?
-        };
-    let vertices = vectors::<3>("vertices", &vertices, &[3])?;
+    if data.hasattr("vertices")? && data.hasattr("faces")? {
+        return mesh_of(&data.getattr("vertices")?, &data.getattr("faces")?);
+    }
+    let (vertices, faces): (Bound<'_, PyAny>, Bound<'_, PyAny>) = data.extract().map_err(|_| {
+        let message = format!(
+            "a mesh has `.vertices` and `.faces`, or is a scene of trimesh, an object of Blender, or a pair of arrays, \
+             and not {}",
+            data.get_type()
+        );
+        Error::new("type", message)
+    })?;
+    mesh_of(&vertices, &faces)
+}
+
+/// A mesh of trimesh or Blender as an object with vertices, faces and texture coordinates, and whether it is one of
+/// Blender; others as they are.
+pub(crate) fn plain<'py>(data: &Bound<'py, PyAny>) -> Result<(Bound<'py, PyAny>, bool)> {
+    let helper = data.py().import("dapple_textures._meshes")?;
+    Ok(helper.call_method1("plain", (data,))?.extract()?)
+}
+
+/// A mesh of an array of vertices and one of faces.
+pub(crate) fn mesh_of(vertices: &Bound<'_, PyAny>, faces: &Bound<'_, PyAny>) -> Result<Mesh> {
+    let vertices = vectors::<3>("vertices", vertices, &[3])?;
     if let Ok(array) = faces.cast::<PyUntypedArray>()
         && !matches!(array.dtype().getattr("kind")?.extract::<char>()?, 'i' | 'u')
     {
@@ -115,11 +126,24 @@ pub(crate) fn corners<'py, const N: usize>(
 
 /// Reads a mesh file: OBJ, PLY, glTF, GLB, OFF or STL, by its ending.
 ///
+/// Parameters
+/// ----------
+/// path : str or os.PathLike
+///     The path of the file.
+///
 /// Returns
 /// -------
-/// `MeshFile(vertices, faces, uv, normals, colors, texture, left_out)`: vertices (n, 3); faces (m, 3); for the corners
-/// of faces, uv (m, 3, 2), v down, and normals (m, 3, 3); for vertices, linear colors (n, 4); the image of the base
-/// color. Attributes that the file lacks are None; `left_out` lists content that was not read.
+/// MeshFile
+///     `MeshFile(vertices, faces, uv, normals, colors, texture, left_out)`: vertices (n, 3); faces (m, 3); for the
+///     corners of faces, uv (m, 3, 2), v down, and normals (m, 3, 3); for vertices, linear colors (n, 4); the image of
+///     the base color. Attributes that the file lacks are None; `left_out` lists content that was not read.
+///
+/// Raises
+/// ------
+/// DappleError
+///     If an argument is refused; the message names the limit and the value.
+/// OSError
+///     If the system cannot read or write the file: `FileNotFoundError` if it does not exist.
 ///
 /// Examples
 /// --------
@@ -130,7 +154,7 @@ pub(crate) fn corners<'py, const N: usize>(
 /// [[0, 1, 2]]
 #[pyfunction]
 pub(crate) fn read_model(py: Python<'_>, path: PathBuf) -> Result<Bound<'_, PyAny>> {
-    let model = threads::run(py, || mesh_io::read_model(&path))??;
+    let model = threads::run(py, move || mesh_io::read_model(&path))??;
     let uv = model
         .uvs
         .as_ref()
@@ -171,7 +195,18 @@ pub(crate) fn read_model(py: Python<'_>, path: PathBuf) -> Result<Bound<'_, PyAn
 ///
 /// Parameters
 /// ----------
-/// mesh : anything with `.vertices` (n, 3) and `.faces` (m, 3), as trimesh has them, or a pair of such arrays.
+/// mesh : mesh
+///     Anything with `.vertices` (n, 3) and `.faces` (m, 3), as trimesh has them, or a pair of such arrays.
+///
+/// Returns
+/// -------
+/// dict
+///     The result, as described above.
+///
+/// Raises
+/// ------
+/// DappleError
+///     If an argument is refused; the message names the limit and the value.
 ///
 /// Examples
 /// --------
@@ -184,8 +219,9 @@ pub(crate) fn mesh_report<'py>(
     py: Python<'py>,
     mesh: &Bound<'py, PyAny>,
 ) -> Result<Bound<'py, PyDict>> {
-    let mesh = self::mesh(mesh)?;
-    let report = threads::run(py, || mesh.report())?;
+    let (mesh, _) = plain(mesh)?;
+    let mesh = self::mesh(&mesh)?;
+    let report = threads::run(py, move || mesh.report())?;
     let counts = PyDict::new(py);
     for (name, count) in [
         ("vertices", report.vertices),

@@ -5,6 +5,7 @@ mod example_mesh;
 mod repair;
 mod surface_guides;
 
+use crate::arrays;
 use crate::data;
 use crate::error::{Error, Result};
 use crate::images::encode;
@@ -12,7 +13,7 @@ use crate::meshes::{corners, faces, positions, vectors};
 use crate::pictures::{self, Content, Kind, Layout};
 use crate::seed::SeedArgument;
 use crate::synthesis::{Coherence, Matching, check_sizes, exemplar};
-use crate::{threads, watch};
+use crate::watch::{self, Stop};
 pub(crate) use along::synthesize_along;
 use dapple::color::{Code, LinearRgb, LinearRgba, NormalY};
 use dapple::image::{Depth, Encoding};
@@ -22,7 +23,7 @@ use dapple::mesh_io::{self, MaterialPlace, MeshFormat};
 use dapple::raster::Raster;
 use dapple::synth::{
     Atlas, Axes, Direction, Hierarchy, HierarchyOptions, Orientation, SurfaceTexture, Symmetry,
-    SynthError, Synthesizer, bake_colors, bake_normals, bake_values, site_model, textured_model,
+    SynthError, Synthesizer, bake_colors, bake_normals, bake_values, site_model,
 };
 use dapple::tile::Map;
 use example_mesh::ExampleMesh;
@@ -50,15 +51,39 @@ dapple::raster::named! {
 /// A mesh with a synthesized texture, and the maps that follow it. Made by `synthesize_on`.
 #[pyclass(frozen, module = "dapple_textures")]
 pub(crate) struct Model {
-    synthesizer: Synthesizer,
-    atlas: Atlas,
+    mesh: Mesh,
+    uvs: Vec<[DVec2; 3]>,
+    /// Whether coarse levels of the texture do not mix faces that are far apart.
+    mipmaps: bool,
     shading: Vec<[DVec3; 3]>,
     is_double_sided: bool,
     layout: Layout,
     /// The maps of the atlas, in the order of the layout.
     baked: Vec<Map>,
     /// The colors of the sites.
-    colors: Vec<LinearRgba>,
+    points: SitePoints,
+}
+
+/// The points of the surface as a mesh, with a color for each.
+enum SitePoints {
+    /// Not yet a mesh.
+    Sites(Box<Synthesizer>, Vec<LinearRgba>),
+    /// The mesh of a model that was pickled; `None` if its points are not a mesh.
+    Mesh(Option<Box<dapple::mesh::Model>>),
+}
+
+impl SitePoints {
+    /// Makes the mesh.
+    fn model(&self) -> Result<dapple::mesh::Model> {
+        match self {
+            Self::Sites(synthesizer, colors) => Ok(site_model(synthesizer, colors.clone())?),
+            Self::Mesh(Some(model)) => Ok((**model).clone()),
+            Self::Mesh(None) => Err(Error::new(
+                "points",
+                "the points of the surface are not a mesh",
+            )),
+        }
+    }
 }
 
 /// Covers a mesh with a texture that looks like an example, after Turk (2001): points on the surface take pixels of the
@@ -68,33 +93,76 @@ pub(crate) struct Model {
 ///
 /// Parameters
 /// ----------
-/// mesh : anything with `.vertices` (n, 3) and `.faces` (m, 3), such as a `trimesh.Trimesh`, or a pair of such arrays.
-/// exemplar : (rows, columns), or (rows, columns, 3) in linear light; or a dictionary of maps, of which the first is matched and
-///     the others follow it: `normal` and `orm` go into the material of the files, too.
-/// texels : the side of the square texture in pixels, up to 16384.
-/// sites : the number of points of the surface that get a color, 1 to 2**28.
-/// directions : (positions, vectors), each (n, 3): the direction of the example's down at these positions; in between
-///     they are interpolated.
-/// down : the direction for pieces of the surface without any.
-/// symmetry : how many directions at a place are as good as each other: 2 for examples that look alike upside down, such as
-///     bricks, and 4 for those that look alike lying on their side, such as a checker; the texture then has fewer tears.
-/// atlas : the layout of faces: `"charts"` (large pieces), `"area"` (triangles by their areas), `"uniform"`, or `"uv"` (`mesh.uv`, (m, 3, 2), v down).
-/// padding : the number of pixels around each piece of the texture that continue it.
-/// crease : the angle of an edge in degrees above which it is shaded as a crease.
-/// axes : how neighborhoods continue over the surface: `"followed"` or `"carried"`.
-/// scales : how large a pixel of the example is, in distances of points, from 1/8 to 8, by default 1: a number for each vertex,
-///     (n,), or an image that is read at `mesh.uv` and repeats, (rows, columns). Or two bounds, between which sizes follow the
-///     directions: features grow where these spread and shrink where they meet, and so they go on there.
-/// matching : the values that are compared, `"appearance"` by default, or `"colors"` as in the paper; always colors with
+/// mesh : mesh
+///     Anything with `.vertices` (n, 3) and `.faces` (m, 3), such as a `trimesh.Trimesh`, or a pair of such arrays.
+/// exemplar : array_like or dict of array_like
+///     (rows, columns), or (rows, columns, 3) in linear light; or a dictionary of maps, of which the first is matched
+///     and the others follow it: `normal` and `orm` go into the material of the files, too.
+/// texels : int, default 1024
+///     The side of the square texture in pixels, up to 16384.
+/// sites : int, default 65536
+///     The number of points of the surface that get a color, 1 to 2**28.
+/// directions : tuple of array_like or None, default None
+///     (positions, vectors), each (n, 3): the direction of the example's down at these positions; in between they are
+///     interpolated.
+/// down : sequence of float or None, default None
+///     The direction for pieces of the surface without any.
+/// symmetry : {1, 2, 4}, default 1
+///     How many directions at a place are as good as each other: 2 for examples that look alike upside down, such as
+///     bricks, and 4 for those that look alike lying on their side, such as a checker; the texture then has fewer
+///     tears.
+/// scales : array_like or None, default None
+///     How large a pixel of the example is, in distances of points, from 1/8 to 8, by default 1: a number for each
+///     vertex, (n,), or an image that is read at `mesh.uv` and repeats, (rows, columns). Or two bounds, between which
+///     sizes follow the directions: features grow where these spread and shrink where they meet, and so they go on
+///     there.
+/// atlas : {"charts", "area", "uniform", "uv"}, default "charts"
+///     The layout of faces: `"charts"` (large pieces), `"area"` (triangles by their areas), `"uniform"`, or `"uv"`
+///     (`mesh.uv`, (m, 3, 2), v down).
+/// padding : int or None, default None
+///     The number of pixels around each piece of the texture that continue it.
+/// crease : float, default 30.0
+///     The angle of an edge in degrees above which it is shaded as a crease.
+/// axes : {"followed", "carried"} or None, default None
+///     How neighborhoods continue over the surface: `"followed"` or `"carried"`.
+/// matching : {"appearance", "colors"} or None, default None
+///     The values that are compared, `"appearance"` by default, or `"colors"` as in the paper; always colors with
 ///     `example_mesh`.
-/// guides : a list of (of_example, of_mesh, weight): numbers in the size of the example, and for the mesh a number for each
-///     vertex, (n,), or an image that is read at `mesh.uv` and repeats, (rows, columns); parts of the example go where both
-///     are alike. Weights are as for `synthesize`, and `evenness` has no effect.
-/// example_mesh : the mesh that `exemplar` is the texture of, with `.uv` (m, 3, 2), v down, such as a `MeshFile` or a `Model`:
-///     its texture is lifted onto the other mesh. The `"auto"` of `coherence` is 2 then.
-/// example_sites : the number of points of `example_mesh`, by default `sites`: more make its features larger.
-/// example_directions : (positions, vectors) on `example_mesh`, like `directions`: where nothing else is said, its texture runs down.
-/// seed, edges, levels, coherence, evenness, paper, progress : as for `synthesize`.
+/// seed : int, default 0
+///     As for `synthesize`.
+/// edges : {"cut", "wrap"}, default "cut"
+///     As for `synthesize`.
+/// levels : int, default 3
+///     As for `synthesize`.
+/// coherence : float, {"auto"} or None, default None
+///     As for `synthesize`.
+/// evenness : float or None, default None
+///     As for `synthesize`.
+/// paper : bool, default False
+///     As for `synthesize`.
+/// guides : sequence of tuple of (array_like, float), default ()
+///     A list of (of_example, of_mesh, weight): numbers in the size of the example, and for the mesh a number for each
+///     vertex, (n,), or an image that is read at `mesh.uv` and repeats, (rows, columns); parts of the example go where
+///     both are alike. Weights are as for `synthesize`, and `evenness` has no effect.
+/// example_mesh : mesh or None, default None
+///     The mesh that `exemplar` is the texture of, with `.uv` (m, 3, 2), v down, such as a `MeshFile` or a `Model`: its
+///     texture is lifted onto the other mesh. The `"auto"` of `coherence` is 2 then.
+/// example_sites : int or None, default None
+///     The number of points of `example_mesh`, by default `sites`: more make its features larger.
+/// example_directions : tuple of array_like or None, default None
+///     (positions, vectors) on `example_mesh`, like `directions`: where nothing else is said, its texture runs down.
+/// progress : callable or None, default None
+///     As for `synthesize`.
+///
+/// Returns
+/// -------
+/// Model
+///     The mesh with its texture.
+///
+/// Raises
+/// ------
+/// DappleError
+///     If an argument is refused; the message names the limit and the value.
 ///
 /// Examples
 /// --------
@@ -105,11 +173,11 @@ pub(crate) struct Model {
 /// >>> model.texture.shape, model.uv.shape
 /// ((64, 64), (2, 3, 2))
 #[pyfunction]
-#[pyo3(signature = (mesh, exemplar, *, texels = 1024, sites = 65536, directions = None, down = [0.0, -1.0, 0.0], symmetry = 1,
+#[pyo3(signature = (mesh, exemplar, *, texels = 1024, sites = 65536, directions = None, down = None, symmetry = 1,
     scales = None, atlas = "charts", padding = None, crease = None, axes = None, matching = None, seed = SeedArgument::default(), edges = "cut", levels = 3,
     coherence = None, evenness = None, paper = false, guides = Vec::new(), example_mesh = None, example_sites = None,
     example_directions = None, progress = None),
-    text_signature = "(mesh, exemplar, *, texels=1024, sites=65536, directions=None, down=(0.0, -1.0, 0.0), symmetry=1, scales=None, atlas=\"charts\", \
+    text_signature = "(mesh, exemplar, *, texels=1024, sites=65536, directions=None, down=None, symmetry=1, scales=None, atlas=\"charts\", \
     padding=None, crease=30.0, axes=None, matching=None, seed=0, edges=\"cut\", levels=3, coherence=None, evenness=None, paper=False, \
     guides=(), example_mesh=None, example_sites=None, example_directions=None, progress=None)")]
 pub(crate) fn synthesize_on<'py>(
@@ -119,7 +187,7 @@ pub(crate) fn synthesize_on<'py>(
     texels: u32,
     sites: usize,
     directions: Option<(Bound<'py, PyAny>, Bound<'py, PyAny>)>,
-    down: [f64; 3],
+    down: Option<[f64; 3]>,
     symmetry: u8,
     scales: Option<&Bound<'py, PyAny>>,
     atlas: &str,
@@ -140,6 +208,15 @@ pub(crate) fn synthesize_on<'py>(
     progress: Option<&Bound<'py, PyAny>>,
 ) -> Result<Model> {
     let atlas = data::named("atlas", atlas)?;
+    // Coarse levels of tiles mix faces that are far apart.
+    let has_mipmaps = matches!(atlas, AtlasKind::Charts | AtlasKind::Uv);
+    let (mesh, is_blender) = crate::meshes::plain(mesh)?;
+    let mesh = &mesh;
+    // The vertical axis of Blender is z.
+    let down = down.unwrap_or(match is_blender {
+        true => [0.0, 0.0, -1.0],
+        false => [0.0, -1.0, 0.0],
+    });
     let guides = SurfaceGuides::read(&guides)?;
     let scales = scales.map(SurfaceScales::read).transpose()?;
     let needs_uvs = atlas == AtlasKind::Uv
@@ -180,7 +257,7 @@ pub(crate) fn synthesize_on<'py>(
     let directions = self::directions(directions)?;
     let symmetry: Symmetry = data::named("symmetry", &symmetry.to_string())?;
     let crease = crease.map_or(CREASE, f64::to_radians);
-    let cover = |heard: watch::Heard<'_>| -> Result<Model> {
+    let cover = move |heard: watch::Heard<'_>, _: &Stop| -> Result<Model> {
         let (repaired, repair) = mesh.repair();
         let surface = Surface::new(repaired)?;
         let uvs = match needs_uvs {
@@ -227,10 +304,12 @@ pub(crate) fn synthesize_on<'py>(
             .iter()
             .map(bake)
             .collect::<core::result::Result<_, _>>()?;
+        let colors = site_colors(&texture, &maps[0])?;
         Ok(Model {
-            colors: site_colors(&texture, &maps[0])?,
-            synthesizer,
-            atlas,
+            mesh: synthesizer.surface().mesh().clone(),
+            uvs: atlas.uvs(),
+            mipmaps: has_mipmaps,
+            points: SitePoints::Sites(Box::new(synthesizer), colors),
             shading,
             is_double_sided,
             layout,
@@ -370,20 +449,19 @@ impl Model {
     /// The vertices of the repaired mesh, (n, 3).
     #[getter]
     fn vertices<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyAny>> {
-        positions(py, self.synthesizer.surface().mesh().positions())
+        positions(py, self.mesh.positions())
     }
 
     /// The vertices of each face, (m, 3).
     #[getter]
     fn faces<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyAny>> {
-        faces(py, self.synthesizer.surface().mesh())
+        faces(py, &self.mesh)
     }
 
     /// The texture coordinates of the corners of each face, (m, 3, 2), from 0 to 1; v goes down, as the rows of the texture do.
     #[getter]
     fn uv<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyAny>> {
-        let uvs = self.atlas.uvs();
-        corners(py, uvs.iter().map(|face| face.map(|uv| uv.to_array())))
+        corners(py, self.uvs.iter().map(|face| face.map(|uv| uv.to_array())))
     }
 
     /// The normals of the corners of each face, (m, 3, 3).
@@ -420,33 +498,85 @@ impl Model {
     /// surface as a mesh, with a color for each. Every file is replaced as a whole.
     ///
     /// The maps `normal` (y up) and `orm` are written to the material.
+    ///
+    /// Parameters
+    /// ----------
+    /// path : str or os.PathLike
+    ///     The path of the file.
+    ///
+    /// Raises
+    /// ------
+    /// DappleError
+    ///     If an argument is refused; the message names the limit and the value.
+    /// OSError
+    ///     If the system cannot read or write the file: `FileNotFoundError` if it does not exist.
     fn export(&self, py: Python<'_>, path: PathBuf) -> Result<()> {
-        threads::run(py, || -> Result<()> {
+        // A file is written to its end.
+        watch::within(py, |stop| -> Result<()> {
             let format =
                 MeshFormat::of_path(&path).filter(|format| format.written_ending().is_some());
             let has_material =
                 format.is_none_or(|format| format.material_place() != MaterialPlace::Nowhere);
             let model = match has_material {
-                true => self.model()?,
-                false => site_model(&self.synthesizer, self.colors.clone())?,
+                true => self.model(stop)?,
+                false => self.points.model()?,
             };
             Ok(mesh_io::write_model(&path, &model)?)
-        })?
+        })
     }
 
     /// A `trimesh.Trimesh` with the texture as its material. Corners of faces are separate vertices.
+    ///
+    /// Returns
+    /// -------
+    /// trimesh.Trimesh
+    ///     The result.
     fn to_trimesh<'py>(model: &Bound<'py, Self>) -> Result<Bound<'py, PyAny>> {
         let helper = model.py().import("dapple_textures._meshes")?;
         Ok(helper.call_method1("to_trimesh", (model,))?)
     }
 
+    /// The function and the arrays by which another process makes the model again.
+    fn __reduce__<'py>(&self, py: Python<'py>) -> Result<(Bound<'py, PyAny>, Parts<'py>)> {
+        let make = py
+            .import("dapple_textures._native")?
+            .getattr("_model_from_parts")?;
+        let points = match self.points.model() {
+            Ok(model) => {
+                let colors = model.colors.iter().flatten().flat_map(|at| {
+                    let LinearRgba { color, alpha } = *at;
+                    [color.r, color.g, color.b, alpha]
+                });
+                let colors: Vec<f32> = colors.collect();
+                let n_colors = colors.len() / 4;
+                let normals = model.normals.unwrap_or_default();
+                Some((
+                    positions(py, model.mesh.positions())?,
+                    faces(py, &model.mesh)?,
+                    positions(py, &normals)?,
+                    arrays::array(py, colors, &[n_colors, 4])?,
+                ))
+            }
+            Err(_) => None,
+        };
+        let parts = (
+            self.vertices(py)?,
+            self.faces(py)?,
+            self.uv(py)?,
+            self.normals(py)?,
+            self.layout.python(py, self.baked.clone())?,
+            (self.mipmaps, self.is_double_sided),
+            points,
+        );
+        Ok((make, parts))
+    }
+
     fn __repr__(&self) -> String {
-        let mesh = self.synthesizer.surface().mesh();
         format!(
             "Model({} vertices, {} faces, {} texels, maps {})",
-            mesh.positions().len(),
-            mesh.faces().len(),
-            self.atlas.size()[0],
+            self.mesh.positions().len(),
+            self.mesh.faces().len(),
+            self.baked[0].size()[0],
             self.layout.names_or("texture").join(", ")
         )
     }
@@ -463,25 +593,34 @@ impl Model {
     }
 
     /// The mesh with its material, whose textures are PNG.
-    fn model(&self) -> Result<dapple::mesh::Model> {
+    fn model(&self, stop: &Stop) -> Result<dapple::mesh::Model> {
         let base = match &self.baked[0] {
             Map::Value(values) => values.map(|&value| color_of(value)),
             Map::Color(colors) => colors.clone(),
             Map::Normal(_) => return Err(Error::new("channels", "normals are no colors")),
         };
-        let surface = self.synthesizer.surface();
-        let base = png(Content::Color, &base.map(|color| color.to_array()))?;
-        let mut model = textured_model(surface, &self.atlas, self.shading.clone(), base)?;
+        let base = png(Content::Color, &base.map(|color| color.to_array()), stop)?;
+        // Faces that have no place in the texture show its first corner, as in `textured_model`.
+        let placed = |uv: DVec2| if uv.is_finite() { uv } else { DVec2::ZERO };
+        let mut model = dapple::mesh::Model::from(self.mesh.clone());
+        model.uvs = Some(self.uvs.iter().map(|face| face.map(placed)).collect());
+        model.corner_normals = Some(self.shading.clone());
+        model.material.base_color = Some(base);
+        model.material.mipmaps = self.mipmaps;
         model.material.double_sided = self.is_double_sided;
         for (at, name) in self.layout.names_or("texture").into_iter().enumerate() {
             match (name, self.picture(at).as_slice()) {
                 ("normal", [Map::Normal(normals)]) => {
                     let normals = normals.map(|normal| normal.to_array());
-                    model.material.normal = Some(png(Content::Normal, &normals)?);
+                    model.material.normal = Some(png(Content::Normal, &normals, stop)?);
                 }
                 ("orm", [Map::Value(o), Map::Value(r), Map::Value(m)]) => {
                     let or = o.zip_map(r, |&o, &r| [o, r])?;
-                    let image = png(Content::Data, &or.zip_map(m, |&[o, r], &m| [o, r, m])?)?;
+                    let image = png(
+                        Content::Data,
+                        &or.zip_map(m, |&[o, r], &m| [o, r, m])?,
+                        stop,
+                    )?;
                     model.material.occlusion = Some(image.clone());
                     model.material.metallic_roughness = Some(image);
                 }
@@ -492,13 +631,81 @@ impl Model {
     }
 }
 
+/// The points of a surface as arrays: positions, faces, normals and colors.
+type PointParts<'py> = (
+    Bound<'py, PyAny>,
+    Bound<'py, PyAny>,
+    Bound<'py, PyAny>,
+    Bound<'py, PyAny>,
+);
+
+/// A model as arrays: vertices, faces, texture coordinates, normals, maps, flags of the material, and points.
+type Parts<'py> = (
+    Bound<'py, PyAny>,
+    Bound<'py, PyAny>,
+    Bound<'py, PyAny>,
+    Bound<'py, PyAny>,
+    Bound<'py, PyAny>,
+    (bool, bool),
+    Option<PointParts<'py>>,
+);
+
+/// Makes a model again from its arrays.
+#[pyfunction]
+pub(crate) fn _model_from_parts(
+    vertices: Bound<'_, PyAny>,
+    faces: Bound<'_, PyAny>,
+    uv: Bound<'_, PyAny>,
+    normals: Bound<'_, PyAny>,
+    maps: Bound<'_, PyAny>,
+    flags: (bool, bool),
+    points: Option<PointParts<'_>>,
+) -> Result<Model> {
+    let (mipmaps, is_double_sided) = flags;
+    let (layout, baked) = pictures::read("maps", &maps)?;
+    let points = points.map(|(at, faces, normals, colors)| -> Result<_> {
+        let mut model = dapple::mesh::Model::from(crate::meshes::mesh_of(&at, &faces)?);
+        let normals = vectors::<3>("normals", &normals, &[3])?;
+        model.normals = Some(normals.into_iter().map(DVec3::from).collect());
+        let colors = vectors::<4>("colors", &colors, &[4])?;
+        let color = |at: [f64; 4]| {
+            let [r, g, b, alpha] = at.map(|part| part as f32);
+            LinearRgba {
+                color: LinearRgb::new(r, g, b),
+                alpha,
+            }
+        };
+        model.colors = Some(colors.into_iter().map(color).collect());
+        Ok(Box::new(model))
+    });
+    let uvs = vectors::<2>("uv", &uv, &[3, 2])?;
+    let normals = vectors::<3>("normals", &normals, &[3, 3])?;
+    let (uvs, normals) = (uvs.as_chunks::<3>().0, normals.as_chunks::<3>().0);
+    Ok(Model {
+        mesh: crate::meshes::mesh_of(&vertices, &faces)?,
+        uvs: uvs.iter().map(|face| face.map(DVec2::from)).collect(),
+        mipmaps,
+        shading: normals.iter().map(|face| face.map(DVec3::from)).collect(),
+        is_double_sided,
+        layout,
+        baked,
+        points: SitePoints::Mesh(points.transpose()?),
+    })
+}
+
 /// An image of three channels as PNG with 8 bits.
-fn png(content: Content, raster: &Raster<[f32; 3]>) -> Result<EncodedImage> {
+fn png(content: Content, raster: &Raster<[f32; 3]>, stop: &Stop) -> Result<EncodedImage> {
     let kind = Kind {
         content,
         n_channels: 3,
     };
     let values = raster.pixels().as_flattened();
-    let bytes = encode(kind, raster.size(), values, Encoding::Png(Depth::Eight))?;
+    let bytes = encode(
+        kind,
+        raster.size(),
+        values,
+        Encoding::Png(Depth::Eight),
+        stop,
+    )?;
     Ok(EncodedImage::new(bytes)?)
 }

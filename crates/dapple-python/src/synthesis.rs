@@ -112,31 +112,55 @@ pub(crate) fn exemplar(maps: &[Map], edges: &str) -> Result<Exemplar> {
 ///
 /// Parameters
 /// ----------
-/// exemplar : (rows, columns), or (rows, columns, 3 or 4) in linear light, best 64 to 256 pixels wide; or a dictionary
-///     of maps, of which the first is matched (color in sRGB, numbers unchanged) and the others follow it.
-/// size : (rows, columns), or a number for both; at most 2**26 pixels.
-/// seed : int, from 0 to 2**64 - 1.
-/// wrap : the axes along which the texture repeats, x first; one for both. These sides are multiples of 2**levels where the
-///     method is `"endless"`, and else of 2**(levels - 1).
-/// edges : the treatment of the edges of the example: `"cut"`, or `"wrap"` if it repeats.
-/// levels : 1 to 16, each with half the resolution: more for larger features. By default 3, or as many as the example has
+/// exemplar : dict of array_like or array_like
+///     (rows, columns), or (rows, columns, 3 or 4) in linear light, best 64 to 256 pixels wide; or a dictionary of
+///     maps, of which the first is matched (color in sRGB, numbers unchanged) and the others follow it.
+/// size : int or tuple of int
+///     (rows, columns), or a number for both; at most 2**26 pixels.
+/// seed : int, default 0
+///     From 0 to 2**64 - 1.
+/// wrap : bool or tuple of bool, default False
+///     The axes along which the texture repeats, x first; one for both. These sides are multiples of 2**levels where
+///     the method is `"endless"`, and else of 2**(levels - 1).
+/// edges : {"cut", "wrap"}, default "cut"
+///     The treatment of the edges of the example: `"cut"`, or `"wrap"` if it repeats.
+/// levels : int or None, default None
+///     1 to 16, each with half the resolution: more for larger features. By default 3, or as many as the example has
 ///     room for where the method is `"endless"`.
-/// coherence : the tolerance for a worse match that continues the pixels beside it: `"auto"` or a number of at least 0;
-///     higher copies larger pieces.
-/// evenness : how evenly the example is used, 0 to 1000; 1 by default.
-/// paper : match as in the paper: the smallest difference wins.
-/// mask : (rows, columns) of the example, at least 0.5 where it is used; nowhere else is anything taken from.
-/// guides : a list of (of_example, of_texture, weight): numbers in the sizes of the example and of the texture; parts of the
-///     example go where both are alike. With weight 1 a guide counts as much as one channel; with 3 one of zeros and ones is
-///     obeyed nearly everywhere. With guides, `evenness` has no effect.
-/// sources : return (texture, sources): for every pixel the (column, row) of its source in the example, (rows, columns,
-///     2).
-/// method : `"endless"`, a window of a texture without ends, which is fast and continues what is large or regular; or
-///     `"sweep"`, pixel by pixel. By default `"endless"`, unless `coherence`, `evenness`, `paper` or `guides` are given or a
-///     side that wraps has another length than it needs.
-/// at : the (row, column) of an endless texture at which the result begins, from -2**52 to 2**52: windows beside each other
-///     fit together; by default (0, 0).
-/// progress : called with the part of the work done, from 0 to 1. Ctrl-C stops the call.
+/// coherence : float, {"auto"} or None, default None
+///     The tolerance for a worse match that continues the pixels beside it: `"auto"` or a number of at least 0; higher
+///     copies larger pieces.
+/// evenness : float or None, default None
+///     How evenly the example is used, 0 to 1000; 1 by default.
+/// paper : bool, default False
+///     Match as in the paper: the smallest difference wins.
+/// mask : array_like or None, default None
+///     (rows, columns) of the example, at least 0.5 where it is used; nowhere else is anything taken from.
+/// guides : sequence of tuple of (array_like, float), default ()
+///     A list of (of_example, of_texture, weight): numbers in the sizes of the example and of the texture; parts of the
+///     example go where both are alike. With weight 1 a guide counts as much as one channel; with 3 one of zeros and
+///     ones is obeyed nearly everywhere. With guides, `evenness` has no effect.
+/// sources : bool, default False
+///     Return (texture, sources): for every pixel the (column, row) of its source in the example, (rows, columns, 2).
+/// method : {"endless", "sweep"} or None, default None
+///     `"endless"`, a window of a texture without ends, which is fast and continues what is large or regular; or
+///     `"sweep"`, pixel by pixel. By default `"endless"`, unless `coherence`, `evenness`, `paper` or `guides` are given
+///     or a side that wraps has another length than it needs.
+/// at : tuple of int or None, default None
+///     The (x, y), column and row, of an endless texture at which the result begins, from -2**52 to 2**52: windows
+///     beside each other fit together; by default (0, 0).
+/// progress : callable or None, default None
+///     Called with the part of the work done, from 0 to 1. Ctrl-C stops the call.
+///
+/// Returns
+/// -------
+/// dict or tuple of (dict, numpy.ndarray of int64) or numpy.ndarray of float32 or tuple of (numpy.ndarray of float32, numpy.ndarray of int64)
+///     The result, as described above.
+///
+/// Raises
+/// ------
+/// DappleError
+///     If an argument is refused; the message names the limit and the value.
 ///
 /// Examples
 /// --------
@@ -197,13 +221,12 @@ pub(crate) fn synthesize<'py>(
         n_levels: levels,
         period: [0, 1].map(|axis| (wrap[axis] == Edges::Wrap).then_some(size[axis])),
     };
-    let targets: Vec<_> = targets.iter().collect();
-    let texture = watch::run(py, progress, |heard| {
+    let texture = watch::run(py, progress, move |heard, _| {
+        let targets: Vec<_> = targets.iter().collect();
         if method != Some(Method::Sweep) {
             match Endless::new(&exemplar, &endless) {
                 Ok(texture) => {
-                    let [row, column] = at.unwrap_or([0, 0]);
-                    return texture.window([column, row], size, heard);
+                    return texture.window(at.unwrap_or([0, 0]), size, heard);
                 }
                 Err(error)
                     if method.is_none()
@@ -272,10 +295,33 @@ fn guided(
 ///
 /// Parameters
 /// ----------
-/// image : (rows, columns), or (rows, columns, 3 or 4) in linear light; or a dictionary of maps, of which the first is
+/// image : dict of array_like or array_like
+///     (rows, columns), or (rows, columns, 3 or 4) in linear light; or a dictionary of maps, of which the first is
 ///     matched (color in sRGB, numbers unchanged) and the others follow it.
-/// hole : (rows, columns), at least 0.5 where the image is made again; nothing is taken from there.
-/// seed, edges, levels, coherence, sources, progress : as for `synthesize`. More levels fill larger holes.
+/// hole : array_like
+///     (rows, columns), at least 0.5 where the image is made again; nothing is taken from there.
+/// seed : int, default 0
+///     As for `synthesize`. More levels fill larger holes.
+/// edges : {"cut", "wrap"}, default "cut"
+///     As for `synthesize`. More levels fill larger holes.
+/// levels : int, default 3
+///     As for `synthesize`. More levels fill larger holes.
+/// coherence : float, {"auto"} or None, default None
+///     As for `synthesize`. More levels fill larger holes.
+/// sources : bool, default False
+///     As for `synthesize`. More levels fill larger holes.
+/// progress : callable or None, default None
+///     As for `synthesize`. More levels fill larger holes.
+///
+/// Returns
+/// -------
+/// dict or tuple of (dict, numpy.ndarray of int64) or numpy.ndarray of float32 or tuple of (numpy.ndarray of float32, numpy.ndarray of int64)
+///     The result, as described above.
+///
+/// Raises
+/// ------
+/// DappleError
+///     If an argument is refused; the message names the limit and the value.
 ///
 /// Examples
 /// --------
@@ -307,7 +353,7 @@ pub(crate) fn repair<'py>(
     let usable = hole.map(|is_made| !is_made);
     let exemplar = self::exemplar(&maps, edges)?.with_mask(&usable)?;
     let options = Matching::of_repair(seed, levels, coherence).options()?;
-    let texture = watch::run(py, progress, |heard| {
+    let texture = watch::run(py, progress, move |heard, _| {
         PlaneTexture::identity(&exemplar)?.repair(&exemplar, &hole, &options, heard)
     })??;
     followed(py, layout, &maps, &texture, sources)

@@ -7,6 +7,8 @@ use crate::grid::size;
 use crate::pictures::{self, Content, Kind, Layout, numbers};
 use crate::seed::SeedArgument;
 use crate::threads;
+use crate::watch;
+use dapple::raster::Raster;
 use dapple::tile::{
     BorderSource, ChannelReport, CornerTiles as Corners, Disturbance, Map, MatchBorders, Method,
     SeamOptions, SeamReports, Seamless, SoftCut, TileError,
@@ -14,6 +16,7 @@ use dapple::tile::{
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList, PyString};
 use serde_json::{Map as Object, Value, json};
+use std::sync::Arc;
 
 /// A bool for both axes, or one for each, x first.
 pub(crate) fn flags(data: Option<&Bound<'_, PyAny>>, default: bool) -> Result<[bool; 2]> {
@@ -29,6 +32,54 @@ pub(crate) fn flags(data: Option<&Bound<'_, PyAny>>, default: bool) -> Result<[b
 /// The first pixel of a map in the plane, x first.
 fn first(data: Option<&Bound<'_, PyAny>>) -> Result<[i64; 2]> {
     Ok(data.map_or(Ok([0; 2]), |first| first.extract())?)
+}
+
+/// Maps of a window of the plane, rendered some rows at a time, so that the work ends soon after an interruption.
+fn rows(
+    py: Python<'_>,
+    first: [i64; 2],
+    size: [u32; 2],
+    render: impl Fn([i64; 2], [u32; 2]) -> core::result::Result<Vec<Map>, TileError> + Send + 'static,
+) -> Result<Vec<Map>> {
+    watch::run(py, None, move |_, stop| {
+        let mut whole: Option<Vec<Map>> = None;
+        let band = (BAND / size[0].max(1) as usize).max(1);
+        for top in (0..size[1]).step_by(band) {
+            stop.check()?;
+            let height = u32::try_from(band).unwrap_or(u32::MAX).min(size[1] - top);
+            let first = [first[0], first[1].wrapping_add(top.into())];
+            let maps = render(first, [size[0], height])?;
+            match &mut whole {
+                None => whole = Some(maps),
+                Some(whole) => extend(whole, maps)?,
+            }
+        }
+        whole.ok_or_else(|| Error::new("size", "a map has at least one row"))
+    })?
+}
+
+/// The number of pixels that are rendered at a time: copies of a tile cross few bands.
+const BAND: usize = 1 << 22;
+
+/// Appends the rows of maps to those of others of the same kinds and width.
+fn extend(whole: &mut [Map], maps: Vec<Map>) -> Result<()> {
+    fn both<T>(above: &mut Raster<T>, below: Raster<T>) -> Result<()> {
+        let size = [above.width(), above.height() + below.height()];
+        let above_it = core::mem::replace(above, Raster::from_vec([0, 0], Vec::new())?);
+        let mut pixels = above_it.into_pixels();
+        pixels.extend(below.into_pixels());
+        *above = Raster::from_vec(size, pixels)?;
+        Ok(())
+    }
+    for (above, below) in whole.iter_mut().zip(maps) {
+        match (above, below) {
+            (Map::Value(above), Map::Value(below)) => both(above, below)?,
+            (Map::Color(above), Map::Color(below)) => both(above, below)?,
+            (Map::Normal(above), Map::Normal(below)) => both(above, below)?,
+            _ => return Err(Error::new("channels", "rows of a map have one kind")),
+        }
+    }
+    Ok(())
 }
 
 /// A method of making images repeat, by its name and options.
@@ -78,16 +129,32 @@ fn soft_cut(mut options: Object<String, Value>, size: [u32; 2]) -> Object<String
 ///
 /// Parameters
 /// ----------
-/// image : (rows, columns), or (rows, columns, 3 or 4) in linear light; or a dictionary of such maps, of which `normal` is unit
-///     vectors and `orm` three numbers.
-/// method : the method, with its options as keywords, or a dictionary as in a recipe.
+/// image : dict of array_like or array_like
+///     (rows, columns), or (rows, columns, 3 or 4) in linear light; or a dictionary of such maps, of which `normal` is
+///     unit vectors and `orm` three numbers.
+/// method : str or dict, default "soft_cut"
+///     The method, with its options as keywords, or a dictionary as in a recipe.
 ///
-///     * `"soft_cut"` cuts along the line of least difference, and is smaller by the margin: `margin`, `half_width`, `crossfade`.
+///     * `"soft_cut"` cuts along the line of least difference, and is smaller by the margin: `margin`, `half_width`,
+///       `crossfade`.
 ///     * `"periodic"` keeps all detail and the size (Moisan 2011); `"poisson"` likewise, with `wrap_gradient`.
-///     * `"spline_project"` is the tile of Du, Wang and Meng, which smooths, and `"periodic_then_project"`: `levels`, `phase`, `basis`,
-///       `pixels`.
+///     * `"spline_project"` is the tile of Du, Wang and Meng, which smooths, and `"periodic_then_project"`: `levels`,
+///       `phase`, `basis`, `pixels`.
 ///     * `"feather"` is a crossfade: `margin`, `crossfade`. `"mirror"` is the image beside its mirror image.
-/// axes : the axes along which the result repeats, x first; one for both.
+/// axes : bool or tuple of bool, default True
+///     The axes along which the result repeats, x first; one for both.
+/// **options : object
+///     Options of the method.
+///
+/// Returns
+/// -------
+/// dict or numpy.ndarray of float32
+///     The result, as described above.
+///
+/// Raises
+/// ------
+/// DappleError
+///     If an argument is refused; the message names the limit and the value.
 ///
 /// Examples
 /// --------
@@ -114,7 +181,7 @@ pub(crate) fn make_tile<'py>(
         method: self::method(method, options, maps[0].size())?,
         axes: flags(axes, true)?,
     };
-    let tile = threads::run(py, || seamless.apply_maps(&maps))??;
+    let tile = threads::run(py, move || seamless.apply_maps(&maps))??;
     layout.python(py, tile)
 }
 
@@ -125,14 +192,24 @@ pub(crate) fn make_tile<'py>(
 ///
 /// Parameters
 /// ----------
-/// tile : an image, or a dictionary of maps.
-/// source : the original, of the same kind; None if there is none.
-/// axes : the axes along which it repeats, x first; one for both.
-/// lattice : the distance in pixels of boundaries that are like the wrap, such as 2**levels for `"spline_project"`.
+/// tile : dict of array_like or array_like
+///     An image, or a dictionary of maps.
+/// source : dict of array_like or array_like or None, default None
+///     The original, of the same kind; None if there is none.
+/// axes : bool or tuple of bool, default True
+///     The axes along which it repeats, x first; one for both.
+/// lattice : int or tuple of int, default 1
+///     The distance in pixels of boundaries that are like the wrap, such as 2**levels for `"spline_project"`.
 ///
 /// Returns
 /// -------
-/// A `SeamReport`, or one for each map by name.
+/// dict or SeamReport
+///     A `SeamReport`, or one for each map by name.
+///
+/// Raises
+/// ------
+/// DappleError
+///     If an argument is refused; the message names the limit and the value.
 ///
 /// Examples
 /// --------
@@ -167,7 +244,7 @@ pub(crate) fn seam_report<'py>(
     };
     let reports = threads::run(
         py,
-        || -> core::result::Result<Vec<SeamReports>, TileError> {
+        move || -> core::result::Result<Vec<SeamReports>, TileError> {
             let of = |(at, tile): (usize, &Map)| match &source {
                 None => SeamReports::of_map(tile, &options),
                 Some(source) => SeamReports::beside(&source[at], tile, &options),
@@ -230,8 +307,20 @@ fn report<'py>(py: Python<'py>, reports: &[SeamReports], kind: Kind) -> Result<B
 ///
 /// Parameters
 /// ----------
-/// tile : an image of any number of channels, or a dictionary of maps.
-/// size : (rows, columns), or a number for both.
+/// tile : dict of array_like or array_like
+///     An image of any number of channels, or a dictionary of maps.
+/// size : int or tuple of int
+///     (rows, columns), or a number for both.
+///
+/// Returns
+/// -------
+/// dict or numpy.ndarray of float32
+///     The result, as described above.
+///
+/// Raises
+/// ------
+/// DappleError
+///     If an argument is refused; the message names the limit and the value.
 ///
 /// Examples
 /// --------
@@ -246,7 +335,7 @@ pub(crate) fn repeat<'py>(
 ) -> Result<Bound<'py, PyAny>> {
     let (layout, maps) = pictures::read("tile", tile)?;
     let size = self::size(size)?;
-    let maps = threads::run(py, || -> core::result::Result<Vec<Map>, TileError> {
+    let maps = threads::run(py, move || -> core::result::Result<Vec<Map>, TileError> {
         let repeated = maps.iter().map(|map| {
             Ok(match map {
                 Map::Value(raster) => Map::Value(dapple::tile::repeat(raster, size)?),
@@ -265,12 +354,28 @@ pub(crate) fn repeat<'py>(
 ///
 /// Parameters
 /// ----------
-/// tile : an image that repeats, or a dictionary of maps, of at least 56 pixels a side with the default widths.
-/// size : (rows, columns), or a number for both.
-/// seed : int, from 0 to 2**64 - 1.
-/// first : (x, y) of the first pixel in the plane, in which copy (0, 0) begins in pixel (0, 0).
-/// frozen : the number of unchanged pixels along the borders.
-/// margin : the number of pixels next to these in which a copy changes to the shifted one.
+/// tile : dict of array_like or array_like
+///     An image that repeats, or a dictionary of maps, of at least 56 pixels a side with the default widths.
+/// size : int or tuple of int
+///     (rows, columns), or a number for both.
+/// seed : int, default 0
+///     From 0 to 2**64 - 1.
+/// first : tuple of int, default (0, 0)
+///     (x, y) of the first pixel in the plane, in which copy (0, 0) begins in pixel (0, 0).
+/// frozen : int, default 4
+///     The number of unchanged pixels along the borders.
+/// margin : int, default 24
+///     The number of pixels next to these in which a copy changes to the shifted one.
+///
+/// Returns
+/// -------
+/// dict or numpy.ndarray of float32
+///     The result, as described above.
+///
+/// Raises
+/// ------
+/// DappleError
+///     If an argument is refused; the message names the limit and the value.
 ///
 /// Examples
 /// --------
@@ -298,7 +403,9 @@ pub(crate) fn disturb<'py>(
         margin,
         seed: seed.0,
     };
-    let maps = threads::run(py, || disturbance.render_maps(&maps, first, size))??;
+    let maps = rows(py, first, size, move |first, size| {
+        disturbance.render_maps(&maps, first, size)
+    })?;
     layout.python(py, maps)
 }
 
@@ -306,10 +413,23 @@ pub(crate) fn disturb<'py>(
 ///
 /// Parameters
 /// ----------
-/// tiles : images of one size, or dictionaries of maps.
-/// width : the number of pixels along the borders in which tiles change.
-/// source : `"border"` uses the border of the first tile, which must repeat; `"middle"` the strip along its middle, for
-///     a tile that does not.
+/// tiles : iterable of dict of array_like or iterable of array_like
+///     Images of one size, or dictionaries of maps.
+/// width : int, default 16
+///     The number of pixels along the borders in which tiles change.
+/// source : {"border", "middle"}, default "border"
+///     `"border"` uses the border of the first tile, which must repeat; `"middle"` the strip along its middle, for a
+///     tile that does not.
+///
+/// Returns
+/// -------
+/// list of dict or list of numpy.ndarray of float32
+///     The result, as described above.
+///
+/// Raises
+/// ------
+/// DappleError
+///     If an argument is refused; the message names the limit and the value.
 ///
 /// Examples
 /// --------
@@ -329,7 +449,7 @@ pub(crate) fn match_borders<'py>(
 ) -> Result<Bound<'py, PyList>> {
     let (layout, tiles) = pictures::read_all("tiles", tiles)?;
     let options = borders(width, source)?;
-    let matched = threads::run(py, || options.apply_maps(&tiles))??;
+    let matched = threads::run(py, move || options.apply_maps(&tiles))??;
     list(py, &layout, matched)
 }
 
@@ -337,8 +457,28 @@ pub(crate) fn match_borders<'py>(
 ///
 /// Parameters
 /// ----------
-/// tiles, width, source : as for `match_borders`.
-/// size, seed, first : as for `disturb`.
+/// tiles : iterable of dict of array_like or iterable of array_like
+///     As for `match_borders`.
+/// size : int or tuple of int
+///     As for `disturb`.
+/// seed : int, default 0
+///     As for `disturb`.
+/// first : tuple of int, default (0, 0)
+///     As for `disturb`.
+/// width : int, default 16
+///     As for `match_borders`.
+/// source : {"border", "middle"}, default "border"
+///     As for `match_borders`.
+///
+/// Returns
+/// -------
+/// dict or numpy.ndarray of float32
+///     The result, as described above.
+///
+/// Raises
+/// ------
+/// DappleError
+///     If an argument is refused; the message names the limit and the value.
 ///
 /// Examples
 /// --------
@@ -361,7 +501,7 @@ pub(crate) fn lay_tiles<'py>(
     let (layout, tiles) = pictures::read_all("tiles", tiles)?;
     let (first, size) = (self::first(first)?, self::size(size)?);
     let options = borders(width, source)?;
-    let maps = threads::run(py, || options.render(&tiles, seed.0, first, size))??;
+    let maps = threads::run(py, move || options.render(&tiles, seed.0, first, size))??;
     layout.python(py, maps)
 }
 
@@ -387,9 +527,17 @@ fn list<'py>(py: Python<'py>, layout: &Layout, all: Vec<Vec<Map>>) -> Result<Bou
 ///
 /// Parameters
 /// ----------
-/// sources : 2 to 4 images of one size, or dictionaries of maps.
-/// width : the share of the shorter side that cuts may take, above 0 and at most 1.
-/// period : the number of tiles after which the corners repeat: a number, or (x, y); None if they do not.
+/// sources : iterable of array_like or dict of array_like
+///     2 to 4 images of one size, or dictionaries of maps.
+/// width : float, default 0.5
+///     The share of the shorter side that cuts may take, above 0 and at most 1.
+/// period : int, tuple of int or None, default None
+///     The number of tiles after which the corners repeat: a number, or (x, y); None if they do not.
+///
+/// Raises
+/// ------
+/// DappleError
+///     If an argument is refused; the message names the limit and the value.
 ///
 /// Examples
 /// --------
@@ -400,8 +548,12 @@ fn list<'py>(py: Python<'py>, layout: &Layout, all: Vec<Vec<Map>>) -> Result<Bou
 /// (16, (100, 200))
 #[pyclass(frozen, module = "dapple_textures")]
 pub(crate) struct CornerTiles {
-    tiles: Corners,
+    tiles: Arc<Corners>,
     layout: Layout,
+    /// What it was made from, for pickles.
+    sources: Vec<Vec<Map>>,
+    width: f64,
+    period: [Option<u32>; 2],
 }
 
 #[pymethods]
@@ -422,28 +574,84 @@ impl CornerTiles {
                 Err(_) => period.extract()?,
             },
         };
-        let tiles = threads::run(py, || {
-            Corners::new(&sources)?
-                .with_width(width)?
-                .with_period(period)
+        let (tiles, sources) = threads::run(py, move || -> Result<_> {
+            let tiles = Corners::new(&sources)?;
+            Ok((tiles.with_width(width)?.with_period(period)?, sources))
         })??;
-        Ok(Self { tiles, layout })
+        Ok(Self {
+            tiles: Arc::new(tiles),
+            layout,
+            sources,
+            width,
+            period,
+        })
+    }
+
+    fn __getnewargs_ex__<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> Result<((Bound<'py, PyList>,), Bound<'py, PyDict>)> {
+        let options = PyDict::new(py);
+        options.set_item("width", self.width)?;
+        options.set_item("period", self.period.to_vec())?;
+        Ok(((list(py, &self.layout, self.sources.clone())?,), options))
     }
 
     /// The tile with these sources at its corners: top left, top right, bottom left, bottom right.
+    ///
+    /// Parameters
+    /// ----------
+    /// corners : sequence of int
+    ///     The sources at the corners: top left, top right, bottom left, bottom right.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray of float32 or dict
+    ///     The result, as described above.
+    ///
+    /// Raises
+    /// ------
+    /// DappleError
+    ///     If an argument is refused; the message names the limit and the value.
     fn tile<'py>(&self, py: Python<'py>, corners: [u8; 4]) -> Result<Bound<'py, PyAny>> {
-        let maps = threads::run(py, || self.tiles.tile(corners))??;
+        let tiles = Arc::clone(&self.tiles);
+        let maps = threads::run(py, move || tiles.tile(corners))??;
         self.layout.python(py, maps)
     }
 
     /// All C**4 tiles; the one with the corners a, b, c, d is at the index a + b C + c C**2 + d C**3.
+    ///
+    /// Returns
+    /// -------
+    /// list of numpy.ndarray of float32 or list of dict
+    ///     The result, as described above.
     fn all<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyList>> {
-        let tiles = threads::run(py, || self.tiles.all())??;
+        let tiles = Arc::clone(&self.tiles);
+        let tiles = threads::run(py, move || tiles.all())??;
         list(py, &self.layout, tiles)
     }
 
     /// A map with random corners: `size` is (rows, columns), `first` (x, y) of its first pixel. A window is the crop of
     /// the whole.
+    ///
+    /// Parameters
+    /// ----------
+    /// size : int or tuple of int
+    ///     (rows, columns), or a number for both.
+    /// seed : int, default 0
+    ///     From 0 to 2**64 - 1.
+    /// first : tuple of int, default (0, 0)
+    ///     (x, y) of the first pixel.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray of float32 or dict
+    ///     The result, as described above.
+    ///
+    /// Raises
+    /// ------
+    /// DappleError
+    ///     If an argument is refused; the message names the limit and the value.
     #[pyo3(signature = (size, *, seed = SeedArgument::default(), first = None),
         text_signature = "($self, size, *, seed=0, first=(0, 0))")]
     fn render<'py>(
@@ -454,7 +662,10 @@ impl CornerTiles {
         first: Option<&Bound<'py, PyAny>>,
     ) -> Result<Bound<'py, PyAny>> {
         let (first, size) = (self::first(first)?, self::size(size)?);
-        let maps = threads::run(py, || self.tiles.render(seed.0, first, size))??;
+        let tiles = Arc::clone(&self.tiles);
+        let maps = rows(py, first, size, move |first, size| {
+            tiles.render(seed.0, first, size)
+        })?;
         self.layout.python(py, maps)
     }
 }
@@ -462,6 +673,21 @@ impl CornerTiles {
 /// The ranks of numbers, from 0 to 1: values below `x` cover the fraction `x` of the area.
 ///
 /// As the tile of `blend`, ranks make weights equal to areas.
+///
+/// Parameters
+/// ----------
+/// values : array_like
+///     The values: an array.
+///
+/// Returns
+/// -------
+/// numpy.ndarray of float32
+///     The result, as described above.
+///
+/// Raises
+/// ------
+/// DappleError
+///     If an argument is refused; the message names the limit and the value.
 ///
 /// Examples
 /// --------
@@ -474,6 +700,6 @@ pub(crate) fn rank_equalize<'py>(
     values: &Bound<'py, PyAny>,
 ) -> Result<Bound<'py, PyAny>> {
     let values = numbers("values", values)?;
-    let ranks = threads::run(py, || dapple::tile::rank_equalize(&values))??;
+    let ranks = threads::run(py, move || dapple::tile::rank_equalize(&values))??;
     arrays::numbers(py, ranks)
 }

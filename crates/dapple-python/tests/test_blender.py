@@ -254,3 +254,38 @@ def test_objects_in_the_panel_have_materials_of_their_own(panel):
         made.append(bpy.context.object.active_material)
     assert [blender.baked_from(material).seed for material in made] == [1, 2]
     assert len(bpy.data.materials) == 2 and len(bpy.data.images) == 6
+
+
+def test_a_mesh_of_blender_comes_back_where_it_was():
+    bpy.ops.mesh.primitive_cone_add(radius1=1, depth=3, location=(1, 2, 3))
+    cone = bpy.context.object
+    bpy.context.view_layer.update()
+    before = np.array([cone.matrix_world @ vertex.co for vertex in cone.data.vertices])
+    example = np.random.default_rng(1).random((16, 16, 3))
+    faces = np.array([face.vertices for face in triangles(cone)])
+    # The object itself, its mesh, and its arrays as a user writes them.
+    for mesh, wanted in [
+        (cone, before),
+        (cone.data, before - [1, 2, 3]),
+        ((before, faces), before),
+    ]:
+        model = dp.synthesize_on(mesh, example, texels=64, sites=300, levels=1)
+        [thing] = [thing for thing in blender.import_model(model) if thing.type == "MESH"]
+        bpy.context.view_layer.update()
+        after = np.array([thing.matrix_world @ vertex.co for vertex in thing.data.vertices])
+        # GLB has float32.
+        assert np.allclose(after.min(0), wanted.min(0), atol=1e-5) and np.allclose(after.max(0), wanted.max(0), atol=1e-5)
+
+
+def triangles(thing):
+    thing.data.calc_loop_triangles()
+    return thing.data.loop_triangles
+
+
+def test_the_coordinates_of_other_programs_are_turned_if_asked(tmp_path):
+    high = np.array([[0.0, 0, 0], [1, 0, 0], [0, 3, 0], [0, 0, 1]]), np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
+    model = dp.synthesize_on(high, np.eye(16), texels=64, sites=300, levels=1)
+    model.export(tmp_path / "high.glb")
+    for thing in [*blender.import_model(model, up="y"), *blender.import_model(tmp_path / "high.glb")]:
+        if thing.type == "MESH":
+            assert max(vertex.co.z for vertex in thing.data.vertices) == 3

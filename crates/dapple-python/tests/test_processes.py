@@ -153,3 +153,26 @@ def test_the_number_of_threads_comes_from_the_environment(tmp_path):
     assert run("3").stdout == "3\n"
     refused = run("many")
     assert refused.returncode == 1 and "DAPPLE_THREADS is `many`" in refused.stderr
+
+
+def test_models_are_pickled_with_all_that_they_write(tmp_path):
+    roof = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]), np.array([[0, 1, 2], [0, 2, 3]])
+    maps = dp.Recipe.builtin("rock").plan().bake(16, ["albedo", "normal", "orm"])
+    for example in (maps, maps["albedo"], maps["orm"][..., 1]):
+        model = dp.synthesize_on(roof, example, texels=64, sites=300, levels=1)
+        copy = pickle.loads(pickle.dumps(model))
+        for name in ("vertices", "faces", "uv", "normals", "texture"):
+            assert np.array_equal(getattr(copy, name), getattr(model, name)), name
+        assert copy.maps.keys() == model.maps.keys() and copy.double_sided == model.double_sided
+        assert repr(copy) == repr(model)
+        for ending in ("glb", "ply"):
+            for thing, path in [(model, tmp_path / f"a.{ending}"), (copy, tmp_path / f"b.{ending}")]:
+                thing.export(path)
+            assert (tmp_path / f"a.{ending}").read_bytes() == (tmp_path / f"b.{ending}").read_bytes()
+
+
+def test_corner_tiles_are_pickled():
+    sources = [dp.worley(seed=seed, period=4).render(32) for seed in (1, 2)]
+    tiles = dp.CornerTiles(sources, width=0.25, period=(2, 3))
+    copy = pickle.loads(pickle.dumps(tiles))
+    assert np.array_equal(copy.render((100, 90), seed=3), tiles.render((100, 90), seed=3))

@@ -94,11 +94,11 @@ def test_options_have_an_effect():
 
 
 def test_windows_of_one_texture_fit_together():
-    whole = dp.synthesize(MATERIAL, (48, 64), at=(-100, 7), seed=3)
-    part = dp.synthesize(MATERIAL, (10, 20), at=(-70, 17), seed=3)
+    whole = dp.synthesize(MATERIAL, (48, 64), at=(7, -100), seed=3)
+    part = dp.synthesize(MATERIAL, (10, 20), at=(17, -70), seed=3)
     for name, array in part.items():
         np.testing.assert_array_equal(array, whole[name][30:40, 10:30])
-    tile, beside = (dp.synthesize(CELLS, 64, levels=4, wrap=True, at=at) for at in [(0, 0), (128, -64)])
+    tile, beside = (dp.synthesize(CELLS, 64, levels=4, wrap=True, at=at) for at in [(0, 0), (-64, 128)])
     np.testing.assert_array_equal(tile, beside)
 
 
@@ -130,7 +130,7 @@ def test_textures_are_those_of_the_command(tmp_path):
     plane = dp.synthesize(example, (40, 48), seed=7, wrap=True)
     assert (tmp_path / "b.png").read_bytes() == dp.encode_image(plane, depth=16)
     subprocess.run([*run, "--size", "48x40", "--at", "9,-3", "-o", tmp_path / "f.png", "--format", "png16"], check=True)
-    far = dp.synthesize(example, (40, 48), seed=7, at=(-3, 9))
+    far = dp.synthesize(example, (40, 48), seed=7, at=(9, -3))
     assert (tmp_path / "f.png").read_bytes() == dp.encode_image(far, depth=16)
     trimesh.Trimesh(*TORUS, process=False).export(tmp_path / "torus.ply")
     mesh = ["--mesh", tmp_path / "torus.ply", "--sites", "3000", "--texture-size", "256", "--crease", "30"]
@@ -521,3 +521,25 @@ def test_what_cannot_be_is_refused(call):
     with pytest.raises(dp.DappleError) as error:
         call()
     assert error.value.kind
+
+
+def test_scenes_and_textures_of_trimesh_are_taken():
+    trimesh = pytest.importorskip("trimesh")
+    example = np.random.default_rng(0).random((32, 32, 3))
+    ball = trimesh.creation.icosphere(1)
+    scene = trimesh.Scene([ball])
+    model = dp.synthesize_on(scene, example, sites=500, texels=64)
+    assert np.array_equal(model.vertices, dp.synthesize_on(ball, example, sites=500, texels=64).vertices)
+    moved = trimesh.Scene()
+    moved.add_geometry(ball)
+    moved.add_geometry(ball, transform=trimesh.transformations.translation_matrix([5, 0, 0]))
+    assert dp.mesh_report(moved)["components"] == 2 and dp.mesh_report(moved)["faces"] == 2 * len(ball.faces)
+    vertices = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]])
+    uv = np.array([[0.0, 0], [1, 0], [1, 1], [0, 1]])
+    roof = trimesh.Trimesh(vertices, [[0, 1, 2], [0, 2, 3]], process=False, visual=trimesh.visual.TextureVisuals(uv=uv))
+    for mesh in (roof, trimesh.Scene([roof])):
+        model = dp.synthesize_on(mesh, example, sites=500, texels=64, atlas="uv")
+        # v is down here, and up in trimesh.
+        assert np.allclose(model.uv, (uv * [1, -1] + [0, 1])[np.array([[0, 1, 2], [0, 2, 3]])])
+    with pytest.raises(dp.DappleError, match="no faces"):
+        dp.mesh_report(trimesh.PointCloud(vertices))

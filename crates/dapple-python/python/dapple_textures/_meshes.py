@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
+
+from ._types import refusal
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -28,6 +31,86 @@ class MeshFile(NamedTuple):
     texture: npt.NDArray[np.float32] | None
     #: Descriptions of the parts of the file that were not read.
     left_out: list[str]
+
+
+class _Plain(NamedTuple):
+    """The arrays of a mesh of another program."""
+
+    vertices: npt.NDArray[np.float64]
+    faces: npt.NDArray[np.int64]
+    #: Texture coordinates of the corners of faces, (m, 3, 2), v down.
+    uv: npt.NDArray[np.float64] | None
+
+
+def plain(mesh: Any) -> tuple[Any, bool]:
+    """Returns the arrays of a mesh or scene of trimesh or an object of Blender, and whether it is one of Blender.
+
+    Others are returned as they are: they have the arrays as attributes, or are a pair of them.
+    """
+    package = type(mesh).__module__.partition(".")[0]
+    if package == "trimesh":
+        return _of_trimesh(mesh), False
+    if package in ("bpy", "bpy_types"):
+        return _of_blender(mesh), True
+    return mesh, False
+
+
+def _of_trimesh(mesh: Any) -> _Plain:
+    parts = [part for part in mesh.dump() if hasattr(part, "faces")] if hasattr(mesh, "dump") else [mesh]
+    if not parts or not all(hasattr(part, "faces") for part in parts):
+        raise refusal("type", f"the {type(mesh).__name__} of trimesh has no faces")
+    vertices, faces, uvs, count = [], [], [], 0
+    for part in parts:
+        corners = np.asarray(part.faces, np.int64)
+        uv = getattr(part.visual, "uv", None)
+        vertices.append(np.asarray(part.vertices, np.float64))
+        faces.append(corners + count)
+        uvs.append(None if uv is None or len(uv) != len(part.vertices) else np.asarray(uv, np.float64)[corners])
+        count += len(part.vertices)
+    known = [uv * [1, -1] + [0, 1] for uv in uvs if uv is not None]
+    return _Plain(np.concatenate(vertices), np.concatenate(faces), np.concatenate(known) if len(known) == len(uvs) else None)
+
+
+def _of_blender(thing: Any) -> _Plain:
+    """Reads a mesh, or an object with its modifiers at its place in the scene; the vertical axis stays z."""
+    import bpy
+
+    owner = None
+    if isinstance(thing, bpy.types.Object):
+        owner = thing.evaluated_get(bpy.context.evaluated_depsgraph_get())
+        try:
+            mesh = owner.to_mesh()
+        except RuntimeError as error:
+            raise refusal("type", f"the object `{thing.name}` of Blender has no mesh: {error}") from error
+    elif isinstance(thing, bpy.types.Mesh):
+        mesh = thing
+    else:
+        raise refusal("type", f"an Object or a Mesh of Blender is needed, and not {type(thing).__name__}")
+    try:
+        return _arrays_of_blender(mesh, np.eye(4) if owner is None else np.array(owner.matrix_world))
+    finally:
+        if owner is not None:
+            owner.to_mesh_clear()
+
+
+def _arrays_of_blender(mesh: Any, matrix: npt.NDArray[np.float64]) -> _Plain:
+    def read(things: Any, name: str, shape: tuple[int, ...], dtype: Any) -> Any:
+        values = np.empty(len(things) * math.prod(shape), dtype)
+        things.foreach_get(name, values)
+        return values.reshape(-1, *shape)
+
+    mesh.calc_loop_triangles()
+    vertices = read(mesh.vertices, "co", (3,), np.float32).astype(np.float64)
+    vertices = vertices @ matrix[:3, :3].T + matrix[:3, 3]
+    faces = read(mesh.loop_triangles, "vertices", (3,), np.int32).astype(np.int64)
+    uv = None
+    if mesh.uv_layers.active is not None:
+        loops = read(mesh.loop_triangles, "loops", (3,), np.int32)
+        uv = read(mesh.uv_layers.active.data, "uv", (2,), np.float32)[loops] * [1.0, -1.0] + [0.0, 1.0]
+    if np.linalg.det(matrix[:3, :3]) < 0:
+        # A mirrored object shows the other side of its faces.
+        faces, uv = faces[:, ::-1], None if uv is None else uv[:, ::-1]
+    return _Plain(vertices, faces, uv)
 
 
 def to_trimesh(model: Model) -> Any:

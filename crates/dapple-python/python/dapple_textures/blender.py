@@ -53,12 +53,27 @@ def material(
 
     Parameters
     ----------
-    what : a recipe, or a plan with its images and its time.
-    size : pixels of the tile, (rows, columns) or one number.
-    name : the name of the material; by default the name of the recipe.
-    displacement : whether to displace the surface by the height as well (Cycles with adaptive subdivision, or EEVEE). The
-        tile is assumed to be as wide as the recipe's extent, in Blender's units.
-    scale : the number of copies of the tile across the UV map.
+    what : Plan or Recipe
+        A recipe, or a plan with its images and its time.
+    size : int or tuple of int, default 1024
+        Pixels of the tile, (rows, columns) or one number.
+    name : str or None, default None
+        The name of the material; by default the name of the recipe.
+    displacement : bool, default False
+        Whether to displace the surface by the height as well (Cycles with adaptive subdivision, or EEVEE). The tile is
+        assumed to be as wide as the recipe's extent, in Blender's units.
+    scale : float, default 1.0
+        The number of copies of the tile across the UV map.
+
+    Returns
+    -------
+    object
+        The result.
+
+    Raises
+    ------
+    DappleError
+        If an argument is refused; the message names the limit and the value.
     """
     import bpy
 
@@ -118,9 +133,24 @@ def baked_from(made: Any) -> Recipe | None:
     return Recipe(data["recipe"]) if data else None
 
 
-def import_model(model: Any) -> list[Any]:
-    """Imports a model of `synthesize_on` with its texture and normals, or a GLB file by path; returns the objects."""
+def import_model(model: Any, *, up: Literal["y", "z"] | None = None) -> list[Any]:
+    """Imports a model of `synthesize_on` with its texture and normals, or a GLB file by path.
+
+    Parameters
+    ----------
+    model : Model, str or os.PathLike
+        A model, or the path of a GLB file.
+    up : {"y", "z"} or None, default None
+        The vertical axis of the coordinates. None is z for models, whose vertices keep their coordinates, and y for
+        files, as glTF defines it; y is turned into Blender's z.
+
+    Returns
+    -------
+    list of bpy.types.Object
+        The new objects.
+    """
     import bpy
+    from mathutils import Matrix
 
     before = set(bpy.data.objects)
     if isinstance(model, (str, os.PathLike)):
@@ -134,7 +164,16 @@ def import_model(model: Any) -> list[Any]:
             for image in bpy.data.images:
                 if image.filepath and Path(bpy.path.abspath(image.filepath)).parent == Path(folder):
                     image.pack()
-    return [thing for thing in bpy.data.objects if thing not in before]
+    made = [thing for thing in bpy.data.objects if thing not in before]
+    is_file = isinstance(model, (str, os.PathLike))
+    if (up or ("y" if is_file else "z")) == "z":
+        # Blender has turned (x, y, z) into (x, -z, y).
+        back = Matrix(((1, 0, 0, 0), (0, 0, 1, 0), (0, -1, 0, 0), (0, 0, 0, 1)))
+        for thing in made:
+            thing.location = back @ thing.location
+            if thing.type == "MESH":
+                thing.data.transform(back)
+    return made
 
 
 def _opengl(plan: Plan) -> Plan:

@@ -15,11 +15,38 @@ use pyo3::prelude::*;
 ///
 /// Parameters
 /// ----------
-/// exemplar : as for `synthesize`, without alpha.
-/// directions : (rows, columns), angles in radians: at 0 the example's down is down, at pi / 2 it points to the right.
-/// scales : (rows, columns), how large a pixel of the example is, in pixels of the texture, from 1/8 to 8; by default 1. Or two
-///     bounds, between which sizes follow the directions: features grow where these spread and shrink where they meet.
-/// seed, edges, levels, coherence, evenness, paper, progress : as for `synthesize`.
+/// exemplar : dict of array_like or array_like
+///     As for `synthesize`, without alpha.
+/// directions : array_like
+///     (rows, columns), angles in radians: at 0 the example's down is down, at pi / 2 it points to the right.
+/// scales : array_like or None, default None
+///     (rows, columns), how large a pixel of the example is, in pixels of the texture, from 1/8 to 8; by default 1. Or
+///     two bounds, between which sizes follow the directions: features grow where these spread and shrink where they
+///     meet.
+/// seed : int, default 0
+///     As for `synthesize`.
+/// edges : {"cut", "wrap"}, default "cut"
+///     As for `synthesize`.
+/// levels : int, default 3
+///     As for `synthesize`.
+/// coherence : float, {"auto"} or None, default None
+///     As for `synthesize`.
+/// evenness : float or None, default None
+///     As for `synthesize`.
+/// paper : bool, default False
+///     As for `synthesize`.
+/// progress : callable or None, default None
+///     As for `synthesize`.
+///
+/// Returns
+/// -------
+/// dict or numpy.ndarray of float32
+///     The result, as described above.
+///
+/// Raises
+/// ------
+/// DappleError
+///     If an argument is refused; the message names the limit and the value.
 ///
 /// Examples
 /// --------
@@ -55,10 +82,7 @@ pub(crate) fn synthesize_along<'py>(
     let plane = plane
         .map(|scales| pictures::numbers("scales", scales))
         .transpose()?;
-    let scales = match &plane {
-        Some(plane) => PlaneScales::Plane(plane),
-        None => PlaneScales::Conformal(scales.and_then(bounds).unwrap_or([1.0; 2])),
-    };
+    let bounds = scales.and_then(bounds).unwrap_or([1.0; 2]);
     let matching = Matching {
         seed,
         levels,
@@ -69,7 +93,11 @@ pub(crate) fn synthesize_along<'py>(
         paper,
     };
     let options = matching.options()?;
-    let baked = watch::run(py, progress, |heard| {
+    let baked = watch::run(py, progress, move |heard, _| {
+        let scales = match &plane {
+            Some(plane) => PlaneScales::Plane(plane),
+            None => PlaneScales::Conformal(bounds),
+        };
         let along = synthesize_plane_along(&example, &directions, scales, &options, heard)?;
         let PlaneAlong {
             synthesizer,

@@ -2,7 +2,7 @@
 
 use super::{directions, own_uvs, uvs_of};
 use crate::error::{Error, Result};
-use crate::meshes::mesh;
+use crate::meshes::{mesh, plain};
 use dapple::mesh::glam::DVec2;
 use dapple::mesh::{Mesh, Surface};
 use dapple::synth::{Direction, Exemplar, HierarchyOptions, MeshExemplar, Synthesizer};
@@ -41,9 +41,10 @@ impl ExampleMesh {
         n_sites: Option<usize>,
         directions: Option<(Bound<'_, PyAny>, Bound<'_, PyAny>)>,
     ) -> Result<Self> {
+        let (of, _) = plain(of)?;
         Ok(Self {
-            mesh: mesh(of)?,
-            uvs: uvs_of(name, of)?,
+            mesh: mesh(&of)?,
+            uvs: uvs_of(name, &of)?,
             n_sites,
             directions: self::directions(directions)?,
         })

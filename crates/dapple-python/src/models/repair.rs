@@ -17,14 +17,37 @@ use pyo3::prelude::*;
 ///
 /// Parameters
 /// ----------
-/// mesh : anything with `.vertices` (n, 3), `.faces` (m, 3) and `.uv` (m, 3, 2), v down, such as a `MeshFile` or a `Model`.
-/// texture : (rows, columns), or (rows, columns, 3) in linear light, at the texture coordinates of the mesh; or a dictionary of
-///     maps, of which the first is matched and the others follow it.
-/// hole : (rows, columns), at least 0.5 where the texture is made again; nothing is taken from there.
-/// sites : the number of points of the surface that get a color, 1 to 2**28.
-/// directions : (positions, vectors), each (n, 3): which way the texture runs at these positions; elsewhere they are
+/// mesh : mesh
+///     Anything with `.vertices` (n, 3), `.faces` (m, 3) and `.uv` (m, 3, 2), v down, such as a `MeshFile` or a
+///     `Model`.
+/// texture : dict of array_like or array_like
+///     (rows, columns), or (rows, columns, 3) in linear light, at the texture coordinates of the mesh; or a dictionary
+///     of maps, of which the first is matched and the others follow it.
+/// hole : array_like
+///     (rows, columns), at least 0.5 where the texture is made again; nothing is taken from there.
+/// sites : int, default 65536
+///     The number of points of the surface that get a color, 1 to 2**28.
+/// directions : tuple of array_like or None, default None
+///     (positions, vectors), each (n, 3): which way the texture runs at these positions; elsewhere they are
 ///     interpolated, and without any it runs down.
-/// seed, levels, coherence, progress : as for `synthesize`. More levels fill larger holes.
+/// seed : int, default 0
+///     As for `synthesize`. More levels fill larger holes.
+/// levels : int, default 3
+///     As for `synthesize`. More levels fill larger holes.
+/// coherence : float, {"auto"} or None, default None
+///     As for `synthesize`. More levels fill larger holes.
+/// progress : callable or None, default None
+///     As for `synthesize`. More levels fill larger holes.
+///
+/// Returns
+/// -------
+/// dict or numpy.ndarray of float32
+///     The result, as described above.
+///
+/// Raises
+/// ------
+/// DappleError
+///     If an argument is refused; the message names the limit and the value.
 ///
 /// Examples
 /// --------
@@ -66,7 +89,7 @@ pub(crate) fn repair_on<'py>(
         ..HierarchyOptions::default()
     };
     let options = Matching::of_repair(seed, levels, coherence).options()?;
-    let mended = watch::run(py, progress, |heard| -> Result<Vec<Map>> {
+    let mended = watch::run(py, progress, move |heard, _| -> Result<Vec<Map>> {
         let (exemplar, uvs) = source.textured(&sites, &example)?;
         let repaired = exemplar.repair(&options, heard)?;
         let surface = exemplar.source().surface();
