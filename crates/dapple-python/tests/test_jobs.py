@@ -250,3 +250,26 @@ def test_openjd_runs_the_shards(tmp_path, whole):
         done = subprocess.run([openjd, *map(str, arguments)], capture_output=True, text=True)
         assert done.returncode == 0, done.stdout + done.stderr
     assert_whole(job, whole)
+
+
+def test_stores_have_coordinates_and_attributes(tmp_path):
+    xarray = pytest.importorskip("xarray")
+    recipe = dp.Recipe.builtin("rock").with_seed(2**64 - 1)
+    jobs.create(recipe, (6, 8), ["height", "normal"], tmp_path / "a.zarr", shard=4)
+    for record in jobs.Job(tmp_path / "a.zarr").bake_all():
+        assert record.hashes
+    data = xarray.open_zarr(tmp_path / "a.zarr", consolidated=True)
+    assert data.height.dims == ("y", "x") and data.normal.dims == ("y", "x", "channel")
+    width, height = recipe.extent
+    assert np.array_equal(data.x, (np.arange(8) + 0.5) * (width / 8))
+    assert np.array_equal(data.y, (np.arange(6) + 0.5) * (height / 6))
+    attributes = data.height.attrs
+    assert attributes["recipe"] == recipe.name and attributes["seed"] == 2**64 - 1
+    assert attributes["version"] == dp.__version__ and attributes["units"] == "1"
+    # It is opened again as it is.
+    assert jobs.create(recipe, (6, 8), ["height", "normal"], tmp_path / "a.zarr", shard=4).missing() == []
+    jobs.create(dp.worley(dims=3), (2, 4, 8), "value", tmp_path / "b.zarr", shard=8, extent=(8, 4, 2), origin=(1, 2, 3))
+    field = xarray.open_zarr(tmp_path / "b.zarr")
+    assert field.x[0] == 1.5 and field.y[0] == 2.5 and field.z[0] == 3.5
+    jobs.create(recipe, (4, 2, 2), "height", tmp_path / "c.zarr", shard=2)
+    assert np.array_equal(xarray.open_zarr(tmp_path / "c.zarr").t, [0, 0.25, 0.5, 0.75])

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import operator
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, Protocol
@@ -35,6 +35,10 @@ _READY = 4
 Packed = tuple[tuple[str, tuple[int, ...], bytes], ...]
 
 
+#: The name of a coordinate, and the function of the numbers of pixels.
+Coordinate = tuple[str, Callable[[npt.NDArray[Any]], npt.NDArray[np.float64]]]
+
+
 class Source(Protocol):
     """A source of planes of numbers for the pixels of an array of any size."""
 
@@ -54,6 +58,12 @@ class Source(Protocol):
 
     def images_by_hash(self) -> dict[str, Image]:
         """Returns the images of the source, by their SHA-256."""
+
+    def attributes(self, plane: str) -> dict[str, Any]:
+        """Returns what a plane is made from, as attributes of an array."""
+
+    def coordinates(self, shape: tuple[int, ...]) -> list[Coordinate]:
+        """Returns, for each axis of an array, what its coordinates are, and how they follow from the numbers of pixels."""
 
 
 @dataclass(frozen=True)
@@ -106,6 +116,21 @@ class RecipeSource:
         arrays = (np.frombuffer(data, np.float32).reshape(shape) for _, shape, data in self.images)
         return dict(zip(self._hashes(), arrays))
 
+    def attributes(self, plane: str) -> dict[str, Any]:
+        recipe = Recipe.from_json(self.recipe)
+        # All maps are shares or directions; a height times the relief is in units of the plane.
+        made = {"recipe": recipe.name, "seed": recipe.seed, "time": self.time, "units": "1"}
+        if plane == "height":
+            made["relief"] = recipe.to_dict()["material"].get("relief", 0.1)
+        return made
+
+    def coordinates(self, shape: tuple[int, ...]) -> list[Coordinate]:
+        width, height = Recipe.from_json(self.recipe).extent
+        plane = [_centers("y", 0.0, height, shape[-2]), _centers("x", 0.0, width, shape[-1])]
+        if len(shape) == 2:
+            return plane
+        return [("elapsed part of the loop", lambda frame: (self.time + frame / shape[0]) % 1.0), *plane]
+
     def _hashes(self) -> list[str]:
         return [digest([list(shape), hashlib.sha256(data).hexdigest()]) for _, shape, data in self.images]
 
@@ -144,6 +169,13 @@ class FieldSource:
     def images_by_hash(self) -> dict[str, Image]:
         return {}
 
+    def attributes(self, plane: str) -> dict[str, Any]:
+        return {"field": self.description, "units": "1"}
+
+    def coordinates(self, shape: tuple[int, ...]) -> list[Coordinate]:
+        axes = zip("xyzw", self.origin, self.extent, reversed(shape))
+        return [_centers(*axis) for axis in axes][::-1]
+
 
 def source(
     what: Recipe | Plan | Field | ColorField,
@@ -165,7 +197,7 @@ def source(
     if not isinstance(what, Field | ColorField):
         raise TypeError(f"a Recipe, a Plan or a Field is needed, not {type(what).__name__}")
     if extent is None:
-        extent = [period or 1.0 for period in what.period]
+        extent = what._default_extent()
     _, (description,) = what.__reduce__()
     axes = what.ndim
     return FieldSource(description, _numbers("extent", extent, axes), _numbers("origin", 0.0 if origin is None else origin, axes))
@@ -177,6 +209,11 @@ def from_data(data: dict[str, Any], images: dict[str, Image]) -> RecipeSource | 
         return FieldSource(data["field"], tuple(data["extent"]), tuple(data["origin"]))
     named = {image["name"]: images[image["hash"]] for image in data["images"]}
     return RecipeSource(json.dumps(data["recipe"]), _packed(named), data["time"])
+
+
+def _centers(name: str, origin: float, extent: float, side: int) -> Coordinate:
+    """Returns the coordinates of the centers of pixels, in units of the plane."""
+    return f"{name} in units of the plane", lambda pixel: origin + (pixel + 0.5) * (extent / side)
 
 
 def _packed(images: dict[str, Image]) -> Packed:

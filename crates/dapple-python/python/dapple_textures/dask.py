@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
+import operator
 import queue
 import uuid
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import CancelledError
 from dataclasses import dataclass, field
 from itertools import islice
-from typing import Any
+from typing import Any, SupportsIndex
 
 import dask.array as da
 import numpy as np
@@ -47,13 +48,30 @@ def bake(
 
     Parameters
     ----------
-    what : a recipe or a plan, or a field.
-    shape : (rows, columns); (frames, rows, columns) of a recipe is a loop in time, and (depth, rows, columns) of a field
-        of three axes a volume. A number is both rows and columns.
-    plane : the map of a recipe, "height" by default. Normals, colors and ORM have a last axis of 3 channels.
-    chunks : the shape of a chunk; a number is both rows and columns, with 1 along further axes. Other values of Dask also
-        work, such as "auto", and -1 for a whole axis.
-    extent, origin : as in `Field.render`, for fields only.
+    what : Recipe, Plan, Field or ColorField
+        A recipe or a plan, or a field.
+    shape : int or sequence of int
+        (rows, columns); (frames, rows, columns) of a recipe is a loop in time, and (depth, rows, columns) of a field of
+        three axes a volume. A number is both rows and columns.
+    plane : str or None, default None
+        The map of a recipe, "height" by default. Normals, colors and ORM have a last axis of 3 channels.
+    chunks : object, default 2048
+        The shape of a chunk; a number is both rows and columns, with 1 along further axes. Other values of Dask also
+        work, such as "auto", -1 for a whole axis, and a dictionary of axes by number.
+    extent : float, sequence of float or None, default None
+        As in `Field.render`, for fields only.
+    origin : float, sequence of float or None, default None
+        As in `Field.render`, for fields only.
+
+    Returns
+    -------
+    da.Array
+        The result.
+
+    Raises
+    ------
+    DappleError
+        If an argument is refused; the message names the limit and the value.
     """
     source = _sources.source(what, extent=extent, origin=origin)
     plane = plane or ("value" if isinstance(source, _sources.FieldSource) else "height")
@@ -61,7 +79,9 @@ def bake(
     source.check(shape)
     channels = source.channels(plane)
     last = (channels,) if channels > 1 else ()
-    if isinstance(chunks, str):
+    if isinstance(chunks, Mapping):
+        chunks = _chunks_by_axis(chunks, len(shape))
+    elif isinstance(chunks, str):
         chunks = (chunks,) * len(shape)
     elif not isinstance(chunks, Sequence):
         chunks = jobs.shard_sides(chunks, shape)
@@ -80,6 +100,16 @@ def bake(
     )
 
 
+def _chunks_by_axis(chunks: Mapping[Any, Any], n_axes: int) -> tuple[Any, ...]:
+    """Returns the chunks along all axes; along axes that are not named, a whole axis is one chunk, as in Dask."""
+    for axis in chunks:
+        if not isinstance(axis, SupportsIndex) or not -n_axes <= operator.index(axis) < n_axes:
+            message = f"the chunks name the axis {axis!r}, but the axes are the numbers from 0 to {n_axes - 1}"
+            raise refusal("chunks", message)
+    by_axis = {operator.index(axis) % n_axes: sides for axis, sides in chunks.items()}
+    return tuple(by_axis.get(axis, -1) for axis in range(n_axes))
+
+
 @dataclass(frozen=True)
 class Report:
     """The result of baking a job."""
@@ -88,7 +118,7 @@ class Report:
     job: jobs.Job
     #: The number of shards that were baked; the others existed before.
     baked: int
-    #: How often a task was restarted after its worker died.
+    #: The number of tasks that were lost when their workers died, and baked again.
     restarted: int
     #: The hashes of the baked shards, except shards that a worker wrote just before it died.
     records: list[jobs.Record] = field(repr=False)
@@ -131,7 +161,7 @@ def bake_to_zarr(
             message = f"{len(left)} shards were baked and are not there, the first of them {left[0]}"
             raise refusal("store", message, "give a place that all workers see")
         missing = left
-    return Report(job, baked, run.restarted, run.records)
+    return Report(job, baked, run.restarted + run.lost(), run.records)
 
 
 class _Run:
@@ -143,6 +173,7 @@ class _Run:
         self.restarted = 0
         # Workers open the job once for each call: at the next call the same place may hold another job.
         self._call = uuid.uuid4().hex
+        self._prefix = f"dapple-bake-{self._call}-"
         self._begun: dict[Any, tuple[Future[Any], list[int], int]] = {}
         self._done: queue.SimpleQueue[Future[Any]] = queue.SimpleQueue()
 
@@ -179,7 +210,8 @@ class _Run:
             return 0
 
     def _submit(self, indices: list[int], attempt: int) -> None:
-        future = self.client.submit(_workers.bake_shards, self.job.store, self._call, indices, pure=False)
+        key = f"{self._prefix}{uuid.uuid4().hex}"
+        future = self.client.submit(_workers.bake_shards, self.job.store, self._call, indices, key=key)
         self._begun[future.key] = future, indices, attempt
         future.add_done_callback(self._done.put)
 
@@ -203,8 +235,18 @@ class _Run:
         if attempt >= _ATTEMPTS:
             message = f"the shards {indices[0]} to {indices[-1]} were begun {attempt + 1} times and lost with their workers"
             raise refusal("cluster", message, "look at the memory of the workers; finished shards stay")
-        self.restarted += 1
+        # A lost worker is an event of the scheduler, which counts its tasks.
+        self.restarted += error is None
         self._submit(indices, attempt + 1)
+
+    def lost(self) -> int:
+        """Returns the number of tasks whose workers died, as the scheduler has noted: it begins most of them again itself."""
+        try:
+            events = self.client.get_events("all")
+        except OSError:
+            return 0
+        dead = (event for _, event in events if event.get("action") == "remove-worker" and not event.get("expected"))
+        return sum(str(key).startswith(self._prefix) for event in dead for key in event["processing-tasks"])
 
     def _look(self) -> None:
         """Raises an error if the scheduler is gone."""

@@ -19,6 +19,7 @@ import math
 import operator
 import os
 import sys
+import warnings
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -37,6 +38,9 @@ from ._types import refusal
 
 #: The attribute of the store that holds the job.
 _ATTRIBUTE = "dapple_textures"
+
+#: The longest side with coordinates: 128 MiB of them.
+_LONGEST = 1 << 24
 
 #: The group in the store that holds the images of the recipe.
 _IMAGES = "images"
@@ -227,16 +231,36 @@ def create(
 
     Parameters
     ----------
-    what : a recipe or plan, whose maps are baked, or a field, whose plane is "value".
-    shape : (rows, columns); (frames, rows, columns) of a recipe is a loop in time, and (depth, rows, columns) of a field
-        of three axes a volume. A number is both rows and columns.
-    planes : the names of the maps.
-    store : a path, the address of an object store (with fsspec), or a Zarr store.
-    shard : the shape of the part that a worker writes as one file or object; a number is both rows and columns, with 1
+    what : Recipe, Plan, Field or ColorField
+        A recipe or plan, whose maps are baked, or a field, whose plane is "value".
+    shape : int or sequence of int
+        (rows, columns); (frames, rows, columns) of a recipe is a loop in time, and (depth, rows, columns) of a field of
+        three axes a volume. A number is both rows and columns.
+    planes : str or sequence of str
+        The names of the maps.
+    store : object
+        A path, the address of an object store (with fsspec), or a Zarr store.
+    shard : int or sequence of int, default 2048
+        The shape of the part that a worker writes as one file or object; a number is both rows and columns, with 1
         along further axes.
-    chunk : the shape of the part that a reader loads at once; by default the whole shard. It must divide the shard.
-    compressors : compressors of Zarr; by default Zarr's own choice.
-    extent, origin : as in `Field.render`, for fields only.
+    chunk : int, sequence of int or None, default None
+        The shape of the part that a reader loads at once; by default the whole shard. It must divide the shard.
+    compressors : object, default "auto"
+        Compressors of Zarr; by default Zarr's own choice.
+    extent : float, sequence of float or None, default None
+        As in `Field.render`, for fields only.
+    origin : float, sequence of float or None, default None
+        As in `Field.render`, for fields only.
+
+    Returns
+    -------
+    Job
+        The result.
+
+    Raises
+    ------
+    DappleError
+        If an argument is refused; the message names the limit and the value.
     """
     source = _sources.source(what, extent=extent, origin=origin)
     planes = (planes,) if isinstance(planes, str) else tuple(planes)
@@ -285,10 +309,43 @@ def create(
                 fill_value=np.nan,
                 compressors=compressors,
                 dimension_names=(*_axes(len(shape), source), *(["channel"] if last else [])),
+                attributes={**source.attributes(plane), "version": __version__},
             )
         except ContainsArrayError:
             pass
+    _describe(group, source, shape)
     return Job(store)
+
+
+def _describe(group: zarr.Group, source: _sources.RecipeSource | _sources.FieldSource, shape: tuple[int, ...]) -> None:
+    """Adds coordinates of the centers of pixels to a group, and gathers its metadata in one file.
+
+    xarray reads both. Sides that are longer than 2**24 have no coordinates.
+    """
+    if group.metadata.consolidated_metadata is not None:
+        return
+    for axis, side, (name, coordinates) in zip(_axes(len(shape), source), shape, source.coordinates(shape)):
+        if side > _LONGEST:
+            continue
+        values = coordinates(np.arange(side))
+        try:
+            array = group.create_array(
+                axis,
+                shape=(len(values),),
+                chunks=(len(values),),
+                dtype=np.float64,
+                dimension_names=(axis,),
+                attributes={"long_name": name, "units": "1"},
+            )
+        except ContainsArrayError:
+            found = group[axis]
+            assert isinstance(found, zarr.Array)
+            array = found
+        array[:] = values
+    with warnings.catch_warnings():
+        # Zarr warns that other programs may not know consolidated metadata; they read the rest.
+        warnings.simplefilter("ignore")
+        zarr.consolidate_metadata(group.store, path=group.path)
 
 
 def _group(store: Any, data: dict[str, Any]) -> zarr.Group:
