@@ -80,6 +80,15 @@ def kinds() -> dict[str, list[Entry]]:
             *grids(6),
             loops(6),
         ],
+        "gradient noise, at scattered positions": [
+            ours(dp.gradient_noise(), scattered=True),
+            fast("Perlin", scattered=True),
+        ],
+        "gradient noise, 6 octaves, at scattered positions": [
+            ours(dp.gradient_noise(octaves=6), scattered=True),
+            fast("Perlin", octaves=6, scattered=True),
+        ],
+        "gradient noise, 6 octaves, warped by two noises": [ours(warped()), fast_warped()],
         "gradient noise in 3-D": [ours(dp.gradient_noise(dims=3).slice(0.4)), fast("Perlin", axes=3)],
         "an aside: partition of unity; simplex": [
             ours(partition()),
@@ -87,6 +96,37 @@ def kinds() -> dict[str, list[Entry]]:
             *simplex(),
         ],
     }
+
+
+def warped() -> dp.Field:
+    """Six octaves at positions that two noises of one octave displace."""
+    x, y = dp.gradient_noise(seed=1), dp.gradient_noise(seed=2)
+    return dp.gradient_noise(octaves=6).warp(x, y, 1.0)
+
+
+def fast_warped() -> Entry:
+    """The same of pyfastnoiselite, in three calls."""
+    if not installed("pyfastnoiselite"):
+        return Entry("pyfastnoiselite", lambda: None, 1)
+    module = importlib.import_module("pyfastnoiselite.pyfastnoiselite")
+
+    def noise(seed: int, octaves: int) -> Any:
+        made = module.FastNoiseLite(seed=seed)
+        made.frequency = 1.0
+        made.noise_type = module.NoiseType.NoiseType_Perlin
+        if octaves > 1:
+            made.fractal_type = module.FractalType.FractalType_FBm
+            made.fractal_octaves = octaves
+        return made
+
+    y, x = (np.mgrid[:SIDE, :SIDE].astype(np.float32) + 0.5) / CELL
+    places = np.stack([x.ravel(), y.ravel()])
+    of, *by = noise(0, 6), noise(1, 1), noise(2, 1)
+
+    def draw() -> Any:
+        return of.gen_from_coords(places + np.stack([shift.gen_from_coords(places) for shift in by]))
+
+    return Entry("pyfastnoiselite", draw, SIDE * SIDE)
 
 
 def partition() -> dp.Field:

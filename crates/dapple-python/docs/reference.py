@@ -116,18 +116,28 @@ def text(docstring: str) -> str:
         elif title == "Parameters":
             found.append(_definitions(body.strip("\n")))
         else:
-            found.append(f"**{title}** {body.strip()}")
+            found.append(_results(title, body.strip("\n")))
     return "\n\n".join(found)
+
+
+def _entries(body: str) -> list[tuple[str, str]]:
+    """Returns the first line of each entry of a section, and its description, which is indented."""
+    entries = re.split(r"^(?=\S)", body, flags=re.M)
+    parts = (entry.partition("\n") for entry in entries if entry.strip())
+    return [(head.strip(), rest.rstrip()) for head, _, rest in parts]
 
 
 def _definitions(body: str) -> str:
-    entries = re.split(r"^(?=\S)", body, flags=re.M)
     found = []
-    for name, _, what in (entry.partition(" : ") for entry in entries if entry.strip()):
-        lines = what.rstrip().split("\n")
-        rest = "\n".join(line if line.startswith("    ") or not line else "    " + line for line in lines[1:])
-        found.append(f"`{name.strip()}`\n:   {lines[0]}\n{rest}".rstrip())
+    for head, what in _entries(body):
+        name, _, kind = head.partition(" : ")
+        found.append(f"`{name}` `{kind}`\n:   {what.lstrip()}".rstrip())
     return "\n\n".join(found)
+
+
+def _results(title: str, body: str) -> str:
+    found = [f"`{kind}`: {' '.join(what.split())}" for kind, what in _entries(body)]
+    return f"**{title}** " + " ".join(found)
 
 
 def _indented_code(body: str) -> str:

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import ast
+import builtins
+import dataclasses
 import doctest
 import inspect
 import re
@@ -39,9 +42,68 @@ def test_docstring(name):
     assert runner.failures == 0, "".join(output)
 
 
+def _sections(text):
+    """The sections of a docstring in the form of numpydoc, each as a list of (names, type, description)."""
+    parts = re.split(r"^(Parameters|Returns|Raises|Examples)\n-+\n", text, flags=re.M)
+    sections = dict(zip(parts[1::2], parts[2::2]))
+    sections.pop("Examples", None)
+    parsed = {}
+    for section, body in sections.items():
+        entries = []
+        for line in body.strip("\n").split("\n"):
+            if line and not line.startswith(" "):
+                names, _, kind = line.partition(" : ")
+                entries.append((names if section == "Parameters" else "", kind if section == "Parameters" else line, []))
+            elif line.strip():
+                entries[-1][2].append(line.strip())
+        parsed[section] = entries
+    return parsed
+
+
+CALLS = {name: thing for name, thing in THINGS.items() if callable(thing) and name != "DappleError" and not hasattr(thing, "_fields")}
+
+
+@pytest.mark.parametrize("name", CALLS)
+def test_a_docstring_is_numpydoc(name):
+    """Every parameter has an entry with its type, its default and a description; results and exceptions are named."""
+    thing = CALLS[name]
+    if inspect.isclass(thing) and dataclasses.is_dataclass(thing):
+        return
+    try:
+        signature = inspect.signature(thing)
+    except ValueError:
+        # A class that other functions make has no signature.
+        return
+    sections = _sections(inspect.getdoc(thing))
+    wanted = [part for part in signature.parameters.values() if part.name not in ("self", "args", "kwargs")]
+    stars = {inspect.Parameter.VAR_POSITIONAL: "*", inspect.Parameter.VAR_KEYWORD: "**"}
+    entries = sections.get("Parameters", [])
+    assert [entry[0] for entry in entries] == [stars.get(part.kind, "") + part.name for part in wanted]
+    for (_, kind, text), part in zip(entries, wanted):
+        form, _, default = kind.partition(", default ")
+        has_default = part.default is not inspect.Parameter.empty
+        assert form and not form.endswith(".") and text, part.name
+        if default:
+            assert ast.literal_eval(default) == part.default, part.name
+        else:
+            assert form.endswith(", optional") == has_default, part.name
+    if not inspect.isclass(thing) and name.split(".")[-1] not in NOTHING:
+        [(_, kind, text)] = sections["Returns"]
+        assert kind and text
+    if "Raises" in sections:
+        known = vars(builtins) | {"DappleError": dp.DappleError}
+        assert all(issubclass(known[kind], Exception) and text for _, kind, text in sections["Raises"])
+    elif wanted and not inspect.isclass(thing):
+        raise AssertionError("there is no section Raises")
+
+
+#: Functions that return None.
+NOTHING = {"set_threads", "write_image", "check_local", "export"}
+
+
 def _choices(function, parameter):
     """The words in quotes in the entry of a parameter."""
-    entry = re.search(rf"^{parameter}(?:, \w+)* : (.*?)(?=^\S|\Z)", inspect.getdoc(function), re.M | re.S)[1]
+    entry = re.search(rf"^{parameter} : [^\n]*\n(.*?)(?=^\S|\Z)", inspect.getdoc(function), re.M | re.S)[1]
     # A word inside of braces is the name of an option, which needs a value.
     return re.findall(r'"([a-z0-9_]+)"', re.sub(r"\{.*?\}", "", entry, flags=re.S))
 

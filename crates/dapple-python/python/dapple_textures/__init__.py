@@ -83,6 +83,7 @@ from ._native import (
     write_maps,
     yao,
 )
+from ._coats import cow, cow_progression, giraffe_progression, space_giraffe
 from ._meshes import MeshFile
 from ._pictures import Bands, SeamReport
 from ._recipes import read_recipe, read_recipe_images
@@ -91,15 +92,11 @@ from ._textures import (
     cellular_noise,
     color_noise,
     control_points,
-    cow,
-    cow_progression,
-    giraffe_progression,
     iterated_reference,
     label_ramp,
     noise,
     octaves,
     reference_texture,
-    space_giraffe,
     turbulence,
 )
 from ._types import Axes, EmptyCircle, Features, MapInfo, Spectrum, Weights

@@ -22,8 +22,19 @@ def read_recipe(path_or_name: _Path) -> Recipe:
 
     Parameters
     ----------
-    path_or_name : a file in TOML, or in JSON if its name ends with `.json`. If no such file exists, it is a name from
+    path_or_name : str or os.PathLike
+        A file in TOML, or in JSON if its name ends with `.json`. If no such file exists, it is a name from
         `Recipe.builtin_names()`. A recipe without a name gets the name of its file.
+
+    Returns
+    -------
+    Recipe
+        The recipe.
+
+    Raises
+    ------
+    DappleError
+        If an argument is refused; the message names the limit and the value.
 
     Examples
     --------
@@ -53,6 +64,25 @@ def read_recipe_images(recipe: Recipe, folder: _Path) -> dict[str, npt.NDArray[n
 
     If a node says how to treat the alpha of its image, the image is converted accordingly. Without that, an image that is
     partly transparent is refused, as by the command `dapple`.
+
+    Parameters
+    ----------
+    recipe : Recipe
+        The recipe.
+    folder : str or os.PathLike
+        The folder of the files, in which their paths begin.
+
+    Returns
+    -------
+    dict of numpy.ndarray of float32
+        The images by name.
+
+    Raises
+    ------
+    DappleError
+        If an image is partly transparent, or is not an image.
+    OSError
+        If a file cannot be read: `FileNotFoundError` if it does not exist.
 
     Examples
     --------

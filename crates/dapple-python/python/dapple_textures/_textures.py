@@ -6,7 +6,7 @@ Options and defaults are the same as in recipes; a test compares them.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Literal, TypeAlias, cast
+from typing import TYPE_CHECKING, Literal, SupportsIndex, TypeAlias, cast
 
 import numpy as np
 
@@ -20,15 +20,11 @@ __all__ = [
     "cellular_noise",
     "color_noise",
     "control_points",
-    "cow",
-    "cow_progression",
-    "giraffe_progression",
     "iterated_reference",
     "label_ramp",
     "noise",
     "octaves",
     "reference_texture",
-    "space_giraffe",
     "turbulence",
 ]
 
@@ -62,25 +58,42 @@ def noise(
     orientations: Orientations = None,
     strength: float = 0.5,
     fade: float = 0.0,
-    seed: int = 0,
+    seed: SupportsIndex = 0,
 ) -> Field:
     """Random values at control points, interpolated: smooth noise from 0 to 1. Caron and Mould, section 3.1.
 
     Parameters
     ----------
-    domain : the domain of the control points; the texture repeats along the axes that wrap. By default the paper's torus,
+    domain : Domain or None, default None
+        The domain of the control points; the texture repeats along the axes that wrap. By default the paper's torus,
         Domain(2, (-1, -1)).
-    spacing : the spacing of control points: the smallest distance in units of the domain, or {"distance": …},
-        {"density": …} or {"count": n}; a distance or density may be a ramp, as in `poisson_disk`.
-    axis_scale : the length of axes as a multiple of the length of their edges, above 0.5 and at most 16.
-    weight : the falloff of the weight of a control point: "cubic", "quintic" or {"oscillating": {"dips": n, "depth":
-        d}}.
-    orientations : the directions in which weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or
-        {"angle": radians}.
-    strength : how strongly orientations shift weights, from 0 to below 1.
-    fade : the length of an axis' border on the cell of its point, as a fraction of the axis' edge, below which the axis
+    spacing : float or dict, default 0.1
+        The spacing of control points: the smallest distance in units of the domain, or {"distance": …}, {"density": …}
+        or {"count": n}; a distance or density may be a ramp, as in `poisson_disk`.
+    axis_scale : float, default 1.0
+        The length of axes as a multiple of the length of their edges, above 0.5 and at most 16.
+    weight : {"cubic", "quintic"} or dict, default "cubic"
+        The falloff of the weight of a control point: "cubic", "quintic" or {"oscillating": {"dips": n, "depth": d}}.
+    orientations : {"random"}, dict or None, default None
+        The directions in which weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle":
+        radians}.
+    strength : float, default 0.5
+        How strongly orientations shift weights, from 0 to below 1.
+    fade : float, default 0.0
+        The length of an axis' border on the cell of its point, as a fraction of the axis' edge, below which the axis
         fades: from 0, which is never, to 1. With 0.25 the texture changes smoothly while points move.
-    seed : int, from 0 to 2**64 - 1.
+    seed : int, default 0
+        From 0 to 2**64 - 1.
+
+    Returns
+    -------
+    Field
+        The field.
+
+    Raises
+    ------
+    DappleError
+        If an argument is refused; the message names the limit and the value.
 
     Examples
     --------
@@ -109,31 +122,52 @@ def octaves(
     orientations: Orientations = None,
     strength: float = 0.5,
     fade: float = 0.0,
-    seed: int = 0,
+    seed: SupportsIndex = 0,
 ) -> Field:
     """The sum of octaves of noise, from 0 to 1 (fractional Brownian motion). Caron and Mould, figure 6.
 
     Parameters
     ----------
-    domain : the domain of the control points; the texture repeats along the axes that wrap. By default the paper's torus,
+    domain : Domain or None, default None
+        The domain of the control points; the texture repeats along the axes that wrap. By default the paper's torus,
         Domain(2, (-1, -1)).
-    spacing : the spacing of control points: the smallest distance in units of the domain, or {"distance": …},
-        {"density": …} or {"count": n}; a distance or density may be a ramp, as in `poisson_disk`.
-    octaves : the number of octaves, 1 to 16.
-    lacunarity : the factor by which the spacing is divided from octave to octave, above 1 and at most 16; 2, 4, 8 or 16
-        if octaves are rescaled.
-    gain : the amplitude of an octave as a multiple of the previous one, above 0 and at most 1.
-    source : "separate", each octave with points of its own, or "rescaled", one tile at several scales, which takes
-        less memory; the domain must then wrap along both axes.
-    axis_scale : the length of axes as a multiple of the length of their edges, above 0.5 and at most 16.
-    weight : the falloff of the weight of a control point: "cubic", "quintic" or {"oscillating": {"dips": n, "depth":
-        d}}.
-    orientations : the directions in which weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or
-        {"angle": radians}.
-    strength : how strongly orientations shift weights, from 0 to below 1.
-    fade : the length of an axis' border on the cell of its point, as a fraction of the axis' edge, below which the axis
+    spacing : float or dict, default 0.1
+        The spacing of control points: the smallest distance in units of the domain, or {"distance": …}, {"density": …}
+        or {"count": n}; a distance or density may be a ramp, as in `poisson_disk`.
+    octaves : int, default 4
+        The number of octaves, 1 to 16.
+    lacunarity : float, default 2.0
+        The factor by which the spacing is divided from octave to octave, above 1 and at most 16; 2, 4, 8 or 16 if
+        octaves are rescaled.
+    gain : float, default 0.5
+        The amplitude of an octave as a multiple of the previous one, above 0 and at most 1.
+    source : {"separate", "rescaled"}, default "separate"
+        "separate", each octave with points of its own, or "rescaled", one tile at several scales, which takes less
+        memory; the domain must then wrap along both axes.
+    axis_scale : float, default 1.0
+        The length of axes as a multiple of the length of their edges, above 0.5 and at most 16.
+    weight : {"cubic", "quintic"} or dict, default "cubic"
+        The falloff of the weight of a control point: "cubic", "quintic" or {"oscillating": {"dips": n, "depth": d}}.
+    orientations : {"random"}, dict or None, default None
+        The directions in which weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle":
+        radians}.
+    strength : float, default 0.5
+        How strongly orientations shift weights, from 0 to below 1.
+    fade : float, default 0.0
+        The length of an axis' border on the cell of its point, as a fraction of the axis' edge, below which the axis
         fades: from 0, which is never, to 1. With 0.25 the texture changes smoothly while points move.
-    seed : int, from 0 to 2**64 - 1.
+    seed : int, default 0
+        From 0 to 2**64 - 1.
+
+    Returns
+    -------
+    Field
+        The field.
+
+    Raises
+    ------
+    DappleError
+        If an argument is refused; the message names the limit and the value.
 
     Examples
     --------
@@ -166,31 +200,52 @@ def turbulence(
     orientations: Orientations = None,
     strength: float = 0.5,
     fade: float = 0.0,
-    seed: int = 0,
+    seed: SupportsIndex = 0,
 ) -> Field:
     """The sum of octaves of folded noise, from 0 to 1 (Perlin's turbulence). Caron and Mould, figure 8.
 
     Parameters
     ----------
-    domain : the domain of the control points; the texture repeats along the axes that wrap. By default the paper's torus,
+    domain : Domain or None, default None
+        The domain of the control points; the texture repeats along the axes that wrap. By default the paper's torus,
         Domain(2, (-1, -1)).
-    spacing : the spacing of control points: the smallest distance in units of the domain, or {"distance": …},
-        {"density": …} or {"count": n}; a distance or density may be a ramp, as in `poisson_disk`.
-    octaves : the number of octaves, 1 to 16.
-    lacunarity : the factor by which the spacing is divided from octave to octave, above 1 and at most 16; 2, 4, 8 or 16
-        if octaves are rescaled.
-    gain : the amplitude of an octave as a multiple of the previous one, above 0 and at most 1.
-    source : "separate", each octave with points of its own, or "rescaled", one tile at several scales, which takes
-        less memory; the domain must then wrap along both axes.
-    axis_scale : the length of axes as a multiple of the length of their edges, above 0.5 and at most 16.
-    weight : the falloff of the weight of a control point: "cubic", "quintic" or {"oscillating": {"dips": n, "depth":
-        d}}.
-    orientations : the directions in which weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or
-        {"angle": radians}.
-    strength : how strongly orientations shift weights, from 0 to below 1.
-    fade : the length of an axis' border on the cell of its point, as a fraction of the axis' edge, below which the axis
+    spacing : float or dict, default 0.1
+        The spacing of control points: the smallest distance in units of the domain, or {"distance": …}, {"density": …}
+        or {"count": n}; a distance or density may be a ramp, as in `poisson_disk`.
+    octaves : int, default 4
+        The number of octaves, 1 to 16.
+    lacunarity : float, default 2.0
+        The factor by which the spacing is divided from octave to octave, above 1 and at most 16; 2, 4, 8 or 16 if
+        octaves are rescaled.
+    gain : float, default 0.5
+        The amplitude of an octave as a multiple of the previous one, above 0 and at most 1.
+    source : {"separate", "rescaled"}, default "separate"
+        "separate", each octave with points of its own, or "rescaled", one tile at several scales, which takes less
+        memory; the domain must then wrap along both axes.
+    axis_scale : float, default 1.0
+        The length of axes as a multiple of the length of their edges, above 0.5 and at most 16.
+    weight : {"cubic", "quintic"} or dict, default "cubic"
+        The falloff of the weight of a control point: "cubic", "quintic" or {"oscillating": {"dips": n, "depth": d}}.
+    orientations : {"random"}, dict or None, default None
+        The directions in which weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle":
+        radians}.
+    strength : float, default 0.5
+        How strongly orientations shift weights, from 0 to below 1.
+    fade : float, default 0.0
+        The length of an axis' border on the cell of its point, as a fraction of the axis' edge, below which the axis
         fades: from 0, which is never, to 1. With 0.25 the texture changes smoothly while points move.
-    seed : int, from 0 to 2**64 - 1.
+    seed : int, default 0
+        From 0 to 2**64 - 1.
+
+    Returns
+    -------
+    Field
+        The field.
+
+    Raises
+    ------
+    DappleError
+        If an argument is refused; the message names the limit and the value.
 
     Examples
     --------
@@ -218,27 +273,45 @@ def cells(
     orientations: Orientations = "random",
     strength: float = 0.5,
     fade: float = 0.0,
-    seed: int = 0,
+    seed: SupportsIndex = 0,
 ) -> Field:
     """Cells with a random value each, from 0 to below 1. A cell has one control point or a few neighboring ones. Caron and
     Mould, figure 9.
 
     Parameters
     ----------
-    domain : the domain of the control points; the texture repeats along the axes that wrap. By default the paper's torus,
+    domain : Domain or None, default None
+        The domain of the control points; the texture repeats along the axes that wrap. By default the paper's torus,
         Domain(2, (-1, -1)).
-    spacing : the spacing of control points: the smallest distance in units of the domain, or {"distance": …},
-        {"density": …} or {"count": n}; a distance or density may be a ramp, as in `poisson_disk`.
-    points_per_cell : the least and the largest number of control points of a cell, 1 to 16.
-    axis_scale : the length of axes as a multiple of the length of their edges, above 0.5 and at most 16.
-    weight : the falloff of the weight of a control point: "cubic", "quintic" or {"oscillating": {"dips": n, "depth":
-        d}}.
-    orientations : the directions in which weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or
-        {"angle": radians}.
-    strength : how strongly orientations shift weights, from 0 to below 1.
-    fade : the length of an axis' border on the cell of its point, as a fraction of the axis' edge, below which the axis
+    spacing : float or dict, default 0.1
+        The spacing of control points: the smallest distance in units of the domain, or {"distance": …}, {"density": …}
+        or {"count": n}; a distance or density may be a ramp, as in `poisson_disk`.
+    points_per_cell : tuple of int, default (1, 1)
+        The least and the largest number of control points of a cell, 1 to 16.
+    axis_scale : float, default 1.0
+        The length of axes as a multiple of the length of their edges, above 0.5 and at most 16.
+    weight : {"cubic", "quintic"} or dict, default "cubic"
+        The falloff of the weight of a control point: "cubic", "quintic" or {"oscillating": {"dips": n, "depth": d}}.
+    orientations : {"random"}, dict or None, default "random"
+        The directions in which weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle":
+        radians}.
+    strength : float, default 0.5
+        How strongly orientations shift weights, from 0 to below 1.
+    fade : float, default 0.0
+        The length of an axis' border on the cell of its point, as a fraction of the axis' edge, below which the axis
         fades: from 0, which is never, to 1. With 0.25 the texture changes smoothly while points move.
-    seed : int, from 0 to 2**64 - 1.
+    seed : int, default 0
+        From 0 to 2**64 - 1.
+
+    Returns
+    -------
+    Field
+        The field.
+
+    Raises
+    ------
+    DappleError
+        If an argument is refused; the message names the limit and the value.
 
     Examples
     --------
@@ -266,29 +339,50 @@ def cellular_noise(
     orientations: Orientations = "random",
     strength: float = 0.5,
     fade: float = 0.0,
-    seed: int = 0,
+    seed: SupportsIndex = 0,
 ) -> Field:
     """The sum of layers of cells, from 0 to 1. Caron and Mould, figure 10.
 
     Parameters
     ----------
-    domain : the domain of the control points; the texture repeats along the axes that wrap. By default the paper's torus,
+    domain : Domain or None, default None
+        The domain of the control points; the texture repeats along the axes that wrap. By default the paper's torus,
         Domain(2, (-1, -1)).
-    spacing : the spacing of control points: the smallest distance in units of the domain, or {"distance": …},
-        {"density": …} or {"count": n}; a distance or density may be a ramp, as in `poisson_disk`.
-    layers : the number of layers, 1 to 16.
-    lacunarity : the factor by which the spacing is divided from layer to layer, above 1 and at most 16.
-    gain : the amplitude of a layer as a multiple of the previous one, above 0 and at most 1.
-    points_per_cell : the least and the largest number of control points of a cell, 1 to 16.
-    axis_scale : the length of axes as a multiple of the length of their edges, above 0.5 and at most 16.
-    weight : the falloff of the weight of a control point: "cubic", "quintic" or {"oscillating": {"dips": n, "depth":
-        d}}.
-    orientations : the directions in which weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or
-        {"angle": radians}.
-    strength : how strongly orientations shift weights, from 0 to below 1.
-    fade : the length of an axis' border on the cell of its point, as a fraction of the axis' edge, below which the axis
+    spacing : float or dict, default 0.4
+        The spacing of control points: the smallest distance in units of the domain, or {"distance": …}, {"density": …}
+        or {"count": n}; a distance or density may be a ramp, as in `poisson_disk`.
+    layers : int, default 4
+        The number of layers, 1 to 16.
+    lacunarity : float, default 2.0
+        The factor by which the spacing is divided from layer to layer, above 1 and at most 16.
+    gain : float, default 0.5
+        The amplitude of a layer as a multiple of the previous one, above 0 and at most 1.
+    points_per_cell : tuple of int, default (1, 1)
+        The least and the largest number of control points of a cell, 1 to 16.
+    axis_scale : float, default 1.0
+        The length of axes as a multiple of the length of their edges, above 0.5 and at most 16.
+    weight : {"cubic", "quintic"} or dict, default "cubic"
+        The falloff of the weight of a control point: "cubic", "quintic" or {"oscillating": {"dips": n, "depth": d}}.
+    orientations : {"random"}, dict or None, default "random"
+        The directions in which weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle":
+        radians}.
+    strength : float, default 0.5
+        How strongly orientations shift weights, from 0 to below 1.
+    fade : float, default 0.0
+        The length of an axis' border on the cell of its point, as a fraction of the axis' edge, below which the axis
         fades: from 0, which is never, to 1. With 0.25 the texture changes smoothly while points move.
-    seed : int, from 0 to 2**64 - 1.
+    seed : int, default 0
+        From 0 to 2**64 - 1.
+
+    Returns
+    -------
+    Field
+        The field.
+
+    Raises
+    ------
+    DappleError
+        If an argument is refused; the message names the limit and the value.
 
     Examples
     --------
@@ -316,26 +410,44 @@ def color_noise(
     orientations: Orientations = None,
     strength: float = 0.5,
     fade: float = 0.0,
-    seed: int = 0,
+    seed: SupportsIndex = 0,
 ) -> ColorField:
     """Random colors of a palette at control points, interpolated; not in the paper.
 
     Parameters
     ----------
-    domain : the domain of the control points; the texture repeats along the axes that wrap. By default the paper's torus,
+    domain : Domain or None, default None
+        The domain of the control points; the texture repeats along the axes that wrap. By default the paper's torus,
         Domain(2, (-1, -1)).
-    spacing : the spacing of control points: the smallest distance in units of the domain, or {"distance": …},
-        {"density": …} or {"count": n}; a distance or density may be a ramp, as in `poisson_disk`.
-    palette : linear RGB colors from 0 to 1, all equally probable.
-    axis_scale : the length of axes as a multiple of the length of their edges, above 0.5 and at most 16.
-    weight : the falloff of the weight of a control point: "cubic", "quintic" or {"oscillating": {"dips": n, "depth":
-        d}}.
-    orientations : the directions in which weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or
-        {"angle": radians}.
-    strength : how strongly orientations shift weights, from 0 to below 1.
-    fade : the length of an axis' border on the cell of its point, as a fraction of the axis' edge, below which the axis
+    spacing : float or dict, default 0.1
+        The spacing of control points: the smallest distance in units of the domain, or {"distance": …}, {"density": …}
+        or {"count": n}; a distance or density may be a ramp, as in `poisson_disk`.
+    palette : sequence of sequence of float or numpy.ndarray of float, default ((0.75, 0.2, 0.03), (0.9, 0.8, 0.55), (0.05, 0.3, 0.3), (0.01, 0.03, 0.15))
+        Linear RGB colors from 0 to 1, all equally probable.
+    axis_scale : float, default 1.0
+        The length of axes as a multiple of the length of their edges, above 0.5 and at most 16.
+    weight : {"cubic", "quintic"} or dict, default "cubic"
+        The falloff of the weight of a control point: "cubic", "quintic" or {"oscillating": {"dips": n, "depth": d}}.
+    orientations : {"random"}, dict or None, default None
+        The directions in which weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle":
+        radians}.
+    strength : float, default 0.5
+        How strongly orientations shift weights, from 0 to below 1.
+    fade : float, default 0.0
+        The length of an axis' border on the cell of its point, as a fraction of the axis' edge, below which the axis
         fades: from 0, which is never, to 1. With 0.25 the texture changes smoothly while points move.
-    seed : int, from 0 to 2**64 - 1.
+    seed : int, default 0
+        From 0 to 2**64 - 1.
+
+    Returns
+    -------
+    ColorField
+        The field.
+
+    Raises
+    ------
+    DappleError
+        If an argument is refused; the message names the limit and the value.
 
     Examples
     --------
@@ -352,190 +464,6 @@ def color_noise(
     return cast("ColorField", _texture("color_noise", options, domain, None, seed))
 
 
-def cow(
-    domain: Domain | None = None,
-    *,
-    spacing: Spacing = 0.1,
-    probability: Varying = 0.5,
-    values: tuple[float, float] = (0.0, 1.0),
-    axis_scale: float = 1.0,
-    weight: Weight = "cubic",
-    orientations: Orientations = None,
-    strength: float = 0.5,
-    fade: float = 0.0,
-    seed: int = 0,
-) -> Field:
-    """The patches of a cow: cells of two values. Caron and Mould, figure 11.
-
-    Parameters
-    ----------
-    domain : the domain of the control points; the texture repeats along the axes that wrap. By default the paper's torus,
-        Domain(2, (-1, -1)).
-    spacing : the spacing of control points: the smallest distance in units of the domain, or {"distance": …},
-        {"density": …} or {"count": n}; a distance or density may be a ramp, as in `poisson_disk`.
-    probability : the probability of label 1, 0 to 1: a number or a ramp, as in `poisson_disk`.
-    values : the values of the labels 0 and 1.
-    axis_scale : the length of axes as a multiple of the length of their edges, above 0.5 and at most 16.
-    weight : the falloff of the weight of a control point: "cubic", "quintic" or {"oscillating": {"dips": n, "depth":
-        d}}.
-    orientations : the directions in which weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or
-        {"angle": radians}.
-    strength : how strongly orientations shift weights, from 0 to below 1.
-    fade : the length of an axis' border on the cell of its point, as a fraction of the axis' edge, below which the axis
-        fades: from 0, which is never, to 1. With 0.25 the texture changes smoothly while points move.
-    seed : int, from 0 to 2**64 - 1.
-
-    Examples
-    --------
-    >>> import dapple_textures as dp
-    >>> coat = dp.cow(dp.Domain(1), probability=0.4, seed=7)
-    >>> sorted(set(coat.render(32).ravel().tolist()))
-    [0.0, 1.0]
-    """
-    options = {
-        "spacing": spacing,
-        "probability": probability,
-        "values": values,
-        "net": _net(axis_scale, weight, orientations, strength, fade),
-    }
-    return cast("Field", _texture("cow", options, domain, None, seed))
-
-
-def space_giraffe(
-    domain: Domain | None = None,
-    *,
-    spacing: Spacing = 0.2,
-    pairs: tuple[int, int] = (10, 20),
-    spots: Literal["separated", "literal"] = "separated",
-    values: tuple[float, float] = (1.0, 0.0),
-    axis_scale: float = 1.0,
-    weight: Weight = "cubic",
-    orientations: Orientations = None,
-    strength: float = 0.5,
-    fade: float = 0.0,
-    seed: int = 0,
-) -> Field:
-    """The coat of a giraffe: spots on a ground. Caron and Mould, figure 12.
-
-    Parameters
-    ----------
-    domain : the domain of the control points; the texture repeats along the axes that wrap. By default the paper's torus,
-        Domain(2, (-1, -1)).
-    spacing : the spacing of control points: the smallest distance in units of the domain, or {"distance": …},
-        {"density": …} or {"count": n}; a distance or density may be a ramp, as in `poisson_disk`.
-    pairs : the least and the largest number of pairs of points around the center of a spot, 3 to 256.
-    spots : "separated", whole spots that never merge, or "literal", the method of the paper, where most spots are in
-        pieces.
-    values : the values of the ground and of the spots.
-    axis_scale : the length of axes as a multiple of the length of their edges, above 0.5 and at most 16.
-    weight : the falloff of the weight of a control point: "cubic", "quintic" or {"oscillating": {"dips": n, "depth":
-        d}}.
-    orientations : the directions in which weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or
-        {"angle": radians}.
-    strength : how strongly orientations shift weights, from 0 to below 1.
-    fade : the length of an axis' border on the cell of its point, as a fraction of the axis' edge, below which the axis
-        fades: from 0, which is never, to 1. With 0.25 the texture changes smoothly while points move.
-    seed : int, from 0 to 2**64 - 1.
-
-    Examples
-    --------
-    >>> import dapple_textures as dp
-    >>> coat = dp.space_giraffe(dp.Domain(1), spacing=0.28, seed=6)
-    """
-    options = {
-        "spacing": spacing,
-        "pairs": pairs,
-        "spots": spots,
-        "values": values,
-        "net": _net(axis_scale, weight, orientations, strength, fade),
-    }
-    return cast("Field", _texture("space_giraffe", options, domain, None, seed))
-
-
-def cow_progression(
-    domain: Domain | None = None,
-    *,
-    distances: tuple[float, float] = (0.2, 0.025),
-    axis_scale: float = 1.0,
-    weight: Weight = "cubic",
-    orientations: Orientations = None,
-    strength: float = 0.5,
-    fade: float = 0.0,
-    seed: int = 0,
-) -> Field:
-    """A cow whose patches get smaller to the right. Caron and Mould, figure 15.
-
-    Parameters
-    ----------
-    domain : the domain of the control points. By default Domain(2, (-1, -1), wrap=(False, True)); it never wraps along x,
-        since the texture changes along x.
-    distances : the smallest distance of points at the left and at the right, with equal ratios over equal lengths in
-        between.
-    axis_scale : the length of axes as a multiple of the length of their edges, above 0.5 and at most 16.
-    weight : the falloff of the weight of a control point: "cubic", "quintic" or {"oscillating": {"dips": n, "depth":
-        d}}.
-    orientations : the directions in which weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or
-        {"angle": radians}.
-    strength : how strongly orientations shift weights, from 0 to below 1.
-    fade : the length of an axis' border on the cell of its point, as a fraction of the axis' edge, below which the axis
-        fades: from 0, which is never, to 1. With 0.25 the texture changes smoothly while points move.
-    seed : int, from 0 to 2**64 - 1.
-
-    Examples
-    --------
-    >>> import dapple_textures as dp
-    >>> coat = dp.cow_progression(dp.Domain(1), distances=(0.2, 0.05))
-    >>> coat.period
-    [None, 1.0]
-    """
-    options = {
-        "distances": distances,
-        "net": _net(axis_scale, weight, orientations, strength, fade),
-    }
-    return cast("Field", _texture("cow_progression", options, domain, None, seed))
-
-
-def giraffe_progression(
-    domain: Domain | None = None,
-    *,
-    distances: tuple[float, float] = (0.2, 0.025),
-    axis_scale: float = 1.0,
-    weight: Weight = "cubic",
-    orientations: Orientations = None,
-    strength: float = 0.5,
-    fade: float = 0.0,
-    seed: int = 0,
-) -> Field:
-    """A giraffe whose spots get smaller to the right. Caron and Mould, figure 16.
-
-    Parameters
-    ----------
-    domain : the domain of the control points. By default Domain(2, (-1, -1), wrap=(False, True)); it never wraps along x,
-        since the texture changes along x.
-    distances : the smallest distance of points at the left and at the right, with equal ratios over equal lengths in
-        between.
-    axis_scale : the length of axes as a multiple of the length of their edges, above 0.5 and at most 16.
-    weight : the falloff of the weight of a control point: "cubic", "quintic" or {"oscillating": {"dips": n, "depth":
-        d}}.
-    orientations : the directions in which weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or
-        {"angle": radians}.
-    strength : how strongly orientations shift weights, from 0 to below 1.
-    fade : the length of an axis' border on the cell of its point, as a fraction of the axis' edge, below which the axis
-        fades: from 0, which is never, to 1. With 0.25 the texture changes smoothly while points move.
-    seed : int, from 0 to 2**64 - 1.
-
-    Examples
-    --------
-    >>> import dapple_textures as dp
-    >>> coat = dp.giraffe_progression(dp.Domain(1), distances=(0.4, 0.2))
-    """
-    options = {
-        "distances": distances,
-        "net": _net(axis_scale, weight, orientations, strength, fade),
-    }
-    return cast("Field", _texture("giraffe_progression", options, domain, None, seed))
-
-
 def label_ramp(
     domain: Domain | None = None,
     *,
@@ -546,26 +474,44 @@ def label_ramp(
     orientations: Orientations = None,
     strength: float = 0.5,
     fade: float = 0.0,
-    seed: int = 0,
+    seed: SupportsIndex = 0,
 ) -> Field:
     """Black cells (0) on the left that turn white (1) to the right. Caron and Mould, figure 17.
 
     Parameters
     ----------
-    domain : the domain of the control points. By default Domain(2, (-1, -1), wrap=(False, True)); it never wraps along x,
+    domain : Domain or None, default None
+        The domain of the control points. By default Domain(2, (-1, -1), wrap=(False, True)); it never wraps along x,
         since the texture changes along x.
-    spacing : the spacing of control points: the smallest distance in units of the domain, or {"distance": …},
-        {"density": …} or {"count": n}; a distance or density may be a ramp, as in `poisson_disk`.
-    probabilities : the probability of white at the left and at the right, linear in between.
-    axis_scale : the length of axes as a multiple of the length of their edges, above 0.5 and at most 16.
-    weight : the falloff of the weight of a control point: "cubic", "quintic" or {"oscillating": {"dips": n, "depth":
-        d}}.
-    orientations : the directions in which weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or
-        {"angle": radians}.
-    strength : how strongly orientations shift weights, from 0 to below 1.
-    fade : the length of an axis' border on the cell of its point, as a fraction of the axis' edge, below which the axis
+    spacing : float or dict, default 0.05
+        The spacing of control points: the smallest distance in units of the domain, or {"distance": …}, {"density": …}
+        or {"count": n}; a distance or density may be a ramp, as in `poisson_disk`.
+    probabilities : tuple of float, default (0.0, 1.0)
+        The probability of white at the left and at the right, linear in between.
+    axis_scale : float, default 1.0
+        The length of axes as a multiple of the length of their edges, above 0.5 and at most 16.
+    weight : {"cubic", "quintic"} or dict, default "cubic"
+        The falloff of the weight of a control point: "cubic", "quintic" or {"oscillating": {"dips": n, "depth": d}}.
+    orientations : {"random"}, dict or None, default None
+        The directions in which weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle":
+        radians}.
+    strength : float, default 0.5
+        How strongly orientations shift weights, from 0 to below 1.
+    fade : float, default 0.0
+        The length of an axis' border on the cell of its point, as a fraction of the axis' edge, below which the axis
         fades: from 0, which is never, to 1. With 0.25 the texture changes smoothly while points move.
-    seed : int, from 0 to 2**64 - 1.
+    seed : int, default 0
+        From 0 to 2**64 - 1.
+
+    Returns
+    -------
+    Field
+        The field.
+
+    Raises
+    ------
+    DappleError
+        If an argument is refused; the message names the limit and the value.
 
     Examples
     --------
@@ -593,28 +539,47 @@ def reference_texture(
     orientations: Orientations = None,
     strength: float = 0.5,
     fade: float = 0.0,
-    seed: int = 0,
+    seed: SupportsIndex = 0,
 ) -> Field:
     """Black and white cells after an image: a control point is white with the probability of the pixel under it.
     Caron and Mould, figure 13.
 
     Parameters
     ----------
-    image : a gray image (rows, columns) with values from 0 to 1, which covers the domain.
-    domain : the domain of the control points; the texture repeats along the axes that wrap. By default the paper's torus,
+    image : array_like
+        A gray image (rows, columns) with values from 0 to 1, which covers the domain.
+    domain : Domain or None, default None
+        The domain of the control points; the texture repeats along the axes that wrap. By default the paper's torus,
         Domain(2, (-1, -1)).
-    spacing : the spacing of control points: the smallest distance in units of the domain, or {"distance": …},
-        {"density": …} or {"count": n}; a distance or density may be a ramp, as in `poisson_disk`.
-    values : the values of the black and of the white group.
-    axis_scale : the length of axes as a multiple of the length of their edges, above 0.5 and at most 16.
-    weight : the falloff of the weight of a control point: "cubic", "quintic" or {"oscillating": {"dips": n, "depth":
-        d}}.
-    orientations : the directions in which weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or
-        {"angle": radians}.
-    strength : how strongly orientations shift weights, from 0 to below 1.
-    fade : the length of an axis' border on the cell of its point, as a fraction of the axis' edge, below which the axis
+    spacing : float or dict, default 0.05
+        The spacing of control points: the smallest distance in units of the domain, or {"distance": …}, {"density": …}
+        or {"count": n}; a distance or density may be a ramp, as in `poisson_disk`.
+    values : tuple of float, default (0.0, 1.0)
+        The values of the black and of the white group.
+    axis_scale : float, default 1.0
+        The length of axes as a multiple of the length of their edges, above 0.5 and at most 16.
+    weight : {"cubic", "quintic"} or dict, default "cubic"
+        The falloff of the weight of a control point: "cubic", "quintic" or {"oscillating": {"dips": n, "depth": d}}.
+    orientations : {"random"}, dict or None, default None
+        The directions in which weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle":
+        radians}.
+    strength : float, default 0.5
+        How strongly orientations shift weights, from 0 to below 1.
+    fade : float, default 0.0
+        The length of an axis' border on the cell of its point, as a fraction of the axis' edge, below which the axis
         fades: from 0, which is never, to 1. With 0.25 the texture changes smoothly while points move.
-    seed : int, from 0 to 2**64 - 1.
+    seed : int, default 0
+        From 0 to 2**64 - 1.
+
+    Returns
+    -------
+    Field
+        The field.
+
+    Raises
+    ------
+    DappleError
+        If an argument is refused; the message names the limit and the value.
 
     Examples
     --------
@@ -643,30 +608,50 @@ def iterated_reference(
     orientations: Orientations = None,
     strength: float = 0.5,
     fade: float = 0.0,
-    seed: int = 0,
+    seed: SupportsIndex = 0,
 ) -> Field:
     """Black and white cells with edges like a coast, from several rounds of points. The first round follows an image, and
     each later round the picture of the previous one. Caron and Mould, figure 14.
 
     Parameters
     ----------
-    image : a gray image (rows, columns) with values from 0 to 1, which covers the domain.
-    domain : the domain of the control points; the texture repeats along the axes that wrap. By default the paper's torus,
+    image : array_like
+        A gray image (rows, columns) with values from 0 to 1, which covers the domain.
+    domain : Domain or None, default None
+        The domain of the control points; the texture repeats along the axes that wrap. By default the paper's torus,
         Domain(2, (-1, -1)).
-    spacing : the spacing of control points: the smallest distance in units of the domain, or {"distance": …},
-        {"density": …} or {"count": n}; a distance or density may be a ramp, as in `poisson_disk`.
-    iterations : the number of rounds, 1 to 16, each with twice as many points as the previous one.
-    points : "fresh", each round with points of its own, or "nested", each round with the points of the previous one and as
+    spacing : float or dict, default 0.1
+        The spacing of control points: the smallest distance in units of the domain, or {"distance": …}, {"density": …}
+        or {"count": n}; a distance or density may be a ramp, as in `poisson_disk`.
+    iterations : int, default 4
+        The number of rounds, 1 to 16, each with twice as many points as the previous one.
+    points : {"fresh", "nested"}, default "fresh"
+        "fresh", each round with points of its own, or "nested", each round with the points of the previous one and as
         many again.
-    axis_scale : the length of axes as a multiple of the length of their edges, above 0.5 and at most 16.
-    weight : the falloff of the weight of a control point: "cubic", "quintic" or {"oscillating": {"dips": n, "depth":
-        d}}.
-    orientations : the directions in which weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or
-        {"angle": radians}.
-    strength : how strongly orientations shift weights, from 0 to below 1.
-    fade : the length of an axis' border on the cell of its point, as a fraction of the axis' edge, below which the axis
+    axis_scale : float, default 1.0
+        The length of axes as a multiple of the length of their edges, above 0.5 and at most 16.
+    weight : {"cubic", "quintic"} or dict, default "cubic"
+        The falloff of the weight of a control point: "cubic", "quintic" or {"oscillating": {"dips": n, "depth": d}}.
+    orientations : {"random"}, dict or None, default None
+        The directions in which weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle":
+        radians}.
+    strength : float, default 0.5
+        How strongly orientations shift weights, from 0 to below 1.
+    fade : float, default 0.0
+        The length of an axis' border on the cell of its point, as a fraction of the axis' edge, below which the axis
         fades: from 0, which is never, to 1. With 0.25 the texture changes smoothly while points move.
-    seed : int, from 0 to 2**64 - 1.
+    seed : int, default 0
+        From 0 to 2**64 - 1.
+
+    Returns
+    -------
+    Field
+        The field.
+
+    Raises
+    ------
+    DappleError
+        If an argument is refused; the message names the limit and the value.
 
     Examples
     --------
@@ -693,27 +678,45 @@ def control_points(
     orientations: Orientations = None,
     strength: float = 0.5,
     fade: float = 0.0,
-    seed: int = 0,
+    seed: SupportsIndex = 0,
 ) -> Field:
     """A texture of control points that are given one by one, in the form of a recipe; `pups` takes arrays.
 
     Parameters
     ----------
-    points : dictionaries with "x", "y", "value" or "label", and, in all or in none, "orientation": [x, y] or
-        [x, y, z].
-    domain : the domain of the control points; the texture repeats along the axes that wrap. By default the paper's torus,
+    points : sequence of dict
+        Dictionaries with "x", "y", "value" or "label", and, in all or in none, "orientation": [x, y] or [x, y, z].
+    domain : Domain or None, default None
+        The domain of the control points; the texture repeats along the axes that wrap. By default the paper's torus,
         Domain(2, (-1, -1)).
-    values : the values of labels, from label 0.
-    cells : "mixed", the weighted mean of the values, or "hard", the value of the strongest point.
-    axis_scale : the length of axes as a multiple of the length of their edges, above 0.5 and at most 16.
-    weight : the falloff of the weight of a control point: "cubic", "quintic" or {"oscillating": {"dips": n, "depth":
-        d}}.
-    orientations : the directions in which weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or
-        {"angle": radians}.
-    strength : how strongly orientations shift weights, from 0 to below 1.
-    fade : the length of an axis' border on the cell of its point, as a fraction of the axis' edge, below which the axis
+    values : sequence of float, default ()
+        The values of labels, from label 0.
+    cells : {"mixed", "hard"}, default "mixed"
+        "mixed", the weighted mean of the values, or "hard", the value of the strongest point.
+    axis_scale : float, default 1.0
+        The length of axes as a multiple of the length of their edges, above 0.5 and at most 16.
+    weight : {"cubic", "quintic"} or dict, default "cubic"
+        The falloff of the weight of a control point: "cubic", "quintic" or {"oscillating": {"dips": n, "depth": d}}.
+    orientations : {"random"}, dict or None, default None
+        The directions in which weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle":
+        radians}.
+    strength : float, default 0.5
+        How strongly orientations shift weights, from 0 to below 1.
+    fade : float, default 0.0
+        The length of an axis' border on the cell of its point, as a fraction of the axis' edge, below which the axis
         fades: from 0, which is never, to 1. With 0.25 the texture changes smoothly while points move.
-    seed : int, from 0 to 2**64 - 1.
+    seed : int, default 0
+        From 0 to 2**64 - 1.
+
+    Returns
+    -------
+    Field
+        The field.
+
+    Raises
+    ------
+    DappleError
+        If an argument is refused; the message names the limit and the value.
 
     Examples
     --------

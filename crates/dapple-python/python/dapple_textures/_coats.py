@@ -1,0 +1,273 @@
+"""The coats of animals of Caron and Mould, "Partition of Unity Parametrics for Texture Synthesis" (2013).
+
+Options and defaults are the same as in recipes; a test compares them.
+"""
+
+from __future__ import annotations
+
+from typing import Literal, SupportsIndex, cast
+
+from ._native import Domain, Field, _texture
+from ._textures import Orientations, Spacing, Varying, Weight, _net
+
+__all__ = [
+    "cow",
+    "cow_progression",
+    "giraffe_progression",
+    "space_giraffe",
+]
+
+
+def cow(
+    domain: Domain | None = None,
+    *,
+    spacing: Spacing = 0.1,
+    probability: Varying = 0.5,
+    values: tuple[float, float] = (0.0, 1.0),
+    axis_scale: float = 1.0,
+    weight: Weight = "cubic",
+    orientations: Orientations = None,
+    strength: float = 0.5,
+    fade: float = 0.0,
+    seed: SupportsIndex = 0,
+) -> Field:
+    """The patches of a cow: cells of two values. Caron and Mould, figure 11.
+
+    Parameters
+    ----------
+    domain : Domain or None, default None
+        The domain of the control points; the texture repeats along the axes that wrap. By default the paper's torus,
+        Domain(2, (-1, -1)).
+    spacing : float or dict, default 0.1
+        The spacing of control points: the smallest distance in units of the domain, or {"distance": …}, {"density": …}
+        or {"count": n}; a distance or density may be a ramp, as in `poisson_disk`.
+    probability : float or dict, default 0.5
+        The probability of label 1, 0 to 1: a number or a ramp, as in `poisson_disk`.
+    values : tuple of float, default (0.0, 1.0)
+        The values of the labels 0 and 1.
+    axis_scale : float, default 1.0
+        The length of axes as a multiple of the length of their edges, above 0.5 and at most 16.
+    weight : {"cubic", "quintic"} or dict, default "cubic"
+        The falloff of the weight of a control point: "cubic", "quintic" or {"oscillating": {"dips": n, "depth": d}}.
+    orientations : {"random"}, dict or None, default None
+        The directions in which weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle":
+        radians}.
+    strength : float, default 0.5
+        How strongly orientations shift weights, from 0 to below 1.
+    fade : float, default 0.0
+        The length of an axis' border on the cell of its point, as a fraction of the axis' edge, below which the axis
+        fades: from 0, which is never, to 1. With 0.25 the texture changes smoothly while points move.
+    seed : int, default 0
+        From 0 to 2**64 - 1.
+
+    Returns
+    -------
+    Field
+        The field.
+
+    Raises
+    ------
+    DappleError
+        If an argument is refused; the message names the limit and the value.
+
+    Examples
+    --------
+    >>> import dapple_textures as dp
+    >>> coat = dp.cow(dp.Domain(1), probability=0.4, seed=7)
+    >>> sorted(set(coat.render(32).ravel().tolist()))
+    [0.0, 1.0]
+    """
+    options = {
+        "spacing": spacing,
+        "probability": probability,
+        "values": values,
+        "net": _net(axis_scale, weight, orientations, strength, fade),
+    }
+    return cast("Field", _texture("cow", options, domain, None, seed))
+
+
+def space_giraffe(
+    domain: Domain | None = None,
+    *,
+    spacing: Spacing = 0.2,
+    pairs: tuple[int, int] = (10, 20),
+    spots: Literal["separated", "literal"] = "separated",
+    values: tuple[float, float] = (1.0, 0.0),
+    axis_scale: float = 1.0,
+    weight: Weight = "cubic",
+    orientations: Orientations = None,
+    strength: float = 0.5,
+    fade: float = 0.0,
+    seed: SupportsIndex = 0,
+) -> Field:
+    """The coat of a giraffe: spots on a ground. Caron and Mould, figure 12.
+
+    Parameters
+    ----------
+    domain : Domain or None, default None
+        The domain of the control points; the texture repeats along the axes that wrap. By default the paper's torus,
+        Domain(2, (-1, -1)).
+    spacing : float or dict, default 0.2
+        The spacing of control points: the smallest distance in units of the domain, or {"distance": …}, {"density": …}
+        or {"count": n}; a distance or density may be a ramp, as in `poisson_disk`.
+    pairs : tuple of int, default (10, 20)
+        The least and the largest number of pairs of points around the center of a spot, 3 to 256.
+    spots : {"separated", "literal"}, default "separated"
+        "separated", whole spots that never merge, or "literal", the method of the paper, where most spots are in
+        pieces.
+    values : tuple of float, default (1.0, 0.0)
+        The values of the ground and of the spots.
+    axis_scale : float, default 1.0
+        The length of axes as a multiple of the length of their edges, above 0.5 and at most 16.
+    weight : {"cubic", "quintic"} or dict, default "cubic"
+        The falloff of the weight of a control point: "cubic", "quintic" or {"oscillating": {"dips": n, "depth": d}}.
+    orientations : {"random"}, dict or None, default None
+        The directions in which weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle":
+        radians}.
+    strength : float, default 0.5
+        How strongly orientations shift weights, from 0 to below 1.
+    fade : float, default 0.0
+        The length of an axis' border on the cell of its point, as a fraction of the axis' edge, below which the axis
+        fades: from 0, which is never, to 1. With 0.25 the texture changes smoothly while points move.
+    seed : int, default 0
+        From 0 to 2**64 - 1.
+
+    Returns
+    -------
+    Field
+        The field.
+
+    Raises
+    ------
+    DappleError
+        If an argument is refused; the message names the limit and the value.
+
+    Examples
+    --------
+    >>> import dapple_textures as dp
+    >>> coat = dp.space_giraffe(dp.Domain(1), spacing=0.28, seed=6)
+    """
+    options = {
+        "spacing": spacing,
+        "pairs": pairs,
+        "spots": spots,
+        "values": values,
+        "net": _net(axis_scale, weight, orientations, strength, fade),
+    }
+    return cast("Field", _texture("space_giraffe", options, domain, None, seed))
+
+
+def cow_progression(
+    domain: Domain | None = None,
+    *,
+    distances: tuple[float, float] = (0.2, 0.025),
+    axis_scale: float = 1.0,
+    weight: Weight = "cubic",
+    orientations: Orientations = None,
+    strength: float = 0.5,
+    fade: float = 0.0,
+    seed: SupportsIndex = 0,
+) -> Field:
+    """A cow whose patches get smaller to the right. Caron and Mould, figure 15.
+
+    Parameters
+    ----------
+    domain : Domain or None, default None
+        The domain of the control points. By default Domain(2, (-1, -1), wrap=(False, True)); it never wraps along x,
+        since the texture changes along x.
+    distances : tuple of float, default (0.2, 0.025)
+        The smallest distance of points at the left and at the right, with equal ratios over equal lengths in between.
+    axis_scale : float, default 1.0
+        The length of axes as a multiple of the length of their edges, above 0.5 and at most 16.
+    weight : {"cubic", "quintic"} or dict, default "cubic"
+        The falloff of the weight of a control point: "cubic", "quintic" or {"oscillating": {"dips": n, "depth": d}}.
+    orientations : {"random"}, dict or None, default None
+        The directions in which weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle":
+        radians}.
+    strength : float, default 0.5
+        How strongly orientations shift weights, from 0 to below 1.
+    fade : float, default 0.0
+        The length of an axis' border on the cell of its point, as a fraction of the axis' edge, below which the axis
+        fades: from 0, which is never, to 1. With 0.25 the texture changes smoothly while points move.
+    seed : int, default 0
+        From 0 to 2**64 - 1.
+
+    Returns
+    -------
+    Field
+        The field.
+
+    Raises
+    ------
+    DappleError
+        If an argument is refused; the message names the limit and the value.
+
+    Examples
+    --------
+    >>> import dapple_textures as dp
+    >>> coat = dp.cow_progression(dp.Domain(1), distances=(0.2, 0.05))
+    >>> coat.period
+    [None, 1.0]
+    """
+    options = {
+        "distances": distances,
+        "net": _net(axis_scale, weight, orientations, strength, fade),
+    }
+    return cast("Field", _texture("cow_progression", options, domain, None, seed))
+
+
+def giraffe_progression(
+    domain: Domain | None = None,
+    *,
+    distances: tuple[float, float] = (0.2, 0.025),
+    axis_scale: float = 1.0,
+    weight: Weight = "cubic",
+    orientations: Orientations = None,
+    strength: float = 0.5,
+    fade: float = 0.0,
+    seed: SupportsIndex = 0,
+) -> Field:
+    """A giraffe whose spots get smaller to the right. Caron and Mould, figure 16.
+
+    Parameters
+    ----------
+    domain : Domain or None, default None
+        The domain of the control points. By default Domain(2, (-1, -1), wrap=(False, True)); it never wraps along x,
+        since the texture changes along x.
+    distances : tuple of float, default (0.2, 0.025)
+        The smallest distance of points at the left and at the right, with equal ratios over equal lengths in between.
+    axis_scale : float, default 1.0
+        The length of axes as a multiple of the length of their edges, above 0.5 and at most 16.
+    weight : {"cubic", "quintic"} or dict, default "cubic"
+        The falloff of the weight of a control point: "cubic", "quintic" or {"oscillating": {"dips": n, "depth": d}}.
+    orientations : {"random"}, dict or None, default None
+        The directions in which weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle":
+        radians}.
+    strength : float, default 0.5
+        How strongly orientations shift weights, from 0 to below 1.
+    fade : float, default 0.0
+        The length of an axis' border on the cell of its point, as a fraction of the axis' edge, below which the axis
+        fades: from 0, which is never, to 1. With 0.25 the texture changes smoothly while points move.
+    seed : int, default 0
+        From 0 to 2**64 - 1.
+
+    Returns
+    -------
+    Field
+        The field.
+
+    Raises
+    ------
+    DappleError
+        If an argument is refused; the message names the limit and the value.
+
+    Examples
+    --------
+    >>> import dapple_textures as dp
+    >>> coat = dp.giraffe_progression(dp.Domain(1), distances=(0.4, 0.2))
+    """
+    options = {
+        "distances": distances,
+        "net": _net(axis_scale, weight, orientations, strength, fade),
+    }
+    return cast("Field", _texture("giraffe_progression", options, domain, None, seed))
