@@ -99,6 +99,20 @@ impl Candidates {
         Self::within(pyramid, pass, options.center, few(pass, options))
     }
 
+    /// The neighborhoods that a pass of a [repair](crate::PlaneTexture::repair) compares with: on all levels but the finest
+    /// also those that reach past an edge.
+    ///
+    /// What is made beside a side of the image sees that side, and so do only the neighborhoods beside it: a border along a
+    /// side goes on. On the finest level the coarser one has decided that, and mirrored pieces would give specks.
+    pub(crate) fn of_repair(
+        pyramid: &Pyramid,
+        pass: &Pass,
+        center: CoarserCenter,
+    ) -> Result<Self, SynthError> {
+        let few = if pass.level > 0 { usize::MAX } else { FEW };
+        Self::within(pyramid, pass, center, few)
+    }
+
     /// The neighborhoods of some sites of a level of a surface, whose numbers ascend.
     pub(crate) fn of_sites(
         level: &Exemplar,

@@ -73,7 +73,10 @@ pub(crate) fn run_passes<G: Ground>(
         blur => Some(pyramid.blurred(blur)),
     };
     let seen = seen.as_ref().unwrap_or(pyramid);
-    let candidates = |pass: &Pass| Candidates::for_options(seen, pass, options);
+    let candidates = |pass: &Pass| match ground.start(pass.level) {
+        Some(_) => Candidates::of_repair(seen, pass, options.center),
+        None => Candidates::for_options(seen, pass, options),
+    };
     run_with(ground, pyramid, passes, &candidates, options, callback)
 }
 

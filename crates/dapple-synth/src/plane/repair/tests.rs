@@ -109,7 +109,7 @@ impl Naive<'_> {
     }
 
     fn visit(&mut self, pass: &Pass) {
-        let candidates = Candidates::new(self.pyramid, pass, CoarserCenter::Exact).unwrap();
+        let candidates = Candidates::of_repair(self.pyramid, pass, CoarserCenter::Exact).unwrap();
         let [width, height] = self.levels[pass.level].size;
         for turn in 0..16 {
             for site in (0..width * height).map(|site| [site % width, site / width]) {
@@ -466,4 +466,38 @@ fn strips_that_are_too_wide_or_too_narrow_are_refused() {
         matches!(kind, SynthErrorKind::Range { what: name, .. } if name == what),
         "15 rows"
     );
+}
+
+#[test]
+fn border_along_a_side_goes_on() {
+    let side = 128;
+    for margin in [4, 6, 8, 10, 12, 16, 20, 24] {
+        // A leaf on nothing, which has its distance to all sides.
+        let is_leaf = |x: u32, y: u32| [x, y].iter().all(|at| (margin..side - margin).contains(at));
+        let leaf = Raster::from_fn([side; 2], |x, y| f32::from(is_leaf(x, y))).unwrap();
+        for turn in 0..4 {
+            // Holes of 12 pixels across the border on the right, turned to each side; past it at most to the edge.
+            let border = side - margin;
+            let across = border - 6..(border + 6).min(side - 2);
+            let in_hole = |x: u32, y: u32| {
+                let [x, y] = match turn {
+                    0 => [x, y],
+                    1 => [y, x],
+                    2 => [side - 1 - x, y],
+                    _ => [side - 1 - y, x],
+                };
+                across.contains(&x) && (60..68).contains(&y)
+            };
+            let hole = Raster::from_fn([side; 2], in_hole).unwrap();
+            let damaged = leaf.zip_map(&hole, |&v, &off| if off { 0.5 } else { v });
+            let mask = hole.map(|&is_off| !is_off);
+            let exemplar = Exemplar::from_planes(&[(&damaged.unwrap(), 1.0)], Edges::Cut).unwrap();
+            let exemplar = exemplar.with_mask(&mask).unwrap();
+            let texture = repaired(&exemplar, &hole, &Options::default());
+            let wrong = texture.transfer(&leaf).unwrap();
+            let wrong = wrong.pixels().iter().zip(leaf.pixels());
+            let wrong = wrong.filter(|(a, b)| a != b).count();
+            assert_eq!(wrong, 0, "margin {margin}, side {turn}");
+        }
+    }
 }
