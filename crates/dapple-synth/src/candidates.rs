@@ -7,8 +7,9 @@
 //! between rows are the weighted ones. After the parts come the guides of the pixel in the middle, if there are any.
 //!
 //! Pixels whose neighborhoods reach past an edge are left out, as in the paper. It leaves open what to do on small
-//! levels, where nearly none remains: of 8 × 8 pixels, ten have H(7, 0). Where fewer than [`FEW`] remain, here all pixels
-//! are compared, and the exemplar is mirrored at its edges.
+//! levels, where nearly none remains: of 8 × 8 pixels, ten have H(7, 0). Where fewer than [`FEW`] remain that a mask does
+//! not leave out, here all pixels are compared, and the exemplar is mirrored at its edges. Of several images side by side
+//! each is counted, and mirrored, by itself.
 //!
 //! So it is on all levels where pixels are to be used evenly ([`Options::evenness`]): of 128 × 128 pixels the first of
 //! three levels would see only two thirds. Measured on four such exemplars, colors come nearer by a third
@@ -20,8 +21,8 @@
 //! interpolation; both readings are there as [`CoarserCenter`].
 
 use crate::error::{SynthError, SynthErrorKind};
-use crate::grid::{self, Grid};
-use crate::ground::Plain;
+use crate::exemplar::Area;
+use crate::grid::{self, MAX_SIDE};
 use crate::neighborhood::{Part, Pass, Reads};
 use crate::{Edges, Exemplar, Options, Pyramid};
 use core::ops::Range;
@@ -69,6 +70,9 @@ pub(crate) struct Beside(pub(crate) Vec<[u32; 9]>);
 
 /// In place of the row of a pixel that has none.
 const NO_ROW: u32 = u32::MAX;
+
+/// In place of the number of the image of a pixel that is not compared.
+const NO_AREA: u32 = u32::MAX;
 
 /// The columns or the rows that are compared: from `first` to before `end`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -152,22 +156,79 @@ impl Candidates {
             check_level(pyramid, pass.level + part.reads.step(), part.side)?;
         }
         let level = &pyramid.levels[pass.level];
-        let mut inner = [0, 1].map(|axis| inner_of(pyramid, pass, center, axis));
-        if inner[0].len() * inner[1].len() < few {
-            inner = level.size.map(|end| Inner { first: 0, end });
+        let readers: Vec<Vec<PartReader<'_>>> = (0..level.areas().len())
+            .map(|area| {
+                let reader = |part| PartReader::new(pyramid, pass.level, part, area);
+                pass.parts.iter().map(reader).collect()
+            })
+            .collect();
+        let mut inner = level.size.map(|end| Inner { first: 0, end });
+        let mut n_rows = 0;
+        let mut area_of = vec![NO_AREA; level.size[0] as usize * level.size[1] as usize];
+        for (number, (area, readers)) in level.areas().iter().zip(&readers).enumerate() {
+            let all = [0, 1].map(|axis| Inner {
+                first: area.first[axis],
+                end: area.end[axis],
+            });
+            // The pixels of a rectangle that the mask leaves
+            let usable = |within: [Inner; 2]| {
+                let [columns, lines] = within;
+                let places = (lines.first..lines.end)
+                    .flat_map(move |line| (columns.first..columns.end).map(move |x| [x, line]));
+                let is_usable = |place: &[u32; 2]| {
+                    let is_usable = |reader: &PartReader<'_>| {
+                        reader.is_usable(halves(*place, reader.reads, center))
+                    };
+                    readers.iter().all(is_usable)
+                };
+                let pixel = |[x, line]: [u32; 2]| line * level.size[0] + x;
+                places.filter(is_usable).map(pixel).collect::<Vec<_>>()
+            };
+            let mut within = [0, 1].map(|axis| inner_of(pyramid, pass, center, number, axis));
+            let mut pixels = usable(within);
+            if pixels.len() < few && within != all {
+                within = all;
+                pixels = usable(within);
+            }
+            if level.usable.is_none() {
+                inner = within;
+            }
+            n_rows += pixels.len();
+            for pixel in pixels {
+                area_of[pixel as usize] = number as u32;
+            }
         }
         let n_values = |part: &Part| part.offsets().len() * level.n_channels;
+        let dims = pass.parts.iter().map(n_values).sum::<usize>() + level.n_guides();
         let mut candidates = Self {
-            dims: pass.parts.iter().map(n_values).sum::<usize>() + level.n_guides(),
-            rows: Vec::new(),
-            pixels: Vec::new(),
+            dims,
+            rows: Vec::with_capacity(n_rows * dims),
+            pixels: Vec::with_capacity(n_rows),
             edges: level.edges,
             size: level.size,
             inner,
-            row_of: None,
+            row_of: level.usable.as_ref().map(|_| vec![NO_ROW; area_of.len()]),
             beside: None,
         };
-        candidates.fill(pyramid, pass, center);
+        let guide_scale = guide_scale(pass);
+        let mut samples = Vec::new();
+        for (pixel, area) in (0u32..).zip(area_of) {
+            let Some(readers) = readers.get(area as usize) else {
+                continue;
+            };
+            if let Some(row_of) = &mut candidates.row_of {
+                row_of[pixel as usize] = candidates.pixels.len() as u32;
+            }
+            candidates.pixels.push(pixel);
+            let place = [pixel % level.size[0], pixel / level.size[0]];
+            for reader in readers {
+                let halves = halves(place, reader.reads, center);
+                reader.read(halves, &mut samples, &mut candidates.rows);
+            }
+            let guides = level.guides.of(pixel as usize).iter();
+            let guides = guides.map(|value| value * guide_scale);
+            candidates.rows.extend(guides);
+        }
         if candidates.is_empty() {
             return Err(SynthError::new(SynthErrorKind::Masked {
                 level: pass.level,
@@ -257,49 +318,6 @@ impl Candidates {
         }
         self.row_of_pixel(grid::over(coarser, width, [i, j].map(i64::from)))
     }
-
-    /// Writes the rows of all pixels in the rectangle.
-    fn fill(&mut self, pyramid: &Pyramid, pass: &Pass, center: CoarserCenter) {
-        let parts: Vec<PartReader<'_>> = pass
-            .parts
-            .iter()
-            .map(|part| PartReader::new(pyramid, pass.level, part))
-            .collect();
-        let [columns, lines] = self.inner;
-        self.pixels.reserve(columns.len() * lines.len());
-        self.rows.reserve(columns.len() * lines.len() * self.dims);
-        let level = &pyramid.levels[pass.level];
-        let guide_scale = guide_scale(pass);
-        let mut row_of = level.usable.is_some().then(Vec::new);
-        let mut samples = Vec::new();
-        for line in lines.first..lines.end {
-            for column in columns.first..columns.end {
-                if let Some(row_of) = &mut row_of {
-                    let is_usable = |part: &PartReader<'_>| {
-                        part.is_usable(halves([column, line], part.reads, center))
-                    };
-                    let is_usable = parts.iter().all(is_usable);
-                    row_of.push(if is_usable {
-                        self.pixels.len() as u32
-                    } else {
-                        NO_ROW
-                    });
-                    if !is_usable {
-                        continue;
-                    }
-                }
-                let pixel = line * self.size[0] + column;
-                self.pixels.push(pixel);
-                for part in &parts {
-                    let halves = halves([column, line], part.reads, center);
-                    part.read(halves, &mut samples, &mut self.rows);
-                }
-                let guides = level.guides.of(pixel as usize).iter();
-                self.rows.extend(guides.map(|value| value * guide_scale));
-            }
-        }
-        self.row_of = row_of;
-    }
 }
 
 impl Inner {
@@ -341,10 +359,11 @@ pub(crate) fn halves(pixel: [u32; 2], reads: Reads, center: CoarserCenter) -> [i
 
 /// Reads one part of a neighborhood.
 struct PartReader<'a> {
-    grid: Grid<Plain<'a>>,
+    level: &'a Exemplar,
+    /// The rectangle of the image that is read, past whose edges it goes on as the level does.
+    area: Area,
     reads: Reads,
     half: i32,
-    usable: Option<&'a [bool]>,
     /// The root of the part's weight.
     scale: f32,
     /// Where the offsets are in the square: runs of samples side by side.
@@ -352,7 +371,7 @@ struct PartReader<'a> {
 }
 
 impl<'a> PartReader<'a> {
-    fn new(pyramid: &'a Pyramid, level: usize, part: &Part) -> Self {
+    fn new(pyramid: &'a Pyramid, level: usize, part: &Part, area: usize) -> Self {
         let half = part.side as i32 / 2;
         let place = |&[i, j]: &[i32; 2]| ((j + half) * (2 * half + 1) + i + half) as usize;
         let read = &pyramid.levels[level + part.reads.step()];
@@ -364,10 +383,10 @@ impl<'a> PartReader<'a> {
             }
         }
         Self {
-            grid: read.grid(),
+            level: read,
+            area: read.areas()[area],
             reads: part.reads,
             half,
-            usable: read.usable.as_deref(),
             scale: part.weight.sqrt(),
             runs,
         }
@@ -375,25 +394,49 @@ impl<'a> PartReader<'a> {
 
     /// Whether textures may have all pixels of the square around a position.
     fn is_usable(&self, halves: [i64; 2]) -> bool {
-        let Some(usable) = self.usable else {
+        let Some(usable) = &self.level.usable else {
             return true;
         };
-        let Grid { size, wrap, .. } = self.grid;
+        if self.is_empty() {
+            return false;
+        }
         let side = 2 * self.half as usize + 1;
         let odd = halves.map(|at| at.rem_euclid(2) as usize);
-        let [columns, rows] = grid::square(halves, self.half, size, wrap);
+        let [columns, rows] = self.square(halves);
         rows[..side + odd[1]].iter().all(|row| {
-            let row = &usable[row * size[0] as usize..];
+            let row = &usable[row * self.level.size[0] as usize..];
             columns[..side + odd[0]].iter().all(|&column| row[column])
         })
     }
 
+    /// Whether the image has no pixel on the level that is read.
+    fn is_empty(&self) -> bool {
+        (0..2).any(|axis| self.area.first[axis] >= self.area.end[axis])
+    }
+
+    /// The columns and the rows of the square around a position.
+    fn square(&self, halves: [i64; 2]) -> [[usize; MAX_SIDE]; 2] {
+        let Area { first, end } = self.area;
+        let size = [0, 1].map(|axis| end[axis] - first[axis]);
+        let within = [0, 1].map(|axis| halves[axis] - 2 * i64::from(first[axis]));
+        let mut places = grid::square(within, self.half, size, self.level.grid().wrap);
+        for (places, first) in places.iter_mut().zip(first) {
+            for place in places {
+                *place += first as usize;
+            }
+        }
+        places
+    }
+
     /// Appends the values of the part around a position.
     fn read(&self, halves: [i64; 2], samples: &mut Vec<f32>, target: &mut Vec<f32>) {
-        let (half, n) = (self.half, self.grid.colors.n_channels);
+        let (half, n) = (self.half, self.level.n_channels);
         let side = 2 * half as usize + 1;
         samples.resize(side * side * n, 0.0);
-        self.grid.read(halves, half, -half..=half, samples);
+        let places = self.square(halves);
+        self.level
+            .grid()
+            .read_at(&places, halves, half, -half..=half, samples);
         for run in &self.runs {
             let values = &samples[run.start * n..run.end * n];
             target.extend(values.iter().map(|value| value * self.scale));
@@ -414,28 +457,33 @@ fn check_level(pyramid: &Pyramid, level: usize, side: u32) -> Result<(), SynthEr
     }))
 }
 
-/// The pixels along an axis whose neighborhoods do not reach past an edge.
-fn inner_of(pyramid: &Pyramid, pass: &Pass, center: CoarserCenter, axis: usize) -> Inner {
-    let n_pixels = pyramid.levels[pass.level].size[axis];
-    let mut inner = Inner {
-        first: 0,
-        end: n_pixels,
+/// The pixels of an image along an axis whose neighborhoods do not reach past its edges.
+fn inner_of(
+    pyramid: &Pyramid,
+    pass: &Pass,
+    center: CoarserCenter,
+    area: usize,
+    axis: usize,
+) -> Inner {
+    let along = |level: usize| {
+        let Area { first, end } = pyramid.levels[level].areas()[area];
+        [first[axis], end[axis]]
     };
+    let [first, end] = along(pass.level);
+    let mut inner = Inner { first, end };
     for part in &pass.parts {
         let read: &Exemplar = &pyramid.levels[pass.level + part.reads.step()];
         if read.edges == Edges::Wrap {
             continue;
         }
-        let along = || {
-            part.offsets()
-                .into_iter()
-                .map(|offset| i64::from(offset[axis]))
-        };
-        let [before, after] = [along().min(), along().max()].map(|reach| reach.unwrap_or(0));
+        let offsets = part.offsets();
+        let reaches = || offsets.iter().map(|offset| i64::from(offset[axis]));
+        let [before, after] = [reaches().min(), reaches().max()].map(|reach| reach.unwrap_or(0));
+        let [start, stop] = along(pass.level + part.reads.step()).map(i64::from);
         let fits = |at: &u32| {
             let halves = halves([*at; 2], part.reads, center)[0];
             let last = (halves + 1).div_euclid(2) + after;
-            halves.div_euclid(2) + before >= 0 && last < i64::from(read.size[axis])
+            halves.div_euclid(2) + before >= start && last < stop
         };
         // What fits is without gaps.
         let first = (inner.first..inner.end).find(fits).unwrap_or(inner.end);

@@ -15,6 +15,7 @@ use crate::error::{SynthError, SynthErrorKind};
 use crate::grid::Grid;
 use crate::ground::Plain;
 use crate::guides::Guides;
+use crate::side_by_side::SideBySide;
 use dapple_color::LinearRgb;
 use dapple_raster::{Raster, Wrap};
 
@@ -56,8 +57,40 @@ pub struct Exemplar {
     pub(crate) pixels: Vec<f32>,
     /// Whether textures may have each pixel; all of them if nothing is said.
     pub(crate) usable: Option<Vec<bool>>,
+    /// The rectangles of several images that lie in this one, each with edges of its own; empty for a single image.
+    pub(crate) areas: Vec<Area>,
     /// What says which of its pixels go where.
     pub(crate) guides: Guides,
+}
+
+/// A rectangle of pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Area {
+    /// The first column and row.
+    pub(crate) first: [u32; 2],
+    /// The column and the row after the last.
+    pub(crate) end: [u32; 2],
+}
+
+impl Area {
+    pub(crate) fn contains(self, place: [u32; 2]) -> bool {
+        (0..2).all(|axis| (self.first[axis]..self.end[axis]).contains(&place[axis]))
+    }
+
+    /// The pixels of the next coarser level that lie on pixels of this rectangle.
+    fn halved(self) -> Self {
+        Self {
+            first: self.first.map(|at| at.div_ceil(2)),
+            end: self.end.map(|at| at.div_ceil(2)),
+        }
+    }
+
+    /// The five places along an axis that place `at` of the coarser level is the mean of.
+    fn taps(self, axis: usize, at: u32, wrap: Wrap) -> [usize; 5] {
+        let [first, end] = [self.first, self.end].map(|corner| corner[axis]);
+        let center = 2 * i64::from(at) - i64::from(first);
+        [-2, -1, 0, 1, 2].map(|step| (first + wrap.index(center + step, end - first)) as usize)
+    }
 }
 
 /// A Gaussian pyramid: the exemplar and its smaller versions, the finest first.
@@ -88,6 +121,7 @@ impl Exemplar {
             edges,
             pixels: image.pixels().iter().flat_map(codes).collect(),
             usable: None,
+            areas: Vec::new(),
             guides: Guides::default(),
         })
     }
@@ -116,6 +150,7 @@ impl Exemplar {
             edges,
             pixels: interleaved(&rasters, &roots(&weights)?)?,
             usable: None,
+            areas: Vec::new(),
             guides: Guides::default(),
         })
     }
@@ -192,6 +227,57 @@ impl Exemplar {
         Ok(Self { usable, ..self })
     }
 
+    /// This exemplar as several images, which lie in it as a layout says: each has edges of its own, past which it is
+    /// mirrored. What lies between them is left out.
+    ///
+    /// So each of them is matched as it would be alone: on small levels, of which nearly all neighborhoods reach past an
+    /// edge, none would remain otherwise. Endless textures use the layout as a [mask](Self::with_mask).
+    ///
+    /// # Errors
+    ///
+    /// [`SynthErrorKind::Raster`] for a layout of another size.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use dapple_raster::Raster;
+    /// use dapple_synth::{Edges, Exemplar, Options, SideBySide, Turned, synthesize_plane};
+    ///
+    /// let bars = Raster::from_fn([16, 16], |x, _| f32::from(x % 4 == 0))?;
+    /// let layout = SideBySide::new(&[bars.size()])?.with_turned(Turned::Quarters)?;
+    /// let turned = layout.join(&[&bars], 0.0)?;
+    /// let exemplar = Exemplar::from_planes(&[(&turned, 1.0)], Edges::Cut)?.with_layout(&layout)?;
+    /// let options = Options { n_levels: 3, ..Options::default() };
+    /// let texture = synthesize_plane(&exemplar, [32, 32], [Edges::Cut; 2], &options)?;
+    /// assert!(texture.sources().pixels().iter().all(|&source| layout.image_at(source).is_some()));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn with_layout(self, layout: &SideBySide) -> Result<Self, SynthError> {
+        let mut mask = layout.mask()?;
+        mask.check_same_size(self.size)?;
+        let areas = layout.areas();
+        if areas.len() == 1 && areas[0].end == self.size {
+            return Ok(self);
+        }
+        if let Some(usable) = &self.usable {
+            let own = Raster::from_fn(self.size, |x, y| {
+                usable[y as usize * self.size[0] as usize + x as usize]
+            })?;
+            mask = mask.zip_map(&own, |&is_within, &is_usable| is_within && is_usable)?;
+        }
+        let exemplar = self.with_mask(&mask)?;
+        Ok(Self { areas, ..exemplar })
+    }
+
+    /// The rectangles of its images: one for a single image.
+    pub(crate) fn areas(&self) -> Vec<Area> {
+        if self.areas.is_empty() {
+            let [first, end] = [[0; 2], self.size];
+            return vec![Area { first, end }];
+        }
+        self.areas.clone()
+    }
+
     /// A smaller exemplar: the means of squares of `factor` pixels along each side, 1 or more. What does not fill a square
     /// is left out, and a square with a pixel that a mask leaves out is left out, too.
     ///
@@ -239,6 +325,14 @@ impl Exemplar {
             edges: if is_whole { self.edges } else { Edges::Cut },
             pixels: means(&self.pixels, self.n_channels),
             usable: usable.map(is_usable),
+            areas: self
+                .areas
+                .iter()
+                .map(|area| Area {
+                    first: area.first.map(|at| at.div_ceil(factor)),
+                    end: area.end.map(|at| at / factor),
+                })
+                .collect(),
             guides: Guides {
                 values: means(&self.guides.values, self.n_guides()),
                 roots: self.guides.roots.clone(),
@@ -352,17 +446,21 @@ impl Exemplar {
 
     /// The next coarser level.
     fn halved(&self) -> Self {
-        let [width, height] = self.size;
         let half = self.size.map(|side| side.div_ceil(2));
         let odd = self.size.iter().any(|side| side % 2 == 1);
         let grid = self.grid();
-        let [wrap_x, wrap_y] = grid.wrap;
+        let areas = self.areas();
         let usable = self.usable.as_ref().map(|usable| {
             let is_usable = |x: u32, y: u32| {
-                let columns = taps(x, width, wrap_x);
-                let is_usable =
-                    |row: usize| columns.iter().all(|&x| usable[row * width as usize + x]);
-                taps(y, height, wrap_y).into_iter().all(is_usable)
+                let is_within = |area: &&Area| area.halved().contains([x, y]);
+                let Some(area) = areas.iter().find(is_within) else {
+                    return false;
+                };
+                let columns = area.taps(0, x, grid.wrap[0]);
+                let rows = area.taps(1, y, grid.wrap[1]);
+                let row = |row: usize| row * self.size[0] as usize;
+                rows.iter()
+                    .all(|&y| columns.iter().all(|&x| usable[row(y) + x]))
             };
             let row = |y| (0..half[0]).map(move |x| is_usable(x, y));
             (0..half[1]).flat_map(row).collect()
@@ -371,9 +469,10 @@ impl Exemplar {
             size: half,
             n_channels: self.n_channels,
             edges: if odd { Edges::Cut } else { self.edges },
-            pixels: halved(&grid),
+            pixels: halved(&grid, &areas),
             usable,
-            guides: self.guides.halved(self.size, grid.wrap),
+            areas: self.areas.iter().map(|area| area.halved()).collect(),
+            guides: self.guides.halved(self.size, grid.wrap, &areas),
         }
     }
 }
@@ -448,24 +547,35 @@ pub(crate) fn interleaved(planes: &[&Raster<f32>], roots: &[f32]) -> Result<Vec<
     Ok(pixels)
 }
 
-/// The values of the next coarser level of an image.
-pub(crate) fn halved(image: &Grid<Plain<'_>>) -> Vec<f32> {
+/// The values of the next coarser level of an image; zero where it has none of these rectangles.
+pub(crate) fn halved(image: &Grid<Plain<'_>>, areas: &[Area]) -> Vec<f32> {
     let Grid { colors, size, wrap } = *image;
     let n = colors.n_channels;
-    let [width, height] = size;
     let half = size.map(|side| side.div_ceil(2));
-    let row_len = half[0] as usize * n;
-    let mut rows = Vec::with_capacity(row_len * height as usize);
-    for row in colors.values.chunks_exact((width as usize * n).max(1)) {
-        for at in 0..half[0] {
-            let taps = taps(at, width, wrap[0]).map(|column| &row[column * n..][..n]);
-            blend(taps, &mut rows);
+    let mut values = vec![0.0; half[0] as usize * half[1] as usize * n];
+    for &area in areas {
+        let coarse = area.halved();
+        let columns = coarse.first[0]..coarse.end[0];
+        let row_len = columns.len() * n;
+        // Means along the rows of the rectangle.
+        let mut rows = Vec::with_capacity(row_len * (area.end[1] - area.first[1]) as usize);
+        for row in area.first[1]..area.end[1] {
+            let row = &colors.values[row as usize * size[0] as usize * n..];
+            for at in columns.clone() {
+                let taps = area.taps(0, at, wrap[0]);
+                blend(taps.map(|column| &row[column * n..][..n]), &mut rows);
+            }
         }
-    }
-    let mut values = Vec::with_capacity(row_len * half[1] as usize);
-    for at in 0..half[1] {
-        let taps = taps(at, height, wrap[1]).map(|row| &rows[row * row_len..][..row_len]);
-        blend(taps, &mut values);
+        // Means of five of these rows.
+        let mut blended = Vec::with_capacity(row_len);
+        for at in coarse.first[1]..coarse.end[1] {
+            let taps = area.taps(1, at, wrap[1]);
+            let taps = taps.map(|row| &rows[(row - area.first[1] as usize) * row_len..][..row_len]);
+            blended.clear();
+            blend(taps, &mut blended);
+            let first = (at as usize * half[0] as usize + columns.start as usize) * n;
+            values[first..first + row_len].copy_from_slice(&blended);
+        }
     }
     values
 }

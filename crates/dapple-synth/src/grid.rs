@@ -8,7 +8,7 @@ use core::ops::RangeInclusive;
 use dapple_raster::Wrap;
 
 /// The pixels of a side of the largest square that is read, and one more for the places between two pixels.
-const MAX_SIDE: usize = 16;
+pub(crate) const MAX_SIDE: usize = 16;
 
 /// Pixels row by row, and what lies past their edges.
 #[derive(Clone, Copy, Debug)]
@@ -30,10 +30,23 @@ impl<C: Colors> Grid<C> {
         rows: RangeInclusive<i32>,
         target: &mut [f32],
     ) {
+        let places = square(halves, half, self.size, self.wrap);
+        self.read_at(&places, halves, half, rows, target);
+    }
+
+    /// Reads a square like [`read`](Self::read), whose [columns and rows](square) are known.
+    #[inline]
+    pub(crate) fn read_at(
+        &self,
+        [columns, lines]: &[[usize; MAX_SIDE]; 2],
+        halves: [i64; 2],
+        half: i32,
+        rows: RangeInclusive<i32>,
+        target: &mut [f32],
+    ) {
         let n = self.colors.n_channels();
         let width = self.size[0] as usize;
         let side = 2 * half as usize + 1;
-        let [columns, lines] = square(halves, half, self.size, self.wrap);
         let [odd_x, odd_y] = halves.map(|at| at.rem_euclid(2) as usize);
         for row in rows.map(|row| (row + half) as usize) {
             let target = target[row * side * n..][..side * n].chunks_exact_mut(n);

@@ -7,7 +7,7 @@
 //! the guides in their middles, on the level that is matched, times the number of pixels that are compared: a guide with the
 //! weight 1 counts as much as a channel of the colors that is off by as much everywhere.
 
-use crate::exemplar::{halved, interleaved, roots};
+use crate::exemplar::{Area, halved, interleaved, roots};
 use crate::grid::Grid;
 use crate::ground::Plain;
 use crate::{Exemplar, Hierarchy, SynthError, SynthErrorKind};
@@ -64,11 +64,11 @@ impl Exemplar {
 }
 
 impl Guides {
-    /// The guides of the next coarser level.
-    pub(crate) fn halved(&self, size: [u32; 2], wrap: [Wrap; 2]) -> Self {
+    /// The guides of the next coarser level of an image of a size, in which images have these rectangles.
+    pub(crate) fn halved(&self, size: [u32; 2], wrap: [Wrap; 2], areas: &[Area]) -> Self {
         Self {
             roots: self.roots.clone(),
-            values: halved(&self.grid(size, wrap)),
+            values: halved(&self.grid(size, wrap), areas),
         }
     }
 
@@ -101,7 +101,8 @@ impl Targets {
         let mut guide = Guides { roots, values };
         let mut levels = Vec::new();
         for &size in sizes {
-            let coarser = guide.halved(size, wrap);
+            let [first, end] = [[0; 2], size];
+            let coarser = guide.halved(size, wrap, &[Area { first, end }]);
             levels.push(core::mem::replace(&mut guide, coarser).values);
         }
         Ok(Self {

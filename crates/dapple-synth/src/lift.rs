@@ -224,6 +224,7 @@ fn coarser(hierarchy: &Hierarchy, level: usize, finer: &Exemplar) -> Result<Exem
         edges: Edges::Cut,
         pixels: halved(&finer.pixels, finer.n_channels)?,
         usable,
+        areas: Vec::new(),
         guides,
     })
 }

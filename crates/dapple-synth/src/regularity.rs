@@ -93,6 +93,7 @@ impl Exemplar {
                 .copied()
                 .collect(),
             usable: None,
+            areas: Vec::new(),
             guides: Guides::default(),
         }
     }

@@ -1,5 +1,6 @@
 //! Several images in one, for a texture of several examples.
 
+use crate::exemplar::Area;
 use crate::turned::{Turn, Turned};
 use crate::{SynthError, SynthErrorKind};
 use dapple_color::Normal;
@@ -8,8 +9,8 @@ use dapple_raster::Raster;
 /// Where several images lie in one that holds them all: side by side, a column of no image between them. Each
 /// may lie there [turned and mirrored](Self::with_turned), too.
 ///
-/// Joined images and their joined maps make one exemplar. [`mask`](Self::mask) keeps what lies between the images out of
-/// textures; with the [`membership`](Self::membership) of each image as a [guide](crate::Exemplar::with_guides), the caller
+/// Joined images and their joined maps make one exemplar, in which each image has
+/// [edges of its own](crate::Exemplar::with_layout). What lies between them is in no texture. With the [`membership`](Self::membership) of each image as a [guide](crate::Exemplar::with_guides), the caller
 /// says which of them goes where.
 ///
 /// # Examples
@@ -23,7 +24,7 @@ use dapple_raster::Raster;
 /// let layout = SideBySide::new(&[dots.size(), bars.size()])?;
 /// assert_eq!(layout.size(), [32 + 1 + 24, 40]);
 /// let both = layout.join(&[&dots, &bars], 0.0)?;
-/// let exemplar = Exemplar::from_planes(&[(&both, 1.0)], Edges::Cut)?.with_mask(&layout.mask()?)?;
+/// let exemplar = Exemplar::from_planes(&[(&both, 1.0)], Edges::Cut)?.with_layout(&layout)?;
 /// let options = Options { n_levels: 2, ..Options::default() };
 /// let texture = synthesize_plane(&exemplar, [48, 48], [Edges::Cut; 2], &options)?;
 /// assert!(texture.sources().pixels().iter().all(|&source| layout.image_at(source).is_some()));
@@ -134,6 +135,15 @@ impl SideBySide {
             (part.first..part.first + part.size[0]).contains(&column) && row < part.size[1]
         };
         self.parts.iter().find(is_within)
+    }
+
+    /// The rectangles of the images, in all the ways in which they lie.
+    pub(crate) fn areas(&self) -> Vec<Area> {
+        let area = |part: &Part| Area {
+            first: [part.first, 0],
+            end: [part.first + part.size[0], part.size[1]],
+        };
+        self.parts.iter().map(area).collect()
     }
 
     /// All images in one, with `between` where no image is.

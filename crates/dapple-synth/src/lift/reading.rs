@@ -33,6 +33,7 @@ pub(super) fn at_sites(origin: &Origin, texture: &Exemplar) -> Exemplar {
         pixels,
         // Neighborhoods are read between sites.
         usable: texture.usable.as_ref().map(|_| eroded(&is_usable, graph)),
+        areas: Vec::new(),
         guides: Guides {
             roots: texture.guides.roots.clone(),
             values,

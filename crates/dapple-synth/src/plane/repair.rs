@@ -216,6 +216,16 @@ impl Hole {
             let pixel = exemplar.pixel_at(place);
             pixel.filter(|&pixel| exemplar.is_usable(pixel))
         };
+        // A piece lies in one image where there are several.
+        let areas = exemplar.areas();
+        let width = exemplar.size[0] as usize;
+        let area_of = |pixel: usize| {
+            if areas.len() == 1 {
+                return Some(0);
+            }
+            let place = [(pixel % width) as u32, (pixel / width) as u32];
+            areas.iter().position(|area| area.contains(place))
+        };
         let colors = exemplar.plain();
         let painted: Vec<([i64; 2], &[f32])> = self
             .ring
@@ -230,6 +240,8 @@ impl Hole {
         let mut best = (f64::INFINITY, None);
         for offset in (0..height).flat_map(|y| (0..width).map(move |x| [x - column, y - row])) {
             let moved = |[column, row]: [i64; 2]| pixel_of([column + offset[0], row + offset[1]]);
+            let area = moved([column, row]).and_then(|pixel| area_of(pixel));
+            let moved = |place| moved(place).filter(|&pixel| area_of(pixel) == area);
             if !self.sites.iter().all(|&site| moved(site).is_some()) {
                 continue;
             }

@@ -63,6 +63,7 @@ impl Args {
         if let Some(usable) = self.read_masks(&paths, &layout, hole.as_ref())? {
             exemplar = exemplar.with_mask(&usable)?;
         }
+        exemplar = exemplar.with_layout(&layout)?;
         let guides = self.read_guides(&layout, &example)?;
         let planes: Vec<_> = guides
             .iter()

@@ -2,7 +2,7 @@
 
 use crate::{
     Candidates, CoarserCenter, Coherence, Edges, Exemplar, Options, Pass, PlaneTexture, Pyramid,
-    Reads, Schedule, SynthErrorKind, distance_sq, synthesize_plane, tile_plane,
+    Reads, Schedule, SideBySide, SynthErrorKind, Turned, distance_sq, synthesize_plane, tile_plane,
 };
 use core::ops::ControlFlow;
 use dapple_hash::{Seed, hash2, unit_f32};
@@ -498,6 +498,53 @@ fn border_along_a_side_goes_on() {
             let wrong = wrong.pixels().iter().zip(leaf.pixels());
             let wrong = wrong.filter(|(a, b)| a != b).count();
             assert_eq!(wrong, 0, "margin {margin}, side {turn}");
+        }
+    }
+}
+
+#[test]
+fn small_example_is_repaired_turned_and_beside_another() {
+    for side in [16, 48, 64, 66, 68] {
+        let stripes = Raster::from_fn([side; 2], |x, _| f32::from(x / 4 % 2 == 0)).unwrap();
+        let unlike = Raster::from_fn([96, 80], |x, y| 5.0 + f32::from((x ^ y) % 3 == 0)).unwrap();
+        let middle = side / 2 - side / 16..side / 2 + side / 16;
+        let is_off = |x: u32, y: u32| middle.contains(&x) && middle.contains(&y);
+        let clean = Raster::from_fn([side; 2], |x, y| !is_off(x, y)).unwrap();
+        let damaged = stripes.zip_map(&clean, |&v, &is_clean| if is_clean { v } else { 9.0 });
+        let damaged = damaged.unwrap();
+        for n_examples in [1, 2] {
+            for turned in [Turned::None, Turned::Mirror, Turned::Quarters, Turned::All] {
+                let case = format!("{side} pixels, {n_examples} examples, {turned:?}");
+                let sizes = [stripes.size(), unlike.size()];
+                let layout = SideBySide::new(&sizes[..n_examples]).unwrap();
+                let layout = layout.with_turned(turned).unwrap();
+                let joined = layout
+                    .join(&[&damaged, &unlike][..n_examples], 0.0)
+                    .unwrap();
+                let is_whole = Raster::filled(unlike.size(), true).unwrap();
+                let mask = layout
+                    .join(&[&clean, &is_whole][..n_examples], false)
+                    .unwrap();
+                let exemplar = Exemplar::from_planes(&[(&joined, 1.0)], Edges::Cut).unwrap();
+                let exemplar = exemplar.with_mask(&mask).unwrap();
+                let exemplar = exemplar.with_layout(&layout).unwrap();
+                let sources = Raster::from_fn([side; 2], |x, y| [x, y]).unwrap();
+                let size = layout.size();
+                let whole =
+                    PlaneTexture::from_sources(sources, [Edges::Cut; 2], size, Edges::Cut).unwrap();
+                let hole = clean.map(|&is_clean| !is_clean);
+                let options = Options {
+                    n_levels: if side < 32 { 1 } else { 3 },
+                    ..Options::default()
+                };
+                let keep_on = |_| ControlFlow::Continue(());
+                let texture = whole.repair(&exemplar, &hole, &options, keep_on).unwrap();
+                let shown = texture.transfer(&joined).unwrap();
+                let is_own = |&source: &[u32; 2]| layout.image_at(source) == Some(0);
+                assert!(texture.sources().pixels().iter().all(is_own), "{case}");
+                let wrong = shown.pixels().iter().zip(stripes.pixels());
+                assert_eq!(wrong.filter(|(a, b)| a != b).count(), 0, "{case}");
+            }
         }
     }
 }
