@@ -18,6 +18,7 @@ pub use report::AtlasReport;
 pub(crate) use tangents::{Tangents, mixed, sum};
 
 use crate::{SynthError, SynthErrorKind};
+use core::ops::ControlFlow;
 use dapple_mesh::{FaceIdx, Surface, SurfacePoint};
 use dapple_raster::Raster;
 use glam::DVec2;
@@ -42,7 +43,8 @@ impl Atlas {
     /// Charts: pieces of the surface that are flattened as a whole, with borders along creases where there are some, and
     /// packed by their shapes into a square map. `side` is that of the map in texels.
     ///
-    /// Texels are of about one size on the surface ([`AtlasReport::stretch`]). The padding is 1 texel below a side of 512,
+    /// Texels are of about one size on the surface ([`AtlasReport::stretch`]). More than 512 charts are packed in rows, which
+    /// is faster by far and leaves more of the map free. The padding is 1 texel below a side of 512,
     /// then 2, and from 4096 on a 1024th of the side: pieces are twice as far apart. All texels between them continue
     /// them, so that every level of a mipmap can be shown.
     ///
@@ -65,7 +67,7 @@ impl Atlas {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn charts(surface: &Surface, side: u32) -> Result<Self, SynthError> {
-        charts::charts(surface, side, charts::padding(side))
+        Self::charts_with(surface, side, None, |_| ControlFlow::Continue(()))
     }
 
     /// Charts with a padding of the caller's, from 1 to 1024 texels.
@@ -76,7 +78,26 @@ impl Atlas {
     ///
     /// Those of [`charts`](Self::charts), and [`SynthErrorKind::Range`] for another padding.
     pub fn charts_padded(surface: &Surface, side: u32, padding: u32) -> Result<Self, SynthError> {
-        charts::charts(surface, side, padding)
+        Self::charts_with(surface, side, Some(padding), |_| ControlFlow::Continue(()))
+    }
+
+    /// Charts with a callback, which is called with the part of the work that is done, from 0 to 1, and can stop it. `padding`
+    /// is that of [`charts_padded`](Self::charts_padded), or by default that of [`charts`](Self::charts).
+    ///
+    /// The callback is called for each chart that was flattened and for each trial to pack all of them, but not while the
+    /// surface is cut.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`charts_padded`](Self::charts_padded), and [`SynthErrorKind::Cancelled`] if the callback stops the work.
+    pub fn charts_with(
+        surface: &Surface,
+        side: u32,
+        padding: Option<u32>,
+        mut callback: impl FnMut(f64) -> ControlFlow<()> + Send,
+    ) -> Result<Self, SynthError> {
+        let padding = padding.unwrap_or_else(|| charts::padding(side));
+        charts::charts(surface, side, padding, &mut callback)
     }
 
     /// Right triangles of one size, two in a square tile, as in the paper. `side` is that of the square map in texels.

@@ -1,10 +1,12 @@
 //! Charts of small meshes.
 
-use super::padding;
+use super::{FLAT, MANY, padding};
+use crate::SynthErrorKind;
 use crate::atlas::{Atlas, report::pieces, tangents::center, weights};
 use crate::shapes::{
     cap, geodesic_sphere, moved, plane, scraps, sheet, sheets, sphere, torus, tube, two_squares,
 };
+use core::ops::ControlFlow;
 use dapple_mesh::{FaceIdx, Mesh, Surface};
 use glam::{DVec2, DVec3};
 use proptest::prelude::*;
@@ -185,6 +187,75 @@ fn charts_without_room_are_refused() {
         assert!(atlas.is_err(), "padding {padding}");
     }
     assert_eq!([1, 511, 512, 2048, 4096].map(padding), [1, 1, 2, 2, 4]);
+}
+
+#[test]
+fn charts_report_their_progress_and_stop() {
+    let surface = Surface::new(torus(64, 32).mesh().clone()).unwrap();
+    let mut parts = Vec::new();
+    let heard = Atlas::charts_with(&surface, 256, None, |part| {
+        parts.push(part);
+        ControlFlow::Continue(())
+    });
+    assert_eq!(heard.unwrap(), Atlas::charts(&surface, 256).unwrap());
+    assert!(parts.is_sorted() && parts.last() == Some(&1.0), "{parts:?}");
+    assert!(
+        parts.iter().any(|part| (0.1..0.9).contains(part)),
+        "{parts:?}"
+    );
+    let mut calls = 0;
+    let stopped = Atlas::charts_with(&surface, 256, None, |part| {
+        calls += 1;
+        if part > 0.0 {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        }
+    });
+    let error = stopped.unwrap_err();
+    assert!(matches!(error.kind(), SynthErrorKind::Cancelled), "{error}");
+    assert!(calls < parts.len(), "{calls} of {}", parts.len());
+}
+
+#[test]
+fn many_charts_are_packed_in_rows_and_refused_early() {
+    // As many charts as faces: loose squares, more than are packed by their shapes.
+    let squares = |n: u32| {
+        let corner = |x: u32, y: u32| DVec3::new(x.into(), y.into(), 0.0);
+        let square = |at: u32| {
+            let [x, y] = [3 * (at % 40), 3 * (at / 40)];
+            [[0, 0], [2, 0], [2, 2], [0, 2]].map(|[i, j]| corner(x + i, y + j))
+        };
+        let faces: Vec<_> = (0..n)
+            .flat_map(|at| {
+                [
+                    [4 * at, 4 * at + 1, 4 * at + 2],
+                    [4 * at, 4 * at + 2, 4 * at + 3],
+                ]
+            })
+            .collect();
+        let positions = (0..n).flat_map(square).collect();
+        Surface::new(Mesh::new(positions, &faces).unwrap()).unwrap()
+    };
+    let surface = squares(MANY as u32 + 100);
+    let atlas = Atlas::charts(&surface, 256).unwrap();
+    assert_apart(&atlas);
+    assert_eq!(atlas.report(&surface).pieces, MANY + 100);
+    // Of 64 x 64 texels, 5 are the least for a chart with a padding of 1: 819 charts at most.
+    let mut parts = Vec::new();
+    let refused = Atlas::charts_with(&squares(1600), 64, None, |part| {
+        parts.push(part);
+        ControlFlow::Continue(())
+    });
+    let error = refused.unwrap_err();
+    assert!(
+        matches!(error.kind(), SynthErrorKind::Range { .. }),
+        "{error}"
+    );
+    assert!(
+        parts.iter().all(|&part| part < FLAT),
+        "refused before they are packed"
+    );
 }
 
 #[test]
