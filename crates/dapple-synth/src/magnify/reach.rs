@@ -10,6 +10,10 @@ use glam::Vec3;
 /// The sites in a register.
 const LANES: usize = 8;
 
+/// The most sites that have a say at a point: those of the largest weights. One sheet has about ten within reach; where many
+/// sheets cross there can be thousands, whose ranks take time with the square of their number.
+const MOST: usize = 64;
+
 /// A site in reach of a point.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Reaching {
@@ -83,6 +87,7 @@ impl Reach {
     fn list<S: Simd>(&mut self, simd: S, radius: f32, around: Around<'_>) {
         for &[at, normal] in &self.points {
             let n_found = self.found.search(simd, &self.columns, [at, normal], radius);
+            let n_found = self.found.keep_largest(n_found);
             let reaching = |number: usize, weight| {
                 let position = [0, 1, 2].map(|part| self.columns[part][number]);
                 Reaching {
@@ -140,6 +145,25 @@ impl Found {
         n_found
     }
 
+    /// Keeps the sites of the largest weights, in their order, of equal ones the first. Returns their number.
+    fn keep_largest(&mut self, n_found: usize) -> usize {
+        if n_found <= MOST {
+            return n_found;
+        }
+        let weight = |found: usize| self.weights[found];
+        let mut largest: Vec<usize> = (0..n_found).collect();
+        largest.select_nth_unstable_by(MOST, |&a, &b| {
+            weight(b).total_cmp(&weight(a)).then(a.cmp(&b))
+        });
+        largest.truncate(MOST);
+        largest.sort_unstable();
+        for (to, from) in largest.into_iter().enumerate() {
+            self.numbers[to] = self.numbers[from];
+            self.weights[to] = self.weights[from];
+        }
+        MOST
+    }
+
     /// How many sites come before one in the order of weights.
     #[inline(always)]
     fn rank<S: Simd>(&self, simd: S, found: usize, n_found: usize) -> usize {
@@ -172,7 +196,7 @@ fn nearest([at, normal]: [Vec3; 2], around: Around<'_>) -> Option<usize> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Found, LANES, Reach};
+    use super::{Found, LANES, MOST, Reach};
     use crate::bake::Group;
     use crate::mesh_ground::Nearby;
     use crate::shapes::{cap, synthesizer};
@@ -209,6 +233,29 @@ mod tests {
                     assert_eq!(own, rank, "{at} of {n_found} at {level:?}");
                 }
             });
+        }
+    }
+
+    #[test]
+    fn sites_of_the_largest_weights_are_kept() {
+        for n_found in [1, MOST - 1, MOST, MOST + 1, 5 * MOST + 3] {
+            // Some weights are equal.
+            let weights: Vec<f32> = (0..n_found).map(|at| (at * 7 % 61 + 1) as f32).collect();
+            let mut order: Vec<usize> = (0..n_found).collect();
+            order.sort_by(|&a, &b| weights[b].total_cmp(&weights[a]));
+            order.truncate(MOST);
+            order.sort_unstable();
+            let mut found = Found {
+                numbers: (0..n_found as u32).collect(),
+                weights: weights.clone(),
+            };
+            let n_kept = found.keep_largest(n_found);
+            let kept = found.numbers[..n_kept]
+                .iter()
+                .map(|&number| number as usize);
+            assert_eq!(kept.collect::<Vec<_>>(), order, "of {n_found}");
+            let expected: Vec<f32> = order.iter().map(|&at| weights[at]).collect();
+            assert_eq!(found.weights[..n_kept], expected, "of {n_found}");
         }
     }
 

@@ -3,10 +3,11 @@
 use super::oriented::Oriented;
 use crate::{
     Connected, SiteGraph, SiteGrid, Sites, SynthError, SynthErrorKind, hexagonal_spacing,
-    nested_points,
+    nested_points, scatter,
 };
 use dapple_hash::Seed;
 use dapple_mesh::Surface;
+use glam::DVec3;
 
 /// The most sites.
 const SITES_MAX: usize = 1 << 28;
@@ -16,6 +17,13 @@ const BYTES_PER_SITE: usize = 220;
 const LEVELS_MAX: usize = 16;
 /// The most iterations, so that a mistaken number does not take forever.
 const ITERATIONS_MAX: usize = 10_000;
+
+/// The most sites that there may be within two spacings of a site, on the mean over the surface; one sheet has about 15.
+const NEAR_MAX: f64 = 512.0;
+/// Number of random points among which crossings are counted.
+const POINTS: usize = 1 << 16;
+/// Number of points around which they are counted.
+const SAMPLE: usize = 256;
 
 /// Options of a hierarchy.
 #[derive(Clone, Debug, PartialEq)]
@@ -95,9 +103,11 @@ impl Hierarchy {
     /// # Errors
     ///
     /// [`SynthErrorKind::Count`] unless there are 1 to 2^28 sites, which fit into the memory, 1 to 16 levels and at most
-    /// 10,000 iterations.
+    /// 10,000 iterations, and [`SynthErrorKind::Range`] for a surface that crosses itself in so many places that a site has
+    /// more than 512 others within two spacings, where a single sheet has 15.
     pub fn new(surface: &Surface, options: &HierarchyOptions) -> Result<Self, SynthError> {
         let counts = options.counts()?;
+        check_crossings(surface, counts[0], options.seed)?;
         let ascending: Vec<usize> = counts.iter().rev().copied().collect();
         let points = nested_points(surface, &ascending, options.seed, options.iterations);
         let sites = Sites::new(surface, points);
@@ -137,6 +147,35 @@ impl Hierarchy {
     }
 }
 
+/// Refuses a surface of many sheets that cross each other: each site would have to be compared with all others around it in
+/// space, and time would grow with the square of their number.
+///
+/// Random points are counted within two spacings of a sample of them, before the sites are spread.
+fn check_crossings(surface: &Surface, n_sites: usize, seed: Seed) -> Result<(), SynthError> {
+    let n_points = n_sites.min(POINTS);
+    let spacing = hexagonal_spacing(surface.area(), n_sites);
+    let points = scatter(surface, n_points, seed.child("crossings", 0));
+    let positions: Vec<DVec3> = points
+        .iter()
+        .map(|&point| surface.position(point))
+        .collect();
+    let grid = SiteGrid::new(&positions, 2.0 * spacing);
+    let sample = &positions[..n_points.min(SAMPLE)];
+    let mut n_near = 0_usize;
+    for &center in sample {
+        grid.visit(center, 2.0 * spacing, |site| {
+            let is_near =
+                positions[site.index()].distance_squared(center) < 4.0 * spacing * spacing;
+            n_near += usize::from(is_near);
+        });
+    }
+    let mean = n_near as f64 / sample.len().max(1) as f64 * (n_sites as f64 / n_points as f64);
+    let holds = mean <= NEAR_MAX;
+    let what =
+        "mean number of sites within two spacings of a site, of a surface that crosses itself,";
+    SynthError::check(holds, what, mean.round(), "at most 512")
+}
+
 impl Level {
     /// The number of sites: those with an index below it.
     #[must_use]
@@ -166,5 +205,48 @@ impl Level {
     #[must_use]
     pub fn grid(&self) -> &SiteGrid {
         &self.grid
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Hierarchy, HierarchyOptions};
+    use crate::SynthErrorKind;
+    use dapple_hash::{Seed, hash2, unit_f64};
+    use dapple_mesh::{Mesh, Surface};
+    use glam::DVec3;
+
+    /// Triangles whose corners are anywhere in the unit cube.
+    fn tangle(n: u32) -> Surface {
+        let part = |corner: u32, axis: i64| unit_f64(hash2(Seed(3), [corner.into(), axis], 0));
+        let corner = |corner: u32| DVec3::from([0, 1, 2].map(|axis| part(corner, axis)));
+        let faces: Vec<_> = (0..n).map(|face| [0, 1, 2].map(|i| 3 * face + i)).collect();
+        let positions = (0..3 * n).map(corner).collect();
+        Surface::new(Mesh::new(positions, &faces).unwrap()).unwrap()
+    }
+
+    #[test]
+    fn surface_that_crosses_itself_too_often_is_refused() {
+        let options = HierarchyOptions::default();
+        let error = Hierarchy::new(&tangle(5000), &options).unwrap_err();
+        let SynthErrorKind::Range { what, value, .. } = error.kind() else {
+            panic!("{error}");
+        };
+        assert!(what.contains("crosses itself"), "{error}");
+        // In a ball of two spacings in the middle of the cube, sites are as dense as in all of it. The sheets thin out towards
+        // its sides, so that there are up to several times as many.
+        let spacing = crate::hexagonal_spacing(tangle(5000).area(), options.n_sites);
+        let ball = 4.0 / 3.0 * core::f64::consts::PI * (2.0 * spacing).powi(3);
+        let expected = ball.min(1.0) * options.n_sites as f64;
+        assert!(
+            (expected / 2.0..expected * 5.0).contains(value),
+            "{value}, not {expected}"
+        );
+        // A few sheets that cross are no reason.
+        let few = HierarchyOptions {
+            n_sites: 2000,
+            ..options
+        };
+        assert!(Hierarchy::new(&tangle(20), &few).is_ok());
     }
 }
