@@ -199,7 +199,8 @@ pub use side_by_side::SideBySide;
 pub use sites::{
     Blend, Connected, DOWNSAMPLE_STEPS, DOWNSAMPLE_T, Evenness, Hierarchy, HierarchyOptions,
     INTERPOLATION_RADIUS, Level, LowPass, STAR_RADIUS, SiteGraph, SiteGrid, SiteIdx, SiteTriangles,
-    Sites, evenness, hexagonal_spacing, nested_points, repel, scatter,
+    Sites, evenness, hexagonal_spacing, nested_points, repeats_of_sites, repel, scatter,
+    sites_for_repeats,
 };
 pub use surface_texture::SurfaceTexture;
 pub use sweep::Sweep;

@@ -147,6 +147,55 @@ impl Hierarchy {
     }
 }
 
+/// Number of sites with which an image of a size in pixels repeats about `repeats` times across a surface, along the longest side
+/// of its bounding box: neighboring sites are then as far apart as the pixels of the image.
+///
+/// At least 1. See [`repeats_of_sites`] for the opposite.
+///
+/// # Errors
+///
+/// [`SynthErrorKind::Range`] for a number of repeats that is not above 0 and at most 10,000.
+///
+/// # Examples
+///
+/// A square of two triangles, on which an image of 100 × 100 pixels lies five times beside itself, needs 500 sites along each
+/// side: in a hexagonal lattice 2 / sqrt(3) times as many as in a square one.
+///
+/// ```
+/// use dapple_synth::mesh::{Mesh, Surface, glam::DVec3};
+/// use dapple_synth::{repeats_of_sites, sites_for_repeats};
+///
+/// let corners = vec![DVec3::ZERO, DVec3::X, DVec3::X + DVec3::Y, DVec3::Y];
+/// let square = Surface::new(Mesh::new(corners, &[[0, 1, 2], [0, 2, 3]])?)?;
+/// let n_sites = sites_for_repeats(&square, [100, 100], 5.0)?;
+/// assert_eq!(n_sites, 288_675);
+/// assert!((repeats_of_sites(&square, [100, 100], n_sites) - 5.0).abs() < 1e-5);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn sites_for_repeats(
+    surface: &Surface,
+    size: [u32; 2],
+    repeats: f64,
+) -> Result<usize, SynthError> {
+    let holds = repeats > 0.0 && repeats <= 10_000.0;
+    SynthError::check(holds, "number of repeats", repeats, "above 0, up to 10000")?;
+    // The number of sites is inversely proportional to the square of their spacing.
+    let ratio = repeats / repeats_of_sites(surface, size, 1);
+    Ok((ratio * ratio).round().clamp(1.0, (1_u64 << 53) as f64) as usize)
+}
+
+/// How often an image of a size in pixels repeats across a surface of a number of sites, along the longest side of its bounding
+/// box: the opposite of [`sites_for_repeats`].
+#[must_use]
+pub fn repeats_of_sites(surface: &Surface, size: [u32; 2], n_sites: usize) -> f64 {
+    let positions = surface.mesh().positions().iter().copied();
+    let low = positions.clone().fold(DVec3::INFINITY, DVec3::min);
+    let high = positions.fold(DVec3::NEG_INFINITY, DVec3::max);
+    let [width, height] = size.map(f64::from);
+    let side = (width * height).sqrt() * hexagonal_spacing(surface.area(), n_sites);
+    (high - low).max_element() / side
+}
+
 /// Refuses a surface of many sheets that cross each other: each site would have to be compared with all others around it in
 /// space, and time would grow with the square of their number.
 ///
