@@ -244,6 +244,9 @@ fn advise(error: SynthError) -> Error {
         SynthErrorKind::Exemplar { .. } => {
             "take a larger example, fewer --levels, or --edges wrap if it repeats"
         }
+        SynthErrorKind::Range { what, .. } if what.contains("crosses itself") => {
+            "leave out faces inside of others, or simplify the mesh"
+        }
         SynthErrorKind::Range { what, .. } if *what == "side of the texture map" => {
             "take a larger --texture-size, a smaller --padding, or a mesh with fewer faces"
         }

@@ -13,6 +13,7 @@ use crate::job::{Context, Job, eprintln_if_possible};
 use crate::output::{OutputIdx, Target};
 use crate::progress::Progress;
 use anyhow::{Context as _, Result, bail};
+use core::ops::ControlFlow;
 use dapple::color::{LinearRgba, NormalY};
 use dapple::mesh::{EncodedImage, Mesh, Model, Repair, Surface};
 use dapple::mesh_io::{FORMATS, MaterialPlace, MeshFormat, writable_endings};
@@ -89,7 +90,7 @@ pub(super) fn run(args: &Args, mesh: &Path, context: &Context) -> Result<Exit> {
     let surface = Surface::new(repaired).with_context(|| mesh.display().to_string())?;
     let atlas = match claimed.product {
         Product::Sites(_) => None,
-        _ => Some(atlas(args, &surface, &model, &repair)?),
+        _ => Some(atlas(args, &surface, &model, &repair, context)?),
     };
     let shading = shading(args.surface.crease(), &surface, &model, &repair);
     let laid_out = atlas.as_ref().map(|atlas| atlas.report(&surface));
@@ -444,11 +445,22 @@ fn stem(path: &Path) -> String {
 }
 
 /// The layout of the texture.
-fn atlas(args: &Args, surface: &Surface, model: &Model, repair: &Repair) -> Result<Atlas> {
+fn atlas(
+    args: &Args,
+    surface: &Surface,
+    model: &Model,
+    repair: &Repair,
+    context: &Context,
+) -> Result<Atlas> {
     let (side, padding) = (args.surface.side(), args.surface.padding());
     let atlas = match (args.surface.atlas(), padding) {
-        (AtlasName::Charts, None) => Atlas::charts(surface, side),
-        (AtlasName::Charts, Some(padding)) => Atlas::charts_padded(surface, side, padding),
+        (AtlasName::Charts, padding) => {
+            let progress = Progress::bar("cutting charts", STEPS.into(), context);
+            Atlas::charts_with(surface, side, padding, |part| {
+                progress.set((part * f64::from(STEPS)) as u64);
+                ControlFlow::Continue(())
+            })
+        }
         (AtlasName::Area, None) => Atlas::by_area(surface, side),
         (AtlasName::Area, Some(padding)) => Atlas::by_area_padded(surface, side, padding),
         (AtlasName::Uniform, None) => Atlas::uniform(surface, side),
