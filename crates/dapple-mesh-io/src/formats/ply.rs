@@ -8,7 +8,7 @@
 //! `texture_u texture_v`. Of the element `face`: the list `vertex_indices` or `vertex_index`, and `texcoord` with two
 //! numbers for each corner, which takes precedence over those of vertices. Of the element `tristrips`: the list
 //! `vertex_indices`, in which -1 ends a strip. All other elements are listed in [`Model::left_out`], and other properties
-//! skipped. The comment `TextureFile` names the texture of the base color, as MeshLab writes it. Colors are coded as sRGB:
+//! skipped. The comment `TextureFile` names the texture of the base color, as many programs write it. Colors are coded as sRGB:
 //! 0 to 255, for `ushort` 0 to 65535, and for `float` and `double` 0 to 1. As in OBJ, v goes up in the file, so that v
 //! becomes 1 - v.
 //!

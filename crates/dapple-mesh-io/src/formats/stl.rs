@@ -1,6 +1,6 @@
 //! STL, the format of 3D printing: triangles without anything else.
 //!
-//! Reference: 3D Systems, *StereoLithography Interface Specification* (1989), as Marshall Burns describes it in *Automated
+//! Reference: 3D Systems, *Stereolithography Interface Specification* (1989), as Marshall Burns describes it in *Automated
 //! Fabrication* (1993), section 6.5.
 //!
 //! Binary and text files are read; all solids of a text become one mesh. A file has no vertices but corners, so that

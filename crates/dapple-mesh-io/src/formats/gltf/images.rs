@@ -44,6 +44,15 @@ pub fn replace_images(
     }
     let buffers = container.buffers(&document, beside);
     let source = Source { document, buffers };
+    // Views of a missing buffer would show bytes of another one.
+    let mut views = source.document.buffer_views.iter();
+    let is_missing = |at: usize| matches!(source.buffers.get(at), Some(None));
+    if let Some(view) = views.find(|view| is_missing(view.buffer)) {
+        return Err(wrong(format!(
+            "the bytes of buffer {} are missing",
+            view.buffer
+        )));
+    }
     let mut draft = Draft {
         uses: BTreeMap::new(),
         bin: Vec::new(),

@@ -147,6 +147,28 @@ fn buffers_and_images_in_other_files_become_part_of_the_file() {
 }
 
 #[test]
+fn a_missing_buffer_is_an_error_if_a_view_has_it() {
+    let (mut document, bytes) = document();
+    let buffers = document["buffers"].as_array_mut().expect("it is a list");
+    buffers.push(json!({ "byteLength": 100, "uri": "lost.bin" }));
+    let file = |document: &Value| {
+        let json = document.to_string().into_bytes();
+        write::container(json, bytes.clone()).expect("it is small")
+    };
+    let replace = |document: &Value| replace_images(&file(document), &mut |_| None, &[]);
+    assert!(replace(&document).is_ok(), "nothing uses it");
+    let views = document["bufferViews"]
+        .as_array_mut()
+        .expect("it is a list");
+    views.push(json!({ "buffer": 1, "byteLength": 100 }));
+    let error = replace(&document).expect_err("it is refused").to_string();
+    assert!(
+        error.contains("the bytes of buffer 1 are missing"),
+        "{error}"
+    );
+}
+
+#[test]
 fn copies_in_other_formats_of_a_replaced_image_are_dropped() {
     let (mut document, bytes) = document();
     let webp = json!({ "EXT_texture_webp": { "source": 1 } });
