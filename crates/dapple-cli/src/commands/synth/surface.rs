@@ -62,6 +62,21 @@ struct Claimed {
     format: Format,
 }
 
+/// Reads the mesh, and says what of it and of the example is not used.
+fn read_target(
+    args: &Args,
+    mesh: &Path,
+    example: Option<&ExampleMesh>,
+    context: &Context,
+) -> Result<Model> {
+    let model = input::model(mesh)?;
+    announce(context, mesh, &model);
+    if let Some(example) = example {
+        announce(context, &args.exemplar, &example.model);
+    }
+    Ok(model)
+}
+
 /// Says what of a mesh is not used, unless the command is quiet.
 pub(super) fn announce(context: &Context, path: &Path, model: &Model) {
     if let Some(line) = input::not_used(path, model).filter(|_| !context.quiet) {
@@ -78,11 +93,7 @@ pub(super) fn run(args: &Args, mesh: &Path, context: &Context) -> Result<Exit> {
         Some(example) => args.read_with(example)?,
         None => args.read()?,
     };
-    let model = input::model(mesh)?;
-    announce(context, mesh, &model);
-    if let Some(example) = &example {
-        announce(context, &args.exemplar, &example.model);
-    }
+    let model = read_target(args, mesh, example.as_ref(), context)?;
     let (repaired, repair) = model.mesh.repair();
     if !context.quiet && repair.before != repair.after {
         eprintln_if_possible(&format!("{}: repaired; see dapple info", mesh.display()));
