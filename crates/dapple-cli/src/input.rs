@@ -407,11 +407,7 @@ pub(crate) fn map_with_faults(
 
 /// Reads an image: of the layers of an OpenEXR file only the one that is used, with finite numbers. The last value says
 /// whether the image is the region alone, as in [`image_or_region`].
-fn picture(
-    path: &Path,
-    region: Option<Region>,
-    read: &ReadArgs,
-) -> Result<(Image, Faults, bool)> {
+fn picture(path: &Path, region: Option<Region>, read: &ReadArgs) -> Result<(Image, Faults, bool)> {
     let (mut image, is_part) = image_or_region(path, region)?;
     let mut faults = Faults::default();
     if let Image::Exr(exr) = &mut image {

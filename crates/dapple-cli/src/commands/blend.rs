@@ -127,7 +127,11 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     };
     let mut maps = maps.map_err(advise)?;
     let alpha = alpha::take(&mut maps, form)?;
-    let mut cover = Cover::of(alpha.as_ref(), form == AlphaForm::Associated, Clear::NOT_WRAPPED);
+    let mut cover = Cover::of(
+        alpha.as_ref(),
+        form == AlphaForm::Associated,
+        Clear::NOT_WRAPPED,
+    );
     drop(progress);
     let is_deep = materials.iter().any(|material| material.is_deep);
     for (map, output) in maps.into_iter().zip(outputs) {

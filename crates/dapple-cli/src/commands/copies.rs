@@ -110,7 +110,11 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let mut outputs = outputs.into_iter();
     for mut maps in made {
         let alpha = alpha::take(&mut maps, form)?;
-        let mut cover = Cover::of(alpha.as_ref(), form == AlphaForm::Associated, Clear::NOT_WRAPPED);
+        let mut cover = Cover::of(
+            alpha.as_ref(),
+            form == AlphaForm::Associated,
+            Clear::NOT_WRAPPED,
+        );
         for (map, output) in maps.into_iter().zip(&mut outputs) {
             // The alpha is that of the first map.
             job.write_with_alpha(output, map, cover.take(), is_deep, &args.image)?;
