@@ -133,12 +133,11 @@ fn failed(path: &Path, error: &io::Error) -> MeshIoError {
 /// Replaces the content of the file at `path` with `bytes`, at once and for good: see [`dapple_image::replace`].
 fn replace(path: &Path, bytes: &[u8]) -> Result<(), MeshIoError> {
     dapple_image::replace(path, bytes).map_err(|error| {
-        let why = match std::error::Error::source(&error) {
-            Some(cause) => cause.to_string(),
-            None => error.to_string(),
-        };
-        let path = path.display().to_string();
-        MeshIoError::new(MeshIoErrorKind::Io { path, why })
+        let cause = std::error::Error::source(&error);
+        match cause.and_then(|cause| cause.downcast_ref::<io::Error>()) {
+            Some(cause) => failed(path, cause),
+            None => failed(path, &io::Error::other(error.to_string())),
+        }
     })
 }
 
