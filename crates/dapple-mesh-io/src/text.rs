@@ -67,7 +67,9 @@ mod tests {
     const OFF: &str = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
     const PLY: &str = "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nend_header\n1 2 3\n";
 
-    fn read_all(mark: &[u8], encode: fn(&str) -> Vec<u8>) -> Vec<Result<Model, String>> {
+    type Encode = fn(&str) -> Vec<u8>;
+
+    fn read_all(mark: &[u8], encode: Encode) -> Vec<Result<Model, String>> {
         let bytes = |text: &str| [mark, &encode(text)].concat();
         let library = |_: &str| Some(bytes("newmtl red\nmap_Kd red.png\n"));
         let mut models = vec![
@@ -127,7 +129,7 @@ mod tests {
                 .flat_map(|at| u32::from(at).to_be_bytes())
                 .collect()
         };
-        let encodings: [(&str, &[u8], fn(&str) -> Vec<u8>); 4] = [
+        let encodings: [(&str, &[u8], Encode); 4] = [
             ("UTF-16", b"\xff\xfe", low16),
             ("UTF-16", b"\xfe\xff", high16),
             ("UTF-32", b"\xff\xfe\0\0", low32),

@@ -94,7 +94,7 @@ pub(super) struct Primitive {
     pub(super) attributes: BTreeMap<String, usize>,
     pub(super) indices: Option<usize>,
     pub(super) material: Option<usize>,
-    pub(super) extensions: Option<Box<BTreeMap<String, IgnoredAny>>>,
+    pub(super) extensions: Option<BTreeMap<String, IgnoredAny>>,
     /// The morph targets, each with the accessors of the changes of attributes.
     #[serde(default)]
     pub(super) targets: Vec<BTreeMap<String, usize>>,
@@ -163,7 +163,7 @@ pub(super) struct Material {
     pub(super) alpha_cutoff: Option<f64>,
     pub(super) emissive_factor: Option<Box<[f64; 3]>>,
     pub(super) emissive_texture: Option<IgnoredAny>,
-    pub(super) extensions: Option<Box<BTreeMap<String, IgnoredAny>>>,
+    pub(super) extensions: Option<BTreeMap<String, IgnoredAny>>,
 }
 
 #[derive(Deserialize)]
@@ -210,7 +210,7 @@ pub(super) struct TextureTransform {
 pub(super) struct Texture {
     pub(super) source: Option<usize>,
     pub(super) sampler: Option<usize>,
-    pub(super) extensions: Option<Box<BTreeMap<String, IgnoredAny>>>,
+    pub(super) extensions: Option<BTreeMap<String, IgnoredAny>>,
 }
 
 #[derive(Deserialize)]

@@ -229,9 +229,9 @@ impl Draft {
                 kept.push(start..start.saturating_add(number(other, "byteLength")));
             }
             if contents.contains_key(&at) {
-                freed.push(range)
+                freed.push(range);
             } else {
-                kept.push(range)
+                kept.push(range);
             }
         }
         self.contents = contents;

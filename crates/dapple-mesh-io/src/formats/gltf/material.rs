@@ -140,7 +140,7 @@ impl Source<'_> {
         let no_image = || format!("texture {index}, which has no image");
         let texture = self.document.textures.get(index).ok_or_else(no_image)?;
         let Some(at) = texture.source else {
-            let extensions = texture.extensions.as_deref();
+            let extensions = texture.extensions.as_ref();
             let name = extensions.and_then(|extensions| extensions.keys().next());
             let named = |name: &String| {
                 format!(

@@ -179,7 +179,7 @@ impl Draft<'_> {
             };
             // Without plain data beside them, compressed ones would read as zeros.
             if self.source.is_without_bytes(positions)? {
-                let extensions = primitive.extensions.as_deref().into_iter().flatten();
+                let extensions = primitive.extensions.as_ref().into_iter().flatten();
                 let compression = |name: &&String| name.as_str() == "KHR_draco_mesh_compression";
                 if let Some(name) = extensions.map(|(name, _)| name).find(compression) {
                     return Err(unsupported(format!("the glTF extension {name}")));

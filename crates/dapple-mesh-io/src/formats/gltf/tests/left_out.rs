@@ -43,7 +43,7 @@ fn posed() -> Value {
         "VEC4",
     );
     add(floats(&[1.0, 0.0, 0.0, 0.0].repeat(4)), 5126, 4, "VEC4");
-    let mut eye = vec![0.0; 16];
+    let mut eye = [0.0; 16];
     (eye[0], eye[5], eye[10], eye[15]) = (1.0, 1.0, 1.0, 1.0);
     add(floats(&eye.repeat(2)), 5126, 2, "MAT4");
     add(floats(&[0.0, 0.0, 5.0].repeat(4)), 5126, 4, "VEC3");
