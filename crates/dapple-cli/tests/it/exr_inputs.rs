@@ -10,9 +10,12 @@ use std::process::Output;
 /// The side of the images, in pixels.
 const SIDE: u32 = 32;
 
-/// Writes planes, each with a value for every pixel.
-fn write(folder: &Folder, name: &str, planes: &[(&str, &dyn Fn(u32, u32) -> f32)]) {
-    let plane = |(name, value): &(&str, &dyn Fn(u32, u32) -> f32)| {
+/// The name of a plane, and its value for every pixel.
+type PlaneOf<'a> = (&'a str, &'a dyn Fn(u32, u32) -> f32);
+
+/// Writes planes.
+fn write(folder: &Folder, name: &str, planes: &[PlaneOf<'_>]) {
+    let plane = |(name, value): &PlaneOf<'_>| {
         ExrPlane::new(*name, Raster::from_fn([SIDE; 2], value).unwrap())
     };
     let planes: Vec<_> = planes.iter().map(plane).collect();
@@ -68,8 +71,7 @@ fn light_without_cover_is_neither_lost_nor_divided() {
         }
     };
     let (light, cover) = (part(0, 0.25), part(1, 1.0));
-    let planes: [(&str, &dyn Fn(u32, u32) -> f32); 4] =
-        [("R", &light), ("G", &light), ("B", &light), ("A", &cover)];
+    let planes: [PlaneOf<'_>; 4] = [("R", &light), ("G", &light), ("B", &light), ("A", &cover)];
     write(&folder, "fire.exr", &planes);
     let hole = Raster::from_fn([SIDE; 2], |x, y| f32::from(x > 20 && y > 20)).unwrap();
     write_gray_png(folder.path("hole.png"), &hole, Depth::Eight).unwrap();
@@ -267,7 +269,7 @@ fn normals_are_vectors_or_codes() {
         (["R", "G", "B"], vector),
         (["R", "G", "B"], code),
     ] {
-        let planes: Vec<(&str, &dyn Fn(u32, u32) -> f32)> = names
+        let planes: Vec<PlaneOf<'_>> = names
             .iter()
             .zip(&parts)
             .map(|(&name, part)| (name, part as &dyn Fn(u32, u32) -> f32))
