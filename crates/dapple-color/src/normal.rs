@@ -193,14 +193,10 @@ impl Normal {
 
     /// The codes of an image: `round((part + 1) / 2 · max)`, red for x, green for y, blue for z, without any curve.
     ///
-    /// A flat normal becomes (128, 128, 255), or (32768, 32768, 65535) with 16 bits. So does one with parts below 2^-17,
-    /// a quarter of a step of 16 bits, that roundings have left of 0.
+    /// A flat normal becomes (128, 128, 255), or (32768, 32768, 65535) with 16 bits.
     #[must_use]
     pub fn to_codes<C: Code>(self) -> [C; 3] {
-        self.to_array().map(|part| {
-            let part = if part.abs() < ROUNDING { 0.0 } else { part };
-            C::from_unit(part * 0.5 + 0.5)
-        })
+        self.to_array().map(|part| C::from_unit(part * 0.5 + 0.5))
     }
 
     /// The normal with those of its parts x and y set to 0 that come from a code next to the middle: 127 or 128 of 8 bits,
@@ -248,9 +244,6 @@ impl Normal {
         }
     }
 }
-
-/// Parts of normals below this are written as 0. Both codes next to the middle of 16 bits are 2^-16 away from it.
-const ROUNDING: f32 = 1.0 / (1 << 17) as f32;
 
 /// Parts below this are codes next to the middle of 16 bits: these have 2^-16, the next ones three times as much, and the
 /// codes of a vector are within a quarter of a unit vector.
