@@ -13,9 +13,7 @@ use crate::output::{OutputIdx, Target};
 use crate::progress::Progress;
 use anyhow::{Context as _, Error, Result};
 use dapple::raster::Raster;
-use dapple::tile::{
-    Map, SeamOptions, SeamReport, SeamReports, Seamless, TileError, TileErrorKind, repeat,
-};
+use dapple::tile::{Map, SeamOptions, SeamReports, Seamless, TileError, TileErrorKind, repeat};
 use method::{Candidate, How, MethodArgs};
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -250,8 +248,12 @@ fn best(args: &Args, maps: &[Map], mut candidates: Vec<Candidate>) -> Result<Mad
     if let [_] = candidates.as_slice() {
         return make(candidates.remove(0));
     }
-    let (mut best, mut refused) = (None, None);
+    let (mut best, mut refused): (Option<(Rank, Made)>, _) = (None, None);
     for candidate in candidates {
+        let has_passed = best.as_ref().is_some_and(|(rank, _)| !rank.fails);
+        if candidate.is_last_resort() && has_passed {
+            continue;
+        }
         let mut made = match make(candidate) {
             Ok(made) => made,
             Err(error) => {
@@ -263,9 +265,9 @@ fn best(args: &Args, maps: &[Map], mut candidates: Vec<Candidate>) -> Result<Mad
         let pairs = maps.iter().zip(&made.tiles);
         let reports = pairs.map(|(map, tile)| SeamReports::beside(map, tile, &options));
         made.reports = reports.collect::<Result<_, _>>()?;
-        let cost = cost(&made.reports);
-        if best.as_ref().is_none_or(|(least, _)| cost < *least) {
-            best = Some((cost, made));
+        let rank = Rank::of(&made.reports);
+        if best.as_ref().is_none_or(|(least, _)| rank < *least) {
+            best = Some((rank, made));
         }
     }
     match (best, refused) {
@@ -275,21 +277,28 @@ fn best(args: &Args, maps: &[Map], mut candidates: Vec<Candidate>) -> Result<Mad
     }
 }
 
-/// The cost of the tiles: the badness of the worst channel, and the part of the finest octave that it has lost.
-fn cost(reports: &[SeamReports]) -> f64 {
-    let mut worst: f64 = 0.0;
-    for reports in reports {
-        for of in reports.channels() {
-            let finest = of
-                .report
-                .kept
-                .as_ref()
-                .and_then(|kept| kept.octaves.first());
+/// The order of tiles, the best first: those that pass come before others.
+#[derive(PartialEq, PartialOrd)]
+struct Rank {
+    fails: bool,
+    /// The badness of the worst channel, and the part of the finest octave that it has lost.
+    cost: f64,
+}
+
+impl Rank {
+    fn of(reports: &[SeamReports]) -> Self {
+        let mut cost: f64 = 0.0;
+        for of in reports.iter().flat_map(SeamReports::channels) {
+            let kept = of.report.kept.as_ref();
+            let finest = kept.and_then(|kept| kept.octaves.first());
             let lost = finest.map_or(0.0, |kept| (1.0 - kept).max(0.0));
-            worst = worst.max(of.report.badness() + lost);
+            cost = cost.max(of.report.badness() + lost);
+        }
+        Self {
+            fails: !reports.iter().all(SeamReports::passes),
+            cost,
         }
     }
-    worst.min(SeamReport::MOST)
 }
 
 fn options(args: &Args, candidate: &Candidate) -> SeamOptions {

@@ -112,6 +112,87 @@ fn auto_names_its_method_and_is_never_worse_than_others() {
     );
 }
 
+/// What `--method auto` takes for an image.
+fn auto_of(folder: &Folder, image: &Raster<f32>) -> String {
+    write_gray_png(folder.path("source.png"), image, Depth::Eight).unwrap();
+    let output = folder.run(&["tile", "source.png", "--method", "auto", "-o", "best.png"]);
+    assert_done(&output, "auto");
+    fs::remove_file(folder.path("best.png")).unwrap();
+    let said = stdout(&output);
+    let name = said
+        .lines()
+        .find_map(|line| line.strip_prefix("auto takes "));
+    name.expect("the method is named").to_owned()
+}
+
+#[test]
+fn auto_takes_a_cut_where_half_of_the_source_is_clipped() {
+    let folder = Folder::new("tile-auto-clipped");
+    let cells = [
+        "worley",
+        "--cells",
+        "12",
+        "--wrap",
+        "none",
+        "--size",
+        "160",
+        "--format",
+        "png8",
+        "-o",
+        "cells.png",
+    ];
+    assert_done(&folder.run(&cells), "worley");
+    let strong = read_gray(&folder, "cells.png").map(|v| (2.2 * (v - 0.35)).clamp(0.0, 1.0));
+    let black = strong.pixels().iter().filter(|value| **value <= 0.0);
+    assert!(black.count() > 160 * 160 / 2);
+    assert_eq!(auto_of(&folder, &strong), "soft-cut");
+}
+
+#[test]
+fn auto_synthesizes_where_no_other_method_passes() {
+    // A weave whose strands of 25.5 pixels do not fit into the image.
+    let strand = |place: f64| {
+        let beside = 2.0 * (place - place.floor()) - 1.0;
+        (1.0 - beside * beside).sqrt()
+    };
+    let weave = Raster::from_fn([160; 2], |x, y| {
+        let [u, v] = [x, y].map(|at| f64::from(at) / 25.5);
+        let is_over = (u.floor() + v.floor()) % 2.0 == 0.0;
+        (if is_over {
+            0.9 * strand(u)
+        } else {
+            0.45 * strand(v)
+        }) as f32
+    });
+    let folder = Folder::new("tile-auto-weave");
+    assert_eq!(auto_of(&folder, &weave.unwrap()), "synth");
+}
+
+#[test]
+fn noise_names_octaves_that_are_finer_than_a_pixel() {
+    let folder = Folder::new("noise-fine");
+    let run = |cells: &str, octaves: &str| {
+        let arguments = [
+            "noise",
+            "--cells",
+            cells,
+            "--octaves",
+            octaves,
+            "--size",
+            "32",
+            "--force",
+            "-o",
+            "noise.png",
+        ];
+        let output = folder.run(&arguments);
+        assert_done(&output, cells);
+        stderr(&output)
+    };
+    assert!(!run("8", "2").contains("note:"));
+    assert!(run("8", "3").contains("note: octaves from number 3 on"));
+    assert!(run("64", "1").contains("note: octaves from number 1 on"));
+}
+
 #[test]
 fn octaves_of_worley_are_those_of_the_library() {
     let folder = Folder::new("octaves");

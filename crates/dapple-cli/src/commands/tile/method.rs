@@ -110,7 +110,7 @@ const PROJECT_OPTIONS: &[&str] = &["levels", "basis", "phase", "pixels"];
 fn method() -> Word<&'static str> {
     let auto = Word::none().or(
         AUTO,
-        "Tries all but synth and keeps the best by the report",
+        "Tries the others and keeps the best by the report: synth only if none of them passes, and neither mirror nor feather without a margin, which show two pictures in one",
         AUTO,
     );
     METHODS
@@ -128,6 +128,11 @@ pub(super) struct Candidate {
 }
 
 impl Candidate {
+    /// Whether the candidate is tried only where no other passes.
+    pub(super) fn is_last_resort(&self) -> bool {
+        matches!(self.how, How::Synth(_))
+    }
+
     fn new(name: String, how: How) -> Self {
         let lattice = match how {
             How::Seamless(
@@ -204,20 +209,22 @@ pub(super) struct MethodArgs {
 }
 
 impl MethodArgs {
-    /// The method with its options for images of a size, or all methods if the best is to be found.
+    /// The method with its options for images of a size; if the best is to be found, the methods to try, with the one
+    /// that is tried only where no other passes at the end.
     pub(super) fn candidates(&self, size: [u32; 2]) -> Vec<Candidate> {
-        // Poisson with a zero gradient equals the periodic part, and synthesis takes seconds where all others take moments.
-        let is_wanted = |row: &&Row| match self.is_auto() {
-            true => ![SYNTH, "poisson"].contains(&row.name),
-            false => row.name == self.method,
+        let candidates_of = |is_wanted: &dyn Fn(&str) -> bool| -> Vec<Candidate> {
+            let wanted = METHODS.iter().filter(|row| is_wanted(row.name));
+            wanted
+                .map(|row| Candidate::new(row.name.to_owned(), (row.make)(self, size)))
+                .collect()
         };
-        let wanted = METHODS.iter().filter(is_wanted);
-        let mut candidates: Vec<_> = wanted
-            .map(|row| Candidate::new(row.name.to_owned(), (row.make)(self, size)))
-            .collect();
         if !self.is_auto() {
-            return candidates;
+            return candidates_of(&|name| name == self.method);
         }
+        // Poisson with a zero gradient equals the periodic part. A mirror, and a crossfade with the image moved by half, show
+        // two pictures in one all over the tile, whatever a report of the seam says.
+        let mut candidates =
+            candidates_of(&|name| ![SYNTH, "poisson", "feather", "mirror"].contains(&name));
         let margin = default_margin(size);
         let crossfade = Crossfade::default();
         candidates.push(Candidate::new(
@@ -228,6 +235,8 @@ impl MethodArgs {
             format!("feather --margin {margin}"),
             How::Seamless(Method::Feather(Feather::Margin { margin, crossfade })),
         ));
+        // Synthesis takes seconds where all others take moments.
+        candidates.extend(candidates_of(&|name| name == SYNTH));
         candidates
     }
 
