@@ -3,7 +3,7 @@
 use crate::args::ImageArgs;
 use crate::error::Exit;
 use crate::field::{Field, FieldArgs, check_whole_cells, draw, extent_of};
-use crate::job::Context;
+use crate::job::{Context, eprintln_if_possible};
 use anyhow::Result;
 use dapple::recipe::{Fractal, FractalBasis, Images, Node};
 use serde::Serialize;
@@ -69,6 +69,15 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     };
     let extent = extent_of(args.field.size, args.cells);
     check_whole_cells(extent, args.field.wrap.flags(), "--cells")?;
+    let pixels = args.field.size.0.into_iter().min().unwrap_or(1);
+    if let Some(octave) = first_below_a_pixel(args.cells, args.octaves, pixels)
+        && !context.quiet
+    {
+        eprintln_if_possible(&format!(
+            "note: octaves from number {octave} on have cells of at most a pixel, and are 0 at the pixels or look like static; \
+             take fewer --cells or --octaves, or a larger --size"
+        ));
+    }
     let field = Field {
         command: "noise",
         node: Node::Noise(node),
@@ -79,4 +88,29 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
         images: Images::new(),
     };
     draw(&field, &args.field, &args.image, args, context)
+}
+
+/// The first octave whose cells are at most a pixel, counted from 1.
+fn first_below_a_pixel(cells: f64, octaves: u32, pixels: u32) -> Option<u32> {
+    let mut cells_of_octave = cells;
+    for octave in 1..=octaves {
+        if cells_of_octave >= f64::from(pixels) {
+            return Some(octave);
+        }
+        cells_of_octave *= 2.0;
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::first_below_a_pixel;
+
+    #[test]
+    fn octaves_below_a_pixel_are_counted_from_one() {
+        assert_eq!(first_below_a_pixel(512.0, 1, 256), Some(1));
+        assert_eq!(first_below_a_pixel(256.0, 6, 256), Some(1));
+        assert_eq!(first_below_a_pixel(8.0, 6, 256), Some(6));
+        assert_eq!(first_below_a_pixel(8.0, 5, 256), None);
+    }
 }
