@@ -169,6 +169,52 @@ fn every_corner_of_the_lattice_is_zero() {
 }
 
 #[test]
+fn fractal_sums_stay_in_their_ranges_and_leave_the_range_of_one_octave() {
+    let noise = GradientNoise2::new(SEED);
+    for (count, gain) in [(1, 0.5), (2, 1.0), (6, 0.5), (8, 0.9), (3, 0.0)] {
+        let weights = core::iter::successors(Some(1.0), |weight| Some(weight * gain));
+        let weight: f64 = weights.take(count as usize).sum();
+        // Each of at most 8 additions rounds by at most half of the last bit.
+        let most = weight as f32 * (1.0 + 8.0 * f32::EPSILON);
+        for (shape, least) in [
+            (FractalShape::Sum, -most),
+            (FractalShape::Ridged, 0.0),
+            (FractalShape::Billow, 0.0),
+        ] {
+            let fractal = noise.fractal(count, gain, 2.0, shape).unwrap();
+            assert!((f64::from(fractal.weight()) - weight).abs() < 1e-5);
+            let values = positions::<2>(20_000).map(|at| fractal.sample(at.into()));
+            let values: Vec<f32> = values.collect();
+            let [lowest, highest] = values.iter().fold([f32::MAX, f32::MIN], |[low, high], &v| {
+                [low.min(v), high.max(v)]
+            });
+            assert!(
+                least <= lowest && highest <= most,
+                "{shape:?}: {lowest} to {highest}"
+            );
+            if count == 8 {
+                // One octave stays within 1.
+                assert!(highest > 1.0, "{shape:?}: {highest}");
+            }
+        }
+    }
+}
+
+#[test]
+fn fractal_sums_are_zero_at_whole_positions() {
+    let sum = GradientNoise2::new(SEED)
+        .fractal(6, 0.5, 2.0, FractalShape::Sum)
+        .unwrap();
+    for corner in positions::<2>(100) {
+        assert_eq!(
+            sum.sample(corner.map(f64::round).into()),
+            0.0,
+            "at {corner:?}"
+        );
+    }
+}
+
+#[test]
 fn a_window_has_the_values_of_its_positions_bit_for_bit() {
     let plane = GradientNoise2::new(SEED)
         .with_period([Some(5), None])
