@@ -33,10 +33,6 @@ impl FileStamp {
 }
 
 #[cfg(unix)]
-#[expect(
-    clippy::unnecessary_wraps,
-    reason = "other systems have none without opening the file"
-)]
 fn identity(found: &fs::Metadata) -> Option<[u64; 2]> {
     use std::os::unix::fs::MetadataExt as _;
     Some([found.dev(), found.ino()])

@@ -44,11 +44,11 @@ fn write(url: &str) -> io::Result<TempPath> {
     let mut file = home_of_snaps()
         .and_then(|home| create(&home).ok())
         .map_or_else(|| create(&std::env::temp_dir()), Ok)?;
-    write!(
+    writeln!(
         file,
         "<!doctype html><html lang=en><meta charset=utf-8><meta name=referrer content=no-referrer>\
          <title>dapple studio</title><meta http-equiv=refresh content=\"0;url={url}\">\
-         <p><a href=\"{url}\">dapple studio</a></p>\n"
+         <p><a href=\"{url}\">dapple studio</a></p>"
     )?;
     file.flush()?;
     Ok(file.into_temp_path())
