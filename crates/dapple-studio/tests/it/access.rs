@@ -205,48 +205,50 @@ fn save(page: &mut Page, file: &str, text: &str) {
     );
 }
 
+/// Files that are no business of a page: texts of other programs, and recipes that are hidden.
+const OTHERS: [(&str, &str); 10] = [
+    (".env", "SECRET=1\n"),
+    (".git/config", "[core]\n"),
+    ("notes/id_rsa", "secret\n"),
+    (
+        "Cargo.toml",
+        "[package]\nname = \"dapple\"\ndescription = \"\"\"\ndapple = 1\n\"\"\"\n",
+    ),
+    ("pyproject.toml", "[project]\ndapple = 1\n"),
+    ("broken.toml", "[project\ndapple = 1\n"),
+    ("recipe.txt", RECIPE),
+    (".hidden.toml", RECIPE),
+    (".config/hidden.toml", RECIPE),
+    ("under/.config/hidden.toml", RECIPE),
+];
+
+/// A server for a folder with those files, recipes, and a hidden image.
+fn cluttered() -> Server {
+    let server = Server::new(Some("my.toml"));
+    let recipes = [
+        ("good.toml", RECIPE),
+        ("under/good.toml", RECIPE),
+        // What somebody is writing is no TOML for a while.
+        ("half.toml", HALF),
+        (".hidden.png", "image"),
+    ];
+    for (name, text) in OTHERS.into_iter().chain(recipes) {
+        let path = server.folder.path().join(name);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(path, text).unwrap();
+    }
+    server
+}
+
+const HALF: &str = "# mine\ndapple = 1\n[material\n";
+
 #[test]
 fn only_recipes_are_opened_and_replaced() {
-    let server = Server::new(Some("my.toml"));
+    let server = cluttered();
     let path = |name: &str| server.folder.path().join(name);
-    let write = |name: &str, text: &str| {
-        fs::create_dir_all(path(name).parent().unwrap()).unwrap();
-        fs::write(path(name), text).unwrap();
-    };
-    let others = [
-        (".env", "SECRET=1\n"),
-        (".git/config", "[core]\n"),
-        ("notes/id_rsa", "secret\n"),
-        (
-            "Cargo.toml",
-            "[package]\nname = \"dapple\"\ndescription = \"\"\"\ndapple = 1\n\"\"\"\n",
-        ),
-        ("pyproject.toml", "[project]\ndapple = 1\n"),
-        ("broken.toml", "[project\ndapple = 1\n"),
-        ("recipe.txt", RECIPE),
-        // Recipes, but hidden.
-        (".hidden.toml", RECIPE),
-        (".config/hidden.toml", RECIPE),
-        ("under/.config/hidden.toml", RECIPE),
-    ];
-    for (name, text) in others {
-        write(name, text);
-    }
-    write(".hidden.png", "image");
-    write("good.toml", RECIPE);
-    write("under/good.toml", RECIPE);
-    // What somebody is writing is no TOML for a while.
-    write("half.toml", "# mine\ndapple = 1\n[material\n");
-    #[cfg(unix)]
-    for (link, to) in [("link.toml", ".hidden.toml"), ("link.png", ".hidden.png")] {
-        std::os::unix::fs::symlink(to, path(link)).unwrap();
-    }
-    #[cfg(unix)]
-    std::os::unix::fs::symlink("good.toml", path("inside.toml")).unwrap();
-
     let mut page = server.page();
     until(&mut page, "document");
-    for (name, text) in others {
+    for (name, text) in OTHERS {
         say(&mut page, &json!({ "type": "open", "file": name }));
         let refused = refusal(&mut page);
         assert_eq!(refused["what"], "open", "{name}: {refused}");
@@ -268,34 +270,42 @@ fn only_recipes_are_opened_and_replaced() {
     for name in ["good.toml", "under/good.toml"] {
         assert_eq!(open(&mut page, name), RECIPE);
     }
-    assert_eq!(
-        open(&mut page, "half.toml"),
-        "# mine\ndapple = 1\n[material\n"
-    );
+    assert_eq!(open(&mut page, "half.toml"), HALF);
     save(&mut page, "half.toml", RECIPE);
     until(&mut page, "saved");
     assert_eq!(fs::read_to_string(path("half.toml")).unwrap(), RECIPE);
     let token = format!("x-dapple-token: {}", server.token);
-    assert_eq!(
-        server.status("/image/.hidden.png", &["Host: HOST", &token]),
-        404
-    );
-    #[cfg(unix)]
-    {
-        assert_eq!(
-            server.status("/image/link.png", &["Host: HOST", &token]),
-            404
-        );
-        say(&mut page, &json!({ "type": "open", "file": "link.toml" }));
-        assert_eq!(refusal(&mut page)["what"], "open");
-        // A link within the folder is one more name of a recipe, and stays a link.
-        assert_eq!(open(&mut page, "inside.toml"), RECIPE);
-        let text = "dapple = 1\n[material]\nheight = 0.5\n";
-        save(&mut page, "inside.toml", text);
-        until(&mut page, "saved");
-        assert_eq!(fs::read_to_string(path("good.toml")).unwrap(), text);
-        assert!(path("inside.toml").is_symlink());
+    let status = server.status("/image/.hidden.png", &["Host: HOST", &token]);
+    assert_eq!(status, 404);
+}
+
+#[test]
+#[cfg(unix)]
+fn links_within_the_folder_are_names_of_recipes_but_not_of_what_is_hidden() {
+    use std::os::unix::fs::symlink;
+    let server = cluttered();
+    let path = |name: &str| server.folder.path().join(name);
+    for (link, to) in [
+        ("link.toml", ".hidden.toml"),
+        ("link.png", ".hidden.png"),
+        ("inside.toml", "good.toml"),
+    ] {
+        symlink(to, path(link)).unwrap();
     }
+    let mut page = server.page();
+    until(&mut page, "document");
+    let token = format!("x-dapple-token: {}", server.token);
+    let status = server.status("/image/link.png", &["Host: HOST", &token]);
+    assert_eq!(status, 404);
+    say(&mut page, &json!({ "type": "open", "file": "link.toml" }));
+    assert_eq!(refusal(&mut page)["what"], "open");
+    // What it leads to is replaced, and it stays a link.
+    assert_eq!(open(&mut page, "inside.toml"), RECIPE);
+    let text = "dapple = 1\n[material]\nheight = 0.5\n";
+    save(&mut page, "inside.toml", text);
+    until(&mut page, "saved");
+    assert_eq!(fs::read_to_string(path("good.toml")).unwrap(), text);
+    assert!(path("inside.toml").is_symlink());
 }
 
 /// Writes over a file in place.
