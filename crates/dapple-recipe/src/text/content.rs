@@ -120,7 +120,17 @@ impl<'de> Deserializer<'de> for &'de Content {
             Content::Unsigned(number) => visitor.visit_u64(*number),
             Content::Number(number) => visitor.visit_f64(*number),
             Content::Text(text) => visitor.visit_borrowed_str(text),
-            Content::List(list) => visitor.visit_seq(Elements { list, next: 0 }),
+            Content::List(list) => {
+                let mut elements = Elements { list, next: 0 };
+                let value = visitor.visit_seq(&mut elements)?;
+                match elements.next {
+                    count if count < list.len() => Err(Refusal::custom(format_args!(
+                        "found a list of {} values, expected {count}",
+                        list.len()
+                    ))),
+                    _ => Ok(value),
+                }
+            }
             Content::Table(table) => visitor.visit_map(Entries { table, next: 0 }),
         }
     }
