@@ -307,7 +307,7 @@ impl Field {
         let n_axes = self.ndim();
         let positions = Positions::read(positions, n_axes)?;
         arrays::filled(py, &positions.shape, None, |values, stop| {
-            watch::in_parts(stop, values.len(), FIRST, |part| {
+            watch::in_parts(stop, values.len(), CHUNK, |part| {
                 let numbers = &positions.numbers[part.start * n_axes..part.end * n_axes];
                 parallel::for_each_chunk(&mut values[part], CHUNK, |chunk, values| {
                     let places = numbers[chunk * CHUNK * n_axes..].chunks_exact(n_axes);
