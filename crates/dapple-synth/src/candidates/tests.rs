@@ -310,10 +310,15 @@ fn masks_leave_out_the_neighborhoods_that_they_touch() {
         let all = noise([40, 36], edges, 2);
         let some = all.levels[0].clone().with_mask(&mask).unwrap();
         let some = some.pyramid(2).unwrap();
-        for pass in &Schedule::paper(2).passes {
+        let passes = Schedule::paper(2).passes;
+        // Without the neighborhoods that reach past an edge, and with all of them.
+        for (pass, few) in passes
+            .iter()
+            .flat_map(|pass| [(pass, 0), (pass, usize::MAX)])
+        {
             let center = CoarserCenter::Exact;
-            let all = Candidates::new(&all, pass, center).unwrap();
-            let rows = Candidates::new(&some, pass, center).unwrap();
+            let all = Candidates::within(&all, pass, center, few).unwrap();
+            let rows = Candidates::within(&some, pass, center, few).unwrap();
             let mut next = 0;
             for row in 0..all.len() {
                 let at = all.pixel(row).map(i64::from);
