@@ -21,6 +21,7 @@ use std::path::{Path, PathBuf};
 struct Reading {
     content: Option<Content>,
     alpha: Alpha,
+    layer: Option<String>,
 }
 
 /// The handling of the alpha of an image.
@@ -35,7 +36,7 @@ enum Alpha {
 }
 
 impl Reading {
-    fn new(content: Option<&str>, alpha: Option<&str>) -> Result<Self> {
+    fn new(content: Option<&str>, alpha: Option<&str>, layer: Option<String>) -> Result<Self> {
         let content = content.map(|name| data::named("content", name));
         let alpha = match alpha {
             None => Alpha::Needed,
@@ -45,11 +46,15 @@ impl Reading {
         Ok(Self {
             content: content.transpose()?,
             alpha,
+            layer,
         })
     }
 
     /// The maps of an image, and their kind.
     fn maps(&self, image: &Image) -> Result<(Kind, Vec<Map>)> {
+        let layer = self.layer.as_ref().map(|name| image.layer(name));
+        let layer = layer.transpose()?;
+        let image = layer.as_ref().unwrap_or(image);
         let of = |content, maps: Vec<Map>, n_channels| {
             (
                 Kind {
@@ -64,7 +69,7 @@ impl Reading {
                 return Ok(of(Content::Gray, vec![Map::Value(image.gray()?)], 1));
             }
             Some(Content::Normal) => {
-                return Ok(of(Content::Normal, vec![Map::Normal(normals(image)?)], 3));
+                return Ok(of(Content::Normal, vec![Map::Normal(image.normals()?)], 3));
             }
             Some(Content::Data) => {
                 let maps: Vec<_> = channels(image)?.into_iter().map(Map::Value).collect();
@@ -111,13 +116,8 @@ fn channels(image: &Image) -> Result<Vec<Raster<f32>>> {
     let png = match image {
         Image::Png(png) | Image::Jpeg(png) => png,
         Image::Exr(exr) => {
-            if let Ok(values) = exr.gray() {
-                return Ok(vec![values.clone()]);
-            }
-            let mut names = vec!["R", "G", "B"];
-            names.extend(exr.plane("A").is_ok().then_some("A"));
-            let planes = names.into_iter().map(|name| Ok(exr.plane(name)?.clone()));
-            return planes.collect();
+            let planes = exr.to_picture()?.planes.into_iter();
+            return Ok(planes.map(|plane| plane.values).collect());
         }
         _ => {
             return Err(Error::new(
@@ -138,34 +138,11 @@ fn channels(image: &Image) -> Result<Vec<Raster<f32>>> {
     })
 }
 
-/// The normals in the channels of an image, read as in the command.
-fn normals(image: &Image) -> Result<Raster<Normal>> {
-    fn of<T: Code, const N: usize>(raster: &Raster<[T; N]>) -> Raster<Normal> {
-        raster.map(|codes| Normal::from_codes([codes[0], codes[1], codes[2]]))
-    }
-    let pixels = match image {
-        Image::Png(png) | Image::Jpeg(png) => &png.pixels,
-        exr => {
-            let codes = |parts: &LinearRgb| parts.to_array().map(u16::from_unit);
-            return Ok(exr.color()?.map(|parts| Normal::from_codes(codes(parts))));
-        }
-    };
-    match pixels {
-        PngPixels::Rgb8(raster) => Ok(of(raster)),
-        PngPixels::Rgb16(raster) => Ok(of(raster)),
-        PngPixels::Rgba8(raster) => Ok(of(raster)),
-        PngPixels::Rgba16(raster) => Ok(of(raster)),
-        _ => {
-            let message = "normals have three channels, and the image is gray";
-            Err(Error::new("channels", message))
-        }
-    }
-}
-
 /// The array of an image file, float32: PNG, JPEG or OpenEXR, whatever its name ends with.
 ///
-/// Gray images are uncoded numbers, (rows, columns); PNG and JPEG from 0 to 1. Colors are linear light, (rows, columns,
-/// 3), or (rows, columns, 4) if a pixel is not opaque; alpha is not multiplied into them.
+/// Gray images are uncoded numbers, (rows, columns); PNG and JPEG from 0 to 1. Colors are linear light of BT.709,
+/// converted from the color space that the file declares, (rows, columns, 3), or (rows, columns, 4) if a pixel is not
+/// opaque; alpha is not multiplied into them. OpenEXR has the pixels of its display window.
 ///
 /// Parameters
 /// ----------
@@ -177,6 +154,9 @@ fn normals(image: &Image) -> Result<Raster<Normal>> {
 /// alpha : str or None, default None
 ///     None keeps it if a pixel is not opaque; `"keep"` always; `"drop"` removes it; `"over:#808080"` composites the
 ///     image over a color.
+/// layer : str or None, default None
+///     The layer of an OpenEXR file with several, such as `"ViewLayer.DiffCol"`. By default the one without a name,
+///     `Combined`, `rgba` or `beauty`, and of several views the first; the error lists all. Other formats have none.
 /// max_pixels : int, default 268435456
 ///     The limits; a larger image is an error before memory is allocated for it.
 /// max_bytes : int, default 4294967296
@@ -202,13 +182,14 @@ fn normals(image: &Image) -> Result<Raster<Normal>> {
 /// >>> dp.read_image(path).shape
 /// (64, 96)
 #[pyfunction]
-#[pyo3(signature = (path, *, content = None, alpha = None, max_pixels = 268_435_456, max_bytes = 4_294_967_296),
-    text_signature = "(path, *, content=None, alpha=None, max_pixels=268435456, max_bytes=4294967296)")]
+#[pyo3(signature = (path, *, content = None, alpha = None, layer = None, max_pixels = 268_435_456, max_bytes = 4_294_967_296),
+    text_signature = "(path, *, content=None, alpha=None, layer=None, max_pixels=268435456, max_bytes=4294967296)")]
 pub(crate) fn read_image<'py>(
     py: Python<'py>,
     path: PathBuf,
     content: Option<&str>,
     alpha: Option<&str>,
+    layer: Option<String>,
     max_pixels: u64,
     max_bytes: u64,
 ) -> Result<Bound<'py, PyAny>> {
@@ -216,7 +197,7 @@ pub(crate) fn read_image<'py>(
         pixels: max_pixels,
         bytes: max_bytes,
     };
-    let reading = Reading::new(content, alpha)?;
+    let reading = Reading::new(content, alpha, layer)?;
     let (kind, maps) = threads::run(py, move || reading.maps(&image::read_image(path, &limits)?))??;
     kind.array(py, maps)
 }
@@ -252,13 +233,14 @@ pub(crate) fn read_image<'py>(
 /// >>> dp.decode_image(dp.encode_image([[0.0, 1.0]])).tolist()
 /// [[0.0, 1.0]]
 #[pyfunction]
-#[pyo3(signature = (data, *, content = None, alpha = None, max_pixels = 268_435_456, max_bytes = 4_294_967_296),
-    text_signature = "(data, *, content=None, alpha=None, max_pixels=268435456, max_bytes=4294967296)")]
+#[pyo3(signature = (data, *, content = None, alpha = None, layer = None, max_pixels = 268_435_456, max_bytes = 4_294_967_296),
+    text_signature = "(data, *, content=None, alpha=None, layer=None, max_pixels=268435456, max_bytes=4294967296)")]
 pub(crate) fn decode_image<'py>(
     py: Python<'py>,
     data: &[u8],
     content: Option<&str>,
     alpha: Option<&str>,
+    layer: Option<String>,
     max_pixels: u64,
     max_bytes: u64,
 ) -> Result<Bound<'py, PyAny>> {
@@ -266,7 +248,7 @@ pub(crate) fn decode_image<'py>(
         pixels: max_pixels,
         bytes: max_bytes,
     };
-    let reading = Reading::new(content, alpha)?;
+    let reading = Reading::new(content, alpha, layer)?;
     let data = data.to_vec();
     let (kind, maps) = threads::run(py, move || {
         reading.maps(&image::decode_image(&data, &limits)?)

@@ -327,6 +327,11 @@ impl Recipe {
         Ok(alpha.and_then(|alpha| alpha.as_str().map(str::to_owned)))
     }
 
+    /// The layer of an image in its nodes; None if no node sets it.
+    fn _image_layer(&self, file: &str) -> Result<Option<&str>> {
+        Ok(self.recipe.image_layer(file)?)
+    }
+
     /// The SHA-256 of its text: the same for the same recipe on every machine.
     #[getter]
     fn hash(&self) -> Result<String> {

@@ -96,16 +96,23 @@ def read_recipe_images(recipe: Recipe, folder: _Path) -> dict[str, npt.NDArray[n
     """
     from pathlib import Path
 
-    return {file: _image(Path(folder) / file, recipe._image_alpha(file)) for file in recipe.image_files}
+    return {
+        file: _image(Path(folder) / file, recipe._image_alpha(file), recipe._image_layer(file))
+        for file in recipe.image_files
+    }
 
 
-def _image(path: Path, alpha: str | None) -> npt.NDArray[np.float32]:
-    image = read_image(path, alpha=alpha)
+def _image(path: Path, alpha: str | None, layer: str | None) -> npt.NDArray[np.float32]:
+    image = read_image(path, alpha=alpha, layer=layer)
+    finite = np.isfinite(image)
+    if not finite.all():
+        row, column = np.argwhere(~finite)[0][:2]
+        raise refusal("not_finite", f"{path}: a number in column {column} and row {row} is not finite")
     if image.ndim == 3 and image.shape[2] == 4:
         hint = 'give its node alpha = "drop" or alpha = "over:#rrggbb"'
         raise refusal("alpha", f"{path} is partly transparent, which is not possible here", hint)
     if alpha == "drop" and image.ndim == 3:
         # A gray image with alpha holds plain numbers, without the curve of colors.
-        channels = read_image(path, content="data")
+        channels = read_image(path, content="data", layer=layer)
         return channels[..., 0].copy() if channels.shape[2] == 2 else image
     return image
