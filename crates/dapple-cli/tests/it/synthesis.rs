@@ -231,6 +231,36 @@ fn examples_go_where_a_map_on_a_mesh_says() {
 }
 
 #[test]
+fn repeats_across_a_mesh_set_the_number_of_sites() {
+    let folder = Folder::with_inputs("repeats");
+    write_square(&folder);
+    let plane = Raster::from_fn([40; 2], |x, y| f32::from((x / 2 + y) % 2 == 0)).unwrap();
+    write_gray_png(folder.path("checks.png"), &plane, Depth::Eight).unwrap();
+    let run = |more: &str| {
+        let line = format!("synth checks.png --mesh square.obj --force -o sites.ply {more}");
+        folder.run(&line.split_whitespace().collect::<Vec<_>>())
+    };
+    let done = run("--repeat 0.5");
+    assert_done(&done, "--repeat");
+    let said = stderr(&done);
+    assert!(said.contains("repeats about 0.5 times"), "{said}");
+    // Half of the example, 20 pixels, along a side of length 1: a hexagonal lattice with this spacing has 2 / √3 times as
+    // many sites as a square one with 400.
+    let sites = dapple::mesh_io::read_model(folder.path("sites.ply")).unwrap();
+    assert_eq!(sites.mesh.positions().len(), 462);
+    for (more, word) in [
+        ("--repeat 1 --sites 500", "--sites"),
+        ("--repeat 0", "repeats"),
+        ("--repeat nan", "repeats"),
+    ] {
+        let refused = run(more);
+        let said = stderr(&refused);
+        assert_eq!(refused.status.code(), Some(2), "{more}: {said}");
+        assert!(said.contains(word), "{more}: {said}");
+    }
+}
+
+#[test]
 fn colors_of_vertices_say_what_an_image_of_them_says() {
     let folder = Folder::with_inputs("painted_mesh");
     // A square that is painted black on the left and white on the right.

@@ -98,7 +98,10 @@ fn options_are_read_by_themselves_with_the_words_of_recipes() {
         Metric::Manhattan
     );
     let error = read_options::<[f32; 3]>(&json!([0, 0.5, 1, 1])).unwrap_err();
-    assert_eq!(error.kind().to_string(), "found a list of 4 values, expected 3");
+    assert_eq!(
+        error.kind().to_string(),
+        "found a list of 4 values, expected 3"
+    );
 }
 
 #[test]

@@ -7,10 +7,11 @@ use crate::words::Word;
 use anyhow::Result;
 use dapple::color::Code as _;
 use dapple::hash::Seed;
+use dapple::mesh::Surface;
 use dapple::raster::Raster;
 use dapple::synth::{
     Axes as FieldAxes, Coherence, Edges, EndlessOptions, HierarchyOptions, Matching, Options,
-    Symmetry,
+    Symmetry, SynthError, sites_for_repeats,
 };
 use dapple::tile::Map;
 use serde::Serialize;
@@ -161,6 +162,11 @@ pub(super) struct SurfaceArgs {
     /// 4 for those that look alike lying on their side, such as a checker. The texture then has fewer tears. By default 1.
     #[arg(long, value_name = "N", value_parser = Word::<Symmetry>::all())]
     pub(super) symmetry: Option<Symmetry>,
+
+    /// Number of times that the example repeats across the mesh, along the longest side of its bounding box: above 0, up to
+    /// 10000. A smaller number makes its features larger. It sets the number of sites.
+    #[arg(long, value_name = "N", conflicts_with = "sites")]
+    pub(super) repeat: Option<f64>,
 
     /// The number of points of the surface that get a color, like pixels on the mesh: 1 to 2^28; by default 65536.
     #[arg(long, value_name = "N")]
@@ -320,6 +326,7 @@ impl SurfaceArgs {
     pub(super) fn given(&self) -> Option<&'static str> {
         first_given(&[
             ("symmetry", self.symmetry.is_some()),
+            ("repeat", self.repeat.is_some()),
             ("sites", self.sites.is_some()),
             ("texture-size", self.texture_size.is_some()),
             ("atlas", self.atlas.is_some()),
@@ -376,6 +383,27 @@ impl SurfaceArgs {
             seed: Seed(matching.seed).child("sites", 0),
             ..default
         }
+    }
+}
+
+impl SurfaceArgs {
+    /// The sites of a surface that is covered with an example of a size in pixels.
+    ///
+    /// # Errors
+    ///
+    /// If the number of repeats is out of its range.
+    pub(super) fn sites_on(
+        &self,
+        surface: &Surface,
+        size: [u32; 2],
+        matching: &MatchArgs,
+    ) -> Result<HierarchyOptions, SynthError> {
+        let sites = self.sites(matching);
+        let n_sites = match self.repeat {
+            Some(repeats) => sites_for_repeats(surface, size, repeats)?,
+            None => sites.n_sites,
+        };
+        Ok(HierarchyOptions { n_sites, ..sites })
     }
 }
 

@@ -21,9 +21,9 @@ use dapple::points::glam::DVec3;
 use dapple::raster::Raster;
 use dapple::recipe::MapKind;
 use dapple::synth::{
-    Atlas, Direction, Exemplar, Hierarchy, MeshExemplar, Orientation, SurfaceTexture, SynthError,
-    Synthesizer, bake_colors, bake_colors_alpha, bake_normals, bake_values, site_model,
-    textured_model,
+    Atlas, Direction, Exemplar, Hierarchy, HierarchyOptions, MeshExemplar, Orientation,
+    SurfaceTexture, SynthError, Synthesizer, bake_colors, bake_colors_alpha, bake_normals,
+    bake_values, repeats_of_sites, site_model, textured_model,
 };
 use dapple::tile::Map;
 use serde_json::json;
@@ -84,6 +84,25 @@ pub(super) fn announce(context: &Context, path: &Path, model: &Model) {
     }
 }
 
+/// The sites for an example of a size in pixels, and a note of the number of times that it repeats across the mesh.
+fn sites(
+    args: &Args,
+    surface: &Surface,
+    size: [u32; 2],
+    context: &Context,
+) -> Result<HierarchyOptions> {
+    let sites = args.surface.sites_on(surface, size, &args.matching);
+    let sites = sites.map_err(advise)?;
+    if !context.quiet {
+        let repeats = repeats_of_sites(surface, size, sites.n_sites);
+        let n_sites = sites.n_sites;
+        eprintln_if_possible(&format!(
+            "{n_sites} sites: the example repeats about {repeats:.1} times across the mesh"
+        ));
+    }
+    Ok(sites)
+}
+
 /// Covers the mesh.
 pub(super) fn run(args: &Args, mesh: &Path, context: &Context) -> Result<Exit> {
     let mut job = Job::new(context, "synth", &args.image.files);
@@ -109,9 +128,17 @@ pub(super) fn run(args: &Args, mesh: &Path, context: &Context) -> Result<Exit> {
     let double_sided = model.material.double_sided
         || repair.before.back_to_back_faces > 0
         || input.base.alpha.is_some();
+    let sites = match &example {
+        Some(_) if args.surface.repeat.is_some() => {
+            let error = usage("--repeat takes an example that is an image, not a mesh");
+            return Err(error.hint("--example-sites sets the size of its features"));
+        }
+        Some(_) => args.surface.sites(&args.matching),
+        None => sites(args, &surface, input.layout.size_of(0), context)?,
+    };
     let spinner = Progress::spinner("scattering sites", context);
     let directions = directions(args.surface.directions.as_deref())?;
-    let synthesizer = synthesizer(surface, args, &directions).map_err(advise)?;
+    let synthesizer = synthesizer(surface, args, &sites, &directions).map_err(advise)?;
     let synthesizer = scaled(synthesizer, args, &model, &repair)?;
     let exemplar = example.map(|example| exemplar_of_mesh(args, example, &input.exemplar));
     let exemplar = exemplar.transpose()?;
@@ -488,9 +515,10 @@ fn atlas(
 fn synthesizer(
     surface: Surface,
     args: &Args,
+    sites: &HierarchyOptions,
     directions: &[Direction],
 ) -> Result<Synthesizer, SynthError> {
-    let hierarchy = Hierarchy::new(&surface, &args.surface.sites(&args.matching))?;
+    let hierarchy = Hierarchy::new(&surface, sites)?;
     let symmetry = args.surface.symmetry.unwrap_or_default();
     let axis = Orientation::AXIS;
     let orientation = Orientation::symmetric(&hierarchy, directions, axis, symmetry)?;
