@@ -5,6 +5,16 @@
     reason = "this module is where the command reads files"
 )]
 
+mod files;
+mod meshes;
+mod numbers;
+mod text;
+
+pub(crate) use files::{check_regular, name};
+pub(crate) use meshes::{mesh_endings, model, not_used, unit_squares};
+pub(crate) use numbers::{Content, numbers};
+pub(crate) use text::text;
+
 use crate::args::{Alpha, ReadArgs, Region};
 use crate::encode::map_raster;
 use crate::error::{Hint, cause, usage};
@@ -14,26 +24,21 @@ use anyhow::{Context, Error, Result, anyhow};
 use dapple::color::{Code, LinearRgb, LinearRgba};
 use dapple::image::{
     Channels, ExrImage, Image, ImageError, ImageErrorKind, Limits, PngPixels, decode_image,
-    decode_npy, decode_png_region, decode_r16, read_image,
+    decode_png_region, read_image,
 };
-use dapple::mesh::{EncodedImage, Model};
-use dapple::mesh_io::{MeshIoErrorKind, read_model, readable_endings};
+use dapple::mesh::EncodedImage;
 use dapple::raster::Raster;
-use dapple::recipe::{ImageAlpha, similar_words};
+use dapple::recipe::ImageAlpha;
 use dapple::tile::Map;
-use serde::Deserialize;
+use files::check_file;
 use std::fs;
 use std::io::{self, Read};
 use std::path::Path;
 use std::sync::OnceLock;
 
-/// The largest number of bytes of a text.
-const TEXT_MAX: u64 = 1 << 28;
-/// The character that some editors put before a text.
-const BYTE_ORDER_MARK: char = '\u{feff}';
 /// The number of bytes by which formats of images are told apart.
 const SIGNATURE_MAX: u64 = 16;
-/// The largest number of similar names in an error message.
+/// The maximum number of names in a message.
 const NAMES_MAX: usize = 3;
 
 /// The kind of quantity in an image.
@@ -200,55 +205,6 @@ pub(crate) fn image(path: &Path) -> Result<Image> {
     read_image(path, &limits).map_err(advise)
 }
 
-/// What `dapple info` reads: an image, or an array or heights as the command writes them.
-#[derive(Debug)]
-pub(crate) enum Content {
-    /// An image.
-    Image(Image),
-    /// The channels of a NumPy array.
-    Array(Vec<Raster<f32>>),
-    /// Raw heights.
-    Raw(Raster<u16>),
-}
-
-/// Numbers that were read, as they are in their file.
-#[derive(Debug)]
-pub(crate) struct Numbers {
-    pub(crate) content: Content,
-    /// Whether only the pixels of the region were read.
-    pub(crate) is_part: bool,
-}
-
-/// Reads an image, a NumPy array, or raw heights with the JSON file beside them. Of an image with too many pixels the
-/// region alone is read, where the format allows it.
-///
-/// # Errors
-///
-/// The errors of [`image`], and raw heights without a size.
-pub(crate) fn numbers(path: &Path, region: Option<Region>) -> Result<Numbers> {
-    let ending = path.extension().unwrap_or_default().to_string_lossy();
-    let content = match ending.to_ascii_lowercase().as_str() {
-        "npy" => {
-            let bytes = whole(path, "an array")?;
-            let channels = decode_npy(&bytes, &limits()).map_err(advise);
-            Content::Array(channels.with_context(|| name(path))?)
-        }
-        "r16" => {
-            let size = raw_size(path)?;
-            let bytes = whole(path, "raw heights")?;
-            let codes = decode_r16(&bytes, size, &limits()).map_err(advise);
-            Content::Raw(codes.with_context(|| name(path))?)
-        }
-        _ => {
-            let (image, is_part) = image_or_region(path, region)?;
-            let content = Content::Image(image);
-            return Ok(Numbers { content, is_part });
-        }
-    };
-    let is_part = false;
-    Ok(Numbers { content, is_part })
-}
-
 /// Reads an image; or only a region of it, if it has too many pixels and is a PNG. The second value says which.
 fn image_or_region(path: &Path, region: Option<Region>) -> Result<(Image, bool)> {
     let error = match (image(path), region) {
@@ -295,25 +251,6 @@ fn whole(path: &Path, what: &str) -> Result<Vec<u8>> {
         return Err(anyhow!("{} has more than {limit} bytes", path.display()));
     }
     Ok(bytes)
-}
-
-/// The size of raw heights, from the JSON file beside them.
-fn raw_size(path: &Path) -> Result<[u32; 2]> {
-    #[derive(Deserialize)]
-    struct Size {
-        width: u32,
-        height: u32,
-    }
-    check_file(path, "raw heights")?;
-    let beside = path.with_extension("json");
-    let size = text(&beside).and_then(|text| Ok(serde_json::from_str::<Size>(&text)?));
-    let Size { width, height } = size
-        .with_context(|| format!("the size of {} is not known", path.display()))
-        .hint(format!(
-            "{} beside it says it: {{\"width\": …, \"height\": …}}",
-            beside.display()
-        ))?;
-    Ok([width, height])
 }
 
 /// Decodes the image in a stream, which is read on only if it begins like an image: it may never end.
@@ -589,112 +526,6 @@ pub(crate) fn check_size(
     )))
 }
 
-/// The name of an input in messages.
-pub(crate) fn name(path: &Path) -> String {
-    if path == Path::new("-") {
-        "standard input".to_owned()
-    } else {
-        path.display().to_string()
-    }
-}
-
-/// Reads a mesh.
-///
-/// # Errors
-///
-/// If the file does not exist, has another format, or is empty or damaged.
-pub(crate) fn model(path: &Path) -> Result<Model> {
-    check_file(path, "a mesh")?;
-    read_model(path).map_err(|error| {
-        let hint = match error.kind() {
-            MeshIoErrorKind::Format { .. } => {
-                Some(format!("a mesh is a file in {}", mesh_endings()))
-            }
-            MeshIoErrorKind::Unsupported { .. } => {
-                Some("export it without this feature, or as .obj or .ply".to_owned())
-            }
-            _ => None,
-        };
-        let error =
-            Error::new(error).context(format!("{} cannot be read as a mesh", path.display()));
-        match hint {
-            Some(hint) => error.hint(hint),
-            None => error,
-        }
-    })
-}
-
-/// What a mesh is not used for, as a line for people: what its reader left out, and unit squares that share a texture.
-pub(crate) fn not_used(path: &Path, model: &Model) -> Option<String> {
-    let mut parts = model.left_out.clone();
-    parts.extend(unit_squares(model));
-    let parts = parts.join("; ");
-    (!parts.is_empty()).then(|| format!("{}: not used: {parts}", name(path)))
-}
-
-/// The unit squares of texture coordinates, if there are several.
-pub(crate) fn unit_squares(model: &Model) -> Option<String> {
-    let squares = model.unit_squares();
-    if squares.len() < 2 {
-        return None;
-    }
-    let mut names: Vec<_> = squares.iter().take(NAMES_MAX).map(u32::to_string).collect();
-    if squares.len() > names.len() {
-        names.push("…".to_owned());
-    }
-    Some(format!(
-        "that texture coordinates lie in {} unit squares ({}), since all share one texture",
-        squares.len(),
-        names.join(", ")
-    ))
-}
-
-/// The endings of mesh files, as help texts list them.
-pub(crate) fn mesh_endings() -> String {
-    let endings: Vec<_> = readable_endings()
-        .map(|ending| format!(".{ending}"))
-        .collect();
-    endings.join(", ")
-}
-
-/// Reads a text; `-` is standard input.
-///
-/// # Errors
-///
-/// If there is no such file, it is too long, or it is not UTF-8.
-pub(crate) fn text(path: &Path) -> Result<String> {
-    let mut bytes = Vec::new();
-    let read = if path == Path::new("-") {
-        io::stdin()
-            .lock()
-            .take(TEXT_MAX + 1)
-            .read_to_end(&mut bytes)
-    } else {
-        check_file(path, "a text")?;
-        fs::File::open(path).and_then(|file| file.take(TEXT_MAX + 1).read_to_end(&mut bytes))
-    };
-    read.with_context(|| format!("{} cannot be read", path.display()))?;
-    if bytes.len() as u64 > TEXT_MAX {
-        return Err(anyhow!("{} has more than {TEXT_MAX} bytes", path.display()));
-    }
-    decoded(bytes).with_context(|| name(path))
-}
-
-/// The text in some bytes in UTF-8, without a byte order mark.
-fn decoded(bytes: Vec<u8>) -> Result<String> {
-    let found = match bytes.as_slice() {
-        // The mark of UTF-32 in little endian begins like that of UTF-16.
-        [0xff, 0xfe, 0, 0, ..] | [0, 0, 0xfe, 0xff, ..] => Some("UTF-32"),
-        [0xff, 0xfe, ..] | [0xfe, 0xff, ..] => Some("UTF-16"),
-        _ => None,
-    };
-    if let Some(found) = found {
-        return Err(anyhow!("the text is in {found}, and not in UTF-8").hint("save it as UTF-8"));
-    }
-    let text = String::from_utf8(bytes).map_err(|_| anyhow!("it is not a text in UTF-8"))?;
-    Ok(text.trim_start_matches(BYTE_ORDER_MARK).to_owned())
-}
-
 /// Reads the planes of an EXR image of this size.
 ///
 /// # Errors
@@ -762,79 +593,6 @@ fn advise(error: ImageError) -> Error {
         Some(hint) => Error::new(error).hint(hint),
         None => error.into(),
     }
-}
-
-/// Fails for a path that does not exist, a folder, and an empty file.
-fn check_file(path: &Path, what: &str) -> Result<()> {
-    let found = match fs::metadata(path) {
-        Ok(found) => found,
-        Err(error) if error.kind() == io::ErrorKind::NotFound => {
-            let error = anyhow!("{}: there is no such file", path.display());
-            return Err(match similar_names(path).as_slice() {
-                [] => error,
-                names => error.hint(format!("there is {}", names.join(", "))),
-            });
-        }
-        Err(error) => {
-            return Err(error).with_context(|| format!("{} cannot be read", path.display()));
-        }
-    };
-    if found.is_dir() {
-        return Err(anyhow!("{} is a folder, and not {what}", path.display()));
-    }
-    if is_device(&found) {
-        return Err(anyhow!("{} is a device, and not {what}", path.display()));
-    }
-    if found.is_file() && found.len() == 0 {
-        return Err(anyhow!("{} is empty, and not {what}", path.display()));
-    }
-    Ok(())
-}
-
-/// Whether a file is a device or a socket, from which reading may never end. A pipe is none: the user has made it.
-#[cfg(unix)]
-fn is_device(found: &fs::Metadata) -> bool {
-    use std::os::unix::fs::FileTypeExt;
-    let kind = found.file_type();
-    kind.is_char_device() || kind.is_block_device() || kind.is_socket()
-}
-
-#[cfg(not(unix))]
-fn is_device(_: &fs::Metadata) -> bool {
-    false
-}
-
-/// Checks that a path that a file names, and not the command line, is a regular file. Pipes and devices of others could
-/// let the command wait for ever.
-///
-/// # Errors
-///
-/// If it exists and is no regular file.
-pub(crate) fn check_regular(path: &Path, what: &str) -> Result<()> {
-    check_file(path, what)?;
-    dapple::image::open_regular(path)
-        .map(drop)
-        .with_context(|| format!("{} cannot be read as {what}", path.display()))
-}
-
-/// Similar names in the folder of a path, the most similar first.
-fn similar_names(path: &Path) -> Vec<String> {
-    let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let folder = path.parent().unwrap_or(Path::new(""));
-    let listed = if folder.as_os_str().is_empty() {
-        fs::read_dir(".")
-    } else {
-        fs::read_dir(folder)
-    };
-    let entries = listed.into_iter().flatten().flatten();
-    let others: Vec<_> = entries
-        .map(|entry| entry.file_name().to_string_lossy().into_owned())
-        .collect();
-    let names = similar_words(&name, others.iter().map(String::as_str)).into_iter();
-    names
-        .take(NAMES_MAX)
-        .map(|name| folder.join(name).display().to_string())
-        .collect()
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use super::workspace::{Text, Workspace};
 
 /// The largest number of lines of a file; aim at half of it.
-const LINES_MAX: usize = 600;
+const LINES_MAX: usize = 800;
 
 /// The layers of algorithm libraries. Layers below are foundations, layers above are programs.
 const ALGORITHM_LAYERS: core::ops::RangeInclusive<u64> = 1..=4;
@@ -162,7 +162,7 @@ mod tests {
             ("src/tables.rs", &long),
             ("src/data.rs", &long),
         ]);
-        assert_eq!(lengths(&broken), ["b.rs: 601 lines, but 600 is the limit"]);
+        assert_eq!(lengths(&broken), ["b.rs: 801 lines, but 800 is the limit"]);
     }
 
     #[test]
