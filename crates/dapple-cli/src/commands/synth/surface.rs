@@ -89,18 +89,15 @@ fn sites(
     args: &Args,
     surface: &Surface,
     size: [u32; 2],
-    context: &Context,
-) -> Result<HierarchyOptions> {
+) -> Result<(HierarchyOptions, Option<String>)> {
     let sites = args.surface.sites_on(surface, size, &args.matching);
     let sites = sites.map_err(advise)?;
-    if !context.quiet {
-        let repeats = repeats_of_sites(surface, size, sites.n_sites);
-        let n_sites = sites.n_sites;
-        eprintln_if_possible(&format!(
-            "{n_sites} sites: the example repeats about {repeats:.1} times across the mesh"
-        ));
-    }
-    Ok(sites)
+    let repeats = repeats_of_sites(surface, size, sites.n_sites);
+    let note = format!(
+        "{} sites: the example repeats about {repeats:.1} times across the mesh",
+        sites.n_sites
+    );
+    Ok((sites, Some(note)))
 }
 
 /// Covers the mesh.
@@ -128,13 +125,13 @@ pub(super) fn run(args: &Args, mesh: &Path, context: &Context) -> Result<Exit> {
     let double_sided = model.material.double_sided
         || repair.before.back_to_back_faces > 0
         || input.base.alpha.is_some();
-    let sites = match &example {
+    let (sites, note) = match &example {
         Some(_) if args.surface.repeat.is_some() => {
             let error = usage("--repeat takes an example that is an image, not a mesh");
             return Err(error.hint("--example-sites sets the size of its features"));
         }
-        Some(_) => args.surface.sites(&args.matching),
-        None => sites(args, &surface, input.layout.size_of(0), context)?,
+        Some(_) => (args.surface.sites(&args.matching), None),
+        None => sites(args, &surface, input.layout.size_of(0))?,
     };
     let spinner = Progress::spinner("scattering sites", context);
     let directions = directions(args.surface.directions.as_deref())?;
@@ -143,6 +140,9 @@ pub(super) fn run(args: &Args, mesh: &Path, context: &Context) -> Result<Exit> {
     let exemplar = example.map(|example| exemplar_of_mesh(args, example, &input.exemplar));
     let exemplar = exemplar.transpose()?;
     drop(spinner);
+    if let Some(note) = note.filter(|_| !context.quiet) {
+        eprintln_if_possible(&note);
+    }
     let progress = Progress::bar("synthesizing", STEPS.into(), context);
     let options = args.matching.options(&args.surface);
     let targets: Vec<_> = input.guides.iter().map(|guide| &guide.target).collect();
