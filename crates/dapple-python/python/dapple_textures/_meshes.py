@@ -62,13 +62,23 @@ def _of_trimesh(mesh: Any) -> _Plain:
     vertices, faces, uvs, count = [], [], [], 0
     for part in parts:
         corners = np.asarray(part.faces, np.int64)
-        uv = getattr(part.visual, "uv", None)
         vertices.append(np.asarray(part.vertices, np.float64))
         faces.append(corners + count)
-        uvs.append(None if uv is None or len(uv) != len(part.vertices) else np.asarray(uv, np.float64)[corners])
+        uvs.append(_uv_of_trimesh(part, corners))
         count += len(part.vertices)
-    known = [uv * [1, -1] + [0, 1] for uv in uvs if uv is not None]
+    known = [uv for uv in uvs if uv is not None]
     return _Plain(np.concatenate(vertices), np.concatenate(faces), np.concatenate(known) if len(known) == len(uvs) else None)
+
+
+def _uv_of_trimesh(mesh: Any, faces: npt.NDArray[np.int64]) -> npt.NDArray[np.float64] | None:
+    """Returns an attribute `uv` that was given to the mesh, in our form, or else what trimesh has for each vertex."""
+    given = getattr(mesh, "uv", None)
+    if given is not None:
+        return np.asarray(given, np.float64)
+    uv = getattr(mesh.visual, "uv", None)
+    if uv is None or len(uv) != len(mesh.vertices):
+        return None
+    return np.asarray(uv, np.float64)[faces] * [1, -1] + [0, 1]
 
 
 def _of_blender(thing: Any) -> _Plain:
