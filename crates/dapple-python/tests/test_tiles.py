@@ -19,6 +19,12 @@ PHOTO = (
     + 0.1 * RNG.random((96, 128, 3))
 ).astype(np.float32)
 HEIGHT = PHOTO[..., 0]
+#: Noise under the same light, without a pattern that a cut could break.
+SAND = (
+    0.5
+    + 0.2 * np.dstack([dp.gradient_noise(seed=seed, octaves=4).render((96, 128), extent=(12.8, 9.6)) for seed in (7, 8, 9)])
+    + 0.0008 * X[..., None]
+).astype(np.float32)
 MATERIAL = {"albedo": PHOTO, "height": HEIGHT, "normal": dp.normal_map(HEIGHT, relief=0.02), "orm": PHOTO[::-1]}
 TILE = dp.worley(seed=7, period=8).render(64)
 COMMAND = os.environ.get("DAPPLE") or shutil.which("dapple")
@@ -79,8 +85,15 @@ def test_reports_tell_tiles_from_pictures_and_say_why():
     assert not bad.passes and bad.badness > 1
     assert {channel for channel, _ in bad.faults} <= {"red", "green", "blue"} and "the seam shows" in bad.faults[0][1]
     assert bad.channels[0]["report"]["size"] == [128, 96] and "seam" in str(bad)
-    good = dp.seam_report(dp.make_tile(PHOTO, margin=24), PHOTO)
-    assert good.passes and good.faults == [] and good.badness < bad.badness
+    good = dp.seam_report(dp.make_tile(SAND, margin=24), SAND)
+    assert good.passes and good.faults == [] and good.badness < dp.seam_report(SAND).badness
+    assert good.channels[0]["report"]["kept"]["coarse_strangeness"] < 1.5
+    # The waves have lengths that do not fit the tile, so that a cut shifts them; squares of 16 pixels show it.
+    cut = dp.seam_report(dp.make_tile(PHOTO, margin=24), PHOTO)
+    assert not cut.passes and cut.badness < bad.badness
+    assert {fault for _, fault in cut.faults} == {"the seam is unlike anything in the source"}
+    kept = cut.channels[0]["report"]["kept"]
+    assert kept["strangeness"] < 1.5 < kept["coarse_strangeness"]
     mirrored = dp.seam_report(dp.make_tile(PHOTO, method="mirror"), PHOTO)
     assert any("mirror" in fault for _, fault in mirrored.faults)
     reports = dp.seam_report(MATERIAL)
