@@ -51,7 +51,8 @@ pub(crate) fn read(path: &Path, limit: u64) -> Result<Vec<u8>, ImageError> {
 ///
 /// # Errors
 ///
-/// [`io::ErrorKind::InvalidInput`] for a device, a pipe, a socket or a folder, else the errors of the system.
+/// [`io::ErrorKind::IsADirectory`] for a folder, [`io::ErrorKind::InvalidInput`] for a device, a pipe or a socket, else
+/// the errors of the system.
 pub fn open_regular(path: impl AsRef<Path>) -> io::Result<File> {
     let path = path.as_ref();
     check_regular(&fs::metadata(path)?)?;
@@ -67,12 +68,14 @@ fn check_regular(found: &fs::Metadata) -> io::Result<()> {
     if found.is_file() {
         return Ok(());
     }
-    let what = if found.is_dir() {
-        "it is a folder, and not a regular file"
+    let (kind, what) = if found.is_dir() {
+        let what = "it is a folder, and not a regular file";
+        (io::ErrorKind::IsADirectory, what)
     } else {
-        "it is a device, a pipe or a socket, and not a regular file"
+        let what = "it is a device, a pipe or a socket, and not a regular file";
+        (io::ErrorKind::InvalidInput, what)
     };
-    Err(io::Error::new(io::ErrorKind::InvalidInput, what))
+    Err(io::Error::new(kind, what))
 }
 
 /// Lets a pipe or a device be opened at once.

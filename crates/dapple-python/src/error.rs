@@ -6,9 +6,12 @@ use dapple::{
     recipe::RecipeError, synth::SynthError, tile::TileError, wavelet::WaveletError,
     worley::WorleyError,
 };
-use pyo3::exceptions::{PyOSError, PyValueError};
+use pyo3::exceptions::{PyIsADirectoryError, PyOSError, PyValueError};
 use pyo3::prelude::*;
-use std::path::Path;
+use std::{io, path::Path};
+
+/// The number of this error in C, on all systems.
+const EISDIR: i32 = 21;
 
 pyo3::create_exception!(
     dapple_textures,
@@ -72,13 +75,26 @@ impl Error {
     pub(crate) fn of_system(code: i32, path: Option<&Path>) -> Self {
         Self::Python(Python::attach(|py| {
             let make = || -> PyResult<PyErr> {
-                let text = py.import("os")?.call_method1("strerror", (code,))?;
                 // Called as a class, since it returns the subclass for the number.
                 let class = py.get_type::<PyOSError>();
-                Ok(PyErr::from_value(class.call1((code, text, path))?))
+                let error = if cfg!(windows) {
+                    // Windows has numbers of its own, which are the fourth argument; Python finds those of C for them.
+                    let text = io::Error::from_raw_os_error(code).to_string();
+                    class.call1((0, text, path, code))?
+                } else {
+                    let text = py.import("os")?.call_method1("strerror", (code,))?;
+                    class.call1((code, text, path))?
+                };
+                Ok(PyErr::from_value(error))
             };
             make().unwrap_or_else(|error| error)
         }))
+    }
+
+    /// The error of a folder where a file is needed, which the library has found without the system.
+    fn of_folder(path: Option<&Path>) -> Self {
+        let arguments = (EISDIR, "Is a directory", path.map(Path::to_owned));
+        Self::Python(PyIsADirectoryError::new_err(arguments))
     }
 
     /// An error of a crate; its kind is the name of the enum variant.
@@ -125,10 +141,11 @@ refusals!(
 impl From<ImageError> for Error {
     fn from(error: ImageError) -> Self {
         let source = std::error::Error::source(&error);
-        let cause = source.and_then(|source| source.downcast_ref::<std::io::Error>());
-        match cause.and_then(std::io::Error::raw_os_error) {
-            Some(code) => Self::of_system(code, error.path()),
-            None => Self::of(error.kind(), &error),
+        let cause = source.and_then(|source| source.downcast_ref::<io::Error>());
+        match cause.map(|cause| (cause.raw_os_error(), cause.kind())) {
+            Some((Some(code), _)) => Self::of_system(code, error.path()),
+            Some((None, io::ErrorKind::IsADirectory)) => Self::of_folder(error.path()),
+            _ => Self::of(error.kind(), &error),
         }
     }
 }
