@@ -126,16 +126,15 @@ def test_files_are_replaced_as_a_whole(tmp_path):
         dp.write_image(path, np.full((4, 4), 0.5), depth=12)
     assert path.read_bytes() == old
     (tmp_path / "folder.png").mkdir()
-    with pytest.raises(dp.DappleError) as error:
+    with pytest.raises(OSError) as error:
         dp.write_image(tmp_path / "folder.png", GRAY)
-    assert error.value.kind == "io" and "folder.png" in str(error.value)
+    assert "folder.png" in str(error.value)
     assert sorted(os.listdir(tmp_path)) == ["a.png", "folder.png", "link.png"]
 
 
 @pytest.mark.parametrize(
     ("call", "kind"),
     [
-        (lambda: dp.read_image("/nowhere/a.png"), "io"),
         (lambda: dp.decode_image(b"GIF89a"), "unknown_format"),
         (lambda: dp.decode_image(dp.encode_image(GRAY), max_pixels=10), "too_many_pixels"),
         (lambda: dp.decode_image(dp.encode_image(GRAY), content="colour"), "name"),
