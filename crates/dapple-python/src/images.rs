@@ -207,11 +207,13 @@ pub(crate) fn read_image<'py>(
 /// Parameters
 /// ----------
 /// data : bytes
-///     A recipe as nested dictionaries and lists.
+///     The contents of the file.
 /// content : {"gray", "color", "normal", "data"} or None, default None
 ///     What the numbers are, as in `read_image`.
 /// alpha : str or None, default None
 ///     What is done with alpha, as in `read_image`.
+/// layer : str or None, default None
+///     The layer of an OpenEXR file with several, as in `read_image`.
 /// max_pixels : int, default 268435456
 ///     The largest number of pixels that is read.
 /// max_bytes : int, default 4294967296

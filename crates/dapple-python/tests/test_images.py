@@ -2,6 +2,7 @@
 
 import os
 import shutil
+import struct
 import subprocess
 
 import numpy as np
@@ -81,6 +82,68 @@ def test_alpha_goes_where_it_is_asked_to():
     assert (dp.decode_image(opaque, alpha="keep")[..., 3] == 1).all()
     assert dp.decode_image(dp.encode_image(GRAY), alpha="keep").shape == (*GRAY.shape, 4)
     assert dp.decode_image(dp.encode_image(GRAY), content="color").shape == (*GRAY.shape, 3)
+
+
+def exr(channels):
+    """The bytes of an OpenEXR file of single precision without compression, with channels of these names."""
+    names = sorted(channels)
+    rows, columns = channels[names[0]].shape
+    head = [("channels", "chlist", b"".join(name.encode() + struct.pack("<xiB3xii", 2, 0, 1, 1) for name in names) + b"\0")]
+    window = struct.pack("<4i", 0, 0, columns - 1, rows - 1)
+    head += [("compression", "compression", b"\0"), ("dataWindow", "box2i", window), ("displayWindow", "box2i", window)]
+    head += [("lineOrder", "lineOrder", b"\0"), ("pixelAspectRatio", "float", struct.pack("<f", 1))]
+    head += [("screenWindowCenter", "v2f", struct.pack("<2f", 0, 0)), ("screenWindowWidth", "float", struct.pack("<f", 1))]
+    data = struct.pack("<2I", 20000630, 2)
+    data += b"".join(f"{name}\0{kind}\0".encode() + struct.pack("<i", len(value)) + value for name, kind, value in head) + b"\0"
+    size = 4 * len(names) * columns
+    data += struct.pack(f"<{rows}Q", *(len(data) + 8 * rows + row * (8 + size) for row in range(rows)))
+    for row in range(rows):
+        data += struct.pack("<2i", row, size) + b"".join(channels[name][row].astype("<f4").tobytes() for name in names)
+    return data
+
+
+def test_layers_are_chosen_by_name(tmp_path):
+    channels = {f"ViewLayer.Combined.{name}": ALPHA[..., at] for at, name in enumerate("RGBA")}
+    channels |= {f"ViewLayer.DiffCol.{name}": COLOR[..., at] for at, name in enumerate("RGB")}
+    data = exr(channels | {"ViewLayer.Depth.Z": GRAY})
+    (tmp_path / "a.exr").write_bytes(data)
+    for read, source in ((dp.read_image, tmp_path / "a.exr"), (dp.decode_image, data)):
+        np.testing.assert_array_equal(read(source, layer="ViewLayer.DiffCol"), COLOR)
+        np.testing.assert_array_equal(read(source, layer="ViewLayer.Depth"), GRAY)
+        np.testing.assert_array_equal(read(source, content="data", layer="ViewLayer.DiffCol"), COLOR)
+        assert read(source).shape == ALPHA.shape
+        with pytest.raises(dp.DappleError, match="ViewLayer.DiffCol") as error:
+            read(source, layer="ViewLayer.DiffColor")
+        assert error.value.kind == "missing_layer"
+    with pytest.raises(dp.DappleError) as error:
+        dp.decode_image(dp.encode_image(COLOR), layer="Combined")
+    assert error.value.kind == "no_layers"
+
+
+def of_recipe(folder, data, **options):
+    """What a recipe gets from an image node with these options."""
+    (folder / "a.exr").write_bytes(data)
+    image = {"image": {"file": "a.exr", **options}}
+    recipe = dp.Recipe({"dapple": 1, "nodes": {"a": image}, "material": {"albedo": "a"}})
+    return dp.read_recipe_images(recipe, folder)["a.exr"]
+
+
+def test_recipes_get_layers_and_drop_alpha_of_openexr(tmp_path):
+    half = np.full_like(GRAY, 0.5)
+    colors = {name: COLOR[..., at] for at, name in enumerate("RGB")}
+    layer = exr({"Y": GRAY} | {f"light.{name}": values for name, values in colors.items()})
+    np.testing.assert_array_equal(of_recipe(tmp_path, layer), GRAY)
+    np.testing.assert_array_equal(of_recipe(tmp_path, layer, layer="light"), COLOR)
+    # OpenEXR stores colors multiplied by alpha, and numbers as they are.
+    np.testing.assert_array_equal(of_recipe(tmp_path, exr(colors | {"A": half}), alpha="drop"), 2 * COLOR)
+    np.testing.assert_array_equal(of_recipe(tmp_path, exr({"Y": GRAY, "A": half}), alpha="drop"), GRAY)
+    with pytest.raises(dp.DappleError) as error:
+        of_recipe(tmp_path, exr(colors | {"A": half}))
+    assert error.value.kind == "alpha"
+    colors["G"] = np.where(np.arange(21) == 4, np.nan, colors["G"])
+    with pytest.raises(dp.DappleError, match="column 4 and row 0") as error:
+        of_recipe(tmp_path, exr(colors))
+    assert error.value.kind == "not_finite"
 
 
 def test_photographs_are_read_and_gray_with_alpha(tmp_path):

@@ -62,8 +62,8 @@ def read_recipe(path_or_name: _Path) -> Recipe:
 def read_recipe_images(recipe: Recipe, folder: _Path) -> dict[str, npt.NDArray[np.float32]]:
     """Reads the images that a recipe names from files in a folder, in the form that `Recipe.plan` takes.
 
-    If a node says how to treat the alpha of its image, the image is converted accordingly. Without that, an image that is
-    partly transparent is refused, as by the command `dapple`.
+    If a node names the layer of its image, or says how to treat its alpha, that layer is read and converted accordingly.
+    Without a treatment of alpha, an image that is partly transparent is refused, as by the command `dapple`.
 
     Parameters
     ----------
@@ -80,7 +80,7 @@ def read_recipe_images(recipe: Recipe, folder: _Path) -> dict[str, npt.NDArray[n
     Raises
     ------
     DappleError
-        If an image is partly transparent, or is not an image.
+        If an image is partly transparent, has numbers that are not finite, or is not an image.
     OSError
         If a file cannot be read: `FileNotFoundError` if it does not exist.
 
