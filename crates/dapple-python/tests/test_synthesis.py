@@ -438,6 +438,23 @@ def test_models_are_exported_and_read_back(tmp_path):
     assert again.texture.shape == (256, 256, 3)
 
 
+def test_a_model_far_from_zero_survives_its_export(tmp_path):
+    """GLB has single precision, whose steps are 0.5 at these coordinates of UTM."""
+    vertices, faces = TORUS
+    far = (0.1 * vertices + [500_000, 4_649_776, 120], faces)
+    model = dp.synthesize_on(far, CELLS, **QUICK)
+    model.export(tmp_path / "far.glb")
+    back = dp.read_model(tmp_path / "far.glb")
+    # A step of float32 at the extent of 0.28, and one of float64 at the coordinates.
+    limit = 0.28 * 2.0**-23 + 4_649_776 * 2.0**-52
+    np.testing.assert_allclose(back.vertices[back.faces], model.vertices[model.faces], atol=limit, rtol=0)
+    np.testing.assert_allclose(np.ptp(back.vertices, axis=0), [0.28, 0.08, 0.28], atol=1e-6)
+    np.testing.assert_allclose(back.uv, model.uv, atol=1e-6)
+    # trimesh applies the translation of the node too.
+    other = trimesh.load(tmp_path / "far.glb", force="mesh", process=False)
+    np.testing.assert_allclose(other.vertices[other.faces], model.vertices[model.faces], atol=limit, rtol=0)
+
+
 def test_trimesh_takes_the_model_with_its_material(tmp_path):
     mesh = MODEL.to_trimesh()
     assert mesh.faces.shape == MODEL.faces.shape and mesh.visual.uv.shape == (3 * len(MODEL.faces), 2)
