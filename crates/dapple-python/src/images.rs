@@ -97,9 +97,15 @@ impl Reading {
         };
         let color = match plain {
             ImageAlpha::Drop => pixels.map(|pixel| pixel.color),
-            // Composited as in the command.
+            // Composited as in the command: light of OpenEXR that covers nothing is added to what lies below.
             ImageAlpha::Over(below) => {
-                pixels.map(|pixel| pixel.color * pixel.alpha + below * (1.0 - pixel.alpha))
+                let covered = match image {
+                    Image::Exr(exr) => exr.associated()?.0,
+                    _ => pixels.map(|pixel| pixel.color * pixel.alpha),
+                };
+                let over =
+                    |&color: &LinearRgb, pixel: &LinearRgba| color + below * (1.0 - pixel.alpha);
+                covered.zip_map(&pixels, over)?
             }
         };
         Ok(of(Content::Color, vec![Map::Color(color)], 3))

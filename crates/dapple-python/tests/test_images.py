@@ -134,9 +134,11 @@ def test_recipes_get_layers_and_drop_alpha_of_openexr(tmp_path):
     layer = exr({"Y": GRAY} | {f"light.{name}": values for name, values in colors.items()})
     np.testing.assert_array_equal(of_recipe(tmp_path, layer), GRAY)
     np.testing.assert_array_equal(of_recipe(tmp_path, layer, layer="light"), COLOR)
-    # OpenEXR stores colors multiplied by alpha, and numbers as they are.
+    # OpenEXR stores colors and numbers multiplied by alpha.
     np.testing.assert_array_equal(of_recipe(tmp_path, exr(colors | {"A": half}), alpha="drop"), 2 * COLOR)
-    np.testing.assert_array_equal(of_recipe(tmp_path, exr({"Y": GRAY, "A": half}), alpha="drop"), GRAY)
+    np.testing.assert_array_equal(of_recipe(tmp_path, exr({"Y": GRAY, "A": half}), alpha="drop"), 2 * GRAY)
+    # Light that covers nothing, as of a flame, is added to what lies below.
+    np.testing.assert_array_equal(of_recipe(tmp_path, exr(colors | {"A": 0 * GRAY}), alpha="over:#ffffff"), COLOR + 1)
     with pytest.raises(dp.DappleError) as error:
         of_recipe(tmp_path, exr(colors | {"A": half}))
     assert error.value.kind == "alpha"

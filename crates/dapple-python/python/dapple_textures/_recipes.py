@@ -112,7 +112,11 @@ def _image(path: Path, alpha: str | None, layer: str | None) -> npt.NDArray[np.f
         hint = 'give its node alpha = "drop" or alpha = "over:#rrggbb"'
         raise refusal("alpha", f"{path} is partly transparent, which is not possible here", hint)
     if alpha == "drop" and image.ndim == 3:
-        # A gray image with alpha holds plain numbers, without the curve of colors.
+        # A gray image with alpha holds plain numbers: those of OpenEXR are multiplied by alpha, the others lie on the curve
+        # of colors, which is not undone.
         channels = read_image(path, content="data", layer=layer)
-        return channels[..., 0].copy() if channels.shape[2] == 2 else image
+        if channels.ndim == 3 and channels.shape[2] == 2:
+            with path.open("rb") as file:
+                is_openexr = file.read(4) == b"v/1\x01"
+            return (image if is_openexr else channels)[..., 0].copy()
     return image
