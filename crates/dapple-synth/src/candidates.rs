@@ -165,31 +165,8 @@ impl Candidates {
         let mut inner = level.size.map(|end| Inner { first: 0, end });
         let mut n_rows = 0;
         let mut area_of = vec![NO_AREA; level.size[0] as usize * level.size[1] as usize];
-        for (number, (area, readers)) in level.areas().iter().zip(&readers).enumerate() {
-            let all = [0, 1].map(|axis| Inner {
-                first: area.first[axis],
-                end: area.end[axis],
-            });
-            // The pixels of a rectangle that the mask leaves
-            let usable = |within: [Inner; 2]| {
-                let [columns, lines] = within;
-                let places = (lines.first..lines.end)
-                    .flat_map(move |line| (columns.first..columns.end).map(move |x| [x, line]));
-                let is_usable = |place: &[u32; 2]| {
-                    let is_usable = |reader: &PartReader<'_>| {
-                        reader.is_usable(halves(*place, reader.reads, center))
-                    };
-                    readers.iter().all(is_usable)
-                };
-                let pixel = |[x, line]: [u32; 2]| line * level.size[0] + x;
-                places.filter(is_usable).map(pixel).collect::<Vec<_>>()
-            };
-            let mut within = [0, 1].map(|axis| inner_of(pyramid, pass, center, number, axis));
-            let mut pixels = usable(within);
-            if pixels.len() < few && within != all {
-                within = all;
-                pixels = usable(within);
-            }
+        for (number, readers) in readers.iter().enumerate() {
+            let (within, pixels) = pixels_of_area(pyramid, pass, center, few, number, readers);
             if level.usable.is_none() {
                 inner = within;
             }
@@ -455,6 +432,42 @@ fn check_level(pyramid: &Pyramid, level: usize, side: u32) -> Result<(), SynthEr
         size,
         side,
     }))
+}
+
+/// The pixels of an area of a level whose neighborhoods the mask leaves, and the rectangle that they lie in: without those
+/// whose neighborhoods reach past an edge, unless fewer than `few` would remain.
+fn pixels_of_area(
+    pyramid: &Pyramid,
+    pass: &Pass,
+    center: CoarserCenter,
+    few: usize,
+    number: usize,
+    readers: &[PartReader<'_>],
+) -> ([Inner; 2], Vec<u32>) {
+    let level = &pyramid.levels[pass.level];
+    let area = &level.areas()[number];
+    let usable = |within: [Inner; 2]| {
+        let [columns, lines] = within;
+        let places = (lines.first..lines.end)
+            .flat_map(move |line| (columns.first..columns.end).map(move |x| [x, line]));
+        let is_usable = |place: &[u32; 2]| {
+            let is_usable =
+                |reader: &PartReader<'_>| reader.is_usable(halves(*place, reader.reads, center));
+            readers.iter().all(is_usable)
+        };
+        let pixel = |[x, line]: [u32; 2]| line * level.size[0] + x;
+        places.filter(is_usable).map(pixel).collect::<Vec<_>>()
+    };
+    let all = [0, 1].map(|axis| Inner {
+        first: area.first[axis],
+        end: area.end[axis],
+    });
+    let within = [0, 1].map(|axis| inner_of(pyramid, pass, center, number, axis));
+    let pixels = usable(within);
+    if pixels.len() < few && within != all {
+        return (all, usable(all));
+    }
+    (within, pixels)
 }
 
 /// The pixels of an image along an axis whose neighborhoods do not reach past its edges.

@@ -38,7 +38,9 @@ fn check_png(image: &PngImage) {
     let bytes = png(image).expect("what was read can be written");
     let limits = Limits::default();
     let again = decode_png(&bytes, &limits).expect("what was written can be read");
-    assert_eq!(&again, image, "written and read again");
+    // What is written declares its colors, also where the image that was read does not.
+    let same = |image: &PngImage| (image.pixels.clone(), image.transfer);
+    assert!(same(&again) == same(image), "written and read again");
 }
 
 fn png(image: &PngImage) -> Result<Vec<u8>, dapple::image::ImageError> {

@@ -10,6 +10,7 @@ use crate::{ImageError, ImageErrorKind};
 use core::cmp::Reverse;
 use dapple_raster::Raster;
 
+#[cfg(feature = "exr")]
 /// The names of the views in files that do not list them.
 const USUAL_VIEWS: [&str; 2] = ["left", "right"];
 

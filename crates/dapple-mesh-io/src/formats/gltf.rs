@@ -184,16 +184,27 @@ impl Source<'_> {
         let view = self.document.buffer_views.get(index);
         let buffer = view.and_then(|view| self.buffers.get(view.buffer));
         if let (Some(view), Some(None)) = (view, buffer) {
-            return Err(wrong(format!(
-                "the bytes of buffer {} are missing",
-                view.buffer
-            )));
+            return Err(self.missing(view.buffer));
         }
         let bytes = view.zip(buffer).and_then(|(view, buffer)| {
             let end = view.byte_offset.checked_add(view.byte_length)?;
             buffer.as_ref()?.get(view.byte_offset..end)
         });
         bytes.ok_or_else(|| wrong(format!("there are no bytes for buffer view {index}")))
+    }
+
+    /// The error of a buffer without bytes, with the file that it names.
+    fn missing(&self, buffer: usize) -> MeshIoError {
+        let uri = self.document.buffers.get(buffer);
+        let uri = uri.and_then(|buffer| buffer.uri.as_deref());
+        let file = match uri.filter(|uri| !uri.starts_with("data:")) {
+            Some(uri) => format!(
+                ": {} has to be a regular file beside it",
+                percent_decoded(uri)
+            ),
+            None => String::new(),
+        };
+        wrong(format!("the bytes of buffer {buffer} are missing{file}"))
     }
 
     /// The bytes of an image, in any format.

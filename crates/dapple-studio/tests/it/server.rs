@@ -107,7 +107,11 @@ impl Server {
                 port.strip_suffix('/').unwrap().parse().unwrap()
             }
         };
-        assert_eq!(public_url.unwrap_or(address), address);
+        assert_eq!(
+            public_url.unwrap_or(address),
+            address,
+            "the printed address"
+        );
         let token = token.to_owned();
         Self {
             folder,

@@ -240,7 +240,7 @@ impl Hole {
         let mut best = (f64::INFINITY, None);
         for offset in (0..height).flat_map(|y| (0..width).map(move |x| [x - column, y - row])) {
             let moved = |[column, row]: [i64; 2]| pixel_of([column + offset[0], row + offset[1]]);
-            let area = moved([column, row]).and_then(|pixel| area_of(pixel));
+            let area = moved([column, row]).and_then(&area_of);
             let moved = |place| moved(place).filter(|&pixel| area_of(pixel) == area);
             if !self.sites.iter().all(|&site| moved(site).is_some()) {
                 continue;

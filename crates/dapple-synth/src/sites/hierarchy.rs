@@ -285,7 +285,7 @@ mod tests {
         // In a ball of two spacings in the middle of the cube, sites are as dense as in all of it. The sheets thin out towards
         // its sides, so that there are up to several times as many.
         let spacing = crate::hexagonal_spacing(tangle(5000).area(), options.n_sites);
-        let ball = 4.0 / 3.0 * core::f64::consts::PI * (2.0 * spacing).powi(3);
+        let ball = 4.0 / 3.0 * core::f64::consts::PI * 8.0 * spacing * spacing * spacing;
         let expected = ball.min(1.0) * options.n_sites as f64;
         assert!(
             (expected / 2.0..expected * 5.0).contains(value),

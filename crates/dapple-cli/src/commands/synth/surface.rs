@@ -21,9 +21,9 @@ use dapple::points::glam::DVec3;
 use dapple::raster::Raster;
 use dapple::recipe::MapKind;
 use dapple::synth::{
-    Atlas, Direction, Exemplar, Hierarchy, HierarchyOptions, MeshExemplar, Orientation,
-    SurfaceTexture, SynthError, Synthesizer, bake_colors, bake_colors_alpha, bake_normals,
-    bake_values, repeats_of_sites, site_model, textured_model,
+    Atlas, AtlasReport, Direction, Exemplar, Hierarchy, HierarchyOptions, MeshExemplar,
+    Orientation, SurfaceTexture, SynthError, Synthesizer, bake_colors, bake_colors_alpha,
+    bake_normals, bake_values, repeats_of_sites, site_model, textured_model,
 };
 use dapple::tile::Map;
 use serde_json::json;
@@ -84,12 +84,21 @@ pub(super) fn announce(context: &Context, path: &Path, model: &Model) {
     }
 }
 
-/// The sites for an example of a size in pixels, and a note of the number of times that it repeats across the mesh.
+/// The sites for an example, and a note of the number of times that it repeats across the mesh, if it is an image of `size`
+/// pixels and not a mesh.
 fn sites(
     args: &Args,
+    is_mesh: bool,
     surface: &Surface,
     size: [u32; 2],
 ) -> Result<(HierarchyOptions, Option<String>)> {
+    if is_mesh {
+        if args.surface.repeat.is_some() {
+            let error = usage("--repeat takes an example that is an image, not a mesh");
+            return Err(error.hint("--example-sites sets the size of its features"));
+        }
+        return Ok((args.surface.sites(&args.matching), None));
+    }
     let sites = args.surface.sites_on(surface, size, &args.matching);
     let sites = sites.map_err(advise)?;
     let repeats = repeats_of_sites(surface, size, sites.n_sites);
@@ -125,14 +134,8 @@ pub(super) fn run(args: &Args, mesh: &Path, context: &Context) -> Result<Exit> {
     let double_sided = model.material.double_sided
         || repair.before.back_to_back_faces > 0
         || input.base.alpha.is_some();
-    let (sites, note) = match &example {
-        Some(_) if args.surface.repeat.is_some() => {
-            let error = usage("--repeat takes an example that is an image, not a mesh");
-            return Err(error.hint("--example-sites sets the size of its features"));
-        }
-        Some(_) => (args.surface.sites(&args.matching), None),
-        None => sites(args, &surface, input.layout.size_of(0))?,
-    };
+    let size = input.layout.size_of(0);
+    let (sites, note) = sites(args, example.is_some(), &surface, size)?;
     let spinner = Progress::spinner("scattering sites", context);
     let directions = directions(args.surface.directions.as_deref())?;
     let synthesizer = synthesizer(surface, args, &sites, &directions).map_err(advise)?;
@@ -171,19 +174,21 @@ pub(super) fn run(args: &Args, mesh: &Path, context: &Context) -> Result<Exit> {
     )?;
     drop(spinner);
     let repaired = repair.before != repair.after;
+    let atlas = laid_out.map(atlas_json);
     job.finish(
         args,
-        json!({
-            "repaired": repaired,
-            "double_sided": double_sided,
-            "atlas": laid_out.map(|atlas| json!({
-                "pieces": atlas.pieces,
-                "texels_used": atlas.used,
-                "stretch": atlas.stretch,
-            })),
-        }),
+        json!({ "repaired": repaired, "double_sided": double_sided, "atlas": atlas }),
     )?;
     Ok(Exit::Done)
+}
+
+/// The layout of a texture map, for the JSON file beside the output.
+fn atlas_json(atlas: AtlasReport) -> serde_json::Value {
+    json!({
+        "pieces": atlas.pieces,
+        "texels_used": atlas.used,
+        "stretch": atlas.stretch,
+    })
 }
 
 /// The sites of an example that is a mesh.

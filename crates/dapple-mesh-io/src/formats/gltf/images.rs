@@ -48,10 +48,7 @@ pub fn replace_images(
     let mut views = source.document.buffer_views.iter();
     let is_missing = |at: usize| matches!(source.buffers.get(at), Some(None));
     if let Some(view) = views.find(|view| is_missing(view.buffer)) {
-        return Err(wrong(format!(
-            "the bytes of buffer {} are missing",
-            view.buffer
-        )));
+        return Err(source.missing(view.buffer));
     }
     let mut draft = Draft {
         uses: BTreeMap::new(),

@@ -324,7 +324,10 @@ fn buffers_and_textures_are_found_beside_the_file() {
     document["textures"] = json!([{ "source": 0 }]);
     document["images"] = json!([{ "uri": "base.png" }]);
     document["meshes"][0]["primitives"][0]["material"] = 0.into();
-    assert_eq!(why(&document), "the bytes of buffer 0 are missing");
+    assert_eq!(
+        why(&document),
+        "the bytes of buffer 0 are missing: my data.bin has to be a regular file beside it"
+    );
     let image = EncodedImage::new(b"\x89PNG\r\n\x1a\n".to_vec()).expect("it begins as a PNG");
     let model = read_with(document.to_string().as_bytes(), &mut |name| match name {
         "my data.bin" => Some(vec![0; 68]),

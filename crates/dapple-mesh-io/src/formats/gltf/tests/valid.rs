@@ -32,7 +32,10 @@ fn buffers_that_nothing_uses_need_no_bytes() {
     let model = read_json(&document).expect("it is valid");
     assert_eq!(model, read_json(&square()).expect("it is valid"));
     document["accessors"][0]["bufferView"] = 3.into();
-    assert_eq!(why(&document), "the bytes of buffer 2 are missing");
+    assert_eq!(
+        why(&document),
+        "the bytes of buffer 2 are missing: lost.bin has to be a regular file beside it"
+    );
 }
 
 #[test]
