@@ -29,7 +29,7 @@ pub fn read_model(path: impl AsRef<Path>) -> Result<Model, MeshIoError> {
     let path = path.as_ref();
     let format = format_of(path)?;
     let mut left = BYTES_MAX;
-    let bytes = read_at_most(path, BYTES_MAX)?;
+    let bytes = read_at_most(path, File::open(path), BYTES_MAX)?;
     format.read(&bytes, &mut |name| beside(path, name, &mut left))
 }
 
@@ -47,7 +47,7 @@ pub fn replace_images(
     let path = path.as_ref();
     let format = format_of(path)?;
     let mut left = BYTES_MAX;
-    let bytes = read_at_most(path, BYTES_MAX)?;
+    let bytes = read_at_most(path, File::open(path), BYTES_MAX)?;
     format.replace_images(&bytes, &mut |name| beside(path, name, &mut left), replaced)
 }
 
@@ -102,18 +102,15 @@ fn beside(path: &Path, name: &str, left: &mut u64) -> Option<Vec<u8>> {
     }
     let path = path.with_file_name("").join(name);
     // A pipe or a device may never end.
-    if !std::fs::metadata(&path).ok()?.is_file() {
-        return None;
-    }
-    let bytes = read_at_most(&path, *left).ok()?;
+    let file = dapple_image::open_regular(&path).ok()?;
+    let bytes = read_at_most(&path, Ok(file), *left).ok()?;
     *left -= bytes.len() as u64;
     Some(bytes)
 }
 
-fn read_at_most(path: &Path, limit: u64) -> Result<Vec<u8>, MeshIoError> {
+fn read_at_most(path: &Path, file: io::Result<File>, limit: u64) -> Result<Vec<u8>, MeshIoError> {
     let mut bytes = Vec::new();
-    File::open(path)
-        .and_then(|file| file.take(limit + 1).read_to_end(&mut bytes))
+    file.and_then(|file| file.take(limit + 1).read_to_end(&mut bytes))
         .map_err(|error| failed(path, &error))?;
     if bytes.len() as u64 > limit {
         let why = format!("it has more than {limit} bytes");
