@@ -64,6 +64,13 @@ impl FileChanges {
         changes
     }
 
+    /// Remembers a file as it is now, if it was not known. Called before the file is read, it makes the next look find
+    /// whatever is written after that.
+    pub fn remember(&mut self, file: PathBuf) {
+        let stamp = FileStamp::of(&file);
+        self.seen.entry(file).or_insert(stamp);
+    }
+
     /// Whether a file differs from how it was at the last look.
     #[must_use]
     pub fn has_changed(&self) -> bool {
@@ -71,8 +78,8 @@ impl FileChanges {
         seen.any(|(path, stamp)| FileStamp::of(path) != *stamp)
     }
 
-    /// Looks at these files, and returns whether changes of them are to be read now. Files that were not among those of
-    /// the last look count from now on.
+    /// Looks at these files, and returns whether changes of them are to be read now. Files that were neither among those
+    /// of the last look nor [remembered](Self::remember) count from now on.
     pub fn look(&mut self, files: &[PathBuf]) -> bool {
         let stamps = files.iter().map(|file| (file.clone(), FileStamp::of(file)));
         let now: BTreeMap<_, _> = stamps.collect();
@@ -128,6 +135,20 @@ mod tests {
         });
         assert_eq!(n_looks, Some(FileChanges::LONGEST as usize));
         fs::remove_file(&files[0]).unwrap();
+        assert!(!changes.look(&files));
+        assert!(changes.look(&files));
+    }
+
+    #[test]
+    fn what_is_written_between_reading_a_file_and_the_first_look_is_reported() {
+        let folder = tempfile::tempdir().unwrap();
+        let files = [folder.path().join("a")];
+        fs::write(&files[0], "1").unwrap();
+        let mut changes = FileChanges::default();
+        changes.remember(files[0].clone());
+        assert_eq!(fs::read_to_string(&files[0]).unwrap(), "1");
+        fs::write(&files[0], "12").unwrap();
+        changes.remember(files[0].clone());
         assert!(!changes.look(&files));
         assert!(changes.look(&files));
     }

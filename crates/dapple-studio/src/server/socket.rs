@@ -192,6 +192,10 @@ impl Page {
             self.say(reply).await?;
         }
         if let Some(job) = self.session.job() {
+            // Before the images are read.
+            for file in self.files() {
+                self.changes.remember(file);
+            }
             self.worker.draw(job);
         }
         Ok(())
@@ -234,6 +238,8 @@ impl Page {
     }
 
     fn open(&mut self, file: String) -> Result<Vec<Reply>, StudioError> {
+        let path = self.shared.folder.path().join(&file);
+        self.changes.remember(path);
         let (text, hash) = self.shared.folder.read(&file)?;
         self.file = Some((file.clone(), hash.clone()));
         Ok(self.session.open(&text, Some((file, hash))))
@@ -275,14 +281,20 @@ impl Page {
             .collect()
     }
 
-    /// Whether the file of the page or an image of its recipe has changed, and is quiet again.
-    fn looks_other(&mut self) -> bool {
+    /// The file of the page and the images of its recipe.
+    fn files(&self) -> Vec<PathBuf> {
         let folder = &self.shared.folder;
         let file = self.file.iter().map(|(name, _)| folder.path().join(name));
         let mut files: Vec<PathBuf> = file.collect();
         if let Ok(recipe) = self.session.document().recipe() {
             files.extend(folder.image_paths(recipe));
         }
+        files
+    }
+
+    /// Whether the file of the page or an image of its recipe has changed, and is quiet again.
+    fn looks_other(&mut self) -> bool {
+        let files = self.files();
         self.changes.look(&files)
     }
 
