@@ -1,6 +1,7 @@
 //! Fields that sample another field at transformed positions.
 
 use super::common_period;
+use super::values::by_bands;
 use crate::{Field, RasterError, RasterViewMut, Window};
 use glam::DVec2;
 
@@ -35,23 +36,22 @@ pub struct Warped<F, X, Y> {
     pub(super) amount: f64,
 }
 
-/// Fills a window row by row from its positions.
+/// Fills a window from its positions, on all cores where the feature `rayon` is on.
 fn render_rows(
     field: &impl Field,
     window: &Window,
-    mut out: RasterViewMut<'_, f32>,
+    out: RasterViewMut<'_, f32>,
 ) -> Result<(), RasterError> {
     window.check_size(out.size())?;
-    let columns: Vec<f64> = (0..window.size[0]).map(|c| window.column_x(c)).collect();
-    let mut positions = vec![DVec2::ZERO; columns.len()];
-    for (row, values) in (0..).zip(out.rows_mut()) {
-        let y = window.row_y(row);
-        for (position, &x) in positions.iter_mut().zip(&columns) {
-            *position = DVec2::new(x, y);
+    by_bands(window, out, |part, mut band, _| {
+        let mut positions = Vec::with_capacity(part.size[0] as usize);
+        for (row, values) in (0..).zip(band.rows_mut()) {
+            positions.clear();
+            positions.extend((0..part.size[0]).map(|column| part.position(column, row)));
+            field.sample_many(&positions, values)?;
         }
-        field.sample_many(&positions, values)?;
-    }
-    Ok(())
+        Ok(())
+    })
 }
 
 impl<F: Field> Field for Frequency<F> {
@@ -139,20 +139,21 @@ impl<F: Field, X: Field, Y: Field> Field for Warped<F, X, Y> {
         self.field.sample_many(&moved, values)
     }
 
-    fn render(&self, window: &Window, mut out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
-        let columns: Vec<f64> = (0..window.size[0]).map(|c| window.column_x(c)).collect();
-        let x = self.x.to_raster(window)?;
-        self.y.render(window, out.reborrow())?;
-        for ((row, values), x) in (0..).zip(out.rows_mut()).zip(x.view().rows()) {
-            let y = window.row_y(row);
-            let moved: Vec<_> = (columns.iter().zip(x).zip(&*values))
-                .map(|((&column, &dx), &dy)| {
-                    displaced(DVec2::new(column, y), [dx, dy], self.amount)
-                })
-                .collect();
-            self.field.sample_many(&moved, values)?;
-        }
-        Ok(())
+    fn render(&self, window: &Window, out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
+        window.check_size(out.size())?;
+        by_bands(window, out, |part, mut band, memory| {
+            self.x.render(part, memory.reborrow())?;
+            self.y.render(part, band.reborrow())?;
+            let mut moved = Vec::with_capacity(part.size[0] as usize);
+            for ((row, values), x) in (0..).zip(band.rows_mut()).zip(memory.rows_mut()) {
+                moved.clear();
+                moved.extend((0..).zip(&*x).zip(&*values).map(|((column, &dx), &dy)| {
+                    displaced(part.position(column, row), [dx, dy], self.amount)
+                }));
+                self.field.sample_many(&moved, values)?;
+            }
+            Ok(())
+        })
     }
 
     fn period(&self) -> [Option<f64>; 2] {

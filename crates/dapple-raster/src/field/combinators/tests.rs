@@ -26,12 +26,12 @@ fn slope(position: DVec2) -> f32 {
 /// Compares the values of all methods, on a window larger than a band, with odd positions.
 fn check(name: &str, field: &dyn Field, formula: impl Fn(DVec2) -> f32) {
     let origin = DVec2::new(-1.3, 0.7);
-    let whole = Window::new(origin, DVec2::new(5.1, 3.3), [300, 250]).unwrap();
+    let whole = Window::new(origin, DVec2::new(5.1, 3.3), [420, 340]).unwrap();
     let window = whole.scaled(DVec2::new(0.9, 1.1)).unwrap();
-    let window = window.crop([7, -3], [290, 240]).unwrap();
+    let window = window.crop([7, -3], [410, 330]).unwrap();
     let raster = field.to_raster(&window).unwrap();
-    let positions: Vec<DVec2> = (0..240)
-        .flat_map(|row| (0..290).map(move |column| window.position(column, row)))
+    let positions: Vec<DVec2> = (0..330)
+        .flat_map(|row| (0..410).map(move |column| window.position(column, row)))
         .collect();
     let mut many = vec![0.0; positions.len()];
     field.sample_many(&positions, &mut many).unwrap();
