@@ -116,7 +116,15 @@ impl Folder {
             }
             // What a link leads to is replaced, and not the link.
             path = self.recipe(name)?;
+            // The folder may permit what the permissions of the file do not.
+            if fs::metadata(&path).is_ok_and(|found| found.permissions().readonly()) {
+                let hint = "make it writable, or save the recipe under another name";
+                let error = StudioError::new(format!("{name} is read-only"));
+                return Err(error.with_hint(hint));
+            }
         }
+        // Saves of ended processes.
+        dapple::image::remove_left_behind(&path);
         dapple::image::replace(&path, text.as_bytes())
             .map_err(|error| StudioError::new(format!("{name} cannot be written: {error}")))?;
         Ok(hash(text.as_bytes()))
