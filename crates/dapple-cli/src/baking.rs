@@ -207,6 +207,7 @@ fn for_each_band(
     progress: &Progress,
     mut write: impl FnMut(&Band) -> Result<()> + Send,
 ) -> Result<()> {
+    progress.check()?;
     let mut next = bake.next();
     while let Some(band) = next.transpose().map_err(advise)? {
         let mut written = Ok(());
@@ -219,6 +220,7 @@ fn for_each_band(
         written?;
         let n_rows = band.maps.first().map_or(0, |(_, rows)| rows.size()[1]);
         progress.add(n_rows.into());
+        progress.check()?;
     }
     Ok(())
 }

@@ -30,6 +30,8 @@ pub(super) use material::MaterialArgs;
 use presets::Preset;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
+#[cfg(feature = "studio")]
+use std::sync::{Arc, atomic::AtomicBool};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -168,16 +170,17 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     Ok(batch.exit())
 }
 
-/// Bakes a recipe that lies in no file, with options as they are typed after `dapple bake RECIPE`.
+/// Bakes a recipe that lies in no file, with options as they are typed after `dapple bake RECIPE`, until `stop` is true.
 ///
 /// # Errors
 ///
-/// Options and recipes that are refused.
+/// Options and recipes that are refused, and a bake that was stopped.
 #[cfg(feature = "studio")]
 pub(super) fn bake_with(
     words: &[String],
     recipe: &Recipe,
     folder: &Path,
+    stop: Arc<AtomicBool>,
     context: &Context,
 ) -> Result<()> {
     let command = <Args as clap::Args>::augment_args(clap::Command::new("bake"));
@@ -196,7 +199,7 @@ pub(super) fn bake_with(
         list,
     };
     let files = args.files_for(1)?;
-    let progress = Progress::bar("baking", args.n_rows()?.into(), context);
+    let progress = Progress::bar("baking", args.n_rows()?.into(), context).until(stop);
     work.bake(&args, &files, context, &progress)
 }
 
@@ -277,6 +280,7 @@ impl Work {
             Some(images) => images,
             images => images.insert(read_images(recipe, &self.folder)?),
         };
+        progress.check()?;
         let plan = match &made.memory {
             Some(memory) => {
                 Plan::new_with_memory(recipe, images, time, &PlanLimits::default(), memory)

@@ -16,6 +16,7 @@ use dapple_studio::{
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -170,8 +171,9 @@ impl Host for Bakes {
         recipe: &Recipe,
         folder: &Path,
         export: &Export,
+        stop: &Arc<AtomicBool>,
     ) -> Result<Vec<ExportedFile>, StudioError> {
-        self.files(recipe, folder, export).map_err(told)
+        self.files(recipe, folder, export, stop).map_err(told)
     }
 
     fn preview(&self, lit: &Lit<'_>) -> Result<Raster<LinearRgb>, StudioError> {
@@ -198,7 +200,13 @@ impl Bakes {
         clippy::disallowed_methods,
         reason = "what a bake has written is read for the page"
     )]
-    fn files(&self, recipe: &Recipe, folder: &Path, export: &Export) -> Result<Vec<ExportedFile>> {
+    fn files(
+        &self,
+        recipe: &Recipe,
+        folder: &Path,
+        export: &Export,
+        stop: &Arc<AtomicBool>,
+    ) -> Result<Vec<ExportedFile>> {
         let mut recipe = recipe.clone();
         if recipe.name.is_empty() {
             "recipe".clone_into(&mut recipe.name);
@@ -206,7 +214,7 @@ impl Bakes {
         let made = tempfile::tempdir()?;
         let mut words = words(export);
         words.push(format!("--output={}/", made.path().display()));
-        bake::bake_with(&words, &recipe, folder, &self.0)?;
+        bake::bake_with(&words, &recipe, folder, stop.clone(), &self.0)?;
         let mut files = Vec::new();
         for entry in fs::read_dir(made.path())? {
             let entry = entry?;
