@@ -179,6 +179,7 @@ mod tests {
             progress: Style::Auto,
             threads: 0,
             arguments: Vec::new(),
+            options: Vec::new(),
         };
         let progress = Progress::bar("working", 10, &context);
         progress.set(7);

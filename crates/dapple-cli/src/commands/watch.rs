@@ -61,7 +61,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
             match bake::run(&args.bake.at(size, may_replace), context) {
                 Ok(_) => may_replace = true,
                 Err(error) if may_replace => {
-                    report(&error, &context.arguments);
+                    report(&error, &context.options);
                     break;
                 }
                 Err(error) => return Err(error),

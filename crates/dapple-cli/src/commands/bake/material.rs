@@ -68,7 +68,9 @@ impl MaterialArgs {
     pub(in crate::commands) fn blame(&self, error: RecipeError) -> Error {
         // The recipe has the relief that was typed, which may be NaN, and so equal to nothing.
         let is_of_relief = matches!(error.kind(), RecipeErrorKind::Range { what: "relief", .. });
-        match is_of_relief && self.relief.is_some() {
+        // A node may have a relief of its own.
+        let is_of_material = error.node() == Some("material");
+        match is_of_relief && is_of_material && self.relief.is_some() {
             true => advise(error).wrong_value(),
             false => advise(error),
         }
