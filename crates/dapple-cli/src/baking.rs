@@ -1,6 +1,6 @@
 //! Baking of recipes: bands of maps, each map into a file of its own.
 
-use crate::args::ReadArgs;
+use crate::args::{FiniteArgs, ReadArgs};
 use crate::encode::Format;
 use crate::error::Hint;
 use crate::input;
@@ -89,18 +89,19 @@ pub(crate) fn is_json(path: &Path) -> bool {
 /// # Errors
 ///
 /// If one does not exist, or cannot be read.
-pub(crate) fn read_images(recipe: &Recipe, folder: &Path) -> Result<Images> {
+pub(crate) fn read_images(recipe: &Recipe, folder: &Path, finite: FiniteArgs) -> Result<Images> {
     let mut images = Images::new();
     let hint = "give its node alpha = \"drop\" or alpha = \"over:#rrggbb\"";
-    for file in recipe.image_files() {
-        let path = folder.join(file);
+    for source in recipe.image_sources()? {
+        let path = folder.join(source.file);
         input::check_regular(&path, "an image")?;
         let read = ReadArgs {
-            layer: recipe.image_layer(file)?.map(str::to_owned),
-            ..ReadArgs::default()
+            layer: source.layer.map(str::to_owned),
+            needs_layer: true,
+            finite,
         };
-        let picture = read_picture(&path, recipe.image_alpha(file)?, &read, hint)?;
-        images.insert(file.to_owned(), picture);
+        let picture = read_picture(&path, source.alpha, &read, hint)?;
+        images.insert(source.key(), picture);
     }
     Ok(images)
 }

@@ -57,6 +57,7 @@ fn run(cli: &Cli, arguments: &[String], options: &[GivenOption]) -> Result<Exit>
     if let Some(pixels) = cli.common.max_pixels {
         input::set_max_pixels(pixels);
     }
+    input::set_quiet(cli.common.quiet);
     let context = Context {
         quiet: cli.common.quiet,
         progress: cli.common.progress,

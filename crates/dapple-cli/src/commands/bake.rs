@@ -9,7 +9,7 @@ mod material;
 mod presets;
 mod recipes;
 
-use crate::args::{Frame, OutputArgs, Region, Shard, Size};
+use crate::args::{FiniteArgs, Frame, OutputArgs, Region, Shard, Size};
 use crate::baking::{STILL, advise, advise_shard, read_images, read_recipe, report};
 use crate::encode::Format;
 use crate::error::{Exit, Hint, usage};
@@ -232,6 +232,7 @@ impl Work {
             overlap: shard.overlap,
             maps: args.material.map_kinds(),
             frames: args.frame.map(Frame::count),
+            finite: args.material.finite,
         });
         let list = wanted.map(|wanted| List::new(name, &recipe, folder, &wanted));
         Ok(Self {
@@ -278,7 +279,7 @@ impl Work {
         let time = args.frame.map_or(0.0, Frame::time);
         let images = match &mut made.images {
             Some(images) => images,
-            images => images.insert(read_images(recipe, &self.folder)?),
+            images => images.insert(read_images(recipe, &self.folder, args.material.finite)?),
         };
         progress.check()?;
         let plan = match &made.memory {
@@ -328,6 +329,12 @@ impl Args {
             _ => Err(usage("only a single recipe in a file can be watched")
                 .hint("`dapple recipe NAME -o my.toml` writes one to begin with")),
         }
+    }
+
+    /// The handling of numbers of images that are not finite.
+    #[cfg(feature = "studio")]
+    pub(super) fn finite(&self) -> FiniteArgs {
+        self.material.finite
     }
 
     /// The size, after one like it with a longer side of `small` pixels, if that is less.

@@ -1,6 +1,7 @@
 //! `dapple studio`: a page to make recipes in.
 
 use super::bake;
+use crate::args::FiniteArgs;
 use crate::baking::read_images;
 use crate::error::{Exit, Hint, usage};
 use crate::job::{Context, eprintln_if_possible, say};
@@ -46,6 +47,9 @@ pub(crate) struct Args {
     recipe: Option<String>,
 
     #[command(flatten)]
+    finite: FiniteArgs,
+
+    #[command(flatten)]
     page: PageArgs,
 }
 
@@ -82,8 +86,8 @@ pub(crate) struct PageArgs {
 ///
 /// If there is no such recipe, or the port is taken.
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
-    args.page
-        .serve(args.recipe.as_deref(), Mode::Studio, context)
+    let recipe = args.recipe.as_deref();
+    args.page.serve(recipe, Mode::Studio, args.finite, context)
 }
 
 impl PageArgs {
@@ -96,6 +100,7 @@ impl PageArgs {
         &self,
         recipe: Option<&str>,
         mode: Mode,
+        finite: FiniteArgs,
         context: &Context,
     ) -> Result<Exit> {
         let (recipe, folder) = match recipe {
@@ -113,7 +118,11 @@ impl PageArgs {
             folder,
             dist: self.dist.clone(),
         };
-        let told = serve(options, Arc::new(Bakes(context.silent())), |url| {
+        let bakes = Bakes {
+            context: context.silent(),
+            finite,
+        };
+        let told = serve(options, Arc::new(bakes), |url| {
             if !has_page {
                 eprintln_if_possible(NO_PAGE);
             }
@@ -159,11 +168,14 @@ fn place(name: &str) -> Result<(Option<String>, PathBuf)> {
 }
 
 /// Reads images and makes files as the other commands do.
-struct Bakes(Context);
+struct Bakes {
+    context: Context,
+    finite: FiniteArgs,
+}
 
 impl Host for Bakes {
     fn images(&self, recipe: &Recipe, folder: &Path) -> Result<Images, StudioError> {
-        read_images(recipe, folder).map_err(told)
+        read_images(recipe, folder, self.finite).map_err(told)
     }
 
     fn export(
@@ -213,8 +225,9 @@ impl Bakes {
         }
         let made = tempfile::tempdir()?;
         let mut words = words(export);
+        words.extend(self.finite.word());
         words.push(format!("--output={}/", made.path().display()));
-        bake::bake_with(&words, &recipe, folder, stop.clone(), &self.0)?;
+        bake::bake_with(&words, &recipe, folder, stop.clone(), &self.context)?;
         let mut files = Vec::new();
         for entry in fs::read_dir(made.path())? {
             let entry = entry?;

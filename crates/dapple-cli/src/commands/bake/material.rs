@@ -1,7 +1,7 @@
 //! Options of the material that `bake` and `shards` share: size, maps, seed, relief, direction of normals.
 
 use super::maps::Maps;
-use crate::args::{Size, seed};
+use crate::args::{FiniteArgs, Size, seed};
 use crate::baking::advise;
 use crate::error::Hint;
 use crate::words::Word;
@@ -43,6 +43,10 @@ pub(in crate::commands) struct MaterialArgs {
     /// How many units of the plane a height of 1 stands for, from -1e6 to 1e6, instead of what the recipe says.
     #[arg(long, value_name = "UNITS")]
     relief: Option<f64>,
+
+    #[command(flatten)]
+    #[serde(flatten)]
+    pub(in crate::commands) finite: FiniteArgs,
 }
 
 impl MaterialArgs {
@@ -87,6 +91,7 @@ impl MaterialArgs {
             self.normal_y
                 .map(|way| format!("--normal-y={}", way.name())),
             self.relief.map(|relief| format!("--relief={relief}")),
+            self.finite.word(),
         ];
         options.into_iter().flatten().collect()
     }
