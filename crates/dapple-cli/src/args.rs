@@ -13,7 +13,7 @@ pub(crate) use alpha::{Alpha, AlphaArgs, image_alpha};
 pub(crate) use frame::Frame;
 pub(crate) use numbers::Numbers;
 pub(crate) use ramp::RampArg;
-pub(crate) use read::{NonFinite, ReadArgs};
+pub(crate) use read::{FiniteArgs, NonFinite, ReadArgs};
 pub(crate) use region::Region;
 pub(crate) use shard::Shard;
 pub(crate) use size::{Extent, Size};

@@ -5,10 +5,11 @@
 
 use crate::cli::{Cli, command};
 use crate::words::with_dashes;
-use clap::FromArgMatches;
 use clap::builder::StyledStr;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
-use std::ffi::OsString;
+use clap::parser::ValueSource;
+use clap::{ArgMatches, Command, FromArgMatches};
+use std::ffi::{OsStr, OsString};
 
 /// Options of other programs: the subcommands, the option, and the option to use instead.
 const ELSEWHERE: [(&[&str], &str, &str); 9] = [
@@ -55,14 +56,49 @@ const ELSEWHERE: [(&[&str], &str, &str); 9] = [
     ),
 ];
 
-/// Parses the command line of this process. If it is invalid, the process ends.
-pub(crate) fn parse() -> Cli {
+/// An option that was given on the command line.
+#[derive(Clone, Debug)]
+pub(crate) struct GivenOption {
+    /// The long name, without the dashes before it.
+    pub(crate) name: String,
+    /// The value as it was typed.
+    pub(crate) value: String,
+}
+
+/// Parses the command line of this process, and lists the options that were given. If it is invalid, the process ends.
+pub(crate) fn parse() -> (Cli, Vec<GivenOption>) {
     let words = normalized(std::env::args_os());
     let mut command = command();
-    let parsed = command
-        .try_get_matches_from_mut(&words)
-        .and_then(|matches| Cli::from_arg_matches(&matches));
+    let matches = command.try_get_matches_from_mut(&words);
+    let parsed = matches
+        .and_then(|matches| Ok((Cli::from_arg_matches(&matches)?, given(&command, &matches))));
     parsed.unwrap_or_else(|error| advised(error.format(&mut command), &words).exit())
+}
+
+/// The options of the subcommand that are not at their defaults.
+fn given(command: &Command, matches: &ArgMatches) -> Vec<GivenOption> {
+    let subcommand = matches.subcommand();
+    let Some((command, matches)) =
+        subcommand.and_then(|(name, matches)| Some((command.find_subcommand(name)?, matches)))
+    else {
+        return Vec::new();
+    };
+    let options = command.get_arguments().filter_map(|arg| {
+        let (name, id) = (arg.get_long()?, arg.get_id().as_str());
+        let source = matches
+            .try_contains_id(id)
+            .ok()?
+            .then(|| matches.value_source(id));
+        if source? != Some(ValueSource::CommandLine) {
+            return None;
+        }
+        let values = matches.get_raw(id)?.map(OsStr::to_string_lossy);
+        Some(GivenOption {
+            name: name.to_owned(),
+            value: values.collect::<Vec<_>>().join(","),
+        })
+    });
+    options.collect()
 }
 
 /// Normalizes the arguments: option names are spelled as defined, and negative numbers are joined with their options.

@@ -1,6 +1,6 @@
 //! Baking of recipes: bands of maps, each map into a file of its own.
 
-use crate::args::ReadArgs;
+use crate::args::{FiniteArgs, ReadArgs};
 use crate::encode::Format;
 use crate::error::Hint;
 use crate::input;
@@ -89,18 +89,19 @@ pub(crate) fn is_json(path: &Path) -> bool {
 /// # Errors
 ///
 /// If one does not exist, or cannot be read.
-pub(crate) fn read_images(recipe: &Recipe, folder: &Path) -> Result<Images> {
+pub(crate) fn read_images(recipe: &Recipe, folder: &Path, finite: FiniteArgs) -> Result<Images> {
     let mut images = Images::new();
     let hint = "give its node alpha = \"drop\" or alpha = \"over:#rrggbb\"";
-    for file in recipe.image_files() {
-        let path = folder.join(file);
+    for source in recipe.image_sources()? {
+        let path = folder.join(source.file);
         input::check_regular(&path, "an image")?;
         let read = ReadArgs {
-            layer: recipe.image_layer(file)?.map(str::to_owned),
-            ..ReadArgs::default()
+            layer: source.layer.map(str::to_owned),
+            needs_layer: true,
+            finite,
         };
-        let picture = read_picture(&path, recipe.image_alpha(file)?, &read, hint)?;
-        images.insert(file.to_owned(), picture);
+        let picture = read_picture(&path, source.alpha, &read, hint)?;
+        images.insert(source.key(), picture);
     }
     Ok(images)
 }
@@ -207,6 +208,7 @@ fn for_each_band(
     progress: &Progress,
     mut write: impl FnMut(&Band) -> Result<()> + Send,
 ) -> Result<()> {
+    progress.check()?;
     let mut next = bake.next();
     while let Some(band) = next.transpose().map_err(advise)? {
         let mut written = Ok(());
@@ -219,6 +221,7 @@ fn for_each_band(
         written?;
         let n_rows = band.maps.first().map_or(0, |(_, rows)| rows.size()[1]);
         progress.add(n_rows.into());
+        progress.check()?;
     }
     Ok(())
 }

@@ -1,5 +1,6 @@
 //! Errors for users: a message, its causes, a hint, and the exit code.
 
+use crate::arguments::GivenOption;
 use anyhow::Error;
 use dapple::points::{PointsError, PointsErrorKind};
 use dapple::pups::{PupsError, PupsErrorKind};
@@ -124,12 +125,11 @@ impl<T, E: Into<Error>> Hint for Result<T, E> {
 }
 
 /// Reports an error to the user, beginning with the option that caused it, and returns the exit code.
-pub(crate) fn report(error: &Error, arguments: &[String]) -> Exit {
+pub(crate) fn report(error: &Error, options: &[GivenOption]) -> Exit {
     let exit = exit(error);
     if exit != Exit::Done {
         let option = match exit {
-            Exit::Usage => refused_number(error)
-                .and_then(|number| option_with(number, &text(error, None), arguments)),
+            Exit::Usage => refused_number(error).and_then(|what| option_of(what, options)),
             _ => None,
         };
         let text = text(error, option.as_deref());
@@ -139,8 +139,8 @@ pub(crate) fn report(error: &Error, arguments: &[String]) -> Exit {
     exit
 }
 
-/// The number that a library reports as out of range.
-fn refused_number(error: &Error) -> Option<f64> {
+/// The name of the number that a library reports as out of range.
+fn refused_number(error: &Error) -> Option<&'static str> {
     use PointsErrorKind::{NotDescending, NotPositive, OutOfRange, PeriodTooShort, Radius};
     error.chain().find_map(|cause| {
         if let Some(Refusal { error, .. }) = cause.downcast_ref() {
@@ -148,10 +148,8 @@ fn refused_number(error: &Error) -> Option<f64> {
         }
         if let Some(error) = cause.downcast_ref::<PointsError>() {
             return match error.kind() {
-                NotPositive { value, .. } | OutOfRange { value, .. } => Some(*value),
-                Radius { radius, .. }
-                | PeriodTooShort { radius, .. }
-                | NotDescending { radius, .. } => Some(*radius),
+                NotPositive { what, .. } | OutOfRange { what, .. } => Some(*what),
+                Radius { .. } | PeriodTooShort { .. } | NotDescending { .. } => Some("radius"),
                 _ => None,
             };
         }
@@ -161,11 +159,11 @@ fn refused_number(error: &Error) -> Option<f64> {
         let tile = cause.downcast_ref().map(TileError::kind);
         let synth = cause.downcast_ref().map(SynthError::kind);
         match (recipe, pups, worley, tile, synth) {
-            (Some(RecipeErrorKind::Range { value, .. }), ..)
-            | (_, Some(PupsErrorKind::Range { value, .. }), ..)
-            | (_, _, Some(WorleyErrorKind::Range { value, .. }), ..)
-            | (_, _, _, Some(TileErrorKind::Range { value, .. }), _)
-            | (.., Some(SynthErrorKind::Range { value, .. })) => Some(*value),
+            (Some(RecipeErrorKind::Range { what, .. }), ..)
+            | (_, Some(PupsErrorKind::Range { what, .. }), ..)
+            | (_, _, Some(WorleyErrorKind::Range { what, .. }), ..)
+            | (_, _, _, Some(TileErrorKind::Range { what, .. }), _)
+            | (.., Some(SynthErrorKind::Range { what, .. })) => Some(*what),
             _ => None,
         }
     })
@@ -181,49 +179,30 @@ pub(crate) fn cause<T: std::error::Error + 'static>(error: &Error) -> Option<&T>
     })
 }
 
-/// Options whose number has another name in messages.
-const OTHER_NAMES: [(&str, &str); 4] = [
-    ("--persistence", "gain"),
-    ("--radius", "radii"),
-    ("--share", "width of the cuts"),
-    ("--spacing", "radius"),
+/// Options whose number has another name in the errors of libraries.
+const OTHER_NAMES: [(&str, &str); 5] = [
+    ("persistence", "gain"),
+    ("radii", "radius"),
+    ("share", "width of the cuts"),
+    ("spacing", "radius"),
+    ("width", "width of the cuts"),
 ];
 
-/// Whether a message is about the number of an option: it has the words of the option, or its other name.
-fn is_about(message: &str, option: &str) -> bool {
-    let words = option.trim_start_matches('-').replace('-', " ");
-    let mut names = OTHER_NAMES.iter().filter(|(other, _)| *other == option);
-    message.contains(&words) || names.any(|(_, name)| message.contains(name))
-}
-
-/// The only option that the message is about and that has this number, as it was typed. Other options may have the same
-/// number, such as `--threads 1`.
-fn option_with(number: f64, message: &str, arguments: &[String]) -> Option<String> {
-    let is_same = |part: f64| part == number || (part.is_nan() && number.is_nan());
-    let holds = |value: &str| {
-        let mut parts = value.split([',', 'x']).map(str::parse);
-        // Some numbers are stored with fewer digits.
-        parts.any(|part| {
-            part.is_ok_and(|part: f64| is_same(part) || is_same(f64::from(part as f32)))
-        })
+/// The only given option for a number, by the name that libraries have for the number, as it was typed.
+///
+/// Values are not compared: `--threads 1` has nothing to do with an exemplar whose side is 1.
+fn option_of(what: &str, options: &[GivenOption]) -> Option<String> {
+    let what = what.strip_prefix("the ").unwrap_or(what);
+    let what = what.strip_prefix("number of ").unwrap_or(what);
+    let is_named = |option: &&GivenOption| {
+        let other = (option.name.as_str(), what);
+        option.name.replace('-', " ") == what || OTHER_NAMES.contains(&other)
     };
-    let mut found = Vec::new();
-    for (index, word) in arguments
-        .iter()
-        .enumerate()
-        .filter(|(_, word)| word.starts_with("--"))
-    {
-        let (option, value) = match (word.split_once('='), arguments.get(index + 1)) {
-            (Some((option, value)), _) => (option, value),
-            (None, Some(value)) => (word.as_str(), value.as_str()),
-            (None, None) => continue,
-        };
-        if holds(value) && is_about(message, option) {
-            found.push(format!("{option} {value}"));
-        }
+    let mut named = options.iter().filter(is_named);
+    match (named.next(), named.next()) {
+        (Some(option), None) => Some(format!("--{} {}", option.name, option.value)),
+        _ => None,
     }
-    let only = found.pop()?;
-    found.is_empty().then_some(only)
 }
 
 /// The exit code after an error.
@@ -292,7 +271,8 @@ fn is_broken_pipe(error: &Error) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::{Exit, Hint, exit, option_with, printable, text, usage};
+    use super::{Exit, Hint, exit, option_of, printable, text, usage};
+    use crate::arguments::GivenOption;
     use anyhow::{Context, anyhow};
     use std::io;
 
@@ -321,31 +301,31 @@ mod tests {
     }
 
     #[test]
-    fn the_option_of_a_number_is_found_if_it_is_the_only_one() {
-        let typed = "pups --threads 1 --size 0x8 --spacing 0 --gain=0.5 --relief nan --feature-size 1 --gain 2 --gain 2";
-        let typed: Vec<_> = typed.split(' ').map(str::to_owned).collect();
-        let option = |number, message| option_with(number, message, &typed);
-        assert_eq!(
-            option(0.5, "the gain is 0.5").as_deref(),
-            Some("--gain 0.5")
-        );
-        assert_eq!(
-            option(0.0, "the radius is 0").as_deref(),
-            Some("--spacing 0")
-        );
-        assert_eq!(
-            option(f64::NAN, "the relief is NaN").as_deref(),
-            Some("--relief nan")
-        );
-        let message = "the feature size is 1";
-        assert_eq!(option(1.0, message).as_deref(), Some("--feature-size 1"));
-        assert_eq!(
-            option(1.0, "the side of the exemplar is 1"),
-            None,
-            "not the threads"
-        );
-        assert_eq!(option(2.0, "the gain is 2"), None, "there are two");
-        assert_eq!(option(3.0, "the gain is 3"), None, "there is none");
+    fn the_option_of_a_number_goes_by_its_name() {
+        let options = [
+            ("threads", "1"),
+            ("size", "1"),
+            ("spacing", "0"),
+            ("gain", "0.5"),
+            ("persistence", "2"),
+            ("feature-size", "1"),
+        ];
+        let options = options.map(|(name, value)| GivenOption {
+            name: name.to_owned(),
+            value: value.to_owned(),
+        });
+        for (what, expected) in [
+            ("radius", Some("--spacing 0")),
+            ("the radius", Some("--spacing 0")),
+            ("feature size", Some("--feature-size 1")),
+            ("side of the exemplar", None),
+            ("size of a cell", None),
+            ("octaves", None),
+            // Two options have this name.
+            ("gain", None),
+        ] {
+            assert_eq!(option_of(what, &options).as_deref(), expected, "{what}");
+        }
     }
 
     #[test]

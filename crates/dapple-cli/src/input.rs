@@ -19,6 +19,7 @@ use crate::args::{Alpha, ReadArgs, Region};
 use crate::encode::map_raster;
 use crate::error::{Hint, cause, usage};
 use crate::finite::Faults;
+use crate::job::eprintln_if_possible;
 use crate::output::read_back;
 use anyhow::{Context, Error, Result, anyhow};
 use dapple::color::{Code, LinearRgb, LinearRgba};
@@ -35,6 +36,7 @@ use std::fs;
 use std::io::{self, Read};
 use std::path::Path;
 use std::sync::OnceLock;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// The number of bytes by which formats of images are told apart.
 const SIGNATURE_MAX: u64 = 16;
@@ -59,6 +61,14 @@ static MAX_PIXELS: OnceLock<u64> = OnceLock::new();
 pub(crate) fn set_max_pixels(pixels: u64) {
     // Only the first call has an effect, and there is only one.
     let _ = MAX_PIXELS.set(pixels);
+}
+
+/// Whether notes on what is read are left out.
+static IS_QUIET: AtomicBool = AtomicBool::new(false);
+
+/// Sets whether notes on what is read are left out, for the whole process.
+pub(crate) fn set_quiet(is_quiet: bool) {
+    IS_QUIET.store(is_quiet, Ordering::Relaxed);
 }
 
 /// The limits of images that are read.
@@ -354,14 +364,29 @@ fn picture(path: &Path, region: Option<Region>, read: &ReadArgs) -> Result<(Imag
             match exr.layer(layer) {
                 Ok(layer) => *exr = layer,
                 // A file of one layer is read as it is, beside one of several.
-                Err(_) if !has_layers => {}
+                Err(_) if !has_layers && !read.needs_layer => note_no_layers(path, layer),
                 Err(error) => return Err(of_file(error)),
             }
         }
         *exr = exr.to_picture().map_err(of_file)?;
-        faults = Faults::replace(&mut exr.planes, read.nonfinite);
+        faults = Faults::replace(&mut exr.planes, read.finite.nonfinite);
+    } else if let Some(layer) = &read.layer {
+        match image.layer(layer) {
+            Err(error) if read.needs_layer => return Err(advise(error).context(name(path))),
+            _ => note_no_layers(path, layer),
+        }
     }
     Ok((image, faults, is_part))
+}
+
+/// Says that `--layer` has no effect on a file.
+fn note_no_layers(path: &Path, layer: &str) {
+    if !IS_QUIET.load(Ordering::Relaxed) {
+        let name = name(path);
+        eprintln_if_possible(&format!(
+            "note: {name} has no layers, so that --layer {layer} has no effect on it"
+        ));
+    }
 }
 
 /// An image in a mesh file, as [`map_with_alpha`] gives one in a file of its own.

@@ -1,6 +1,7 @@
 //! A run of a subcommand: its files, its messages, and the JSON file beside the output.
 
 use crate::args::{ImageArgs, OutputArgs, Targets};
+use crate::arguments::GivenOption;
 use crate::encode::{
     Cover, Format, content, default_format, encode, encode_with_alpha, n_clipped_of, ramped, range,
 };
@@ -26,6 +27,8 @@ pub(crate) struct Context {
     pub(crate) threads: u16,
     /// The command line.
     pub(crate) arguments: Vec<String>,
+    /// The options that were given, which errors name.
+    pub(crate) options: Vec<GivenOption>,
 }
 
 #[cfg(feature = "studio")]

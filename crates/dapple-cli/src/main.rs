@@ -29,24 +29,25 @@ mod shards;
 mod words;
 
 use anyhow::{Context as _, Result};
+use arguments::GivenOption;
 use cli::Cli;
 use error::Exit;
 use job::Context;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    let cli = arguments::parse();
+    let (cli, options) = arguments::parse();
     let typed: Vec<_> = std::env::args_os().skip(1).collect();
     let arguments: Vec<_> = typed
         .iter()
         .map(|word| word.to_string_lossy().into_owned())
         .collect();
-    run(&cli, &arguments)
-        .unwrap_or_else(|error| error::report(&error, &arguments))
+    run(&cli, &arguments, &options)
+        .unwrap_or_else(|error| error::report(&error, &options))
         .into()
 }
 
-fn run(cli: &Cli, arguments: &[String]) -> Result<Exit> {
+fn run(cli: &Cli, arguments: &[String], options: &[GivenOption]) -> Result<Exit> {
     ctrlc::set_handler(|| output::exit_without_rubbish(Exit::Interrupted))
         .context("the handler of Ctrl-C cannot be installed")?;
     rayon::ThreadPoolBuilder::new()
@@ -56,11 +57,13 @@ fn run(cli: &Cli, arguments: &[String]) -> Result<Exit> {
     if let Some(pixels) = cli.common.max_pixels {
         input::set_max_pixels(pixels);
     }
+    input::set_quiet(cli.common.quiet);
     let context = Context {
         quiet: cli.common.quiet,
         progress: cli.common.progress,
         threads: cli.common.threads,
         arguments: arguments.to_vec(),
+        options: options.to_vec(),
     };
     commands::run(&cli.command, &context)
 }

@@ -6,8 +6,16 @@
 )]
 
 use crate::job::{Context, eprintln_if_possible};
+use anyhow::Result;
+#[cfg(feature = "studio")]
+use anyhow::anyhow;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::{self, IsTerminal};
+#[cfg(feature = "studio")]
+use std::sync::{
+    Arc,
+    atomic::{AtomicBool, Ordering},
+};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -42,6 +50,9 @@ pub(crate) struct Progress {
     style: Style,
     /// The time of the next line, if lines are printed.
     next_line: Option<Mutex<Instant>>,
+    /// Becomes true when the work is to stop.
+    #[cfg(feature = "studio")]
+    stop: Option<Arc<AtomicBool>>,
 }
 
 impl Progress {
@@ -55,6 +66,28 @@ impl Progress {
     pub(crate) fn bar(label: &'static str, length: u64, context: &Context) -> Self {
         let style = ProgressStyle::with_template("{msg} {wide_bar} {percent:>3} % {eta}");
         Self::new(ProgressBar::new(length), style, label, context)
+    }
+
+    /// Lets the work stop as soon as this is true.
+    #[cfg(feature = "studio")]
+    pub(crate) fn until(mut self, stop: Arc<AtomicBool>) -> Self {
+        self.stop = Some(stop);
+        self
+    }
+
+    /// Fails if the work is to stop.
+    ///
+    /// # Errors
+    ///
+    /// That it was stopped.
+    pub(crate) fn check(&self) -> Result<()> {
+        #[cfg(feature = "studio")]
+        if let Some(stop) = &self.stop
+            && stop.load(Ordering::SeqCst)
+        {
+            return Err(anyhow!("the export was stopped"));
+        }
+        Ok(())
     }
 
     /// Sets the amount of work done.
@@ -113,6 +146,8 @@ impl Progress {
             label,
             style,
             next_line: (!context.quiet && !is_bar).then(|| Mutex::new(first_line)),
+            #[cfg(feature = "studio")]
+            stop: None,
         }
     }
 }
@@ -144,6 +179,7 @@ mod tests {
             progress: Style::Auto,
             threads: 0,
             arguments: Vec::new(),
+            options: Vec::new(),
         };
         let progress = Progress::bar("working", 10, &context);
         progress.set(7);

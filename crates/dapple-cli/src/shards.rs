@@ -5,7 +5,7 @@
 //! valid, whichever process baked it, and a recipe that has changed finds none of the old files. The list itself is
 //! `shards.json` beside that folder.
 
-use crate::args::{Frame, Shard, Size, file_name};
+use crate::args::{FiniteArgs, Frame, Shard, Size, file_name};
 use crate::error::Hint;
 use crate::input;
 use crate::output::{self, Outputs, Target};
@@ -64,6 +64,7 @@ pub(crate) struct Wanted<'a> {
     pub(crate) overlap: u32,
     pub(crate) maps: &'a [MapKind],
     pub(crate) frames: Option<u32>,
+    pub(crate) finite: FiniteArgs,
 }
 
 impl List {
@@ -88,11 +89,14 @@ impl List {
             overlap,
             maps,
             frames,
+            finite,
         } = wanted;
         let all = (version, recipe, images, size, shard, frames);
-        let described = match overlap {
-            0 => serde_json::to_vec(&all)?,
-            overlap => serde_json::to_vec(&(all, overlap))?,
+        // Options at their defaults are left out, so that lists of older versions keep their hashes.
+        let described = match (overlap, finite.word()) {
+            (0, None) => serde_json::to_vec(&all)?,
+            (overlap, None) => serde_json::to_vec(&(all, overlap))?,
+            (overlap, Some(word)) => serde_json::to_vec(&(all, overlap, word))?,
         };
         let list = Self {
             dapple: version.to_owned(),

@@ -5,20 +5,13 @@ use core::fmt::Display;
 use core::fmt::Write as _;
 use core::str::FromStr;
 use dapple_mesh::POSITION_MAX;
+use dapple_raster::text::without_mark;
 
-/// The text of a file, without the byte-order mark of UTF-8. Every reader takes its text from here.
+/// The text of a file, without the byte order mark of UTF-8. Every reader takes its text from here.
 ///
 /// Fails for UTF-16 and UTF-32, with or without a mark: the first character of every format is ASCII.
 pub(crate) fn content<'a>(format: &'static str, bytes: &'a [u8]) -> Result<&'a [u8], MeshIoError> {
-    let encoding = match *bytes {
-        [0xff, 0xfe, 0, 0, ..] | [0, 0, 0xfe, 0xff, ..] => "UTF-32",
-        [1..=0x7f, 0, 0, 0, ..] | [0, 0, 0, 1..=0x7f, ..] => "UTF-32",
-        [0xff, 0xfe, ..] | [0xfe, 0xff, ..] => "UTF-16",
-        [1..=0x7f, 0, 1..=0x7f, 0, ..] | [0, 1..=0x7f, 0, 1..=0x7f, ..] => "UTF-16",
-        _ => return Ok(bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)),
-    };
-    let why = format!("its text is {encoding}, but must be ASCII or UTF-8");
-    Err(MeshIoError::file(format, why))
+    without_mark(bytes).map_err(|error| MeshIoError::file(format, error.to_string()))
 }
 
 /// The words of a text, separated by white space.
@@ -60,11 +53,12 @@ pub(crate) fn shortest(text: &mut String, number: f64) {
 
 #[cfg(test)]
 mod tests {
-    use crate::{obj, off, ply};
+    use crate::{obj, off, ply, stl};
     use dapple_mesh::{EncodedImage, Model};
 
     const OBJ: &str = "# C:\\\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 9 9 9\nf 1 2 3\n";
     const OFF: &str = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+    const STL: &str = "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid a\n";
     const PLY: &str = "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nend_header\n1 2 3\n";
 
     type Encode = fn(&str) -> Vec<u8>;
@@ -76,6 +70,7 @@ mod tests {
             obj::read(&bytes(OBJ)),
             off::read(&bytes(OFF)),
             ply::read(&bytes(PLY)),
+            stl::read(&bytes(STL)),
             obj::read_with(OBJ.replace('v', "mtllib a.mtl\nv").as_bytes(), &mut {
                 library
             }),

@@ -35,6 +35,7 @@ mod wrap;
 pub mod parallel;
 #[cfg(feature = "simd")]
 pub mod simd;
+pub mod text;
 
 pub use error::{RasterError, RasterErrorKind};
 pub use field::{

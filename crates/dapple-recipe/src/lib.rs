@@ -22,7 +22,9 @@ pub use dapple_raster as raster;
 pub use error::{Place, RecipeError, RecipeErrorKind};
 pub use input::Input;
 pub use nodes::*;
-pub use plan::{Images, Memory, NodeColors, NodeField, Picture, Plan, PlanLimits, Whole};
+pub use plan::{
+    ImageSource, Images, Memory, NodeColors, NodeField, Picture, Plan, PlanLimits, Whole,
+};
 pub use recipe::{Material, Recipe, SCHEMA};
 pub use text::{MAX_TEXT, read_options};
 pub use values::Values;

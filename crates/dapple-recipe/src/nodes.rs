@@ -56,7 +56,7 @@ pub use wave::{Wave, Waveform};
 pub use wavelet::WaveletNode;
 pub use worley::{Frequency, Motion, WorleyNode, WorleyValue};
 
-use crate::plan::{Builder, Step, Work};
+use crate::plan::{Builder, ImageSource, Step, Work};
 use crate::{Input, RecipeError};
 use serde::{Deserialize, Serialize};
 
@@ -209,6 +209,13 @@ impl Node {
     #[must_use]
     pub fn image_layer(&self) -> Option<&str> {
         self.kind().layer()
+    }
+
+    /// The images that the node reads.
+    pub fn image_sources(&self) -> impl Iterator<Item = ImageSource<'_>> {
+        let (layer, alpha) = (self.image_layer(), self.image_alpha());
+        let files = self.image_files().into_iter();
+        files.map(move |file| ImageSource { file, layer, alpha })
     }
 
     /// The inputs of the node, in a fixed order.

@@ -55,8 +55,37 @@ impl Picture {
     }
 }
 
-/// The images of a recipe, by the names in the recipe.
+/// The images of a recipe, by file name; of a file of which several layers are read, by [`ImageSource::key`].
 pub type Images = std::collections::BTreeMap<String, Picture>;
+
+/// An image that nodes of a recipe read: a file, or a layer of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct ImageSource<'a> {
+    /// The file name.
+    pub file: &'a str,
+    /// The layer of the OpenEXR file, if a node names one.
+    pub layer: Option<&'a str>,
+    /// The use of the alpha, if a node sets it.
+    pub alpha: Option<ImageAlpha>,
+}
+
+impl ImageSource<'_> {
+    /// The key of the picture in [`Images`]: the file name, followed by NUL and the layer if there is one. No file name
+    /// contains NUL.
+    #[must_use]
+    pub fn key(&self) -> String {
+        match self.layer {
+            Some(layer) => format!("{}\0{layer}", self.file),
+            None => self.file.to_owned(),
+        }
+    }
+
+    /// The picture of this image: the one with its key, or else with its file name.
+    pub(crate) fn picture<'a>(&self, images: &'a Images) -> Option<&'a Picture> {
+        images.get(&self.key()).or_else(|| images.get(self.file))
+    }
+}
 
 /// A recipe, ready for evaluation.
 ///
@@ -116,6 +145,32 @@ impl Recipe {
             }
         }
         files
+    }
+
+    /// The images of the recipe, each once, in the order of its nodes. Several layers of a file are several images.
+    ///
+    /// # Errors
+    ///
+    /// [`Conflict`](RecipeErrorKind::Conflict), if two nodes set different uses of alpha for one image.
+    pub fn image_sources(&self) -> Result<Vec<ImageSource<'_>>, RecipeError> {
+        let mut sources: Vec<ImageSource<'_>> = Vec::new();
+        for (name, node) in &self.nodes {
+            for source in node.image_sources() {
+                let is_same = |other: &&ImageSource<'_>| {
+                    (other.file, other.layer) == (source.file, source.layer)
+                };
+                match sources.iter().find(is_same) {
+                    Some(other) if other.alpha != source.alpha => {
+                        let rule = "nodes that name one image say the same of its `alpha`";
+                        let error = RecipeError::new(RecipeErrorKind::Conflict { rule });
+                        return Err(error.within(name));
+                    }
+                    Some(_) => {}
+                    None => sources.push(source),
+                }
+            }
+        }
+        Ok(sources)
     }
 
     /// The use of the alpha of an image, if a node sets it.

@@ -2,6 +2,7 @@
 
 use crate::{Node, Place, PupsNode, Recipe, RecipeError, RecipeErrorKind, SCHEMA};
 use content::Content;
+use dapple_raster::text::decode;
 use erased_serde::Serialize;
 use serde::Deserialize as _;
 use serde_json::Value;
@@ -23,7 +24,7 @@ impl Recipe {
     /// the line and the nearest valid word; [`Schema`](RecipeErrorKind::Schema) for another version;
     /// [`Count`](RecipeErrorKind::Count) past [`MAX_TEXT`] bytes.
     pub fn from_toml(text: &str) -> Result<Self, RecipeError> {
-        check_length(text)?;
+        let text = decoded(text)?;
         let content: Content = toml::from_str(text).map_err(|error| {
             let byte = error.span().map(|span| span.start);
             text_error(error.message()).at(byte.map(|byte| place_of(text, byte)))
@@ -41,9 +42,7 @@ impl Recipe {
     ///
     /// The errors of [`from_toml`](Self::from_toml).
     pub fn from_json(text: &str) -> Result<Self, RecipeError> {
-        check_length(text)?;
-        // Some editors put a byte order mark before the text, which JSON does not allow.
-        let text = text.trim_start_matches('\u{feff}');
+        let text = decoded(text)?;
         let content: Content = serde_json::from_str(text).map_err(|error| {
             let (line, column) = (error.line(), error.column());
             let full = error.to_string();
@@ -86,7 +85,8 @@ pub(crate) fn is_data(node: &Node) -> bool {
     serde_json::to_string_pretty(data(node)).is_ok()
 }
 
-fn check_length(text: &str) -> Result<(), RecipeError> {
+/// The text of a recipe without its byte order mark, if it is not too long.
+fn decoded(text: &str) -> Result<&str, RecipeError> {
     if text.len() > MAX_TEXT {
         return Err(RecipeError::new(RecipeErrorKind::Count {
             what: "bytes",
@@ -94,7 +94,7 @@ fn check_length(text: &str) -> Result<(), RecipeError> {
             needed: "at most 4 MiB",
         }));
     }
-    Ok(())
+    decode(text.as_bytes()).map_err(|error| text_error(&error.to_string()))
 }
 
 impl PupsNode {

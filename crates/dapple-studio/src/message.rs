@@ -82,6 +82,8 @@ pub enum Request {
     },
     /// The files that a bake makes.
     Export(Export),
+    /// Stops the exports that the page has asked for.
+    Stop,
     /// Writes the recipe into its folder.
     Save {
         /// The text.

@@ -29,6 +29,7 @@ use gallery::Gallery;
 use guard::Guard;
 use std::net::Ipv4Addr;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 use tokio::net::TcpListener;
@@ -43,16 +44,17 @@ pub trait Host: Send + Sync {
     /// If one of them cannot be read.
     fn images(&self, recipe: &Recipe, folder: &Path) -> Result<Images, StudioError>;
 
-    /// The files of a bake, by their names.
+    /// The files of a bake, by their names. It ends early once `stop` is true.
     ///
     /// # Errors
     ///
-    /// The refusal of the bake.
+    /// The refusal of the bake, or that it was stopped.
     fn export(
         &self,
         recipe: &Recipe,
         folder: &Path,
         export: &Export,
+        stop: &Arc<AtomicBool>,
     ) -> Result<Vec<ExportedFile>, StudioError>;
 
     /// The picture of a lit material.

@@ -3,6 +3,8 @@
 #[cfg(feature = "json")]
 use crate::SynthErrorKind;
 use crate::{Direction, SynthError, TableRow, parse_table};
+#[cfg(feature = "json")]
+use dapple_raster::text::decode;
 use glam::DVec3;
 
 /// The columns of a table: a position and a vector.
@@ -50,8 +52,8 @@ impl Direction {
     /// [`SynthErrorKind::Text`](crate::SynthErrorKind::Text) with the number of the line that is not as it should be.
     #[cfg(feature = "json")]
     pub fn parse_json(text: &str) -> Result<Vec<Self>, SynthError> {
-        // Some editors put a byte order mark before the first line.
-        let text = text.trim_start_matches('\u{feff}');
+        let text = decode(text.as_bytes());
+        let text = text.map_err(|error| refused("JSON", 1, error.to_string()))?;
         serde_json::from_str(text).map_err(|error| refused("JSON", error.line(), error.to_string()))
     }
 }
@@ -126,6 +128,12 @@ mod tests {
         assert_eq!(directions[0].vector, DVec3::new(0.0, 0.5, -10.0));
         let marked = format!("\u{feff}{text}");
         assert_eq!(Direction::parse_json(&marked), Ok(directions));
+        let wide: String = text.chars().flat_map(|c| ['\0', c]).collect();
+        let error = Direction::parse_json(&wide).unwrap_err().to_string();
+        assert!(
+            error.contains("the text is UTF-16, but must be UTF-8"),
+            "{error}"
+        );
         assert_eq!(Direction::parse_json("[]"), Ok(vec![]));
         for (text, line) in [
             ("[\n{\"at\": [1, 2], \"vector\": [0, 0, 1]}]", 2),

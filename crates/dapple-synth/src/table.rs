@@ -3,6 +3,7 @@
 //! Numbers have a decimal point, and columns are separated by commas. A header of names may give the columns in any order.
 
 use crate::{SynthError, SynthErrorKind};
+use dapple_raster::text::decode;
 
 /// A line of a table.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,7 +35,7 @@ pub struct TableRow {
 /// # Ok::<(), dapple_synth::SynthError>(())
 /// ```
 pub fn parse_table(text: &str, forms: &[&[&str]]) -> Result<Vec<TableRow>, SynthError> {
-    let text = text.trim_start_matches('\u{feff}');
+    let text = decode(text.as_bytes()).map_err(|error| refused(1, error.to_string()))?;
     let lines = (1..).zip(text.lines().map(str::trim));
     let mut lines = lines.filter(|(_, row)| !row.is_empty() && !row.starts_with('#'));
     let mut order = None;

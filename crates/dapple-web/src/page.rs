@@ -106,7 +106,8 @@ impl Page {
                 return;
             }
             // What was made is given at once.
-            Request::Ack { .. } => return,
+            // An export is done when the next message is read.
+            Request::Ack { .. } | Request::Stop => return,
             Request::Save { .. } => ("save", "recipes are not saved here, but downloaded"),
             _ => ("open", "open one of `builtin` and `text`"),
         };

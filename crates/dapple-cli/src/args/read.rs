@@ -1,6 +1,7 @@
 //! The options of reading images: the layer, and numbers that are not finite.
 
 use crate::words::Word;
+use dapple::raster::Named as _;
 use serde::Serialize;
 
 /// The options of subcommands that read images.
@@ -12,10 +13,32 @@ pub(crate) struct ReadArgs {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) layer: Option<String>,
 
+    /// Whether a file without the layer is refused, and not read as it is.
+    #[arg(skip)]
+    #[serde(skip)]
+    pub(crate) needs_layer: bool,
+
+    #[command(flatten)]
+    #[serde(flatten)]
+    pub(crate) finite: FiniteArgs,
+}
+
+/// The option of all subcommands that read images, their own or those of recipes.
+#[derive(clap::Args, Clone, Copy, Debug, Default, Serialize)]
+#[group(skip)]
+pub(crate) struct FiniteArgs {
     /// What becomes of numbers of OpenEXR images that are NaN or infinite: an error, the mean of the finite pixels
     /// around, or zero.
     #[arg(long, value_name = "HOW", value_parser = Word::<NonFinite>::all(), default_value_t = NonFinite::Error)]
     pub(crate) nonfinite: NonFinite,
+}
+
+impl FiniteArgs {
+    /// The option as a word of a command line, if it differs from the default.
+    pub(crate) fn word(self) -> Option<String> {
+        let is_default = self.nonfinite == NonFinite::default();
+        (!is_default).then(|| format!("--nonfinite={}", self.nonfinite.name()))
+    }
 }
 
 dapple::raster::named! {

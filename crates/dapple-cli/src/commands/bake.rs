@@ -9,7 +9,7 @@ mod material;
 mod presets;
 mod recipes;
 
-use crate::args::{Frame, OutputArgs, Region, Shard, Size};
+use crate::args::{FiniteArgs, Frame, OutputArgs, Region, Shard, Size};
 use crate::baking::{STILL, advise, advise_shard, read_images, read_recipe, report};
 use crate::encode::Format;
 use crate::error::{Exit, Hint, usage};
@@ -30,6 +30,8 @@ pub(super) use material::MaterialArgs;
 use presets::Preset;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
+#[cfg(feature = "studio")]
+use std::sync::{Arc, atomic::AtomicBool};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -168,16 +170,17 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     Ok(batch.exit())
 }
 
-/// Bakes a recipe that lies in no file, with options as they are typed after `dapple bake RECIPE`.
+/// Bakes a recipe that lies in no file, with options as they are typed after `dapple bake RECIPE`, until `stop` is true.
 ///
 /// # Errors
 ///
-/// Options and recipes that are refused.
+/// Options and recipes that are refused, and a bake that was stopped.
 #[cfg(feature = "studio")]
 pub(super) fn bake_with(
     words: &[String],
     recipe: &Recipe,
     folder: &Path,
+    stop: Arc<AtomicBool>,
     context: &Context,
 ) -> Result<()> {
     let command = <Args as clap::Args>::augment_args(clap::Command::new("bake"));
@@ -196,7 +199,7 @@ pub(super) fn bake_with(
         list,
     };
     let files = args.files_for(1)?;
-    let progress = Progress::bar("baking", args.n_rows()?.into(), context);
+    let progress = Progress::bar("baking", args.n_rows()?.into(), context).until(stop);
     work.bake(&args, &files, context, &progress)
 }
 
@@ -229,6 +232,7 @@ impl Work {
             overlap: shard.overlap,
             maps: args.material.map_kinds(),
             frames: args.frame.map(Frame::count),
+            finite: args.material.finite,
         });
         let list = wanted.map(|wanted| List::new(name, &recipe, folder, &wanted));
         Ok(Self {
@@ -275,8 +279,9 @@ impl Work {
         let time = args.frame.map_or(0.0, Frame::time);
         let images = match &mut made.images {
             Some(images) => images,
-            images => images.insert(read_images(recipe, &self.folder)?),
+            images => images.insert(read_images(recipe, &self.folder, args.material.finite)?),
         };
+        progress.check()?;
         let plan = match &made.memory {
             Some(memory) => {
                 Plan::new_with_memory(recipe, images, time, &PlanLimits::default(), memory)
@@ -324,6 +329,12 @@ impl Args {
             _ => Err(usage("only a single recipe in a file can be watched")
                 .hint("`dapple recipe NAME -o my.toml` writes one to begin with")),
         }
+    }
+
+    /// The handling of numbers of images that are not finite.
+    #[cfg(feature = "studio")]
+    pub(super) fn finite(&self) -> FiniteArgs {
+        self.material.finite
     }
 
     /// The size, after one like it with a longer side of `small` pixels, if that is less.

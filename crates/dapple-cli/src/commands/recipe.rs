@@ -1,6 +1,6 @@
 //! `dapple recipe`: lists, checks and prints recipes.
 
-use crate::args::{OutputArgs, seed};
+use crate::args::{FiniteArgs, OutputArgs, seed};
 use crate::baking::{advise, is_json, read_images, read_recipe};
 use crate::error::Exit;
 use crate::job::{Context, Job, put_text, say};
@@ -61,6 +61,10 @@ pub(crate) struct Args {
 
     #[command(flatten)]
     #[serde(skip)]
+    finite: FiniteArgs,
+
+    #[command(flatten)]
+    #[serde(skip)]
     files: OutputArgs,
 }
 
@@ -96,7 +100,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     };
     let (mut recipe, folder) = read_recipe(name)?;
     if args.check {
-        let images = read_images(&recipe, folder)?;
+        let images = read_images(&recipe, folder, args.finite)?;
         Plan::new(&recipe, &images, 0.0).map_err(advise)?;
         say(&format!(
             "{name} can be baked: {} nodes",

@@ -112,9 +112,10 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
         overlap: args.overlap,
         maps,
         frames: args.frames,
+        finite: args.material.finite,
     };
     let list = List::new(&args.recipe, &recipe, folder, &wanted)?;
-    let images = read_images(&recipe, folder)?;
+    let images = read_images(&recipe, folder, args.material.finite)?;
     let plan = Plan::new(&recipe, &images, 0.0).map_err(|error| args.material.blame(error))?;
     let first = list.tasks()?.next().map(|task| task.region);
     check(&plan, args, first)?;

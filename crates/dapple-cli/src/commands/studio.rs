@@ -1,6 +1,7 @@
 //! `dapple studio`: a page to make recipes in.
 
 use super::bake;
+use crate::args::FiniteArgs;
 use crate::baking::read_images;
 use crate::error::{Exit, Hint, usage};
 use crate::job::{Context, eprintln_if_possible, say};
@@ -16,6 +17,7 @@ use dapple_studio::{
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -43,6 +45,9 @@ pub(crate) struct Args {
     /// A built-in recipe, or a file in TOML; by default a choice of all.
     #[arg(value_name = "RECIPE")]
     recipe: Option<String>,
+
+    #[command(flatten)]
+    finite: FiniteArgs,
 
     #[command(flatten)]
     page: PageArgs,
@@ -81,8 +86,8 @@ pub(crate) struct PageArgs {
 ///
 /// If there is no such recipe, or the port is taken.
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
-    args.page
-        .serve(args.recipe.as_deref(), Mode::Studio, context)
+    let recipe = args.recipe.as_deref();
+    args.page.serve(recipe, Mode::Studio, args.finite, context)
 }
 
 impl PageArgs {
@@ -95,6 +100,7 @@ impl PageArgs {
         &self,
         recipe: Option<&str>,
         mode: Mode,
+        finite: FiniteArgs,
         context: &Context,
     ) -> Result<Exit> {
         let (recipe, folder) = match recipe {
@@ -112,7 +118,11 @@ impl PageArgs {
             folder,
             dist: self.dist.clone(),
         };
-        let told = serve(options, Arc::new(Bakes(context.silent())), |url| {
+        let bakes = Bakes {
+            context: context.silent(),
+            finite,
+        };
+        let told = serve(options, Arc::new(bakes), |url| {
             if !has_page {
                 eprintln_if_possible(NO_PAGE);
             }
@@ -158,11 +168,14 @@ fn place(name: &str) -> Result<(Option<String>, PathBuf)> {
 }
 
 /// Reads images and makes files as the other commands do.
-struct Bakes(Context);
+struct Bakes {
+    context: Context,
+    finite: FiniteArgs,
+}
 
 impl Host for Bakes {
     fn images(&self, recipe: &Recipe, folder: &Path) -> Result<Images, StudioError> {
-        read_images(recipe, folder).map_err(told)
+        read_images(recipe, folder, self.finite).map_err(told)
     }
 
     fn export(
@@ -170,8 +183,9 @@ impl Host for Bakes {
         recipe: &Recipe,
         folder: &Path,
         export: &Export,
+        stop: &Arc<AtomicBool>,
     ) -> Result<Vec<ExportedFile>, StudioError> {
-        self.files(recipe, folder, export).map_err(told)
+        self.files(recipe, folder, export, stop).map_err(told)
     }
 
     fn preview(&self, lit: &Lit<'_>) -> Result<Raster<LinearRgb>, StudioError> {
@@ -198,15 +212,22 @@ impl Bakes {
         clippy::disallowed_methods,
         reason = "what a bake has written is read for the page"
     )]
-    fn files(&self, recipe: &Recipe, folder: &Path, export: &Export) -> Result<Vec<ExportedFile>> {
+    fn files(
+        &self,
+        recipe: &Recipe,
+        folder: &Path,
+        export: &Export,
+        stop: &Arc<AtomicBool>,
+    ) -> Result<Vec<ExportedFile>> {
         let mut recipe = recipe.clone();
         if recipe.name.is_empty() {
             "recipe".clone_into(&mut recipe.name);
         }
         let made = tempfile::tempdir()?;
         let mut words = words(export);
+        words.extend(self.finite.word());
         words.push(format!("--output={}/", made.path().display()));
-        bake::bake_with(&words, &recipe, folder, &self.0)?;
+        bake::bake_with(&words, &recipe, folder, stop.clone(), &self.context)?;
         let mut files = Vec::new();
         for entry in fs::read_dir(made.path())? {
             let entry = entry?;

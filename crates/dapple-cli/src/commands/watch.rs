@@ -47,9 +47,8 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     #[cfg(feature = "studio")]
     if !args.bake.has_output() {
         let mode = dapple_studio::Mode::Watch;
-        return args
-            .page
-            .serve(Some(&recipe.to_string_lossy()), mode, context);
+        let (recipe, finite) = (recipe.to_string_lossy(), args.bake.finite());
+        return args.page.serve(Some(&recipe), mode, finite, context);
     }
     let sizes = args.bake.sizes(SMALL);
     let mut may_replace = args.bake.may_replace();
@@ -61,7 +60,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
             match bake::run(&args.bake.at(size, may_replace), context) {
                 Ok(_) => may_replace = true,
                 Err(error) if may_replace => {
-                    report(&error, &context.arguments);
+                    report(&error, &context.options);
                     break;
                 }
                 Err(error) => return Err(error),

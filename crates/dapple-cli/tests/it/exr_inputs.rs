@@ -1,6 +1,6 @@
 //! OpenEXR images as inputs: layers, windows, vectors, light without cover, and numbers that are not finite.
 
-use crate::support::{Folder, assert_done, assert_refused, read_gray};
+use crate::support::{Folder, assert_done, assert_refused, read_gray, stderr, stdout};
 use dapple::color::Normal;
 use dapple::image::{Depth, ExrPlane, Limits, encode_exr, read_image, replace, write_gray_png};
 use dapple::raster::Raster;
@@ -167,6 +167,41 @@ fn numbers_that_are_not_finite_are_replaced_on_request() {
     }
 }
 
+#[test]
+fn numbers_of_images_of_recipes_are_replaced_on_request() {
+    let folder = Folder::new("nan-recipes");
+    write_nan(&folder);
+    for (how, expected) in [("zero", 0.0), ("repair", mean_around())] {
+        let line =
+            format!("dapple bake albedo.toml --maps albedo --size 32 --nonfinite {how} -o o.exr");
+        run(&folder, &line);
+        let found = read(&folder, "o.exr", "G").row(5)[9];
+        assert!((found - expected).abs() < 1e-6, "{how}: {found}");
+    }
+    let words = |line: &str| folder.run(&line.split(' ').collect::<Vec<_>>());
+    let line = "recipe height.toml --check";
+    assert_refused(&words(line), 1, "nan_y.exr: the channel Y is NaN", line);
+    let line = "recipe height.toml --check --nonfinite zero";
+    assert_done(&words(line), line);
+    // Shards of other values belong to another list, whose commands replace the numbers, too.
+    let list = |how: &str| {
+        let line = format!("shards height.toml --size 32 --shard 16 --maps height{how} -o s");
+        let output = words(&format!("{line} --force"));
+        assert_done(&output, &line);
+        (
+            stdout(&output),
+            fs::read_to_string(folder.path("s/shards.json")).unwrap(),
+        )
+    };
+    let [(zero, of_zero), (repair, of_repair)] =
+        ["zero", "repair"].map(|how| list(&format!(" --nonfinite {how}")));
+    assert!(zero.contains(" --nonfinite=zero"), "{zero}");
+    assert!(repair.contains(" --nonfinite=repair"), "{repair}");
+    assert_ne!(of_zero, of_repair);
+    let line = "shards height.toml --size 32 --shard 16 --maps height -o s";
+    assert_refused(&words(line), 1, "nan_y.exr: the channel Y is NaN", line);
+}
+
 /// The mean of the pixels around the one that is NaN.
 fn mean_around() -> f32 {
     let around = (4..7).flat_map(|y| (8..11).map(move |x| (x, y)));
@@ -250,6 +285,51 @@ fn layers_are_chosen_by_name() {
         );
         let found = read(&folder, "o.exr", "R").row(3)[3];
         assert_eq!(found, expected, "{layer:?} in a recipe");
+    }
+    let recipe = |node: &str| {
+        let text = format!(
+            "dapple = 1\nname = \"r\"\n[nodes.a.image]\nfile = \"b.exr\"\nlayer = \"V.DiffCol\"\n\
+             [nodes.b.image]\nfile = \"{node}\"\n[nodes.c.mix]\nfrom = \"a\"\nto = \"b\"\nby = 0.5\n[material]\nalbedo = \"c\"\n"
+        );
+        fs::write(folder.path("two.toml"), text).unwrap();
+        "dapple bake two.toml --maps albedo --size 32 -o o.exr"
+    };
+    // Two layers of one file are two images: the mean of 1 and 0.25.
+    let line = recipe("b.exr");
+    run(&folder, line);
+    assert_eq!(read(&folder, "o.exr", "R").row(3)[3], 0.625);
+    // A layer that a node names must be there.
+    let hole = Raster::filled([SIDE; 2], 0.5).unwrap();
+    write_gray_png(folder.path("gray.png"), &hole, Depth::Eight).unwrap();
+    let line = recipe("gray.png\"\nlayer = \"V.Depth");
+    assert_refused(&shell(&folder, line), 1, "PNG has no layers", line);
+}
+
+#[test]
+fn a_layer_without_effect_is_named() {
+    let folder = Folder::new("no-layers");
+    let (r, y) = (texture(0), texture(1));
+    write(&folder, "color.exr", &[("R", &r), ("G", &r), ("B", &r)]);
+    write(&folder, "deep.exr", &[("Y", &r), ("V.Depth.Z", &y)]);
+    let gray = Raster::filled([SIDE; 2], 0.5).unwrap();
+    write_gray_png(folder.path("gray.png"), &gray, Depth::Eight).unwrap();
+    for (file, is_named) in [("color.exr", true), ("gray.png", true), ("deep.exr", false)] {
+        let line = format!("dapple blend {file} --layer V.Depth -o o.exr");
+        let output = shell(&folder, &line);
+        assert_done(&output, &line);
+        let note = format!("note: {file} has no layers, so that --layer V.Depth has no effect");
+        assert_eq!(
+            stderr(&output).contains(&note),
+            is_named,
+            "{}",
+            stderr(&output)
+        );
+        let output = shell(&folder, &format!("{line} --quiet"));
+        assert!(
+            !stderr(&output).contains("no layers"),
+            "{}",
+            stderr(&output)
+        );
     }
 }
 

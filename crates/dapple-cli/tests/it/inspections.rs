@@ -188,7 +188,12 @@ fn columns_of_tables_go_by_their_names() {
     let wide = [&[0xff, 0xfe], &wide[..]].concat();
     fs::write(folder.path("p.csv"), &wide).unwrap();
     let output = run(&folder, "pups control --points p.csv --size 16 -o q.png");
-    assert_refused(&output, 1, "the text is in UTF-16", "UTF-16");
+    assert_refused(
+        &output,
+        1,
+        "the text is UTF-16, but must be UTF-8",
+        "UTF-16",
+    );
     let recipe = run(&folder, "recipe flagstone -o plain.json");
     assert_done(&recipe, "a recipe in JSON");
     let text = fs::read_to_string(folder.path("plain.json")).unwrap();

@@ -37,7 +37,7 @@ impl NodeKind for ImageNode {
 
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
         Ok(Step::Image(Laid {
-            picture: plan.image(&self.file)?.clone(),
+            picture: plan.layer_of(&self.file, self.layer())?.clone(),
             extent: plan.domain().size,
             wrap: plan.wrap(),
         }))

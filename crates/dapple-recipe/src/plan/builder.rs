@@ -3,7 +3,7 @@
 use super::memory::{Memory, StepId};
 use super::step::{Global, Local, Step, Tile};
 use super::work::{Work, WorkSum};
-use super::{Images, Picture, PlanLimits, not_a_number, order};
+use super::{ImageSource, Images, Picture, PlanLimits, not_a_number, order};
 use crate::text::is_data;
 use crate::{Input, Node, NodeSeed, Recipe, RecipeError, RecipeErrorKind, Values};
 use dapple_color::LinearRgb;
@@ -109,8 +109,9 @@ impl<'a> Builder<'a> {
                 write!(text, "{} ", self.ids.get(*self.names.get(name)?)?).ok()?;
             }
         }
-        for file in node.image_files() {
-            write!(text, "image {} ", memory.picture_id(self.images.get(file)?)).ok()?;
+        for source in node.image_sources() {
+            let picture = source.picture(self.images)?;
+            write!(text, "image {} ", memory.picture_id(picture)).ok()?;
         }
         write!(text, "{node:?}").ok()?;
         let id = memory.id(text);
@@ -158,9 +159,20 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// The image with a name.
+    /// The image in a file.
     pub(crate) fn image(&self, file: &str) -> Result<&'a Picture, RecipeError> {
-        self.images.get(file).ok_or_else(|| {
+        self.layer_of(file, None)
+    }
+
+    /// A layer of the image in a file.
+    pub(crate) fn layer_of(
+        &self,
+        file: &str,
+        layer: Option<&str>,
+    ) -> Result<&'a Picture, RecipeError> {
+        let alpha = None;
+        let source = ImageSource { file, layer, alpha };
+        source.picture(self.images).ok_or_else(|| {
             let file = file.to_owned();
             RecipeError::new(RecipeErrorKind::NoImage { file })
         })

@@ -22,6 +22,31 @@ fn a_recipe_is_the_same_after_toml_and_json() {
 }
 
 #[test]
+fn a_mark_changes_neither_recipes_nor_the_places_of_errors() {
+    let json = Recipe::from_toml(STONES).unwrap().to_json().unwrap();
+    let marked = |text: &str| format!("\u{feff}{text}");
+    for recipe in [
+        Recipe::from_toml(&marked(STONES)).unwrap(),
+        Recipe::from_json(&json).unwrap(),
+        Recipe::from_json(&marked(&json)).unwrap(),
+    ] {
+        assert_eq!(recipe.to_json().unwrap(), json);
+    }
+    let wrong = "dapple = 1\n".replace('1', "one");
+    let place = |text: &str| Recipe::from_toml(text).unwrap_err().place();
+    assert_eq!(place(&marked(&wrong)), place(&wrong), "{wrong}");
+    // UTF-16 without a mark is a text in UTF-8 with zeros.
+    let wide: String = STONES.chars().flat_map(|c| [c, '\0']).collect();
+    for error in [Recipe::from_toml(&wide), Recipe::from_json(&wide)] {
+        let error = error.unwrap_err().to_string();
+        assert!(
+            error.contains("the text is UTF-16, but must be UTF-8"),
+            "{error}"
+        );
+    }
+}
+
+#[test]
 fn json_keeps_every_bit_of_a_number() {
     let text = STONES.replace(
         "frequency = 8",

@@ -11,6 +11,7 @@ use axum::http::StatusCode;
 use axum::http::header::CONTENT_TYPE;
 use axum::response::{IntoResponse as _, Response};
 use dapple::image::FileStamp;
+use dapple::raster::text::decode;
 use dapple::recipe::{MAX_TEXT, Recipe};
 use sha2::{Digest as _, Sha256};
 use std::fs::{self, File};
@@ -67,7 +68,7 @@ impl Folder {
             .collect()
     }
 
-    /// The text and the hash of a recipe.
+    /// The text of a recipe without its byte order mark, and the hash of the file.
     pub(super) fn read(&self, name: &str) -> Result<(String, String), StudioError> {
         let path = self.recipe(name)?;
         let cannot = |error: &dyn std::fmt::Display| {
@@ -82,12 +83,11 @@ impl Folder {
             return Err(StudioError::new(format!("{name} is larger than 4 MiB")));
         }
         let hash = hash(&bytes);
-        let text =
-            String::from_utf8(bytes).map_err(|_| StudioError::new(format!("{name} is no text")))?;
-        if !self.is_named(name) && !is_recipe(&text) {
+        let text = decode(&bytes).map_err(|error| cannot(&error))?;
+        if !self.is_named(name) && !is_recipe(text) {
             return Err(no_recipe(name));
         }
-        Ok((text, hash))
+        Ok((text.to_owned(), hash))
     }
 
     /// Writes a recipe, if the file there is still the one that was seen, and gives its hash.
@@ -116,7 +116,15 @@ impl Folder {
             }
             // What a link leads to is replaced, and not the link.
             path = self.recipe(name)?;
+            // The folder may permit what the permissions of the file do not.
+            if fs::metadata(&path).is_ok_and(|found| found.permissions().readonly()) {
+                let hint = "make it writable, or save the recipe under another name";
+                let error = StudioError::new(format!("{name} is read-only"));
+                return Err(error.with_hint(hint));
+            }
         }
+        // Saves of ended processes.
+        dapple::image::remove_left_behind(&path);
         dapple::image::replace(&path, text.as_bytes())
             .map_err(|error| StudioError::new(format!("{name} cannot be written: {error}")))?;
         Ok(hash(text.as_bytes()))
@@ -227,8 +235,8 @@ fn is_recipe(text: &str) -> bool {
         return document.contains_key("dapple");
     }
     let is_key = |line: &str| {
-        let rest = line.trim_start_matches('\u{feff}').trim_start();
-        rest.strip_prefix("dapple")
+        let line = line.trim_start();
+        line.strip_prefix("dapple")
             .is_some_and(|rest| rest.trim_start().starts_with('='))
     };
     text.lines()

@@ -170,6 +170,10 @@ impl Page {
                 None => Ok(()),
             };
         }
+        if let Request::Stop = request {
+            self.worker.stop_exports();
+            return Ok(());
+        }
         let file = self.file.as_ref().map_or("", |(name, _)| name);
         if let Some(task) = self.session.task(&request, file) {
             self.worker.ask(task);

@@ -12,7 +12,7 @@ use dapple::recipe::{Images, Recipe};
 use std::collections::VecDeque;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
-use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 use tokio::sync::mpsc::UnboundedSender;
@@ -48,6 +48,8 @@ struct Inside {
     changed: Condvar,
     /// The newest generation that is wanted.
     newest: AtomicU32,
+    /// Whether the export in progress is to stop.
+    stop: Arc<AtomicBool>,
     start: Instant,
     output: UnboundedSender<Output>,
     images: Mutex<Loaded>,
@@ -77,6 +79,7 @@ impl Worker {
             queue: Mutex::default(),
             changed: Condvar::new(),
             newest: AtomicU32::new(0),
+            stop: Arc::default(),
             start: Instant::now(),
             output,
             images: Mutex::default(),
@@ -139,9 +142,23 @@ impl Worker {
     }
 }
 
+impl Worker {
+    /// Stops the exports of the page, also those that wait.
+    pub(super) fn stop_exports(&self) {
+        let mut queue = self.inside.lock();
+        self.inside.stop.store(true, Ordering::SeqCst);
+        let waiting = std::mem::take(&mut queue.exports);
+        drop(queue);
+        for task in waiting {
+            self.inside.refuse_stopped(&task);
+        }
+    }
+}
+
 impl Drop for Worker {
     fn drop(&mut self) {
         let mut queue = self.inside.lock();
+        self.inside.stop.store(true, Ordering::SeqCst);
         *queue = Queue {
             is_over: true,
             ..Queue::default()
@@ -189,13 +206,23 @@ impl Inside {
         while let Some(task) = self.next_export() {
             let exporting = &self.shared.exporting;
             let one = exporting.lock().unwrap_or_else(PoisonError::into_inner);
-            // The page may have been closed while others were at it.
+            // The page may have been closed, or the export stopped, while others were at it.
             if self.lock().is_over {
                 return;
             }
-            self.attempt(task.what(), || self.perform(&task));
+            if self.stop.load(Ordering::SeqCst) {
+                self.refuse_stopped(&task);
+            } else {
+                self.attempt(task.what(), || self.perform(&task));
+            }
             drop(one);
         }
+    }
+
+    /// Says that an export was stopped before it began.
+    fn refuse_stopped(&self, task: &Task) {
+        let error = StudioError::new("the export was stopped");
+        self.put(Reply::refused(task.what(), &error).into());
     }
 
     /// Does something, and returns whether it was done. A defect in a method must not end the server while somebody works.
@@ -216,6 +243,7 @@ impl Inside {
                 return None;
             }
             if let Some(task) = queue.exports.pop_front() {
+                self.stop.store(false, Ordering::SeqCst);
                 return Some(task);
             }
             queue = self.wait(queue);
@@ -263,9 +291,8 @@ impl Inside {
         let images = |recipe: &Recipe| self.images(recipe);
         let export = |recipe: &Recipe, export: &Export| {
             let shared = &self.shared;
-            let files = shared
-                .host
-                .export(recipe, shared.of_images(recipe)?, export)?;
+            let folder = shared.of_images(recipe)?;
+            let files = shared.host.export(recipe, folder, export, &self.stop)?;
             let (id, files) = shared.exports.keep(files);
             Ok(Reply::Exported { id, files })
         };

@@ -280,6 +280,50 @@ fn only_recipes_are_opened_and_replaced() {
 }
 
 #[test]
+fn a_mark_before_a_recipe_is_neither_shown_nor_saved() {
+    let server = cluttered();
+    let path = |name: &str| server.folder.path().join(name);
+    fs::write(path("marked.toml"), format!("\u{feff}{RECIPE}")).unwrap();
+    let wide: Vec<u8> = RECIPE.encode_utf16().flat_map(u16::to_le_bytes).collect();
+    fs::write(path("wide.toml"), wide).unwrap();
+    let mut page = server.page();
+    until(&mut page, "document");
+    assert_eq!(open(&mut page, "marked.toml"), RECIPE);
+    say(&mut page, &json!({ "type": "open", "file": "wide.toml" }));
+    let refused = refusal(&mut page);
+    let message = refused["message"].as_str().unwrap();
+    assert!(message.contains("UTF-16, but must be UTF-8"), "{message}");
+}
+
+#[test]
+fn a_save_removes_what_ended_saves_have_left() {
+    let server = cluttered();
+    let path = |name: &str| server.folder.path().join(name);
+    fs::write(path(".dapple-x.part"), "half a recipe").unwrap();
+    let mut page = server.page();
+    until(&mut page, "document");
+    save(&mut page, "new.toml", RECIPE);
+    until(&mut page, "saved");
+    assert!(!path(".dapple-x.part").exists());
+}
+
+#[test]
+fn a_file_that_is_read_only_is_not_replaced() {
+    let server = cluttered();
+    let path = server.folder.path().join("good.toml");
+    let mut permissions = fs::metadata(&path).unwrap().permissions();
+    permissions.set_readonly(true);
+    fs::set_permissions(&path, permissions).unwrap();
+    let mut page = server.page();
+    until(&mut page, "document");
+    save(&mut page, "good.toml", "dapple = 1\n");
+    let refused = refusal(&mut page);
+    assert_eq!(refused["what"], "save", "{refused}");
+    assert_eq!(refused["message"], "good.toml is read-only");
+    assert_eq!(fs::read_to_string(&path).unwrap(), RECIPE);
+}
+
+#[test]
 #[cfg(unix)]
 fn links_within_the_folder_are_names_of_recipes_but_not_of_what_is_hidden() {
     use std::os::unix::fs::symlink;

@@ -10,6 +10,7 @@ use std::io::{Read as _, Write as _};
 use std::net::{TcpListener, TcpStream};
 use std::path::Path;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::channel;
 use std::time::{Duration, Instant};
 use tempfile::TempDir;
@@ -17,7 +18,7 @@ use tungstenite::{Message, WebSocket};
 
 /// A program around the server that makes files with nothing in them.
 ///
-/// It waits as long as the folder has a file `wait`.
+/// It waits as long as the folder has a file `wait`, or until it is stopped; then it writes a file `stopped`.
 struct TestHost;
 
 impl Host for TestHost {
@@ -30,8 +31,13 @@ impl Host for TestHost {
         recipe: &Recipe,
         folder: &Path,
         _: &Export,
+        stop: &Arc<AtomicBool>,
     ) -> Result<Vec<ExportedFile>, StudioError> {
         while folder.join("wait").exists() {
+            if stop.load(Ordering::SeqCst) {
+                fs::write(folder.join("stopped"), "").unwrap();
+                return Err(StudioError::new("stopped in the middle"));
+            }
             std::thread::sleep(Duration::from_millis(10));
         }
         let name = format!("{} 1.txt", recipe.name);
@@ -492,6 +498,45 @@ fn exports_are_fetched_with_the_secret() {
         server.status("/export/1/other", &["Host: HOST", &token]),
         404
     );
+}
+
+#[test]
+fn exports_stop_on_request_and_with_their_page() {
+    let server = Server::new(Some("my.toml"));
+    let path = |name: &str| server.folder.path().join(name);
+    fs::write(path("wait"), "").unwrap();
+    let export = json!({ "type": "export", "size": [16, 16], "maps": ["height"] });
+    let mut page = server.page();
+    until(&mut page, "values");
+    // One in progress and one that waits.
+    say(&mut page, &export);
+    say(&mut page, &export);
+    say(&mut page, &json!({ "type": "stop" }));
+    for _ in 0..2 {
+        let refused = until(&mut page, "refused");
+        assert_eq!(refused["what"], "export", "{refused}");
+        let message = refused["message"].as_str().unwrap();
+        assert!(message.contains("stopped"), "{message}");
+    }
+    // A stopped page exports again.
+    fs::remove_file(path("wait")).unwrap();
+    say(&mut page, &export);
+    until(&mut page, "exported");
+    // The end of a page stops its export.
+    fs::write(path("wait"), "").unwrap();
+    let _ = fs::remove_file(path("stopped"));
+    say(&mut page, &export);
+    say(&mut page, &json!({ "type": "seams", "size": [8, 8] }));
+    until(&mut page, "seams");
+    drop(page);
+    let start = Instant::now();
+    while !path("stopped").exists() {
+        assert!(
+            start.elapsed() < Duration::from_secs(20),
+            "it is not stopped"
+        );
+        std::thread::sleep(Duration::from_millis(10));
+    }
 }
 
 #[test]

@@ -35,7 +35,7 @@ impl<'a> Batch<'a> {
         match result.with_context(|| format!("{name} was not baked")) {
             Ok(value) => Ok(Some(value)),
             Err(error) if self.keep_going => {
-                report(&error, &self.context.arguments);
+                report(&error, &self.context.options);
                 self.n_failed += 1;
                 Ok(None)
             }

@@ -1,7 +1,7 @@
 //! Options of the material that `bake` and `shards` share: size, maps, seed, relief, direction of normals.
 
 use super::maps::Maps;
-use crate::args::{Size, seed};
+use crate::args::{FiniteArgs, Size, seed};
 use crate::baking::advise;
 use crate::error::Hint;
 use crate::words::Word;
@@ -43,6 +43,10 @@ pub(in crate::commands) struct MaterialArgs {
     /// How many units of the plane a height of 1 stands for, from -1e6 to 1e6, instead of what the recipe says.
     #[arg(long, value_name = "UNITS")]
     relief: Option<f64>,
+
+    #[command(flatten)]
+    #[serde(flatten)]
+    pub(in crate::commands) finite: FiniteArgs,
 }
 
 impl MaterialArgs {
@@ -68,7 +72,9 @@ impl MaterialArgs {
     pub(in crate::commands) fn blame(&self, error: RecipeError) -> Error {
         // The recipe has the relief that was typed, which may be NaN, and so equal to nothing.
         let is_of_relief = matches!(error.kind(), RecipeErrorKind::Range { what: "relief", .. });
-        match is_of_relief && self.relief.is_some() {
+        // A node may have a relief of its own.
+        let is_of_material = error.node() == Some("material");
+        match is_of_relief && is_of_material && self.relief.is_some() {
             true => advise(error).wrong_value(),
             false => advise(error),
         }
@@ -85,6 +91,7 @@ impl MaterialArgs {
             self.normal_y
                 .map(|way| format!("--normal-y={}", way.name())),
             self.relief.map(|relief| format!("--relief={relief}")),
+            self.finite.word(),
         ];
         options.into_iter().flatten().collect()
     }

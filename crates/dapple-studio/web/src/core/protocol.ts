@@ -72,6 +72,7 @@ export type Request =
   | { type: 'points'; node: string }
   | { type: 'code'; kind: CodeKind; size: [number, number]; maps: string[] }
   | ({ type: 'export' } & ExportOptions)
+  | { type: 'stop' }
   | { type: 'save'; text: string; file: string; overwrite: boolean; seen: string | null };
 
 /** What a recipe can be copied as. */

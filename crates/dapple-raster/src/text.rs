@@ -1,0 +1,118 @@
+//! Decoding of texts of files: recipes, tables, lists and text formats of meshes.
+//!
+//! All texts are UTF-8. A byte order mark before a text is skipped, and other encodings of Unicode are named in the error.
+
+crate::error! {
+    /// An error of decoding a text.
+    TextError,
+    /// The cause of a [`TextError`].
+    TextErrorKind {
+        /// The text has another encoding of Unicode.
+        Encoding {
+            /// The name of the encoding: UTF-16 or UTF-32.
+            found: &'static str,
+        } => "the text is {found}, but must be UTF-8";
+        /// The bytes are not UTF-8.
+        NotUtf8 {
+            /// The number of bytes before the first invalid one.
+            at: usize,
+        } => "the text is not UTF-8 at byte {at}";
+    }
+}
+
+/// The byte order mark in UTF-8.
+const MARK: &[u8] = b"\xef\xbb\xbf";
+
+/// Returns the bytes of a text after its byte order mark, if it has one. The bytes may be invalid UTF-8, such as the
+/// Latin-1 comments of old files.
+///
+/// UTF-16 and UTF-32 are recognized by their marks; without a mark, by the zero bytes of two (UTF-16) or one (UTF-32)
+/// characters of ASCII at the beginning.
+///
+/// # Errors
+///
+/// [`Encoding`](TextErrorKind::Encoding) for UTF-16 and UTF-32.
+pub fn without_mark(bytes: &[u8]) -> Result<&[u8], TextError> {
+    let found = match *bytes {
+        // The mark of UTF-32 in little endian begins like the mark of UTF-16.
+        [0xff, 0xfe, 0, 0, ..] | [0, 0, 0xfe, 0xff, ..] => "UTF-32",
+        [1..=0x7f, 0, 0, 0, ..] | [0, 0, 0, 1..=0x7f, ..] => "UTF-32",
+        [0xff, 0xfe, ..] | [0xfe, 0xff, ..] => "UTF-16",
+        [1..=0x7f, 0, 1..=0x7f, 0, ..] | [0, 1..=0x7f, 0, 1..=0x7f, ..] => "UTF-16",
+        _ => return Ok(bytes.strip_prefix(MARK).unwrap_or(bytes)),
+    };
+    Err(TextError::new(TextErrorKind::Encoding { found }))
+}
+
+/// Decodes a text in UTF-8 and skips its byte order mark. A text that is a `str` already may have a mark, too.
+///
+/// # Errors
+///
+/// [`Encoding`](TextErrorKind::Encoding) for UTF-16 and UTF-32; [`NotUtf8`](TextErrorKind::NotUtf8) for other bytes.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_raster::text::decode;
+///
+/// assert_eq!(decode(b"\xef\xbb\xbfx,y")?, "x,y");
+/// let error = decode(b"\xff\xfex\0,\0y\0").unwrap_err();
+/// assert_eq!(error.to_string(), "the text is UTF-16, but must be UTF-8");
+/// # Ok::<(), dapple_raster::text::TextError>(())
+/// ```
+pub fn decode(bytes: &[u8]) -> Result<&str, TextError> {
+    let text = without_mark(bytes)?;
+    core::str::from_utf8(text).map_err(|error| {
+        let at = bytes.len() - text.len() + error.valid_up_to();
+        TextError::new(TextErrorKind::NotUtf8 { at })
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{TextErrorKind, decode, without_mark};
+
+    fn wide<const N: usize, U>(units: impl Iterator<Item = U>, code: fn(U) -> [u8; N]) -> Vec<u8> {
+        units.flat_map(code).collect()
+    }
+
+    #[test]
+    fn one_mark_of_utf_8_is_skipped() {
+        assert_eq!(decode("\u{feff}dapple = 1".as_bytes()), Ok("dapple = 1"));
+        assert_eq!(decode("dapple = 1".as_bytes()), Ok("dapple = 1"));
+        assert_eq!(decode("\u{feff}\u{feff}a".as_bytes()), Ok("\u{feff}a"));
+        assert_eq!(decode(b""), Ok(""));
+        assert_eq!(decode(b"\xef\xbb\xbf"), Ok(""));
+    }
+
+    #[test]
+    fn utf_16_and_utf_32_are_named_with_and_without_marks() {
+        let text = "x,y \u{1f600}";
+        let marked = format!("\u{feff}{text}");
+        for text in [text, &marked] {
+            for bytes in [
+                wide(text.encode_utf16(), u16::to_le_bytes),
+                wide(text.encode_utf16(), u16::to_be_bytes),
+            ] {
+                let error = decode(&bytes).unwrap_err();
+                assert_eq!(error.kind(), &TextErrorKind::Encoding { found: "UTF-16" });
+                assert!(without_mark(&bytes).is_err());
+            }
+            let codes = || text.chars().map(u32::from);
+            for bytes in [
+                wide(codes(), u32::to_le_bytes),
+                wide(codes(), u32::to_be_bytes),
+            ] {
+                let error = decode(&bytes).unwrap_err();
+                assert_eq!(error.kind(), &TextErrorKind::Encoding { found: "UTF-32" });
+            }
+        }
+    }
+
+    #[test]
+    fn bytes_that_are_not_utf_8_are_refused_with_their_place() {
+        let error = decode(b"\xef\xbb\xbfab\xe9c").unwrap_err();
+        assert_eq!(error.to_string(), "the text is not UTF-8 at byte 5");
+        assert_eq!(without_mark(b"\xe9"), Ok(b"\xe9".as_slice()));
+    }
+}
