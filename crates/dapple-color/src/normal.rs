@@ -219,13 +219,7 @@ impl Normal {
             return self;
         }
         let [x, y] = parts;
-        let length = (x * x + y * y + z * z).sqrt();
-        if length > 0.0 {
-            let [x, y, z] = [x, y, z].map(|part| part / length);
-            Self { x, y, z }
-        } else {
-            Self::FLAT
-        }
+        Self::unit([x, y, z])
     }
 
     /// The unit vector for the codes of an image, as programs read it: `2 code / max - 1`, normalized.
@@ -234,7 +228,11 @@ impl Normal {
     /// vector cannot be normalized become a flat normal.
     #[must_use]
     pub fn from_codes<C: Code>(codes: [C; 3]) -> Self {
-        let [x, y, z] = codes.map(|code| 2.0 * code.to_unit() - 1.0);
+        Self::unit(codes.map(|code| 2.0 * code.to_unit() - 1.0))
+    }
+
+    /// The unit vector in a direction; a flat normal for a direction without a length.
+    fn unit([x, y, z]: [f32; 3]) -> Self {
         let length = (x * x + y * y + z * z).sqrt();
         if length > 0.0 {
             let [x, y, z] = [x, y, z].map(|part| part / length);

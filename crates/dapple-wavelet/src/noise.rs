@@ -157,3 +157,6 @@ pub(crate) fn check_weights(weights: &[f32]) -> Result<(), WaveletError> {
 
 #[cfg(test)]
 mod tests;
+
+#[cfg(test)]
+mod power;

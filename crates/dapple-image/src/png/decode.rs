@@ -35,14 +35,7 @@ pub fn decode_png(bytes: &[u8], limits: &Limits) -> Result<PngImage, ImageError>
     reader.next_frame(&mut samples).map_err(refuse)?;
     // Without the end of the file, chunks after the pixels may be lost, so it counts as damaged, too.
     reader.finish().map_err(refuse)?;
-    let transfer = transfer_of(reader.info());
-    let pixels = PngPixels::from_samples(size, reader.output_color_type(), &samples)?;
-    let space = space::of(reader.info());
-    Ok(PngImage {
-        pixels,
-        transfer,
-        space,
-    })
+    image_of(&reader, size, &samples)
 }
 
 /// Decodes a part of a PNG file, row by row: `size` pixels from column and row `first`. Only the part has to be within the
@@ -94,8 +87,17 @@ pub fn decode_png_region(
             samples.extend_from_slice(&data.data()[left..left + width]);
         }
     }
+    image_of(&reader, size, &samples)
+}
+
+/// The image of decoded samples, with what the file says of its colors.
+fn image_of(
+    reader: &png::Reader<Cursor<&[u8]>>,
+    size: [u32; 2],
+    samples: &[u8],
+) -> Result<PngImage, ImageError> {
     let transfer = transfer_of(reader.info());
-    let pixels = PngPixels::from_samples(size, reader.output_color_type(), &samples)?;
+    let pixels = PngPixels::from_samples(size, reader.output_color_type(), samples)?;
     let space = space::of(reader.info());
     Ok(PngImage {
         pixels,

@@ -497,3 +497,42 @@ fn normals_wrap_where_the_recipe_does() {
         );
     }
 }
+
+#[test]
+fn a_warp_of_a_node_that_sees_the_whole_tile_moves_its_pixels() {
+    let plan = plan(
+        r#"
+dapple = 1
+[nodes]
+a = { noise = { octaves = 2 } }
+whole = { tile = { input = "a", method = "periodic" } }
+moved = { warp = { input = "whole", x = 0.25, y = 0.0 } }
+[material]
+height = "moved"
+"#,
+    );
+    let numbers = |node: &str| match plan.node_picture(node, [32, 32], None) {
+        Ok(Picture::Numbers(raster)) => raster,
+        other => panic!("{node}: {other:?}"),
+    };
+    // The extent is 1, so that a displacement of a quarter is 8 of 32 pixels.
+    let (whole, moved) = (numbers("whole"), numbers("moved"));
+    for row in 0..32 {
+        for column in 0..32 {
+            let [from, to] = [whole.row(row)[(column + 8) % 32], moved.row(row)[column]];
+            // Positions are rounded to f64 and weights of the interpolation to f32.
+            assert!(
+                (from - to).abs() < 1e-5,
+                "at {column}, {row}: {from} and {to}"
+            );
+        }
+    }
+    let banded = BakeOptions {
+        memory: BakeMemory::Banded,
+        ..BakeOptions::default()
+    };
+    let error = Bake::new(&plan, &banded)
+        .err()
+        .expect("bands have no whole tile");
+    assert!(matches!(error.kind(), RecipeErrorKind::Global { .. }));
+}

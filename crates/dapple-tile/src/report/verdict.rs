@@ -1,6 +1,7 @@
 //! The verdict: the faults of a tile, by the numbers of its report.
 //!
-//! The limits were set on 2 × 2 copies of 16 photographs, made to repeat in 9 ways, that were judged by eye first.
+//! The limits were set on 2 × 2 copies of 16 photographs, made to repeat in 9 ways, that were judged by eye first. The README says how
+//! far the verdict agrees with eyes on photographs that were not used for that.
 
 use super::{DetailKept, SeamReport};
 use core::fmt;
