@@ -11,6 +11,7 @@ mod beside_flat;
 mod drawings;
 #[cfg(feature = "peers")]
 mod features;
+mod layout;
 mod matching;
 mod on_surface;
 mod scene;
@@ -33,6 +34,7 @@ pub(crate) fn run(bench: &mut Bench) -> Result<()> {
     table_1::run(bench)?;
     steps::run(bench)?;
     size::run(bench)?;
+    layout::run(bench)?;
     matching::run(bench)?;
     on_surface::run(bench)?;
     #[cfg(feature = "peers")]

@@ -261,6 +261,30 @@ fn repeats_across_a_mesh_set_the_number_of_sites() {
 }
 
 #[test]
+fn sites_and_directions_are_refused_before_charts_are_cut() {
+    let folder = Folder::with_inputs("refused_early");
+    write_square(&folder);
+    let run = |more: &str| {
+        let line = format!("synth checker.png --mesh square.obj --texture-size 1 {more}");
+        let refused = folder.run(&line.split_whitespace().collect::<Vec<_>>());
+        assert_ne!(refused.status.code(), Some(0), "{line}");
+        stderr(&refused)
+    };
+    // A chart with its padding has no room in one texel, which is said last.
+    let said = run("-o a.glb");
+    assert!(said.contains("side of the texture map"), "{said}");
+    for (more, word) in [
+        ("--repeat 0 -o b.glb", "the number of repeats is 0"),
+        ("--sites 0 -o c.glb", "there are 0 sites"),
+        ("--directions none.csv -o d.glb", "none.csv"),
+    ] {
+        let said = run(more);
+        assert!(said.contains(word), "{more}: {said}");
+        assert!(!said.contains("side of the texture map"), "{more}: {said}");
+    }
+}
+
+#[test]
 fn colors_of_vertices_say_what_an_image_of_them_says() {
     let folder = Folder::with_inputs("painted_mesh");
     // A square that is painted black on the left and white on the right.

@@ -14,7 +14,7 @@ use super::{Atlas, check_padding, check_side, own_uvs};
 use crate::{SynthError, SynthErrorKind};
 use core::ops::ControlFlow;
 use dapple_mesh::Surface;
-use glam::{DVec2, DVec3};
+use glam::{DVec2, DVec3, Vec3};
 use std::sync::{Mutex, PoisonError};
 use uvunwrap::{Density, MeshInput, Options, Packing, Progress, Stage};
 
@@ -87,6 +87,14 @@ pub(super) fn charts(
         n_charts: 0,
         stopped: None,
     });
+    // Charts are connected.
+    let n_least = n_components(&positions, &indices);
+    if n_least as u64 > room {
+        return Err(too_small(side));
+    }
+    if n_least > MANY {
+        options.packing = Packing::Fast;
+    }
     let mut layout;
     loop {
         let most = match options.packing {
@@ -153,6 +161,50 @@ impl Watch<'_> {
         };
         self.stopped.is_none()
     }
+}
+
+/// Number of connected components of the faces that have an area, where vertices at one position are one: a lower bound of the
+/// number of charts.
+fn n_components(positions: &[[f32; 3]], indices: &[u32]) -> usize {
+    // The first vertex at the position of each vertex. The sum makes one zero of both.
+    let bits = |vertex: u32| positions[vertex as usize].map(|part| (part + 0.0).to_bits());
+    let mut order: Vec<u32> = (0..positions.len() as u32).collect();
+    order.sort_unstable_by_key(|&vertex| (bits(vertex), vertex));
+    let mut roots: Vec<u32> = (0..positions.len() as u32).collect();
+    for pair in order.windows(2) {
+        if bits(pair[0]) == bits(pair[1]) {
+            roots[pair[1] as usize] = roots[pair[0] as usize];
+        }
+    }
+    // Join the corners of each face.
+    let mut has_area = vec![false; positions.len()];
+    for face in indices.chunks_exact(3) {
+        let [a, b, c] = [face[0], face[1], face[2]];
+        let root = [a, b, c].map(|vertex| root(&mut roots, vertex));
+        let least = root[0].min(root[1]).min(root[2]);
+        for other in root {
+            roots[other as usize] = least;
+        }
+        let at = |vertex: u32| Vec3::from(positions[vertex as usize]).as_dvec3();
+        has_area[a as usize] |= (at(b) - at(a)).cross(at(c) - at(a)) != DVec3::ZERO;
+    }
+    let mut counted = vec![false; positions.len()];
+    for vertex in 0..positions.len() {
+        if has_area[vertex] {
+            counted[root(&mut roots, vertex as u32) as usize] = true;
+        }
+    }
+    counted.into_iter().filter(|&counted| counted).count()
+}
+
+/// The root of a vertex in a forest, whose paths are halved on the way.
+fn root(roots: &mut [u32], mut vertex: u32) -> u32 {
+    while roots[vertex as usize] != vertex {
+        let above = roots[roots[vertex as usize] as usize];
+        roots[vertex as usize] = above;
+        vertex = above;
+    }
+    vertex
 }
 
 /// The corners of a face, or none if they have no area.

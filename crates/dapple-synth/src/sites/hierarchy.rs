@@ -51,6 +51,16 @@ impl Default for HierarchyOptions {
 }
 
 impl HierarchyOptions {
+    /// Refuses what [`Hierarchy::new`] refuses, in a small part of its time.
+    ///
+    /// # Errors
+    ///
+    /// The errors of [`Hierarchy::new`].
+    pub fn check(&self, surface: &Surface) -> Result<(), SynthError> {
+        let counts = self.counts()?;
+        check_crossings(surface, counts[0], self.seed)
+    }
+
     /// The number of sites of each level, the finest first.
     fn counts(&self) -> Result<Vec<usize>, SynthError> {
         let refuse = |what, count, needed| {
@@ -106,8 +116,8 @@ impl Hierarchy {
     /// 10,000 iterations, and [`SynthErrorKind::Range`] for a surface that crosses itself in so many places that a site has
     /// more than 512 others within two spacings, where a single sheet has 15.
     pub fn new(surface: &Surface, options: &HierarchyOptions) -> Result<Self, SynthError> {
+        options.check(surface)?;
         let counts = options.counts()?;
-        check_crossings(surface, counts[0], options.seed)?;
         let ascending: Vec<usize> = counts.iter().rev().copied().collect();
         let points = nested_points(surface, &ascending, options.seed, options.iterations);
         let sites = Sites::new(surface, points);

@@ -124,6 +124,11 @@ pub(super) fn run(args: &Args, mesh: &Path, context: &Context) -> Result<Exit> {
         eprintln_if_possible(&format!("{}: repaired; see dapple info", mesh.display()));
     }
     let surface = Surface::new(repaired).with_context(|| mesh.display().to_string())?;
+    // What is refused is refused before charts are cut, which takes long.
+    let size = input.layout.size_of(0);
+    let (sites, note) = sites(args, example.is_some(), &surface, size)?;
+    sites.check(&surface).map_err(advise)?;
+    let directions = directions(args.surface.directions.as_deref())?;
     let atlas = match claimed.product {
         Product::Sites(_) => None,
         _ => Some(atlas(args, &surface, &model, &repair, context)?),
@@ -134,10 +139,7 @@ pub(super) fn run(args: &Args, mesh: &Path, context: &Context) -> Result<Exit> {
     let double_sided = model.material.double_sided
         || repair.before.back_to_back_faces > 0
         || input.base.alpha.is_some();
-    let size = input.layout.size_of(0);
-    let (sites, note) = sites(args, example.is_some(), &surface, size)?;
     let spinner = Progress::spinner("scattering sites", context);
-    let directions = directions(args.surface.directions.as_deref())?;
     let synthesizer = synthesizer(surface, args, &sites, &directions).map_err(advise)?;
     let synthesizer = scaled(synthesizer, args, &model, &repair)?;
     let exemplar = example.map(|example| exemplar_of_mesh(args, example, &input.exemplar));

@@ -1,6 +1,6 @@
 //! Charts of small meshes.
 
-use super::{FLAT, MANY, padding};
+use super::{MANY, n_components, padding};
 use crate::SynthErrorKind;
 use crate::atlas::{Atlas, report::pieces, tangents::center, weights};
 use crate::shapes::{
@@ -10,6 +10,8 @@ use core::ops::ControlFlow;
 use dapple_mesh::{FaceIdx, Mesh, Surface};
 use glam::{DVec2, DVec3};
 use proptest::prelude::*;
+use std::collections::HashSet;
+use std::sync::Mutex;
 
 /// The cube from 0 to 1.
 fn cube() -> Mesh {
@@ -241,21 +243,72 @@ fn many_charts_are_packed_in_rows_and_refused_early() {
     let atlas = Atlas::charts(&surface, 256).unwrap();
     assert_apart(&atlas);
     assert_eq!(atlas.report(&surface).pieces, MANY + 100);
-    // Of 64 x 64 texels, 5 are the least for a chart with a padding of 1: 819 charts at most.
-    let mut parts = Vec::new();
-    let refused = Atlas::charts_with(&squares(1600), 64, None, |part| {
-        parts.push(part);
-        ControlFlow::Continue(())
-    });
+    let calls_of = |surface: &Surface, side: u32| {
+        let mut n_calls = 0;
+        let atlas = Atlas::charts_with(surface, side, None, |_| {
+            n_calls += 1;
+            ControlFlow::Continue(())
+        });
+        (atlas, n_calls)
+    };
+    // Each chart is cut once: a first try to pack them by their shapes would report more than 512 of them twice.
+    let (_, n_calls) = calls_of(&surface, 256);
+    assert!(n_calls < 2 * MANY, "{n_calls} calls");
+    // Of 64 x 64 texels, 5 are the least for a chart with a padding of 1: 819 charts at most. So many components are refused
+    // before any is cut.
+    let (refused, n_calls) = calls_of(&squares(820), 64);
     let error = refused.unwrap_err();
     assert!(
         matches!(error.kind(), SynthErrorKind::Range { .. }),
         "{error}"
     );
-    assert!(
-        parts.iter().all(|&part| part < FLAT),
-        "refused before they are packed"
-    );
+    assert_eq!(n_calls, 0, "refused before it is cut");
+}
+
+#[test]
+fn components_are_counted_over_vertices_at_one_position() {
+    let positions = [
+        [0.0, 0.0, 0.0],
+        [1.0, 0.0, 0.0],
+        [0.0, 1.0, 0.0],
+        [-0.0, 0.0, 0.0],
+        [2.0, 0.0, 1.0],
+        [2.0, 1.0, 1.0],
+        [3.0, 3.0, 3.0],
+    ];
+    // The second face touches the first one, the third has no area.
+    assert_eq!(n_components(&positions, &[0, 1, 2, 3, 4, 5, 6, 6, 6]), 1);
+    assert_eq!(n_components(&positions, &[0, 1, 2, 4, 5, 6]), 2);
+    assert_eq!(n_components(&positions, &[0, 1, 2, 4, 5, 6, 2, 5, 1]), 1);
+    assert_eq!(n_components(&[], &[]), 0);
+}
+
+#[test]
+fn charts_are_flattened_on_the_threads_of_the_caller_with_the_same_bits() {
+    let surface = torus(96, 48);
+    let with = |n_threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(n_threads);
+        let threads = Mutex::new(HashSet::new());
+        let atlas = pool.build().unwrap().install(|| {
+            Atlas::charts_with(&surface, 512, None, |_| {
+                let own = (rayon::current_num_threads(), std::thread::current().id());
+                threads.lock().unwrap().insert(own);
+                ControlFlow::Continue(())
+            })
+        });
+        (atlas.unwrap(), threads.into_inner().unwrap())
+    };
+    let (want, threads) = with(1);
+    assert_eq!(threads.len(), 1);
+    for n_threads in [2, 7] {
+        let (atlas, threads) = with(n_threads);
+        assert!(atlas == want, "{n_threads} threads");
+        assert!(threads.iter().all(|&(n, _)| n == n_threads), "{threads:?}");
+        assert!(
+            threads.len() > 1,
+            "all charts are on one of {n_threads} threads"
+        );
+    }
 }
 
 #[test]
