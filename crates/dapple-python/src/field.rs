@@ -88,18 +88,14 @@ impl Field {
     }
 
     /// Writes the values at some positions.
-    fn sample_chunk<'a>(&self, places: impl Iterator<Item = &'a [f64]>, values: &mut [f32]) {
+    fn sample_chunk(&self, positions: &[f64], values: &mut [f32]) {
         match &self.function {
             Function::Plane(field) => {
-                let places: Vec<_> = places.take(values.len()).map(position).collect();
+                let places: Vec<_> = positions.chunks_exact(2).map(position).collect();
                 // The lengths are equal, and there are no other errors.
                 let _ = field.sample_many(&places, values);
             }
-            Function::Space(volume) => {
-                for (value, place) in values.iter_mut().zip(places) {
-                    *value = volume.sample(place);
-                }
-            }
+            Function::Space(volume) => volume.sample_many(positions, values),
         }
     }
 
@@ -310,8 +306,9 @@ impl Field {
             watch::in_parts(stop, values.len(), CHUNK, |part| {
                 let numbers = &positions.numbers[part.start * n_axes..part.end * n_axes];
                 parallel::for_each_chunk(&mut values[part], CHUNK, |chunk, values| {
-                    let places = numbers[chunk * CHUNK * n_axes..].chunks_exact(n_axes);
-                    self.sample_chunk(places, values);
+                    let first = chunk * CHUNK * n_axes;
+                    let positions = &numbers[first..first + values.len() * n_axes];
+                    self.sample_chunk(positions, values);
                 });
                 Ok(())
             })
@@ -414,8 +411,7 @@ impl Field {
         })
     }
 
-    /// This field at positions moved by `amount` times the values of the fields `x` and `y` (domain warping); in
-    /// space, positions move within their plane.
+    /// This field at positions moved by `amount` times the values of other fields, one for each axis (domain warping).
     ///
     /// Parameters
     /// ----------
@@ -425,22 +421,53 @@ impl Field {
     ///     The field of displacements along y.
     /// amount : float
     ///     The factor of the displacements.
+    /// z : Field or None, default None
+    ///     The field of displacements along z, of fields with three or four axes; positions keep their z by default.
+    /// w : Field or None, default None
+    ///     The field of displacements along w, of fields with four axes; positions keep their w by default.
     ///
     /// Returns
     /// -------
     /// Field
-    ///     The field.
+    ///     The warped field. It has the largest number of axes of these fields.
     ///
     /// Raises
     /// ------
     /// DappleError
-    ///     If an argument is refused; the message names the limit and the value.
-    fn warp(&self, x: &Self, y: &Self, amount: f64) -> Result<Self> {
+    ///     If `amount` is not finite, if fields of three and of four axes are combined, or if no field has the axis `z`
+    ///     or `w` of a displacement.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import dapple_textures as dp
+    /// >>> smoke, x, y, z = (dp.gradient_noise(seed=seed, dims=3) for seed in range(4))
+    /// >>> smoke.warp(x, y, 0.5, z=z).render((4, 64, 64), extent=4).shape
+    /// (4, 64, 64)
+    #[pyo3(signature = (x, y, amount, *, z = None, w = None))]
+    fn warp(
+        &self,
+        x: &Self,
+        y: &Self,
+        amount: f64,
+        z: Option<PyRef<'_, Self>>,
+        w: Option<PyRef<'_, Self>>,
+    ) -> Result<Self> {
+        let along = |field: Option<&PyRef<'_, Self>>| match field {
+            Some(field) => field.made.clone(),
+            None => Shared::new(Made::Constant(0.0)),
+        };
+        let n_further = match (&z, &w) {
+            (_, Some(_)) => 2,
+            (Some(_), None) => 1,
+            (None, None) => 0,
+        };
+        let further = [z.as_ref(), w.as_ref()].map(along);
         Self::new(Made::Warp {
             field: self.made.clone(),
             x: x.made.clone(),
             y: y.made.clone(),
             amount,
+            further: further[..n_further].to_vec(),
         })
     }
 

@@ -7,6 +7,7 @@ mod arrays;
 mod bands;
 mod blending;
 mod color_field;
+mod composed;
 mod data;
 mod error;
 mod field;
