@@ -43,7 +43,7 @@ mod _native {
     #[pymodule_export]
     use crate::color_field::ColorField;
     #[pymodule_export]
-    use crate::error::DappleError;
+    use crate::error::{DappleError, DappleWarning};
     #[pymodule_export]
     use crate::field::{_field_from_description, Field, constant};
     #[pymodule_export]

@@ -44,7 +44,7 @@ def test_docstring(name):
 
 def _sections(text):
     """The sections of a docstring in the form of numpydoc, each as a list of (names, type, description)."""
-    parts = re.split(r"^(Parameters|Returns|Raises|Examples)\n-+\n", text, flags=re.M)
+    parts = re.split(r"^(Parameters|Returns|Raises|Warns|Examples)\n-+\n", text, flags=re.M)
     sections = dict(zip(parts[1::2], parts[2::2]))
     sections.pop("Examples", None)
     parsed = {}
@@ -60,7 +60,7 @@ def _sections(text):
     return parsed
 
 
-CALLS = {name: thing for name, thing in THINGS.items() if callable(thing) and name != "DappleError" and not hasattr(thing, "_fields")}
+CALLS = {name: thing for name, thing in THINGS.items() if callable(thing) and name not in ("DappleError", "DappleWarning") and not hasattr(thing, "_fields")}
 
 
 @pytest.mark.parametrize("name", CALLS)
@@ -90,6 +90,8 @@ def test_a_docstring_is_numpydoc(name):
     if not inspect.isclass(thing) and name.split(".")[-1] not in NOTHING:
         [(_, kind, text)] = sections["Returns"]
         assert kind and text
+    for kind in [kind for _, kind, _ in sections.get("Warns", [])]:
+        assert issubclass(vars(dp)[kind], Warning)
     if "Raises" in sections:
         known = vars(builtins) | {"DappleError": dp.DappleError}
         assert all(issubclass(known[kind], Exception) and text for _, kind, text in sections["Raises"])

@@ -46,6 +46,8 @@ class DappleError(ValueError):
     node: str | None
     hint: str | None
 
+class DappleWarning(UserWarning): ...
+
 # Fields.
 
 @disjoint_base
