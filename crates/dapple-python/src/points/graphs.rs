@@ -3,7 +3,7 @@
 use super::{Domain, Points, set};
 use crate::arrays;
 use crate::error::{Error, Result};
-use crate::threads;
+use crate::watch::{self, Stop};
 use dapple::graph::{Axis, Direction, GraphError};
 use dapple::points::{PointIdx, PointSet};
 use dapple::raster::glam::DVec2;
@@ -30,10 +30,11 @@ impl GraphMade {
     pub(crate) fn build(
         self,
         points: &PointSet,
+        stop: &Stop,
     ) -> core::result::Result<dapple::graph::Graph, GraphError> {
         match self {
-            Self::Delaunay => dapple::graph::delaunay(points),
-            Self::Gabriel => dapple::graph::gabriel(points),
+            Self::Delaunay => dapple::graph::delaunay_cancellable(points, &|| stop.is_set()),
+            Self::Gabriel => dapple::graph::gabriel_cancellable(points, &|| stop.is_set()),
             Self::Yao { cones, direction } => dapple::graph::yao(points, cones, direction),
             Self::KNearest { k, direction } => dapple::graph::k_nearest(points, k, direction),
         }
@@ -54,7 +55,7 @@ pub(crate) struct Graph {
 impl Graph {
     fn new(py: Python<'_>, points: Arc<PointSet>, made: GraphMade) -> Result<Self> {
         let set = Arc::clone(&points);
-        let graph = threads::run(py, move || made.build(&set))??;
+        let graph = watch::run(py, None, move |_, stop| made.build(&set, stop))??;
         Ok(Self {
             points,
             made,
@@ -98,8 +99,8 @@ impl Graph {
             ));
         }
         let points = Arc::clone(&self.points);
-        Ok(threads::run(py, move || {
-            dapple::graph::delaunay_triangles(&points)
+        Ok(watch::run(py, None, move |_, stop| {
+            dapple::graph::delaunay_triangles_cancellable(&points, &|| stop.is_set())
         })??)
     }
 }

@@ -4,6 +4,7 @@ use super::Domain;
 use crate::arrays::{self, Positions};
 use crate::error::{Error, Result};
 use crate::threads;
+use crate::watch;
 use dapple::points::PointSet;
 use dapple::raster::glam::DVec2;
 use pyo3::prelude::*;
@@ -326,7 +327,10 @@ pub(crate) fn spectrum<'py>(
         highest_frequency,
         ring_width,
     };
-    let rings = threads::run(py, move || dapple::points::spectrum(&sets, &options))??.rings;
+    let rings = watch::run(py, None, move |_, stop| {
+        dapple::points::spectrum_cancellable(&sets, &options, &|| stop.is_set())
+    })??
+    .rings;
     let column = |number: &dyn Fn(&dapple::points::SpectrumRing) -> f64| {
         let numbers: Vec<f64> = rings.iter().map(number).collect();
         arrays::array(py, numbers, &[rings.len()])

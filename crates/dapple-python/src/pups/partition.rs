@@ -11,6 +11,7 @@ use crate::points::{Domain, Graph, GraphMade, Points};
 use crate::seed::SeedArgument;
 use crate::shared::{Build, Shared};
 use crate::threads;
+use crate::watch::Stop;
 use dapple::points::{PointIdx, PointSet};
 use dapple::pups::{Orientation, Orientations, Pups, PupsOptions};
 use dapple::raster::RasterViewMut;
@@ -38,7 +39,7 @@ impl Build for NetMade {
         let options = self.options.clone();
         Ok(match self.graph {
             GraphMade::Delaunay => Pups::delaunay_with(&points, options)?,
-            graph => Pups::new(&points, &graph.build(&points)?, options)?,
+            graph => Pups::new(&points, &graph.build(&points, &Stop::default())?, options)?,
         })
     }
 }

@@ -91,7 +91,9 @@ fn bake_all(
     options: &BakeOptions,
     stop: &Stop,
 ) -> Result<([usize; 2], Vec<Gathered>)> {
-    let bake = Bake::new(plan, options)?;
+    let wanted = stop.clone();
+    let plan = plan.clone().with_cancel(move || wanted.is_set());
+    let bake = Bake::new(&plan, options)?;
     let [columns, rows] = bake.size().map(|side| side as usize);
     let n_values = |map| columns * rows * kind_of(map).n_channels;
     let empty = |&map| Gathered {
