@@ -195,12 +195,12 @@ pub(crate) fn _field_from_description(py: Python<'_>, description: &str) -> Resu
 /// Returns
 /// -------
 /// Field
-///     The field.
+///     The field. Its value is the same everywhere, and its period 0.
 ///
 /// Raises
 /// ------
 /// DappleError
-///     If an argument is refused; the message names the limit and the value.
+///     If the number is not finite.
 #[pyfunction]
 pub(crate) fn constant(value: f32) -> Result<Field> {
     Field::new(Made::Constant(value))
@@ -248,12 +248,13 @@ impl Field {
     /// Returns
     /// -------
     /// numpy.ndarray of float32
-    ///     The result, as described above.
+    ///     The values, (rows, columns), with z and w before them for three and four axes. It is `out` if that is given.
     ///
     /// Raises
     /// ------
     /// DappleError
-    ///     If an argument is refused; the message names the limit and the value.
+    ///     If `size`, `extent`, `origin` or `window` is out of range or of another number of axes, or `out` has another
+    ///     shape or type.
     #[pyo3(signature = (size, *, extent = None, origin = None, window = None, out = None))]
     fn render<'py>(
         &self,
@@ -289,12 +290,12 @@ impl Field {
     /// Returns
     /// -------
     /// numpy.ndarray of float32
-    ///     The result, as described above.
+    ///     The values, of the shape of `positions` without its last axis.
     ///
     /// Raises
     /// ------
     /// DappleError
-    ///     If an argument is refused; the message names the limit and the value.
+    ///     If the last axis of `positions` does not have the length `ndim`.
     fn sample<'py>(
         &self,
         py: Python<'py>,
@@ -325,12 +326,12 @@ impl Field {
     /// Returns
     /// -------
     /// Field
-    ///     The field.
+    ///     The field of the plane, of two axes.
     ///
     /// Raises
     /// ------
     /// DappleError
-    ///     If an argument is refused; the message names the limit and the value.
+    ///     If the field is of the plane, or the number of coordinates is not that of its further axes.
     #[pyo3(signature = (*rest))]
     fn slice(&self, rest: Vec<f64>) -> Result<Self> {
         Self::new(Made::Slice {
@@ -349,12 +350,12 @@ impl Field {
     /// Returns
     /// -------
     /// Field
-    ///     The field.
+    ///     The field, with its periods divided by the frequency.
     ///
     /// Raises
     /// ------
     /// DappleError
-    ///     If an argument is refused; the message names the limit and the value.
+    ///     If a number is not finite, or there is not one for each axis.
     fn frequency(&self, frequency: &Bound<'_, PyAny>) -> Result<Self> {
         let frequency = numbers("frequency", frequency, self.ndim())?;
         Self::new(Made::Frequency {
@@ -373,12 +374,12 @@ impl Field {
     /// Returns
     /// -------
     /// Field
-    ///     The field.
+    ///     The field, with the same periods.
     ///
     /// Raises
     /// ------
     /// DappleError
-    ///     If an argument is refused; the message names the limit and the value.
+    ///     If a number is not finite, or there is not one for each axis.
     fn offset(&self, offset: &Bound<'_, PyAny>) -> Result<Self> {
         let offset = numbers("offset", offset, self.ndim())?;
         Self::new(Made::Offset {
@@ -398,12 +399,12 @@ impl Field {
     /// Returns
     /// -------
     /// Field
-    ///     The field.
+    ///     The field. It has no period along x and y.
     ///
     /// Raises
     /// ------
     /// DappleError
-    ///     If an argument is refused; the message names the limit and the value.
+    ///     If the angle is not finite.
     fn rotate(&self, angle: f64) -> Result<Self> {
         Self::new(Made::Rotate {
             field: self.made.clone(),
@@ -483,12 +484,12 @@ impl Field {
     /// Returns
     /// -------
     /// Field
-    ///     The field.
+    ///     The field, with values from `new[0]` to `new[1]` where they were from `old[0]` to `old[1]`.
     ///
     /// Raises
     /// ------
     /// DappleError
-    ///     If an argument is refused; the message names the limit and the value.
+    ///     If the length of `old` is 0, or a number is not finite.
     #[pyo3(signature = (old, new = [0.0, 1.0]), text_signature = "(self, old, new=(0.0, 1.0))")]
     fn remap(&self, old: [f32; 2], new: [f32; 2]) -> Result<Self> {
         Self::new(Made::Remap {
@@ -510,12 +511,12 @@ impl Field {
     /// Returns
     /// -------
     /// Field
-    ///     The field.
+    ///     The field, with values from `low` to `high`.
     ///
     /// Raises
     /// ------
     /// DappleError
-    ///     If an argument is refused; the message names the limit and the value.
+    ///     If a bound is not finite, or `low` is above `high`.
     #[pyo3(signature = (low = 0.0, high = 1.0))]
     fn clamp(&self, low: f32, high: f32) -> Result<Self> {
         Self::new(Made::Clamp {
@@ -534,12 +535,12 @@ impl Field {
     /// Returns
     /// -------
     /// Field
-    ///     The field.
+    ///     The field of the smaller values.
     ///
     /// Raises
     /// ------
     /// DappleError
-    ///     If an argument is refused; the message names the limit and the value.
+    ///     If fields of three and of four axes are combined, or the composition nests too deep.
     fn minimum(&self, other: Operand) -> Result<Self> {
         self.with(other, PairOperation::Minimum, true)
     }
@@ -554,12 +555,12 @@ impl Field {
     /// Returns
     /// -------
     /// Field
-    ///     The field.
+    ///     The field of the larger values.
     ///
     /// Raises
     /// ------
     /// DappleError
-    ///     If an argument is refused; the message names the limit and the value.
+    ///     If fields of three and of four axes are combined, or the composition nests too deep.
     fn maximum(&self, other: Operand) -> Result<Self> {
         self.with(other, PairOperation::Maximum, true)
     }
@@ -576,12 +577,12 @@ impl Field {
     /// Returns
     /// -------
     /// Field
-    ///     The field.
+    ///     The field `self + (to - self) * by`.
     ///
     /// Raises
     /// ------
     /// DappleError
-    ///     If an argument is refused; the message names the limit and the value.
+    ///     If fields of three and of four axes are combined, or the composition nests too deep.
     fn mix(&self, to: Operand, by: Operand) -> Result<Self> {
         Self::new(Made::Mix {
             from: self.made.clone(),
@@ -606,12 +607,12 @@ impl Field {
     /// Returns
     /// -------
     /// Field
-    ///     The field.
+    ///     The sum, which is not divided by w.
     ///
     /// Raises
     /// ------
     /// DappleError
-    ///     If an argument is refused; the message names the limit and the value.
+    ///     If the octaves are not 1 to 32, the gain not from -1 to 1, or the lacunarity not from 1 to 16.
     #[pyo3(signature = (octaves = 6, *, gain = 0.5, lacunarity = 2.0))]
     fn fbm(&self, octaves: u32, gain: f64, lacunarity: f64) -> Result<Self> {
         self.fractal(octaves, gain, lacunarity, FractalShape::Sum)
@@ -633,12 +634,12 @@ impl Field {
     /// Returns
     /// -------
     /// Field
-    ///     The field.
+    ///     The sum, which is not divided by w.
     ///
     /// Raises
     /// ------
     /// DappleError
-    ///     If an argument is refused; the message names the limit and the value.
+    ///     If the octaves are not 1 to 32, the gain not from -1 to 1, or the lacunarity not from 1 to 16.
     #[pyo3(signature = (octaves = 6, *, gain = 0.5, lacunarity = 2.0))]
     fn ridged(&self, octaves: u32, gain: f64, lacunarity: f64) -> Result<Self> {
         self.fractal(octaves, gain, lacunarity, FractalShape::Ridged)
@@ -660,12 +661,12 @@ impl Field {
     /// Returns
     /// -------
     /// Field
-    ///     The field.
+    ///     The sum, which is not divided by w.
     ///
     /// Raises
     /// ------
     /// DappleError
-    ///     If an argument is refused; the message names the limit and the value.
+    ///     If the octaves are not 1 to 32, the gain not from -1 to 1, or the lacunarity not from 1 to 16.
     #[pyo3(signature = (octaves = 6, *, gain = 0.5, lacunarity = 2.0))]
     fn billow(&self, octaves: u32, gain: f64, lacunarity: f64) -> Result<Self> {
         self.fractal(octaves, gain, lacunarity, FractalShape::Billow)

@@ -172,12 +172,13 @@ fn channels(image: &Image) -> Result<Vec<Raster<f32>>> {
 /// Returns
 /// -------
 /// numpy.ndarray of float32
-///     The result, as described above.
+///     The array, (rows, columns), (rows, columns, 3) or (rows, columns, 4).
 ///
 /// Raises
 /// ------
 /// DappleError
-///     If an argument is refused; the message names the limit and the value.
+///     If the file is no image that can be read, is larger than the limits, or lacks the `layer`, or the `content` does
+///     not fit its channels.
 /// OSError
 ///     If the system cannot read or write the file: `FileNotFoundError` if it does not exist.
 ///
@@ -229,12 +230,13 @@ pub(crate) fn read_image<'py>(
 /// Returns
 /// -------
 /// numpy.ndarray of float32
-///     The result, as described above.
+///     The array, as `read_image` returns it.
 ///
 /// Raises
 /// ------
 /// DappleError
-///     If an argument is refused; the message names the limit and the value.
+///     If the bytes are no image that can be read, are larger than the limits, or lack the `layer`, or the `content`
+///     does not fit their channels.
 ///
 /// Examples
 /// --------
@@ -285,7 +287,8 @@ pub(crate) fn decode_image<'py>(
 /// Raises
 /// ------
 /// DappleError
-///     If an argument is refused; the message names the limit and the value.
+///     If the ending is not one of the formats, the array is not floating point or its channels do not fit `content` or
+///     the format, or `depth` is not one of the format's.
 /// OSError
 ///     If the system cannot read or write the file: `FileNotFoundError` if it does not exist.
 ///
@@ -337,12 +340,13 @@ pub(crate) fn write_image(
 /// Returns
 /// -------
 /// list of Path
-///     The result.
+///     The paths of the files, in the order of `maps`.
 ///
 /// Raises
 /// ------
 /// DappleError
-///     If an argument is refused; the message names the limit and the value.
+///     If the format is unknown, a name is no name of a file, an array does not fit its map, or `depth` is not one of
+///     the format's.
 /// OSError
 ///     If the system cannot read or write the file: `FileNotFoundError` if it does not exist.
 ///
@@ -421,7 +425,8 @@ pub(crate) fn write_maps(
 /// Raises
 /// ------
 /// DappleError
-///     If an argument is refused; the message names the limit and the value.
+///     If the format is unknown, the array is not floating point or its channels do not fit `content` or the format, or
+///     `depth` is not one of the format's.
 ///
 /// Warns
 /// -----
@@ -524,11 +529,11 @@ fn encoding(format: &str, kind: Kind, depth: Option<u32>) -> Result<Encoding> {
             "depth",
             format!("the depth of {format} is fixed"),
         )),
-        _ => {
-            let message =
-                format!("images are written as png, exr, npy or r16, and not as {format:?}");
-            Err(Error::new("format", message))
-        }
+        _ => Err(data::unknown_name(
+            "format",
+            format,
+            &["png", "exr", "npy", "r16"],
+        )),
     }
 }
 

@@ -135,7 +135,7 @@ impl Graph {
     /// Returns
     /// -------
     /// numpy.ndarray of int64
-    ///     The result, as described above.
+    ///     The indices of both points, (m, 2).
     fn edges<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyAny>> {
         indices(py, self.each_edge().map(|(from, axis)| [from, axis.to.0]))
     }
@@ -145,7 +145,7 @@ impl Graph {
     /// Returns
     /// -------
     /// numpy.ndarray of float64
-    ///     The result, as described above.
+    ///     The vectors, (m, 2), in the order of `edges`.
     fn vectors<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyAny>> {
         let vectors: Vec<DVec2> = self.each_edge().map(|(_, axis)| axis.vector).collect();
         set::positions(py, &vectors)
@@ -182,7 +182,7 @@ impl Graph {
     /// Returns
     /// -------
     /// numpy.ndarray of int64
-    ///     The result, as described above.
+    ///     The indices of the corners, (t, 3).
     fn triangles<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyAny>> {
         let triangles = self.each_triangle(py)?;
         indices(
@@ -199,7 +199,7 @@ impl Graph {
     /// Returns
     /// -------
     /// numpy.ndarray of float64
-    ///     The result, as described above.
+    ///     The positions of the corners, (t, 3, 2), in the order of `triangles`.
     fn corners<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyAny>> {
         let triangles = self.each_triangle(py)?;
         let corners = triangles.iter().flat_map(|triangle| {
@@ -279,7 +279,7 @@ fn direction(symmetric: bool) -> Direction {
 /// Raises
 /// ------
 /// DappleError
-///     If an argument is refused; the message names the limit and the value.
+///     If two points coincide, or the domain wraps and is too thin for the distance of its points.
 ///
 /// Examples
 /// --------
@@ -319,7 +319,7 @@ pub(crate) fn delaunay(
 /// Raises
 /// ------
 /// DappleError
-///     If an argument is refused; the message names the limit and the value.
+///     If two points coincide, or the domain wraps and is too thin for the distance of its points.
 ///
 /// Examples
 /// --------
@@ -361,7 +361,7 @@ pub(crate) fn gabriel(
 /// Raises
 /// ------
 /// DappleError
-///     If an argument is refused; the message names the limit and the value.
+///     If `cones` is out of range, or two points coincide.
 ///
 /// Examples
 /// --------
@@ -405,7 +405,7 @@ pub(crate) fn yao(
 /// Raises
 /// ------
 /// DappleError
-///     If an argument is refused; the message names the limit and the value.
+///     If `k` is 0 or larger than the number of neighbors, or two points coincide.
 ///
 /// Examples
 /// --------

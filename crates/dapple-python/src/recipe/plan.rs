@@ -167,12 +167,13 @@ impl Plan {
     /// Returns
     /// -------
     /// dict or xarray.Dataset
-    ///     The result, as described above.
+    ///     The arrays by the names of the maps.
     ///
     /// Raises
     /// ------
     /// DappleError
-    ///     If an argument is refused; the message names the limit and the value.
+    ///     If `size` or `window` is out of range, a map is unknown or named twice, or a node fails; `node` of the error
+    ///     names it.
     #[pyo3(signature = (size, maps = None, *, window = None, as_xarray = false),
         text_signature = "(self, size, maps='height', *, window=None, as_xarray=False)")]
     fn bake<'py>(
@@ -251,7 +252,7 @@ impl Plan {
     /// Raises
     /// ------
     /// DappleError
-    ///     If an argument is refused; the message names the limit and the value.
+    ///     If there is no such node, its values are colors or depend on the whole tile, or the plan has images.
     #[pyo3(signature = (node = None))]
     fn field(&self, node: Option<String>) -> Result<Field> {
         if !self.images.is_empty() {
