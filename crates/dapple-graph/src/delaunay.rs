@@ -23,11 +23,11 @@ mod tiles;
 mod triangles;
 
 pub use editable::{EditableDelaunay, Star};
-pub use triangles::{Triangle, delaunay_triangles};
+pub use triangles::{Triangle, delaunay_triangles, delaunay_triangles_cancellable};
 
 use crate::grid::{LazyGrid, TooThin};
 use crate::lattice::{Lattice, check_distinct};
-use crate::{Graph, GraphError};
+use crate::{Graph, GraphError, GraphErrorKind};
 use dapple_points::{PointIdx, PointSet};
 use glam::DVec2;
 use images::Cover;
@@ -62,16 +62,43 @@ use tiles::Tiles;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn delaunay(points: &PointSet) -> Result<Graph, GraphError> {
+    delaunay_cancellable(points, &|| false)
+}
+
+/// The graph of [`delaunay`], unless `is_cancelled` returns true.
+///
+/// On domains that wrap along both axes it is called about once for 8192 points, on any thread. Elsewhere all points
+/// belong to a single triangulation, and it is called before and after that.
+///
+/// # Errors
+///
+/// The errors of [`delaunay`], and [`GraphErrorKind::Cancelled`](crate::GraphErrorKind::Cancelled).
+///
+/// # Examples
+///
+/// ```
+/// use dapple_graph::{GraphErrorKind, delaunay_cancellable};
+/// use dapple_graph::{glam::DVec2, points::{Domain, hash::Seed, white_noise}};
+///
+/// let points = white_noise(Domain::torus(DVec2::ZERO, DVec2::ONE), 1000, Seed(1))?;
+/// assert_eq!(delaunay_cancellable(&points, &|| true).unwrap_err().kind(), &GraphErrorKind::Cancelled);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn delaunay_cancellable(
+    points: &PointSet,
+    is_cancelled: &IsCancelled,
+) -> Result<Graph, GraphError> {
     let lattice = Lattice::new(points.domain());
     let sites = lattice.sites(points);
-    let rows = match rows(&lattice, &sites) {
+    let rows = match rows(&lattice, &sites, is_cancelled) {
         Ok(rows) => rows,
+        Err(Refusal::Cancelled) => return Err(GraphError::new(GraphErrorKind::Cancelled)),
         Err(refusal) => {
             check_distinct(&sites)?;
             return Err(match refusal {
                 // Images of different sites never coincide, so this is never reached.
                 Refusal::Coincident => GraphError::coincident(PointIdx(0), PointIdx(0)),
-                Refusal::Thin => GraphError::thin(points),
+                Refusal::Thin | Refusal::Cancelled => GraphError::thin(points),
             });
         }
     };
@@ -91,6 +118,19 @@ enum Refusal {
     Coincident,
     /// Too many images are needed.
     Thin,
+    /// The caller asked to stop.
+    Cancelled,
+}
+
+/// A callback that returns whether the caller no longer needs the result.
+pub type IsCancelled<'a> = dyn Fn() -> bool + Sync + 'a;
+
+/// Fails if the caller asked to stop.
+fn check(is_cancelled: &IsCancelled) -> Result<(), Refusal> {
+    match is_cancelled() {
+        true => Err(Refusal::Cancelled),
+        false => Ok(()),
+    }
 }
 
 impl From<TooThin> for Refusal {
@@ -100,19 +140,26 @@ impl From<TooThin> for Refusal {
 }
 
 /// The rows of the graph.
-fn rows(lattice: &Lattice, sites: &[DVec2]) -> Result<Rows, Refusal> {
+fn rows(lattice: &Lattice, sites: &[DVec2], is_cancelled: &IsCancelled) -> Result<Rows, Refusal> {
     let margin = MARGIN * (lattice.size.x * (lattice.size.y / sites.len().max(1) as f64)).sqrt();
     if let Some(tiles) = Tiles::new(lattice, sites.len(), margin) {
-        return tiles.rows(sites);
+        return tiles.rows(sites, is_cancelled);
     }
-    whole(lattice, sites, margin)
+    whole(lattice, sites, margin, is_cancelled)
 }
 
 /// The rows, from a single triangulation.
-fn whole(lattice: &Lattice, sites: &[DVec2], margin: f64) -> Result<Rows, Refusal> {
+fn whole(
+    lattice: &Lattice,
+    sites: &[DVec2],
+    margin: f64,
+    is_cancelled: &IsCancelled,
+) -> Result<Rows, Refusal> {
+    check(is_cancelled)?;
     let cover = Cover::new(lattice, DVec2::ZERO, lattice.size, margin);
     let images = cover.images(lattice, sites)?;
     let mut patch = Patch::new(lattice, cover, &images, sites.len())?;
+    check(is_cancelled)?;
     Ok(patch.rows(&LazyGrid::new(lattice, sites))?)
 }
 
@@ -121,9 +168,11 @@ const MARGIN: f64 = 1.6;
 
 #[cfg(test)]
 mod tests {
-    use super::{MARGIN, rows, whole};
+    use super::{MARGIN, delaunay_cancellable, rows, whole};
+    use crate::GraphErrorKind;
     use crate::lattice::Lattice;
     use crate::{PointIdx, PointSet, delaunay};
+    use core::sync::atomic::{AtomicUsize, Ordering::Relaxed};
     use dapple_points::Domain;
     use dapple_points::hash::{Seed, rand_core::Rng, unit_f64};
     use glam::DVec2;
@@ -146,9 +195,9 @@ mod tests {
             let points = random(40_000, power, DVec2::new(2.0, 1.5));
             let lattice = Lattice::new(points.domain());
             let sites = lattice.sites(&points);
-            let expected = whole(&lattice, &sites, MARGIN * 1e13).unwrap();
+            let expected = whole(&lattice, &sites, MARGIN * 1e13, &|| false).unwrap();
             let same = || {
-                let tiled = rows(&lattice, &sites).unwrap();
+                let tiled = rows(&lattice, &sites, &|| false).unwrap();
                 tiled.offsets == expected.offsets && tiled.axes == expected.axes
             };
             #[cfg(feature = "rayon")]
@@ -161,6 +210,25 @@ mod tests {
             }
             assert!(same(), "power {power}");
         }
+    }
+
+    #[test]
+    fn cancelled_graphs_stop_at_the_next_tile() {
+        let points = random(100_000, 1, DVec2::ONE);
+        let n_calls = AtomicUsize::new(0);
+        // The third call asks to stop.
+        let error = delaunay_cancellable(&points, &|| n_calls.fetch_add(1, Relaxed) >= 2);
+        assert_eq!(error.unwrap_err().kind(), &GraphErrorKind::Cancelled);
+        // There are 9 tiles. One call for each of them, and no other work, is left after the third.
+        assert_eq!(n_calls.load(Relaxed), 9);
+        let same = delaunay_cancellable(&points, &|| false).unwrap();
+        assert_eq!(same, delaunay(&points).unwrap());
+        let flat = PointSet::new(
+            Domain::rectangle(DVec2::ZERO, DVec2::ONE),
+            points.positions().to_vec(),
+        );
+        let error = delaunay_cancellable(&flat.unwrap(), &|| true).unwrap_err();
+        assert_eq!(error.kind(), &GraphErrorKind::Cancelled);
     }
 
     #[test]

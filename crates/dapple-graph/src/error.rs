@@ -74,6 +74,8 @@ dapple_raster::error! {
         } =>
             "the domain has size {size} and wraps, so thin that the search for neighbors goes through more than \
              {limit} copies of points, which is the limit";
+        /// The callback of the caller asked to stop.
+        Cancelled => "the callback asked to stop";
         /// A row's axes are not in their order, or one of them comes twice.
         Order {
             /// The point whose row it is.

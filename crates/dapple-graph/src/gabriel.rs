@@ -7,7 +7,7 @@
 //! paper, so that the remaining edges are those that cross the side that the Voronoi cells of their ends share.
 
 use crate::build::{Choice, Direction, graph_of};
-use crate::{Axis, Graph, GraphError, delaunay};
+use crate::{Axis, Graph, GraphError, IsCancelled, delaunay_cancellable};
 use dapple_points::PointSet;
 use glam::DVec2;
 
@@ -35,13 +35,25 @@ use glam::DVec2;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn gabriel(points: &PointSet) -> Result<Graph, GraphError> {
+    gabriel_cancellable(points, &|| false)
+}
+
+/// The graph of [`gabriel`], unless `is_cancelled` returns true, which is called as by [`delaunay_cancellable`].
+///
+/// # Errors
+///
+/// The errors of [`delaunay_cancellable`].
+pub fn gabriel_cancellable(
+    points: &PointSet,
+    is_cancelled: &IsCancelled,
+) -> Result<Graph, GraphError> {
     let Graph {
         lattice,
         sites,
         offsets,
         axes,
         ..
-    } = delaunay(points)?;
+    } = delaunay_cancellable(points, is_cancelled)?;
     let steps = |axis: &Axis| lattice.steps(axis.vector);
     let rows = offsets.windows(2).map(|range| {
         let star = &axes[range[0] as usize..range[1] as usize];

@@ -27,9 +27,12 @@ mod lattice;
 pub use build::Direction;
 pub use dapple_points as points;
 pub use dapple_points::{PointIdx, PointSet, glam};
-pub use delaunay::{EditableDelaunay, Star, Triangle, delaunay, delaunay_triangles};
+pub use delaunay::{
+    EditableDelaunay, IsCancelled, Star, Triangle, delaunay, delaunay_cancellable,
+    delaunay_triangles, delaunay_triangles_cancellable,
+};
 pub use error::{GraphError, GraphErrorKind};
-pub use gabriel::gabriel;
+pub use gabriel::{gabriel, gabriel_cancellable};
 pub use graph::{Axis, Graph};
 pub use nearest::k_nearest;
 pub use yao::yao;

@@ -103,5 +103,7 @@ dapple_raster::error! {
             /// The largest number allowed.
             limit: u64,
         } => "the spectrum would have about {needed:.0} frequencies or rings, but the limit is {limit}";
+        /// The callback of the caller asked to stop.
+        Cancelled => "the callback asked to stop";
     }
 }

@@ -28,7 +28,9 @@ pub use error::{PointsError, PointsErrorKind};
 pub use glam;
 pub use nested::{NestedPointSet, nested_poisson_disk};
 pub use set::{PointIdx, PointSet};
-pub use statistics::{EmptyCircle, Spectrum, SpectrumOptions, SpectrumRing, spectrum};
+pub use statistics::{
+    EmptyCircle, Spectrum, SpectrumOptions, SpectrumRing, spectrum, spectrum_cancellable,
+};
 pub use uniform::{jittered_grid, white_noise};
 pub use variable::{
     DiskRule, RSA_DENSITY, VariablePoissonOptions, gentle_radius_for_count, radius_for_count,

@@ -12,4 +12,4 @@ mod spectrum;
 mod test_sets;
 
 pub use circle::EmptyCircle;
-pub use spectrum::{Spectrum, SpectrumOptions, SpectrumRing, spectrum};
+pub use spectrum::{Spectrum, SpectrumOptions, SpectrumRing, spectrum, spectrum_cancellable};

@@ -55,12 +55,12 @@ fn each<'py>(
 /// Returns
 /// -------
 /// numpy.ndarray of float32
-///     The result, as described above.
+///     The half, (rows / 2, columns / 2[, channels]).
 ///
 /// Raises
 /// ------
 /// DappleError
-///     If an argument is refused; the message names the limit and the value.
+///     If a side is odd, a pixel is not finite, or `borders` is unknown.
 ///
 /// Examples
 /// --------
@@ -97,12 +97,12 @@ pub(crate) fn wavelet_halve<'py>(
 /// Returns
 /// -------
 /// numpy.ndarray of float32
-///     The result, as described above.
+///     The double, (2 rows, 2 columns[, channels]).
 ///
 /// Raises
 /// ------
 /// DappleError
-///     If an argument is refused; the message names the limit and the value.
+///     If a pixel is not finite, or `borders` is unknown.
 ///
 /// Examples
 /// --------
@@ -149,7 +149,7 @@ pub(crate) fn wavelet_double<'py>(
 /// Raises
 /// ------
 /// DappleError
-///     If an argument is refused; the message names the limit and the value.
+///     If there are too many bands for the sides, a pixel is not finite, or `borders` is unknown.
 ///
 /// Examples
 /// --------
@@ -209,12 +209,12 @@ pub(crate) fn wavelet_analyze<'py>(
 /// Returns
 /// -------
 /// numpy.ndarray of float32
-///     The result, as described above.
+///     The image, (rows, columns[, channels]).
 ///
 /// Raises
 /// ------
 /// DappleError
-///     If an argument is refused; the message names the limit and the value.
+///     If the bands do not have the sizes that `wavelet_analyze` returns, or `borders` is unknown.
 #[pyfunction]
 #[pyo3(signature = (bands, *, borders = None, **options),
     text_signature = "(bands, *, borders=\"periodic\", **options)")]
@@ -271,12 +271,12 @@ pub(crate) fn wavelet_synthesize<'py>(
 /// Returns
 /// -------
 /// numpy.ndarray of float32
-///     The result, as described above.
+///     The tile, (rows, columns).
 ///
 /// Raises
 /// ------
 /// DappleError
-///     If an argument is refused; the message names the limit and the value.
+///     If a side is 0 or not a multiple of what its bands need, or a weight is not finite.
 ///
 /// Examples
 /// --------

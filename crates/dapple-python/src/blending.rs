@@ -30,12 +30,12 @@ use pyo3::prelude::*;
 /// Returns
 /// -------
 /// numpy.ndarray of float32
-///     The result, as described above.
+///     The blend tile, (rows, columns), with values from 0 to 1.
 ///
 /// Raises
 /// ------
 /// DappleError
-///     If an argument is refused; the message names the limit and the value.
+///     If the image has a shape or an option a value out of range.
 ///
 /// Examples
 /// --------
@@ -92,12 +92,12 @@ pub(crate) fn blend_map<'py>(
 /// Returns
 /// -------
 /// dict or numpy.ndarray of float32
-///     The result, as described above.
+///     The blended layer, in the form of the layers: an array, or a dictionary of arrays.
 ///
 /// Raises
 /// ------
 /// DappleError
-///     If an argument is refused; the message names the limit and the value.
+///     If the layers differ in size or channels, there is none, or an option is out of range or not of this mixing.
 ///
 /// Examples
 /// --------

@@ -82,12 +82,13 @@ impl ColorField {
     /// Returns
     /// -------
     /// numpy.ndarray of float32
-    ///     The result, as described above.
+    ///     The colors, (rows, columns, channels).
     ///
     /// Raises
     /// ------
     /// DappleError
-    ///     If an argument is refused; the message names the limit and the value.
+    ///     If `size`, `extent`, `origin` or `window` is out of range or of another number of axes, or `out` has another
+    ///     shape.
     #[pyo3(signature = (size, *, extent = None, origin = None, window = None, out = None))]
     #[expect(clippy::too_many_arguments, reason = "they are keywords")]
     fn render<'py>(
@@ -131,12 +132,12 @@ impl ColorField {
     /// Returns
     /// -------
     /// numpy.ndarray of float32
-    ///     The result, as described above.
+    ///     The colors, of the shape (…, channels).
     ///
     /// Raises
     /// ------
     /// DappleError
-    ///     If an argument is refused; the message names the limit and the value.
+    ///     If the last axis of `positions` is not 2 long.
     fn sample<'py>(
         &self,
         py: Python<'py>,

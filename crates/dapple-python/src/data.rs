@@ -27,9 +27,19 @@ pub(crate) fn options_or<T: DeserializeOwned>(
 /// Converts data to options of a type.
 pub(crate) fn read<T: DeserializeOwned>(what: &str, data: Value) -> Result<T> {
     dapple::recipe::read_options(&data).map_err(|error| {
-        let message = format!("{what}: {}", error.kind());
+        let message = format!("{what}: {}", in_our_words(&error.kind().to_string()));
         Error::new("options", message).with_near(error.nearest().map(str::to_owned))
     })
+}
+
+/// A message about a word that is not known, without the words of Rust.
+fn in_our_words(message: &str) -> String {
+    let parts = ["unknown variant ", "unknown field "].into_iter();
+    let Some(rest) = parts.filter_map(|start| message.strip_prefix(start)).next() else {
+        return message.to_owned();
+    };
+    rest.replacen(", expected one of ", " is not one of ", 1)
+        .replacen(", expected ", " is not ", 1)
 }
 
 /// Converts Python data to JSON text, each entry on a line of its own, in the order of the dictionaries.

@@ -6,7 +6,7 @@ use dapple::{
     recipe::RecipeError, synth::SynthError, tile::TileError, wavelet::WaveletError,
     worley::WorleyError,
 };
-use pyo3::exceptions::{PyIsADirectoryError, PyOSError, PyValueError};
+use pyo3::exceptions::{PyIsADirectoryError, PyOSError, PyUserWarning, PyValueError};
 use pyo3::prelude::*;
 use std::{io, path::Path};
 
@@ -19,6 +19,13 @@ pyo3::create_exception!(
     PyValueError,
     "A value that the library refuses. The message names the limit and the value; `kind` is the kind of the limit in \
      small letters, `node` the node of a recipe, and `hint` what was perhaps meant; the last two may be None."
+);
+
+pyo3::create_exception!(
+    dapple_textures,
+    DappleWarning,
+    PyUserWarning,
+    "Something that the library did, but that was perhaps not meant. The message names the share or the number."
 );
 
 /// An error of a call, before it becomes an exception.

@@ -88,18 +88,14 @@ impl Field {
     }
 
     /// Writes the values at some positions.
-    fn sample_chunk<'a>(&self, places: impl Iterator<Item = &'a [f64]>, values: &mut [f32]) {
+    fn sample_chunk(&self, positions: &[f64], values: &mut [f32]) {
         match &self.function {
             Function::Plane(field) => {
-                let places: Vec<_> = places.take(values.len()).map(position).collect();
+                let places: Vec<_> = positions.chunks_exact(2).map(position).collect();
                 // The lengths are equal, and there are no other errors.
                 let _ = field.sample_many(&places, values);
             }
-            Function::Space(volume) => {
-                for (value, place) in values.iter_mut().zip(places) {
-                    *value = volume.sample(place);
-                }
-            }
+            Function::Space(volume) => volume.sample_many(positions, values),
         }
     }
 
@@ -199,12 +195,12 @@ pub(crate) fn _field_from_description(py: Python<'_>, description: &str) -> Resu
 /// Returns
 /// -------
 /// Field
-///     The field.
+///     The field. Its value is the same everywhere, and its period 0.
 ///
 /// Raises
 /// ------
 /// DappleError
-///     If an argument is refused; the message names the limit and the value.
+///     If the number is not finite.
 #[pyfunction]
 pub(crate) fn constant(value: f32) -> Result<Field> {
     Field::new(Made::Constant(value))
@@ -252,12 +248,13 @@ impl Field {
     /// Returns
     /// -------
     /// numpy.ndarray of float32
-    ///     The result, as described above.
+    ///     The values, (rows, columns), with z and w before them for three and four axes. It is `out` if that is given.
     ///
     /// Raises
     /// ------
     /// DappleError
-    ///     If an argument is refused; the message names the limit and the value.
+    ///     If `size`, `extent`, `origin` or `window` is out of range or of another number of axes, or `out` has another
+    ///     shape or type.
     #[pyo3(signature = (size, *, extent = None, origin = None, window = None, out = None))]
     fn render<'py>(
         &self,
@@ -293,12 +290,12 @@ impl Field {
     /// Returns
     /// -------
     /// numpy.ndarray of float32
-    ///     The result, as described above.
+    ///     The values, of the shape of `positions` without its last axis.
     ///
     /// Raises
     /// ------
     /// DappleError
-    ///     If an argument is refused; the message names the limit and the value.
+    ///     If the last axis of `positions` does not have the length `ndim`.
     fn sample<'py>(
         &self,
         py: Python<'py>,
@@ -310,8 +307,9 @@ impl Field {
             watch::in_parts(stop, values.len(), CHUNK, |part| {
                 let numbers = &positions.numbers[part.start * n_axes..part.end * n_axes];
                 parallel::for_each_chunk(&mut values[part], CHUNK, |chunk, values| {
-                    let places = numbers[chunk * CHUNK * n_axes..].chunks_exact(n_axes);
-                    self.sample_chunk(places, values);
+                    let first = chunk * CHUNK * n_axes;
+                    let positions = &numbers[first..first + values.len() * n_axes];
+                    self.sample_chunk(positions, values);
                 });
                 Ok(())
             })
@@ -328,12 +326,12 @@ impl Field {
     /// Returns
     /// -------
     /// Field
-    ///     The field.
+    ///     The field of the plane, of two axes.
     ///
     /// Raises
     /// ------
     /// DappleError
-    ///     If an argument is refused; the message names the limit and the value.
+    ///     If the field is of the plane, or the number of coordinates is not that of its further axes.
     #[pyo3(signature = (*rest))]
     fn slice(&self, rest: Vec<f64>) -> Result<Self> {
         Self::new(Made::Slice {
@@ -352,12 +350,12 @@ impl Field {
     /// Returns
     /// -------
     /// Field
-    ///     The field.
+    ///     The field, with its periods divided by the frequency.
     ///
     /// Raises
     /// ------
     /// DappleError
-    ///     If an argument is refused; the message names the limit and the value.
+    ///     If a number is not finite, or there is not one for each axis.
     fn frequency(&self, frequency: &Bound<'_, PyAny>) -> Result<Self> {
         let frequency = numbers("frequency", frequency, self.ndim())?;
         Self::new(Made::Frequency {
@@ -376,12 +374,12 @@ impl Field {
     /// Returns
     /// -------
     /// Field
-    ///     The field.
+    ///     The field, with the same periods.
     ///
     /// Raises
     /// ------
     /// DappleError
-    ///     If an argument is refused; the message names the limit and the value.
+    ///     If a number is not finite, or there is not one for each axis.
     fn offset(&self, offset: &Bound<'_, PyAny>) -> Result<Self> {
         let offset = numbers("offset", offset, self.ndim())?;
         Self::new(Made::Offset {
@@ -401,12 +399,12 @@ impl Field {
     /// Returns
     /// -------
     /// Field
-    ///     The field.
+    ///     The field. It has no period along x and y.
     ///
     /// Raises
     /// ------
     /// DappleError
-    ///     If an argument is refused; the message names the limit and the value.
+    ///     If the angle is not finite.
     fn rotate(&self, angle: f64) -> Result<Self> {
         Self::new(Made::Rotate {
             field: self.made.clone(),
@@ -414,8 +412,7 @@ impl Field {
         })
     }
 
-    /// This field at positions moved by `amount` times the values of the fields `x` and `y` (domain warping); in
-    /// space, positions move within their plane.
+    /// This field at positions moved by `amount` times the values of other fields, one for each axis (domain warping).
     ///
     /// Parameters
     /// ----------
@@ -425,22 +422,53 @@ impl Field {
     ///     The field of displacements along y.
     /// amount : float
     ///     The factor of the displacements.
+    /// z : Field or None, default None
+    ///     The field of displacements along z, of fields with three or four axes; positions keep their z by default.
+    /// w : Field or None, default None
+    ///     The field of displacements along w, of fields with four axes; positions keep their w by default.
     ///
     /// Returns
     /// -------
     /// Field
-    ///     The field.
+    ///     The warped field. It has the largest number of axes of these fields.
     ///
     /// Raises
     /// ------
     /// DappleError
-    ///     If an argument is refused; the message names the limit and the value.
-    fn warp(&self, x: &Self, y: &Self, amount: f64) -> Result<Self> {
+    ///     If `amount` is not finite, if fields of three and of four axes are combined, or if no field has the axis `z`
+    ///     or `w` of a displacement.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import dapple_textures as dp
+    /// >>> smoke, x, y, z = (dp.gradient_noise(seed=seed, dims=3) for seed in range(4))
+    /// >>> smoke.warp(x, y, 0.5, z=z).render((4, 64, 64), extent=4).shape
+    /// (4, 64, 64)
+    #[pyo3(signature = (x, y, amount, *, z = None, w = None))]
+    fn warp(
+        &self,
+        x: &Self,
+        y: &Self,
+        amount: f64,
+        z: Option<PyRef<'_, Self>>,
+        w: Option<PyRef<'_, Self>>,
+    ) -> Result<Self> {
+        let along = |field: Option<&PyRef<'_, Self>>| match field {
+            Some(field) => field.made.clone(),
+            None => Shared::new(Made::Constant(0.0)),
+        };
+        let n_further = match (&z, &w) {
+            (_, Some(_)) => 2,
+            (Some(_), None) => 1,
+            (None, None) => 0,
+        };
+        let further = [z.as_ref(), w.as_ref()].map(along);
         Self::new(Made::Warp {
             field: self.made.clone(),
             x: x.made.clone(),
             y: y.made.clone(),
             amount,
+            further: further[..n_further].to_vec(),
         })
     }
 
@@ -456,12 +484,12 @@ impl Field {
     /// Returns
     /// -------
     /// Field
-    ///     The field.
+    ///     The field, with values from `new[0]` to `new[1]` where they were from `old[0]` to `old[1]`.
     ///
     /// Raises
     /// ------
     /// DappleError
-    ///     If an argument is refused; the message names the limit and the value.
+    ///     If the length of `old` is 0, or a number is not finite.
     #[pyo3(signature = (old, new = [0.0, 1.0]), text_signature = "(self, old, new=(0.0, 1.0))")]
     fn remap(&self, old: [f32; 2], new: [f32; 2]) -> Result<Self> {
         Self::new(Made::Remap {
@@ -483,12 +511,12 @@ impl Field {
     /// Returns
     /// -------
     /// Field
-    ///     The field.
+    ///     The field, with values from `low` to `high`.
     ///
     /// Raises
     /// ------
     /// DappleError
-    ///     If an argument is refused; the message names the limit and the value.
+    ///     If a bound is not finite, or `low` is above `high`.
     #[pyo3(signature = (low = 0.0, high = 1.0))]
     fn clamp(&self, low: f32, high: f32) -> Result<Self> {
         Self::new(Made::Clamp {
@@ -507,12 +535,12 @@ impl Field {
     /// Returns
     /// -------
     /// Field
-    ///     The field.
+    ///     The field of the smaller values.
     ///
     /// Raises
     /// ------
     /// DappleError
-    ///     If an argument is refused; the message names the limit and the value.
+    ///     If fields of three and of four axes are combined, or the composition nests too deep.
     fn minimum(&self, other: Operand) -> Result<Self> {
         self.with(other, PairOperation::Minimum, true)
     }
@@ -527,12 +555,12 @@ impl Field {
     /// Returns
     /// -------
     /// Field
-    ///     The field.
+    ///     The field of the larger values.
     ///
     /// Raises
     /// ------
     /// DappleError
-    ///     If an argument is refused; the message names the limit and the value.
+    ///     If fields of three and of four axes are combined, or the composition nests too deep.
     fn maximum(&self, other: Operand) -> Result<Self> {
         self.with(other, PairOperation::Maximum, true)
     }
@@ -549,12 +577,12 @@ impl Field {
     /// Returns
     /// -------
     /// Field
-    ///     The field.
+    ///     The field `self + (to - self) * by`.
     ///
     /// Raises
     /// ------
     /// DappleError
-    ///     If an argument is refused; the message names the limit and the value.
+    ///     If fields of three and of four axes are combined, or the composition nests too deep.
     fn mix(&self, to: Operand, by: Operand) -> Result<Self> {
         Self::new(Made::Mix {
             from: self.made.clone(),
@@ -579,12 +607,12 @@ impl Field {
     /// Returns
     /// -------
     /// Field
-    ///     The field.
+    ///     The sum, which is not divided by w.
     ///
     /// Raises
     /// ------
     /// DappleError
-    ///     If an argument is refused; the message names the limit and the value.
+    ///     If the octaves are not 1 to 32, the gain not from -1 to 1, or the lacunarity not from 1 to 16.
     #[pyo3(signature = (octaves = 6, *, gain = 0.5, lacunarity = 2.0))]
     fn fbm(&self, octaves: u32, gain: f64, lacunarity: f64) -> Result<Self> {
         self.fractal(octaves, gain, lacunarity, FractalShape::Sum)
@@ -606,12 +634,12 @@ impl Field {
     /// Returns
     /// -------
     /// Field
-    ///     The field.
+    ///     The sum, which is not divided by w.
     ///
     /// Raises
     /// ------
     /// DappleError
-    ///     If an argument is refused; the message names the limit and the value.
+    ///     If the octaves are not 1 to 32, the gain not from -1 to 1, or the lacunarity not from 1 to 16.
     #[pyo3(signature = (octaves = 6, *, gain = 0.5, lacunarity = 2.0))]
     fn ridged(&self, octaves: u32, gain: f64, lacunarity: f64) -> Result<Self> {
         self.fractal(octaves, gain, lacunarity, FractalShape::Ridged)
@@ -633,12 +661,12 @@ impl Field {
     /// Returns
     /// -------
     /// Field
-    ///     The field.
+    ///     The sum, which is not divided by w.
     ///
     /// Raises
     /// ------
     /// DappleError
-    ///     If an argument is refused; the message names the limit and the value.
+    ///     If the octaves are not 1 to 32, the gain not from -1 to 1, or the lacunarity not from 1 to 16.
     #[pyo3(signature = (octaves = 6, *, gain = 0.5, lacunarity = 2.0))]
     fn billow(&self, octaves: u32, gain: f64, lacunarity: f64) -> Result<Self> {
         self.fractal(octaves, gain, lacunarity, FractalShape::Billow)

@@ -2,6 +2,7 @@
 //!
 //! A field is made from its description alone, so that the description can be sent to another process.
 
+use crate::composed::{Composed, Part};
 use crate::error::{Error, Result};
 use crate::generators::{CellsMade, GradientMade, WaveletMade};
 use crate::grid::CELLS;
@@ -35,6 +36,14 @@ pub(crate) trait Volume: Send + Sync {
     /// The value at a position.
     fn sample(&self, position: &[f64]) -> f32;
 
+    /// The values at positions, whose coordinates lie one after the other.
+    fn sample_many(&self, positions: &[f64], values: &mut [f32]) {
+        let n_axes = self.period().len();
+        for (value, position) in values.iter_mut().zip(positions.chunks_exact(n_axes)) {
+            *value = self.sample(position);
+        }
+    }
+
     /// The plane along the first two axes at fixed further coordinates.
     fn slice(&self, rest: &[f64]) -> Arc<dyn Field>;
 
@@ -55,81 +64,11 @@ pub(crate) trait Volume: Send + Sync {
 
 impl Function {
     /// The number of axes.
-    fn n_axes(&self) -> usize {
+    pub(crate) fn n_axes(&self) -> usize {
         match self {
             Self::Plane(_) => 2,
             Self::Space(volume) => volume.period().len(),
         }
-    }
-}
-
-/// Returns a part of a composition in a plane: its index, and the change of each further coordinate.
-type Part<'a> = &'a dyn Fn(usize, &dyn Fn(usize, f64) -> f64) -> Arc<dyn Field>;
-
-/// A function that is composed of others: in each plane of space it is the composition of their planes.
-struct Composed {
-    made: Made,
-    parts: Vec<Function>,
-    n_axes: usize,
-}
-
-impl Composed {
-    /// The plane along the first two axes at fixed further coordinates.
-    fn plane(&self, rest: &[f64]) -> Result<Arc<dyn Field>> {
-        let part = |index: usize, change: &dyn Fn(usize, f64) -> f64| match &self.parts[index] {
-            Function::Plane(field) => Arc::clone(field),
-            Function::Space(volume) => {
-                let rest = rest.iter().enumerate();
-                let rest: Vec<f64> = rest.map(|(axis, &at)| change(axis, at)).collect();
-                volume.slice(&rest)
-            }
-        };
-        self.made.of_planes(&part, 0)
-    }
-}
-
-impl Volume for Composed {
-    fn period(&self) -> Vec<Option<f64>> {
-        // The periods along further axes follow from those of the parts as they do in a plane of these axes.
-        let part = |index: usize, _: &dyn Fn(usize, f64) -> f64| {
-            let mut period = [Some(0.0); 2];
-            if let Function::Space(volume) = &self.parts[index] {
-                for (period, further) in period.iter_mut().zip(&volume.period()[2..]) {
-                    *period = *further;
-                }
-            }
-            let field: Arc<dyn Field> = Arc::new(Repeating(period));
-            field
-        };
-        let of = |made: Result<Arc<dyn Field>>| made.map_or([None; 2], |plane| plane.period());
-        let plane = of(self.plane(&vec![0.0; self.n_axes - 2]));
-        let further = of(self.made.of_planes(&part, 2));
-        [plane, further].concat()[..self.n_axes].to_vec()
-    }
-
-    fn sample(&self, position: &[f64]) -> f32 {
-        let [x, y, rest @ ..] = position else {
-            return f32::NAN;
-        };
-        self.slice(rest).sample(DVec2::new(*x, *y))
-    }
-
-    fn slice(&self, rest: &[f64]) -> Arc<dyn Field> {
-        // The same composition was made before, at other coordinates.
-        self.plane(rest).unwrap_or_else(|_| Arc::new(f32::NAN))
-    }
-}
-
-/// A field of which only the periods are known.
-struct Repeating([Option<f64>; 2]);
-
-impl Field for Repeating {
-    fn sample(&self, _: DVec2) -> f32 {
-        0.0
-    }
-
-    fn period(&self) -> [Option<f64>; 2] {
-        self.0
     }
 }
 
@@ -171,6 +110,9 @@ pub(crate) enum Made {
         x: Shared<Made>,
         y: Shared<Made>,
         amount: f64,
+        /// The displacements along the axes after the first two.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        further: Vec<Shared<Made>>,
     },
     /// A field with one range of values mapped to another.
     Remap {
@@ -289,7 +231,13 @@ impl Made {
             | Self::Absolute(field)
             | Self::Fractal { field, .. } => vec![field],
             Self::Pair { first, second, .. } => vec![first, second],
-            Self::Warp { field, x, y, .. } => vec![field, x, y],
+            Self::Warp {
+                field,
+                x,
+                y,
+                further,
+                ..
+            } => [field, x, y].into_iter().chain(further).collect(),
             Self::Mix { from, to, by } => vec![from, to, by],
         }
     }
@@ -389,11 +337,16 @@ impl Made {
                 "fields of three and of four axes are not combined: take a `slice(…)`, or fields of the same number of axes",
             ));
         }
-        let composed = Composed {
-            made: self.clone(),
-            parts,
-            n_axes,
-        };
+        if let Self::Warp { further, .. } = self
+            && further.len() + 2 > n_axes
+        {
+            let axis = if further.len() == 1 { "z" } else { "w" };
+            let message = format!(
+                "positions of {n_axes} axes are not displaced along {axis}, which they lack"
+            );
+            return Err(Error::new("axes", message));
+        }
+        let composed = Composed::new(self.clone(), parts, n_axes);
         let plane = composed.plane(&vec![0.0; n_axes - 2])?;
         Ok(match n_axes {
             2 => Function::Plane(plane),
@@ -403,7 +356,7 @@ impl Made {
 
     /// Composes fields of a plane along two axes, of which `first` is the first. `part` returns a part by its index, at
     /// further coordinates that are changed by a function of their index and value.
-    fn of_planes(&self, part: Part<'_>, first: usize) -> Result<Arc<dyn Field>> {
+    pub(crate) fn of_planes(&self, part: Part<'_>, first: usize) -> Result<Arc<dyn Field>> {
         let same = |index| part(index, &|_, at| at);
         // Along axes that the field does not have, nothing changes.
         let along = |numbers: &[f64], default: f64| -> DVec2 {
@@ -422,7 +375,15 @@ impl Made {
             }
             // It turns about the axes after the first two.
             Self::Rotate { angle, .. } if first == 0 => Arc::new(same(0).rotate(*angle)),
-            Self::Warp { amount, .. } => Arc::new(same(0).warp(same(1), same(2), *amount)),
+            Self::Warp {
+                amount, further, ..
+            } => {
+                // Displacements out of the plane are left to `Composed`; here they shape the period alone.
+                let inner = (3..3 + further.len()).fold(same(0), |inner, index| {
+                    Arc::new(inner.warp(same(index), same(index), 0.0))
+                });
+                Arc::new(inner.warp(same(1), same(2), *amount))
+            }
             Self::Remap { from, to, .. } => Arc::new(same(0).remap(*from, *to)?),
             Self::Clamp { bounds, .. } => Arc::new(clamped(same(0), *bounds)?),
             Self::Absolute(_) => Arc::new(same(0).map(f32::abs)),

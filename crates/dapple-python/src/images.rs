@@ -1,7 +1,7 @@
 //! Image files: PNG, OpenEXR, JPEG, NumPy arrays and raw heights.
 
 use crate::data;
-use crate::error::{Error, Result};
+use crate::error::{DappleWarning, Error, Result};
 use crate::pictures::{Content, Kind, Pixels};
 use crate::recipe::content_of;
 use crate::threads;
@@ -13,6 +13,7 @@ use dapple::recipe::ImageAlpha;
 use dapple::tile::Map;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyMapping};
+use std::ffi::CString;
 use std::fs;
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
@@ -171,12 +172,13 @@ fn channels(image: &Image) -> Result<Vec<Raster<f32>>> {
 /// Returns
 /// -------
 /// numpy.ndarray of float32
-///     The result, as described above.
+///     The array, (rows, columns), (rows, columns, 3) or (rows, columns, 4).
 ///
 /// Raises
 /// ------
 /// DappleError
-///     If an argument is refused; the message names the limit and the value.
+///     If the file is no image that can be read, is larger than the limits, or lacks the `layer`, or the `content` does
+///     not fit its channels.
 /// OSError
 ///     If the system cannot read or write the file: `FileNotFoundError` if it does not exist.
 ///
@@ -228,12 +230,13 @@ pub(crate) fn read_image<'py>(
 /// Returns
 /// -------
 /// numpy.ndarray of float32
-///     The result, as described above.
+///     The array, as `read_image` returns it.
 ///
 /// Raises
 /// ------
 /// DappleError
-///     If an argument is refused; the message names the limit and the value.
+///     If the bytes are no image that can be read, are larger than the limits, or lack the `layer`, or the `content`
+///     does not fit their channels.
 ///
 /// Examples
 /// --------
@@ -284,9 +287,15 @@ pub(crate) fn decode_image<'py>(
 /// Raises
 /// ------
 /// DappleError
-///     If an argument is refused; the message names the limit and the value.
+///     If the ending is not one of the formats, the array is not floating point or its channels do not fit `content` or
+///     the format, or `depth` is not one of the format's.
 /// OSError
 ///     If the system cannot read or write the file: `FileNotFoundError` if it does not exist.
+///
+/// Warns
+/// -----
+/// DappleWarning
+///     If a format of whole numbers, `png` or `r16`, clips at least 1 % of the pixels: numbers below 0 or above 1.
 ///
 /// Examples
 /// --------
@@ -305,7 +314,8 @@ pub(crate) fn write_image(
     depth: Option<u32>,
 ) -> Result<()> {
     let ending = path.extension().unwrap_or_default().to_string_lossy();
-    let bytes = encoded(py, image, &ending.to_lowercase(), content, depth)?;
+    let name = path.display().to_string();
+    let bytes = encoded(py, &name, image, &ending.to_lowercase(), content, depth)?;
     Ok(py.detach(|| image::replace(&path, &bytes))?)
 }
 
@@ -330,14 +340,20 @@ pub(crate) fn write_image(
 /// Returns
 /// -------
 /// list of Path
-///     The result.
+///     The paths of the files, in the order of `maps`.
 ///
 /// Raises
 /// ------
 /// DappleError
-///     If an argument is refused; the message names the limit and the value.
+///     If the format is unknown, a name is no name of a file, an array does not fit its map, or `depth` is not one of
+///     the format's.
 /// OSError
 ///     If the system cannot read or write the file: `FileNotFoundError` if it does not exist.
+///
+/// Warns
+/// -----
+/// DappleWarning
+///     If a format of whole numbers, `png` or `r16`, clips at least 1 % of the pixels: numbers below 0 or above 1.
 ///
 /// Examples
 /// --------
@@ -409,7 +425,13 @@ pub(crate) fn write_maps(
 /// Raises
 /// ------
 /// DappleError
-///     If an argument is refused; the message names the limit and the value.
+///     If the format is unknown, the array is not floating point or its channels do not fit `content` or the format, or
+///     `depth` is not one of the format's.
+///
+/// Warns
+/// -----
+/// DappleWarning
+///     If a format of whole numbers, `png` or `r16`, clips at least 1 % of the pixels: numbers below 0 or above 1.
 ///
 /// Examples
 /// --------
@@ -425,12 +447,14 @@ pub(crate) fn encode_image<'py>(
     content: Option<&str>,
     depth: Option<u32>,
 ) -> Result<Bound<'py, PyBytes>> {
-    let bytes = encoded(py, image, format, content, depth)?;
+    let bytes = encoded(py, "the image", image, format, content, depth)?;
     Ok(PyBytes::new(py, &bytes))
 }
 
+/// Encodes an array, and warns of heavy clipping; `name` is that of the image in the warning.
 fn encoded(
     py: Python<'_>,
+    name: &str,
     image: &Bound<'_, PyAny>,
     format: &str,
     content: Option<&str>,
@@ -441,7 +465,45 @@ fn encoded(
     let kind = Kind::new("image", content.transpose()?, pixels.n_channels)?;
     let encoding = encoding(format, kind, depth)?;
     let (size, values) = (pixels.size, pixels.values());
-    watch::within(py, |stop| encode(kind, size, &values, encoding, stop))
+    let (bytes, share) = watch::within(py, |stop| {
+        let share = clipped_share(kind, &values, encoding, stop)?;
+        Ok((encode(kind, size, &values, encoding, stop)?, share))
+    })?;
+    if share >= CLIPPED_MIN {
+        let message = format!(
+            "{:.1} % of the pixels of {name} are below 0 or above 1 and are clipped, which exr and npy keep",
+            100.0 * share
+        );
+        let category = py.get_type::<DappleWarning>();
+        PyErr::warn(
+            py,
+            &category,
+            &CString::new(message).map_err(PyErr::from)?,
+            1,
+        )?;
+    }
+    Ok(bytes)
+}
+
+/// The smallest share of clipped pixels of which is warned, as the command does.
+const CLIPPED_MIN: f64 = 0.01;
+
+/// The share of pixels that a format of whole numbers clips: those with a number below 0 or above 1, by more than half
+/// a code of 16 bits. Unit vectors are within their range.
+fn clipped_share(kind: Kind, values: &[f32], encoding: Encoding, stop: &Stop) -> Result<f64> {
+    const HALF_CODE: f32 = 0.5 / 65_535.0;
+    if kind.content == Content::Normal || matches!(encoding, Encoding::Exr | Encoding::Npy) {
+        return Ok(0.0);
+    }
+    let is_outside = |number: &f32| *number < -HALF_CODE || *number > 1.0 + HALF_CODE;
+    let mut n_clipped = 0;
+    for band in values.chunks(BAND * kind.n_channels) {
+        stop.check()?;
+        let pixels = band.chunks_exact(kind.n_channels);
+        n_clipped += pixels.filter(|pixel| pixel.iter().any(is_outside)).count();
+    }
+    let n_pixels = (values.len() / kind.n_channels).max(1);
+    Ok(n_clipped as f64 / n_pixels as f64)
 }
 
 /// The encoding of numbers in a format.
@@ -467,11 +529,11 @@ fn encoding(format: &str, kind: Kind, depth: Option<u32>) -> Result<Encoding> {
             "depth",
             format!("the depth of {format} is fixed"),
         )),
-        _ => {
-            let message =
-                format!("images are written as png, exr, npy or r16, and not as {format:?}");
-            Err(Error::new("format", message))
-        }
+        _ => Err(data::unknown_name(
+            "format",
+            format,
+            &["png", "exr", "npy", "r16"],
+        )),
     }
 }
 

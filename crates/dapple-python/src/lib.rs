@@ -7,6 +7,7 @@ mod arrays;
 mod bands;
 mod blending;
 mod color_field;
+mod composed;
 mod data;
 mod error;
 mod field;
@@ -42,7 +43,7 @@ mod _native {
     #[pymodule_export]
     use crate::color_field::ColorField;
     #[pymodule_export]
-    use crate::error::DappleError;
+    use crate::error::{DappleError, DappleWarning};
     #[pymodule_export]
     use crate::field::{_field_from_description, Field, constant};
     #[pymodule_export]

@@ -73,12 +73,12 @@ fn plane(
 /// Returns
 /// -------
 /// numpy.ndarray of float32
-///     The result, as described above.
+///     The normals, (rows, columns, 3), of length 1.
 ///
 /// Raises
 /// ------
 /// DappleError
-///     If an argument is refused; the message names the limit and the value.
+///     If the heights are not (rows, columns), or an option is out of range.
 ///
 /// Examples
 /// --------
@@ -140,12 +140,12 @@ pub(crate) fn normal_map<'py>(
 /// Returns
 /// -------
 /// numpy.ndarray of float32
-///     The result, as described above.
+///     The visible parts of the sky, (rows, columns), from 0 to 1.
 ///
 /// Raises
 /// ------
 /// DappleError
-///     If an argument is refused; the message names the limit and the value.
+///     If the heights are not (rows, columns), or an option is out of range.
 ///
 /// Examples
 /// --------
@@ -199,12 +199,12 @@ pub(crate) fn ambient_occlusion<'py>(
 /// Returns
 /// -------
 /// numpy.ndarray of float32
-///     The result, as described above.
+///     The curvature, (rows, columns), in 1 / units of the plane.
 ///
 /// Raises
 /// ------
 /// DappleError
-///     If an argument is refused; the message names the limit and the value.
+///     If the heights are not (rows, columns), or an option is out of range.
 ///
 /// Examples
 /// --------
@@ -251,12 +251,13 @@ pub(crate) fn curvature<'py>(
 /// Returns
 /// -------
 /// numpy.ndarray of float32
-///     The result, as described above.
+///     The colors, (rows, columns, 3), in linear light.
 ///
 /// Raises
 /// ------
 /// DappleError
-///     If an argument is refused; the message names the limit and the value.
+///     If a palette or a color is unknown, there is no stop, stops are not in order, or a word is not one of those
+///     above.
 ///
 /// Examples
 /// --------
@@ -343,7 +344,7 @@ fn color(color: &Value) -> Result<LinearRgb> {
 /// Returns
 /// -------
 /// dict
-///     The result, as described above.
+///     The colors of each palette by its name, arrays (n, 3) of float32.
 ///
 /// Examples
 /// --------
@@ -377,12 +378,12 @@ pub(crate) fn palettes(py: Python<'_>) -> Result<Bound<'_, PyDict>> {
 /// Returns
 /// -------
 /// numpy.ndarray of uint8 or numpy.ndarray of uint16
-///     The result, as described above.
+///     The codes, of the shape of the argument.
 ///
 /// Raises
 /// ------
 /// DappleError
-///     If an argument is refused; the message names the limit and the value.
+///     If `depth` is not 8 or 16.
 ///
 /// Examples
 /// --------
@@ -418,12 +419,12 @@ pub(crate) fn srgb_from_linear<'py>(
 /// Returns
 /// -------
 /// numpy.ndarray of float32
-///     The result, as described above.
+///     The linear light, of the shape of the codes, from 0 to 1.
 ///
 /// Raises
 /// ------
-/// DappleError
-///     If an argument is refused; the message names the limit and the value.
+/// TypeError
+///     If the codes are neither uint8 nor uint16.
 ///
 /// Examples
 /// --------

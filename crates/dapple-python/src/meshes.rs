@@ -141,7 +141,7 @@ pub(crate) fn corners<'py, const N: usize>(
 /// Raises
 /// ------
 /// DappleError
-///     If an argument is refused; the message names the limit and the value.
+///     If the file is of no known format, or damaged.
 /// OSError
 ///     If the system cannot read or write the file: `FileNotFoundError` if it does not exist.
 ///
@@ -201,12 +201,12 @@ pub(crate) fn read_model(py: Python<'_>, path: PathBuf) -> Result<Bound<'_, PyAn
 /// Returns
 /// -------
 /// dict
-///     The result, as described above.
+///     The number of each kind of element and fault, by its name.
 ///
 /// Raises
 /// ------
 /// DappleError
-///     If an argument is refused; the message names the limit and the value.
+///     If the mesh is not one of those above, or a face names a vertex that it lacks.
 ///
 /// Examples
 /// --------

@@ -162,7 +162,8 @@ impl SitePoints {
 /// Raises
 /// ------
 /// DappleError
-///     If an argument is refused; the message names the limit and the value.
+///     If the mesh has faults that leave no surface, the maps of the example differ in size, or an option is out of
+///     range or excluded by another.
 ///
 /// Examples
 /// --------
@@ -507,7 +508,7 @@ impl Model {
     /// Raises
     /// ------
     /// DappleError
-    ///     If an argument is refused; the message names the limit and the value.
+    ///     If the ending is not that of a format of models.
     /// OSError
     ///     If the system cannot read or write the file: `FileNotFoundError` if it does not exist.
     fn export(&self, py: Python<'_>, path: PathBuf) -> Result<()> {
@@ -530,7 +531,7 @@ impl Model {
     /// Returns
     /// -------
     /// trimesh.Trimesh
-    ///     The result.
+    ///     The mesh.
     fn to_trimesh<'py>(model: &Bound<'py, Self>) -> Result<Bound<'py, PyAny>> {
         let helper = model.py().import("dapple_textures._meshes")?;
         Ok(helper.call_method1("to_trimesh", (model,))?)

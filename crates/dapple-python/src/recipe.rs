@@ -36,7 +36,7 @@ use std::sync::Arc;
 /// Raises
 /// ------
 /// DappleError
-///     If an argument is refused; the message names the limit and the value.
+///     If the data is no recipe. The message names the entry, and `hint` the nearest name where there is one.
 ///
 /// Examples
 /// --------
@@ -120,7 +120,8 @@ impl Recipe {
     /// Raises
     /// ------
     /// DappleError
-    ///     If an argument is refused; the message names the limit and the value.
+    ///     If the text is no TOML or no recipe. The message names line and column, or `node` the node; `hint` is the
+    ///     nearest name.
     #[staticmethod]
     fn from_toml(text: &str) -> Result<Self> {
         Ok(Self {
@@ -143,7 +144,7 @@ impl Recipe {
     /// Raises
     /// ------
     /// DappleError
-    ///     If an argument is refused; the message names the limit and the value.
+    ///     If the text is no JSON or no recipe; `node` names the node, and `hint` is the nearest name.
     #[staticmethod]
     fn from_json(text: &str) -> Result<Self> {
         Ok(Self {
@@ -166,7 +167,7 @@ impl Recipe {
     /// Raises
     /// ------
     /// DappleError
-    ///     If an argument is refused; the message names the limit and the value.
+    ///     If there is no such recipe.
     #[staticmethod]
     fn builtin(name: &str) -> Result<Self> {
         Ok(Self {
@@ -179,7 +180,7 @@ impl Recipe {
     /// Returns
     /// -------
     /// list of str
-    ///     The result.
+    ///     The names, sorted.
     #[staticmethod]
     fn builtin_names() -> Vec<&'static str> {
         RustRecipe::builtin_names().collect()
@@ -260,7 +261,7 @@ impl Recipe {
     /// Returns
     /// -------
     /// dict
-    ///     The result, as described above.
+    ///     The recipe, with lists, numbers, words and dictionaries alone. `Recipe.from_dict` reads it.
     fn to_dict<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyAny>> {
         Ok(py
             .import("json")?
@@ -282,7 +283,7 @@ impl Recipe {
     /// Raises
     /// ------
     /// DappleError
-    ///     If an argument is refused; the message names the limit and the value.
+    ///     If the seed is not from 0 to 2**64 - 1.
     fn with_seed(&self, seed: SeedArgument) -> Self {
         let recipe = RustRecipe {
             seed: seed.0,
@@ -356,7 +357,7 @@ impl Recipe {
     /// Raises
     /// ------
     /// DappleError
-    ///     If an argument is refused; the message names the limit and the value.
+    ///     If an image is missing, or a node refuses an option; `node` names it.
     #[pyo3(signature = (*, images = None, time = 0.0))]
     fn plan(&self, py: Python<'_>, images: Option<&Bound<'_, PyDict>>, time: f64) -> Result<Plan> {
         let mut pictures = Images::new();

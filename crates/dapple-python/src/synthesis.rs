@@ -155,12 +155,13 @@ pub(crate) fn exemplar(maps: &[Map], edges: &str) -> Result<Exemplar> {
 /// Returns
 /// -------
 /// dict or tuple of (dict, numpy.ndarray of int64) or numpy.ndarray of float32 or tuple of (numpy.ndarray of float32, numpy.ndarray of int64)
-///     The result, as described above.
+///     The texture, in the form of the example: an array, or a dictionary of arrays. With `return_indices`, the places
+///     in the example that the pixels come from, too.
 ///
 /// Raises
 /// ------
 /// DappleError
-///     If an argument is refused; the message names the limit and the value.
+///     If the maps of the example differ in size, or an option is out of range or excluded by another.
 ///
 /// Examples
 /// --------
@@ -316,12 +317,13 @@ fn guided(
 /// Returns
 /// -------
 /// dict or tuple of (dict, numpy.ndarray of int64) or numpy.ndarray of float32 or tuple of (numpy.ndarray of float32, numpy.ndarray of int64)
-///     The result, as described above.
+///     The photograph, in the form that was given: an array, or a dictionary of arrays. With `return_indices`, the
+///     places that the pixels come from, too.
 ///
 /// Raises
 /// ------
 /// DappleError
-///     If an argument is refused; the message names the limit and the value.
+///     If the mask has another size or leaves too little to copy from, or an option is out of range.
 ///
 /// Examples
 /// --------

@@ -106,7 +106,7 @@ pub(crate) fn threads(py: Python<'_>) -> Result<usize> {
 /// Raises
 /// ------
 /// DappleError
-///     If an argument is refused; the message names the limit and the value.
+///     If `count` is not a whole number from 0 to 1024.
 #[pyfunction]
 pub(crate) fn set_threads(count: &Bound<'_, PyAny>) -> Result<()> {
     let number = count.extract().ok().filter(|&number| number <= MOST);

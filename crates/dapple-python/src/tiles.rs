@@ -149,12 +149,12 @@ fn soft_cut(mut options: Object<String, Value>, size: [u32; 2]) -> Object<String
 /// Returns
 /// -------
 /// dict or numpy.ndarray of float32
-///     The result, as described above.
+///     The tile, in the form of the image: an array, or a dictionary of arrays.
 ///
 /// Raises
 /// ------
 /// DappleError
-///     If an argument is refused; the message names the limit and the value.
+///     If the maps of the image differ in size, or an option is unknown, out of range or not of this method.
 ///
 /// Examples
 /// --------
@@ -209,7 +209,7 @@ pub(crate) fn make_tile<'py>(
 /// Raises
 /// ------
 /// DappleError
-///     If an argument is refused; the message names the limit and the value.
+///     If the tile and the source have different channels.
 ///
 /// Examples
 /// --------
@@ -315,12 +315,12 @@ fn report<'py>(py: Python<'py>, reports: &[SeamReports], kind: Kind) -> Result<B
 /// Returns
 /// -------
 /// dict or numpy.ndarray of float32
-///     The result, as described above.
+///     The copies, in the form of the tile: an array, or a dictionary of arrays.
 ///
 /// Raises
 /// ------
 /// DappleError
-///     If an argument is refused; the message names the limit and the value.
+///     If the size is out of range.
 ///
 /// Examples
 /// --------
@@ -370,12 +370,12 @@ pub(crate) fn repeat<'py>(
 /// Returns
 /// -------
 /// dict or numpy.ndarray of float32
-///     The result, as described above.
+///     The map, in the form of the tile: an array, or a dictionary of arrays.
 ///
 /// Raises
 /// ------
 /// DappleError
-///     If an argument is refused; the message names the limit and the value.
+///     If the tile is too small, the size is out of range, or an option is.
 ///
 /// Examples
 /// --------
@@ -424,12 +424,12 @@ pub(crate) fn disturb<'py>(
 /// Returns
 /// -------
 /// list of dict or list of numpy.ndarray of float32
-///     The result, as described above.
+///     The tiles, each in the form that was given: arrays, or dictionaries of arrays.
 ///
 /// Raises
 /// ------
 /// DappleError
-///     If an argument is refused; the message names the limit and the value.
+///     If the tiles differ in size or maps, or an option is out of range.
 ///
 /// Examples
 /// --------
@@ -473,12 +473,12 @@ pub(crate) fn match_borders<'py>(
 /// Returns
 /// -------
 /// dict or numpy.ndarray of float32
-///     The result, as described above.
+///     The map, in the form of the tiles: an array, or a dictionary of arrays.
 ///
 /// Raises
 /// ------
 /// DappleError
-///     If an argument is refused; the message names the limit and the value.
+///     If there is no tile, tiles differ in size or maps, or the size is out of range.
 ///
 /// Examples
 /// --------
@@ -537,7 +537,7 @@ fn list<'py>(py: Python<'py>, layout: &Layout, all: Vec<Vec<Map>>) -> Result<Bou
 /// Raises
 /// ------
 /// DappleError
-///     If an argument is refused; the message names the limit and the value.
+///     If there is no source, sources differ in size or maps, or an option is out of range.
 ///
 /// Examples
 /// --------
@@ -607,12 +607,12 @@ impl CornerTiles {
     /// Returns
     /// -------
     /// numpy.ndarray of float32 or dict
-    ///     The result, as described above.
+    ///     The tile, in the form of the sources: an array, or a dictionary of arrays.
     ///
     /// Raises
     /// ------
     /// DappleError
-    ///     If an argument is refused; the message names the limit and the value.
+    ///     If a corner is not the number of a source.
     fn tile<'py>(&self, py: Python<'py>, corners: [u8; 4]) -> Result<Bound<'py, PyAny>> {
         let tiles = Arc::clone(&self.tiles);
         let maps = threads::run(py, move || tiles.tile(corners))??;
@@ -624,7 +624,7 @@ impl CornerTiles {
     /// Returns
     /// -------
     /// list of numpy.ndarray of float32 or list of dict
-    ///     The result, as described above.
+    ///     The tiles, in the form of the sources: arrays, or dictionaries of arrays.
     fn all<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyList>> {
         let tiles = Arc::clone(&self.tiles);
         let tiles = threads::run(py, move || tiles.all())??;
@@ -646,12 +646,12 @@ impl CornerTiles {
     /// Returns
     /// -------
     /// numpy.ndarray of float32 or dict
-    ///     The result, as described above.
+    ///     The map, in the form of the sources: an array, or a dictionary of arrays.
     ///
     /// Raises
     /// ------
     /// DappleError
-    ///     If an argument is refused; the message names the limit and the value.
+    ///     If the size or `first` is out of range.
     #[pyo3(signature = (size, *, seed = SeedArgument::default(), first = None),
         text_signature = "($self, size, *, seed=0, first=(0, 0))")]
     fn render<'py>(
@@ -682,12 +682,12 @@ impl CornerTiles {
 /// Returns
 /// -------
 /// numpy.ndarray of float32
-///     The result, as described above.
+///     The ranks, (rows, columns), from 0 to 1.
 ///
 /// Raises
 /// ------
 /// DappleError
-///     If an argument is refused; the message names the limit and the value.
+///     If the array is not (rows, columns), or a number is not finite.
 ///
 /// Examples
 /// --------

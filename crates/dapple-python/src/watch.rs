@@ -30,12 +30,12 @@ const PART: Duration = Duration::from_millis(10);
 pub(crate) type Heard<'a> = &'a mut dyn FnMut(Progress) -> ControlFlow<()>;
 
 /// Whether the result of some work is no longer wanted.
-#[derive(Default)]
-pub(crate) struct Stop(AtomicBool);
+#[derive(Clone, Default)]
+pub(crate) struct Stop(Arc<AtomicBool>);
 
 impl Stop {
     /// Whether the work should end.
-    fn is_set(&self) -> bool {
+    pub(crate) fn is_set(&self) -> bool {
         self.0.load(Ordering::Relaxed)
     }
 
@@ -65,9 +65,9 @@ pub(crate) fn run<T: Send + 'static>(
 ) -> Result<T> {
     let pool = threads::pool(py)?;
     let progress = progress.map(|progress| progress.clone().unbind());
-    let stop = Arc::new(Stop::default());
+    let stop = Stop::default();
     let (sender, receiver) = channel();
-    let ended = Arc::clone(&stop);
+    let ended = stop.clone();
     pool.spawn(move || {
         let mut tell = |steps: Progress| {
             // After an exception nobody receives the progress.

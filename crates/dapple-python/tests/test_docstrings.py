@@ -44,7 +44,7 @@ def test_docstring(name):
 
 def _sections(text):
     """The sections of a docstring in the form of numpydoc, each as a list of (names, type, description)."""
-    parts = re.split(r"^(Parameters|Returns|Raises|Examples)\n-+\n", text, flags=re.M)
+    parts = re.split(r"^(Parameters|Returns|Raises|Warns|Examples)\n-+\n", text, flags=re.M)
     sections = dict(zip(parts[1::2], parts[2::2]))
     sections.pop("Examples", None)
     parsed = {}
@@ -60,7 +60,7 @@ def _sections(text):
     return parsed
 
 
-CALLS = {name: thing for name, thing in THINGS.items() if callable(thing) and name != "DappleError" and not hasattr(thing, "_fields")}
+CALLS = {name: thing for name, thing in THINGS.items() if callable(thing) and name not in ("DappleError", "DappleWarning") and not hasattr(thing, "_fields")}
 
 
 @pytest.mark.parametrize("name", CALLS)
@@ -74,7 +74,10 @@ def test_a_docstring_is_numpydoc(name):
     except ValueError:
         # A class that other functions make has no signature.
         return
-    sections = _sections(inspect.getdoc(thing))
+    text = inspect.getdoc(thing)
+    # Sentences that fit every function say nothing of this one.
+    assert not re.search(r"as described above|^ +The result\.$|If an argument is refused", text, re.M)
+    sections = _sections(text)
     wanted = [part for part in signature.parameters.values() if part.name not in ("self", "args", "kwargs")]
     stars = {inspect.Parameter.VAR_POSITIONAL: "*", inspect.Parameter.VAR_KEYWORD: "**"}
     entries = sections.get("Parameters", [])
@@ -90,6 +93,8 @@ def test_a_docstring_is_numpydoc(name):
     if not inspect.isclass(thing) and name.split(".")[-1] not in NOTHING:
         [(_, kind, text)] = sections["Returns"]
         assert kind and text
+    for kind in [kind for _, kind, _ in sections.get("Warns", [])]:
+        assert issubclass(vars(dp)[kind], Warning)
     if "Raises" in sections:
         known = vars(builtins) | {"DappleError": dp.DappleError}
         assert all(issubclass(known[kind], Exception) and text for _, kind, text in sections["Raises"])

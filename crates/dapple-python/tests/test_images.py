@@ -4,6 +4,7 @@ import os
 import shutil
 import struct
 import subprocess
+import warnings
 
 import numpy as np
 import pytest
@@ -176,6 +177,47 @@ def test_bytes_are_those_of_the_command(tmp_path, array, content, ending, depth,
         ours = dp.make_tile(ours, method="mirror")
     bits = int(depth[1][3:]) if depth else None
     assert copy.read_bytes() == dp.encode_image(ours, ending, content=content, depth=bits)
+
+
+#: A tenth of the pixels are outside of the range from 0 to 1: half of them below, half above.
+BEYOND = np.concatenate([np.full(10, -0.5), np.full(10, 1.5), np.linspace(0, 1, 180)]).reshape(10, 20)
+
+
+@pytest.mark.parametrize("ending", ["png", "r16"])
+def test_the_share_of_clipped_pixels_is_warned_of(tmp_path, ending):
+    path = tmp_path / f"a.{ending}"
+    with pytest.warns(dp.DappleWarning, match=r"10\.0 % of the pixels of .*a\.(png|r16) are below 0 or above 1") as seen:
+        dp.write_image(path, BEYOND)
+    assert path.exists() and seen[0].filename == __file__
+    # A pixel counts once, however many of its channels are clipped.
+    with pytest.warns(dp.DappleWarning, match=r"10\.0 % of the pixels of the image"):
+        dp.encode_image(np.stack([BEYOND] * 4, axis=-1))
+    with pytest.warns(dp.DappleWarning, match=r"10\.0 % of the pixels of .*height\.png"):
+        dp.write_maps(tmp_path, {"height": BEYOND, "ao": np.zeros((2, 2))})
+
+
+def test_a_warning_made_an_error_leaves_the_old_file(tmp_path):
+    path = tmp_path / "a.png"
+    dp.write_image(path, GRAY)
+    before = path.read_bytes()
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", dp.DappleWarning)
+        with pytest.raises(dp.DappleWarning):
+            dp.write_image(path, BEYOND)
+    assert path.read_bytes() == before
+
+
+def test_what_is_kept_or_hardly_clipped_is_not_warned_of(tmp_path):
+    few = np.zeros((10, 20))
+    few[0, 0] = 2
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        # One pixel of 200, half a code of 16 bits, formats of floating point, and unit vectors.
+        dp.write_image(tmp_path / "a.png", few)
+        dp.write_image(tmp_path / "a.png", np.full((4, 4), 1 + 0.4 / 65535))
+        dp.write_image(tmp_path / "a.exr", BEYOND)
+        dp.write_image(tmp_path / "a.npy", BEYOND)
+        dp.write_image(tmp_path / "a.png", NORMAL, content="normal")
 
 
 def test_files_are_replaced_as_a_whole(tmp_path):

@@ -117,6 +117,8 @@ pub enum RecipeErrorKind {
         /// The circumstance, as the end of a sentence.
         during: &'static str,
     },
+    /// The callback of the caller asked to stop.
+    Cancelled,
     /// An error of the cellular basis.
     Worley(WorleyError),
     /// An error of a partition of unity.
@@ -276,6 +278,7 @@ impl fmt::Display for RecipeErrorKind {
             Self::Global { during } => {
                 write!(f, "it sees the whole tile, which is not at hand {during}")
             }
+            Self::Cancelled => f.write_str("the callback asked to stop"),
             Self::Worley(error) => error.fmt(f),
             Self::Pups(error) => error.fmt(f),
             Self::Wavelet(error) => error.fmt(f),

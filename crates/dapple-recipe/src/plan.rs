@@ -5,6 +5,7 @@
 //! that depend on the whole tile, which are evaluated beforehand for a whole picture: see [`Plan::whole`].
 
 mod builder;
+mod cancel;
 mod evaluate;
 mod field;
 mod memory;
@@ -14,6 +15,7 @@ mod whole;
 mod work;
 
 pub(crate) use builder::{Builder, FREQUENCY};
+use cancel::Cancel;
 pub(crate) use evaluate::Known;
 pub use field::{NodeColors, NodeField};
 pub use memory::Memory;
@@ -112,6 +114,7 @@ pub struct Plan {
     material: Material,
     limits: PlanLimits,
     memory: Option<Memory>,
+    cancel: Cancel,
     /// Whether a node changes with time.
     moves: bool,
     /// The number of each step in the memory.
@@ -299,11 +302,35 @@ impl Plan {
             material: recipe.material.clone(),
             limits: *limits,
             memory: memory.cloned(),
+            cancel: Cancel::default(),
             moves: builder.moves,
             ids: builder.ids.into(),
         };
         check_steps(&plan.steps, limits).map_err(|(step, error)| plan.within(step, error))?;
         Ok(plan)
+    }
+
+    /// The same plan, whose bakes and pictures of nodes stop with [`Cancelled`](RecipeErrorKind::Cancelled) once
+    /// `is_cancelled` returns true.
+    ///
+    /// It is called on any thread, for each node that depends on the whole tile and for at most 2^16 pixels of the other
+    /// nodes.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use dapple_recipe::{Bake, BakeOptions, Images, Plan, Recipe, RecipeErrorKind};
+    ///
+    /// let plan = Plan::new(&Recipe::builtin("rock")?, &Images::new(), 0.0)?.with_cancel(|| true);
+    /// let mut bake = Bake::new(&plan, &BakeOptions::default())?;
+    /// let error = bake.next().expect("a band is left").unwrap_err();
+    /// assert!(matches!(error.kind(), RecipeErrorKind::Cancelled));
+    /// # Ok::<(), dapple_recipe::RecipeError>(())
+    /// ```
+    #[must_use]
+    pub fn with_cancel(mut self, is_cancelled: impl Fn() -> bool + Send + Sync + 'static) -> Self {
+        self.cancel = Cancel::by(is_cancelled);
+        self
     }
 
     /// The width and height of the tile, in units of the plane.

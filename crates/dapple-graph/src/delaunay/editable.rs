@@ -399,10 +399,10 @@ impl EditableDelaunay {
 
     /// The axes of all points.
     fn all_rows(&self) -> Result<Vec<(u32, Vec<Axis>)>, GraphError> {
-        let rows = match rows(&self.lattice, &self.dense_sites()) {
+        let rows = match rows(&self.lattice, &self.dense_sites(), &|| false) {
             Ok(rows) => rows,
-            // No two sites are the same.
-            Err(Refusal::Thin | Refusal::Coincident) => {
+            // No two sites are the same, and nobody asks to stop.
+            Err(Refusal::Thin | Refusal::Coincident | Refusal::Cancelled) => {
                 return Err(GraphError::new(GraphErrorKind::Thin {
                     size: self.domain.size,
                     limit: crate::grid::Budget::limit(self.n_points()),

@@ -1,8 +1,8 @@
 //! Large sets on a torus, tile by tile: each triangulation fits into the cache, and the tiles are independent.
 
-use super::Refusal;
 use super::images::Cover;
 use super::patch::{Image, Patch, Rows};
+use super::{IsCancelled, Refusal, check};
 use crate::grid::LazyGrid;
 use crate::lattice::Lattice;
 use dapple_raster::parallel;
@@ -48,10 +48,15 @@ impl<'a> Tiles<'a> {
     }
 
     /// The rows of all points.
-    pub(super) fn rows(&self, sites: &[DVec2]) -> Result<Rows, Refusal> {
+    pub(super) fn rows(
+        &self,
+        sites: &[DVec2],
+        is_cancelled: &IsCancelled,
+    ) -> Result<Rows, Refusal> {
         let tiles = self.fill(sites);
         let grid = LazyGrid::new(self.lattice, sites);
         let parts = parallel::map(tiles.len(), |index| {
+            check(is_cancelled)?;
             let tile = &tiles[index];
             let (column, row) = (index % self.count(0), index / self.count(0));
             let corner =

@@ -3,7 +3,7 @@
 //! Every face but the outer one lies in an empty circle with all its corners on it. A face with more than three corners
 //! is a polygon, which is cut into a fan.
 
-use super::delaunay;
+use super::{IsCancelled, delaunay_cancellable};
 use crate::angle::turn;
 use crate::{Axis, Graph, GraphError};
 use dapple_points::{PointIdx, PointSet};
@@ -25,7 +25,7 @@ pub struct Triangle {
 ///
 /// # Errors
 ///
-/// The errors of [`delaunay`].
+/// The errors of [`delaunay`](crate::delaunay).
 ///
 /// # Examples
 ///
@@ -40,7 +40,20 @@ pub struct Triangle {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn delaunay_triangles(points: &PointSet) -> Result<Vec<Triangle>, GraphError> {
-    let graph = delaunay(points)?;
+    delaunay_triangles_cancellable(points, &|| false)
+}
+
+/// The triangles of [`delaunay_triangles`], unless `is_cancelled` returns true, which is called as by
+/// [`delaunay_cancellable`].
+///
+/// # Errors
+///
+/// The errors of [`delaunay_cancellable`].
+pub fn delaunay_triangles_cancellable(
+    points: &PointSet,
+    is_cancelled: &IsCancelled,
+) -> Result<Vec<Triangle>, GraphError> {
+    let graph = delaunay_cancellable(points, is_cancelled)?;
     let next = next_around_faces(&graph);
     let mut is_walked = vec![false; graph.n_axes()];
     let mut triangles = Vec::with_capacity(2 * graph.n_points());

@@ -128,6 +128,33 @@ impl Spectrum {
 /// # Ok::<(), dapple_points::PointsError>(())
 /// ```
 pub fn spectrum(sets: &[PointSet], options: &SpectrumOptions) -> Result<Spectrum, PointsError> {
+    spectrum_cancellable(sets, options, &|| false)
+}
+
+/// The spectrum of [`spectrum`], unless `is_cancelled` returns true.
+///
+/// It is called on any thread, once for each column of frequencies of each block of 256 points.
+///
+/// # Errors
+///
+/// The errors of [`spectrum`], and [`PointsErrorKind::Cancelled`].
+///
+/// # Examples
+///
+/// ```
+/// use dapple_points::{Domain, PointsErrorKind, SpectrumOptions, glam::DVec2};
+/// use dapple_points::{hash::Seed, spectrum_cancellable, white_noise};
+///
+/// let points = white_noise(Domain::torus(DVec2::ZERO, DVec2::ONE), 100, Seed(1))?;
+/// let error = spectrum_cancellable(&[points], &SpectrumOptions::default(), &|| true).unwrap_err();
+/// assert_eq!(error.kind(), &PointsErrorKind::Cancelled);
+/// # Ok::<(), dapple_points::PointsError>(())
+/// ```
+pub fn spectrum_cancellable(
+    sets: &[PointSet],
+    options: &SpectrumOptions,
+    is_cancelled: &(dyn Fn() -> bool + Sync),
+) -> Result<Spectrum, PointsError> {
     let unit = unit_frequency(sets)?;
     let options = options.checked()?;
     let highest = options.highest_frequency * unit;
@@ -147,7 +174,10 @@ pub fn spectrum(sets: &[PointSet], options: &SpectrumOptions) -> Result<Spectrum
     }
     let mut power = Periodogram::new(counts.map(|count| count as u32));
     for set in sets {
-        power.add(set);
+        power.add(set, is_cancelled);
+        if is_cancelled() {
+            return Err(PointsError::new(PointsErrorKind::Cancelled));
+        }
     }
     let mut sums = vec![RingSums::default(); n_rings as usize];
     power.for_each(|[x, y], value| {

@@ -68,7 +68,7 @@ def cow(
     Raises
     ------
     DappleError
-        If an argument is refused; the message names the limit and the value.
+        If `spacing` is not above 0 and finite, or another option is unknown or out of range.
 
     Examples
     --------
@@ -140,7 +140,7 @@ def space_giraffe(
     Raises
     ------
     DappleError
-        If an argument is refused; the message names the limit and the value.
+        If `spacing` is not above 0 and finite, or another option is unknown or out of range.
 
     Examples
     --------
@@ -200,7 +200,7 @@ def cow_progression(
     Raises
     ------
     DappleError
-        If an argument is refused; the message names the limit and the value.
+        If a distance is not above 0 and finite, or another option is unknown or out of range.
 
     Examples
     --------
@@ -259,7 +259,7 @@ def giraffe_progression(
     Raises
     ------
     DappleError
-        If an argument is refused; the message names the limit and the value.
+        If a distance is not above 0 and finite, or another option is unknown or out of range.
 
     Examples
     --------

@@ -34,7 +34,7 @@ def read_recipe(path_or_name: _Path) -> Recipe:
     Raises
     ------
     DappleError
-        If an argument is refused; the message names the limit and the value.
+        If the text is no recipe. The message names line and column, or `node` the node.
 
     Examples
     --------

@@ -93,7 +93,7 @@ def noise(
     Raises
     ------
     DappleError
-        If an argument is refused; the message names the limit and the value.
+        If `spacing` is not above 0 and finite, or another option is unknown or out of range.
 
     Examples
     --------
@@ -167,7 +167,7 @@ def octaves(
     Raises
     ------
     DappleError
-        If an argument is refused; the message names the limit and the value.
+        If `spacing` is not above 0 and finite, or another option is unknown or out of range.
 
     Examples
     --------
@@ -245,7 +245,7 @@ def turbulence(
     Raises
     ------
     DappleError
-        If an argument is refused; the message names the limit and the value.
+        If `spacing` is not above 0 and finite, or another option is unknown or out of range.
 
     Examples
     --------
@@ -311,7 +311,7 @@ def cells(
     Raises
     ------
     DappleError
-        If an argument is refused; the message names the limit and the value.
+        If `spacing` is not above 0 and finite, or another option is unknown or out of range.
 
     Examples
     --------
@@ -382,7 +382,7 @@ def cellular_noise(
     Raises
     ------
     DappleError
-        If an argument is refused; the message names the limit and the value.
+        If `spacing` is not above 0 and finite, or another option is unknown or out of range.
 
     Examples
     --------
@@ -447,7 +447,7 @@ def color_noise(
     Raises
     ------
     DappleError
-        If an argument is refused; the message names the limit and the value.
+        If `spacing` is not above 0 and finite, or another option is unknown or out of range.
 
     Examples
     --------
@@ -511,7 +511,7 @@ def label_ramp(
     Raises
     ------
     DappleError
-        If an argument is refused; the message names the limit and the value.
+        If `spacing` is not above 0 and finite, or another option is unknown or out of range.
 
     Examples
     --------
@@ -579,7 +579,7 @@ def reference_texture(
     Raises
     ------
     DappleError
-        If an argument is refused; the message names the limit and the value.
+        If `spacing` is not above 0 and finite, or another option is unknown or out of range.
 
     Examples
     --------
@@ -651,7 +651,7 @@ def iterated_reference(
     Raises
     ------
     DappleError
-        If an argument is refused; the message names the limit and the value.
+        If `spacing` is not above 0 and finite, or another option is unknown or out of range.
 
     Examples
     --------
@@ -716,7 +716,7 @@ def control_points(
     Raises
     ------
     DappleError
-        If an argument is refused; the message names the limit and the value.
+        If two points coincide, or an option is unknown or out of range.
 
     Examples
     --------

@@ -68,12 +68,12 @@ def material(
     Returns
     -------
     object
-        The result.
+        The material of Blender, a `bpy.types.Material`, which has the name of the recipe by default.
 
     Raises
     ------
     DappleError
-        If an argument is refused; the message names the limit and the value.
+        If the recipe cannot be planned or baked at this size, or Blender reads an image with another size.
     """
     import bpy
 

@@ -66,12 +66,12 @@ def bake(
     Returns
     -------
     da.Array
-        The result.
+        The array, which computes nothing until it is asked for values.
 
     Raises
     ------
     DappleError
-        If an argument is refused; the message names the limit and the value.
+        If `chunks` names an axis that the array lacks, a plane is unknown, or the shape does not fit the source.
     """
     source = _sources.source(what, extent=extent, origin=origin)
     plane = plane or ("value" if isinstance(source, _sources.FieldSource) else "height")

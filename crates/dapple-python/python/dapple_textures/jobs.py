@@ -255,12 +255,13 @@ def create(
     Returns
     -------
     Job
-        The result.
+        The job. Its shards can be baked by any number of processes.
 
     Raises
     ------
     DappleError
-        If an argument is refused; the message names the limit and the value.
+        If there is no plane or one twice, a side is below 1, a chunk does not divide a shard, or the store holds
+        something else.
     """
     source = _sources.source(what, extent=extent, origin=origin)
     planes = (planes,) if isinstance(planes, str) else tuple(planes)

@@ -199,7 +199,7 @@ impl Worley {
 /// Raises
 /// ------
 /// DappleError
-///     If an argument is refused; the message names the limit and the value.
+///     If a word is not one of those above, `dims` is not 2, 3 or 4, or a number is out of range.
 ///
 /// Examples
 /// --------
@@ -305,7 +305,7 @@ impl Worley {
     /// Raises
     /// ------
     /// DappleError
-    ///     If an argument is refused; the message names the limit and the value.
+    ///     If the last axis of `positions` does not have the length `dims`, or `count` is out of range.
     #[pyo3(signature = (positions, *, count = 1))]
     fn features<'py>(
         &self,
@@ -360,7 +360,7 @@ impl Worley {
     /// Raises
     /// ------
     /// DappleError
-    ///     If an argument is refused; the message names the limit and the value.
+    ///     If `count`, `size`, `extent`, `origin` or `window` is out of range.
     #[pyo3(signature = (size, *, count = 1, outputs = None, extent = None, origin = None, window = None, at = None),
         text_signature = "(self, size, *, count=1, outputs=('distance', 'vector', 'id'), extent=None, origin=None, window=None, at=None)")]
     #[expect(clippy::too_many_arguments, reason = "they are keywords")]
@@ -445,12 +445,12 @@ impl Worley {
     /// Returns
     /// -------
     /// numpy.ndarray of float64
-    ///     The result, as described above.
+    ///     The gradients, of the shape of `positions`.
     ///
     /// Raises
     /// ------
     /// DappleError
-    ///     If an argument is refused; the message names the limit and the value.
+    ///     If the last axis of `positions` does not have the length `dims`, or the value has no gradient.
     fn gradient<'py>(
         &self,
         py: Python<'py>,
@@ -477,12 +477,12 @@ impl Worley {
     /// Returns
     /// -------
     /// tuple of (numpy.ndarray of float64, numpy.ndarray of uint64)
-    ///     The result, as described above.
+    ///     The positions, (n, dims), in cells, and the ids, (n,).
     ///
     /// Raises
     /// ------
     /// DappleError
-    ///     If an argument is refused; the message names the limit and the value.
+    ///     If `cell` does not have `dims` whole numbers.
     fn cell_points<'py>(
         &self,
         py: Python<'py>,

@@ -124,7 +124,7 @@ impl Volume for GradientNoise4 {
 /// Raises
 /// ------
 /// DappleError
-///     If an argument is refused; the message names the limit and the value.
+///     If `dims` is not 2, 3 or 4, the period does not fit it, or a number is out of range.
 ///
 /// Examples
 /// --------

@@ -114,7 +114,7 @@ impl dapple::raster::Field for Section {
 /// Raises
 /// ------
 /// DappleError
-///     If an argument is refused; the message names the limit and the value.
+///     If `dims` is not 2 or 3, or the period is not even or out of range.
 ///
 /// Examples
 /// --------

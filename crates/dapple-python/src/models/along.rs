@@ -41,12 +41,12 @@ use pyo3::prelude::*;
 /// Returns
 /// -------
 /// dict or numpy.ndarray of float32
-///     The result, as described above.
+///     The texture, in the form of the example: an array, or a dictionary of arrays.
 ///
 /// Raises
 /// ------
 /// DappleError
-///     If an argument is refused; the message names the limit and the value.
+///     If the example is too small, or a map of sizes or directions has another shape, or an option is out of range.
 ///
 /// Examples
 /// --------

@@ -42,12 +42,13 @@ use pyo3::prelude::*;
 /// Returns
 /// -------
 /// dict or numpy.ndarray of float32
-///     The result, as described above.
+///     The texture, in the form that was given: an array, or a dictionary of arrays.
 ///
 /// Raises
 /// ------
 /// DappleError
-///     If an argument is refused; the message names the limit and the value.
+///     If the mesh has no texture coordinates, the mask has another size or leaves too little to copy from, or an
+///     option is out of range.
 ///
 /// Examples
 /// --------

@@ -23,7 +23,7 @@ use pyo3::types::PyBool;
 /// Raises
 /// ------
 /// DappleError
-///     If an argument is refused; the message names the limit and the value.
+///     If a side is not above 0, or a number is not finite.
 ///
 /// Examples
 /// --------

@@ -3,7 +3,7 @@
 use super::{Domain, Points, set};
 use crate::arrays;
 use crate::error::{Error, Result};
-use crate::threads;
+use crate::watch::{self, Stop};
 use dapple::graph::{Axis, Direction, GraphError};
 use dapple::points::{PointIdx, PointSet};
 use dapple::raster::glam::DVec2;
@@ -30,10 +30,11 @@ impl GraphMade {
     pub(crate) fn build(
         self,
         points: &PointSet,
+        stop: &Stop,
     ) -> core::result::Result<dapple::graph::Graph, GraphError> {
         match self {
-            Self::Delaunay => dapple::graph::delaunay(points),
-            Self::Gabriel => dapple::graph::gabriel(points),
+            Self::Delaunay => dapple::graph::delaunay_cancellable(points, &|| stop.is_set()),
+            Self::Gabriel => dapple::graph::gabriel_cancellable(points, &|| stop.is_set()),
             Self::Yao { cones, direction } => dapple::graph::yao(points, cones, direction),
             Self::KNearest { k, direction } => dapple::graph::k_nearest(points, k, direction),
         }
@@ -54,7 +55,7 @@ pub(crate) struct Graph {
 impl Graph {
     fn new(py: Python<'_>, points: Arc<PointSet>, made: GraphMade) -> Result<Self> {
         let set = Arc::clone(&points);
-        let graph = threads::run(py, move || made.build(&set))??;
+        let graph = watch::run(py, None, move |_, stop| made.build(&set, stop))??;
         Ok(Self {
             points,
             made,
@@ -98,8 +99,8 @@ impl Graph {
             ));
         }
         let points = Arc::clone(&self.points);
-        Ok(threads::run(py, move || {
-            dapple::graph::delaunay_triangles(&points)
+        Ok(watch::run(py, None, move |_, stop| {
+            dapple::graph::delaunay_triangles_cancellable(&points, &|| stop.is_set())
         })??)
     }
 }
@@ -134,7 +135,7 @@ impl Graph {
     /// Returns
     /// -------
     /// numpy.ndarray of int64
-    ///     The result, as described above.
+    ///     The indices of both points, (m, 2).
     fn edges<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyAny>> {
         indices(py, self.each_edge().map(|(from, axis)| [from, axis.to.0]))
     }
@@ -144,7 +145,7 @@ impl Graph {
     /// Returns
     /// -------
     /// numpy.ndarray of float64
-    ///     The result, as described above.
+    ///     The vectors, (m, 2), in the order of `edges`.
     fn vectors<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyAny>> {
         let vectors: Vec<DVec2> = self.each_edge().map(|(_, axis)| axis.vector).collect();
         set::positions(py, &vectors)
@@ -181,7 +182,7 @@ impl Graph {
     /// Returns
     /// -------
     /// numpy.ndarray of int64
-    ///     The result, as described above.
+    ///     The indices of the corners, (t, 3).
     fn triangles<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyAny>> {
         let triangles = self.each_triangle(py)?;
         indices(
@@ -198,7 +199,7 @@ impl Graph {
     /// Returns
     /// -------
     /// numpy.ndarray of float64
-    ///     The result, as described above.
+    ///     The positions of the corners, (t, 3, 2), in the order of `triangles`.
     fn corners<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyAny>> {
         let triangles = self.each_triangle(py)?;
         let corners = triangles.iter().flat_map(|triangle| {
@@ -278,7 +279,7 @@ fn direction(symmetric: bool) -> Direction {
 /// Raises
 /// ------
 /// DappleError
-///     If an argument is refused; the message names the limit and the value.
+///     If two points coincide, or the domain wraps and is too thin for the distance of its points.
 ///
 /// Examples
 /// --------
@@ -318,7 +319,7 @@ pub(crate) fn delaunay(
 /// Raises
 /// ------
 /// DappleError
-///     If an argument is refused; the message names the limit and the value.
+///     If two points coincide, or the domain wraps and is too thin for the distance of its points.
 ///
 /// Examples
 /// --------
@@ -360,7 +361,7 @@ pub(crate) fn gabriel(
 /// Raises
 /// ------
 /// DappleError
-///     If an argument is refused; the message names the limit and the value.
+///     If `cones` is out of range, or two points coincide.
 ///
 /// Examples
 /// --------
@@ -404,7 +405,7 @@ pub(crate) fn yao(
 /// Raises
 /// ------
 /// DappleError
-///     If an argument is refused; the message names the limit and the value.
+///     If `k` is 0 or larger than the number of neighbors, or two points coincide.
 ///
 /// Examples
 /// --------

@@ -82,7 +82,8 @@ fn places(domain: &dapple::points::Domain, count: u32) -> [u32; 2] {
 /// Raises
 /// ------
 /// DappleError
-///     If an argument is refused; the message names the limit and the value.
+///     If the distance is not above 0 and finite, varies by as much as the positions, does not fit twice into an axis
+///     that wraps, or needs too many points.
 ///
 /// Examples
 /// --------
@@ -157,7 +158,7 @@ pub(crate) fn poisson_disk(
 /// Raises
 /// ------
 /// DappleError
-///     If an argument is refused; the message names the limit and the value.
+///     If the distance is not above 0 and finite, or two of the given points are closer than it.
 ///
 /// Examples
 /// --------
@@ -198,12 +199,12 @@ pub(crate) fn extend_poisson_disk(
 /// Returns
 /// -------
 /// list of Points
-///     The result.
+///     The sets, one for each distance.
 ///
 /// Raises
 /// ------
 /// DappleError
-///     If an argument is refused; the message names the limit and the value.
+///     If a distance is not above 0 or larger than the one before, or a set would have too many points.
 ///
 /// Examples
 /// --------
@@ -249,7 +250,7 @@ pub(crate) fn nested_poisson_disk(
 /// Raises
 /// ------
 /// DappleError
-///     If an argument is refused; the message names the limit and the value.
+///     If `jitter` or the seed is out of range, or there would be too many points.
 ///
 /// Examples
 /// --------
@@ -297,7 +298,7 @@ pub(crate) fn jittered_grid(
 /// Raises
 /// ------
 /// DappleError
-///     If an argument is refused; the message names the limit and the value.
+///     If the seed is not from 0 to 2**64 - 1.
 ///
 /// Examples
 /// --------

@@ -4,6 +4,7 @@ use super::Domain;
 use crate::arrays::{self, Positions};
 use crate::error::{Error, Result};
 use crate::threads;
+use crate::watch;
 use dapple::points::PointSet;
 use dapple::raster::glam::DVec2;
 use pyo3::prelude::*;
@@ -26,7 +27,7 @@ use std::sync::Arc;
 /// Raises
 /// ------
 /// DappleError
-///     If an argument is refused; the message names the limit and the value.
+///     If the positions are not (n, 2), or one is outside of the domain.
 ///
 /// Examples
 /// --------
@@ -161,7 +162,7 @@ impl Points {
     /// Returns
     /// -------
     /// float or None
-    ///     The result.
+    ///     The distance, in units of the domain.
     fn minimum_distance(&self, py: Python<'_>) -> Result<Option<f64>> {
         let set = self.set();
         threads::run(py, move || set.minimum_distance())
@@ -172,7 +173,7 @@ impl Points {
     /// Returns
     /// -------
     /// EmptyCircle or None
-    ///     The result.
+    ///     The center and the radius.
     fn largest_empty_circle<'py>(&self, py: Python<'py>) -> Result<Option<Bound<'py, PyAny>>> {
         let set = self.set();
         let circle = threads::run(py, move || set.largest_empty_circle())?;
@@ -197,8 +198,8 @@ impl Points {
     ///
     /// Raises
     /// ------
-    /// DappleError
-    ///     If an argument is refused; the message names the limit and the value.
+    /// TypeError
+    ///     If an argument is not a number.
     fn mean_neighbor_count(&self, py: Python<'_>, distance: f64) -> Result<f64> {
         let set = self.set();
         threads::run(py, move || set.mean_neighbor_count(distance))
@@ -219,8 +220,8 @@ impl Points {
     ///
     /// Raises
     /// ------
-    /// DappleError
-    ///     If an argument is refused; the message names the limit and the value.
+    /// TypeError
+    ///     If an argument is not a number.
     fn normalized_density(&self, distance: f64) -> f64 {
         self.set.normalized_density(distance)
     }
@@ -298,7 +299,8 @@ impl Points {
 /// Raises
 /// ------
 /// DappleError
-///     If an argument is refused; the message names the limit and the value.
+///     If there is no point, the sets lie in different domains, or there would be more than 2**24 frequencies or 65,536
+///     rings.
 ///
 /// Examples
 /// --------
@@ -326,7 +328,10 @@ pub(crate) fn spectrum<'py>(
         highest_frequency,
         ring_width,
     };
-    let rings = threads::run(py, move || dapple::points::spectrum(&sets, &options))??.rings;
+    let rings = watch::run(py, None, move |_, stop| {
+        dapple::points::spectrum_cancellable(&sets, &options, &|| stop.is_set())
+    })??
+    .rings;
     let column = |number: &dyn Fn(&dapple::points::SpectrumRing) -> f64| {
         let numbers: Vec<f64> = rings.iter().map(number).collect();
         arrays::array(py, numbers, &[rings.len()])

@@ -38,12 +38,14 @@ fn vectors<'py>(py: Python<'py>, vectors: Vec<DVec3>) -> Result<Bound<'py, PyAny
 /// Returns
 /// -------
 /// numpy.ndarray of float32
-///     The result, as described above.
+///     The values, (count,).
 ///
 /// Raises
 /// ------
 /// DappleError
-///     If an argument is refused; the message names the limit and the value.
+///     If the seed is not from 0 to 2**64 - 1.
+/// OverflowError
+///     If `count` is negative.
 ///
 /// Examples
 /// --------
@@ -75,12 +77,14 @@ pub(crate) fn random_values(
 /// Returns
 /// -------
 /// numpy.ndarray of int64
-///     The result, as described above.
+///     The labels, (count,).
 ///
 /// Raises
 /// ------
 /// DappleError
-///     If an argument is refused; the message names the limit and the value.
+///     If `n_labels` is 0, or the seed is not from 0 to 2**64 - 1.
+/// OverflowError
+///     If `count` is negative.
 ///
 /// Examples
 /// --------
@@ -126,12 +130,12 @@ fn check_count(count: usize) -> Result<()> {
 /// Returns
 /// -------
 /// numpy.ndarray of int64
-///     The result, as described above.
+///     The labels, (n,).
 ///
 /// Raises
 /// ------
 /// DappleError
-///     If an argument is refused; the message names the limit and the value.
+///     If a probability is not from 0 to 1.
 ///
 /// Examples
 /// --------
@@ -175,12 +179,12 @@ pub(crate) fn biased_labels<'py>(
 /// Returns
 /// -------
 /// numpy.ndarray of int64
-///     The result, as described above.
+///     The labels, (n,).
 ///
 /// Raises
 /// ------
 /// DappleError
-///     If an argument is refused; the message names the limit and the value.
+///     If the sizes are not from 1 to 16, or the first is above the second.
 ///
 /// Examples
 /// --------
@@ -220,12 +224,12 @@ pub(crate) fn grouped_labels<'py>(
 /// Returns
 /// -------
 /// numpy.ndarray of int64
-///     The result, as described above.
+///     The labels, (n,).
 ///
 /// Raises
 /// ------
 /// DappleError
-///     If an argument is refused; the message names the limit and the value.
+///     If a value of the image is not from 0 to 1.
 ///
 /// Examples
 /// --------
@@ -264,12 +268,14 @@ pub(crate) fn reference_labels<'py>(
 /// Returns
 /// -------
 /// numpy.ndarray of float64
-///     The result, as described above.
+///     The unit vectors, (count, 3).
 ///
 /// Raises
 /// ------
 /// DappleError
-///     If an argument is refused; the message names the limit and the value.
+///     If the seed is not from 0 to 2**64 - 1.
+/// OverflowError
+///     If `count` is negative.
 ///
 /// Examples
 /// --------
@@ -302,12 +308,12 @@ pub(crate) fn random_orientations(
 /// Returns
 /// -------
 /// numpy.ndarray of float64
-///     The result, as described above.
+///     The unit vectors, (n, 3).
 ///
 /// Raises
 /// ------
 /// DappleError
-///     If an argument is refused; the message names the limit and the value.
+///     If the center is not finite.
 ///
 /// Examples
 /// --------
@@ -346,12 +352,12 @@ pub(crate) fn outward_orientations<'py>(
 /// Returns
 /// -------
 /// numpy.ndarray of float64
-///     The result, as described above.
+///     The unit vectors, (n, 3).
 ///
 /// Raises
 /// ------
 /// DappleError
-///     If an argument is refused; the message names the limit and the value.
+///     If an angle is not finite.
 ///
 /// Examples
 /// --------

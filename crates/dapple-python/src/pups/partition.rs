@@ -11,6 +11,7 @@ use crate::points::{Domain, Graph, GraphMade, Points};
 use crate::seed::SeedArgument;
 use crate::shared::{Build, Shared};
 use crate::threads;
+use crate::watch::Stop;
 use dapple::points::{PointIdx, PointSet};
 use dapple::pups::{Orientation, Orientations, Pups, PupsOptions};
 use dapple::raster::RasterViewMut;
@@ -38,7 +39,7 @@ impl Build for NetMade {
         let options = self.options.clone();
         Ok(match self.graph {
             GraphMade::Delaunay => Pups::delaunay_with(&points, options)?,
-            graph => Pups::new(&points, &graph.build(&points)?, options)?,
+            graph => Pups::new(&points, &graph.build(&points, &Stop::default())?, options)?,
         })
     }
 }
@@ -101,7 +102,7 @@ impl Build for PupsMade {
 /// Raises
 /// ------
 /// DappleError
-///     If an argument is refused; the message names the limit and the value.
+///     If two points coincide, `weight` is unknown, or a number is out of range.
 ///
 /// Examples
 /// --------
@@ -256,7 +257,7 @@ impl Partition {
     /// Raises
     /// ------
     /// DappleError
-    ///     If an argument is refused; the message names the limit and the value.
+    ///     If there is not one value for each point, or one is not finite.
     #[pyo3(signature = (values, *, labels = None))]
     fn field(
         &self,
@@ -292,7 +293,7 @@ impl Partition {
     /// Raises
     /// ------
     /// DappleError
-    ///     If an argument is refused; the message names the limit and the value.
+    ///     If the last axis of `positions` does not have the length 2.
     fn weights<'py>(
         &self,
         py: Python<'py>,
@@ -342,12 +343,12 @@ impl Partition {
     /// Returns
     /// -------
     /// numpy.ndarray of uint32
-    ///     The result, as described above.
+    ///     The indices of the points, (rows, columns).
     ///
     /// Raises
     /// ------
     /// DappleError
-    ///     If an argument is refused; the message names the limit and the value.
+    ///     If `size`, `extent`, `origin` or `window` is out of range.
     #[pyo3(signature = (size, *, extent = None, origin = None, window = None))]
     fn strongest<'py>(
         &self,
@@ -450,7 +451,7 @@ pub(crate) fn _partition_from_description(py: Python<'_>, description: &str) -> 
 /// Raises
 /// ------
 /// DappleError
-///     If an argument is refused; the message names the limit and the value.
+///     If there is not one value for each point, one is not finite, two points coincide, or an option is out of range.
 ///
 /// Examples
 /// --------

@@ -82,7 +82,7 @@ pub(crate) fn _map_info(py: Python<'_>) -> Result<Bound<'_, PyDict>> {
 /// Returns
 /// -------
 /// list of str
-///     The result.
+///     The names, in the order of the library.
 #[pyfunction]
 pub(crate) fn map_names() -> Vec<&'static str> {
     MapKind::ALL.map(MapKind::name).to_vec()

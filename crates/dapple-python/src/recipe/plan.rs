@@ -91,7 +91,9 @@ fn bake_all(
     options: &BakeOptions,
     stop: &Stop,
 ) -> Result<([usize; 2], Vec<Gathered>)> {
-    let bake = Bake::new(plan, options)?;
+    let wanted = stop.clone();
+    let plan = plan.clone().with_cancel(move || wanted.is_set());
+    let bake = Bake::new(&plan, options)?;
     let [columns, rows] = bake.size().map(|side| side as usize);
     let n_values = |map| columns * rows * kind_of(map).n_channels;
     let empty = |&map| Gathered {
@@ -165,12 +167,13 @@ impl Plan {
     /// Returns
     /// -------
     /// dict or xarray.Dataset
-    ///     The result, as described above.
+    ///     The arrays by the names of the maps.
     ///
     /// Raises
     /// ------
     /// DappleError
-    ///     If an argument is refused; the message names the limit and the value.
+    ///     If `size` or `window` is out of range, a map is unknown or named twice, or a node fails; `node` of the error
+    ///     names it.
     #[pyo3(signature = (size, maps = None, *, window = None, as_xarray = false),
         text_signature = "(self, size, maps='height', *, window=None, as_xarray=False)")]
     fn bake<'py>(
@@ -249,7 +252,7 @@ impl Plan {
     /// Raises
     /// ------
     /// DappleError
-    ///     If an argument is refused; the message names the limit and the value.
+    ///     If there is no such node, its values are colors or depend on the whole tile, or the plan has images.
     #[pyo3(signature = (node = None))]
     fn field(&self, node: Option<String>) -> Result<Field> {
         if !self.images.is_empty() {

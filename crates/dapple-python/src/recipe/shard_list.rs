@@ -27,7 +27,7 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 /// Raises
 /// ------
 /// DappleError
-///     If an argument is refused; the message names the limit and the value.
+///     If a size is not one or two whole numbers of at least 1.
 #[pyfunction]
 pub(crate) fn shards(size: &Bound<'_, PyAny>, shard: &Bound<'_, PyAny>) -> Result<ShardList> {
     let shards = Shards::new(size_of(size)?, size_of(shard)?)?;

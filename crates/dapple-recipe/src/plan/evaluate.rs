@@ -140,6 +140,7 @@ pub(super) fn window(
     let pixels = u32::try_from(share).map_or(most, |share| share.clamp(fewest, most));
     let rows = (pixels / width.max(1)).max(1);
     let chunks = parallel::map(height.div_ceil(rows) as usize, |chunk| {
+        whole.cancel.check()?;
         let first = chunk as u32 * rows;
         let part = Window {
             first: [

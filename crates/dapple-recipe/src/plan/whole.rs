@@ -1,6 +1,7 @@
 //! The steps that depend on the whole tile, evaluated beforehand for a picture of a given size.
 
 use super::builder::wrap;
+use super::cancel::Cancel;
 use super::evaluate::{At, Places};
 use super::step::{Global, Laid, Step, Tile, ancestors};
 use super::{Picture, Plan};
@@ -17,6 +18,8 @@ pub struct Whole {
     wrap: [Wrap; 2],
     extent: DVec2,
     pictures: Vec<Option<Picture>>,
+    /// The request to stop the evaluation of steps.
+    pub(super) cancel: Cancel,
 }
 
 impl Plan {
@@ -74,7 +77,10 @@ impl Plan {
     fn whole_of(&self, size: [u32; 2], wanted: &[usize]) -> Result<Whole, RecipeError> {
         let globals = self.needed_globals(wanted);
         let Some(&(first, _)) = globals.first() else {
-            return Ok(Whole::default());
+            return Ok(Whole {
+                cancel: self.cancel.clone(),
+                ..Whole::default()
+            });
         };
         self.limits
             .check_pixels(globals.len(), size)
@@ -85,8 +91,10 @@ impl Plan {
             wrap: wrap(self.wrap),
             extent: self.extent(),
             pictures: vec![None; self.steps().len()],
+            cancel: self.cancel.clone(),
         };
         for (index, global) in globals {
+            self.cancel.check()?;
             let picture = self.known_picture(&whole, &window, index, global);
             whole.pictures[index] = Some(picture.map_err(|error| self.within(index, error))?);
         }
@@ -149,6 +157,7 @@ impl Plan {
     ) -> Result<Values, RecipeError> {
         let of_inputs = step.window_of_inputs(window)?;
         let made = self.values(whole, &of_inputs, &step.inputs, &[])?;
+        self.cancel.check()?;
         (step.apply)(&Tile {
             inputs: &made.iter().collect::<Vec<_>>(),
             input_size: of_inputs.size,

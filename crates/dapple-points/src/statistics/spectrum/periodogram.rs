@@ -40,17 +40,23 @@ impl Periodogram {
         }
     }
 
-    /// Adds the power of a set that is not empty.
-    pub(super) fn add(&mut self, set: &PointSet) {
+    /// Adds the power of a set that is not empty. It is left incomplete once `is_cancelled` returns true.
+    pub(super) fn add(&mut self, set: &PointSet, is_cancelled: &(dyn Fn() -> bool + Sync)) {
         let mut sums = vec![Products::default(); self.powers.len()];
         let n_rows = self.counts[1] as usize + 1;
         for block in set.positions().chunks(BLOCK) {
+            if is_cancelled() {
+                return;
+            }
             let [xs, ys] = [0, 1].map(|axis| {
                 let (origin, size) = (set.domain().origin[axis], set.domain().size[axis]);
                 let angles = block.iter().map(|at| TAU * ((at[axis] - origin) / size));
                 Multiples::new(angles, self.counts[axis])
             });
             parallel::for_each_chunk(&mut sums, n_rows, |x, sums| {
+                if is_cancelled() {
+                    return;
+                }
                 for (y, sums) in sums.iter_mut().enumerate() {
                     let products = xs.products(x, &ys, y);
                     for (sum, product) in sums.iter_mut().zip(products) {
