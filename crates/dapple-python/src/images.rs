@@ -529,11 +529,11 @@ fn encoding(format: &str, kind: Kind, depth: Option<u32>) -> Result<Encoding> {
             "depth",
             format!("the depth of {format} is fixed"),
         )),
-        _ => Err(data::unknown_name(
-            "format",
-            format,
-            &["png", "exr", "npy", "r16"],
-        )),
+        _ => {
+            let message =
+                format!("images are written as png, exr, npy or r16, and not as {format:?}");
+            Err(Error::new("format", message))
+        }
     }
 }
 

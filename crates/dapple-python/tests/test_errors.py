@@ -54,7 +54,6 @@ ROOF = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]), np.array([[0, 1
         (lambda: dp.worley(metric="minkowski"), "`minkowski` is written with a value", None),
         (lambda: dp.worley(metric="euclidian"), "metric: `euclidian` is not one of `euclidean`", "euclidean"),
         (lambda: dp.worley(octaves={"cout": 4}), "octaves: `cout` is not one of `count`", "count"),
-        (lambda: dp.encode_image(np.eye(4), "pgn"), "the format is `pgn`", "png"),
         (lambda: dp.worley(value="cel_value"), "cel_value", None),
         (lambda: dp.gradient_noise(octaves=2, shape="ridge"), "the shape is `ridge`", "ridged"),
         (lambda: dp.make_tile(np.eye(64), method="poison"), "poison", None),
