@@ -531,8 +531,6 @@ height = "moved"
         memory: BakeMemory::Banded,
         ..BakeOptions::default()
     };
-    let error = Bake::new(&plan, &banded)
-        .err()
-        .expect("bands have no whole tile");
+    let error = Bake::new(&plan, &banded).expect_err("bands have no whole tile");
     assert!(matches!(error.kind(), RecipeErrorKind::Global { .. }));
 }
