@@ -9,7 +9,7 @@ mod material;
 mod presets;
 mod recipes;
 
-use crate::args::{FiniteArgs, Frame, OutputArgs, Region, Shard, Size};
+use crate::args::{Frame, OutputArgs, Region, Shard, Size};
 use crate::baking::{STILL, advise, advise_shard, read_images, read_recipe, report};
 use crate::encode::Format;
 use crate::error::{Exit, Hint, usage};
@@ -333,7 +333,7 @@ impl Args {
 
     /// The handling of numbers of images that are not finite.
     #[cfg(feature = "studio")]
-    pub(super) fn finite(&self) -> FiniteArgs {
+    pub(super) fn finite(&self) -> crate::args::FiniteArgs {
         self.material.finite
     }
 
