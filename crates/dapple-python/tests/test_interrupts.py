@@ -58,10 +58,10 @@ CALLS = {
 LIMIT = 0.2
 
 #: Seconds from the exception to the end of the work.
-GRACE = 0.5
+GRACE = 1.0
 
 #: Calls whose work goes on in the background after the exception, for want of a place to stop it.
-LEFT_BEHIND = {"poisson_disk", "disturb"}
+LEFT_BEHIND = {"ambient_occlusion", "disturb", "poisson_disk"}
 
 
 def run(script):
