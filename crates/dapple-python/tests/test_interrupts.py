@@ -57,8 +57,8 @@ CALLS = {
 #: Seconds from the signal to the exception.
 LIMIT = 0.2
 
-#: Seconds from the exception to the end of the work.
-GRACE = 1.0
+#: The most seconds from the exception to the end of the work.
+GRACE = 4.0
 
 #: Calls whose work goes on in the background after the exception, for want of a place to stop it.
 LEFT_BEHIND = {"ambient_occlusion", "disturb", "poisson_disk"}
@@ -98,10 +98,12 @@ def test_ctrl_c_ends_a_call_soon(name):
         except KeyboardInterrupt:
             print(time.perf_counter() - sent[0])
         # The work itself ends soon after the exception.
-        time.sleep({GRACE})
-        before = time.process_time()
-        time.sleep(0.3)
-        busy = time.process_time() - before
+        end = time.perf_counter() + {GRACE}
+        busy = 1.0
+        while busy > 0.05 and time.perf_counter() < end:
+            before = time.process_time()
+            time.sleep(0.2)
+            busy = time.process_time() - before
         print(busy)
         assert dp.constant(1.0).render(2).sum() == 4
         print(flush=True)
@@ -113,8 +115,8 @@ def test_ctrl_c_ends_a_call_soon(name):
     while len(tries) < 3 and min(tries, default=1.0) >= LIMIT:
         late, busy = map(float, run(script).split())
         tries.append(late)
-        # Of 0.3 seconds; the rest of the process is idle.
-        assert busy < 0.1 or name in LEFT_BEHIND, busy
+        # Of 0.2 seconds; the rest of the process is idle.
+        assert busy <= 0.05 or name in LEFT_BEHIND, busy
     assert min(tries) < LIMIT, tries
 
 
