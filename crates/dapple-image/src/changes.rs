@@ -67,8 +67,8 @@ impl FileChanges {
     /// Remembers a file as it is now, if it was not known. Called before the file is read, it makes the next look find
     /// whatever is written after that.
     pub fn remember(&mut self, file: PathBuf) {
-        let stamp = FileStamp::of(&file);
-        self.seen.entry(file).or_insert(stamp);
+        let entry = self.seen.entry(file);
+        entry.or_insert_with_key(|file| FileStamp::of(file));
     }
 
     /// Whether a file differs from how it was at the last look.

@@ -140,9 +140,7 @@ impl Worker {
         drop(queue);
         self.inside.changed.notify_all();
     }
-}
 
-impl Worker {
     /// Stops the exports of the page, also those that wait.
     pub(super) fn stop_exports(&self) {
         let mut queue = self.inside.lock();
