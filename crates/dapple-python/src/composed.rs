@@ -4,7 +4,7 @@
 //! positions the values of each part are computed for many positions at once and then combined, with the same bits.
 
 use crate::error::Result;
-use crate::function::{Function, Made, Volume, position};
+use crate::function::{Function, Made, Volume, position, scales};
 use dapple::raster::glam::DVec2;
 use dapple::raster::{Field, Fractal, RasterError, RasterViewMut, Window};
 use std::sync::Arc;
@@ -105,9 +105,7 @@ impl Composed {
                 shape,
                 ..
             } => {
-                let scales = core::iter::successors(Some(1.0), |scale| Some(scale * lacunarity));
-                let octaves = scales
-                    .take(*octaves as usize)
+                let octaves = scales(*octaves, *lacunarity)
                     .map(|scale| Known(self.part(0, &self.moved(positions, |_, at| at * scale))));
                 // The positions of the octaves are already scaled.
                 Arc::new(Fractal::new(octaves, *gain, 1.0, *shape)?)

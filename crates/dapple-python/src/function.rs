@@ -396,10 +396,8 @@ impl Made {
                 shape,
                 ..
             } => {
-                let scales = core::iter::successors(Some(1.0), |scale| Some(scale * lacunarity));
-                let octaves = scales
-                    .take(*octaves as usize)
-                    .map(|scale| part(0, &|_, at| at * scale));
+                let octaves =
+                    scales(*octaves, *lacunarity).map(|scale| part(0, &|_, at| at * scale));
                 Arc::new(Fractal::new(octaves, *gain, *lacunarity, *shape)?)
             }
             _ => same(0),
@@ -467,4 +465,10 @@ fn clamped(field: Arc<dyn Field>, [low, high]: [f32; 2]) -> Result<impl Field> {
 /// A position of two axes, from its numbers.
 pub(crate) fn position(numbers: &[f64]) -> DVec2 {
     DVec2::from_slice(numbers)
+}
+
+/// The frequencies of the octaves of a sum, relative to the first.
+pub(crate) fn scales(octaves: u32, lacunarity: f64) -> impl Iterator<Item = f64> {
+    let scales = core::iter::successors(Some(1.0), move |scale| Some(scale * lacunarity));
+    scales.take(octaves as usize)
 }
