@@ -6,6 +6,7 @@ mod numbers;
 mod ramp;
 mod read;
 mod region;
+mod samples;
 mod shard;
 mod size;
 
@@ -15,6 +16,7 @@ pub(crate) use numbers::Numbers;
 pub(crate) use ramp::RampArg;
 pub(crate) use read::{FiniteArgs, NonFinite, ReadArgs};
 pub(crate) use region::Region;
+pub(crate) use samples::SamplesArgs;
 pub(crate) use shard::Shard;
 pub(crate) use size::{Extent, Size};
 

@@ -1,6 +1,6 @@
 //! Drawing of a single field, shared by `worley`, `pups` and `wavelet`: each makes a recipe of one node and bakes it.
 
-use crate::args::{Axes, Frame, ImageArgs, Region, Size, Targets, seed};
+use crate::args::{Axes, Frame, ImageArgs, Region, SamplesArgs, Size, Targets, seed};
 use crate::baking::{self, MapFile, advise, report};
 use crate::encode::{Format, ramped_recipe};
 use crate::error::{Exit, Hint, usage};
@@ -28,6 +28,10 @@ pub(crate) struct FieldArgs {
     /// The columns and rows, in pixels.
     #[arg(long, value_name = "WxH", default_value = "512")]
     pub(crate) size: Size,
+
+    #[command(flatten)]
+    #[serde(flatten)]
+    pub(crate) samples: SamplesArgs,
 
     /// The axes along which the picture repeats.
     #[arg(long, value_parser = Word::<Axes>::all(), default_value_t = Axes::Both)]
@@ -148,6 +152,7 @@ pub(crate) fn draw(
     job.claim_sidecar(&main)?;
     let bake = BakeOptions {
         size: args.size.0,
+        samples: args.samples.samples,
         region: args.region.map(Region::of_recipe),
         maps: vec![kind],
         memory: BakeMemory::Banded,
@@ -172,6 +177,17 @@ pub(crate) fn draw(
     };
     job.finish(&told, report(&recipe))?;
     Ok(Exit::Done)
+}
+
+impl FieldArgs {
+    /// The numbers of distances between samples from one side of the picture to the other.
+    ///
+    /// # Errors
+    ///
+    /// If a side has a single sample on corners.
+    pub(crate) fn spaces(&self) -> Result<Size> {
+        self.samples.spaces(self.size)
+    }
 }
 
 /// An error of the recipe, as an error of an option. The node is left out, since users of this subcommand do not know
@@ -238,9 +254,9 @@ fn frames(count: Option<u32>) -> Vec<String> {
     Frame::all(count).map(label).collect()
 }
 
-/// The width and height of a picture that is `shorter` units along its shorter side and has square pixels.
-pub(crate) fn extent_of(size: Size, shorter: f64) -> [f64; 2] {
-    let [width, height] = size.0.map(f64::from);
+/// The width and height of a picture that is `shorter` units along its shorter side and has square pixels; `spaces` counts them.
+pub(crate) fn extent_of(spaces: Size, shorter: f64) -> [f64; 2] {
+    let [width, height] = spaces.0.map(f64::from);
     // The products come first, so that whole numbers of units along both sides are exact.
     let side = |pixels: f64| pixels * shorter / width.min(height);
     [side(width), side(height)]

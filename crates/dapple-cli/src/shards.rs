@@ -5,12 +5,12 @@
 //! valid, whichever process baked it, and a recipe that has changed finds none of the old files. The list itself is
 //! `shards.json` beside that folder.
 
-use crate::args::{FiniteArgs, Frame, Shard, Size, file_name};
+use crate::args::{FiniteArgs, Frame, SamplesArgs, Shard, Size, file_name};
 use crate::error::Hint;
 use crate::input;
 use crate::output::{self, Outputs, Target};
 use anyhow::{Context as _, Error, Result, anyhow};
-use dapple::recipe::{MapKind, Recipe, Region, Shards};
+use dapple::recipe::{MapKind, Recipe, Region, Samples, Shards};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
@@ -34,10 +34,13 @@ pub(crate) struct List {
     sha256: String,
     /// The columns and rows of the picture.
     pub(crate) size: [u32; 2],
+    /// The positions of the samples.
+    #[serde(default, skip_serializing_if = "is_default")]
+    samples: Samples,
     /// The columns and rows of a shard.
     pub(crate) shard: [u32; 2],
     /// The columns and rows that neighboring shards share, as a part of their size.
-    #[serde(default, skip_serializing_if = "is_zero")]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub(crate) overlap: u32,
     /// The names of the maps.
     maps: Vec<String>,
@@ -60,6 +63,7 @@ pub(crate) struct Task {
 /// The options for which a list is made.
 pub(crate) struct Wanted<'a> {
     pub(crate) size: Size,
+    pub(crate) samples: SamplesArgs,
     pub(crate) shard: Size,
     pub(crate) overlap: u32,
     pub(crate) maps: &'a [MapKind],
@@ -85,6 +89,7 @@ impl List {
         let images = images.collect::<Result<Vec<_>>>()?;
         let Wanted {
             size,
+            samples,
             shard,
             overlap,
             maps,
@@ -93,10 +98,11 @@ impl List {
         } = wanted;
         let all = (version, recipe, images, size, shard, frames);
         // Options at their defaults are left out, so that lists of older versions keep their hashes.
-        let described = match (overlap, finite.word()) {
-            (0, None) => serde_json::to_vec(&all)?,
-            (overlap, None) => serde_json::to_vec(&(all, overlap))?,
-            (overlap, Some(word)) => serde_json::to_vec(&(all, overlap, word))?,
+        let described = match (overlap, finite.word(), samples.word()) {
+            (0, None, None) => serde_json::to_vec(&all)?,
+            (overlap, None, None) => serde_json::to_vec(&(all, overlap))?,
+            (overlap, Some(word), None) => serde_json::to_vec(&(all, overlap, word))?,
+            (overlap, word, Some(samples)) => serde_json::to_vec(&(all, overlap, word, samples))?,
         };
         let list = Self {
             dapple: version.to_owned(),
@@ -104,6 +110,7 @@ impl List {
             name: recipe.name.clone(),
             sha256: output::sha256(&described),
             size: size.0,
+            samples: samples.samples,
             shard: shard.0,
             overlap: *overlap,
             maps: maps.iter().map(|kind| kind.name().to_owned()).collect(),
@@ -291,10 +298,7 @@ impl List {
     }
 }
 
-#[expect(
-    clippy::trivially_copy_pass_by_ref,
-    reason = "serde passes a reference"
-)]
-fn is_zero(overlap: &u32) -> bool {
-    *overlap == 0
+/// Whether a value is left out of the list.
+fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
 }

@@ -114,6 +114,30 @@ def test_time_goes_round():
     assert not np.array_equal(first, quarter)
 
 
+def test_samples_on_corners_reach_the_sides_and_meet():
+    plan = dp.Recipe(DATA).plan()
+    whole = plan.bake((33, 65), ["height", "normal"], samples="corners")
+    for values in whole.values():
+        assert np.array_equal(values[0], values[-1])
+        assert np.array_equal(values[:, 0], values[:, -1])
+    part = plan.bake((33, 65), window=np.s_[16:33, 32:65], samples="corners")
+    assert np.array_equal(part["height"], whole["height"][16:, 32:])
+    assert np.array_equal(plan.bake(64, samples="centers")["height"], plan.bake(64)["height"])
+    with pytest.raises(dp.DappleError, match="corners"):
+        plan.bake((1, 5), samples="corners")
+    with pytest.raises(dp.DappleError, match="centers"):
+        plan.bake(8, samples="center")
+
+
+def test_a_dataset_on_corners_has_their_coordinates():
+    pytest.importorskip("xarray")
+    plan = dp.Recipe(DATA).plan()
+    side = plan.bake(8, as_xarray=True).x.values[0] * 16
+    part = plan.bake(9, window=np.s_[0:9, 4:9], samples="corners", as_xarray=True)
+    # A step is an eighth of the side.
+    assert np.allclose(part.x.values, side * np.arange(4, 9) / 8, rtol=1e-15)
+
+
 def test_a_dataset_has_the_coordinates_of_its_pixels():
     pytest.importorskip("xarray")
     plan = dp.Recipe(DATA).plan()

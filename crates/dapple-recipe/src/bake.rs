@@ -16,9 +16,11 @@ mod shards;
 pub use maps::{MapKind, MapRows};
 pub use shards::Shards;
 
-use crate::{Plan, RecipeError, Whole};
+use crate::plan::TileSamples;
+use crate::{Plan, RecipeError, Samples, Whole};
 use dapple_raster::Window;
 use heights::Heights;
+use maps::Side;
 
 /// The maps to bake, their size, and limits of memory.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -26,6 +28,8 @@ pub struct BakeOptions {
     /// The numbers of columns and rows of the whole tile; 1024 × 1024 by default. There may be more pixels than in a
     /// raster.
     pub size: [u32; 2],
+    /// The positions of the samples: the centers of pixels by default.
+    pub samples: Samples,
     /// The part of the tile to bake; all of it by default.
     pub region: Option<Region>,
     /// The maps to bake; the height by default.
@@ -60,6 +64,7 @@ impl Default for BakeOptions {
     fn default() -> Self {
         Self {
             size: [1024; 2],
+            samples: Samples::Centers,
             region: None,
             maps: vec![MapKind::Height],
             memory: BakeMemory::Whole,
@@ -96,13 +101,15 @@ pub struct Bake<'a> {
     plan: &'a Plan,
     whole: Whole,
     maps: Vec<MapKind>,
-    /// The size of the whole tile.
-    tile: [u32; 2],
-    /// The pixels to bake.
+    /// The distinct samples of the tile.
+    tile: TileSamples,
+    /// The samples to bake: with a last column and row on corners, which may be copies of the first ones.
     window: Window,
     band_pixels: u32,
     next_row: u32,
     heights: Heights,
+    /// The heights of the first column, for its copy.
+    first_heights: Heights,
 }
 
 impl<'a> Bake<'a> {
@@ -114,23 +121,28 @@ impl<'a> Bake<'a> {
     /// [`Global`](crate::RecipeErrorKind::Global) for a node that depends on the whole tile under
     /// [`BakeMemory::Banded`], and the errors of such nodes.
     pub fn new(plan: &'a Plan, options: &BakeOptions) -> Result<Self, RecipeError> {
-        let whole_window = plan.window(options.size)?;
+        let tile = plan.tile_samples(options.size, options.samples)?;
+        let all = Window {
+            size: options.size,
+            ..tile.window
+        };
         let window = match options.region {
-            None => whole_window,
-            Some(region) => region.of(&whole_window)?,
+            None => all,
+            Some(region) => region.of(&all)?,
         };
         if options.memory == BakeMemory::Banded {
             plan.check_local()?;
         }
-        let heights = Heights::new(plan, &whole_window, &options.maps)?;
+        let heights = Heights::new(plan, &tile, &options.maps)?;
         Ok(Self {
             plan,
-            whole: plan.whole(options.size)?,
+            whole: plan.whole_at(&tile)?,
             maps: options.maps.clone(),
-            tile: options.size,
+            tile,
             window,
             band_pixels: options.band_pixels,
             next_row: 0,
+            first_heights: heights.clone(),
             heights,
         })
     }
@@ -147,16 +159,9 @@ impl<'a> Bake<'a> {
     ///
     /// The errors of a band, and [`Raster`](crate::RecipeErrorKind::Raster) if a map has more pixels than a raster can have.
     pub fn whole_maps(self) -> Result<Vec<(MapKind, MapRows)>, RecipeError> {
-        let mut whole: Vec<(MapKind, MapRows)> = Vec::new();
+        let mut whole = Vec::new();
         for band in self {
-            let maps = band?.maps;
-            if whole.is_empty() {
-                whole = maps;
-                continue;
-            }
-            let pairs = whole.into_iter().zip(maps);
-            let joined = pairs.map(|((kind, above), (_, below))| Ok((kind, above.joined(below)?)));
-            whole = joined.collect::<Result<_, RecipeError>>()?;
+            whole = joined(whole, band?.maps, Side::Below)?;
         }
         Ok(whole)
     }
@@ -164,27 +169,60 @@ impl<'a> Bake<'a> {
     fn band(&mut self) -> Result<Band, RecipeError> {
         let [width, height] = self.window.size;
         let first_row = self.next_row;
-        let rows = (self.band_pixels / width).max(16).min(height - first_row);
-        self.next_row += rows;
-        let band = Window {
-            first: [
-                self.window.first[0],
-                self.window.first[1].saturating_add(first_row.into()),
-            ],
-            size: [width, rows],
-            ..self.window
+        let [left, top] = [
+            self.window.first[0],
+            self.window.first[1].saturating_add(first_row.into()),
+        ];
+        let distinct = |axis: usize, first: i64| {
+            u32::try_from(i64::from(self.tile.window.size[axis]) - first).unwrap_or(0)
         };
-        let heights = self.heights.of(self.plan, &self.whole, &band)?;
-        let maps = maps::maps(
-            self.plan,
-            &self.whole,
-            &band,
-            self.tile,
-            &heights,
-            &self.maps,
-        )?;
+        let columns = distinct(0, left).min(width);
+        let rows = (self.band_pixels / width).max(16).min(height - first_row);
+        // Past the last distinct row comes a copy of the first one.
+        let (top, rows) = match distinct(1, top) {
+            0 => (0, 1),
+            below => (top, rows.min(below)),
+        };
+        self.next_row += rows;
+        let mut maps = Vec::new();
+        if columns > 0 {
+            let band = Window {
+                first: [left, top],
+                size: [columns, rows],
+                ..self.window
+            };
+            maps = self
+                .heights
+                .maps(self.plan, &self.whole, &band, &self.tile, &self.maps)?;
+        }
+        // Past the last distinct column comes a copy of the first one.
+        if columns < width {
+            let band = Window {
+                first: [0, top],
+                size: [1, rows],
+                ..self.window
+            };
+            let copy =
+                self.first_heights
+                    .maps(self.plan, &self.whole, &band, &self.tile, &self.maps)?;
+            maps = joined(maps, copy, Side::Right)?;
+        }
         Ok(Band { first_row, maps })
     }
+}
+
+/// Maps of the same kinds, joined each with the other; the others alone where there are none yet.
+fn joined(
+    maps: Vec<(MapKind, MapRows)>,
+    others: Vec<(MapKind, MapRows)>,
+    side: Side,
+) -> Result<Vec<(MapKind, MapRows)>, RecipeError> {
+    if maps.is_empty() {
+        return Ok(others);
+    }
+    let pairs = maps.into_iter().zip(others);
+    let joined = pairs.map(|((kind, map), (_, other))| Ok((kind, map.joined(other, side)?)));
+    joined.collect()
 }
 
 impl Iterator for Bake<'_> {

@@ -23,7 +23,7 @@ pub use error::{Place, RecipeError, RecipeErrorKind};
 pub use input::Input;
 pub use nodes::*;
 pub use plan::{
-    ImageSource, Images, Memory, NodeColors, NodeField, Picture, Plan, PlanLimits, Whole,
+    ImageSource, Images, Memory, NodeColors, NodeField, Picture, Plan, PlanLimits, Samples, Whole,
 };
 pub use recipe::{Material, Recipe, SCHEMA};
 pub use text::{MAX_TEXT, read_options};

@@ -23,7 +23,7 @@ use anyhow::Result;
 use batch::Batch;
 use claim::claim;
 use dapple::recipe::{
-    Bake, BakeMemory, BakeOptions, Images, MapKind, Memory, Plan, PlanLimits, Recipe,
+    Bake, BakeMemory, BakeOptions, Images, MapKind, Memory, Plan, PlanLimits, Recipe, Samples,
 };
 use dapple::tile::Map;
 pub(super) use material::MaterialArgs;
@@ -47,7 +47,7 @@ Examples:
   dapple bake rock --preset unity -o Assets/Rock/
   dapple bake rock -o rock.glb
   dapple bake marble -o marble.mtlx
-  dapple bake mountains --maps height --size 2017 -o island.r16
+  dapple bake mountains --maps height --size 2017 --samples corners -o island.r16
   dapple bake rock --size 8192 --shard 3,1,512 -o parts/
   dapple bake sea-water --frames 24 --size 128 --maps normal,albedo -o sea/
 
@@ -135,6 +135,7 @@ struct Work {
 /// Options, recipes and files that are refused.
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     args.check_document()?;
+    args.check_samples()?;
     let names = recipes::expanded(&args.recipes)?;
     let files = args.files_for(names.len())?;
     let mut batch = Batch::new(names.len(), args.keep_going, context);
@@ -190,6 +191,7 @@ pub(super) fn bake_with(
     let matches = command.try_get_matches_from(words)?;
     let args = <Args as clap::FromArgMatches>::from_arg_matches(&matches)?;
     args.check_document()?;
+    args.check_samples()?;
     let mut recipe = recipe.clone();
     args.change(&mut recipe);
     let (folder, list) = (folder.to_owned(), None);
@@ -228,6 +230,7 @@ impl Work {
         args.change(&mut recipe);
         let wanted = args.shard.map(|shard| Wanted {
             size: args.material.size,
+            samples: args.material.samples,
             shard: shard.size,
             overlap: shard.overlap,
             maps: args.material.map_kinds(),
@@ -318,6 +321,22 @@ struct Told<'a> {
 }
 
 impl Args {
+    /// Refuses samples on corners where copies lie beside each other.
+    ///
+    /// # Errors
+    ///
+    /// If there are such copies.
+    fn check_samples(&self) -> Result<()> {
+        self.material.samples.spaces(self.material.size)?;
+        if self.sheet && self.material.samples.samples == Samples::Corners {
+            let error = usage(
+                "copies beside each other have no samples on corners: the last column is the first of the next copy",
+            );
+            return Err(error.hint("leave out --sheet or --samples corners"));
+        }
+        Ok(())
+    }
+
     /// The only recipe, which has to be a file.
     ///
     /// # Errors
@@ -431,6 +450,7 @@ impl Args {
     fn options(&self, maps: Vec<MapKind>) -> Result<BakeOptions> {
         Ok(BakeOptions {
             size: self.material.size.0,
+            samples: self.material.samples.samples,
             region: self.part()?,
             maps,
             memory: if self.banded || self.shard.is_some() {

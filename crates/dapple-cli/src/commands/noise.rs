@@ -67,9 +67,10 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
         gain: args.gain,
         seed: None,
     };
-    let extent = extent_of(args.field.size, args.cells);
+    let spaces = args.field.spaces()?;
+    let extent = extent_of(spaces, args.cells);
     check_whole_cells(extent, args.field.wrap.flags(), "--cells")?;
-    let pixels = args.field.size.0.into_iter().min().unwrap_or(1);
+    let pixels = spaces.0.into_iter().min().unwrap_or(1);
     if let Some(octave) = first_below_a_pixel(args.cells, args.octaves, pixels)
         && !context.quiet
     {

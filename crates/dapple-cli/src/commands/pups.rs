@@ -206,9 +206,10 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
         is_color: node.is_color(),
         images: args.images(&node)?,
         node: Node::Pups(node),
-        extent: args
-            .extent
-            .map_or_else(|| extent_of(args.field.size, SIDE), |extent| extent.0),
+        extent: match &args.extent {
+            Some(extent) => extent.0,
+            None => extent_of(args.field.spaces()?, SIDE),
+        },
         range: [0.0, 1.0],
         frames: args.frames,
     };

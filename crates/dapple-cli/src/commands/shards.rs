@@ -40,9 +40,12 @@ On a render farm with Open Job Description, from a template in this folder:
   openjd run job.json
 
 Terrain tiles of engines share the samples along their borders: shards with --overlap 1 have the same bits there. Pictures of
-1009, 2017, 4033 and 8129 pixels fit Unreal, and of 2^n + 1 Unity. `bake --region` writes single tiles as raw heights:
-  dapple shards flagstone --size 257 --shard 129 --overlap 1 --maps height -o tiles/ > list
-  dapple bake flagstone --size 257 --maps height --region 128,0,129,129 -o x1_y0.r16";
+1009, 2017, 4033 and 8129 pixels fit Unreal, and of 2^n + 1 Unity. With --samples corners the samples lie on the sides of the
+tile, and the last ones equal the first ones where it repeats. `bake --region` writes single tiles as raw heights:
+  dapple shards flagstone --size 257 --samples corners --shard 129 --overlap 1 \\
+    --maps height -o tiles/ > list
+  dapple bake flagstone --size 257 --samples corners --maps height \\
+    --region 128,0,129,129 -o x1_y0.r16";
 
 dapple::raster::named! {
     /// The formats of a list of shards.
@@ -108,6 +111,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let maps = args.material.map_kinds();
     let wanted = Wanted {
         size: args.material.size,
+        samples: args.material.samples,
         shard: args.shard,
         overlap: args.overlap,
         maps,
@@ -152,6 +156,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
 fn check(plan: &Plan, args: &Args, region: Option<Region>) -> Result<()> {
     let options = BakeOptions {
         size: args.material.size.0,
+        samples: args.material.samples.samples,
         region,
         maps: args.material.map_kinds().to_vec(),
         memory: BakeMemory::Banded,

@@ -74,8 +74,9 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
         return Err(usage("the weights have no finite sum of squares above 0")
             .hint("give at least one that is not 0"));
     }
-    let extent = extent_of(args.field.size, args.cells);
-    check_cells(extent, args.field.wrap.flags(), args.field.size)?;
+    let spaces = args.field.spaces()?;
+    let extent = extent_of(spaces, args.cells);
+    check_cells(extent, args.field.wrap.flags(), spaces)?;
     let reach = (3.0 * variance.sqrt()) as f32;
     let node = WaveletNode {
         frequency: 1.0,

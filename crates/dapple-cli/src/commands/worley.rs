@@ -152,7 +152,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let node = args.node()?;
     let extent = match args.period {
         Some(period) => period.0,
-        None => extent_of(args.field.size, args.cells),
+        None => extent_of(args.field.spaces()?, args.cells),
     };
     check_whole_cells(extent, args.field.wrap.flags(), "--period")?;
     let field = Field {

@@ -10,6 +10,27 @@ fn read(folder: &Folder, name: &str) -> Image {
 }
 
 #[test]
+fn fields_on_corners_have_square_spaces_and_meet() {
+    let folder = Folder::new("corners");
+    for line in [
+        // 32 × 16 spaces have 8 × 4 cells, and 33 × 17 pixels would have none that repeat.
+        "wavelet --cells 4 --size 33x17 --samples corners -o out.exr",
+        "worley --cells 2 --size 33x17 --samples corners -o out.exr --force",
+        "noise --cells 2 --size 33x17 --samples corners -o out.exr --force",
+        "pups noise --size 33x17 --samples corners -o out.exr --force",
+    ] {
+        let run = folder.run(&line.split(' ').collect::<Vec<_>>());
+        assert_done(&run, line);
+        let values = read(&folder, "out.exr").gray().unwrap();
+        assert_eq!(values.row(0), values.row(16), "{line}");
+        for row in 0..17 {
+            assert_eq!(values.row(row)[0], values.row(row)[32], "{line}");
+        }
+        assert_ne!(values.row(0), values.row(15), "{line}");
+    }
+}
+
+#[test]
 fn a_bake_writes_a_file_for_each_map() {
     let folder = Folder::new("maps");
     let maps = [

@@ -35,7 +35,10 @@ const READERS: [&str; 24] = [
 ];
 
 /// Invalid command lines that clap does not detect.
-const WRONG: [&str; 48] = [
+const WRONG: [&str; 51] = [
+    "bake flagstone --samples corners --sheet -o out/",
+    "bake flagstone --samples corners -o rock.glb",
+    "noise --samples corners --size 1x5 -o out.png",
     "bake flagstone -o out.png --name rock",
     "bake flagstone --frames 2 -o rock.glb",
     "bake flagstone --frames 2 --maps height -o -",

@@ -125,6 +125,43 @@ fn shards_that_overlap_share_their_borders_and_are_joined_to_the_bytes_of_the_wh
 }
 
 #[test]
+fn shards_on_corners_are_joined_to_the_whole_whose_last_samples_equal_the_first() {
+    let folder = Folder::with_inputs("corners");
+    let of = "my-rock.toml --size 65x49 --samples corners --maps height,normal";
+    let shards = format!("shards {of} --shard 33 --overlap 1 -o parts/");
+    let lines = list(&folder, &shards);
+    assert!(lines[0].contains("--samples=corners"), "{}", lines[0]);
+    run_all(&folder, &lines);
+    list(&folder, "join parts/ -o joined/");
+    list(&folder, &format!("bake {of} --format exr -o whole/"));
+    for map in ["my-rock_height.exr", "my-rock_normal.exr"] {
+        let [joined, whole] =
+            ["joined", "whole"].map(|name| bytes(&folder, &format!("{name}/{map}")));
+        assert!(joined == whole, "{map}");
+    }
+    let path = folder.path("whole/my-rock_height.exr");
+    let image = dapple::image::read_image(path, &dapple::image::Limits::default());
+    let heights = image.unwrap().gray().unwrap();
+    assert_eq!(heights.row(0), heights.row(48));
+    for row in 0..49 {
+        assert_eq!(
+            heights.row(row)[0].to_bits(),
+            heights.row(row)[64].to_bits()
+        );
+    }
+    let other = folder.run(&["join", "parts/", "-o", "joined/", "--force"]);
+    assert_done(&other, "the list is there");
+    let centers = shards.replace(" --samples corners", "");
+    let run = folder.run(&centers.split(' ').collect::<Vec<_>>());
+    assert_refused(
+        &run,
+        1,
+        "lists shards of my-rock",
+        "other samples are other shards",
+    );
+}
+
+#[test]
 fn arrays_and_raw_heights_are_joined_to_the_bytes_of_the_whole() {
     let folder = Folder::new("arrays");
     let of = "rock --size 100x70 --maps height";

@@ -192,6 +192,7 @@ class Plan:
         maps: str | Iterable[str] = "height",
         *,
         window: _Window | None = None,
+        samples: Literal["centers", "corners"] = "centers",
         as_xarray: Literal[False] = False,
     ) -> dict[str, _F32]: ...
     @overload
@@ -201,6 +202,7 @@ class Plan:
         maps: str | Iterable[str] = "height",
         *,
         window: _Window | None = None,
+        samples: Literal["centers", "corners"] = "centers",
         as_xarray: Literal[True],
     ) -> xarray.Dataset: ...
     @property

@@ -3,6 +3,7 @@
 use super::maps::{_map_info, kind_of, maps};
 use super::{NodeMade, Recipe, sha256};
 use crate::arrays;
+use crate::data::named;
 use crate::error::{Error, Result};
 use crate::field::Field;
 use crate::function::Made;
@@ -13,7 +14,7 @@ use crate::watch::{self, Stop};
 use dapple::color::{LinearRgb, Normal};
 use dapple::recipe::{
     Bake, BakeOptions, Images, MapKind, MapRows, Picture, Plan as RustPlan, Recipe as RustRecipe,
-    Region,
+    Region, Samples,
 };
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -161,6 +162,9 @@ impl Plan {
     ///     The name of a map, or the names of several, each once: see `map_names`.
     /// window : tuple of slice or None, default None
     ///     The part to bake, such as `np.s_[100:150, 33:94]`: bit for bit the crop of the whole. It must lie inside.
+    /// samples : str, default "centers"
+    ///     The positions of the samples: "centers" of pixels, or "corners" of a grid that reaches the sides of the tile, as
+    ///     heights of terrains have them. On corners the last row and column equal the first ones where the tile repeats.
     /// as_xarray : bool, default False
     ///     Return an `xarray.Dataset` with coordinates in units of the plane instead of a dictionary.
     ///
@@ -174,18 +178,21 @@ impl Plan {
     /// DappleError
     ///     If `size` or `window` is out of range, a map is unknown or named twice, or a node fails; `node` of the error
     ///     names it.
-    #[pyo3(signature = (size, maps = None, *, window = None, as_xarray = false),
-        text_signature = "(self, size, maps='height', *, window=None, as_xarray=False)")]
+    #[pyo3(signature = (size, maps = None, *, window = None, samples = None, as_xarray = false),
+        text_signature = "(self, size, maps='height', *, window=None, samples='centers', as_xarray=False)")]
     fn bake<'py>(
         &self,
         py: Python<'py>,
         size: &Bound<'py, PyAny>,
         maps: Option<&Bound<'py, PyAny>>,
         window: Option<&Bound<'py, PyAny>>,
+        samples: Option<&str>,
         as_xarray: bool,
     ) -> Result<Bound<'py, PyAny>> {
+        let samples = samples.map_or(Ok(Samples::default()), |name| named("samples", name))?;
         let options = BakeOptions {
             size: size_of(size)?,
+            samples,
             region: window.map(|window| region(size, window)).transpose()?,
             maps: maps.map_or(Ok(vec![MapKind::Height]), self::maps)?,
             ..BakeOptions::default()
@@ -198,9 +205,14 @@ impl Plan {
             return Ok(maps.into_any());
         }
         let first = options.region.map_or([0; 2], |region| region.first);
-        let [[width, height], [x, y]] = [options.size, first].map(|sides| sides.map(f64::from));
+        let (spaces, shift) = match samples {
+            Samples::Corners => (options.size.map(|side| side - 1), 0.5),
+            _ => (options.size, 0.0),
+        };
+        let [[width, height], [x, y]] = [spaces, first].map(|sides| sides.map(f64::from));
         let extent = self.plan.extent();
         let pixel = (extent.x / width, extent.y / height);
+        let (x, y) = (x - shift, y - shift);
         let dataset = py.import("dapple_textures._xarray")?.getattr("dataset")?;
         Ok(dataset.call1((maps, pixel, (x, y)))?)
     }

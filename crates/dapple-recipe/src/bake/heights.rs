@@ -1,8 +1,8 @@
 //! The heights of a band with a margin, and the steps that other maps share with the height.
 
-use super::MapKind;
-use super::maps::{NORMAL_HALO, beside_height, curvature_options, occlusion_options};
-use crate::plan::Known;
+use super::maps::{NORMAL_HALO, beside_height, curvature_options, maps, occlusion_options};
+use super::{MapKind, MapRows};
+use crate::plan::{Known, TileSamples};
 use crate::{Plan, RecipeError, Values, Whole};
 use dapple_color::continue_heights;
 use dapple_raster::{Raster, RasterError, Window};
@@ -43,10 +43,15 @@ pub(super) struct Margined {
 }
 
 impl Heights {
-    pub(super) fn new(plan: &Plan, tile: &Window, maps: &[MapKind]) -> Result<Self, RecipeError> {
+    pub(super) fn new(
+        plan: &Plan,
+        tile: &TileSamples,
+        maps: &[MapKind],
+    ) -> Result<Self, RecipeError> {
         let continues = plan.continues_heights();
+        let TileSamples { window, extent } = *tile;
         let side =
-            |axis: usize| [0, 1].map(|end| tile.first[axis] + end * i64::from(tile.size[axis]));
+            |axis: usize| [0, 1].map(|end| window.first[axis] + end * i64::from(window.size[axis]));
         let mut heights = Self {
             wanted: false,
             halo: [0; 2],
@@ -58,8 +63,10 @@ impl Heights {
             let halo = match map {
                 MapKind::Height => [0; 2],
                 MapKind::Normal => NORMAL_HALO,
-                MapKind::Occlusion | MapKind::Orm => occlusion_options(plan)?.halo(tile.size),
-                MapKind::Curvature => curvature_options(plan)?.halo(tile.size),
+                MapKind::Occlusion | MapKind::Orm => {
+                    occlusion_options(plan, extent)?.halo(window.size)
+                }
+                MapKind::Curvature => curvature_options(plan, extent)?.halo(window.size),
                 MapKind::Albedo | MapKind::Roughness | MapKind::Metallic => continue,
             };
             heights.wanted = true;
@@ -68,13 +75,21 @@ impl Heights {
         Ok(heights)
     }
 
-    /// Computes the heights of a band below or beside the last one.
-    pub(super) fn of(
+    /// Computes the maps of a band below or beside the last one.
+    pub(super) fn maps(
         &mut self,
         plan: &Plan,
         whole: &Whole,
         band: &Window,
-    ) -> Result<Margined, RecipeError> {
+        tile: &TileSamples,
+        kinds: &[MapKind],
+    ) -> Result<Vec<(MapKind, MapRows)>, RecipeError> {
+        let heights = self.of(plan, whole, band)?;
+        maps(plan, whole, band, tile, &heights, kinds)
+    }
+
+    /// Computes the heights of a band below or beside the last one.
+    fn of(&mut self, plan: &Plan, whole: &Whole, band: &Window) -> Result<Margined, RecipeError> {
         let halo = self.halo;
         if !self.wanted {
             return Ok(Margined {

@@ -1,12 +1,14 @@
 //! The maps of a band.
 
 use super::heights::Margined;
+use crate::plan::TileSamples;
 use crate::{Plan, RecipeError, Values, Whole};
 use dapple_color::{
     CurvatureOptions, HeightPlane, LinearRgb, Normal, NormalOptions, OcclusionOptions,
     ambient_occlusion_of_part, curvature_of_part, curvature_to_gray, normal_map_of_part,
 };
-use dapple_raster::{Raster, Window, Wrap};
+use dapple_raster::{Raster, RasterError, Window, Wrap};
+use glam::DVec2;
 
 /// A map of a material.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -28,6 +30,13 @@ pub enum MapKind {
     Metallic,
     /// Occlusion, roughness and metallic as red, green and blue, as glTF and engines pack them.
     Orm,
+}
+
+/// The side of a map at which another part is appended.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Side {
+    Below,
+    Right,
 }
 
 /// Some rows of a map.
@@ -82,6 +91,26 @@ impl MapKind {
     }
 }
 
+impl Side {
+    /// A raster with another one at its side, which has as many columns or rows.
+    fn join<T: Copy>(self, raster: Raster<T>, other: &Raster<T>) -> Result<Raster<T>, RasterError> {
+        let [width, height] = raster.size();
+        match self {
+            Self::Below => {
+                let size = [width, height.saturating_add(other.height())];
+                let mut pixels = raster.into_pixels();
+                pixels.extend(other.pixels());
+                Raster::from_vec(size, pixels)
+            }
+            Self::Right => {
+                let rows = (0..height).map(|row| [raster.row(row), other.row(row)].concat());
+                let size = [width.saturating_add(other.width()), height];
+                Raster::from_vec(size, rows.flatten().collect())
+            }
+        }
+    }
+}
+
 impl MapRows {
     /// Columns and rows.
     #[must_use]
@@ -94,21 +123,15 @@ impl MapRows {
         }
     }
 
-    /// Appends further rows of the same map below.
-    pub(super) fn joined(self, below: Self) -> Result<Self, RecipeError> {
-        fn join<T>(above: Raster<T>, below: Raster<T>) -> Result<Raster<T>, RecipeError> {
-            let size = [above.width(), above.height().saturating_add(below.height())];
-            let mut pixels = above.into_pixels();
-            pixels.extend(below.into_pixels());
-            Ok(Raster::from_vec(size, pixels)?)
-        }
-        Ok(match (self, below) {
-            (Self::Gray(above), Self::Gray(below)) => Self::Gray(join(above, below)?),
-            (Self::Color(above), Self::Color(below)) => Self::Color(join(above, below)?),
-            (Self::Normal(above), Self::Normal(below)) => Self::Normal(join(above, below)?),
-            (Self::Packed(above), Self::Packed(below)) => Self::Packed(join(above, below)?),
-            // The bands of a map are of one kind.
-            (above, _) => above,
+    /// Appends another part of the same map at a side.
+    pub(super) fn joined(self, other: Self, side: Side) -> Result<Self, RecipeError> {
+        Ok(match (self, other) {
+            (Self::Gray(map), Self::Gray(other)) => Self::Gray(side.join(map, &other)?),
+            (Self::Color(map), Self::Color(other)) => Self::Color(side.join(map, &other)?),
+            (Self::Normal(map), Self::Normal(other)) => Self::Normal(side.join(map, &other)?),
+            (Self::Packed(map), Self::Packed(other)) => Self::Packed(side.join(map, &other)?),
+            // The parts of a map are of one kind.
+            (map, _) => map,
         })
     }
 
@@ -143,17 +166,20 @@ impl MapRows {
 /// The numbers of columns and rows at each side on which a normal depends.
 pub(super) const NORMAL_HALO: [u32; 2] = [1; 2];
 
-/// The plane of the heights of a plan. The wrap past the margin does not matter.
-fn height_plane(plan: &Plan) -> HeightPlane {
+/// The plane of the heights of a plan, with the extent of all pixels of the tile. The wrap past the margin does not matter.
+fn height_plane(plan: &Plan, extent: DVec2) -> HeightPlane {
     HeightPlane {
         strength: plan.material().relief,
-        extent: plan.extent(),
+        extent,
         wrap: [Wrap::Clamp; 2],
     }
 }
 
 /// The options of a plan for ambient occlusion.
-pub(super) fn occlusion_options(plan: &Plan) -> Result<OcclusionOptions, RecipeError> {
+pub(super) fn occlusion_options(
+    plan: &Plan,
+    extent: DVec2,
+) -> Result<OcclusionOptions, RecipeError> {
     let material = plan.material();
     let radius = material
         .occlusion_radius
@@ -167,13 +193,16 @@ pub(super) fn occlusion_options(plan: &Plan) -> Result<OcclusionOptions, RecipeE
     )?;
     Ok(OcclusionOptions {
         radius,
-        plane: height_plane(plan),
+        plane: height_plane(plan, extent),
         ..OcclusionOptions::default()
     })
 }
 
 /// The options of a plan for curvature.
-pub(super) fn curvature_options(plan: &Plan) -> Result<CurvatureOptions, RecipeError> {
+pub(super) fn curvature_options(
+    plan: &Plan,
+    extent: DVec2,
+) -> Result<CurvatureOptions, RecipeError> {
     let material = plan.material();
     let radius = material
         .curvature_radius
@@ -187,7 +216,7 @@ pub(super) fn curvature_options(plan: &Plan) -> Result<CurvatureOptions, RecipeE
     )?;
     Ok(CurvatureOptions {
         radius,
-        plane: height_plane(plan),
+        plane: height_plane(plan, extent),
     })
 }
 
@@ -209,7 +238,7 @@ pub(super) fn maps(
     plan: &Plan,
     whole: &Whole,
     band: &Window,
-    tile: [u32; 2],
+    tile: &TileSamples,
     heights: &Margined,
     kinds: &[MapKind],
 ) -> Result<Vec<(MapKind, MapRows)>, RecipeError> {
@@ -264,7 +293,7 @@ fn pack(
 /// The maps that depend on the surroundings of a pixel.
 struct Around<'a> {
     plan: &'a Plan,
-    tile: [u32; 2],
+    tile: &'a TileSamples,
     size: [u32; 2],
     heights: &'a Margined,
     /// The occlusion, computed if a map shows it.
@@ -297,24 +326,25 @@ impl Around<'_> {
         let material = self.plan.material();
         let options = NormalOptions {
             y: material.normal_y,
-            plane: height_plane(self.plan),
+            plane: height_plane(self.plan, self.tile.extent),
         };
-        let normals = normal_map_of_part(&self.within(NORMAL_HALO)?, self.tile, &options)?;
+        let normals =
+            normal_map_of_part(&self.within(NORMAL_HALO)?, self.tile.window.size, &options)?;
         Ok(normals.crop(NORMAL_HALO, self.size)?)
     }
 
     fn make_occlusion(&self) -> Result<Raster<f32>, RecipeError> {
         let (heights, margin) = (self.margined()?, self.heights.halo);
-        let options = occlusion_options(self.plan)?;
-        Ok(ambient_occlusion_of_part(
-            heights, margin, self.tile, &options,
-        )?)
+        let options = occlusion_options(self.plan, self.tile.extent)?;
+        let size = self.tile.window.size;
+        Ok(ambient_occlusion_of_part(heights, margin, size, &options)?)
     }
 
     fn curvature(&self) -> Result<Raster<f32>, RecipeError> {
-        let options = curvature_options(self.plan)?;
-        let halo = options.halo(self.tile);
-        let curved = curvature_of_part(&self.within(halo)?, self.tile, &options)?;
+        let options = curvature_options(self.plan, self.tile.extent)?;
+        let size = self.tile.window.size;
+        let halo = options.halo(size);
+        let curved = curvature_of_part(&self.within(halo)?, size, &options)?;
         let gray = curved.map(|&curvature| curvature_to_gray(curvature, options.radius as f32));
         Ok(gray.crop(halo, self.size)?)
     }

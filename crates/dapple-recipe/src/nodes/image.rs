@@ -38,6 +38,7 @@ impl NodeKind for ImageNode {
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
         Ok(Step::Image(Laid {
             picture: plan.layer_of(&self.file, self.layer())?.clone(),
+            origin: plan.domain().origin,
             extent: plan.domain().size,
             wrap: plan.wrap(),
         }))

@@ -107,6 +107,7 @@ impl NodeKind for SynthNode {
         };
         Ok(Step::Image(Laid {
             picture,
+            origin: plan.domain().origin,
             extent: plan.domain().size,
             wrap: plan.wrap(),
         }))

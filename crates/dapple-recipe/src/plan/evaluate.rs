@@ -271,7 +271,7 @@ impl Laid {
 
     fn read<T: Texel>(&self, raster: &Raster<T>, places: Places<'_>) -> Vec<T> {
         let positions = places.positions().into_iter();
-        let uv = positions.map(|position| position / self.extent);
+        let uv = positions.map(|position| (position - self.origin) / self.extent);
         let area = places.area / self.extent;
         uv.map(|uv| raster.sample_area(uv, area, self.wrap))
             .collect()

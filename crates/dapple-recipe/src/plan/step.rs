@@ -60,6 +60,8 @@ pub(crate) struct Tile<'a> {
 #[derive(Clone, Debug)]
 pub(crate) struct Laid {
     pub(crate) picture: Picture,
+    /// The corner of its first pixel.
+    pub(crate) origin: DVec2,
     pub(crate) extent: DVec2,
     pub(crate) wrap: [Wrap; 2],
 }

@@ -4,7 +4,7 @@ use super::builder::wrap;
 use super::cancel::Cancel;
 use super::evaluate::{At, Places};
 use super::step::{Global, Laid, Step, Tile, ancestors};
-use super::{Picture, Plan};
+use super::{Picture, Plan, Samples, TileSamples};
 use crate::{RecipeError, RecipeErrorKind, Region, Values};
 use dapple_raster::{Raster, Window, Wrap};
 use glam::DVec2;
@@ -70,11 +70,17 @@ impl Plan {
     /// The errors of the crates of the nodes, [`Raster`](RecipeErrorKind::Raster) for a size that is too large, and
     /// [`TooMuch`](RecipeErrorKind::TooMuch) for more pixels in all than the limits of the plan allow.
     pub fn whole(&self, size: [u32; 2]) -> Result<Whole, RecipeError> {
-        self.whole_of(size, &self.channels().steps())
+        let tile = self.tile_samples(size, Samples::Centers)?;
+        self.whole_of(&tile, &self.channels().steps())
+    }
+
+    /// Evaluates the steps that depend on the whole tile, for the samples of a bake.
+    pub(crate) fn whole_at(&self, tile: &TileSamples) -> Result<Whole, RecipeError> {
+        self.whole_of(tile, &self.channels().steps())
     }
 
     /// Evaluates the steps that depend on the whole tile and are needed for `wanted`.
-    fn whole_of(&self, size: [u32; 2], wanted: &[usize]) -> Result<Whole, RecipeError> {
+    fn whole_of(&self, tile: &TileSamples, wanted: &[usize]) -> Result<Whole, RecipeError> {
         let globals = self.needed_globals(wanted);
         let Some(&(first, _)) = globals.first() else {
             return Ok(Whole {
@@ -82,14 +88,16 @@ impl Plan {
                 ..Whole::default()
             });
         };
+        let window = tile.window;
         self.limits
-            .check_pixels(globals.len(), size)
+            .check_pixels(globals.len(), window.size)
             .map_err(|error| self.within(first, error))?;
-        let window = Window::new(DVec2::ZERO, self.extent(), size)?;
+        // A raster has fewer pixels than a window may have.
+        Window::unit(window.size)?;
         let mut whole = Whole {
             window: Some(window),
             wrap: wrap(self.wrap),
-            extent: self.extent(),
+            extent: tile.extent,
             pictures: vec![None; self.steps().len()],
             cancel: self.cancel.clone(),
         };
@@ -114,11 +122,12 @@ impl Plan {
         region: Option<Region>,
     ) -> Result<Picture, RecipeError> {
         let step = self.step_of(node)?;
+        let tile = self.tile_samples(size, Samples::Centers)?;
         let window = match region {
-            None => self.window(size)?,
-            Some(region) => region.of(&self.window(size)?)?,
+            None => tile.window,
+            Some(region) => region.of(&tile.window)?,
         };
-        let whole = self.whole_of(size, &[step])?;
+        let whole = self.whole_of(&tile, &[step])?;
         let values = self.values(&whole, &window, &[step], &[])?;
         values.into_iter().next().map_or_else(
             || Err(RecipeError::new(RecipeErrorKind::Global { during: "yet" })),
@@ -188,8 +197,10 @@ impl Global {
             *side /= copies;
         }
         let [across, down] = self.copies.map(f64::from);
+        let copies = DVec2::new(across, down);
         Ok(Window {
-            pixel: window.pixel * DVec2::new(across, down),
+            origin: window.origin * copies,
+            pixel: window.pixel * copies,
             size,
             ..*window
         })
@@ -213,6 +224,7 @@ impl Whole {
             _ => {
                 let laid = Laid {
                     picture: picture.clone(),
+                    origin: tile.origin,
                     extent: self.extent,
                     wrap: self.wrap,
                 };

@@ -8,7 +8,7 @@ use dapple_recipe::{
 };
 use std::sync::Arc;
 
-const ALL_NODES: &str = r##"
+pub(crate) const ALL_NODES: &str = r##"
 dapple = 1
 seed = 7
 extent = [4.0, 3.0]
@@ -62,13 +62,13 @@ roughness = "rings"
 metallic = "patches"
 "##;
 
-fn plan(text: &str) -> Plan {
+pub(crate) fn plan(text: &str) -> Plan {
     let recipe = Recipe::from_toml(text).unwrap_or_else(|error| panic!("{error}"));
     Plan::new(&recipe, &Images::new(), 0.0).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// Bakes all maps; each is returned as the bits of its numbers, row by row.
-fn bake(plan: &Plan, options: &BakeOptions) -> Vec<Vec<u32>> {
+pub(crate) fn bake(plan: &Plan, options: &BakeOptions) -> Vec<Vec<u32>> {
     let mut maps = vec![Vec::new(); options.maps.len()];
     for band in Bake::new(plan, options).unwrap() {
         for (bits, (_, rows)) in maps.iter_mut().zip(band.unwrap().maps) {
@@ -101,7 +101,7 @@ fn bake(plan: &Plan, options: &BakeOptions) -> Vec<Vec<u32>> {
     maps
 }
 
-fn options(size: [u32; 2]) -> BakeOptions {
+pub(crate) fn options(size: [u32; 2]) -> BakeOptions {
     BakeOptions {
         size,
         maps: MapKind::ALL.to_vec(),
@@ -110,7 +110,7 @@ fn options(size: [u32; 2]) -> BakeOptions {
 }
 
 /// Returns a part of a map with the given number of channels.
-fn crop(map: &[u32], [width, height]: [u32; 2], region: Region) -> Vec<u32> {
+pub(crate) fn crop(map: &[u32], [width, height]: [u32; 2], region: Region) -> Vec<u32> {
     let numbers = map.len() / (width * height) as usize;
     let row = |row: u32| {
         let first = (row * width + region.first[0]) as usize * numbers;

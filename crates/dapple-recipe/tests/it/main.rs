@@ -2,6 +2,7 @@
 
 mod bakes;
 mod copies;
+mod corners;
 mod memory;
 mod pictures;
 mod points;

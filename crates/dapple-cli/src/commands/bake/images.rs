@@ -7,7 +7,7 @@ use crate::error::{Hint, usage};
 use crate::layers::Layers;
 use anyhow::Result;
 use dapple::color::NormalY;
-use dapple::recipe::MapKind;
+use dapple::recipe::{MapKind, Samples};
 use std::path::Path;
 
 impl Args {
@@ -45,6 +45,10 @@ impl Args {
             ("--shard", self.shard.is_some()),
             ("--frames", self.frames.is_some()),
             ("--sheet", self.sheet),
+            (
+                "--samples corners",
+                self.material.samples.samples == Samples::Corners,
+            ),
             (
                 "--normal-y directx",
                 self.material.normal_y == Some(NormalY::DirectX),

@@ -1,7 +1,7 @@
 //! Options of the material that `bake` and `shards` share: size, maps, seed, relief, direction of normals.
 
 use super::maps::Maps;
-use crate::args::{FiniteArgs, Size, seed};
+use crate::args::{FiniteArgs, SamplesArgs, Size, seed};
 use crate::baking::advise;
 use crate::error::Hint;
 use crate::words::Word;
@@ -27,6 +27,10 @@ pub(in crate::commands) struct MaterialArgs {
     /// Columns and rows of the tile, in pixels.
     #[arg(long, value_name = "WxH", default_value = "1024")]
     pub(in crate::commands) size: Size,
+
+    #[command(flatten)]
+    #[serde(flatten)]
+    pub(in crate::commands) samples: SamplesArgs,
 
     /// The maps, with commas between them, or all. By default height, normal, ao, albedo and roughness.
     #[arg(long, value_name = "MAPS")]
@@ -86,6 +90,7 @@ impl MaterialArgs {
         let maps = maps.collect::<Vec<_>>().join(",");
         let options = [
             Some(format!("--size={}", self.size)),
+            self.samples.word(),
             self.maps.as_ref().map(|_| format!("--maps={maps}")),
             self.seed.map(|seed| format!("--seed={seed}")),
             self.normal_y

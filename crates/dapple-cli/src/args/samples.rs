@@ -1,0 +1,45 @@
+//! The positions of the samples of pictures.
+
+use super::Size;
+use crate::error::{Hint, usage};
+use crate::words::Word;
+use anyhow::Result;
+use dapple::raster::Named;
+use dapple::recipe::Samples;
+use serde::Serialize;
+
+/// The option of all subcommands that draw or bake.
+#[derive(clap::Args, Clone, Copy, Debug, Default, Serialize)]
+#[group(skip)]
+pub(crate) struct SamplesArgs {
+    /// The positions of the samples: the centers of pixels, or the corners of a grid that reaches the sides of the tile, as
+    /// heights of terrains have them. On corners the last column and row equal the first ones where the tile repeats.
+    #[arg(long, value_name = "WHERE", value_parser = Word::<Samples>::all(), default_value_t = Samples::Centers)]
+    pub(crate) samples: Samples,
+}
+
+impl SamplesArgs {
+    /// The numbers of distances between samples from one side of the tile to the other.
+    ///
+    /// # Errors
+    ///
+    /// If a side has a single corner.
+    pub(crate) fn spaces(self, size: Size) -> Result<Size> {
+        if self.samples == Samples::Centers {
+            return Ok(size);
+        }
+        if size.0.contains(&1) {
+            let error = usage(format!(
+                "--samples corners needs at least 2 samples along each side, and --size is {size}"
+            ));
+            return Err(error.hint("take 2^n + 1 of them, such as --size 1025"));
+        }
+        Ok(Size(size.0.map(|side| side - 1)))
+    }
+
+    /// The option as a word of a command line, if it differs from the default.
+    pub(crate) fn word(self) -> Option<String> {
+        let is_default = self.samples == Samples::default();
+        (!is_default).then(|| format!("--samples={}", self.samples.name()))
+    }
+}

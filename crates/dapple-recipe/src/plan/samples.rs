@@ -1,0 +1,73 @@
+//! Samples of the tile: at the centers of pixels, or on the corners of a grid that reaches the sides of the tile.
+
+use super::Plan;
+use crate::RecipeError;
+use dapple_raster::{Window, named};
+use glam::DVec2;
+
+named! {
+    /// The positions of the samples of a picture.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    pub enum Samples {
+        /// The centers of pixels: textures.
+        #[default]
+        Centers = "centers",
+        /// The corners of a grid: the first and the last sample of an axis lie on the sides of the tile, and are equal along
+        /// axes that repeat. Heights of terrains.
+        Corners = "corners",
+    }
+}
+
+/// The distinct samples of the tile.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct TileSamples {
+    /// The samples as a window. Along an axis that repeats, it lacks the last sample on corners, which equals the first.
+    pub(crate) window: Window,
+    /// The width and height of all pixels of the window, in units of the plane.
+    pub(crate) extent: DVec2,
+}
+
+impl Plan {
+    /// The distinct samples of a picture of `size`, which may have more pixels than a raster.
+    ///
+    /// # Errors
+    ///
+    /// [`Range`](crate::RecipeErrorKind::Range) for a side without a pixel, or with a single corner.
+    pub(crate) fn tile_samples(
+        &self,
+        size: [u32; 2],
+        samples: Samples,
+    ) -> Result<TileSamples, RecipeError> {
+        if samples == Samples::Centers {
+            return Ok(TileSamples {
+                window: self.window(size)?,
+                extent: self.extent(),
+            });
+        }
+        for side in size {
+            RecipeError::check(
+                side > 1,
+                "number of corners along a side",
+                side.into(),
+                "at least 2",
+            )?;
+        }
+        let spaces = size.map(|side| side - 1);
+        let pixel = self.extent() / DVec2::new(spaces[0].into(), spaces[1].into());
+        let distinct = [0, 1].map(|axis| match self.wrap[axis] {
+            true => spaces[axis],
+            false => size[axis],
+        });
+        Ok(TileSamples {
+            window: Window {
+                // The centers of pixels become corners. The first one is exact.
+                origin: -0.5 * pixel,
+                pixel,
+                first: [0, 0],
+                size: distinct,
+                scale: DVec2::ONE,
+            },
+            extent: pixel * DVec2::new(distinct[0].into(), distinct[1].into()),
+        })
+    }
+}
