@@ -22,8 +22,8 @@ use dapple::mesh::{CREASE, EncodedImage, FaceIdx, Mesh, Repair, Surface};
 use dapple::mesh_io::{self, MaterialPlace, MeshFormat};
 use dapple::raster::Raster;
 use dapple::synth::{
-    Atlas, Axes, Direction, Hierarchy, HierarchyOptions, Orientation, SurfaceTexture, Symmetry,
-    SynthError, Synthesizer, bake_colors, bake_normals, bake_values, site_model,
+    Atlas, Axes, Direction, Hierarchy, HierarchyOptions, Orientation, Progress, SurfaceTexture,
+    Symmetry, SynthError, Synthesizer, bake_colors, bake_normals, bake_values, site_model,
 };
 use dapple::tile::Map;
 use example_mesh::ExampleMesh;
@@ -258,16 +258,21 @@ pub(crate) fn synthesize_on<'py>(
     let directions = self::directions(directions)?;
     let symmetry: Symmetry = data::named("symmetry", &symmetry.to_string())?;
     let crease = crease.map_or(CREASE, f64::to_radians);
+    let is_charted = atlas == AtlasKind::Charts;
     let cover = move |heard: watch::Heard<'_>, _: &Stop| -> Result<Model> {
         let (repaired, repair) = mesh.repair();
         let surface = Surface::new(repaired)?;
+        // What is refused is refused before charts are cut, which takes long.
+        hierarchy.check(&surface)?;
         let uvs = match needs_uvs {
             true => own_uvs(&surface, &mesh, &repair, &uvs)?,
             false => Vec::new(),
         };
         let atlas = match (atlas, padding) {
-            (AtlasKind::Charts, None) => Atlas::charts(&surface, texels)?,
-            (AtlasKind::Charts, Some(padding)) => Atlas::charts_padded(&surface, texels, padding)?,
+            (AtlasKind::Charts, padding) => {
+                let charted = |part: f64| heard(part_of(0.0..CHARTS, part));
+                Atlas::charts_with(&surface, texels, padding, charted)?
+            }
             (AtlasKind::Area, None) => Atlas::by_area(&surface, texels)?,
             (AtlasKind::Area, Some(padding)) => Atlas::by_area_padded(&surface, texels, padding)?,
             (AtlasKind::Uniform, None) => Atlas::uniform(&surface, texels)?,
@@ -278,6 +283,11 @@ pub(crate) fn synthesize_on<'py>(
                 Atlas::from_uvs(&surface, &uvs, [texels; 2], padding.unwrap_or(texels))?
             }
         };
+        let first = match is_charted {
+            true => CHARTS,
+            false => 0.0,
+        };
+        let heard = |steps| heard(part_of(first..1.0, watch::part(steps)));
         let shading = surface.mesh().corner_normals(crease);
         let is_double_sided = repair.before.back_to_back_faces > 0;
         let hierarchy = Hierarchy::new(&surface, &hierarchy)?;
@@ -318,6 +328,21 @@ pub(crate) fn synthesize_on<'py>(
         })
     };
     watch::run(py, progress, cover)?
+}
+
+/// Part of the work that is done once charts are cut.
+const CHARTS: f64 = 0.3;
+
+/// The progress of a part of the work, which takes a range of all of it.
+fn part_of(range: core::ops::Range<f64>, part: f64) -> Progress {
+    const STEPS: u32 = 1 << 16;
+    let done = range.start + (range.end - range.start) * part;
+    Progress {
+        pass: 0,
+        n_passes: 1,
+        done: (done * f64::from(STEPS)) as usize,
+        n_sites: STEPS as usize,
+    }
 }
 
 /// Refuses colors with alpha, which is not baked.

@@ -27,7 +27,7 @@ const PERIOD: Duration = Duration::from_millis(25);
 const PART: Duration = Duration::from_millis(10);
 
 /// A callback for the progress of a synthesis, which can stop it.
-pub(crate) type Heard<'a> = &'a mut dyn FnMut(Progress) -> ControlFlow<()>;
+pub(crate) type Heard<'a> = &'a mut (dyn FnMut(Progress) -> ControlFlow<()> + Send);
 
 /// Whether the result of some work is no longer wanted.
 #[derive(Clone, Default)]
@@ -147,7 +147,7 @@ pub(crate) fn in_parts(
 }
 
 /// The part of a synthesis that is done; all passes count the same.
-fn part(steps: Progress) -> f64 {
+pub(crate) fn part(steps: Progress) -> f64 {
     let part = steps.done as f64 / steps.n_sites.max(1) as f64;
     (steps.pass as f64 + part) / steps.n_passes.max(1) as f64
 }

@@ -7,6 +7,7 @@ import subprocess
 import sys
 import textwrap
 import threading
+import time
 from types import SimpleNamespace
 
 import numpy as np
@@ -220,6 +221,18 @@ def test_progress_is_told_and_what_it_raises_comes_out():
         dp.synthesize(CELLS, 600, progress=refuse)
     with pytest.raises(KeyError):
         dp.synthesize_on(TORUS, CELLS, sites=100_000, progress=refuse)
+
+
+def test_progress_is_told_while_charts_are_cut():
+    told = []
+    begin = time.perf_counter()
+    note = lambda part: told.append((time.perf_counter() - begin, part))
+    dp.synthesize_on(torus(160, 80), CELLS, sites=500, texels=512, progress=note)
+    whole = time.perf_counter() - begin
+    # Charts take most of the time, and come first.
+    first = next(at for at, part in told if part > 0)
+    assert first < whole / 2
+    assert [part for _, part in told] == sorted(part for _, part in told)
 
 
 def test_ctrl_c_stops_a_synthesis_and_the_next_call_works():
