@@ -320,17 +320,17 @@ impl Recipe {
             .collect()
     }
 
-    /// The handling of the alpha of an image in its nodes, in the form of `read_image`; None if no node sets it.
-    fn _image_alpha(&self, file: &str) -> Result<Option<String>> {
-        let alpha = self.recipe.image_alpha(file)?.map(serde_json::to_value);
-        let alpha = alpha.transpose();
-        let alpha = alpha.map_err(|error| Error::new("alpha", error.to_string()))?;
-        Ok(alpha.and_then(|alpha| alpha.as_str().map(str::to_owned)))
-    }
-
-    /// The layer of an image in its nodes; None if no node sets it.
-    fn _image_layer(&self, file: &str) -> Result<Option<&str>> {
-        Ok(self.recipe.image_layer(file)?)
+    /// The images of the recipe: the file, the layer and the handling of alpha in the form of `read_image`, None where no
+    /// node sets them.
+    fn _image_sources(&self) -> Result<Vec<Source<'_>>> {
+        let mut sources = Vec::new();
+        for source in self.recipe.image_sources()? {
+            let alpha = source.alpha.map(serde_json::to_value).transpose();
+            let alpha = alpha.map_err(|error| Error::new("alpha", error.to_string()))?;
+            let alpha = alpha.and_then(|alpha| alpha.as_str().map(str::to_owned));
+            sources.push((source.file, source.layer, alpha));
+        }
+        Ok(sources)
     }
 
     /// The SHA-256 of its text: the same for the same recipe on every machine.
@@ -344,8 +344,8 @@ impl Recipe {
     /// Parameters
     /// ----------
     /// images : dict or None, default None
-    ///     The images by name (see `image_files`): arrays (rows, columns) of numbers or (rows, columns, 3) of linear
-    ///     colors, floating point.
+    ///     The images by name (see `image_files`), or by name and layer, such as `("render.exr", "Depth")`, where nodes
+    ///     read several layers of a file: arrays (rows, columns) of numbers or (rows, columns, 3) of linear colors, floating point.
     /// time : float, default 0.0
     ///     The elapsed part of a loop, for nodes that move: 0 and 1 are the same.
     ///
@@ -362,10 +362,10 @@ impl Recipe {
     fn plan(&self, py: Python<'_>, images: Option<&Bound<'_, PyDict>>, time: f64) -> Result<Plan> {
         let mut pictures = Images::new();
         for (name, image) in images.into_iter().flat_map(|images| images.iter()) {
-            let name: String = name.extract()?;
-            self.check_image(py, &name)?;
-            let image = picture(&format!("image `{name}`"), &image)?;
-            pictures.insert(name, image);
+            let key = image_key(&name)?;
+            self.check_image(py, &key)?;
+            let image = picture(&format!("image {}", shown(&key)), &image)?;
+            pictures.insert(key, image);
         }
         Plan::new(py, self.recipe.clone(), pictures, time)
     }
@@ -401,20 +401,32 @@ impl Recipe {
     }
 }
 
+/// An image of a recipe: its file, its layer, and the handling of its alpha.
+type Source<'a> = (&'a str, Option<&'a str>, Option<String>);
+
 impl Recipe {
-    /// Checks that the recipe has an image with a name.
-    fn check_image(&self, py: Python<'_>, name: &str) -> Result<()> {
-        let names = self.recipe.image_files();
-        if names.contains(&name) {
+    /// Checks that the recipe has an image with a key.
+    fn check_image(&self, py: Python<'_>, key: &str) -> Result<()> {
+        let sources = self.recipe.image_sources()?;
+        if sources
+            .iter()
+            .any(|source| source.file == key || source.key() == key)
+        {
             return Ok(());
         }
-        let message = match names.is_empty() {
-            true => format!("the recipe names no images, but `{name}` is given"),
-            false => format!(
-                "the recipe names no image `{name}`, but {}",
-                names.join(", ")
-            ),
+        let image = shown(key);
+        let message = match sources.is_empty() {
+            true => format!("the recipe names no images, but {image} is given"),
+            false => {
+                let known: Vec<_> = sources.iter().map(|source| shown(&source.key())).collect();
+                format!(
+                    "the recipe names no image {image}, but {}",
+                    known.join(", ")
+                )
+            }
         };
+        let name = key.split('\0').next();
+        let names = self.recipe.image_files();
         let near = py
             .import("difflib")?
             .call_method1("get_close_matches", (name, names, 1))?;
@@ -431,6 +443,22 @@ fn section<'a>(text: &'a str, heading: &str) -> Option<&'a str> {
     let ends =
         (1..=level).filter_map(|level| text[after..].find(&format!("\n{} ", "#".repeat(level))));
     Some(text[start..ends.min().map_or(text.len(), |end| after + end)].trim_end())
+}
+
+/// The key of an image, as `ImageSource::key` has it: the name of its file, or of the file and the layer.
+fn image_key(name: &Bound<'_, PyAny>) -> Result<String> {
+    match name.extract::<(String, String)>() {
+        Ok((file, layer)) => Ok(format!("{file}\0{layer}")),
+        Err(_) => Ok(name.extract()?),
+    }
+}
+
+/// The key of an image for people.
+fn shown(key: &str) -> String {
+    match key.split_once('\0') {
+        Some((file, layer)) => format!("`{file}` with the layer `{layer}`"),
+        None => format!("`{key}`"),
+    }
 }
 
 /// Reads an image of a recipe from an array.

@@ -1,6 +1,7 @@
 """Image files: what is written comes back, atomically, as the command writes it."""
 
 import os
+import pickle
 import shutil
 import struct
 import subprocess
@@ -127,6 +128,24 @@ def of_recipe(folder, data, **options):
     image = {"image": {"file": "a.exr", **options}}
     recipe = dp.Recipe({"dapple": 1, "nodes": {"a": image}, "material": {"albedo": "a"}})
     return dp.read_recipe_images(recipe, folder)["a.exr"]
+
+
+def test_recipes_get_several_layers_of_a_file(tmp_path):
+    channels = {f"a.{name}": COLOR[..., at] for at, name in enumerate("RGB")}
+    (tmp_path / "a.exr").write_bytes(exr(channels | {"depth.Z": GRAY}))
+    nodes = {name: {"image": {"file": "a.exr", "layer": name}} for name in ("a", "depth")}
+    material = {"albedo": "a", "height": "depth"}
+    recipe = dp.Recipe({"dapple": 1, "nodes": nodes, "material": material})
+    images = dp.read_recipe_images(recipe, tmp_path)
+    assert set(images) == {("a.exr", "a"), ("a.exr", "depth")}
+    plan = recipe.plan(images=images)
+    maps = plan.bake(COLOR.shape[:2], ["albedo", "height"])
+    np.testing.assert_array_equal(maps["albedo"], COLOR)
+    np.testing.assert_array_equal(maps["height"], GRAY)
+    again = pickle.loads(pickle.dumps(plan))
+    assert again == plan
+    with pytest.raises(dp.DappleError, match="with the layer `depht`"):
+        recipe.plan(images=images | {("a.exr", "depht"): GRAY})
 
 
 def test_recipes_get_layers_and_drop_alpha_of_openexr(tmp_path):

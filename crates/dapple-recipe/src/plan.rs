@@ -178,44 +178,6 @@ impl Recipe {
         }
         Ok(sources)
     }
-
-    /// The use of the alpha of an image, if a node sets it.
-    ///
-    /// # Errors
-    ///
-    /// [`Conflict`](RecipeErrorKind::Conflict), if two nodes set different uses for one file.
-    pub fn image_alpha(&self, file: &str) -> Result<Option<ImageAlpha>, RecipeError> {
-        let rule = "nodes that name one image say the same of its `alpha`";
-        self.agreed(file, rule, Node::image_alpha)
-    }
-
-    /// The layer that is read of an image, if a node sets it.
-    ///
-    /// # Errors
-    ///
-    /// [`Conflict`](RecipeErrorKind::Conflict), if two nodes set different layers for one file.
-    pub fn image_layer(&self, file: &str) -> Result<Option<&str>, RecipeError> {
-        let rule =
-            "nodes that name one image say the same of its `layer`; copy the file for another";
-        self.agreed(file, rule, Node::image_layer)
-    }
-
-    /// What all nodes that name an image say of it.
-    fn agreed<'a, T: PartialEq>(
-        &'a self,
-        file: &str,
-        rule: &'static str,
-        of_node: impl Fn(&'a Node) -> Option<T>,
-    ) -> Result<Option<T>, RecipeError> {
-        let of_file = |(_, node): &(&String, &Node)| node.image_files().contains(&file);
-        let nodes = self.nodes.iter().filter(of_file);
-        let mut said = nodes.map(|(name, node)| (name, of_node(node)));
-        let first = said.next().and_then(|(_, said)| said);
-        if let Some((name, _)) = said.find(|(_, said)| *said != first) {
-            return Err(RecipeError::new(RecipeErrorKind::Conflict { rule }).within(name));
-        }
-        Ok(first)
-    }
 }
 
 impl Plan {

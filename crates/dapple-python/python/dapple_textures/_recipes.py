@@ -59,7 +59,7 @@ def read_recipe(path_or_name: _Path) -> Recipe:
     return recipe if recipe.name else Recipe({**recipe.to_dict(), "name": path.stem})
 
 
-def read_recipe_images(recipe: Recipe, folder: _Path) -> dict[str, npt.NDArray[np.float32]]:
+def read_recipe_images(recipe: Recipe, folder: _Path) -> dict[str | tuple[str, str], npt.NDArray[np.float32]]:
     """Reads the images that a recipe names from files in a folder, in the form that `Recipe.plan` takes.
 
     If a node names the layer of its image, or says how to treat its alpha, that layer is read and converted accordingly.
@@ -75,7 +75,7 @@ def read_recipe_images(recipe: Recipe, folder: _Path) -> dict[str, npt.NDArray[n
     Returns
     -------
     dict of numpy.ndarray of float32
-        The images by name.
+        The images by the names of their files; by name and layer where nodes read several layers of a file.
 
     Raises
     ------
@@ -96,10 +96,13 @@ def read_recipe_images(recipe: Recipe, folder: _Path) -> dict[str, npt.NDArray[n
     """
     from pathlib import Path
 
-    return {
-        file: _image(Path(folder) / file, recipe._image_alpha(file), recipe._image_layer(file))
-        for file in recipe.image_files
-    }
+    sources = recipe._image_sources()
+    files = [file for file, _, _ in sources]
+    images: dict[str | tuple[str, str], npt.NDArray[np.float32]] = {}
+    for file, layer, alpha in sources:
+        key = file if layer is None or files.count(file) == 1 else (file, layer)
+        images[key] = _image(Path(folder) / file, alpha, layer)
+    return images
 
 
 def _image(path: Path, alpha: str | None, layer: str | None) -> npt.NDArray[np.float32]:

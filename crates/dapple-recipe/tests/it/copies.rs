@@ -139,21 +139,20 @@ fn nodes_say_what_becomes_of_the_alpha_of_an_image() {
         Recipe::from_toml(&text)
     };
     let (drop, over) = (", alpha = \"drop\"", ", alpha = \"over:#ff0000\"");
-    let alpha = |alphas| recipe(alphas).unwrap().image_alpha("leaf.png").unwrap();
+    let alpha = |alphas| {
+        let recipe = recipe(alphas).unwrap();
+        let sources = recipe.image_sources().unwrap();
+        assert_eq!((sources.len(), sources[0].file), (1, "leaf.png"));
+        sources[0].alpha
+    };
     assert_eq!(alpha(["", ""]), None);
     assert_eq!(alpha([drop, drop]), Some(ImageAlpha::Drop));
     let red = LinearRgb::new(1.0, 0.0, 0.0);
     assert_eq!(alpha([over, over]), Some(ImageAlpha::Over(red)));
-    assert_eq!(
-        recipe([over; 2]).unwrap().image_alpha("other.png"),
-        Ok(None)
-    );
     let text = recipe([over, over]).unwrap().to_toml().unwrap();
     assert_eq!(text.matches("over:#ff0000").count(), 2, "{text}");
-    let error = recipe([drop, over])
-        .unwrap()
-        .image_alpha("leaf.png")
-        .unwrap_err();
+    let recipe_of_two = recipe([drop, over]).unwrap();
+    let error = recipe_of_two.image_sources().unwrap_err();
     assert!(
         matches!(error.kind(), RecipeErrorKind::Conflict { .. }),
         "{error}"
