@@ -35,6 +35,7 @@ pub(crate) fn with_vertex_normals(model: &Model) -> Result<Cow<'_, Model>, MeshE
         normals: Some(normals.collect()),
         corner_normals: None,
         material: model.material.clone(),
+        tiles: model.tiles.clone(),
         left_out: Vec::new(),
     }))
 }

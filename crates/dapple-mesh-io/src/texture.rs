@@ -18,6 +18,38 @@ pub(crate) fn encoded(name: &str, bytes: Vec<u8>) -> Result<EncodedImage, String
     EncodedImage::new(bytes).map_err(wrong)
 }
 
+/// The mark in the name of a texture that stands for the number of a unit square.
+const UDIM: &str = "<UDIM>";
+/// The mark that stands for the column and the row of a unit square, from 1, as in `u2_v1`.
+const UVTILE: &str = "<UVTILE>";
+
+/// The name of the texture of a unit square, if a name has a mark for it, in capitals or not.
+pub(crate) fn tile_name(name: &str, number: u32) -> Option<String> {
+    let capitals = name.to_ascii_uppercase();
+    let [column, row] = [number.checked_sub(1001)? % 10 + 1, (number - 1001) / 10 + 1];
+    let marks = [
+        (UDIM, number.to_string()),
+        (UVTILE, format!("u{column}_v{row}")),
+    ];
+    marks.into_iter().find_map(|(mark, text)| {
+        let at = capitals.find(mark)?;
+        Some(format!("{}{text}{}", &name[..at], &name[at + mark.len()..]))
+    })
+}
+
+/// The name with a mark for a name that has the number of one of several unit squares, such as `skin.1001.png`.
+pub(crate) fn name_of_all(name: &str, squares: &[u32]) -> Option<String> {
+    let is_digit = |letter: Option<char>| letter.is_some_and(|letter| letter.is_ascii_digit());
+    let with_mark = |number: &u32| {
+        let number = number.to_string();
+        let at = name.rfind(&number)?;
+        let (before, after) = (&name[..at], &name[at + number.len()..]);
+        let is_alone = !is_digit(before.chars().next_back()) && !is_digit(after.chars().next());
+        is_alone.then(|| format!("{before}{UDIM}{after}"))
+    };
+    (squares.len() > 1).then(|| squares.iter().find_map(with_mark))?
+}
+
 /// The words for a file that is missing or outside of the folder.
 pub(crate) fn unreadable(what: &str, name: &str) -> String {
     format!("the {what} {}, which cannot be read", shown(name))

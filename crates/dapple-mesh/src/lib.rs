@@ -54,7 +54,7 @@ pub use error::{MeshError, MeshErrorKind};
 pub use glam;
 pub use idx::{FaceIdx, VertexIdx};
 pub use mesh::{Mesh, POSITION_MAX};
-pub use model::{AlphaMode, EncodedImage, ImageFormat, Material, Model};
+pub use model::{AlphaMode, EncodedImage, ImageFormat, Material, Model, TileMaterial};
 pub use repair::Repair;
 pub use report::MeshReport;
 pub use rotation::rotation;

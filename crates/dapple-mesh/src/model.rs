@@ -43,11 +43,23 @@ pub struct Model {
     pub normals: Option<Vec<DVec3>>,
     /// A normal for each corner of each face, which may differ at a crease; they go before those of the vertices.
     pub corner_normals: Option<Vec<[DVec3; 3]>>,
-    /// The material of all faces.
+    /// The material of all faces; that of the first unit square, if there are `tiles`.
     pub material: Material,
+    /// The materials of unit squares of texture coordinates, where each has textures of its own (UDIM), in the order of
+    /// their numbers. Empty where all faces share one texture.
+    pub tiles: Vec<TileMaterial>,
     /// Parts of a file that a reader left out, since the file contradicts itself or a model has no place for them, in words
     /// for people; no writer writes it.
     pub left_out: Vec<String>,
+}
+
+/// The material of the faces in a unit square of texture coordinates.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TileMaterial {
+    /// The number of the square, as [`Model::unit_squares`] has it.
+    pub number: u32,
+    /// The material, whose textures cover the square.
+    pub material: Material,
 }
 
 /// The look of a surface: the metallic-roughness material of glTF 2.0.

@@ -154,7 +154,14 @@ pub(crate) fn corners<'py, const N: usize>(
 /// [[0, 1, 2]]
 #[pyfunction]
 pub(crate) fn read_model(py: Python<'_>, path: PathBuf) -> Result<Bound<'_, PyAny>> {
-    let model = threads::run(py, move || mesh_io::read_model(&path))??;
+    let mut model = threads::run(py, move || mesh_io::read_model(&path))??;
+    let n_tiles = model.tiles.len();
+    if n_tiles > 0 {
+        // The first of them alone would lie on all faces.
+        model.material.base_color = None;
+        let what = format!("the textures of {n_tiles} unit squares (UDIM)");
+        model.left_out.push(what);
+    }
     let uv = model
         .uvs
         .as_ref()

@@ -209,6 +209,18 @@ def test_bad_example_meshes_are_refused(options, match):
         dp.synthesize_on(TORUS, MODEL.texture, texels=128, sites=500, **options)
 
 
+def test_textures_of_unit_squares_are_listed_and_not_mixed_up(tmp_path):
+    for number in (1001, 1002):
+        dp.write_image(tmp_path / f"skin.{number}.png", CELLS, depth=8)
+    (tmp_path / "a.mtl").write_text("newmtl a\nmap_Kd skin.<UDIM>.png\n")
+    corners = "vt 0 0\nvt 1 0\nvt 0 1\nvt 1 0\nvt 2 0\nvt 1 1\n"
+    faces = "f 1/1 2/2 3/3\nf 1/4 2/5 3/6\n"
+    (tmp_path / "a.obj").write_text(f"mtllib a.mtl\nusemtl a\nv 0 0 0\nv 1 0 0\nv 0 1 0\n{corners}{faces}")
+    model = dp.read_model(tmp_path / "a.obj")
+    assert model.texture is None
+    assert model.left_out == ["the textures of 2 unit squares (UDIM)"]
+
+
 def test_progress_is_told_and_what_it_raises_comes_out():
     told = []
     dp.synthesize(CELLS, 400, progress=told.append)

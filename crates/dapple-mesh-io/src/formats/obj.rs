@@ -9,7 +9,8 @@
 //! coordinates and normals that corners name but the file lacks are left out, too, and listed in [`Model::left_out`].
 //! Lines, points and free-form surfaces are left out, and listed there. Of a material its `Kd` (linear, and only without a
 //! texture, since with one it is seldom meant), `d`, `map_Kd` and `norm` are read and written. The options `-s` and `-o`
-//! of a texture are applied to the texture coordinates. A texture that is missing, or neither PNG nor JPEG, is left out
+//! of a texture are applied to the texture coordinates. A texture whose name has `<UDIM>` or `<UVTILE>`, or the number of a
+//! unit square whose files all exist, is one for each unit square: see [`Model::tiles`]. A texture that is missing, or neither PNG nor JPEG, is left out
 //! and listed, as are other textures and options.
 //!
 //! The reader is ours because of its guarantees: all bits of `f64`, errors that name their line, a list of omitted
@@ -20,6 +21,8 @@ mod write;
 
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod tile_tests;
 
 pub use write::{write, write_files};
 
@@ -29,7 +32,6 @@ use crate::colors::{self, Coding};
 use crate::line::{Line, lines};
 use crate::polygon::Polygons;
 use crate::text::{content, no_vertex, parse};
-use crate::texture::is_outside;
 use dapple_color::{LinearRgb, LinearRgba};
 use dapple_mesh::{Mesh, Model};
 use glam::{DVec2, DVec3};
@@ -119,17 +121,7 @@ pub fn read_with(bytes: &[u8], beside: &mut Beside<'_>) -> Result<Model, MeshIoE
     let libraries = core::mem::take(&mut draft.libraries);
     let name = draft.material.take().map(|(name, _)| name);
     let mut model = draft.into_model()?;
-    let found = mtl::material(&libraries, name.as_deref(), beside)?;
-    if let (Some(map), Some(uvs)) = (found.uv_map, &mut model.uvs) {
-        uvs.iter_mut().flatten().for_each(|uv| *uv = map.apply(*uv));
-    }
-    model.material = found.material;
-    model.left_out.extend(found.left_out);
-    if found.is_clamped && is_outside(&model) {
-        model
-            .left_out
-            .push("the option -clamp of the texture, which repeats here".to_owned());
-    }
+    mtl::add_material(&mut model, &libraries, name.as_deref(), beside)?;
     model.check()?;
     Ok(model)
 }

@@ -53,9 +53,14 @@ struct Split {
 ///
 /// # Errors
 ///
-/// The errors of [`Model::check`]; [`MeshIoErrorKind::Size`] if the file would have 2^32 bytes or more.
+/// The errors of [`Model::check`]; [`MeshIoErrorKind::Unsupported`] for [textures of unit squares](Model::tiles);
+/// [`MeshIoErrorKind::Size`] if the file would have 2^32 bytes or more.
 pub fn write(model: &Model) -> Result<Vec<u8>, MeshIoError> {
     model.check()?;
+    if !model.tiles.is_empty() {
+        let feature = "a texture for each unit square (UDIM) in glTF".to_owned();
+        return Err(MeshIoError::new(MeshIoErrorKind::Unsupported { feature }));
+    }
     let mut bin = Bin::default();
     let mut document = json!({
         "asset": { "version": "2.0", "generator": "dapple" },

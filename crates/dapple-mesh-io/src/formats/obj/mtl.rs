@@ -5,9 +5,9 @@ use crate::Beside;
 use crate::MeshIoError;
 use crate::line::{Line, lines};
 use crate::text::parse;
-use crate::texture::{shown, texture, unreadable};
+use crate::texture::{is_outside, name_of_all, shown, texture, tile_name, unreadable};
 use dapple_color::{LinearRgb, LinearRgba};
-use dapple_mesh::Material;
+use dapple_mesh::{EncodedImage, Material, Model, TileMaterial};
 use glam::{DVec2, DVec3};
 use std::collections::BTreeSet;
 
@@ -42,25 +42,16 @@ pub(super) struct UvMap {
     offset: DVec2,
 }
 
-/// A material as it is read.
-#[derive(Default)]
-pub(super) struct Found {
-    pub(super) material: Material,
-    /// The map of the texture coordinates of all corners.
-    pub(super) uv_map: Option<UvMap>,
-    /// Whether the texture ends at its sides.
-    pub(super) is_clamped: bool,
-    pub(super) left_out: Vec<String>,
-}
-
-/// The material with a name, or without a name the first, in the available libraries.
+/// Gives a model its material: the one with a name, or without a name the first, in the available libraries. The map of
+/// its textures is applied to the texture coordinates.
 ///
 /// Fails for a color that single precision cannot hold, in any material of the libraries.
-pub(super) fn material(
+pub(super) fn add_material(
+    model: &mut Model,
     libraries: &[String],
     name: Option<&str>,
     beside: &mut Beside<'_>,
-) -> Result<Found, MeshIoError> {
+) -> Result<(), MeshIoError> {
     let (mut entries, mut missing) = (Vec::new(), Vec::new());
     for library in libraries {
         // A name may contain spaces, and a line may have several names.
@@ -77,7 +68,6 @@ pub(super) fn material(
         Some(name) => entries.iter().find(|entry| entry.name == name),
         None => entries.first(),
     };
-    let mut found = entry.map(|entry| entry.found(beside)).unwrap_or_default();
     if let (None, Some(name), []) = (entry, name, missing.as_slice())
         && !libraries.is_empty()
     {
@@ -86,8 +76,11 @@ pub(super) fn material(
             shown(name)
         ));
     }
-    found.left_out.splice(0..0, missing);
-    Ok(found)
+    model.left_out.extend(missing);
+    if let Some(entry) = entry {
+        entry.add_to(model, beside);
+    }
+    Ok(())
 }
 
 /// Adds the materials of a library. Unknown lines are skipped.
@@ -127,52 +120,150 @@ impl Entry {
         Ok(())
     }
 
-    fn found(&self, beside: &mut Beside<'_>) -> Found {
-        let mut left_out = Vec::new();
+    /// Gives a model this material.
+    fn add_to(&self, model: &mut Model, beside: &mut Beside<'_>) {
         let first = self.diffuse_map.as_ref().or(self.normal_map.as_ref());
         let uv_map = first.and_then(Texture::map);
-        let mut image = |found: &Option<Texture>| {
-            let found = found.as_ref()?;
-            if found.map() != uv_map {
-                let name = shown(&found.name);
-                left_out.push(format!(
-                    "the texture {name}, which has other texture coordinates"
-                ));
-                return None;
-            }
-            let image = texture(&found.name, beside)
-                .map_err(|why| left_out.push(why))
-                .ok()?;
-            for option in &found.other_options {
-                left_out.push(format!(
-                    "the option {option} of the texture {}",
-                    shown(&found.name)
-                ));
-            }
-            Some(image)
+        if let (Some(map), Some(uvs)) = (uv_map, &mut model.uvs) {
+            uvs.iter_mut().flatten().for_each(|uv| *uv = map.apply(*uv));
+        }
+        let mut reading = Reading {
+            squares: model.unit_squares(),
+            uv_map,
+            beside,
+            left_out: &mut model.left_out,
         };
-        let base_color = image(&self.diffuse_map);
-        let normal = image(&self.normal_map);
+        let mut base_colors = reading.images(self.diffuse_map.as_ref());
+        let mut normals = reading.images(self.normal_map.as_ref());
+        let is_tiled = base_colors.len().max(normals.len()) > 1;
+        for (images, found) in [
+            (&mut base_colors, &self.diffuse_map),
+            (&mut normals, &self.normal_map),
+        ] {
+            // A copy for each unit square would take far more memory than the file.
+            if let (true, 1, Some(found)) = (is_tiled, images.len(), found) {
+                images.clear();
+                let name = shown(&found.name);
+                let what = format!("the texture {name}, which all unit squares share");
+                reading.left_out.push(what);
+            }
+        }
         let color = self.diffuse.filter(|_| self.diffuse_map.is_none());
         let base_color_factor = LinearRgba {
             color: color.unwrap_or(LinearRgb::WHITE),
             alpha: self.alpha.unwrap_or(1.0),
         };
+        let material = |at: usize| Material {
+            base_color_factor,
+            base_color: base_colors.get(at).cloned().flatten(),
+            normal: normals.get(at).cloned().flatten(),
+            ..Material::default()
+        };
+        if is_tiled {
+            let tile = |(at, &number): (usize, &u32)| TileMaterial {
+                number,
+                material: material(at),
+            };
+            model.tiles = reading.squares.iter().enumerate().map(tile).collect();
+        }
+        model.material = material(0);
         if !self.other_maps.is_empty() {
             let names: Vec<_> = self.other_maps.iter().map(|name| shown(name)).collect();
-            left_out.push(format!("textures of the material: {}", names.join(", ")));
+            let names = names.join(", ");
+            model
+                .left_out
+                .push(format!("textures of the material: {names}"));
         }
-        Found {
-            material: Material {
-                base_color_factor,
-                base_color,
-                normal,
-                ..Material::default()
-            },
-            uv_map,
-            is_clamped: first.is_some_and(|first| first.is_clamped),
-            left_out,
+        let is_clamped = first.is_some_and(|first| first.is_clamped);
+        if is_clamped && model.tiles.is_empty() && is_outside(model) {
+            let what = "the option -clamp of the texture, which repeats here";
+            model.left_out.push(what.to_owned());
         }
+    }
+}
+
+/// The textures of a material, as they are read.
+struct Reading<'a, 'b> {
+    /// The unit squares with faces.
+    squares: Vec<u32>,
+    uv_map: Option<UvMap>,
+    beside: &'a mut Beside<'b>,
+    left_out: &'a mut Vec<String>,
+}
+
+impl Reading<'_, '_> {
+    /// The images of a texture: one for each unit square where they have their own, else one at most.
+    fn images(&mut self, found: Option<&Texture>) -> Vec<Option<EncodedImage>> {
+        let Some(found) = found else {
+            return Vec::new();
+        };
+        let name = shown(&found.name);
+        if found.map() != self.uv_map {
+            let what = format!("the texture {name}, which has other texture coordinates");
+            self.left_out.push(what);
+            return Vec::new();
+        }
+        let images = match self.tiles(found) {
+            Some(images) => images,
+            None => {
+                let image = texture(&found.name, self.beside);
+                vec![image.map_err(|why| self.left_out.push(why)).ok()]
+            }
+        };
+        if images.iter().any(Option::is_some) {
+            for option in &found.other_options {
+                self.left_out
+                    .push(format!("the option {option} of the texture {name}"));
+            }
+        }
+        images
+    }
+
+    /// The images of the unit squares, if the name of a texture stands for several, or is that of one of them and all exist.
+    fn tiles(&mut self, found: &Texture) -> Option<Vec<Option<EncodedImage>>> {
+        let name = &found.name;
+        if tile_name(name, 1001).is_some() {
+            if self.squares.is_empty() {
+                let name = shown(name);
+                let what = "since faces lie across unit squares or past the tenth column";
+                self.left_out.push(format!("the texture {name}, {what}"));
+                return Some(Vec::new());
+            }
+            return Some(self.tiles_of(name));
+        }
+        let name = name_of_all(name, &self.squares)?;
+        let n_before = self.left_out.len();
+        let images = self.tiles_of(&name);
+        let has_all = images.iter().all(Option::is_some);
+        if !has_all {
+            // It is one texture for all squares.
+            self.left_out.truncate(n_before);
+        }
+        has_all.then_some(images)
+    }
+
+    /// The images of the unit squares for a name with a mark.
+    fn tiles_of(&mut self, name: &str) -> Vec<Option<EncodedImage>> {
+        let mut missing = None;
+        let mut n_missing = 0;
+        let mut image = |&number: &u32| {
+            let name = tile_name(name, number)?;
+            let image = texture(&name, self.beside);
+            image
+                .map_err(|why| {
+                    n_missing += 1;
+                    missing.get_or_insert(why);
+                })
+                .ok()
+        };
+        let images = self.squares.iter().map(&mut image).collect();
+        if let Some(why) = missing {
+            self.left_out.push(match n_missing {
+                1 => why,
+                count => format!("{why}, and {} more of its unit squares", count - 1),
+            });
+        }
+        images
     }
 }
 

@@ -24,7 +24,8 @@ pub fn write(model: &Model) -> Result<Vec<u8>, MeshIoError> {
 /// Encodes the model as an OBJ file `stem.obj` and, if it has a material, its `stem.mtl` and the textures
 /// `stem_base_color.png` and `stem_normal.png`, or `.jpg`. The OBJ file is the last.
 ///
-/// The texture of metalness and roughness is left out, since MTL has separate textures for them.
+/// The texture of metalness and roughness is left out, since MTL has separate textures for them. Textures of unit squares
+/// ([`Model::tiles`]) are `stem_base_color.1001.png` and so on, which the material names with `<UDIM>`.
 ///
 /// # Errors
 ///
@@ -39,7 +40,7 @@ pub fn write_files(model: &Model, stem: &str) -> Result<Vec<NamedFile>, MeshIoEr
     let mut files = Vec::new();
     let library = (model.material != Material::default()).then(|| format!("{stem}.mtl"));
     if let Some(name) = &library {
-        let mtl = material(&model.material, stem, &mut files);
+        let mtl = material(model, stem, &mut files);
         files.push(file(name.clone(), mtl.as_bytes()));
     }
     let obj = text(model, library.as_deref())?;
@@ -53,21 +54,32 @@ fn file(name: String, bytes: &[u8]) -> NamedFile {
 }
 
 /// The text of the material; its textures are added to the files.
-fn material(material: &Material, stem: &str, files: &mut Vec<NamedFile>) -> String {
-    let LinearRgba { color, alpha } = material.base_color_factor;
+fn material(model: &Model, stem: &str, files: &mut Vec<NamedFile>) -> String {
+    let LinearRgba { color, alpha } = model.material.base_color_factor;
     let mut text = format!(
         "newmtl surface\nKd {} {} {}\nd {alpha}\n",
         color.r, color.g, color.b
     );
-    let mut map = |key: &str, part: &str, image: &Option<EncodedImage>| {
-        if let Some(image) = image {
-            let name = format!("{stem}_{part}.{}", image.format().extension());
-            let _ = writeln!(text, "{key} {name}");
-            files.push(file(name, image.bytes()));
-        }
+    let mut map = |key: &str, part: &str, image: fn(&Material) -> &Option<EncodedImage>| {
+        let mut write = |material: &Material, tile: &str| {
+            let image = image(material).as_ref()?;
+            let ending = image.format().extension();
+            files.push(file(format!("{stem}_{part}{tile}.{ending}"), image.bytes()));
+            Some(ending)
+        };
+        let tiles = model.tiles.iter();
+        let endings = tiles.filter_map(|tile| write(&tile.material, &format!(".{}", tile.number)));
+        let name = match endings.collect::<Vec<_>>().first() {
+            Some(ending) => format!("{stem}_{part}.<UDIM>.{ending}"),
+            None => match write(&model.material, "") {
+                Some(ending) => format!("{stem}_{part}.{ending}"),
+                None => return,
+            },
+        };
+        let _ = writeln!(text, "{key} {name}");
     };
-    map("map_Kd", "base_color", &material.base_color);
-    map("norm", "normal", &material.normal);
+    map("map_Kd", "base_color", |material| &material.base_color);
+    map("norm", "normal", |material| &material.normal);
     text
 }
 
