@@ -24,6 +24,7 @@ use temporary::{Spool, Temporary};
 use crate::error::{Hint, usage};
 use anyhow::{Context, Error, Result, anyhow, bail};
 use dapple::image::{remove_left_behind, sync_folder};
+use dapple::mesh_io::tile_name;
 use sha2::{Digest, Sha256};
 use std::collections::BTreeSet;
 use std::fmt;
@@ -154,6 +155,25 @@ impl Target {
                 Ok(Self::Path(path.with_file_name(name)))
             }
         }
+    }
+}
+
+impl Target {
+    /// The file of a unit square: its number in place of `<UDIM>`, or else before the ending, as in `NAME.1001.ENDING`.
+    ///
+    /// # Errors
+    ///
+    /// If this is standard output, which takes one file.
+    pub(crate) fn tile(&self, number: u32) -> Result<Self> {
+        let Self::Path(path) = self else {
+            return self.part(&number.to_string());
+        };
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        let name = tile_name(&name, number).unwrap_or_else(|| {
+            let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+            format!("{stem}.{number}.{}", self.ending())
+        });
+        Ok(Self::Path(path.with_file_name(name)))
     }
 }
 

@@ -54,3 +54,4 @@ mod tests;
 pub use error::{MeshIoError, MeshIoErrorKind};
 pub use files::{read_model, replace_images, write_model};
 pub use formats::*;
+pub use texture::tile_name;

@@ -23,8 +23,20 @@ const UDIM: &str = "<UDIM>";
 /// The mark that stands for the column and the row of a unit square, from 1, as in `u2_v1`.
 const UVTILE: &str = "<UVTILE>";
 
-/// The name of the texture of a unit square, if a name has a mark for it, in capitals or not.
-pub(crate) fn tile_name(name: &str, number: u32) -> Option<String> {
+/// The name of the texture of a [unit square](Model::unit_squares), if a name has a mark for it, in capitals or not:
+/// `<UDIM>` for its number, or `<UVTILE>` for its column and row.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_mesh_io::tile_name;
+///
+/// assert_eq!(tile_name("skin.<UDIM>.png", 1012).as_deref(), Some("skin.1012.png"));
+/// assert_eq!(tile_name("skin_<UVTILE>.png", 1012).as_deref(), Some("skin_u2_v2.png"));
+/// assert_eq!(tile_name("skin.png", 1012), None);
+/// ```
+#[must_use]
+pub fn tile_name(name: &str, number: u32) -> Option<String> {
     let capitals = name.to_ascii_uppercase();
     let [column, row] = [number.checked_sub(1001)? % 10 + 1, (number - 1001) / 10 + 1];
     let marks = [

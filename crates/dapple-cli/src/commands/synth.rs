@@ -12,6 +12,7 @@ mod plane;
 mod reading;
 mod repair_mesh;
 mod surface;
+mod tiles;
 
 use crate::args::{AlphaArgs, ImageArgs, ReadArgs, Region};
 use crate::error::{Exit, Hint, usage};

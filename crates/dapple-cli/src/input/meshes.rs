@@ -45,7 +45,7 @@ pub(crate) fn not_used(path: &Path, model: &Model) -> Option<String> {
 /// The unit squares of texture coordinates, if there are several.
 pub(crate) fn unit_squares(model: &Model) -> Option<String> {
     let squares = model.unit_squares();
-    if squares.len() < 2 {
+    if squares.len() < 2 || !model.tiles.is_empty() {
         return None;
     }
     let mut names: Vec<_> = squares.iter().take(NAMES_MAX).map(u32::to_string).collect();

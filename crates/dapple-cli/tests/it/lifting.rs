@@ -1,10 +1,11 @@
 //! Tests of `dapple synth` with a mesh as the example: textures lifted onto another mesh, and repairs.
 
-use crate::support::{Folder, SHELL_SIDE, assert_done, shell, stderr};
+use crate::support::{Folder, SHELL_SIDE, assert_done, assert_refused, shell, stderr};
 use dapple::color::{LinearRgb, LinearRgba};
-use dapple::image::{Image, Limits, PngPixels, decode_image};
-use dapple::mesh::{EncodedImage, Model};
+use dapple::image::{Image, Limits, PngPixels, Transfer, decode_image, encode_png};
+use dapple::mesh::{EncodedImage, Material, Model, TileMaterial};
 use dapple::mesh_io::{read_model, write_model};
+use dapple::points::glam::DVec2;
 use dapple::raster::Raster;
 
 /// Runs a line in a folder.
@@ -235,4 +236,107 @@ fn meshes_without_texture_and_options_without_effect_are_refused() {
             "{line}"
         );
     }
+}
+
+/// The shell with its left half in the unit square 1001 and its right half in 1012, and a texture for each.
+fn in_two_squares(images: [&EncodedImage; 2]) -> Model {
+    let mut model = shell().clone();
+    let positions = model.mesh.positions();
+    let middle = positions.iter().map(|at| at.x).sum::<f64>() / positions.len() as f64;
+    for (face, corners) in model.mesh.faces().iter().zip(model.uvs.as_mut().unwrap()) {
+        let x: f64 = face.iter().map(|vertex| positions[vertex.index()].x).sum();
+        if x / 3.0 > middle {
+            corners
+                .iter_mut()
+                .for_each(|uv| *uv += DVec2::new(1.0, -1.0));
+        }
+    }
+    let tile = |(number, image): (u32, &EncodedImage)| TileMaterial {
+        number,
+        material: Material {
+            base_color: Some(image.clone()),
+            ..Material::default()
+        },
+    };
+    model.tiles = [1001, 1012].into_iter().zip(images).map(tile).collect();
+    model.material = model.tiles[0].material.clone();
+    assert_eq!(model.unit_squares(), [1001, 1012], "both have faces");
+    model
+}
+
+/// An image of one color.
+fn plain(side: u32, color: [u8; 3]) -> EncodedImage {
+    let codes = Raster::filled([side; 2], color).unwrap();
+    EncodedImage::new(encode_png(codes.view(), Transfer::Srgb).unwrap()).unwrap()
+}
+
+#[test]
+fn each_unit_square_of_an_example_has_its_own_texture() {
+    let folder = Folder::with_inputs("squares");
+    let colors = [[200, 40, 40], [40, 40, 200]];
+    let [red, blue] = colors.map(|color| plain(64, color));
+    write_model(folder.path("skin.obj"), &in_two_squares([&red, &blue])).unwrap();
+    let line = "synth skin.obj --mesh model.obj --sites 1500 --texture-size 128 -o out.glb";
+    let output = run(&folder, line);
+    assert_done(&output, line);
+    assert!(!stderr(&output).contains("not used"), "{}", stderr(&output));
+    let model = read_model(folder.path("out.glb")).unwrap();
+    let base = codes(model.material.base_color.as_ref());
+    let is_near = |code: &[u8; 3], color: [u8; 3]| {
+        code.iter()
+            .zip(color)
+            .all(|(&code, color)| code.abs_diff(color) < 3)
+    };
+    for color in colors {
+        let count = base
+            .pixels()
+            .iter()
+            .filter(|code| is_near(code, color))
+            .count();
+        assert!(count > base.pixels().len() / 8, "{color:?}: {count}");
+    }
+    // A single mask is for no square in particular, and textures of two sizes have no common one.
+    let line = "synth skin.obj --repair stain.png -o clean.png";
+    assert_refused(&run(&folder, line), 2, "2 unit squares", line);
+    let line = "synth skin.obj --repair stain.png -o clean.glb";
+    assert_refused(&run(&folder, line), 2, "glTF holds one", line);
+    let large = in_two_squares([&red, &plain(128, [0; 3])]);
+    write_model(folder.path("skin.obj"), &large).unwrap();
+    let line = "synth skin.obj --mesh model.obj --sites 500 -o out.glb --force";
+    assert_refused(&run(&folder, line), 1, "1012 has 128 × 128 pixels", line);
+    std::fs::remove_file(folder.path("skin_base_color.1012.png")).unwrap();
+    assert_refused(&run(&folder, line), 1, "unit square 1012", line);
+}
+
+#[test]
+fn a_repair_writes_an_image_for_each_unit_square() {
+    let folder = Folder::with_inputs("mended-squares");
+    let checker = shell().material.base_color.as_ref().unwrap();
+    write_model(folder.path("skin.obj"), &in_two_squares([checker, checker])).unwrap();
+    std::fs::write(
+        folder.path("mask.1001.png"),
+        plain(SHELL_SIDE, [0; 3]).bytes(),
+    )
+    .unwrap();
+    std::fs::copy(folder.path("stain.png"), folder.path("mask.1012.png")).unwrap();
+    let line =
+        "synth skin.obj --repair mask.<UDIM>.png --example-sites 6000 --format png8 -o clean.png";
+    assert_done(&run(&folder, line), line);
+    let read = |name: &str| {
+        let bytes = std::fs::read(folder.path(name)).unwrap();
+        codes(Some(&EncodedImage::new(bytes).unwrap()))
+    };
+    let before = codes(Some(checker));
+    assert!(read("clean.1001.png") == before, "its mask is black");
+    let after = read("clean.1012.png");
+    let mut n_new = 0;
+    for y in 0..SHELL_SIDE {
+        for x in 0..SHELL_SIDE {
+            let is_stain = x.abs_diff(128) < 24 && y.abs_diff(128) < 24;
+            let [before, after] = [&before, &after].map(|map| map.row(y)[x as usize]);
+            assert!(is_stain || before == after, "texel {x} {y}");
+            n_new += usize::from(before != after);
+        }
+    }
+    assert!(n_new > 0, "something is made again");
 }

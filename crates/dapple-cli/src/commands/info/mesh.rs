@@ -108,6 +108,7 @@ fn columns(model: &Model) -> Vec<&'static str> {
         ),
         ("two sides", material.double_sided),
         ("a texture of colors", material.base_color.is_some()),
+        ("a texture for each unit square", !model.tiles.is_empty()),
         ("alpha that cuts", material.alpha == AlphaMode::Mask),
         ("alpha that blends", material.alpha == AlphaMode::Blend),
         ("a texture of normals", material.normal.is_some()),

@@ -3,12 +3,13 @@
 use super::corners::own_uvs;
 use super::material::is_of;
 use super::options::first_given;
+use super::tiles::{Sheet, Tiles};
 use super::{Args, advise};
 use crate::error::{Hint, usage};
 use crate::input::{self, Kind, Loaded};
 use anyhow::{Context as _, Result, anyhow};
 use dapple::color::{Code, LinearRgb};
-use dapple::mesh::{Model, Repair, Surface};
+use dapple::mesh::{EncodedImage, Material, Model, Repair, Surface};
 use dapple::mesh_io::MeshFormat;
 use dapple::points::glam::DVec2;
 use dapple::raster::Raster;
@@ -26,8 +27,10 @@ pub(super) struct ExampleMesh {
     pub(super) model: Model,
     /// Its mesh, repaired.
     pub(super) surface: Surface,
-    /// The texture coordinates of its corners.
+    /// The texture coordinates of its corners; in the sheet, if there is one.
     pub(super) uvs: Vec<[DVec2; 3]>,
+    /// The places of the textures of unit squares in its texture and maps, if it has one for each.
+    pub(super) sheet: Option<Sheet>,
     /// Its texture.
     pub(super) base: Loaded,
     /// The maps in its material, by the names of options; those that were given go before them.
@@ -84,14 +87,26 @@ impl Args {
         let surface = Surface::new(mesh).with_context(|| input::name(path))?;
         let mut left_out = model.left_out.iter();
         let has_others = left_out.any(|what| what == Model::FURTHER_MATERIALS);
+        let mut sheet = None;
         let (uvs, base) = match (&model.material.base_color, &model.colors) {
             (Some(_), _) if has_others => {
                 let error = anyhow!("faces of {} have several materials", input::name(path));
                 return Err(error.hint("give a mesh whose faces have one texture in all"));
             }
-            (Some(image), _) => {
+            (Some(_), _) => {
                 let uvs = own_uvs(&surface, &model, &repair);
-                let mut base = input::embedded(image, path, Kind::Colors, self.alpha.alpha)?;
+                let mut uvs = uvs.hint("give the example texture coordinates")?;
+                let load = |image| input::embedded(image, path, Kind::Colors, self.alpha.alpha);
+                let images = images(&model, |material| &material.base_color)?.unwrap_or_default();
+                let mut loaded = images.into_iter().map(load).collect::<Result<Vec<_>>>()?;
+                if !model.tiles.is_empty() {
+                    let numbers = model.tiles.iter().map(|tile| tile.number).collect();
+                    let tiles = Tiles::new(numbers, &uvs)?;
+                    let made = sheet.insert(Sheet::new(tiles, loaded[0].map.size())?);
+                    uvs = made.uvs();
+                    loaded = vec![made.join(loaded)?];
+                }
+                let mut base = loaded.remove(0);
                 let factor = model.material.base_color_factor.color;
                 // The material of a mesh that is repaired keeps it.
                 if let (Map::Color(colors), None) = (&mut base.map, &self.plane.repair) {
@@ -100,7 +115,7 @@ impl Args {
                     };
                     *colors = colors.map(tint);
                 }
-                (uvs.hint("give the example texture coordinates")?, base)
+                (uvs, base)
             }
             (None, Some(_)) => drawn(&surface, &model, &repair)?,
             (None, None) => {
@@ -122,7 +137,7 @@ impl Args {
                 .push("the colors of vertices beside the texture".to_owned());
         }
         let maps = if model.material.base_color.is_some() {
-            self.maps_of(&model)?
+            self.maps_of(&model, sheet.as_ref())?
         } else {
             Vec::new()
         };
@@ -130,28 +145,42 @@ impl Args {
             model,
             surface,
             uvs,
+            sheet,
             base,
             maps,
         }))
     }
 
     /// The maps in a material, but for those that were given.
-    fn maps_of(&self, model: &Model) -> Result<Vec<(String, Loaded)>> {
-        let (path, material) = (&self.exemplar, &model.material);
-        let load = |image, kind| input::embedded(image, path, kind, self.alpha.alpha);
+    fn maps_of(&self, model: &Model, sheet: Option<&Sheet>) -> Result<Vec<(String, Loaded)>> {
+        let path = &self.exemplar;
+        let load = |of: ImageOf, kind| {
+            let Some(images) = images(model, of)? else {
+                return Ok(None);
+            };
+            let images = images.into_iter();
+            let images = images.map(|image| input::embedded(image, path, kind, self.alpha.alpha));
+            let mut images = images.collect::<Result<Vec<_>>>()?;
+            match sheet {
+                Some(sheet) => sheet.join(images).map(Some),
+                None => Ok(Some(images.remove(0))),
+            }
+        };
         let mut maps = Vec::new();
-        if let Some(image) = &material.normal {
-            maps.push(("normal", load(image, Kind::Normals)?));
+        if let Some(map) = load(|material| &material.normal, Kind::Normals)? {
+            maps.push(("normal", map));
         }
-        for (image, channels) in [
-            (&material.occlusion, &[("ao", 0)][..]),
+        let packed: [(ImageOf, _); 2] = [
+            (|material| &material.occlusion, &[("ao", 0)][..]),
             (
-                &material.metallic_roughness,
+                |material| &material.metallic_roughness,
                 &[("roughness", 1), ("metallic", 2)][..],
             ),
-        ] {
-            let Some(image) = image else { continue };
-            let image = load(image, Kind::Colors)?;
+        ];
+        for (of, channels) in packed {
+            let Some(image) = load(of, Kind::Colors)? else {
+                continue;
+            };
             for &(name, channel) in channels {
                 maps.push((name, image.with_map(channel_of(&image.map, channel)?)));
             }
@@ -171,6 +200,32 @@ impl ExampleMesh {
     pub(super) fn has(&self, kind: MapKind) -> bool {
         self.maps.iter().any(|(name, _)| is_of(name, kind))
     }
+}
+
+/// A texture of a material.
+type ImageOf = fn(&Material) -> &Option<EncodedImage>;
+
+/// A texture of the material of a model: one image for each unit square with a material of its own, else one alone; `None` if
+/// there is none.
+///
+/// # Errors
+///
+/// If some unit squares have it and others lack it.
+fn images(model: &Model, of: ImageOf) -> Result<Option<Vec<&EncodedImage>>> {
+    if model.tiles.is_empty() {
+        return Ok(of(&model.material).as_ref().map(|image| vec![image]));
+    }
+    let found = model.tiles.iter().map(|tile| of(&tile.material).as_ref());
+    if found.clone().all(|image| image.is_none()) {
+        return Ok(None);
+    }
+    let images = model.tiles.iter().zip(found).map(|(tile, image)| {
+        let number = tile.number;
+        image.ok_or_else(|| {
+            anyhow!("the faces in unit square {number} lack a texture that others have")
+        })
+    });
+    images.collect::<Result<_>>().map(Some)
 }
 
 /// The codes of a channel of an image, which are data and no colors.

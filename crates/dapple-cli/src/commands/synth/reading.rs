@@ -4,6 +4,7 @@ use super::example_mesh::ExampleMesh;
 use super::guides::Guide;
 use super::material::is_of;
 use super::options::Channel;
+use super::tiles::Sheet;
 use super::{Args, MapArg, advise};
 use crate::args::Alpha;
 use crate::error::{Hint, usage};
@@ -46,7 +47,7 @@ impl Args {
         }
         let sizes: Vec<_> = examples.iter().map(|example| example.map.size()).collect();
         let layout = SideBySide::new(&sizes)?.with_turned(self.guides.turned)?;
-        let hole = self.read_hole(&examples[0])?;
+        let hole = self.read_hole(&examples[0], None)?;
         for (image, (path, example)) in paths.iter().zip(&examples).enumerate() {
             self.check_usable(path, example, (path, image), hole.as_ref())?;
         }
@@ -60,7 +61,7 @@ impl Args {
             false => Edges::Cut,
         };
         let mut exemplar = exemplar_of(&example.map, edges).map_err(advise)?;
-        if let Some(usable) = self.read_masks(&paths, &layout, hole.as_ref())? {
+        if let Some(usable) = self.read_masks(&paths, &layout, (hole.as_ref(), None))? {
             exemplar = exemplar.with_mask(&usable)?;
         }
         exemplar = exemplar.with_layout(&layout)?;
@@ -95,8 +96,9 @@ impl Args {
         let base = example.base.clone();
         let mut exemplar = exemplar_of(&base.map, self.matching.edges).map_err(advise)?;
         let layout = SideBySide::new(&[exemplar.size()])?;
-        let hole = self.read_hole(&base)?;
-        if let Some(usable) = self.read_masks(&[&self.exemplar], &layout, hole.as_ref())? {
+        let sheet = example.sheet.as_ref();
+        let hole = self.read_hole(&base, sheet)?;
+        if let Some(usable) = self.read_masks(&[&self.exemplar], &layout, (hole.as_ref(), sheet))? {
             exemplar = exemplar.with_mask(&usable)?;
         }
         let guides = self.read_guides(&layout, &base)?;
@@ -109,8 +111,15 @@ impl Args {
                 let error = usage(format!("--map {name} is given twice"));
                 return Err(error.hint("leave one of them out"));
             }
-            let map = self.load_map(name, path)?;
-            map.check_finite(path)?;
+            let load = |path: &Path| {
+                let map = self.load_map(name, path)?;
+                map.check_finite(path)?;
+                Ok(map)
+            };
+            let map = match sheet {
+                Some(sheet) => sheet.join(sheet.read(path, &self.exemplar, load)?)?,
+                None => load(path)?,
+            };
             maps.push((name.clone(), map));
         }
         let exemplar = self.with_weighted(exemplar, &maps).map_err(advise)?;
@@ -223,7 +232,7 @@ impl Args {
         }
         let hole = hole.filter(|_| index == 0);
         let mask = self.mask.get(index);
-        let mask = mask.map(|mask| self.load_mask(mask, example, image.map.size()));
+        let mask = mask.map(|mask| self.load_mask(mask, example, image.map.size(), None));
         let mask = mask.transpose()?;
         let is_used = |column: u32, row: u32| {
             let at = |raster: &Raster<bool>| raster.row(row)[column as usize];
@@ -237,7 +246,7 @@ impl Args {
         &self,
         paths: &[&PathBuf],
         layout: &SideBySide,
-        hole: Option<&Raster<bool>>,
+        (hole, sheet): (Option<&Raster<bool>>, Option<&Sheet>),
     ) -> Result<Option<Raster<bool>>> {
         let is_one = layout.size() == layout.size_of(0);
         if self.mask.is_empty() && hole.is_none() && is_one {
@@ -251,7 +260,7 @@ impl Args {
         for (image, path) in paths.iter().enumerate() {
             let size = layout.size_of(image);
             masks.push(match self.mask.get(image) {
-                Some(mask) => self.load_mask(mask, path, size)?,
+                Some(mask) => self.load_mask(mask, path, size, sheet)?,
                 None => Raster::filled(size, true)?,
             });
         }
@@ -264,10 +273,10 @@ impl Args {
     }
 
     /// Reads which pixels of the first example are made again.
-    fn read_hole(&self, example: &Loaded) -> Result<Option<Raster<bool>>> {
+    fn read_hole(&self, example: &Loaded, sheet: Option<&Sheet>) -> Result<Option<Raster<bool>>> {
         if let Some(path) = &self.plane.repair {
             return self
-                .load_mask(path, &self.exemplar, example.map.size())
+                .load_mask(path, &self.exemplar, example.map.size(), sheet)
                 .map(Some);
         }
         let Some(channel) = self.plane.repair_channel else {
@@ -282,7 +291,17 @@ impl Args {
     }
 
     /// Reads a mask as large as an example: whether its pixels are nearer to white than to black.
-    fn load_mask(&self, path: &Path, example: &Path, size: [u32; 2]) -> Result<Raster<bool>> {
+    fn load_mask(
+        &self,
+        path: &Path,
+        example: &Path,
+        size: [u32; 2],
+        sheet: Option<&Sheet>,
+    ) -> Result<Raster<bool>> {
+        if let Some(sheet) = sheet {
+            let load = |path: &Path| self.load_mask(path, example, sheet.size(), None);
+            return sheet.join_masks(&sheet.read(path, example, load)?);
+        }
         let over_black = Alpha::Without(ImageAlpha::Over(LinearRgb::default()));
         let mask =
             input::map_with_alpha(path, Kind::ByChannels, self.region, over_black, &self.read)?.map;
@@ -335,7 +354,7 @@ pub(super) fn lightness(color: &LinearRgb) -> f32 {
 }
 
 /// Images side by side. If some are gray and others colors, all are colors. A larger version of one image stays as it is.
-fn joined(layout: &SideBySide, mut images: Vec<Loaded>) -> Result<Loaded> {
+pub(super) fn joined(layout: &SideBySide, mut images: Vec<Loaded>) -> Result<Loaded> {
     if layout.size() == layout.size_of(0) {
         return Ok(images.remove(0));
     }

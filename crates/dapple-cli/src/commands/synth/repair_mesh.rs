@@ -3,16 +3,17 @@
 use super::example_mesh::ExampleMesh;
 use super::reading::Input;
 use super::surface::{Product, announce, exemplar_of_mesh};
+use super::tiles::Sheet;
 use super::{Args, STEPS, advise, shown};
 use crate::args::Alpha;
 use crate::encode::{Clear, Cover, Format, default_format, encode, encode_with_alpha};
 use crate::error::{Exit, Hint, usage};
 use crate::input::{self, Kind, Loaded};
 use crate::job::{Context, Job};
-use crate::output::Target;
+use crate::output::{OutputIdx, Target};
 use crate::progress::Progress;
 use anyhow::{Result, bail};
-use dapple::color::{LinearRgba, NormalY};
+use dapple::color::{LinearRgb, LinearRgba, NormalY};
 use dapple::mesh::{CREASE, EncodedImage, Material, Model};
 use dapple::mesh_io::{MaterialPlace, MeshFormat, replace_images};
 use dapple::points::glam::DVec2;
@@ -22,6 +23,7 @@ use dapple::synth::{
 };
 use dapple::tile::Map;
 use serde_json::Value;
+use std::path::Path;
 
 /// A mesh whose texture is made again where a mask says so.
 struct Repaired<'a> {
@@ -29,22 +31,32 @@ struct Repaired<'a> {
     exemplar: MeshExemplar,
     texture: SurfaceTexture,
     uvs: Vec<[DVec2; 3]>,
+    /// The places of the textures of unit squares, if there is one for each.
+    sheet: Option<Sheet>,
     /// The texels that are made again.
     hole: Raster<bool>,
 }
+
+/// A map, and its alpha.
+type Mended = (Map, Option<Raster<f32>>);
 
 /// Repairs the texture of the mesh that is the example.
 pub(super) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let mut job = Job::new(context, "synth", &args.image.files);
     let target = args.target(&args.exemplar, "glb")?;
     let format = model_format(&target)?;
-    let output = job.claim(&target)?;
-    let map_format = args.image.format.unwrap_or(Format::Png16);
-    let map_outputs = args.claim_maps(&target, map_format.ending(), &mut job)?;
-    job.claim_sidecar(&target)?;
     let Some(example) = args.read_example_mesh()? else {
         bail!("only meshes are repaired here");
     };
+    check_tiles(format, &example, &args.exemplar)?;
+    let outputs = claim_tiles(&target, example.sheet.as_ref(), &mut job)?;
+    let map_format = args.image.format.unwrap_or(Format::Png16);
+    let mut map_outputs = Vec::new();
+    for name in args.map_names() {
+        let target = target.part(name)?.with_ending(map_format.ending());
+        map_outputs.push(claim_tiles(&target, example.sheet.as_ref(), &mut job)?);
+    }
+    job.claim_sidecar(&target)?;
     announce(context, &args.exemplar, &example.model);
     let Input {
         base,
@@ -57,7 +69,9 @@ pub(super) fn run(args: &Args, context: &Context) -> Result<Exit> {
         let error = usage(format!("{} has no texture", input::name(&args.exemplar)));
         return Err(error.hint("give a mesh with a texture, which --repair mends"));
     };
-    let ExampleMesh { model, uvs, .. } = example.clone();
+    let ExampleMesh {
+        model, uvs, sheet, ..
+    } = example.clone();
     let exemplar = exemplar_of_mesh(args, example, &exemplar)?;
     let progress = Progress::bar("synthesizing", STEPS.into(), context);
     let options = args.matching.options(&args.surface);
@@ -70,34 +84,62 @@ pub(super) fn run(args: &Args, context: &Context) -> Result<Exit> {
         exemplar,
         texture,
         uvs,
+        sheet,
         hole,
     };
-    for (output, (_, example)) in map_outputs.into_iter().zip(&maps) {
-        let (map, _) = repaired.mended(example)?;
-        job.write_image(output, map, example.is_deep, &args.image)?;
+    for (outputs, (_, example)) in map_outputs.into_iter().zip(&maps) {
+        for (output, (map, _)) in outputs.into_iter().zip(repaired.mended(example)?) {
+            job.write_image(output, map, example.is_deep, &args.image)?;
+        }
     }
-    let (map, alpha) = repaired.mended(&base)?;
-    match format {
-        None => {
+    for (output, (map, alpha)) in outputs.into_iter().zip(repaired.mended(&base)?) {
+        let Some(format) = format else {
             let cover = Cover::of(alpha.as_ref(), false, Clear::Keep);
             job.write_with_alpha(output, map, cover, base.is_deep, &args.image)?;
-        }
-        Some(format) => {
-            let base = encoded(&map, alpha.as_ref(), base.is_deep)?;
-            let new = repaired.model(model.clone(), &base)?;
-            // A file that holds images stays the same document.
-            match replace_images(&args.exemplar, &replaced(&model.material, &new.material))? {
-                Some(bytes) => job.write(output, &bytes)?,
-                None => {
-                    for file in format.write(&new, "")? {
-                        job.write(output, &file.bytes)?;
-                    }
+            continue;
+        };
+        let base = encoded(&map, alpha.as_ref(), base.is_deep)?;
+        let new = repaired.model(model.clone(), &base)?;
+        // A file that holds images stays the same document.
+        match replace_images(&args.exemplar, &replaced(&model.material, &new.material))? {
+            Some(bytes) => job.write(output, &bytes)?,
+            None => {
+                for file in format.write(&new, "")? {
+                    job.write(output, &file.bytes)?;
                 }
             }
         }
     }
     job.finish(args, Value::Null)?;
     Ok(Exit::Done)
+}
+
+/// Refuses a model as the output if there is a texture for each unit square.
+fn check_tiles(format: Option<&MeshFormat>, example: &ExampleMesh, path: &Path) -> Result<()> {
+    let (Some(format), Some(sheet)) = (format, &example.sheet) else {
+        return Ok(());
+    };
+    let n_tiles = sheet.tiles.numbers.len();
+    let (name, format) = (input::name(path), format.name());
+    let error = usage(format!(
+        "{name} has textures in {n_tiles} unit squares, and {format} holds one"
+    ));
+    Err(error.hint("let -o end in .png, for an image of each: NAME.1001.png and so on"))
+}
+
+/// Claims a file for each unit square, or for the only texture.
+fn claim_tiles(
+    target: &Target,
+    sheet: Option<&Sheet>,
+    job: &mut Job<'_>,
+) -> Result<Vec<OutputIdx>> {
+    let Some(sheet) = sheet else {
+        return Ok(vec![job.claim(target)?]);
+    };
+    let numbers = sheet.tiles.numbers.iter();
+    numbers
+        .map(|&number| job.claim(&target.tile(number)?))
+        .collect()
 }
 
 /// The format of a model as the output; nothing for an image.
@@ -137,53 +179,77 @@ impl Repaired<'_> {
     /// An image of a material, mended.
     fn mended_image(&self, image: &EncodedImage, kind: Kind) -> Result<EncodedImage> {
         let image = input::embedded(image, &self.args.exemplar, kind, Alpha::Keep)?;
-        let (map, alpha) = self.mended(&image)?;
+        let (map, alpha) = self.mended_part(&image, &image, &self.uvs, &self.hole)?;
         encoded(&map, alpha.as_ref(), image.is_deep)
     }
 
-    /// A map, and its alpha, with new texels in the hole and the old ones elsewhere.
-    fn mended(&self, old: &Loaded) -> Result<(Map, Option<Raster<f32>>)> {
+    /// A map with new texels in the hole and the old ones elsewhere: one for each unit square, if they have their own.
+    fn mended(&self, old: &Loaded) -> Result<Vec<Mended>> {
+        let Some(sheet) = &self.sheet else {
+            return Ok(vec![self.mended_part(old, old, &self.uvs, &self.hole)?]);
+        };
+        let mend = |tile: usize| {
+            let part = sheet.part_of(old, tile)?;
+            let (uvs, hole) = (sheet.tiles.uvs_of(tile), sheet.part(&self.hole, tile)?);
+            self.mended_part(old, &part, &uvs, &hole)
+        };
+        (0..sheet.tiles.numbers.len()).map(mend).collect()
+    }
+
+    /// The texture of faces with some texture coordinates, mended with texels of an image.
+    fn mended_part(
+        &self,
+        from: &Loaded,
+        old: &Loaded,
+        uvs: &[[DVec2; 3]],
+        hole: &Raster<bool>,
+    ) -> Result<Mended> {
         let (source, texture) = (self.exemplar.source(), &self.texture);
         let surface = source.surface();
         let size = old.map.size();
-        let atlas =
-            Atlas::from_uvs(surface, &self.uvs, size, size[0].max(size[1])).map_err(advise)?;
-        Ok(match (&old.map, &old.alpha) {
-            (Map::Value(values), _) => {
-                let new = bake_values(source, texture, values, &atlas)?;
-                (Map::Value(self.within_hole(values, &new)?), None)
+        let atlas = Atlas::from_uvs(surface, uvs, size, size[0].max(size[1])).map_err(advise)?;
+        Ok(match (&from.map, &old.map) {
+            (Map::Value(from), Map::Value(old)) => {
+                let new = bake_values(source, texture, from, &atlas)?;
+                (Map::Value(within_hole(old, &new, hole)?), None)
             }
-            (Map::Normal(normals), _) => {
+            (Map::Normal(from), Map::Normal(old)) => {
                 let shading = surface.mesh().corner_normals(CREASE);
                 let y = NormalY::OpenGl;
-                let new = bake_normals(source, texture, normals, y, &atlas, &shading)?;
-                (Map::Normal(self.within_hole(normals, &new)?), None)
+                let new = bake_normals(source, texture, from, y, &atlas, &shading)?;
+                (Map::Normal(within_hole(old, &new, hole)?), None)
             }
-            (Map::Color(colors), None) => {
-                let new = bake_colors(source, texture, colors, &atlas)?;
-                (Map::Color(self.within_hole(colors, &new)?), None)
-            }
-            (Map::Color(colors), Some(alpha)) => {
-                let pixels = colors.zip_map(alpha, |&color, &alpha| LinearRgba { color, alpha })?;
-                let new = bake_colors_alpha(source, texture, &pixels, &atlas)?;
-                let mended = self.within_hole(&pixels, &new)?;
+            (Map::Color(colors), Map::Color(olds)) => {
+                let (Some(alpha), Some(old_alpha)) = (&from.alpha, &old.alpha) else {
+                    let new = bake_colors(source, texture, colors, &atlas)?;
+                    return Ok((Map::Color(within_hole(olds, &new, hole)?), None));
+                };
+                let pixel = |&color: &LinearRgb, &alpha: &f32| LinearRgba { color, alpha };
+                let new =
+                    bake_colors_alpha(source, texture, &colors.zip_map(alpha, pixel)?, &atlas)?;
+                let mended = within_hole(&olds.zip_map(old_alpha, pixel)?, &new, hole)?;
                 let alpha = mended.map(|pixel| pixel.alpha);
                 (Map::Color(mended.map(|pixel| pixel.color)), Some(alpha))
             }
+            _ => bail!("a part of a map is of another kind"),
         })
     }
+}
 
-    /// The new texels in the hole, which may have another size, and the old ones elsewhere.
-    fn within_hole<T: Copy>(&self, old: &Raster<T>, new: &Raster<T>) -> Result<Raster<T>> {
-        let (size, hole) = (old.size(), self.hole.size());
-        Ok(Raster::from_fn(size, |column, row| {
-            let [x, y] = [(column, 0), (row, 1)]
-                .map(|(at, axis)| u64::from(at) * u64::from(hole[axis]) / u64::from(size[axis]));
-            let is_new = self.hole.row(y as u32)[x as usize];
-            let from = if is_new { new } else { old };
-            from.row(row)[column as usize]
-        })?)
-    }
+/// The new texels in the hole, which may have another size, and the old ones elsewhere.
+fn within_hole<T: Copy>(
+    old: &Raster<T>,
+    new: &Raster<T>,
+    hole: &Raster<bool>,
+) -> Result<Raster<T>> {
+    let (size, hole_size) = (old.size(), hole.size());
+    Ok(Raster::from_fn(size, |column, row| {
+        let [x, y] = [(column, 0), (row, 1)]
+            .map(|(at, axis)| u64::from(at) * u64::from(hole_size[axis]) / u64::from(size[axis]));
+        let is_new = hole.row(y as u32)[x as usize];
+        let from = if is_new { new } else { old };
+        from.row(row)[column as usize]
+    })?)
 }
 
 /// The images of a material with those in their places.

@@ -69,7 +69,9 @@ fn read_target(
     example: Option<&ExampleMesh>,
     context: &Context,
 ) -> Result<Model> {
-    let model = input::model(mesh)?;
+    let mut model = input::model(mesh)?;
+    // It gets one texture for all unit squares, which is said.
+    model.tiles.clear();
     announce(context, mesh, &model);
     if let Some(example) = example {
         announce(context, &args.exemplar, &example.model);
