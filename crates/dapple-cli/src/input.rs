@@ -24,8 +24,8 @@ use crate::output::read_back;
 use anyhow::{Context, Error, Result, anyhow};
 use dapple::color::{Code, LinearRgb, LinearRgba};
 use dapple::image::{
-    Channels, ExrImage, Image, ImageError, ImageErrorKind, Limits, PngPixels, decode_image,
-    decode_png_region, read_image,
+    Channels, ExrImage, Image, ImageError, ImageErrorKind, Limits, PngPixels, decode_exr_region,
+    decode_image, decode_png_region, read_image,
 };
 use dapple::mesh::EncodedImage;
 use dapple::raster::Raster;
@@ -215,15 +215,15 @@ pub(crate) fn image(path: &Path) -> Result<Image> {
     read_image(path, &limits).map_err(advise)
 }
 
-/// Reads an image; or only a region of it, if it has too many pixels and is a PNG. The second value says which.
+/// Reads an image; or only a region of it, if it has too many pixels and is a PNG or OpenEXR image. The second value says
+/// which.
 fn image_or_region(path: &Path, region: Option<Region>) -> Result<(Image, bool)> {
     let error = match (image(path), region) {
         (Ok(image), _) => return Ok((image, false)),
         (Err(error), Some(region)) if exceeded_limit(&error).is_some() && path.is_file() => {
             let bytes = whole(path, "an image")?;
-            let part = decode_png_region(&bytes, region.first, region.size, &limits());
-            match part {
-                Ok(part) => return Ok((Image::Png(part), true)),
+            match region_of(&bytes, region) {
+                Ok(part) => return Ok((part, true)),
                 Err(other) if matches!(other.kind(), ImageErrorKind::UnknownFormat) => error,
                 Err(other) => {
                     let is_outside = matches!(other.kind(), ImageErrorKind::Outside { .. });
@@ -239,6 +239,16 @@ fn image_or_region(path: &Path, region: Option<Region>) -> Result<(Image, bool)>
         (Err(error), _) => error,
     };
     Err(error)
+}
+
+/// A region of an image in a format whose rows or blocks can be read alone.
+fn region_of(bytes: &[u8], Region { first, size }: Region) -> Result<Image, ImageError> {
+    match decode_png_region(bytes, first, size, &limits()) {
+        Err(error) if matches!(error.kind(), ImageErrorKind::UnknownFormat) => {
+            decode_exr_region(bytes, first, size, &limits()).map(Image::Exr)
+        }
+        part => part.map(Image::Png),
+    }
 }
 
 /// The limit of pixels that an image exceeds, if this is the reason of the error.
@@ -343,6 +353,16 @@ pub(crate) fn map_with_faults(
     read: &ReadArgs,
 ) -> Result<Loaded> {
     let (image, faults, is_part) = picture(path, region, read)?;
+    let has_colors = matches!(image, Image::Exr(_)) && image.channels() != Channels::Vectors;
+    if is_part && kind == Kind::Normals && has_colors {
+        let name = name(path);
+        let error = usage(format!(
+            "the planes of {name} are normals or their codes, which follows from all pixels"
+        ));
+        return Err(
+            error.hint("read the whole image with --max-pixels, or name the planes X, Y and Z")
+        );
+    }
     let region = region.filter(|_| !is_part);
     let mut loaded = of_image(&image, path, kind, region, alpha)?;
     loaded.faults = match region {
@@ -610,7 +630,8 @@ fn advise(error: ImageError) -> Error {
             Some("name one of them with --layer, or in a recipe with layer")
         }
         ImageErrorKind::TooManyPixels { .. } => Some(
-            "add --max-pixels N to read larger images, or --region X,Y,W,H for a part of a PNG",
+            "add --max-pixels N to read larger images, or --region X,Y,W,H for a part of a PNG or OpenEXR image; \
+             a JPEG is decoded as a whole",
         ),
         _ => None,
     };

@@ -15,7 +15,7 @@ mod shortcut;
 mod tiles;
 
 #[cfg(feature = "exr")]
-pub use decode::decode_exr;
+pub use decode::{decode_exr, decode_exr_region};
 #[cfg(feature = "exr")]
 pub use encode::{encode_exr, write_exr};
 #[cfg(feature = "exr")]

@@ -69,7 +69,8 @@ mod rows;
 pub use self::exr::{ExrImage, ExrPlane};
 #[cfg(feature = "exr")]
 pub use self::exr::{
-    decode_exr, encode_exr, write_color_alpha_exr, write_color_exr, write_exr, write_gray_exr,
+    decode_exr, decode_exr_region, encode_exr, write_color_alpha_exr, write_color_exr, write_exr,
+    write_gray_exr,
 };
 pub use self::image::{Image, decode_image, read_image};
 #[cfg(feature = "jpeg")]

@@ -1,7 +1,8 @@
 //! What the command says of files: sizes past the limit, arrays and heights, tables of numbers, loops and clipping.
 
 use crate::support::{Folder, assert_done, assert_refused, stderr, stdout};
-use dapple::image::{Depth, Limits, read_image, write_gray_exr, write_gray_png};
+use dapple::color::LinearRgb;
+use dapple::image::{Depth, Limits, read_image, write_color_exr, write_gray_exr, write_gray_png};
 use dapple::raster::Raster;
 use std::fs;
 
@@ -85,6 +86,18 @@ fn regions_of_images_past_the_limit_are_read_by_rows() {
             "{json}"
         );
     }
+    write_gray_exr(folder.path("c.exr"), &places([64, 48])).unwrap();
+    for (name, options) in [("out-c.exr", "--quiet"), ("rows-c.exr", "--max-pixels 500")] {
+        let line = format!("tile c.exr --method mirror --region 40,30,24,18 {options} -o {name}");
+        assert_done(&run(&folder, &line), &line);
+    }
+    let [out, rows] =
+        ["out", "rows"].map(|of| fs::read(folder.path(&format!("{of}-c.exr"))).unwrap());
+    assert_eq!(out, rows, "blocks of OpenEXR");
+    let line = "tile a.png --normal n.exr --method mirror --region 0,0,9,9 --max-pixels 500 -o d/";
+    let codes = places([64, 48]).map(|&value| LinearRgb::gray(value));
+    write_color_exr(folder.path("n.exr"), &codes).unwrap();
+    assert_refused(&run(&folder, line), 2, "follows from all pixels", line);
     let line = "info a.png --region 40,30,25,18 --max-pixels 500";
     assert_refused(
         &run(&folder, line),

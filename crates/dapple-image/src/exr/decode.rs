@@ -11,14 +11,20 @@ use super::{ExrImage, ExrPlane, layers};
 use crate::image::EXR_SIGNATURE as SIGNATURE;
 use crate::{ImageError, ImageErrorKind, Limits};
 use dapple_raster::Raster;
+use exr::block::BlockIndex;
+use exr::block::chunk::TileCoordinates;
+use exr::block::lines::LineRef;
+use exr::block::reader::ChunksReader;
 use exr::image::read::image::ReadLayers;
 use exr::image::read::layers::ReadChannels;
 use exr::image::{AnyChannels, FlatSamples, Layer};
 use exr::math::Vec2;
 use exr::meta::MetaData;
-use exr::meta::attribute::{IntegerBounds, Text};
+use exr::meta::attribute::{ChannelList, IntegerBounds, SampleType, Text};
 use exr::meta::header::Header;
+use exr::prelude::f16;
 use std::io::Cursor;
+use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// The image in the bytes of an OpenEXR file.
@@ -38,6 +44,28 @@ pub fn decode_exr(bytes: &[u8], limits: &Limits) -> Result<ExrImage, ImageError>
     // No data that a panic could leave half done outlives the call.
     catch_unwind(AssertUnwindSafe(|| decode(bytes, limits)))
         .unwrap_or_else(|_| Err(ImageError::damaged("OpenEXR", "the codec gave up")))
+}
+
+/// Decodes a part of the picture in an OpenEXR file: `size` pixels from column and row `first` of the display window. Only the
+/// blocks of pixels that it meets are decompressed, and only the part has to be within the limits.
+///
+/// # Errors
+///
+/// The errors of [`decode_exr`]; [`ImageErrorKind::Outside`] if the part reaches out of the picture.
+pub fn decode_exr_region(
+    bytes: &[u8],
+    first: [u32; 2],
+    size: [u32; 2],
+    limits: &Limits,
+) -> Result<ExrImage, ImageError> {
+    if !bytes.starts_with(&SIGNATURE) {
+        return Err(ImageError::new(ImageErrorKind::UnknownFormat));
+    }
+    // No data that a panic could leave half done outlives the call.
+    catch_unwind(AssertUnwindSafe(|| {
+        decode_region(bytes, first, size, limits)
+    }))
+    .unwrap_or_else(|_| Err(ImageError::damaged("OpenEXR", "the codec gave up")))
 }
 
 fn decode(bytes: &[u8], limits: &Limits) -> Result<ExrImage, ImageError> {
@@ -63,39 +91,180 @@ fn decode(bytes: &[u8], limits: &Limits) -> Result<ExrImage, ImageError> {
     for layer in parts {
         push_planes(layer, display, &mut planes)?;
     }
+    Ok(with_planes(&meta.headers, planes))
+}
+
+fn decode_region(
+    bytes: &[u8],
+    first: [u32; 2],
+    size: [u32; 2],
+    limits: &Limits,
+) -> Result<ExrImage, ImageError> {
+    let reader = exr::block::read(Cursor::new(bytes), true).map_err(refusal)?;
+    let headers = reader.headers().to_vec();
+    let Some(display) = headers
+        .first()
+        .map(|of| of.shared_attributes.display_window)
+    else {
+        return Err(ImageError::damaged("OpenEXR", "it has no part"));
+    };
+    let side = |side: usize| u32::try_from(side).unwrap_or(u32::MAX);
+    let image = [side(display.size.0), side(display.size.1)];
+    if (0..2).any(|axis| u64::from(first[axis]) + u64::from(size[axis]) > image[axis].into()) {
+        return Err(ImageError::new(ImageErrorKind::Outside {
+            first,
+            size,
+            image,
+        }));
+    }
+    limits.check_pixels(size.map(u64::from))?;
+    let n_pixels = u64::from(size[0]) * u64::from(size[1]);
+    let (mut parts, mut n_bytes) = (Vec::new(), 0_u64);
+    for header in &headers {
+        check_features(header)?;
+        check_windows(
+            header.data_window(),
+            header.shared_attributes.display_window,
+        )?;
+        let n_channels = header.channels.list.len() as u64;
+        n_bytes = n_bytes.saturating_add(n_pixels.saturating_mul(4 * n_channels));
+        // A block is decompressed as a whole.
+        limits.check_bytes(n_bytes.saturating_add(header.max_block_byte_size() as u64))?;
+        let data = header.data_window().position;
+        let corner =
+            |at: u32, display: i32, data: i32| i64::from(at) + i64::from(display) - i64::from(data);
+        parts.push(Part {
+            first: [
+                corner(first[0], display.position.0, data.0),
+                corner(first[1], display.position.1, data.1),
+            ],
+            size,
+            planes: vec![vec![0.0; n_pixels as usize]; header.channels.list.len()],
+        });
+    }
+    let is_met = |_: &MetaData, tile: TileCoordinates, block: BlockIndex| {
+        let corners = [block.pixel_position, block.pixel_size].map(|Vec2(x, y)| [x, y]);
+        let is_whole = tile.level_index == Vec2(0, 0);
+        is_whole && (0..2).all(|axis| !parts[block.layer].span(corners, axis).is_empty())
+    };
+    let blocks = reader.filter_chunks(true, is_met).map_err(refusal)?;
+    let mut blocks = blocks.sequential_decompressor(true);
+    while let Some(block) = blocks.decompress_next_block() {
+        let block = block.map_err(refusal)?;
+        let channels = &headers[block.index.layer].channels;
+        for line in block.lines(channels) {
+            parts[block.index.layer].put(line, channels)?;
+        }
+    }
+    let is_single = headers.len() == 1;
+    let mut planes = Vec::new();
+    for (header, part) in headers.iter().zip(parts) {
+        let name_of_part = header.own_attributes.layer_name.as_ref();
+        let name_of_part = name_of_part.filter(|_| !is_single);
+        for (channel, values) in header.channels.list.iter().zip(part.planes) {
+            let name = plane_name(name_of_part, &channel.name);
+            let values = Raster::from_vec(size, values);
+            let values = values.map_err(|error| ImageError::damaged("OpenEXR", error))?;
+            planes.push(ExrPlane { name, values });
+        }
+    }
+    Ok(with_planes(&headers, planes))
+}
+
+/// The pixels of a region in a part of a file.
+struct Part {
+    /// The first column and row of the region, counted in the data window.
+    first: [i64; 2],
+    size: [u32; 2],
+    /// The values of each channel; 0 where there is no data.
+    planes: Vec<Vec<f32>>,
+}
+
+impl Part {
+    /// The columns or rows of a block that lie in the region, counted in the data window.
+    fn span(&self, [position, size]: [[usize; 2]; 2], axis: usize) -> Range<i64> {
+        let (first, end) = (position[axis] as i64, (position[axis] + size[axis]) as i64);
+        let last = self.first[axis] + i64::from(self.size[axis]);
+        first.max(self.first[axis])..end.min(last)
+    }
+
+    /// Takes what is in the region from a line of a channel.
+    fn put(&mut self, line: LineRef<'_>, channels: &ChannelList) -> Result<(), ImageError> {
+        let at = line.location;
+        let corners = [[at.position.0, at.position.1], [at.sample_count, 1]];
+        let [columns, rows] = [0, 1].map(|axis| self.span(corners, axis));
+        if columns.is_empty() || rows.is_empty() {
+            return Ok(());
+        }
+        let skipped = (columns.start - at.position.0 as i64) as usize;
+        let count = (columns.end - columns.start) as usize;
+        let row = (rows.start - self.first[1]) as usize * self.size[0] as usize;
+        let first = row + (columns.start - self.first[0]) as usize;
+        let target = &mut self.planes[at.channel][first..first + count];
+        match channels.list[at.channel].sample_type {
+            SampleType::F32 => copy(target, line.read_samples::<f32>().skip(skipped), |value| {
+                value
+            }),
+            SampleType::F16 => copy(target, line.read_samples().skip(skipped), f16::to_f32),
+            SampleType::U32 => copy(target, line.read_samples().skip(skipped), |value: u32| {
+                value as f32
+            }),
+        }
+    }
+}
+
+/// Copies the next samples of a line.
+fn copy<T>(
+    target: &mut [f32],
+    samples: impl Iterator<Item = exr::error::Result<T>>,
+    value: impl Fn(T) -> f32,
+) -> Result<(), ImageError> {
+    for (target, sample) in target.iter_mut().zip(samples) {
+        *target = value(sample.map_err(refusal)?);
+    }
+    Ok(())
+}
+
+/// The image of some planes, with the views and the chromaticities of a file.
+fn with_planes(headers: &[Header], planes: Vec<ExrPlane>) -> ExrImage {
     let text = |text: &Text| text.to_string();
-    let attributes = meta.headers.iter().map(|header| &header.own_attributes);
+    let attributes = headers.iter().map(|header| &header.own_attributes);
     let listed = attributes
         .clone()
         .filter_map(|of| of.multi_view_names.as_ref());
     let of_parts = attributes.filter_map(|of| of.view_name.as_ref());
     let views = layers::views(listed.flatten().map(text), of_parts.map(text));
-    let chromaticities = image.attributes.chromaticities.map(|of| {
+    let shared = headers.first().map(|header| &header.shared_attributes);
+    let chromaticities = shared.and_then(|of| of.chromaticities).map(|of| {
         let points = [of.red, of.green, of.blue, of.white];
         points.map(|Vec2(x, y)| [x, y])
     });
-    Ok(ExrImage {
+    ExrImage {
         planes,
         views,
         chromaticities,
-    })
+    }
+}
+
+/// Checks for unsupported features.
+fn check_features(header: &Header) -> Result<(), ImageError> {
+    let unsupported = |feature| Err(ImageError::new(ImageErrorKind::Unsupported { feature }));
+    if header.deep {
+        return unsupported("deep data");
+    }
+    let mut channels = header.channels.list.iter();
+    if channels.any(|channel| channel.sampling.0 != 1 || channel.sampling.1 != 1) {
+        return unsupported("an OpenEXR image with subsampled channels");
+    }
+    Ok(())
 }
 
 /// Checks for unsupported features and sizes past the limits, by the headers alone.
 fn check_headers(headers: &[Header], limits: &Limits) -> Result<(), ImageError> {
     let mut bytes = 0_u64;
     for header in headers {
-        let unsupported = |feature| Err(ImageError::new(ImageErrorKind::Unsupported { feature }));
-        if header.deep {
-            return unsupported("deep data");
-        }
+        check_features(header)?;
         let list = &header.channels.list;
-        if list
-            .iter()
-            .any(|channel| channel.sampling.0 != 1 || channel.sampling.1 != 1)
-        {
-            return unsupported("an OpenEXR image with subsampled channels");
-        }
         let size = [header.layer_size.0 as u64, header.layer_size.1 as u64];
         limits.check_pixels(size)?;
         let display = header.shared_attributes.display_window;
@@ -169,12 +338,9 @@ fn push_planes(
     planes: &mut Vec<ExrPlane>,
 ) -> Result<(), ImageError> {
     let data = IntegerBounds::new(layer.attributes.layer_position, layer.size);
-    let part = layer.attributes.layer_name.map(|name| name.to_string());
+    let part = layer.attributes.layer_name;
     for channel in layer.channel_data.list {
-        let name = match &part {
-            Some(part) => format!("{part}.{}", channel.name),
-            None => channel.name.to_string(),
-        };
+        let name = plane_name(part.as_ref(), &channel.name);
         let values = match channel.sample_data {
             FlatSamples::F32(values) => values,
             FlatSamples::F16(values) => values.into_iter().map(|value| value.to_f32()).collect(),
@@ -184,6 +350,14 @@ fn push_planes(
         planes.push(ExrPlane { name, values });
     }
     Ok(())
+}
+
+/// The name of a plane of a channel, with that of its part if there are several.
+fn plane_name(part: Option<&Text>, channel: &Text) -> String {
+    match part {
+        Some(part) => format!("{part}.{channel}"),
+        None => channel.to_string(),
+    }
 }
 
 fn refusal(error: exr::error::Error) -> ImageError {

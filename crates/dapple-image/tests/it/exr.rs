@@ -1,7 +1,9 @@
 //! Round trips, limits and damage of OpenEXR files.
 
 use dapple_color::{LinearRgb, LinearRgba};
-use dapple_image::{Channels, ExrImage, ExrPlane, ImageErrorKind, Limits, decode_exr, encode_exr};
+use dapple_image::{
+    Channels, ExrImage, ExrPlane, ImageErrorKind, Limits, decode_exr, decode_exr_region, encode_exr,
+};
 use dapple_raster::Raster;
 use exr::compression::Compression;
 use exr::image::write::WritableImage;
@@ -179,6 +181,81 @@ fn parts_tiles_and_other_numbers_are_read() {
     }
 }
 
+#[test]
+fn a_region_is_the_crop_of_the_whole_in_all_compressions() {
+    let wide = Raster::from_fn([300, 150], |x, y| (x * 7 + y * 1009) as f32 / 3.0).unwrap();
+    let mut files = vec![encode_exr(&[ExrPlane::new("Y", wide)]).unwrap()];
+    files.extend(
+        [
+            Compression::Uncompressed,
+            Compression::RLE,
+            Compression::ZIP1,
+            Compression::ZIP16,
+            Compression::PIZ,
+        ]
+        .map(parts),
+    );
+    for bytes in files {
+        let whole = decode(&bytes);
+        let [width, height] = whole.planes[0].values.size();
+        for (first, size) in [
+            ([0, 0], [width, height]),
+            ([0, 0], [1, 1]),
+            ([width - 1, height - 1], [1, 1]),
+            ([15, 15], [3, 2]),
+            ([3, 7], [12, 11]),
+        ] {
+            // The pixels of the region are enough.
+            let pixels = u64::from(size[0]) * u64::from(size[1]);
+            let limits = Limits {
+                pixels,
+                ..Limits::default()
+            };
+            let part = decode_exr_region(&bytes, first, size, &limits).unwrap();
+            assert_eq!(part.planes.len(), whole.planes.len());
+            for (part, whole) in part.planes.iter().zip(&whole.planes) {
+                assert_eq!(part.name, whole.name);
+                assert_eq!(part.values, whole.values.crop(first, size).unwrap());
+            }
+        }
+        let outside = decode_exr_region(&bytes, [1, 0], [width, 1], &Limits::default());
+        let outside = outside.unwrap_err();
+        assert!(
+            matches!(outside.kind(), ImageErrorKind::Outside { .. }),
+            "{outside}"
+        );
+    }
+}
+
+#[test]
+fn a_region_needs_only_its_blocks_and_keeps_the_limits() {
+    let bytes = parts(Compression::ZIP16);
+    let size = [2, 2];
+    let region = |bytes: &[u8], first, limits| {
+        decode_exr_region(bytes, first, size, &limits).map_err(|error| error.kind().clone())
+    };
+    // The last tiles are those of the second part.
+    let mut damaged = bytes.clone();
+    let end = damaged.len();
+    damaged[end - 8..].fill(0xff);
+    assert!(decode_exr(&damaged, &Limits::default()).is_err());
+    assert!(region(&damaged, [0, 0], Limits::default()).is_ok());
+    assert!(region(&damaged, [18, 16], Limits::default()).is_err());
+    let limits = |pixels, bytes| Limits { pixels, bytes };
+    let pixels = ImageErrorKind::TooManyPixels {
+        size: [2, 2],
+        limit: 3,
+    };
+    assert_eq!(region(&bytes, [0, 0], limits(3, 1 << 20)), Err(pixels));
+    // Two planes of 4 pixels, and a tile of 256 whole numbers.
+    assert!(region(&bytes, [0, 0], limits(4, 32 + 1024)).is_ok());
+    let memory = region(&bytes, [0, 0], limits(4, 31 + 1024)).unwrap_err();
+    assert!(
+        matches!(memory, ImageErrorKind::TooManyBytes { .. }),
+        "{memory:?}"
+    );
+}
+
 /// A file of named parts, each with the colors 1, 2, 3.
 fn colored_parts(names: &[&str]) -> Vec<u8> {
     let part = |name: &&str| {
@@ -301,6 +378,13 @@ fn a_flipped_bit_in_every_byte_gives_an_image_or_an_error() {
                 pixels: 1 << 20,
                 bytes: 1 << 24,
             };
+            if let Ok(part) = decode_exr_region(&damaged, [1, 1], [3, 2], &limits) {
+                let mut planes = part.planes.iter();
+                assert!(
+                    planes.all(|plane| plane.values.size() == [3, 2]),
+                    "byte {at}"
+                );
+            }
             if let Ok(image) = decode_exr(&damaged, &limits) {
                 let pixels = |plane: &ExrPlane| plane.values.pixels().len();
                 let total: usize = image.planes.iter().map(pixels).sum();
@@ -316,5 +400,6 @@ proptest! {
         let bytes = [b"\x76\x2f\x31\x01".as_slice(), &[2, 0, 0, 0], &body].concat();
         prop_assert!(decode_exr(&bytes, &Limits::default()).is_err());
         prop_assert!(decode_exr(&body, &Limits::default()).is_err());
+        prop_assert!(decode_exr_region(&bytes, [0, 0], [1, 1], &Limits::default()).is_err());
     }
 }

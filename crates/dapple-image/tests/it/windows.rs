@@ -1,6 +1,6 @@
 //! Data windows and display windows of OpenEXR files.
 
-use dapple_image::{ImageErrorKind, Limits, decode_exr};
+use dapple_image::{ImageErrorKind, Limits, decode_exr, decode_exr_region};
 use exr::image::write::WritableImage;
 use exr::image::{AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Layer};
 use exr::math::Vec2;
@@ -70,6 +70,25 @@ fn pixels_are_those_of_the_display_window() {
                 let pixel = found.row(row as u32)[column as usize];
                 assert_eq!(pixel, right, "{data:?} {display:?} at {x}, {y}");
             }
+        }
+    }
+}
+
+#[test]
+fn regions_are_those_of_the_display_window() {
+    for [data, display] in WINDOWS {
+        let bytes = file(data, display);
+        let whole = decode_exr(&bytes, &Limits::default()).unwrap();
+        let [_, _, width, height] = display.map(|part| part.max(0) as u32);
+        for first in [[0, 0], [width / 2, height / 3], [width - 1, height - 1]] {
+            let size = [width - first[0], height - first[1]];
+            let part = decode_exr_region(&bytes, first, size, &Limits::default()).unwrap();
+            let right = whole.gray().unwrap().crop(first, size).unwrap();
+            assert_eq!(
+                part.gray().unwrap(),
+                &right,
+                "{data:?} {display:?} {first:?}"
+            );
         }
     }
 }

@@ -237,7 +237,10 @@ mod tests {
         for (at, tile) in tiles.iter().enumerate() {
             assert_eq!(sheet.part(&joined, at).unwrap(), *tile);
             let uvs = sheet.tiles.uvs_of(at);
-            let errors = uvs[at].iter().zip(&local).map(|(uv, want)| uv.distance(*want));
+            let errors = uvs[at]
+                .iter()
+                .zip(&local)
+                .map(|(uv, want)| uv.distance(*want));
             assert!(errors.fold(0.0, f64::max) < 1e-12, "turns are taken off");
             assert!(uvs[(at + 1) % 3][0].is_nan(), "another square");
         }
