@@ -15,6 +15,8 @@ mod lump;
 mod patch;
 mod pebble;
 mod perlin;
+#[cfg(test)]
+mod readme_tests;
 mod soil;
 mod stone;
 

@@ -32,9 +32,13 @@ pub(super) const FIGURE: Figure = Figure {
     render,
 };
 
+/// Returns the margin in a figure of `size` pixels: about a quarter of the tile, and a multiple that suits two levels.
+pub(super) fn margin_of(size: u32) -> u32 {
+    (tile_side(size) / 16 * 4).max(4)
+}
+
 fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
-    // About a quarter of the tile, and a multiple that suits two levels.
-    let margin = (tile_side(size) / 16 * 4).max(4);
+    let margin = margin_of(size);
     let crops = crops(tile_side(size) + margin)?;
     methods(margin)
         .into_iter()
@@ -58,7 +62,7 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
 }
 
 /// Returns the methods by name; the first entry leaves the crop as it is.
-fn methods(margin: u32) -> [(&'static str, Option<Method>); 12] {
+pub(super) fn methods(margin: u32) -> [(&'static str, Option<Method>); 12] {
     let project = |levels, phase| SplineProject {
         levels,
         phase,
@@ -117,6 +121,18 @@ fn methods(margin: u32) -> [(&'static str, Option<Method>); 12] {
 
 /// Measures one tile and returns a line of the table.
 fn line(name: &str, crop: &Raster<f32>, tile: &Raster<f32>) -> anyhow::Result<String> {
+    let [near, far, fine, contrast, least] = measured(crop, tile)?;
+    let mut line = String::new();
+    writeln!(
+        line,
+        "{name:<6} {near:6.2} {far:6.2} {fine:6.2} {contrast:6.2} {least:5.2}"
+    )?;
+    Ok(line)
+}
+
+/// Measures one tile: the seam ratios at 1 and at 4 pixels, the power kept in the finest octave, the contrast, and the least
+/// local detail over that of the source.
+pub(super) fn measured(crop: &Raster<f32>, tile: &Raster<f32>) -> anyhow::Result<[f64; 5]> {
     let options = SeamOptions {
         lattice: [4; 2],
         ..SeamOptions::default()
@@ -134,12 +150,5 @@ fn line(name: &str, crop: &Raster<f32>, tile: &Raster<f32>) -> anyhow::Result<St
                     report.lowest_local_detail / kept.source_lowest_local_detail,
                 )
             });
-    let mut line = String::new();
-    writeln!(
-        line,
-        "{name:<6} {:6.2} {:6.2} {fine:6.2} {contrast:6.2} {least:5.2}",
-        ratio(0),
-        ratio(2)
-    )?;
-    Ok(line)
+    Ok([ratio(0), ratio(2), fine, contrast, least])
 }
