@@ -340,3 +340,48 @@ fn a_repair_writes_an_image_for_each_unit_square() {
     }
     assert!(n_new > 0, "something is made again");
 }
+
+#[test]
+fn a_mesh_with_several_unit_squares_gets_a_texture_for_each() {
+    let folder = Folder::with_inputs("covered-squares");
+    let white = plain(8, [255; 3]);
+    let target = in_two_squares([&white, &white]);
+    write_model(folder.path("skin.obj"), &target).unwrap();
+    let of = "synth rock.png --map normal=rock_normal.png --mesh skin.obj --atlas uv --sites 2000 --texture-size 64";
+    let line = format!("{of} -o out.png");
+    let output = run(&folder, &line);
+    assert_done(&output, &line);
+    assert!(
+        !stderr(&output).contains("share one texture"),
+        "{}",
+        stderr(&output)
+    );
+    let line = format!("{of} --force -o out.obj");
+    assert_done(&run(&folder, &line), &line);
+    let model = read_model(folder.path("out.obj")).unwrap();
+    let numbers: Vec<_> = model.tiles.iter().map(|tile| tile.number).collect();
+    assert_eq!(numbers, [1001, 1012], "as the mesh has them");
+    assert_eq!(model.uvs, read_model(folder.path("skin.obj")).unwrap().uvs);
+    for tile in &model.tiles {
+        let alone = std::fs::read(folder.path(&format!("out.{}.png", tile.number))).unwrap();
+        let base = tile.material.base_color.as_ref().unwrap();
+        assert!(base.bytes() == alone, "{} has the image alone", tile.number);
+        assert!(
+            tile.material.normal.is_some(),
+            "{} has normals",
+            tile.number
+        );
+    }
+    let [first, second] = [0, 1].map(|at| model.tiles[at].material.base_color.clone());
+    assert!(
+        first != second,
+        "each square has its own part of the texture"
+    );
+    let line = format!("{of} --force -o out.glb");
+    let output = run(&folder, &line);
+    assert_done(&output, &line);
+    assert!(
+        stderr(&output).contains("share one texture"),
+        "glTF has one"
+    );
+}

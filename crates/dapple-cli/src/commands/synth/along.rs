@@ -1,7 +1,7 @@
 //! Synthesis of an image along directions and with scales that images say.
 
 use super::guides::Values;
-use super::surface::Covered;
+use super::surface::{Covered, Layouts};
 use super::{Args, STEPS, advise, shown};
 use crate::encode::{Clear, Cover, Format};
 use crate::error::{Exit, Hint, usage};
@@ -43,16 +43,17 @@ pub(super) fn run(args: &Args, context: &Context) -> Result<Exit> {
         shading: synthesizer.surface().mesh().corner_normals(CREASE),
         synthesizer,
         texture,
-        atlas: Some(atlas),
+        layouts: Layouts::from(atlas),
         double_sided: false,
         input,
     };
-    let (base, alpha) = covered.bake_base()?;
+    let atlas = &covered.layouts.atlases[0];
+    let (base, alpha) = covered.bake_base(atlas)?;
     let is_deep = covered.input.base.is_deep;
     let cover = Cover::of(alpha.as_ref(), false, Clear::NOT_WRAPPED);
     job.write_with_alpha(output, base, cover, is_deep, &args.image)?;
     for (output, (_, example)) in map_outputs.into_iter().zip(&covered.input.maps) {
-        let map = covered.bake(&example.map)?;
+        let map = covered.bake(&example.map, atlas)?;
         job.write_with_alpha(output, map, None, example.is_deep, &args.image)?;
     }
     job.finish(args, Value::Null)?;

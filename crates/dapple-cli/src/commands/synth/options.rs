@@ -28,7 +28,7 @@ dapple::raster::named! {
         Area = "area",
         /// Right triangles of one size, as in the paper.
         Uniform = "uniform",
-        /// The mesh's own texture coordinates.
+        /// The mesh's own texture coordinates; with .obj or .png, a texture for each of their unit squares (UDIM).
         Uv = "uv",
     }
 }

@@ -5,6 +5,7 @@ use super::example_mesh::ExampleMesh;
 use super::material::{MaterialMaps, alpha_mode, is_of};
 use super::options::AtlasName;
 use super::reading::Input;
+use super::tiles::Tiles;
 use super::{Args, STEPS, advise, guides, shown};
 use crate::encode::{Clear, Cover, Format, default_format, encode, encode_with_alpha, ramped};
 use crate::error::{Exit, Hint, usage};
@@ -15,9 +16,9 @@ use crate::progress::Progress;
 use anyhow::{Context as _, Result, bail};
 use core::ops::ControlFlow;
 use dapple::color::{LinearRgba, NormalY};
-use dapple::mesh::{EncodedImage, Mesh, Model, Repair, Surface};
+use dapple::mesh::{EncodedImage, Material, Mesh, Model, Repair, Surface, TileMaterial};
 use dapple::mesh_io::{FORMATS, MaterialPlace, MeshFormat, writable_endings};
-use dapple::points::glam::DVec3;
+use dapple::points::glam::{DVec2, DVec3};
 use dapple::raster::Raster;
 use dapple::recipe::MapKind;
 use dapple::synth::{
@@ -53,11 +54,12 @@ struct Claimed {
     product: Product,
     /// The name of the output without its ending.
     stem: String,
-    main: OutputIdx,
+    /// The output; the textures of unit squares, if it is one for each.
+    main: Vec<OutputIdx>,
     /// The files beside that of the mesh, such as material and textures, with their names.
     beside: Vec<(String, OutputIdx)>,
-    /// The files of the maps, but for those that are beside the mesh already.
-    maps: Vec<Option<OutputIdx>>,
+    /// The files of each map, as many as layouts; none of those that are beside the mesh already.
+    maps: Vec<Vec<OutputIdx>>,
     /// The format of textures that are files of their own.
     format: Format,
 }
@@ -66,17 +68,35 @@ struct Claimed {
 fn read_target(
     args: &Args,
     mesh: &Path,
+    product: Product,
     example: Option<&ExampleMesh>,
     context: &Context,
 ) -> Result<Model> {
     let mut model = input::model(mesh)?;
-    // It gets one texture for all unit squares, which is said.
-    model.tiles.clear();
+    model.tiles = squares(args, product, &model);
     announce(context, mesh, &model);
     if let Some(example) = example {
         announce(context, &args.exemplar, &example.model);
     }
     Ok(model)
+}
+
+/// The unit squares of the mesh's own texture coordinates that get a texture each; none if there is one texture.
+fn squares(args: &Args, product: Product, model: &Model) -> Vec<TileMaterial> {
+    let takes_several = match product {
+        Product::Texture => true,
+        Product::Model(format) => format.material_place() == MaterialPlace::Beside,
+        Product::Sites(_) => false,
+    };
+    let numbers = model.unit_squares();
+    if args.surface.atlas() != AtlasName::Uv || !takes_several || numbers.len() < 2 {
+        return Vec::new();
+    }
+    let tile = |number| TileMaterial {
+        number,
+        material: Material::default(),
+    };
+    numbers.into_iter().map(tile).collect()
 }
 
 /// Says what of a mesh is not used, unless the command is quiet.
@@ -115,12 +135,13 @@ fn sites(
 pub(super) fn run(args: &Args, mesh: &Path, context: &Context) -> Result<Exit> {
     let mut job = Job::new(context, "synth", &args.image.files);
     let example = args.read_example_mesh()?;
-    let claimed = claim(args, mesh, example.as_ref(), &mut job)?;
+    let output = output(args, mesh)?;
+    let model = read_target(args, mesh, output.1, example.as_ref(), context)?;
+    let claimed = claim(args, output, example.as_ref(), &model.tiles, &mut job)?;
     let input = match &example {
         Some(example) => args.read_with(example)?,
         None => args.read()?,
     };
-    let model = read_target(args, mesh, example.as_ref(), context)?;
     let (repaired, repair) = model.mesh.repair();
     if !context.quiet && repair.before != repair.after {
         eprintln_if_possible(&format!("{}: repaired; see dapple info", mesh.display()));
@@ -131,12 +152,12 @@ pub(super) fn run(args: &Args, mesh: &Path, context: &Context) -> Result<Exit> {
     let (sites, note) = sites(args, example.is_some(), &surface, size)?;
     sites.check(&surface).map_err(advise)?;
     let directions = directions(args.surface.directions.as_deref())?;
-    let atlas = match claimed.product {
-        Product::Sites(_) => None,
-        _ => Some(atlas(args, &surface, &model, &repair, context)?),
+    let layouts = match claimed.product {
+        Product::Sites(_) => Layouts::default(),
+        _ => Layouts::new(args, &surface, &model, &repair, context)?,
     };
     let shading = shading(args.surface.crease(), &surface, &model, &repair);
-    let laid_out = atlas.as_ref().map(|atlas| atlas.report(&surface));
+    let laid_out = layouts.report(&surface);
     // Through what is transparent the inside is seen.
     let double_sided = model.material.double_sided
         || repair.before.back_to_back_faces > 0
@@ -150,18 +171,15 @@ pub(super) fn run(args: &Args, mesh: &Path, context: &Context) -> Result<Exit> {
     if let Some(note) = note.filter(|_| !context.quiet) {
         eprintln_if_possible(&note);
     }
-    let progress = Progress::bar("synthesizing", STEPS.into(), context);
-    let options = args.matching.options(&args.surface);
-    let targets: Vec<_> = input.guides.iter().map(|guide| &guide.target).collect();
-    let columns = guides::at_sites(&targets, &synthesizer, &model, &repair)?;
-    let columns: Vec<_> = columns.iter().map(Vec::as_slice).collect();
-    let callback = shown(&progress);
-    let texture = match &exemplar {
-        Some(exemplar) => synthesizer.lift(exemplar, &columns, &options, callback),
-        None => synthesizer.synthesize_guided(&input.exemplar, &columns, &options, callback),
-    };
-    let texture = texture.map_err(advise)?;
-    drop(progress);
+    let columns = guide_columns(&input, &synthesizer, &model, &repair)?;
+    let texture = grown(
+        args,
+        &input,
+        &synthesizer,
+        exemplar.as_ref(),
+        &columns,
+        context,
+    )?;
     let spinner = Progress::spinner("baking", context);
     write(
         args,
@@ -169,7 +187,7 @@ pub(super) fn run(args: &Args, mesh: &Path, context: &Context) -> Result<Exit> {
         &Covered {
             synthesizer,
             texture,
-            atlas,
+            layouts,
             shading,
             double_sided,
             input,
@@ -178,12 +196,42 @@ pub(super) fn run(args: &Args, mesh: &Path, context: &Context) -> Result<Exit> {
     )?;
     drop(spinner);
     let repaired = repair.before != repair.after;
-    let atlas = laid_out.map(atlas_json);
     job.finish(
         args,
-        json!({ "repaired": repaired, "double_sided": double_sided, "atlas": atlas }),
+        json!({ "repaired": repaired, "double_sided": double_sided, "atlas": laid_out }),
     )?;
     Ok(Exit::Done)
+}
+
+/// The values of the guides at the sites of the mesh.
+fn guide_columns(
+    input: &Input,
+    synthesizer: &Synthesizer,
+    model: &Model,
+    repair: &Repair,
+) -> Result<Vec<Vec<f32>>> {
+    let targets: Vec<_> = input.guides.iter().map(|guide| &guide.target).collect();
+    guides::at_sites(&targets, synthesizer, model, repair)
+}
+
+/// Synthesizes the texture at the sites of the mesh, from a mesh if the example is one; `columns` are the guides.
+fn grown(
+    args: &Args,
+    input: &Input,
+    synthesizer: &Synthesizer,
+    exemplar: Option<&MeshExemplar>,
+    columns: &[Vec<f32>],
+    context: &Context,
+) -> Result<SurfaceTexture> {
+    let progress = Progress::bar("synthesizing", STEPS.into(), context);
+    let options = args.matching.options(&args.surface);
+    let columns: Vec<_> = columns.iter().map(Vec::as_slice).collect();
+    let callback = shown(&progress);
+    let texture = match exemplar {
+        Some(exemplar) => synthesizer.lift(exemplar, &columns, &options, callback),
+        None => synthesizer.synthesize_guided(&input.exemplar, &columns, &options, callback),
+    };
+    texture.map_err(advise)
 }
 
 /// The layout of a texture map, for the JSON file beside the output.
@@ -207,11 +255,78 @@ pub(super) fn exemplar_of_mesh(
     MeshExemplar::new(source, &example.uvs, texture).map_err(advise)
 }
 
+/// The layouts of the textures of a mesh.
+#[derive(Default)]
+pub(super) struct Layouts {
+    /// The layout of the texture; one for each unit square if there are `tiles`, and none for a mesh of sites.
+    pub(super) atlases: Vec<Atlas>,
+    /// The unit squares that get a texture each, in the order of the layouts.
+    tiles: Vec<TileMaterial>,
+    /// The mesh's own texture coordinates, if there are `tiles`.
+    own_uvs: Option<Vec<[DVec2; 3]>>,
+}
+
+impl From<Atlas> for Layouts {
+    /// The layout of one texture.
+    fn from(atlas: Atlas) -> Self {
+        Self {
+            atlases: vec![atlas],
+            ..Self::default()
+        }
+    }
+}
+
+impl Layouts {
+    /// The layout of one texture, or those of all unit squares that get one each.
+    fn new(
+        args: &Args,
+        surface: &Surface,
+        model: &Model,
+        repair: &Repair,
+        context: &Context,
+    ) -> Result<Self> {
+        match model.tiles.is_empty() {
+            true => Ok(Self::from(atlas(args, surface, model, repair, context)?)),
+            false => Self::of_tiles(args, surface, model, repair),
+        }
+    }
+
+    /// The layouts of unit squares: the mesh's own texture coordinates, in a texture for each.
+    fn of_tiles(args: &Args, surface: &Surface, model: &Model, repair: &Repair) -> Result<Self> {
+        let numbers: Vec<_> = model.tiles.iter().map(|tile| tile.number).collect();
+        let own_uvs = own_uvs(surface, model, repair)?;
+        let n_tiles = numbers.len();
+        let tiles = Tiles::new(numbers, &own_uvs)?;
+        let (side, padding) = (args.surface.side(), args.surface.padding());
+        let atlas = |tile| {
+            let uvs = tiles.uvs_of(tile);
+            Atlas::from_uvs(surface, &uvs, [side; 2], padding.unwrap_or(side)).map_err(advise)
+        };
+        Ok(Self {
+            atlases: (0..n_tiles).map(atlas).collect::<Result<_>>()?,
+            tiles: model.tiles.clone(),
+            own_uvs: Some(own_uvs),
+        })
+    }
+
+    /// The layouts, for the JSON file beside the output: an object, or a list of one for each unit square.
+    fn report(&self, surface: &Surface) -> serde_json::Value {
+        let reports = self.atlases.iter();
+        let mut reports: Vec<_> = reports
+            .map(|atlas| atlas_json(atlas.report(surface)))
+            .collect();
+        match reports.len() {
+            0 | 1 => reports.pop().unwrap_or_default(),
+            _ => reports.into(),
+        }
+    }
+}
+
 /// A mesh with its texture, not baked yet.
 pub(super) struct Covered {
     pub(super) synthesizer: Synthesizer,
     pub(super) texture: SurfaceTexture,
-    pub(super) atlas: Option<Atlas>,
+    pub(super) layouts: Layouts,
     /// The normals of the corners of all faces.
     pub(super) shading: Vec<[DVec3; 3]>,
     /// Whether faces are seen from both sides.
@@ -264,11 +379,8 @@ pub(super) fn endings() -> String {
 }
 
 impl Covered {
-    /// A map of the example, as a texture of the mesh.
-    pub(super) fn bake(&self, map: &Map) -> Result<Map> {
-        let Some(atlas) = &self.atlas else {
-            bail!("a mesh of sites has no texture");
-        };
+    /// A map of the example, as a texture of the mesh in a layout.
+    pub(super) fn bake(&self, map: &Map, atlas: &Atlas) -> Result<Map> {
         let (synthesizer, texture) = (&self.synthesizer, &self.texture);
         Ok(match map {
             Map::Value(raster) => Map::Value(bake_values(synthesizer, texture, raster, atlas)?),
@@ -285,11 +397,10 @@ impl Covered {
     }
 
     /// The texture that is shown, and its alpha if the example has one.
-    pub(super) fn bake_base(&self) -> Result<(Map, Option<Raster<f32>>)> {
+    pub(super) fn bake_base(&self, atlas: &Atlas) -> Result<(Map, Option<Raster<f32>>)> {
         let base = &self.input.base;
-        let (Map::Color(colors), Some(alpha), Some(atlas)) = (&base.map, &base.alpha, &self.atlas)
-        else {
-            return Ok((self.bake(&base.map)?, None));
+        let (Map::Color(colors), Some(alpha)) = (&base.map, &base.alpha) else {
+            return Ok((self.bake(&base.map, atlas)?, None));
         };
         let pixels = colors.zip_map(alpha, |&color, &alpha| LinearRgba { color, alpha })?;
         let baked = bake_colors_alpha(&self.synthesizer, &self.texture, &pixels, atlas)?;
@@ -318,18 +429,22 @@ impl Covered {
     }
 }
 
+/// The output, and its kind.
+fn output(args: &Args, mesh: &Path) -> Result<(Target, Product)> {
+    let ending = args.image.format.map_or(DEFAULT_ENDING, Format::ending);
+    let target = args.target(mesh, ending)?;
+    let product = Product::of(&target)?;
+    Ok((target, product))
+}
+
 /// Claims the output, what belongs to it, and the maps.
 fn claim(
     args: &Args,
-    mesh: &Path,
+    (target, product): (Target, Product),
     example: Option<&ExampleMesh>,
+    tiles: &[TileMaterial],
     job: &mut Job<'_>,
 ) -> Result<Claimed> {
-    let target = args.target(
-        mesh,
-        args.image.format.map_or(DEFAULT_ENDING, Format::ending),
-    )?;
-    let product = Product::of(&target)?;
     let format = match product {
         Product::Texture => Format::choose(args.image.format, &target, Format::Png16)?,
         _ => args.image.format.unwrap_or(Format::Png8),
@@ -360,13 +475,16 @@ fn claim(
             usage("a mesh of sites has colors and no further maps").hint("write .glb or .obj")
         );
     }
-    let main = job.claim(&target)?;
+    let main = match product {
+        Product::Texture => claim_tiles(&target, tiles, job)?,
+        _ => vec![job.claim(&target)?],
+    };
     let mut beside = Vec::new();
     if let (Product::Model(format), Some(path)) = (product, target.path()) {
         // The names of the files of the writer are known before: they have the stem of the model.
         let has_normals = args.map.iter().any(|map| is_of(&map.name, MapKind::Normal))
             || example.is_some_and(|example| example.has(MapKind::Normal));
-        for name in names_beside(format, path, has_normals)? {
+        for name in names_beside(format, path, has_normals, tiles)? {
             let output = job.claim(&Target::Path(path.with_file_name(&name)))?;
             beside.push((name, output));
         }
@@ -375,19 +493,23 @@ fn claim(
     let mut maps = Vec::new();
     for name in args.map_names() {
         let target = target.part(name)?.with_ending(format.ending());
-        let file = target.path().and_then(Path::file_name);
+        let first = match tiles.first() {
+            Some(tile) => target.tile(tile.number)?,
+            None => target.clone(),
+        };
+        let file = first.path().and_then(Path::file_name);
         // The normals of an OBJ have the name of the map.
         let is_beside = is_of(name, MapKind::Normal)
             && beside.iter().any(|(name, _)| file == Some(name.as_ref()));
         if !is_beside && !matches!(product, Product::Sites(_)) {
-            maps.push(Some(job.claim(&target)?));
+            maps.push(claim_tiles(&target, tiles, job)?);
         } else {
-            maps.push(None);
+            maps.push(Vec::new());
         }
     }
     // Those of the example's material go into the new one alone.
     let n_maps = maps.len() + example.map_or(0, |example| example.maps.len());
-    maps.resize_with(n_maps, || None);
+    maps.resize_with(n_maps, Vec::new);
     job.claim_sidecar(&target)?;
     Ok(Claimed {
         product,
@@ -399,13 +521,37 @@ fn claim(
     })
 }
 
+/// Claims a file for each unit square, or for the only texture.
+fn claim_tiles(
+    target: &Target,
+    tiles: &[TileMaterial],
+    job: &mut Job<'_>,
+) -> Result<Vec<OutputIdx>> {
+    if tiles.is_empty() {
+        return Ok(vec![job.claim(target)?]);
+    }
+    let tiles = tiles.iter();
+    tiles
+        .map(|tile| job.claim(&target.tile(tile.number)?))
+        .collect()
+}
+
 /// The names of the files beside that of a mesh: those of an empty mesh with as many textures.
-fn names_beside(format: &MeshFormat, path: &Path, has_normals: bool) -> Result<Vec<String>> {
+fn names_beside(
+    format: &MeshFormat,
+    path: &Path,
+    has_normals: bool,
+    tiles: &[TileMaterial],
+) -> Result<Vec<String>> {
     let mut model = Model::from(Mesh::default());
     let image = EncodedImage::new(PNG.to_vec())?;
     model.material.base_color = Some(image.clone());
     if has_normals {
         model.material.normal = Some(image);
+    }
+    model.tiles = tiles.to_vec();
+    for tile in &mut model.tiles {
+        tile.material = model.material.clone();
     }
     let mut files = format.write(&model, &stem(path))?;
     files.pop();
@@ -421,31 +567,54 @@ fn write(args: &Args, claimed: &Claimed, covered: &Covered, job: &mut Job<'_>) -
         return write_model(format, claimed, &model, job);
     }
     let is_deep = covered.input.base.is_deep;
-    let (base, alpha) = covered.bake_base()?;
-    let base = ramped(base, args.image.ramp.as_ref());
-    let mut maps = MaterialMaps::default();
-    for (output, (name, example)) in claimed.maps.iter().zip(&covered.input.maps) {
-        let map = covered.bake(&example.map)?;
+    let mut models = Vec::new();
+    for (at, atlas) in covered.layouts.atlases.iter().enumerate() {
+        let (base, alpha) = covered.bake_base(atlas)?;
+        let base = ramped(base, args.image.ramp.as_ref());
+        let mut maps = MaterialMaps::default();
+        for (outputs, (name, example)) in claimed.maps.iter().zip(&covered.input.maps) {
+            let map = covered.bake(&example.map, atlas)?;
+            if let Product::Model(_) = claimed.product {
+                maps.add(name, &map, example, claimed.format)?;
+            }
+            if let Some(&output) = outputs.get(at) {
+                job.write_image(output, map, example.is_deep, &args.image)?;
+            }
+        }
         if let Product::Model(_) = claimed.product {
-            maps.add(name, &map, example, claimed.format)?;
+            let mut model = model(args, covered, atlas, &base, alpha.as_ref())?;
+            maps.put_into(&mut model.material, claimed.format)?;
+            models.push(model);
+            continue;
         }
-        if let Some(output) = *output {
-            job.write_image(output, map, example.is_deep, &args.image)?;
-        }
+        let cover = Cover::of(alpha.as_ref(), false, Clear::NOT_WRAPPED);
+        job.write_with_alpha(claimed.main[at], base, cover, is_deep, &args.image)?;
     }
-    if let Product::Model(format) = claimed.product {
-        let mut model = model(args, covered, &base, alpha.as_ref())?;
-        maps.put_into(&mut model.material, claimed.format)?;
-        let (synthesizer, texture) = (&covered.synthesizer, &covered.texture);
-        args.displace_mesh(&mut model, synthesizer, texture, &covered.input)?;
-        return write_model(format, claimed, &model, job);
+    let Product::Model(format) = claimed.product else {
+        return Ok(());
+    };
+    let mut tiles = covered.layouts.tiles.clone();
+    for (tile, model) in tiles.iter_mut().zip(&models) {
+        tile.material = model.material.clone();
     }
-    let cover = Cover::of(alpha.as_ref(), false, Clear::NOT_WRAPPED);
-    job.write_with_alpha(claimed.main, base, cover, is_deep, &args.image)
+    let mut model = models.swap_remove(0);
+    model.tiles = tiles;
+    if let Some(own_uvs) = &covered.layouts.own_uvs {
+        model.uvs = Some(own_uvs.clone());
+    }
+    let (synthesizer, texture) = (&covered.synthesizer, &covered.texture);
+    args.displace_mesh(&mut model, synthesizer, texture, &covered.input)?;
+    write_model(format, claimed, &model, job)
 }
 
 /// The input mesh with its texture. A gray one becomes a color, which is what models have.
-fn model(args: &Args, covered: &Covered, base: &Map, alpha: Option<&Raster<f32>>) -> Result<Model> {
+fn model(
+    args: &Args,
+    covered: &Covered,
+    atlas: &Atlas,
+    base: &Map,
+    alpha: Option<&Raster<f32>>,
+) -> Result<Model> {
     let example = &covered.input.base;
     let base = match base {
         Map::Value(values) => Map::Color(values.map(|&value| example.color_of(value))),
@@ -458,9 +627,6 @@ fn model(args: &Args, covered: &Covered, base: &Map, alpha: Option<&Raster<f32>>
             encode_with_alpha(colors, Cover::straight(alpha, Clear::NOT_WRAPPED), format)?
         }
         _ => encode(&base, format)?,
-    };
-    let Some(atlas) = &covered.atlas else {
-        bail!("a mesh of sites has no texture");
     };
     let mut model = textured_model(
         covered.synthesizer.surface(),
@@ -478,7 +644,7 @@ fn model(args: &Args, covered: &Covered, base: &Map, alpha: Option<&Raster<f32>>
 fn write_model(format: &MeshFormat, claimed: &Claimed, model: &Model, job: &Job<'_>) -> Result<()> {
     for file in format.write(model, &claimed.stem)? {
         let beside = claimed.beside.iter().find(|(name, _)| *name == file.name);
-        let output = beside.map_or(claimed.main, |(_, output)| *output);
+        let output = beside.map_or(claimed.main[0], |(_, output)| *output);
         job.write(output, &file.bytes)?;
     }
     Ok(())
