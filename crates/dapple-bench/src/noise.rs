@@ -5,9 +5,9 @@
 use crate::harness::{Bench, Done, Side};
 use crate::peers::noise;
 use crate::row::{Case, Must, Unit};
-use crate::sets::{SEED, positions};
+use crate::sets::{SEED, positions_in};
 use anyhow::{Result, ensure};
-use dapple_noise::GradientNoise2;
+use dapple_noise::{GradientNoise2, GradientNoise3};
 use dapple_raster::glam::DVec2;
 use dapple_raster::{Field, Raster, Window};
 
@@ -29,10 +29,27 @@ const FINE: Case = Case {
 const ONE_POSITION: Case = Case {
     group: "noise",
     case: "gradient noise, 2-D, one position",
-    peer: "noise-functions Perlin, one octave",
+    peer: "noise-functions Perlin, one octave, one position",
     unit: Unit::NsPerPosition,
-    must: Must::CostAtMost(6.0),
-    note: "ours hashes 64-bit cells with a 64-bit seed and repeats nowhere",
+    must: Must::CostAtMost(2.0),
+    note: "ours takes positions of 64 bits and repeats nowhere; the peer takes 32 bits",
+};
+
+const ONE_POSITION_IN_SPACE: Case = Case {
+    case: "gradient noise, 3-D, one position",
+    ..ONE_POSITION
+};
+
+const MANY_POSITIONS: Case = Case {
+    case: "gradient noise, 2-D, many scattered positions",
+    must: Must::CostAtMost(0.5),
+    note: "`sample_many` beside the peer's only function, which takes one position",
+    ..ONE_POSITION
+};
+
+const MANY_POSITIONS_IN_SPACE: Case = Case {
+    case: "gradient noise, 3-D, many scattered positions",
+    ..MANY_POSITIONS
 };
 
 /// Columns and rows of the pictures.
@@ -45,11 +62,44 @@ const N_POSITIONS: usize = 1 << 16;
 pub(crate) fn run(bench: &mut Bench) -> Result<()> {
     picture(bench, &COARSE, 64)?;
     picture(bench, &FINE, 8)?;
-    if bench.wants(&ONE_POSITION) {
-        let field = GradientNoise2::new(SEED);
-        beside_perlin(bench, &ONE_POSITION, 128, |at| field.sample(at), confirm)?;
-    }
-    Ok(())
+    let plane = GradientNoise2::new(SEED);
+    let perlin = noise::noise_functions_perlin_2;
+    beside_perlin(
+        bench,
+        &ONE_POSITION,
+        128,
+        one_by_one(|at| plane.sample(at)),
+        perlin,
+        confirm,
+    )?;
+    let many = |at: &[[f64; 2]], values: &mut [f32]| {
+        // There is a value for each position, so this cannot fail.
+        let _ = plane.sample_many(at, values);
+    };
+    beside_perlin(bench, &MANY_POSITIONS, 128, many, perlin, confirm)?;
+    let space = GradientNoise3::new(SEED);
+    let perlin = noise::noise_functions_perlin_3;
+    let one = one_by_one(|at| space.sample(at));
+    beside_perlin(
+        bench,
+        &ONE_POSITION_IN_SPACE,
+        128,
+        one,
+        perlin,
+        confirm_spread,
+    )?;
+    let many = |at: &[[f64; 3]], values: &mut [f32]| {
+        // There is a value for each position, so this cannot fail.
+        let _ = space.sample_many(at, values);
+    };
+    beside_perlin(
+        bench,
+        &MANY_POSITIONS_IN_SPACE,
+        128,
+        many,
+        perlin,
+        confirm_spread,
+    )
 }
 
 fn picture(bench: &mut Bench, case: &Case, px_per_cell: u32) -> Result<()> {
@@ -89,26 +139,37 @@ fn picture(bench: &mut Bench, case: &Case, px_per_cell: u32) -> Result<()> {
     )
 }
 
-/// Measures single positions, anywhere in a square of `cells`, beside Perlin noise of `noise-functions`.
-pub(crate) fn beside_perlin(
+/// The function that fills in values one position after the other.
+pub(crate) fn one_by_one<const N: usize>(
+    sample: impl Fn([f64; N]) -> f32,
+) -> impl Fn(&[[f64; N]], &mut [f32]) {
+    move |at, values| {
+        for (value, &at) in values.iter_mut().zip(at) {
+            *value = sample(at);
+        }
+    }
+}
+
+/// Measures values at positions anywhere in a cube of `cells`, in random order, beside Perlin noise of
+/// `noise-functions`.
+pub(crate) fn beside_perlin<const N: usize>(
     bench: &mut Bench,
     case: &Case,
     cells: u32,
-    sample: impl Fn(DVec2) -> f32 + Sync,
+    fill: impl Fn(&[[f64; N]], &mut [f32]) + Sync,
+    perlin: fn(&[[f32; N]], &mut [f32]),
     confirm: impl Fn(&[f32]) -> Result<()>,
 ) -> Result<()> {
-    let at: Vec<DVec2> = positions(N_POSITIONS)
-        .into_iter()
-        .map(|at| at * f64::from(cells))
-        .collect();
-    let their_at: Vec<[f32; 2]> = at.iter().map(|at| at.as_vec2().to_array()).collect();
+    if !bench.wants(case) {
+        return Ok(());
+    }
+    let at: Vec<[f64; N]> = positions_in(N_POSITIONS, f64::from(cells));
+    let their_at: Vec<[f32; N]> = at.iter().map(|at| at.map(|part| part as f32)).collect();
     let ours = Side::new(vec![0.0; N_POSITIONS], |values: &mut Vec<f32>| {
-        for (value, &at) in values.iter_mut().zip(&at) {
-            *value = sample(at);
-        }
+        fill(&at, values)
     });
     let theirs = Side::new(vec![0.0; N_POSITIONS], |values: &mut Vec<f32>| {
-        noise::noise_functions_perlin(&their_at, values);
+        perlin(&their_at, values);
     });
     bench.beside(case, 101, ours, theirs, |ours, theirs| {
         confirm(ours)?;

@@ -50,3 +50,13 @@ pub(crate) fn positions(n: usize) -> Vec<DVec2> {
         .map(|index| DVec2::new(unit(index, 0), unit(index, 1)))
         .collect()
 }
+
+/// Returns `n` random positions in the cube from the origin with this side.
+#[cfg(feature = "peers")]
+pub(crate) fn positions_in<const N: usize>(n: usize, side: f64) -> Vec<[f64; N]> {
+    let seed = SEED.child("bench scattered positions", 0);
+    let unit = |index, axis| dapple_hash::unit_f64(hash1(seed, [index], axis));
+    (0..n as i64)
+        .map(|index| std::array::from_fn(|axis| side * unit(index, axis as u32)))
+        .collect()
+}

@@ -60,6 +60,26 @@ impl<S: Simd> CellHashes<S> {
     }
 }
 
+/// [`LatticeHash::part`](crate::LatticeHash::part) in every lane of several registers in step, for coordinates from -2³¹
+/// up to 2³¹ and the key of their axis.
+#[inline(always)]
+#[must_use]
+pub fn lattice_parts<S: Simd, const C: usize>(
+    simd: S,
+    key: u32,
+    coordinates: [u32x16<S>; C],
+) -> [u32x16<S>; C] {
+    mix(InStep(coordinates) ^ InStep([u32x16::splat(simd, key); C])).0
+}
+
+/// [`LatticeHash::bits`](crate::LatticeHash::bits) in every lane of several registers in step.
+#[inline(always)]
+#[must_use]
+pub fn lattice_bits<S: Simd, const C: usize>(parts: [u32x16<S>; C]) -> [u32x16<S>; C] {
+    let bits = InStep(parts) * M2;
+    ((bits ^ (bits >> 15)) * M1).0
+}
+
 /// [`mix32`](crate::mix32) in every lane of several pairs of registers in step.
 #[inline(always)]
 #[must_use]
@@ -164,8 +184,8 @@ impl<S: Simd, const C: usize> BitXorAssign for InStep<S, C> {
 
 #[cfg(test)]
 mod tests {
-    use super::{CellHashes, mix32_pairs};
-    use crate::{CellHash, Seed, hash1, mix32};
+    use super::{CellHashes, lattice_bits, lattice_parts, mix32_pairs};
+    use crate::{CellHash, LatticeHash, Seed, hash1, mix32};
     use fearless_simd::{Level, dispatch, prelude::*, u32x16};
 
     #[test]
@@ -205,5 +225,24 @@ mod tests {
                 mixed[lane],
             )
         })
+    }
+
+    #[test]
+    fn lanes_have_the_bits_of_single_corners() {
+        let columns: [i32; 16] =
+            core::array::from_fn(|lane| hash1(Seed(3), [0], lane as u32).cast_signed() as i32);
+        let hash = LatticeHash::<2>::new(Seed(9));
+        let row = hash.part(1, -7);
+        let words = columns.map(i32::cast_unsigned);
+        let bits = dispatch!(Level::new(), simd => corner_bits(simd, hash.key(0), row, &words));
+        let expected = columns.map(|x| LatticeHash::<2>::bits(hash.part(0, x.into()) ^ row));
+        assert_eq!(bits, expected);
+    }
+
+    #[inline(always)]
+    fn corner_bits<S: Simd>(simd: S, key: u32, row: u32, columns: &[u32; 16]) -> [u32; 16] {
+        let [parts] = lattice_parts(simd, key, [u32x16::from_slice(simd, columns)]);
+        let [bits] = lattice_bits([parts ^ row]);
+        core::array::from_fn(|lane| bits[lane])
     }
 }

@@ -26,6 +26,7 @@
 mod cell;
 #[cfg(feature = "simd")]
 mod lanes;
+mod lattice;
 mod mix;
 mod poisson;
 mod seed;
@@ -34,7 +35,8 @@ mod unit;
 
 pub use cell::{CellHash, hash1, hash2, hash3, hash4};
 #[cfg(feature = "simd")]
-pub use lanes::{CellHashes, mix32_pairs};
+pub use lanes::{CellHashes, lattice_bits, lattice_parts, mix32_pairs};
+pub use lattice::LatticeHash;
 pub use mix::mix32;
 pub use poisson::{PoissonCounts, PoissonError, PoissonErrorKind, poisson_count};
 pub use rand_core;

@@ -11,8 +11,9 @@
 
 use crate::gradients::gradient;
 use crate::lines::Lines;
-use dapple_hash::{CellHash, CellHashes, Seed};
-use dapple_raster::simd::dispatch;
+use crate::many;
+use dapple_hash::{LatticeHash, Seed, lattice_bits};
+use dapple_raster::simd::{self, dispatch};
 use dapple_raster::{Field, Fractal, FractalShape, RasterError, RasterViewMut, Window};
 use fearless_simd::{Level, prelude::*, u32x16};
 use glam::DVec2;
@@ -47,10 +48,11 @@ pub(crate) const MOST_CORNERS: usize = 8;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct GradientNoise<const N: usize> {
     seed: Seed,
-    /// The hash state after the seed.
-    root: CellHash,
+    hash: LatticeHash<N>,
     /// The number of cells after which the noise repeats along each axis; 0 along an axis where it does not.
     period: [u32; N],
+    /// The bits of the numbers of cells that are added to positions along each axis; 0, except in octaves of a sum.
+    offset: [u64; N],
 }
 
 /// Gradient noise in two dimensions.
@@ -108,8 +110,9 @@ impl<const N: usize> GradientNoise<N> {
     const fn of(seed: Seed) -> Self {
         Self {
             seed,
-            root: CellHash::new(seed, []),
+            hash: LatticeHash::new(seed),
             period: [0; N],
+            offset: [0; N],
         }
     }
 
@@ -135,62 +138,118 @@ impl<const N: usize> GradientNoise<N> {
     /// The value at a position in cells.
     #[must_use]
     pub fn sample(&self, position: impl Into<[f64; N]>) -> f32 {
-        let places = position.into().map(Place::of);
-        if places.iter().any(|place| !place.offset.is_finite()) {
-            return f32::NAN;
+        let position = position.into();
+        // Loops: arrays that are mapped become calls from three axes on.
+        let mut offsets = [0.0; N];
+        let mut parts = [[0; 2]; N];
+        for axis in 0..N {
+            let place = Place::of(self.moved(position[axis], axis));
+            if !place.offset.is_finite() {
+                return f32::NAN;
+            }
+            offsets[axis] = place.offset;
+            let [near, far] = self.pair(place.cell, axis);
+            parts[axis] = [self.hash.part(axis, near), self.hash.part(axis, far)];
         }
-        let (cell, offsets) = (
-            places.map(|place| place.cell),
-            places.map(|place| place.offset),
-        );
-        let columns = [cell[0], cell[0].wrapping_add(1)].map(|column| self.repeated(column, 0));
-        let mut gradients = [[[0.0; N]; MOST_CORNERS]; 2];
+        let mut columns = [[Column::default(); MOST_CORNERS]; 2];
         for index in 0..corners(N) {
-            let hash = self.hash(corner(cell, index));
-            for (gradients, &column) in gradients.iter_mut().zip(&columns) {
-                gradients[index] = chosen(hash, column);
+            let mut row = 0;
+            for axis in 1..N {
+                row ^= parts[axis][index >> (axis - 1) & 1];
+            }
+            for side in 0..2 {
+                let bits = LatticeHash::<N>::bits(row ^ parts[0][side]);
+                columns[side][index] = Column::of(gradient(bits), index, &offsets);
             }
         }
-        let sides = gradients.map(|gradients| Column::blend(|index| gradients[index], &offsets));
+        let [left, right] = columns;
+        let sides = [
+            Column::blend(left, &offsets),
+            Column::blend(right, &offsets),
+        ];
         Column::between(sides, offsets[0], fade(offsets[0]))
+    }
+
+    /// The values at many positions in cells, into memory of the same length: those of [`sample`](Self::sample), in a
+    /// tenth of the time.
+    ///
+    /// # Errors
+    ///
+    /// [`Length`](dapple_raster::RasterErrorKind::Length) if the lengths differ.
+    pub fn sample_many<P: Copy + Into<[f64; N]>>(
+        &self,
+        positions: &[P],
+        values: &mut [f32],
+    ) -> Result<(), RasterError> {
+        RasterError::check_length(values.len(), positions.len())?;
+        many::fill(self, simd::level(), positions, values);
+        Ok(())
     }
 
     /// The gradients at corners that differ in the first coordinate alone. The first coordinate of `at` is ignored.
     pub(crate) fn line(&self, level: Level, at: [i64; N], columns: &[i64]) -> Vec<[f32; N]> {
-        let hash = self.hash(at);
+        let row = self.row(at);
         let mut gradients = Vec::with_capacity(columns.len());
         for columns in columns.chunks(LANES) {
-            let mut words = [[0; LANES]; 2];
-            for (lane, &column) in columns.iter().enumerate() {
-                let column = self.repeated(column, 0);
-                [words[0][lane], words[1][lane]] = [column as u32, (column >> 32) as u32];
+            let mut parts = [0; LANES];
+            for (part, &column) in parts.iter_mut().zip(columns) {
+                *part = self.part(0, column) ^ row;
             }
-            let bits = dispatch!(level, simd => hash_columns(simd, hash, &words));
+            let bits = dispatch!(level, simd => bits_of(simd, &parts));
             gradients.extend(bits[..columns.len()].iter().map(|&bits| gradient(bits)));
         }
         gradients
     }
 
-    /// The hash state of a corner after all coordinates but the first, which is the fastest.
-    fn hash(&self, at: [i64; N]) -> CellHash {
-        let mut hash = self.root;
-        for axis in (1..N).rev() {
-            hash = hash.axis(self.repeated(at[axis], axis));
-        }
-        hash
+    /// The parts of all coordinates of a corner but the first, which is the fastest.
+    pub(crate) fn row(&self, at: [i64; N]) -> u32 {
+        (1..N).fold(0, |row, axis| row ^ self.part(axis, at[axis]))
     }
 
-    /// A coordinate of a corner, brought into the period.
-    #[inline]
-    fn repeated(&self, coordinate: i64, axis: usize) -> i64 {
-        match self.period[axis] {
+    /// The part of a coordinate of a corner, brought into the period.
+    pub(crate) fn part(&self, axis: usize, coordinate: i64) -> u32 {
+        let coordinate = match self.period[axis] {
             0 => coordinate,
             period => coordinate.rem_euclid(i64::from(period)),
+        };
+        self.hash.part(axis, coordinate)
+    }
+
+    /// A coordinate with the offset of this noise.
+    #[inline(always)]
+    pub(crate) const fn moved(&self, coordinate: f64, axis: usize) -> f64 {
+        coordinate + f64::from_bits(self.offset[axis])
+    }
+
+    /// The key of an axis, and its period in cells or 0.
+    pub(crate) const fn axis(&self, axis: usize) -> (u32, u32) {
+        (self.hash.key(axis), self.period[axis])
+    }
+
+    /// The coordinates of the corners on both sides of a cell along an axis, brought into the period.
+    #[inline(always)]
+    pub(crate) fn pair(&self, cell: i64, axis: usize) -> [i64; 2] {
+        match self.period[axis] {
+            0 => [cell, cell.wrapping_add(1)],
+            period => {
+                let near = cell.rem_euclid(i64::from(period));
+                [
+                    near,
+                    if near + 1 == i64::from(period) {
+                        0
+                    } else {
+                        near + 1
+                    },
+                ]
+            }
         }
     }
 
-    /// The noises of the octaves of a fractal sum, coarsest first, each with a seed of its own and with the period of
-    /// the first in its own cells.
+    /// The noises of the octaves of a fractal sum, coarsest first, each with a seed and an offset of its own and with the
+    /// period of the first in its own cells.
+    ///
+    /// Without offsets all octaves of a whole lacunarity would be 0 at whole positions. The offsets are odd multiples of
+    /// 2^-9, so that positions on a coarser grid are moved exactly and a period stays one.
     pub(crate) fn octaves(&self, count: u32, lacunarity: f64) -> Result<Vec<Self>, RasterError> {
         RasterError::check_range(
             (1..=32).contains(&count),
@@ -212,6 +271,10 @@ impl<const N: usize> GradientNoise<N> {
                 period: self.period,
                 ..Self::of(self.seed.child("octave", u64::from(octave)))
             };
+            for (axis, offset) in noise.offset.iter_mut().enumerate() {
+                let bits = noise.seed.child("offset", axis as u64).0 >> 56;
+                *offset = ((2 * bits + 1) as f64 / 512.0).to_bits();
+            }
             for period in noise.period.iter_mut().filter(|period| **period > 0) {
                 let cells = f64::from(*period) * frequency;
                 let holds = cells <= f64::from(u32::MAX);
@@ -226,13 +289,12 @@ impl<const N: usize> GradientNoise<N> {
 }
 
 impl GradientNoise<2> {
-    /// The sum of this noise at several scales, `Σ gain^i · shape(noise_i(lacunarity^i · position))`, where each octave has a
-    /// seed of its own.
+    /// The sum of this noise at several scales, `Σ gain^i · shape(noise_i(lacunarity^i · position + offset_i))`, where each
+    /// octave has a seed and an offset of its own.
     ///
     /// It is not divided by the sum of the weights, `w = Σ |gain|^i` ([`Fractal::weight`]). For gains from 0 to 1, values are
     /// from `-w` to `w` for [`Sum`](FractalShape::Sum), and from 0 to `w` for [`Ridged`](FractalShape::Ridged) and
-    /// [`Billow`](FractalShape::Billow). At positions that are whole numbers of cells every octave of a whole lacunarity
-    /// is 0, so that sums are 0 there, too; sample half a cell aside.
+    /// [`Billow`](FractalShape::Billow).
     ///
     /// # Errors
     ///
@@ -256,6 +318,10 @@ impl Field for GradientNoise<2> {
         Self::sample(self, position)
     }
 
+    fn sample_many(&self, positions: &[DVec2], values: &mut [f32]) -> Result<(), RasterError> {
+        Self::sample_many(self, positions, values)
+    }
+
     fn render(&self, window: &Window, out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
         Lines::new(self, window, []).render(out)
     }
@@ -269,16 +335,54 @@ impl Field for GradientNoise<2> {
 #[derive(Clone, Copy)]
 pub(crate) struct Place {
     pub(crate) cell: i64,
+    pub(crate) floor: f64,
     pub(crate) offset: f32,
 }
 
+/// 1.5 · 2^52: a sum of it and a number nearer to 0 than 2^51 holds the nearest whole number in its lower bits.
+const SHIFT: f64 = 6_755_399_441_055_744.0;
+
 impl Place {
-    #[inline]
+    #[inline(always)]
     pub(crate) fn of(coordinate: f64) -> Self {
+        if coordinate.abs() < 2_251_799_813_685_248.0 {
+            let shifted = coordinate + SHIFT;
+            let cell = shifted
+                .to_bits()
+                .wrapping_sub(SHIFT.to_bits())
+                .cast_signed();
+            let cell = cell - i64::from(shifted - SHIFT > coordinate);
+            // From the cell: a choice by the comparison would be a branch that is wrong half of the time.
+            let floor = cell as f64;
+            return Self {
+                cell,
+                floor,
+                // The negative zero less zero is a negative zero.
+                offset: (coordinate - floor + 0.0) as f32,
+            };
+        }
         let floor = coordinate.floor();
         Self {
             cell: floor as i64,
+            floor,
             offset: (coordinate - floor) as f32,
+        }
+    }
+
+    /// A coordinate nearer to 0 than 2^51, in operations that become vector instructions; `floor` is a call at the least
+    /// SIMD level of x86-64.
+    #[inline(always)]
+    pub(crate) fn near(coordinate: f64) -> Self {
+        let shifted = coordinate + SHIFT;
+        let nearest = shifted - SHIFT;
+        let is_past = nearest > coordinate;
+        let floor = nearest - if is_past { 1.0 } else { 0.0 };
+        let cell = shifted.to_bits().wrapping_sub(SHIFT.to_bits());
+        Self {
+            cell: cell.cast_signed() - i64::from(is_past),
+            floor,
+            // The difference of two negative zeros is a negative one.
+            offset: (coordinate - floor + 0.0) as f32,
         }
     }
 }
@@ -291,27 +395,28 @@ pub(crate) struct Column {
 }
 
 impl Column {
-    /// Blends the gradients of a column, in the order of [`corner`], along all axes but the first, the last axis last.
+    /// The contribution of one corner of a column, of its gradient and its index in the order of [`corner`].
+    #[inline(always)]
+    pub(crate) fn of<const N: usize>(gradient: [f32; N], index: usize, offsets: &[f32; N]) -> Self {
+        let mut value = 0.0;
+        for axis in 1..N {
+            let far = (index >> (axis - 1) & 1) as f32;
+            value += gradient[axis] * (offsets[axis] - far);
+        }
+        let slope = gradient[0];
+        Self { slope, value }
+    }
+
+    /// Blends the corners of a column, in the order of [`corner`], along all axes but the first, the last axis last.
     #[inline(always)]
     #[expect(
         clippy::needless_range_loop,
         reason = "a range is unrolled; an iterator that skips an axis is not, and takes twice as long"
     )]
     pub(crate) fn blend<const N: usize>(
-        gradient: impl Fn(usize) -> [f32; N],
+        mut columns: [Self; MOST_CORNERS],
         offsets: &[f32; N],
     ) -> Self {
-        let mut columns = [Self::default(); MOST_CORNERS];
-        for (index, column) in columns.iter_mut().enumerate().take(corners(N)) {
-            let gradient = gradient(index);
-            let mut value = 0.0;
-            for axis in 1..N {
-                let far = (index >> (axis - 1) & 1) as f32;
-                value += gradient[axis] * (offsets[axis] - far);
-            }
-            let slope = gradient[0];
-            *column = Self { slope, value };
-        }
         for axis in 1..N {
             let by = fade(offsets[axis]);
             for pair in 0..corners(N) >> axis {
@@ -334,25 +439,19 @@ impl Column {
     }
 }
 
-/// The random bits of the corners in columns, given by the low and high halves of their numbers; see [`chosen`].
+/// The random bits of corners, given by the parts of their coordinates.
 #[inline(always)]
-fn hash_columns<S: Simd>(simd: S, hash: CellHash, words: &[[u32; LANES]; 2]) -> [u32; LANES] {
-    let half = |words: &[u32; LANES], at: usize| u32x16::from_slice(simd, &words[16 * at..][..16]);
-    let hashes = [CellHashes::splat(simd, hash); 2];
-    let columns = [0, 1].map(|at| [half(&words[0], at), half(&words[1], at)]);
-    let counter = [u32x16::splat(simd, 0); 2];
-    let bits = CellHashes::at_each(CellHashes::axis_each(hashes, columns), counter);
+fn bits_of<S: Simd>(simd: S, parts: &[u32; LANES]) -> [u32; LANES] {
+    let halves = [
+        u32x16::from_slice(simd, &parts[..16]),
+        u32x16::from_slice(simd, &parts[16..]),
+    ];
+    let bits = lattice_bits(halves);
     let mut all = [0; LANES];
-    for (all, [high, _]) in all.chunks_exact_mut(16).zip(bits) {
-        all.copy_from_slice(high.as_slice());
+    for (all, bits) in all.chunks_exact_mut(16).zip(bits) {
+        all.copy_from_slice(bits.as_slice());
     }
     all
-}
-
-/// The gradient at the corner of a column, where `hash` holds all coordinates but the first.
-#[inline(always)]
-fn chosen<const N: usize>(hash: CellHash, column: i64) -> [f32; N] {
-    gradient((hash.axis(column).at(0) >> 32) as u32)
 }
 
 /// One of the corners of a cell with its first coordinate: bit `k` of the index selects one of the two along axis `k +

@@ -5,8 +5,16 @@
 //! the eight to corners and sides of a square, all of the same length.
 
 use core::f32::consts::SQRT_2;
+use fearless_simd::{f32x16, prelude::*, u32x16};
 
-static PLANE: [[f32; 2]; 8] = [
+/// How many gradients there are in two dimensions.
+const N_PLANE: u32 = 8;
+/// In three dimensions.
+const N_SPACE: u32 = 12;
+/// In four dimensions.
+const N_TIME: u32 = 32;
+
+static PLANE: [[f32; 2]; N_PLANE as usize] = [
     [1.0, 1.0],
     [-1.0, 1.0],
     [1.0, -1.0],
@@ -17,9 +25,9 @@ static PLANE: [[f32; 2]; 8] = [
     [0.0, -SQRT_2],
 ];
 
-static SPACE: [[f32; 3]; 12] = edges();
+static SPACE: [[f32; 3]; N_SPACE as usize] = edges();
 
-static TIME: [[f32; 4]; 32] = edges();
+static TIME: [[f32; 4]; N_TIME as usize] = edges();
 
 /// The middles of the edges of a cube from -1 to 1, of which there are `COUNT`.
 const fn edges<const N: usize, const COUNT: usize>() -> [[f32; N]; COUNT] {
@@ -42,15 +50,53 @@ const fn edges<const N: usize, const COUNT: usize>() -> [[f32; N]; COUNT] {
     edges
 }
 
+/// A number below `count`, which is at most 256, from the upper 24 of 32 random bits.
+#[inline(always)]
+const fn picked(bits: u32, count: u32) -> u32 {
+    ((bits >> 8) * count) >> 24
+}
+
+/// The gradients that random bits choose, a register for each part: those of [`gradient`].
+#[inline(always)]
+pub(crate) fn gradient_lanes<S: Simd, const N: usize>(simd: S, bits: u32x16<S>) -> [f32x16<S>; N] {
+    let count = [N_PLANE, N_SPACE, N_TIME][N - 2];
+    let index = ((bits >> 8) * count) >> 24;
+    let one = u32x16::splat(simd, 1.0_f32.to_bits());
+    let zero = u32x16::splat(simd, 0);
+    let mut gradient = [f32x16::splat(simd, 0.0); N];
+    for axis in 0..N {
+        let this_axis = u32x16::splat(simd, axis as u32);
+        let bits = if N == 2 {
+            // The first four have both parts; of the others, the first two lie along x.
+            let is_side = index.simd_ge(u32x16::splat(simd, 4));
+            let along = (index >> 1) & u32x16::splat(simd, 1);
+            let is_along = along.simd_eq(this_axis);
+            let root = u32x16::splat(simd, SQRT_2.to_bits());
+            let size = is_side.select(is_along.select(root, zero), one);
+            let sign = is_side.select(is_along.select(index, zero), index >> axis as u32);
+            size | sign << 31
+        } else {
+            // An edge lies along one axis; the signs of the others are the lower bits, in their order.
+            let along = index >> (N as u32 - 1);
+            let earlier = index >> axis as u32;
+            let later = index >> (axis as u32).saturating_sub(1);
+            let sign = along.simd_gt(this_axis).select(earlier, later) << 31;
+            along.simd_eq(this_axis).select(zero, one | sign)
+        };
+        gradient[axis] = bits.bitcast();
+    }
+    gradient
+}
+
 /// The gradient that 32 random bits choose.
 #[inline(always)]
 pub(crate) fn gradient<const N: usize>(bits: u32) -> [f32; N] {
-    let pick = |count: usize| ((u64::from(bits) * count as u64) >> 32) as usize;
+    let pick = |count: u32| picked(bits, count) as usize;
     let mut gradient = [0.0; N];
     gradient.copy_from_slice(match N {
-        2 => &PLANE[pick(PLANE.len())],
-        3 => &SPACE[pick(SPACE.len())],
-        _ => &TIME[pick(TIME.len())],
+        2 => &PLANE[pick(N_PLANE)],
+        3 => &SPACE[pick(N_SPACE)],
+        _ => &TIME[pick(N_TIME)],
     });
     gradient
 }
@@ -59,9 +105,8 @@ pub(crate) fn gradient<const N: usize>(bits: u32) -> [f32; N] {
 #[cfg(test)]
 pub(crate) fn all<const N: usize>() -> Vec<[f32; N]> {
     let count = [0, 0, PLANE.len(), SPACE.len(), TIME.len()][N] as u64;
-    (0..count)
-        .map(|index| gradient((((index << 32) + (1 << 31)) / count) as u32))
-        .collect()
+    let bits = |index: u64| (((index << 32) + (1 << 31)) / count) as u32;
+    (0..count).map(|index| gradient(bits(index))).collect()
 }
 
 #[cfg(test)]

@@ -19,6 +19,7 @@
 mod gradient;
 mod gradients;
 mod lines;
+mod many;
 mod slice;
 
 pub use dapple_hash as hash;

@@ -63,7 +63,7 @@ impl<'a, const N: usize, const REST: usize> Lines<'a, N, REST> {
         let mut runs: Vec<Run> = Vec::new();
         let mut offsets = Vec::with_capacity(window.size[0] as usize);
         for column in 0..window.size[0] {
-            let place = Place::of(window.column_x(column));
+            let place = Place::of(noise.moved(window.column_x(column), 0));
             match runs.last_mut() {
                 Some(run) if run.holds(place) => run.pixels.end += 1,
                 last => {
@@ -76,7 +76,7 @@ impl<'a, const N: usize, const REST: usize> Lines<'a, N, REST> {
         Self {
             noise,
             window,
-            rest: rest.map(Place::of),
+            rest: core::array::from_fn(|axis| Place::of(noise.moved(rest[axis], axis + 2))),
             columns,
             runs,
             fades: offsets.iter().map(|&offset| fade(offset)).collect(),
@@ -101,7 +101,7 @@ impl<'a, const N: usize, const REST: usize> Lines<'a, N, REST> {
     }
 
     fn fill_row(&self, row: u32, values: &mut [f32], corners: &mut Corners<N>) {
-        let mut places = [Place::of(self.window.row_y(row)); N];
+        let mut places = [Place::of(self.noise.moved(self.window.row_y(row), 1)); N];
         places[2..].copy_from_slice(&self.rest);
         if places.iter().any(|place| !place.offset.is_finite()) {
             values.fill(f32::NAN);
@@ -212,6 +212,10 @@ fn blend<const N: usize>(
         *line = &line[..columns.len()];
     }
     for index in 0..columns.len() {
-        columns[index] = Column::blend(|line| lines[line][index], offsets);
+        let mut corner = [Column::default(); MOST_CORNERS];
+        for line in 0..corners(N) {
+            corner[line] = Column::of(lines[line][index], line, offsets);
+        }
+        columns[index] = Column::blend(corner, offsets);
     }
 }

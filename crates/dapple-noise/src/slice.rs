@@ -53,6 +53,17 @@ impl<const N: usize, const REST: usize> Field for Slice<N, REST> {
         self.noise.sample(whole)
     }
 
+    fn sample_many(&self, positions: &[DVec2], values: &mut [f32]) -> Result<(), RasterError> {
+        let whole = |position: &DVec2| {
+            let mut whole = [position.x; N];
+            whole[1] = position.y;
+            whole[2..].copy_from_slice(&self.rest);
+            whole
+        };
+        let positions: Vec<[f64; N]> = positions.iter().map(whole).collect();
+        self.noise.sample_many(&positions, values)
+    }
+
     fn render(&self, window: &Window, out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
         Lines::new(&self.noise, window, self.rest).render(out)
     }

@@ -84,9 +84,16 @@ pub(crate) fn noise_functions_f1_3(positions: &[[f32; 3]], values: &mut [f32]) {
 }
 
 /// Computes one octave of Perlin noise at positions in the plane, from −1 to 1.
-pub(crate) fn noise_functions_perlin(positions: &[[f32; 2]], values: &mut [f32]) {
+pub(crate) fn noise_functions_perlin_2(positions: &[[f32; 2]], values: &mut [f32]) {
     for (value, &position) in values.iter_mut().zip(positions) {
         *value = Perlin.sample2(position);
+    }
+}
+
+/// Computes one octave of Perlin noise at positions in space, from −1 to 1.
+pub(crate) fn noise_functions_perlin_3(positions: &[[f32; 3]], values: &mut [f32]) {
+    for (value, &position) in values.iter_mut().zip(positions) {
+        *value = Perlin.sample3(position);
     }
 }
 

@@ -2,8 +2,9 @@
 
 use super::{SIDE, confirm_equal, down_and_up, white_noise};
 use crate::harness::{Bench, Done, Side};
-use crate::noise::{beside_perlin, confirm_spread};
+use crate::noise::{beside_perlin, confirm_spread, one_by_one};
 use crate::peers::fourier::FourierProjection;
+use crate::peers::noise::noise_functions_perlin_2;
 use crate::row::{Case, Must, Unit};
 use crate::sets::SEED;
 use anyhow::Result;
@@ -49,9 +50,8 @@ pub(super) fn run(bench: &mut Bench) -> Result<()> {
             },
         )?;
     }
-    if bench.wants(&NOISE) {
-        let tile = WaveletNoise::<2>::new(N_CELLS, SEED)?;
-        beside_perlin(bench, &NOISE, N_CELLS, |at| tile.sample(at), confirm_spread)?;
-    }
-    Ok(())
+    let tile = WaveletNoise::<2>::new(N_CELLS, SEED)?;
+    let one = one_by_one(|at| tile.sample(at));
+    let perlin = noise_functions_perlin_2;
+    beside_perlin(bench, &NOISE, N_CELLS, one, perlin, confirm_spread)
 }

@@ -6,9 +6,8 @@
 use crate::harness::{Bench, Done, Side};
 use crate::peers::noise;
 use crate::row::{Case, Must, Unit};
-use crate::sets::SEED;
+use crate::sets::{SEED, positions_in};
 use anyhow::{Result, ensure};
-use dapple_hash::{hash1, unit_f64};
 use dapple_worley::{Axes, Feature, Scatter, Space, Vector, Worley};
 
 const F1_AND_F2: Case = Case {
@@ -84,7 +83,7 @@ fn row<const N: usize, const K: usize>(
 where
     Axes: Space<N>,
 {
-    let positions: Vec<[f64; N]> = positions();
+    let positions: Vec<[f64; N]> = positions_in(N_POSITIONS, N_CELLS);
     let their_positions: Vec<[f32; N]> = positions
         .iter()
         .map(|at| at.map(|coordinate| coordinate as f32))
@@ -112,15 +111,6 @@ where
         );
         Ok(Done::both(N_POSITIONS))
     })
-}
-
-/// Returns positions anywhere in a cube of [`N_CELLS`].
-fn positions<const N: usize>() -> Vec<[f64; N]> {
-    let seed = SEED.child("bench scattered positions", 0);
-    let unit = |index, axis| unit_f64(hash1(seed, [index], axis));
-    (0..N_POSITIONS as i64)
-        .map(|index| std::array::from_fn(|axis| N_CELLS * unit(index, axis as u32)))
-        .collect()
 }
 
 /// Checks the features of all positions against single evaluations, and the mean of F1.

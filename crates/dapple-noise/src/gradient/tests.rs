@@ -1,8 +1,9 @@
 //! The noise beside its formula as a sum over all corners; its bounds, periods, sampling methods and pinned values.
 
-use super::{GradientNoise, GradientNoise2, GradientNoise3, GradientNoise4, fade};
-use crate::gradients::all;
-use dapple_hash::{Seed, hash1};
+use super::{GradientNoise, GradientNoise2, GradientNoise3, GradientNoise4, Place, fade};
+use crate::gradients::{all, gradient};
+use crate::many;
+use dapple_hash::{LatticeHash, Seed, hash1};
 use dapple_raster::simd::for_every_level;
 use dapple_raster::{Field, FractalShape, RasterErrorKind, Window};
 use fearless_simd::Level;
@@ -201,15 +202,37 @@ fn fractal_sums_stay_in_their_ranges_and_leave_the_range_of_one_octave() {
 }
 
 #[test]
-fn fractal_sums_are_zero_at_whole_positions() {
-    let sum = GradientNoise2::new(SEED)
-        .fractal(6, 0.5, 2.0, FractalShape::Sum)
-        .unwrap();
-    for corner in positions::<2>(100) {
-        assert_eq!(
-            sum.sample(corner.map(f64::round).into()),
-            0.0,
-            "at {corner:?}"
+fn fractal_sums_vary_from_one_whole_position_to_the_next() {
+    for shape in [
+        FractalShape::Sum,
+        FractalShape::Ridged,
+        FractalShape::Billow,
+    ] {
+        let sum = GradientNoise2::new(SEED)
+            .fractal(6, 0.5, 2.0, shape)
+            .unwrap();
+        let values: Vec<f32> = positions::<2>(1000)
+            .map(|corner| sum.sample(corner.map(f64::round).into()))
+            .collect();
+        let mean = values.iter().sum::<f32>() / 1000.0;
+        let variance = values
+            .iter()
+            .map(|value| (value - mean).powi(2))
+            .sum::<f32>()
+            / 1000.0;
+        let elsewhere: Vec<f32> = positions::<2>(1000)
+            .map(|at| sum.sample(at.into()))
+            .collect();
+        let mean = elsewhere.iter().sum::<f32>() / 1000.0;
+        let expected = elsewhere
+            .iter()
+            .map(|value| (value - mean).powi(2))
+            .sum::<f32>()
+            / 1000.0;
+        // Offsets differ from octave to octave, so that some are near corners and others are not.
+        assert!(
+            variance > 0.25 * expected,
+            "{shape:?}: {variance} and {expected}"
         );
     }
 }
@@ -249,9 +272,92 @@ fn every_simd_level_finds_the_same_gradients() {
     let columns: Vec<i64> = (-20..50).chain([i64::MIN, i64::MAX]).collect();
     let at = [0, i64::MIN, 3];
     let expected: Vec<[f32; 3]> = (columns.iter())
-        .map(|&column| super::chosen(noise.hash(at), noise.repeated(column, 0)))
+        .map(|&column| {
+            gradient(LatticeHash::<3>::bits(
+                noise.row(at) ^ noise.part(0, column),
+            ))
+        })
         .collect();
     for_every_level(|level| assert_eq!(noise.line(level, at, &columns), expected, "{level:?}"));
+}
+
+#[test]
+fn every_simd_level_has_the_values_of_single_positions() {
+    fn check<const N: usize>(noise: &GradientNoise<N>) {
+        let far = [
+            0.0,
+            -0.0,
+            1e-30,
+            3e9,
+            -3e9,
+            1e15,
+            -5e15,
+            1e17,
+            1e300,
+            f64::INFINITY,
+            f64::NAN,
+        ];
+        let far = far.into_iter().map(|x| {
+            let mut position = [0.3; N];
+            position[0] = x;
+            position[N - 1] -= x;
+            position
+        });
+        let positions: Vec<[f64; N]> = positions(1003).chain(far).collect();
+        let expected: Vec<u32> = (positions.iter())
+            .map(|&position| noise.sample(position).to_bits())
+            .collect();
+        for_every_level(|level| {
+            let mut values = vec![0.0; positions.len()];
+            many::fill(noise, level, &positions, &mut values);
+            for (at, value) in values.iter().enumerate() {
+                assert_eq!(
+                    value.to_bits(),
+                    expected[at],
+                    "{level:?} at {:?}",
+                    positions[at]
+                );
+            }
+        });
+    }
+    check(&GradientNoise2::new(SEED));
+    check(&GradientNoise3::new(SEED));
+    check(&GradientNoise4::new(SEED));
+    check(
+        &GradientNoise2::new(SEED)
+            .with_period([Some(3), None])
+            .unwrap(),
+    );
+    for period in [1 << 31, 3_000_000_000, u32::MAX] {
+        check(
+            &GradientNoise2::new(SEED)
+                .with_period([Some(period), Some(12)])
+                .unwrap(),
+        );
+    }
+    check(
+        &GradientNoise3::new(SEED)
+            .with_period([None, Some(1), Some(7)])
+            .unwrap(),
+    );
+}
+
+#[test]
+fn cells_and_offsets_are_those_of_the_floor() {
+    let powers = (0..1100).map(|power| 2_f64.powi(power - 50));
+    let near = powers.flat_map(|x| [x, x.next_down(), x.next_up(), x + 0.5, x - 0.5]);
+    for x in near
+        .chain([0.0, f64::MAX, f64::MIN_POSITIVE])
+        .flat_map(|x| [x, -x])
+    {
+        let place = Place::of(x);
+        assert_eq!(place.cell, x.floor() as i64, "{x}");
+        assert_eq!(
+            place.offset.to_bits(),
+            ((x - x.floor()) as f32).to_bits(),
+            "{x}"
+        );
+    }
 }
 
 #[test]
@@ -360,7 +466,7 @@ fn value_stability_gradient_noise() {
     ];
     assert_eq!(
         values,
-        [-0.543_341_9, -0.348_946_33, -0.267_920_97, -0.096_259_91]
+        [0.019_226_529, -0.268_234_55, -0.056_363_106, 0.243_122_58]
     );
 }
 

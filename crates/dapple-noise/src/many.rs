@@ -1,0 +1,169 @@
+//! Noise at many positions, sixteen at once in SIMD lanes.
+//!
+//! The arithmetic is that of one position, operation by operation, so that the bits are the same.
+
+use crate::GradientNoise;
+use crate::gradient::{MOST_CORNERS, Place, corners};
+use crate::gradients::gradient_lanes;
+use dapple_hash::{lattice_bits, lattice_parts};
+use dapple_raster::simd::dispatch;
+use fearless_simd::{Level, f32x16, prelude::*, u32x16};
+
+/// The number of positions in a register.
+const LANES: usize = 16;
+
+/// Positions nearer to the origin than this have cells of 32 bits, with those after them.
+const NEAR: f64 = 2_147_483_646.0;
+
+/// Where sixteen positions lie along one axis: their cells and the offsets in these.
+struct Line {
+    cells: [u32; LANES],
+    /// The cells after those, in the period.
+    next: [u32; LANES],
+    offsets: [f32; LANES],
+}
+
+/// Fills in the value at each position.
+pub(crate) fn fill<const N: usize, P: Copy + Into<[f64; N]>>(
+    noise: &GradientNoise<N>,
+    level: Level,
+    positions: &[P],
+    values: &mut [f32],
+) {
+    dispatch!(level, simd => fill_with(simd, noise, positions, values));
+}
+
+#[inline(always)]
+fn fill_with<S: Simd, const N: usize, P: Copy + Into<[f64; N]>>(
+    simd: S,
+    noise: &GradientNoise<N>,
+    positions: &[P],
+    values: &mut [f32],
+) {
+    let has_words = (0..N).all(|axis| noise.axis(axis).1 <= 1 << 31);
+    for (positions, values) in positions.chunks(LANES).zip(values.chunks_mut(LANES)) {
+        let mut coordinates = [[0.0; LANES]; N];
+        for (lane, &position) in positions.iter().enumerate() {
+            let position = position.into();
+            for axis in 0..N {
+                coordinates[axis][lane] = noise.moved(position[axis], axis);
+            }
+        }
+        // The coordinates of corners have to be words of 32 bits with a sign.
+        let mut is_near = has_words;
+        for line in &coordinates {
+            for x in line {
+                is_near &= x.abs() < NEAR;
+            }
+        }
+        if is_near {
+            let found = value(simd, noise, &coordinates);
+            values.copy_from_slice(&found.as_slice()[..values.len()]);
+        } else {
+            for (value, &position) in values.iter_mut().zip(positions) {
+                *value = noise.sample(position);
+            }
+        }
+    }
+}
+
+/// The values at sixteen positions nearer than [`NEAR`].
+#[inline(always)]
+fn value<S: Simd, const N: usize>(
+    simd: S,
+    noise: &GradientNoise<N>,
+    coordinates: &[[f64; LANES]; N],
+) -> f32x16<S> {
+    let one = f32x16::splat(simd, 1.0);
+    // Loops are inlined into the code of a SIMD level, and closures are not always.
+    let mut parts = [[u32x16::splat(simd, 0); 2]; N];
+    let mut offsets = [f32x16::splat(simd, 0.0); N];
+    for axis in 0..N {
+        let (key, period) = noise.axis(axis);
+        let line = Line::new(&coordinates[axis], period);
+        offsets[axis] = f32x16::from_slice(simd, &line.offsets);
+        let cells = u32x16::from_slice(simd, &line.cells);
+        let next = u32x16::from_slice(simd, &line.next);
+        parts[axis] = lattice_parts(simd, key, [cells, next]);
+    }
+    // For each column, the slopes along the first axis and the rest of the plane at each of its corners.
+    let mut columns = [[[f32x16::splat(simd, 0.0); 2]; MOST_CORNERS]; 2];
+    for index in 0..corners(N) {
+        let mut row = u32x16::splat(simd, 0);
+        for axis in 1..N {
+            row = row ^ parts[axis][index >> (axis - 1) & 1];
+        }
+        let bits = lattice_bits([row ^ parts[0][0], row ^ parts[0][1]]);
+        for side in 0..2 {
+            let gradient = gradient_lanes::<S, N>(simd, bits[side]);
+            let mut value = f32x16::splat(simd, 0.0);
+            for axis in 1..N {
+                let is_far = index >> (axis - 1) & 1 == 1;
+                let offset = if is_far {
+                    offsets[axis] - one
+                } else {
+                    offsets[axis]
+                };
+                value = value + gradient[axis] * offset;
+            }
+            columns[side][index] = [gradient[0], value];
+        }
+    }
+    for axis in 1..N {
+        let by = fade(offsets[axis]);
+        for column in &mut columns {
+            for pair in 0..corners(N) >> axis {
+                let [near, far] = [column[2 * pair], column[2 * pair + 1]];
+                column[pair] = [
+                    near[0] + by * (far[0] - near[0]),
+                    near[1] + by * (far[1] - near[1]),
+                ];
+            }
+        }
+    }
+    let [[left, ..], [right, ..]] = columns;
+    let t = offsets[0];
+    let near = left[0] * t + left[1];
+    let far = right[0] * (t - one) + right[1];
+    near + fade(t) * (far - near)
+}
+
+impl Line {
+    /// The cells of coordinates nearer than [`NEAR`], in a period of some cells if that is not 0.
+    #[inline(always)]
+    fn new(coordinates: &[f64; LANES], period: u32) -> Self {
+        let mut line = Self {
+            cells: [0; LANES],
+            next: [0; LANES],
+            offsets: [0.0; LANES],
+        };
+        for lane in 0..LANES {
+            let place = Place::near(coordinates[lane]);
+            line.cells[lane] = place.cell as u32;
+            line.next[lane] = line.cells[lane].wrapping_add(1);
+            line.offsets[lane] = place.offset;
+        }
+        if period > 0 {
+            let whole = f64::from(period);
+            let inverse = 1.0 / whole;
+            for cell in &mut line.cells {
+                let number = f64::from(cell.cast_signed());
+                // The quotient is off by at most one, and all products are whole numbers below 2^53.
+                let mut rest = number - Place::near(number * inverse).floor * whole;
+                rest += if rest < 0.0 { whole } else { 0.0 };
+                rest -= if rest >= whole { whole } else { 0.0 };
+                *cell = rest as u32;
+            }
+            for (next, &cell) in line.next.iter_mut().zip(&line.cells) {
+                *next = if cell == period - 1 { 0 } else { cell + 1 };
+            }
+        }
+        line
+    }
+}
+
+/// Perlin's quintic in every lane.
+#[inline(always)]
+fn fade<S: Simd>(t: f32x16<S>) -> f32x16<S> {
+    t * t * t * (t * (t * 6.0 - 15.0) + 10.0)
+}
