@@ -7,6 +7,24 @@ use crate::mix::{M0, M1, M2, M3, N0, N1};
 use core::ops::{Add, BitOr, BitXor, BitXorAssign, Mul, Shl, Shr};
 use fearless_simd::{prelude::*, u32x16};
 
+/// Eight [`CellHash`]es in memory.
+#[derive(Clone, Copy, Debug)]
+pub struct EightHashes {
+    state: [[u32; 8]; 2],
+}
+
+impl EightHashes {
+    /// One of the hashes.
+    #[inline(always)]
+    #[must_use]
+    pub const fn get(&self, lane: usize) -> CellHash {
+        let [a, b] = &self.state;
+        CellHash {
+            state: [a[lane], b[lane]],
+        }
+    }
+}
+
 /// Sixteen [`CellHash`]es, one in each lane.
 #[derive(Clone, Copy, Debug)]
 pub struct CellHashes<S: Simd> {
@@ -21,6 +39,16 @@ impl<S: Simd> CellHashes<S> {
         Self {
             state: [u32x16::splat(simd, a), u32x16::splat(simd, b)],
         }
+    }
+
+    /// The hashes in the lower and in the upper eight lanes, in memory: the words of their states.
+    #[inline(always)]
+    #[must_use]
+    pub fn halves(self) -> [EightHashes; 2] {
+        let [a, b] = self.state.map(|words| words.split());
+        [[a.0, b.0], [a.1, b.1]].map(|state| EightHashes {
+            state: state.map(|words| core::array::from_fn(|lane| words[lane])),
+        })
     }
 
     /// Absorbs the coordinate of one more axis, a faster one than those before: its low and its high 32 bits.

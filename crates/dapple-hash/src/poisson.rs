@@ -101,6 +101,7 @@ impl PoissonCounts {
 
     /// The smallest and the largest count that [`count`](Self::count) returns.
     #[must_use]
+    #[inline]
     pub fn range(&self) -> core::ops::RangeInclusive<u32> {
         self.count(0)..=self.count(u32::MAX)
     }

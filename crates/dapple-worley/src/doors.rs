@@ -9,8 +9,8 @@ use crate::fixed::Place;
 use crate::lattice::Lattice;
 use crate::many::Group;
 use crate::render::Basis;
-use crate::search::{Hit, nearest, within};
-use crate::{Axes, Metric, Worley};
+use crate::search::{Hit, within};
+use crate::{Axes, Metric, Worley, one, search};
 use fearless_simd::Level;
 
 /// The functions that are compiled for a number of axes; [`Axes`] has them for 2, 3 and 4.
@@ -30,7 +30,7 @@ pub trait Doors<const N: usize>: Sized {
 }
 
 macro_rules! doors {
-    ($($n:literal)*) => {$(
+    ($($n:literal $nearest:path),*) => {$(
         impl Doors<$n> for Axes {
             // Inlined elsewhere, the conversion would compile there all that rendering calls.
             #[inline(never)]
@@ -44,7 +44,7 @@ macro_rules! doors {
                 place: &Place<$n>,
                 hits: &mut [Hit<$n>],
             ) {
-                nearest(lattice, metric, place, hits);
+                $nearest(lattice, metric, place, hits);
             }
 
             fn within(
@@ -63,4 +63,4 @@ macro_rules! doors {
     )*};
 }
 
-doors!(2 3 4);
+doors!(2 one::nearest, 3 one::nearest, 4 search::nearest);

@@ -61,6 +61,12 @@ impl Lattice {
         }
     }
 
+    /// The number of bits for the index of a point in its cell, with one density.
+    #[inline]
+    pub(crate) fn index_bits(&self) -> u32 {
+        u32::BITS - self.counts.range().end().leading_zeros()
+    }
+
     /// Whether cells beyond `ring` rings only repeat those within.
     pub(crate) fn repeats_within(&self, ring: i64) -> bool {
         let mut periods = self.period[..self.n_axes]
@@ -79,7 +85,7 @@ impl Lattice {
 
     /// The place of a point in its cell, in steps, from the words of the cell.
     #[inline]
-    fn steps<const N: usize>(&self, words: [u32; 2], index: u32) -> [i32; N] {
+    pub(crate) fn steps<const N: usize>(&self, words: [u32; 2], index: u32) -> [i32; N] {
         let word = |which: usize| {
             let stride = STRIDES[which].wrapping_mul(index + 1);
             mix32(words[which].wrapping_add(stride))

@@ -69,6 +69,7 @@ mod levels;
 mod search;
 
 mod many;
+mod one;
 mod places;
 mod render;
 mod sink;

@@ -13,7 +13,7 @@ use crate::lattice::{IDS, Lattice, SixteenCells};
 use crate::levels::wide;
 use crate::metric::{Exact, Measure as _};
 use crate::places::{LANES, Places, Words, cells_by_distance, digit, load, store};
-use crate::{LIMIT, Worley};
+use crate::{LIMIT, Metric, Worley};
 use dapple_hash::CellHashes;
 use fearless_simd::{Level, f32x16, i32x16, mask32x16, prelude::*, u32x16, u64x8};
 
@@ -25,13 +25,13 @@ pub(crate) const NOTHING: u32 = f32::MAX.to_bits();
 
 /// The parameters of a search, and the use of the low bits of a key.
 #[derive(Clone, Copy)]
-struct Search<'a> {
-    lattice: &'a Lattice,
-    exact: Exact,
+pub(crate) struct Search<'a> {
+    pub(crate) lattice: &'a Lattice,
+    pub(crate) exact: Exact,
     /// The number of bits for the index of a point in its cell; above are the two bits of each axis.
-    index_bits: u32,
+    pub(crate) index_bits: u32,
     /// The mask of all bits of the code.
-    code_mask: u32,
+    pub(crate) code_mask: u32,
 }
 
 /// A group of positions, and the memory for the search for their nearest points.
@@ -97,14 +97,14 @@ pub(crate) struct Points<const N: usize> {
 }
 
 impl<'a> Search<'a> {
-    fn new<const N: usize>(worley: &'a Worley<N>) -> Self {
-        let lattice = &worley.lattice;
-        let index_bits = u32::BITS - lattice.counts.range().end().leading_zeros();
+    #[inline(always)]
+    pub(crate) fn new(n_axes: usize, lattice: &'a Lattice, metric: Metric) -> Self {
+        let index_bits = lattice.index_bits();
         Self {
             lattice,
-            exact: Exact(worley.metric),
+            exact: Exact(metric),
             index_bits,
-            code_mask: (1 << (2 * N as u32 + index_bits)) - 1,
+            code_mask: (1 << (2 * n_axes as u32 + index_bits)) - 1,
         }
     }
 }
@@ -150,7 +150,7 @@ impl<const N: usize> Group<N> {
         if is_scalar || worley.lattice.density.is_some() {
             return 0;
         }
-        let search = Search::new(worley);
+        let search = Search::new(N, &worley.lattice, worley.metric);
         let holds = self.search_by_depth(search, level);
         wide!(level, simd => self.finish_with(simd, search));
         holds.unwrap_or(0)
@@ -475,7 +475,7 @@ fn place(visit: u32) -> usize {
 }
 
 /// The nearest points of sixteen places.
-struct Found<S: Simd, const K: usize> {
+pub(crate) struct Found<S: Simd, const K: usize> {
     /// The smallest keys, after some ranks that are not in use and stay zero.
     best: [u32x16<S>; K],
     /// The smallest key of all other points.
@@ -484,7 +484,7 @@ struct Found<S: Simd, const K: usize> {
 
 impl<S: Simd, const K: usize> Found<S, K> {
     #[inline(always)]
-    fn new(simd: S, unused: usize) -> Self {
+    pub(crate) fn new(simd: S, unused: usize) -> Self {
         let nothing = u32x16::splat(simd, NOTHING);
         let mut best = [nothing; K];
         for rank in 0..K - 1 {
@@ -498,10 +498,23 @@ impl<S: Simd, const K: usize> Found<S, K> {
         }
     }
 
+    /// Removes the smallest key of all lanes.
+    #[inline(always)]
+    pub(crate) fn pop(&mut self) -> u32 {
+        let least = self.best[0].reduce_min();
+        // All codes differ, so that this is one lane.
+        let is_least = self.best[0].simd_eq(least);
+        for rank in 1..K {
+            self.best[rank - 1] = is_least.select(self.best[rank], self.best[rank - 1]);
+        }
+        self.best[K - 1] = is_least.select(self.next, self.best[K - 1]);
+        least
+    }
+
     /// Compares the points of a cell in each lane. The places are given relative to the cells, `codes` are the codes
     /// without index, and no cell has more points than `most`.
     #[inline(always)]
-    fn look<const N: usize>(
+    pub(crate) fn look<const N: usize>(
         &mut self,
         search: Search<'_>,
         points: &SixteenCells<S>,

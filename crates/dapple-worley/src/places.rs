@@ -234,12 +234,12 @@ fn wrap<S: Simd>(lattice: &Lattice, axis: usize, [mut low, mut high]: Words<S>) 
 
 /// The code of a neighbor along one axis.
 #[inline(always)]
-pub(crate) fn digit(cell: u32, axis: usize) -> usize {
+pub(crate) const fn digit(cell: u32, axis: usize) -> usize {
     (cell >> (2 * axis) & 3) as usize
 }
 
 /// The own cell and its neighbors, sorted by their mean distance.
-pub(crate) fn cells_by_distance<const N: usize>() -> &'static [u8] {
+pub(crate) const fn cells_by_distance<const N: usize>() -> &'static [u8] {
     const TWO: [u8; 9] = sorted_cells(2);
     const THREE: [u8; 27] = sorted_cells(3);
     const FOUR: [u8; 81] = sorted_cells(4);
