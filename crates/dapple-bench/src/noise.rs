@@ -9,7 +9,7 @@ use crate::sets::{SEED, positions_in};
 use anyhow::{Result, ensure};
 use dapple_noise::{GradientNoise2, GradientNoise3};
 use dapple_raster::glam::DVec2;
-use dapple_raster::{Field, Raster, Window};
+use dapple_raster::{Field, FieldExt, FractalShape, Raster, Window};
 
 const COARSE: Case = Case {
     group: "noise",
@@ -51,6 +51,21 @@ const MANY_POSITIONS_IN_SPACE: Case = Case {
     case: "gradient noise, 3-D, many scattered positions",
     ..MANY_POSITIONS
 };
+
+const TERRAIN: Case = Case {
+    group: "noise",
+    case: "terrain chunk 65×65: six octaves and five ridged ones, warped",
+    peer: "noise-functions Perlin, the same sums, position by position",
+    unit: Unit::NsPerPosition,
+    must: Must::CostAtMost(0.6),
+    note: "one thread; the warp moves positions by up to half a cell along each axis",
+};
+
+/// Columns and rows of a chunk of terrain: neighbors share a row.
+const CHUNK: u32 = 65;
+
+/// The distance of two positions of a chunk, in cells.
+const CHUNK_STEP: f64 = 1.0 / 32.0;
 
 /// Columns and rows of the pictures.
 const SIDE: u32 = 1024;
@@ -99,7 +114,41 @@ pub(crate) fn run(bench: &mut Bench) -> Result<()> {
         many,
         perlin,
         confirm_spread,
-    )
+    )?;
+    terrain(bench)
+}
+
+/// Measures a chunk of a warped terrain.
+fn terrain(bench: &mut Bench) -> Result<()> {
+    if !bench.wants(&TERRAIN) {
+        return Ok(());
+    }
+    let [hills, ridges, x, y] =
+        [1, 2, 3, 4].map(|child| GradientNoise2::new(SEED.child("terrain", child)));
+    let hills = hills.fractal(6, 0.5, 2.0, FractalShape::Sum)?;
+    let ridges = ridges.fractal(5, 0.5, 2.0, FractalShape::Ridged)?;
+    let height = hills.add(ridges.mul(0.5)).warp(x, y, 0.5);
+    let extent = f64::from(CHUNK) * CHUNK_STEP;
+    let window = Window::new(DVec2::ZERO, DVec2::splat(extent), [CHUNK; 2])?;
+    let n = (CHUNK * CHUNK) as usize;
+    let ours = Side::new(Raster::filled(window.size, 0.0)?, |raster| {
+        // The raster has the size of the window, so this cannot fail.
+        let _ = height.render(&window, raster.view_mut());
+    });
+    let theirs = Side::new(vec![0.0; n], |values: &mut Vec<f32>| {
+        noise::noise_functions_terrain(CHUNK as usize, CHUNK_STEP as f32, values);
+    });
+    bench.beside(&TERRAIN, 201, ours, theirs, |raster, theirs| {
+        for (row, column) in [(0, 0), (31, 64), (64, 7)] {
+            let expected = height.sample(window.position(column, row));
+            ensure!(
+                raster.row(row)[column as usize] == expected,
+                "not as sampled alone"
+            );
+        }
+        confirm_spread(theirs)?;
+        Ok(Done::both(n))
+    })
 }
 
 fn picture(bench: &mut Bench, case: &Case, px_per_cell: u32) -> Result<()> {

@@ -68,6 +68,14 @@ impl CellHash {
         hash
     }
 
+    /// The hash state of two words that are random already, such as the parts of two
+    /// [`LatticeHash`](crate::LatticeHash)es.
+    #[must_use]
+    #[inline]
+    pub const fn of_words(words: [u32; 2]) -> Self {
+        Self { state: words }
+    }
+
     /// Absorbs the coordinate of one more axis, a faster one than those before.
     ///
     /// # Examples

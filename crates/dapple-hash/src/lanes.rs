@@ -7,24 +7,6 @@ use crate::mix::{M0, M1, M2, M3, N0, N1};
 use core::ops::{Add, BitOr, BitXor, BitXorAssign, Mul, Shl, Shr};
 use fearless_simd::{prelude::*, u32x16};
 
-/// Eight [`CellHash`]es in memory.
-#[derive(Clone, Copy, Debug)]
-pub struct EightHashes {
-    state: [[u32; 8]; 2],
-}
-
-impl EightHashes {
-    /// One of the hashes.
-    #[inline(always)]
-    #[must_use]
-    pub const fn get(&self, lane: usize) -> CellHash {
-        let [a, b] = &self.state;
-        CellHash {
-            state: [a[lane], b[lane]],
-        }
-    }
-}
-
 /// Sixteen [`CellHash`]es, one in each lane.
 #[derive(Clone, Copy, Debug)]
 pub struct CellHashes<S: Simd> {
@@ -41,14 +23,11 @@ impl<S: Simd> CellHashes<S> {
         }
     }
 
-    /// The hashes in the lower and in the upper eight lanes, in memory: the words of their states.
+    /// The hashes whose states are given: see [`CellHash::of_words`].
     #[inline(always)]
     #[must_use]
-    pub fn halves(self) -> [EightHashes; 2] {
-        let [a, b] = self.state.map(|words| words.split());
-        [[a.0, b.0], [a.1, b.1]].map(|state| EightHashes {
-            state: state.map(|words| core::array::from_fn(|lane| words[lane])),
-        })
+    pub const fn of_words(words: [u32x16<S>; 2]) -> Self {
+        Self { state: words }
     }
 
     /// Absorbs the coordinate of one more axis, a faster one than those before: its low and its high 32 bits.
@@ -98,6 +77,36 @@ pub fn lattice_parts<S: Simd, const C: usize>(
     coordinates: [u32x16<S>; C],
 ) -> [u32x16<S>; C] {
     mix(InStep(coordinates) ^ InStep([u32x16::splat(simd, key); C])).0
+}
+
+/// [`LatticeHash::part`](crate::LatticeHash::part) in every lane of several registers in step, for two hashes with the
+/// keys of one axis. Coordinates are given by their low and their high 32 bits.
+#[inline(always)]
+#[must_use]
+pub fn lattice_part_pairs<S: Simd, const C: usize>(
+    simd: S,
+    keys: [u32; 2],
+    coordinates: [[u32x16<S>; 2]; C],
+) -> [[u32x16<S>; 2]; C] {
+    let mut words = coordinates;
+    let mut far = u32x16::splat(simd, 0);
+    for i in 0..C {
+        let [low, high] = coordinates[i];
+        words[i] = [low ^ keys[0], low ^ keys[1]];
+        far |= high + (low >> 31);
+    }
+    if !far.simd_eq(0).all_true() {
+        for i in 0..C {
+            let [low, high] = coordinates[i];
+            let high = high + (low >> 31);
+            let is_near = high.simd_eq(0);
+            let [mixed] = mix32_pairs([[high ^ keys[0], high ^ keys[1]]]);
+            for which in 0..2 {
+                words[i][which] ^= is_near.select(u32x16::splat(simd, 0), mixed[which]);
+            }
+        }
+    }
+    mix32_pairs(words)
 }
 
 /// [`LatticeHash::bits`](crate::LatticeHash::bits) in every lane of several registers in step.
@@ -212,7 +221,7 @@ impl<S: Simd, const C: usize> BitXorAssign for InStep<S, C> {
 
 #[cfg(test)]
 mod tests {
-    use super::{CellHashes, lattice_bits, lattice_parts, mix32_pairs};
+    use super::{CellHashes, lattice_bits, lattice_part_pairs, lattice_parts, mix32_pairs};
     use crate::{CellHash, LatticeHash, Seed, hash1, mix32};
     use fearless_simd::{Level, dispatch, prelude::*, u32x16};
 
@@ -265,6 +274,39 @@ mod tests {
         let bits = dispatch!(Level::new(), simd => corner_bits(simd, hash.key(0), row, &words));
         let expected = columns.map(|x| LatticeHash::<2>::bits(hash.part(0, x.into()) ^ row));
         assert_eq!(bits, expected);
+    }
+
+    #[test]
+    fn pairs_of_parts_are_those_of_single_coordinates() {
+        let hashes = [1, 2].map(|seed| LatticeHash::<2>::new(Seed(seed)));
+        // Both sides of the bounds of 32 bits, and far beyond.
+        let near: [i64; 16] = core::array::from_fn(|lane| lane as i64 - 8);
+        let edges = near.map(|x| {
+            if x % 2 == 0 {
+                x + (1 << 31)
+            } else {
+                x - (1 << 31)
+            }
+        });
+        let far = near.map(|x| x << 50 | 5);
+        for coordinates in [near, edges, far] {
+            let words = [0, 32].map(|shift| coordinates.map(|x| (x >> shift) as u32));
+            let keys = hashes.map(|hash| hash.key(1));
+            let parts = dispatch!(Level::new(), simd => part_pairs(simd, keys, &words));
+            for which in 0..2 {
+                let expected = coordinates.map(|x| hashes[which].part(1, x));
+                assert_eq!(parts[which], expected, "{coordinates:?}");
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn part_pairs<S: Simd>(simd: S, keys: [u32; 2], words: &[[u32; 16]; 2]) -> [[u32; 16]; 2] {
+        let [low, high] = words
+            .each_ref()
+            .map(|words| u32x16::from_slice(simd, words));
+        let [parts] = lattice_part_pairs(simd, keys, [[low, high]]);
+        parts.map(|parts| core::array::from_fn(|lane| parts[lane]))
     }
 
     #[inline(always)]

@@ -53,7 +53,11 @@ impl<const N: usize> LatticeHash<N> {
     pub const fn part(&self, axis: usize, coordinate: i64) -> u32 {
         let high = (coordinate.wrapping_add(1 << 31) >> 32) as u32;
         let word = coordinate as u32 ^ self.keys[axis];
-        mix32(if high == 0 { word } else { word ^ mix32(high) })
+        mix32(if high == 0 {
+            word
+        } else {
+            word ^ mix32(high ^ self.keys[axis])
+        })
     }
 
     /// The random bits of a corner, from the exclusive or of the parts of its coordinates. The upper 24 are good ones.

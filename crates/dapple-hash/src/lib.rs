@@ -35,7 +35,7 @@ mod unit;
 
 pub use cell::{CellHash, hash1, hash2, hash3, hash4};
 #[cfg(feature = "simd")]
-pub use lanes::{CellHashes, EightHashes, lattice_bits, lattice_parts, mix32_pairs};
+pub use lanes::{CellHashes, lattice_bits, lattice_part_pairs, lattice_parts, mix32_pairs};
 pub use lattice::LatticeHash;
 pub use mix::mix32;
 pub use poisson::{PoissonCounts, PoissonError, PoissonErrorKind, poisson_count};

@@ -157,8 +157,9 @@ where
     }
 
     /// This texture with values mapped so that about 0 to 1 is their range. The ranges come from a table of
-    /// measurements for [the combinations that have a name](Combination::NAMED), the default density, and every metric
-    /// but Minkowski's. One value in a thousand lies below 0, and one above 1.
+    /// measurements for [the combinations that have a name](Combination::NAMED), the default scatter and
+    /// [`Scatter::Jittered`] with a jitter of 1, and every metric but Minkowski's. One value in a thousand lies below 0,
+    /// and one above 1.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/normalized.md"))]
     ///
@@ -170,10 +171,15 @@ where
         let Worley {
             metric, scatter, ..
         } = self.worley;
-        let density = &self.worley.lattice.density;
-        let is_plain = density.is_none() && self.tone.shift == 0.0;
-        let range = range(N, metric, scatter, self.tone.weights).filter(|_| is_plain);
-        self.with_range(range.ok_or_else(|| WorleyError::new(WorleyErrorKind::NoRange))?)
+        let no_range = |measured| WorleyError::new(WorleyErrorKind::NoRange { measured });
+        if self.worley.lattice.density.is_some() {
+            return Err(no_range("densities that do not vary"));
+        }
+        if self.tone.shift != 0.0 {
+            return Err(no_range("textures that have no range yet"));
+        }
+        let range = range(N, metric, scatter, self.tone.weights).map_err(no_range)?;
+        self.with_range(range)
     }
 
     /// This texture with values mapped so that `range` becomes 0 to 1. Values beyond it are not clamped.

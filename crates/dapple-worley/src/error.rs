@@ -14,8 +14,11 @@ dapple_raster::error! {
             /// The number of values needed.
             needed: usize,
         } => "there is room for {length} values, but {needed} are needed";
-        /// The table of ranges has no entry for this combination.
-        NoRange => "the table of ranges has the named combinations at the default density only; measure the range";
+        /// No range has been measured for a texture.
+        NoRange {
+            /// What has been measured in its place.
+            measured: &'static str,
+        } => "there is no range for this texture, but for {measured}: `measure_range` finds one, and `with_range` sets it";
     }
     from {
         /// An error of the raster or the window.

@@ -1,15 +1,20 @@
 //! The feature points of each cell, generated from a hash of the cell, without any storage.
 //!
-//! Counter 0 of a cell's hash gives two words. The first draws how many points there are; from both, the position of
-//! each point is drawn by adding a constant for every point and mixing. Counter `2^31 + i` gives the id of point `i`.
-//! With a period, a cell has the hash of the cell that it repeats.
+//! A cell has two words. Each is the exclusive or of the hashes of the cell's coordinates, so that a search computes
+//! those of a few rows and columns and combines them. The first word, mixed, draws how many points there are; from
+//! both, the position of each point is drawn by adding a constant for every point and mixing. As the state of a
+//! [`CellHash`], the words give the id of point `i` at counter `2^31 + i`. With a period, a cell has the words of the
+//! cell that it repeats.
 
 use crate::fixed::{MOST_AXES, STEP_BITS, STEPS};
+use crate::places::LANES;
 use crate::scatter::{DENSITIES, JITTER_PARTS, Scatter};
 use crate::search::Name;
 use core::fmt;
-use core::ops::{Add, BitAnd, BitOr, Mul, Shl, Shr};
-use dapple_hash::{CellHash, CellHashes, PoissonCounts, Seed, mix32, mix32_pairs, poisson_count};
+use core::ops::{Add, BitAnd, BitOr, BitXor, Mul, Shl, Shr};
+use dapple_hash::{
+    LatticeHash, PoissonCounts, Seed, lattice_part_pairs, mix32, mix32_pairs, poisson_count,
+};
 use fearless_simd::{prelude::*, u32x16};
 use std::sync::Arc;
 
@@ -24,8 +29,10 @@ pub(crate) const IDS: u32 = 1 << 31;
 pub struct Lattice {
     /// The number of axes: 2, 3 or 4.
     pub(crate) n_axes: usize,
-    /// The hash state after the seed, with which the hash of every cell begins.
-    pub(crate) root: CellHash,
+    /// The hashes of the two words of cells.
+    pub(crate) hashes: [LatticeHash<MOST_AXES>; 2],
+    /// The keys of `hashes` for three cells along each axis, in lanes.
+    pub(crate) lane_keys: [[u32; LANES]; 2],
     pub(crate) counts: PoissonCounts,
     /// The density if it varies, which replaces `counts`.
     pub(crate) density: Option<Density>,
@@ -37,9 +44,11 @@ pub struct Lattice {
 
 impl Lattice {
     pub(crate) fn new(n_axes: usize, seed: Seed, scatter: Scatter, counts: PoissonCounts) -> Self {
+        let hashes = Self::hashes(seed);
         Self {
             n_axes,
-            root: Self::root(seed),
+            hashes,
+            lane_keys: Self::lane_keys(&hashes),
             counts,
             density: None,
             jitter: scatter.jitter(),
@@ -47,9 +56,32 @@ impl Lattice {
         }
     }
 
-    /// The hash state after the seed, with which the hash of every cell begins.
-    pub(crate) fn root(seed: Seed) -> CellHash {
-        CellHash::new(seed.child("feature points", 0), [])
+    /// The hashes of the two words of cells.
+    fn hashes(seed: Seed) -> [LatticeHash<MOST_AXES>; 2] {
+        [0, 1].map(|word| LatticeHash::new(seed.child("feature points", word)))
+    }
+
+    /// This lattice with another seed.
+    pub(crate) fn with_seed(&self, seed: Seed) -> Self {
+        let hashes = Self::hashes(seed);
+        Self {
+            hashes,
+            lane_keys: Self::lane_keys(&hashes),
+            ..self.clone()
+        }
+    }
+
+    fn lane_keys(hashes: &[LatticeHash<MOST_AXES>; 2]) -> [[u32; LANES]; 2] {
+        hashes.map(|hash| core::array::from_fn(|lane| hash.key(lane / 3 % MOST_AXES)))
+    }
+
+    /// The parts of the words of a cell that its coordinate along an axis, or the one that it repeats, contributes.
+    #[inline(always)]
+    pub(crate) fn parts(&self, axis: usize, cell: i64) -> [u32; 2] {
+        let cell = self.wrap(axis, cell);
+        // Not mapped: that would be a call.
+        let [first, second] = &self.hashes;
+        [first.part(axis, cell), second.part(axis, cell)]
     }
 
     /// The coordinate of the cell that a cell repeats, along one axis.
@@ -67,6 +99,23 @@ impl Lattice {
         u32::BITS - self.counts.range().end().leading_zeros()
     }
 
+    /// The coordinates along one axis of a cell and of its neighbors on the side `nearer`, -1 or 1, and on the other one,
+    /// or of those that they repeat.
+    #[inline(always)]
+    pub(crate) fn cells_around(&self, axis: usize, cell: i64, nearer: i64) -> [i64; 3] {
+        let period = i64::from(self.period[axis]);
+        if period == 0 {
+            return [cell, cell + nearer, cell - nearer];
+        }
+        let own = cell.rem_euclid(period);
+        let wrapped = |cell: i64| match cell {
+            -1 => period - 1,
+            cell if cell == period => 0,
+            cell => cell,
+        };
+        [own, wrapped(own + nearer), wrapped(own - nearer)]
+    }
+
     /// Whether cells beyond `ring` rings only repeat those within.
     pub(crate) fn repeats_within(&self, ring: i64) -> bool {
         let mut periods = self.period[..self.n_axes]
@@ -75,11 +124,11 @@ impl Lattice {
         periods.all(|period| period > 0 && period <= 2 * ring + 1)
     }
 
+    /// The words of a cell.
     #[inline]
-    pub(crate) fn hash<const N: usize>(&self, cell: [i64; N]) -> CellHash {
-        let axes = (0..N).rev();
-        axes.fold(self.root, |hash, axis| {
-            hash.axis(self.wrap(axis, cell[axis]))
+    pub(crate) fn words<const N: usize>(&self, cell: [i64; N]) -> [u32; 2] {
+        (0..N).fold([0; 2], |words, axis| {
+            both(words, self.parts(axis, cell[axis]))
         })
     }
 
@@ -96,21 +145,19 @@ impl Lattice {
     /// Calls `each` with every point of a cell: its steps from the cell's lower corner, and its name.
     #[inline]
     pub(crate) fn visit<const N: usize>(&self, cell: [i64; N], each: impl FnMut([i32; N], Name)) {
-        let hash = self.hash(cell);
-        self.visit_hashed(cell, hash, words(hash), each);
+        self.visit_words(cell, self.words(cell), each);
     }
 
-    /// Calls `each` with every point of a cell whose hash and words are known.
+    /// Calls `each` with every point of a cell whose words are known.
     #[inline(always)]
-    pub(crate) fn visit_hashed<const N: usize>(
+    pub(crate) fn visit_words<const N: usize>(
         &self,
         cell: [i64; N],
-        hash: CellHash,
         words: [u32; 2],
         mut each: impl FnMut([i32; N], Name),
     ) {
         for index in 0..self.count(&cell, words[0]) {
-            each(self.steps(words, index), Name { hash, index });
+            each(self.steps(words, index), Name { words, index });
         }
     }
 
@@ -118,8 +165,8 @@ impl Lattice {
     #[inline]
     pub(crate) fn count(&self, cell: &[i64], word: u32) -> u32 {
         match &self.density {
-            None => self.counts.count(word),
-            Some(density) => poisson_count(self.density_at(density, cell), word),
+            None => self.counts.count(mix32(word)),
+            Some(density) => poisson_count(self.density_at(density, cell), mix32(word)),
         }
     }
 
@@ -158,14 +205,26 @@ impl fmt::Debug for Density {
     }
 }
 
-/// The two words of a cell.
-#[inline]
-pub(crate) fn words(hash: CellHash) -> [u32; 2] {
-    let bits = hash.at(0);
-    [(bits >> 32) as u32, bits as u32]
+/// The words of a cell with these parts and those of the other axes.
+#[inline(always)]
+pub(crate) fn both<W: BitXor<Output = W> + Copy>(words: [W; 2], parts: [W; 2]) -> [W; 2] {
+    [words[0] ^ parts[0], words[1] ^ parts[1]]
 }
 
-/// The hashes of sixteen cells, one in each lane.
+/// The parts that the coordinates along an axis contribute to the words of cells, in lanes: see [`Lattice::parts`].
+/// The coordinates are wrapped already.
+#[inline(always)]
+pub(crate) fn parts_each<S: Simd, const C: usize>(
+    simd: S,
+    lattice: &Lattice,
+    axis: usize,
+    cells: [[u32x16<S>; 2]; C],
+) -> [[u32x16<S>; 2]; C] {
+    let [first, second] = &lattice.hashes;
+    lattice_part_pairs(simd, [first.key(axis), second.key(axis)], cells)
+}
+
+/// The words of sixteen cells, one in each lane.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SixteenCells<S: Simd> {
     /// The two words of each cell.
@@ -176,8 +235,8 @@ pub(crate) struct SixteenCells<S: Simd> {
 
 impl<S: Simd> SixteenCells<S> {
     #[inline(always)]
-    pub(crate) fn new(simd: S, lattice: &Lattice, hashes: CellHashes<S>) -> Self {
-        let [cells] = Self::new_each(simd, lattice, [hashes]);
+    pub(crate) fn new(simd: S, lattice: &Lattice, words: [u32x16<S>; 2]) -> Self {
+        let [cells] = Self::new_each(simd, lattice, [words]);
         cells
     }
 
@@ -186,9 +245,8 @@ impl<S: Simd> SixteenCells<S> {
     pub(crate) fn new_each<const C: usize>(
         simd: S,
         lattice: &Lattice,
-        hashes: [CellHashes<S>; C],
+        words: [[u32x16<S>; 2]; C],
     ) -> [Self; C] {
-        let words = CellHashes::at_each(hashes, [u32x16::splat(simd, 0); C]);
         let counts = u32x16::splat(simd, lattice.counts.least());
         let mut cells = [Self {
             words: words[0],
@@ -197,11 +255,19 @@ impl<S: Simd> SixteenCells<S> {
         for i in 0..C {
             cells[i].words = words[i];
         }
+        if lattice.counts.thresholds().is_empty() {
+            return cells;
+        }
+        let mut draws = words;
+        for i in 0..C {
+            draws[i][1] = draws[i][0];
+        }
+        let draws = mix32_pairs(draws);
         let one = u32x16::splat(simd, 1);
         for &threshold in lattice.counts.thresholds() {
-            for cells in &mut cells {
-                let is_more = cells.words[0].simd_ge(threshold);
-                cells.counts = is_more.select(cells.counts + one, cells.counts);
+            for i in 0..C {
+                let is_more = draws[i][0].simd_ge(threshold);
+                cells[i].counts = is_more.select(cells[i].counts + one, cells[i].counts);
             }
         }
         cells

@@ -9,7 +9,7 @@
 //! one that needs more than the neighbors, is searched again on its own.
 
 use crate::fixed::{MOST_AXES, STEP, STEPS};
-use crate::lattice::{IDS, Lattice, SixteenCells};
+use crate::lattice::{IDS, Lattice, SixteenCells, both, parts_each};
 use crate::levels::wide;
 use crate::metric::{Exact, Measure as _};
 use crate::places::{LANES, Places, Words, cells_by_distance, digit, load, store};
@@ -288,15 +288,13 @@ impl<const N: usize> Group<N> {
                 places.shifted(lattice, axis, nearer),
             ];
         }
-        let rows = rows(simd, lattice, &cells);
+        let (columns, rows) = columns_and_rows(simd, lattice, cells);
         for first in (0..1 << N).step_by(C) {
-            let mut hashes = [rows[0]; C];
-            let mut words = [cells[0][0]; C];
+            let mut words = [rows[0]; C];
             for i in 0..C {
-                (hashes[i], words[i]) = (rows[(first + i) >> 1], cells[0][(first + i) & 1]);
+                words[i] = both(rows[(first + i) >> 1], columns[(first + i) & 1]);
             }
-            let hashes = CellHashes::axis_each(hashes, words);
-            let cells = SixteenCells::new_each(simd, lattice, hashes);
+            let cells = SixteenCells::new_each(simd, lattice, words);
             for i in 0..C {
                 let near = &mut self.near[first + i];
                 for which in 0..2 {
@@ -328,7 +326,7 @@ impl<const N: usize> Group<N> {
         let neighbors = u32x16::from_slice(simd, &visits) & ((1 << PLACE_SHIFT) - 1);
         let [cells] = Places::neighbors_each(simd, search.lattice, &[places], [neighbors]);
         let is_there = mask32x16::from_bitmask(simd, u64::MAX >> (64 - n_visits));
-        let mut points = SixteenCells::new(simd, search.lattice, cells.hashes);
+        let mut points = SixteenCells::new(simd, search.lattice, cells.words);
         points.counts = is_there.select(points.counts, u32x16::splat(simd, 0));
         let mut found = Found::<S, K>::new(simd, 0);
         let codes = neighbors << search.index_bits;
@@ -402,14 +400,16 @@ impl<const N: usize> Group<N> {
             index[i] = code & ((1 << search.index_bits) - 1);
         }
         let cells = Places::neighbors_each(simd, lattice, &places, neighbors);
-        let mut hashes = [cells[0].hashes; C];
+        let mut words = [cells[0].words; C];
+        let mut hashes = [CellHashes::of_words(words[0]); C];
         let mut counters = index;
         for i in 0..C {
-            hashes[i] = cells[i].hashes;
+            words[i] = cells[i].words;
+            hashes[i] = CellHashes::of_words(words[i]);
             counters[i] += IDS;
         }
         let ids = CellHashes::at_each(hashes, counters);
-        let points = SixteenCells::new_each(simd, lattice, hashes);
+        let points = SixteenCells::new_each(simd, lattice, words);
         let points = SixteenCells::steps_each(points, index, lattice.jitter);
         for i in 0..C {
             let (register, rank) = ((first + i) >> shift, (first + i) & ranks);
@@ -590,23 +590,25 @@ fn near_index<const N: usize>(neighbor: u32) -> usize {
     (0..N).fold(0, |index, axis| index | digit(neighbor, axis) << axis)
 }
 
-/// The hashes of the rows of own cells and nearer neighbors, with one bit for each axis but the first.
+/// The parts of the columns of own cells and nearer neighbors, and of their rows, with one bit for each axis but the
+/// first.
 #[inline(always)]
-fn rows<S: Simd, const N: usize>(
+fn columns_and_rows<S: Simd, const N: usize>(
     simd: S,
     lattice: &Lattice,
-    cells: &[[Words<S>; 2]; N],
-) -> [CellHashes<S>; MOST_NEAR / 2] {
-    let mut rows = [CellHashes::splat(simd, lattice.root); MOST_NEAR / 2];
+    cells: [[Words<S>; 2]; N],
+) -> ([Words<S>; 2], [Words<S>; MOST_NEAR / 2]) {
+    let columns = parts_each(simd, lattice, 0, cells[0]);
+    let mut rows = [[u32x16::splat(simd, 0); 2]; MOST_NEAR / 2];
     let mut n_rows = 1;
     for axis in (1..N).rev() {
+        let [own, near] = parts_each(simd, lattice, axis, cells[axis]);
         for row in (0..n_rows).rev() {
-            let [own, near] = CellHashes::axis_each([rows[row]; 2], cells[axis]);
-            [rows[2 * row], rows[2 * row + 1]] = [own, near];
+            [rows[2 * row], rows[2 * row + 1]] = [both(rows[row], own), both(rows[row], near)];
         }
         n_rows *= 2;
     }
-    rows
+    (columns, rows)
 }
 
 /// The numbers of the lanes.

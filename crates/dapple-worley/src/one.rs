@@ -5,12 +5,12 @@
 
 use crate::Metric;
 use crate::fixed::{Place, STEP, STEPS};
-use crate::lattice::{Lattice, SixteenCells};
+use crate::lattice::{Lattice, SixteenCells, both};
 use crate::levels::wide;
 use crate::many::{Found, Search};
-use crate::places::{LANES, Words, cells_by_distance, digit};
-use crate::search::{self, Hit, Name};
-use dapple_hash::CellHashes;
+use crate::places::{LANES, cells_by_distance, digit};
+use crate::search::{self, Hit, Name, Ranking};
+use dapple_hash::mix32_pairs;
 use dapple_raster::simd;
 use fearless_simd::{i32x16, prelude::*, u32x16};
 
@@ -43,15 +43,14 @@ fn finds<const N: usize>(
     if metric.is_slow() || lattice.density.is_some() {
         return false;
     }
-    let around = Around::new(lattice, place);
     let search = Search::new(N, lattice, metric);
     let level = simd::level();
     let is_certain = if lattice.counts.thresholds().is_empty() && hits.len() == 1 {
-        wide!(level, simd => around.search_by_axes::<_, 1, true>(simd, search, hits))
+        wide!(level, simd => search_by_axes::<_, N, 1, true>(simd, search, place, hits))
     } else if hits.len() <= 2 {
-        wide!(level, simd => around.search_by_axes::<_, 2, false>(simd, search, hits))
+        wide!(level, simd => search_by_axes::<_, N, 2, false>(simd, search, place, hits))
     } else {
-        wide!(level, simd => around.search_by_axes::<_, 4, false>(simd, search, hits))
+        wide!(level, simd => search_by_axes::<_, N, 4, false>(simd, search, place, hits))
     };
     is_certain.unwrap_or(false)
 }
@@ -78,28 +77,46 @@ impl<const N: usize> Around<N> {
             let below = place.steps[axis];
             let above = STEPS - below;
             let nearer = if below < above { -1 } else { 1 };
-            for (which, shift) in [0, nearer, -nearer].into_iter().enumerate() {
-                let cell = place.cell[axis] + i64::from(shift);
-                around.cells[axis][which] = lattice.wrap(axis, cell);
-                around.origins[axis][which] = below - shift * STEPS;
-            }
+            around.cells[axis] = lattice.cells_around(axis, place.cell[axis], nearer.into());
+            around.origins[axis] = [below, below - nearer * STEPS, below + nearer * STEPS];
             around.sides[axis] = [0, below.min(above), below.max(above)];
         }
         around
     }
 
+    /// The parts of the two words of all cells: three numbers for each axis.
     #[inline(always)]
-    fn search_by_axes<S: Simd, const K: usize, const IS_SINGLE: bool>(
-        &self,
-        simd: S,
-        search: Search<'_>,
-        hits: &mut [Hit<N>],
-    ) -> bool {
-        if const { N == 2 } {
-            self.search::<S, K, 1, IS_SINGLE>(simd, search, hits)
-        } else {
-            self.search::<S, K, 2, IS_SINGLE>(simd, search, hits)
+    fn parts<S: Simd>(&self, simd: S, lattice: &Lattice) -> [[u32; LANES]; 2] {
+        let mut words = [0; LANES];
+        let mut is_near = true;
+        for axis in 0..N {
+            for which in 0..3 {
+                let cell = self.cells[axis][which];
+                words[3 * axis + which] = cell as u32;
+                is_near &= cell == i64::from(cell as i32);
+            }
         }
+        let mut parts = [[0; LANES]; 2];
+        if is_near {
+            let words = u32x16::from_slice(simd, &words);
+            let [keys, more_keys] = &lattice.lane_keys;
+            let keys = [
+                u32x16::from_slice(simd, keys),
+                u32x16::from_slice(simd, more_keys),
+            ];
+            let [mixed] = mix32_pairs([[words ^ keys[0], words ^ keys[1]]]);
+            mixed[0].store_slice(&mut parts[0]);
+            mixed[1].store_slice(&mut parts[1]);
+        } else {
+            for axis in 0..N {
+                for which in 0..3 {
+                    let [first, second] = lattice.parts(axis, self.cells[axis][which]);
+                    parts[0][3 * axis + which] = first;
+                    parts[1][3 * axis + which] = second;
+                }
+            }
+        }
+        parts
     }
 
     /// Visits the cells, in `C` registers; `IS_SINGLE` says that each has one point.
@@ -108,24 +125,28 @@ impl<const N: usize> Around<N> {
         &self,
         simd: S,
         search: Search<'_>,
+        place: &Place<N>,
         hits: &mut [Hit<N>],
     ) -> bool {
         let lattice = search.lattice;
         let (index_bits, code_mask) = (search.index_bits, search.code_mask);
-        let mut hashes = [CellHashes::splat(simd, lattice.root); C];
+        let mut words = [[u32x16::splat(simd, 0); 2]; C];
         let mut origins = [[i32x16::splat(simd, 0); N]; C];
+        let [first, second] = self.parts(simd, lattice);
         for axis in (0..N).rev() {
-            let mut words = [[u32x16::splat(simd, 0); 2]; C];
             for register in 0..C {
                 let digits = const { digits::<N>() };
                 let digits = u32x16::from_slice(simd, &digits[axis][register]);
-                words[register] = pick_words(digits, self.cells[axis]);
+                let parts = [
+                    pick(digits, &first, 3 * axis),
+                    pick(digits, &second, 3 * axis),
+                ];
+                words[register] = both(words[register], parts);
                 let origin = self.origins[axis].map(i32::cast_unsigned);
-                origins[register][axis] = pick(digits, origin).bitcast();
+                origins[register][axis] = pick(digits, &origin, 0).bitcast();
             }
-            hashes = CellHashes::axis_each(hashes, words);
         }
-        let mut cells = SixteenCells::new_each(simd, lattice, hashes);
+        let mut cells = SixteenCells::new_each(simd, lattice, words);
         let mut found = Found::<S, K>::new(simd, 0);
         for register in 0..C {
             // What is known to be 0 is not computed where a register of the processor has eight lanes.
@@ -146,14 +167,12 @@ impl<const N: usize> Around<N> {
             let codes = numbers << index_bits;
             found.look(search, &cells[register], &origins[register], codes, most);
         }
-        let mut states = [hashes[0].halves()[0]; 4];
-        let mut words = [[[0; 8]; 2]; 4];
+        let mut halves = [[[0; 8]; 2]; 4];
         for register in 0..C {
-            [states[2 * register], states[2 * register + 1]] = hashes[register].halves();
             for which in 0..2 {
-                let (low, high) = cells[register].words[which].split();
-                low.store_slice(&mut words[2 * register][which]);
-                high.store_slice(&mut words[2 * register + 1][which]);
+                let (low, high) = words[register][which].split();
+                low.store_slice(&mut halves[2 * register][which]);
+                high.store_slice(&mut halves[2 * register + 1][which]);
             }
         }
         let mut coded = found.pop();
@@ -162,7 +181,7 @@ impl<const N: usize> Around<N> {
                 break;
             };
             let next = found.pop();
-            // The order of keys that differ in their codes alone is not known.
+            // The order of keys that differ in their codes alone is not known. Missing points are alike, too.
             if coded | code_mask == next | code_mask {
                 return false;
             }
@@ -173,36 +192,96 @@ impl<const N: usize> Around<N> {
             );
             let number = number % n_visited(N);
             let (half, lane) = (number / 8, number % 8);
-            let words = [words[half][0][lane], words[half][1][lane]];
-            let steps: [i32; N] = lattice.steps(words, index);
-            let neighbor = cells_by_distance::<N>()[number];
-            for axis in 0..N {
-                let ahead = self.origins[axis][digit(neighbor.into(), axis)] - steps[axis];
-                hit.vector[axis] = ahead as f32 * STEP;
-            }
-            hit.key = search.exact.0.key(hit.vector);
-            let hash = states[half].get(lane);
-            hit.name = Some(Name { hash, index });
+            let words = [halves[half][0][lane], halves[half][1][lane]];
+            *hit = self.hit(search, cells_by_distance::<N>()[number], words, index);
             coded = next;
         }
-        // A missing point has the largest key.
-        let border = self.border(search.exact.0);
-        hits.last().is_none_or(|hit| hit.key < border)
+        let reach = hits.last().map_or(0.0, |hit| hit.key);
+        reach < self.border(search.exact.0) || visit_rest(search, place, hits)
     }
 
     /// A lower bound of the keys of all points of cells that are not visited.
     #[inline(always)]
     fn border(&self, metric: Metric) -> f32 {
-        let mut sides = self.sides.map(|[_, near, _]| near);
-        let nearest = sides.into_iter().fold(STEPS, i32::min);
-        let mut border = metric.term((nearest + STEPS) as f32 * STEP);
+        let mut border = self.outer_border(metric);
         for &neighbor in &cells_by_distance::<N>()[n_visited(N)..] {
-            for axis in 0..N {
-                sides[axis] = self.sides[axis][digit(neighbor.into(), axis)];
-            }
-            border = border.min(metric.key(sides.map(|steps| steps as f32 * STEP)));
+            border = border.min(self.gap(metric, neighbor));
         }
         border
+    }
+
+    /// A lower bound of the keys of all points of a neighbor.
+    #[inline(always)]
+    fn gap(&self, metric: Metric, neighbor: u8) -> f32 {
+        let mut sides = [0.0; N];
+        for axis in 0..N {
+            sides[axis] = self.sides[axis][digit(neighbor.into(), axis)] as f32 * STEP;
+        }
+        metric.key(sides)
+    }
+
+    /// A lower bound of the keys of all points beyond the neighbors.
+    #[inline(always)]
+    fn outer_border(&self, metric: Metric) -> f32 {
+        let mut nearest = STEPS;
+        for side in &self.sides {
+            nearest = nearest.min(side[1]);
+        }
+        metric.term((nearest + STEPS) as f32 * STEP)
+    }
+
+    /// A point of a neighbor with these words.
+    #[inline(always)]
+    fn hit(&self, search: Search<'_>, neighbor: u8, words: [u32; 2], index: u32) -> Hit<N> {
+        let steps: [i32; N] = search.lattice.steps(words, index);
+        let mut vector = [0.0; N];
+        for axis in 0..N {
+            let ahead = self.origins[axis][digit(neighbor.into(), axis)] - steps[axis];
+            vector[axis] = ahead as f32 * STEP;
+        }
+        let key = search.exact.0.key(vector);
+        let name = Some(Name { words, index });
+        Hit { key, vector, name }
+    }
+}
+
+/// Visits the other neighbors where they matter; returns whether no other cell does.
+#[cold]
+fn visit_rest<const N: usize>(search: Search<'_>, place: &Place<N>, hits: &mut [Hit<N>]) -> bool {
+    let Search { lattice, exact, .. } = search;
+    let around = Around::new(lattice, place);
+    let mut ranking = Ranking::new(hits.len());
+    for &hit in &*hits {
+        ranking.add(hit, Name::id);
+    }
+    for &neighbor in &cells_by_distance::<N>()[n_visited(N)..] {
+        if around.gap(exact.0, neighbor) <= ranking.reach() {
+            let mut cell = [0; N];
+            for axis in 0..N {
+                cell[axis] = around.cells[axis][digit(neighbor.into(), axis)];
+            }
+            let words = lattice.words(cell);
+            for index in 0..lattice.count(&cell, words[0]) {
+                ranking.add(around.hit(search, neighbor, words, index), Name::id);
+            }
+        }
+    }
+    hits.copy_from_slice(ranking.hits());
+    ranking.reach() < around.outer_border(exact.0)
+}
+
+#[inline(always)]
+fn search_by_axes<S: Simd, const N: usize, const K: usize, const IS_SINGLE: bool>(
+    simd: S,
+    search: Search<'_>,
+    place: &Place<N>,
+    hits: &mut [Hit<N>],
+) -> bool {
+    let around = Around::new(search.lattice, place);
+    if const { N == 2 } {
+        around.search::<S, K, 1, IS_SINGLE>(simd, search, place, hits)
+    } else {
+        around.search::<S, K, 2, IS_SINGLE>(simd, search, place, hits)
     }
 }
 
@@ -233,18 +312,12 @@ const fn numbers() -> [[u32; LANES]; 2] {
     numbers
 }
 
-/// One of three numbers for each lane.
+/// One of three numbers for each lane, from an index on.
 #[inline(always)]
-fn pick<S: Simd>(digits: u32x16<S>, of: [u32; 3]) -> u32x16<S> {
-    let [own, near, far] = of.map(|number| u32x16::splat(digits.simd, number));
+fn pick<S: Simd>(digits: u32x16<S>, of: &[u32], from: usize) -> u32x16<S> {
+    let own = u32x16::splat(digits.simd, of[from]);
+    let near = u32x16::splat(digits.simd, of[from + 1]);
+    let far = u32x16::splat(digits.simd, of[from + 2]);
     let other = digits.simd_eq(1).select(near, far);
     digits.simd_eq(0).select(own, other)
-}
-
-/// The words of one of three cells for each lane.
-#[inline(always)]
-fn pick_words<S: Simd>(digits: u32x16<S>, cells: [i64; 3]) -> Words<S> {
-    let low = pick(digits, cells.map(|cell| cell as u32));
-    let high = pick(digits, cells.map(|cell| (cell >> 32) as u32));
-    [low, high]
 }

@@ -4,8 +4,7 @@
 //! other one.
 
 use crate::fixed::{STEPS, split};
-use crate::lattice::Lattice;
-use dapple_hash::CellHashes;
+use crate::lattice::{Lattice, both, parts_each};
 use fearless_simd::{f64x8, i32x16, prelude::*, u32x16, u64x8};
 
 /// The number of places in a register.
@@ -26,7 +25,8 @@ pub(crate) struct Places<S: Simd, const N: usize> {
 /// A cell for each of sixteen places.
 #[derive(Clone, Copy)]
 pub(crate) struct Cells<S: Simd, const N: usize> {
-    pub(crate) hashes: CellHashes<S>,
+    /// The words of the cells.
+    pub(crate) words: Words<S>,
     /// The places, in steps from the lower corners of the cells.
     pub(crate) origins: [i32x16<S>; N],
 }
@@ -123,9 +123,8 @@ impl<S: Simd, const N: usize> Places<S, N> {
         places: &[Self; C],
         neighbors: [u32x16<S>; C],
     ) -> [Cells<S, N>; C] {
-        let mut hashes = [CellHashes::splat(simd, lattice.root); C];
         let mut cells = [Cells {
-            hashes: hashes[0],
+            words: [u32x16::splat(simd, 0); 2],
             origins: places[0].steps,
         }; C];
         for axis in (0..N).rev() {
@@ -140,10 +139,10 @@ impl<S: Simd, const N: usize> Places<S, N> {
                 let from = shift * i32x16::splat(simd, STEPS);
                 cells[i].origins[axis] = places[i].steps[axis] - from;
             }
-            hashes = CellHashes::axis_each(hashes, words);
-        }
-        for i in 0..C {
-            cells[i].hashes = hashes[i];
+            let parts = parts_each(simd, lattice, axis, words);
+            for i in 0..C {
+                cells[i].words = both(cells[i].words, parts[i]);
+            }
         }
         cells
     }

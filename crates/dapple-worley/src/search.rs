@@ -13,16 +13,17 @@
 //! on the order in which they were found.
 
 use crate::fixed::{Place, STEP, STEPS, cells};
-use crate::lattice::{IDS, Lattice, words};
+use crate::lattice::{IDS, Lattice, both};
 use crate::places::{cells_by_distance, digit};
 use crate::{LIMIT, Metric};
 use core::cmp::Ordering;
 use dapple_hash::CellHash;
 
-/// The identity of a point in a lattice: the hash of its cell and its index there.
+/// The identity of a point in a lattice: its cell and its index there.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Name {
-    pub(crate) hash: CellHash,
+    /// The words of the cell.
+    pub(crate) words: [u32; 2],
     pub(crate) index: u32,
 }
 
@@ -30,7 +31,7 @@ impl Name {
     /// The id of the point.
     #[inline]
     pub(crate) fn id(self) -> u64 {
-        self.hash.at(IDS + self.index)
+        CellHash::of_words(self.words).at(IDS + self.index)
     }
 }
 
@@ -169,6 +170,11 @@ impl<const N: usize> Ranking<N> {
         &self.hits[..self.len]
     }
 
+    /// The key from which on further points do not matter.
+    pub(crate) fn reach(&self) -> f32 {
+        self.reach
+    }
+
     /// Inserts a point in its order.
     #[inline(always)]
     pub(crate) fn add(&mut self, hit: Hit<N>, id: impl Fn(Name) -> u64) {
@@ -223,8 +229,8 @@ struct Around<const N: usize> {
     origins: [[i32; 3]; N],
     /// The terms of the distances to the cells.
     gaps: [[f32; 3]; N],
-    /// The hashes of the cells along the last axis.
-    rows: [CellHash; 3],
+    /// The parts of the words of the cells.
+    parts: [[[u32; 2]; 3]; N],
 }
 
 impl<const N: usize> Around<N> {
@@ -239,7 +245,7 @@ impl<const N: usize> Around<N> {
             cells: [[0; 3]; N],
             origins: [[0; 3]; N],
             gaps: [[0.0; 3]; N],
-            rows: [lattice.root; 3],
+            parts: [[[0; 2]; 3]; N],
         };
         for axis in 0..N {
             let below = place.steps[axis];
@@ -249,10 +255,10 @@ impl<const N: usize> Around<N> {
             let sides = [0, below.min(above), below.max(above)];
             around.cells[axis] =
                 shifts.map(|shift| lattice.wrap(axis, place.cell[axis] + i64::from(shift)));
+            around.parts[axis] = around.cells[axis].map(|cell| lattice.parts(axis, cell));
             around.origins[axis] = shifts.map(|shift| below - shift * STEPS);
             around.gaps[axis] = sides.map(|steps| metric.term(steps as f32 * STEP));
         }
-        around.rows = around.cells[N - 1].map(|cell| lattice.root.axis(cell));
         around
     }
 
@@ -302,22 +308,17 @@ impl<const N: usize> Search<'_, N> {
     #[inline]
     fn batch(&self, around: &Around<N>, neighbors: &[u8], ranking: &mut Ranking<N>) {
         let looseness = self.metric.looseness();
-        let mut hashes = [(self.lattice.root, [0; 2]); BATCH];
-        for (&neighbor, hashed) in neighbors.iter().zip(&mut hashes) {
-            let mut hash = around.rows[digit(neighbor.into(), N - 1)];
-            for axis in (0..N - 1).rev() {
-                hash = hash.axis(around.cells[axis][digit(neighbor.into(), axis)]);
-            }
-            *hashed = (hash, words(hash));
-        }
-        for (&neighbor, (hash, words)) in neighbors.iter().zip(hashes) {
+        for &neighbor in neighbors {
             if around.gap(self.metric, neighbor) > ranking.reach * looseness {
                 continue;
             }
             let digit = |axis| digit(neighbor.into(), axis);
             let cell: [i64; N] = core::array::from_fn(|axis| around.cells[axis][digit(axis)]);
             let origin: [i32; N] = core::array::from_fn(|axis| around.origins[axis][digit(axis)]);
-            self.lattice.visit_hashed(cell, hash, words, |steps, name| {
+            let words = (0..N).fold([0; 2], |words, axis| {
+                both(words, around.parts[axis][digit(axis)])
+            });
+            self.lattice.visit_words(cell, words, |steps, name| {
                 let mut vector = [0.0; N];
                 for axis in 0..N {
                     vector[axis] = (origin[axis] - steps[axis]) as f32 * STEP;

@@ -8,7 +8,6 @@
 
 use crate::search::{Hit, Name, Ranking, by_rings};
 use crate::{Axes, Feature, LIMIT, Metric, Space, Vector, WorleyError};
-use dapple_hash::{CellHash, Seed};
 
 /// The mean number of points of a bin.
 const POINTS_PER_BIN: f64 = 2.0;
@@ -214,12 +213,11 @@ where
                 let shift = turns[axis] as f64 * bins.period(axis);
                 vector[axis] = (position[axis] - (point[axis] + shift)) as f32;
             }
-            let hash = CellHash::new(Seed(0), []);
             let hit = Hit {
                 key: self.metric.key(vector),
                 vector,
                 name: Some(Name {
-                    hash,
+                    words: [0; 2],
                     index: *index,
                 }),
             };

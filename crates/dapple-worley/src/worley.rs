@@ -106,13 +106,9 @@ where
     #[cfg_attr(doc, doc = include_str!("../docs/with-seed.md"))]
     #[must_use]
     pub fn with_seed(&self, seed: Seed) -> Self {
-        let lattice = Lattice {
-            root: Lattice::root(seed),
-            ..self.lattice.clone()
-        };
         Self {
             seed,
-            lattice,
+            lattice: self.lattice.with_seed(seed),
             ..self.clone()
         }
     }
@@ -246,6 +242,7 @@ where
     /// further out than 2^62, has no place: its distances and vectors are NaN and its ids 0. Where a short period of
     /// unclamped points has no point at all, distances and vectors are infinite and ids 0.
     #[must_use]
+    #[inline]
     pub fn sample<const K: usize>(
         &self,
         position: impl Into<Vector<N>>,
@@ -281,6 +278,7 @@ where
     }
 
     /// The `K` nearest points of a place.
+    #[inline]
     pub(crate) fn hits<const K: usize>(&self, place: &Place<N>) -> [Hit<N>; K] {
         let mut hits = [Hit::NONE; K];
         Axes::nearest(self.metric, &self.lattice, place, &mut hits);
@@ -300,6 +298,7 @@ where
             .map(|hit| self.metric.distance(hit.key))
     }
 
+    #[inline]
     pub(crate) fn feature(&self, hit: Hit<N>) -> Feature<Vector<N>> {
         Feature {
             distance: self.metric.distance(hit.key),

@@ -97,6 +97,21 @@ pub(crate) fn noise_functions_perlin_3(positions: &[[f32; 3]], values: &mut [f32
     }
 }
 
+/// Fills a square of a terrain, `side` by `side` positions, `step` cells apart: six octaves and five ridged ones, warped
+/// by half a cell of two more fields.
+pub(crate) fn noise_functions_terrain(side: usize, step: f32, values: &mut [f32]) {
+    let hills = Perlin.seed(1).fbm(6, 0.5, 2.0);
+    let ridges = Perlin.seed(2).ridged().fbm(5, 0.5, 2.0);
+    let ways = [Perlin.seed(3), Perlin.seed(4)];
+    for (row, values) in values.chunks_exact_mut(side).enumerate() {
+        for (column, value) in values.iter_mut().enumerate() {
+            let at = [column as f32 * step, row as f32 * step];
+            let [x, y] = [0, 1].map(|axis| at[axis] + 0.5 * ways[axis].sample2(at));
+            *value = hills.sample2([x, y]) + 0.5 * ridges.sample2([x, y]);
+        }
+    }
+}
+
 /// Fills a raster with fractal Perlin noise, pixel by pixel. Each of the `octaves` octaves has half the feature size
 /// and half the amplitude of the previous one; the first has cells of `px_per_cell` pixels.
 pub(crate) fn noise_functions_fbm(side: usize, octaves: u32, px_per_cell: f32, values: &mut [f32]) {

@@ -1,4 +1,5 @@
-//! Our evaluation at scattered positions beside the fastest functions of other crates for one position.
+//! Our evaluation at scattered positions, of many at once and of one, beside the fastest functions of other crates for
+//! one position.
 //!
 //! The positions lie anywhere in 1000×1000 or 1000×1000×1000 cells, in random order, so that consecutive positions do
 //! not share a cell. Both sides get the same positions, the peer in single precision.
@@ -37,6 +38,34 @@ const JITTERED_IN_SPACE: Case = Case {
     ..JITTERED
 };
 
+const ONE_POSITION: Case = Case {
+    case: "2-D, one position, one jittered point per cell, F1",
+    peer: "noise-functions CellDistance, one position",
+    must: Must::CostAtMost(2.5),
+    note: "positions anywhere in 1000 cells along each axis, in random order; the peer looks at 9 cells and takes 32 bits, \
+           ours is exact",
+    ..F1_AND_F2
+};
+
+const ONE_POSITION_IN_SPACE: Case = Case {
+    case: "3-D, one position, one jittered point per cell, F1",
+    note: "positions anywhere in 1000 cells along each axis, in random order; the peer looks at 27 cells and takes 32 \
+           bits, ours is exact",
+    ..ONE_POSITION
+};
+
+const ONE_POSITION_F2: Case = Case {
+    case: "2-D, one position, one jittered point per cell, F1 and F2",
+    must: Must::CostAtMost(3.0),
+    ..ONE_POSITION
+};
+
+const ONE_POSITION_F2_IN_SPACE: Case = Case {
+    case: "3-D, one position, one jittered point per cell, F1 and F2",
+    must: Must::CostAtMost(3.0),
+    ..ONE_POSITION_IN_SPACE
+};
+
 /// The number of positions per run.
 const N_POSITIONS: usize = 1 << 16;
 
@@ -52,7 +81,11 @@ pub(super) fn run(bench: &mut Bench) -> Result<()> {
     poisson::<2>(bench, &F1_AND_F2, 0.282, plane)?;
     poisson::<3>(bench, &F1_AND_F2_IN_SPACE, 0.381, space)?;
     jittered::<2>(bench, &JITTERED, 0.430, plane)?;
-    jittered::<3>(bench, &JITTERED_IN_SPACE, 0.519, space)
+    jittered::<3>(bench, &JITTERED_IN_SPACE, 0.519, space)?;
+    one_by_one::<2, 1>(bench, &ONE_POSITION, 0.430, plane)?;
+    one_by_one::<3, 1>(bench, &ONE_POSITION_IN_SPACE, 0.519, space)?;
+    one_by_one::<2, 2>(bench, &ONE_POSITION_F2, 0.430, plane)?;
+    one_by_one::<3, 2>(bench, &ONE_POSITION_F2_IN_SPACE, 0.519, space)
 }
 
 /// A function of a peer that fills in values at positions.
@@ -107,6 +140,46 @@ where
         );
         ensure!(
             values.iter().any(|&value| value < -0.5) && values.iter().any(|&value| value > 0.2),
+            "the peer's values are flat"
+        );
+        Ok(Done::both(N_POSITIONS))
+    })
+}
+
+/// Measures the distances of one position after the other.
+fn one_by_one<const N: usize, const K: usize>(
+    bench: &mut Bench,
+    case: &Case,
+    mean: f64,
+    fill: Fill<N>,
+) -> Result<()>
+where
+    Axes: Space<N>,
+{
+    let worley = Worley::new(SEED).with_scatter(Scatter::Jittered { jitter: 1.0 })?;
+    let positions: Vec<[f64; N]> = positions_in(N_POSITIONS, N_CELLS);
+    let their_positions: Vec<[f32; N]> = positions
+        .iter()
+        .map(|at| at.map(|coordinate| coordinate as f32))
+        .collect();
+    let ours = Side::new(vec![[0.0; K]; N_POSITIONS], |values: &mut Vec<_>| {
+        for (value, &at) in values.iter_mut().zip(&positions) {
+            *value = worley.sample::<K>(at).map(|feature| feature.distance);
+        }
+    });
+    let theirs = Side::new(vec![0.0; N_POSITIONS], |values: &mut Vec<f32>| {
+        fill(&their_positions, values);
+    });
+    bench.beside(case, TURNS, ours, theirs, |ours, theirs| {
+        let sum: f64 = ours.iter().map(|found| f64::from(found[0])).sum();
+        let found = sum / ours.len() as f64;
+        // A hundredth is six standard deviations of the mean of this many positions.
+        ensure!(
+            (found / mean - 1.0).abs() <= 0.01,
+            "the mean of F1 is {found}, not {mean}"
+        );
+        ensure!(
+            theirs.iter().any(|&value| value < -0.5) && theirs.iter().any(|&value| value > 0.2),
             "the peer's values are flat"
         );
         Ok(Done::both(N_POSITIONS))

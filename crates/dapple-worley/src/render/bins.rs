@@ -6,13 +6,12 @@
 //! terms of a point are computed once, for the pixels of all the tiles that may need it.
 
 use super::LANES;
-use super::table::{CellBox, numbers, words};
+use super::table::{CellBox, numbers, row_words};
 use crate::Metric;
 use crate::fixed::{MOST_AXES, STEP, STEP_BITS};
 use crate::lattice::{Lattice, SixteenCells};
 use crate::levels::wide;
 use crate::metric::{Exact, General, Kernel, Measure};
-use dapple_hash::CellHashes;
 use dapple_raster::simd::{baseline, dispatch};
 use fearless_simd::{Level, f32x4, f32x16, i32x4, i32x16, mask32x16, prelude::*, u32x16};
 
@@ -161,15 +160,12 @@ impl Bins {
         self.len = 0;
         let side = cells.side(0);
         let padded = side.next_multiple_of(LANES) as i64;
-        let columns = (0..padded).map(|column| words(lattice.wrap(0, cells.first[0] + column)));
-        let (low, high): (Vec<u32>, Vec<u32>) = columns.map(|[low, high]| (low, high)).unzip();
-        for (hash, mut cell) in cells.rows(lattice) {
+        let columns = (0..padded).map(|column| lattice.parts(0, cells.first[0] + column).into());
+        let columns: (Vec<u32>, Vec<u32>) = columns.unzip();
+        for (row, mut cell) in cells.rows(lattice) {
             for first in (0..side).step_by(LANES) {
-                let hashes = CellHashes::splat(simd, hash).axis(
-                    u32x16::from_slice(simd, &low[first..first + LANES]),
-                    u32x16::from_slice(simd, &high[first..first + LANES]),
-                );
-                let sixteen = SixteenCells::new(simd, lattice, hashes);
+                let words = row_words(simd, row, &columns, first);
+                let sixteen = SixteenCells::new(simd, lattice, words);
                 cell[0] = cells.first[0] + first as i64;
                 let mut numbers = numbers(lattice, &sixteen, cell);
                 numbers[LANES.min(side - first)..].fill(0);

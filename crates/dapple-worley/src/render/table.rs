@@ -2,9 +2,9 @@
 
 use super::LANES;
 use crate::fixed::{MOST_AXES, STEP_BITS};
-use crate::lattice::{IDS, Lattice, SixteenCells};
+use crate::lattice::{IDS, Lattice, SixteenCells, both};
 use core::ops::Range;
-use dapple_hash::{CellHash, CellHashes};
+use dapple_hash::CellHashes;
 use dapple_raster::simd::dispatch;
 use fearless_simd::{Level, prelude::*, u32x16};
 
@@ -31,23 +31,23 @@ impl CellBox {
         self
     }
 
-    /// The rows of cells along the first axis: the hash state with which those of the row begin, and the first cell.
+    /// The rows of cells along the first axis: the parts of the words of its cells, and the first cell.
     pub(super) fn rows(
         &self,
         lattice: &Lattice,
-    ) -> impl Iterator<Item = (CellHash, [i64; MOST_AXES])> {
+    ) -> impl Iterator<Item = ([u32; 2], [i64; MOST_AXES])> {
         let n_rows: usize = (1..self.n_axes).map(|axis| self.side(axis)).product();
         (0..n_rows).map(move |mut index| {
-            let mut hash = lattice.root;
+            let mut parts = [0; 2];
             let mut cell = self.first;
             let mut rest = n_rows;
             for axis in (1..self.n_axes).rev() {
                 rest /= self.side(axis);
                 cell[axis] += (index / rest) as i64;
                 index %= rest;
-                hash = hash.axis(lattice.wrap(axis, cell[axis]));
+                parts = both(parts, lattice.parts(axis, cell[axis]));
             }
-            (hash, cell)
+            (parts, cell)
         })
     }
 
@@ -115,19 +115,16 @@ impl Table {
         self.ids.clear();
         let side = cells.side(0);
         let columns = 0..side.next_multiple_of(LANES) as i64;
-        let columns = columns.map(|column| words(lattice.wrap(0, cells.first[0] + column)));
-        let (low, high): (Vec<u32>, Vec<u32>) = columns.map(|[low, high]| (low, high)).unzip();
-        for (hash, cell) in cells.rows(lattice) {
+        let columns = columns.map(|column| lattice.parts(0, cells.first[0] + column).into());
+        let columns: (Vec<u32>, Vec<u32>) = columns.unzip();
+        for (row, cell) in cells.rows(lattice) {
             let mut corner: [i32; MOST_AXES] =
                 core::array::from_fn(|axis| ((cell[axis] - cells.first[axis]) as i32) << STEP_BITS);
             for first in (0..side).step_by(LANES) {
                 corner[0] = (first as i32) << STEP_BITS;
                 let n_cells = (side - first).min(LANES);
-                let hashes = CellHashes::splat(simd, hash).axis(
-                    u32x16::from_slice(simd, &low[first..first + LANES]),
-                    u32x16::from_slice(simd, &high[first..first + LANES]),
-                );
-                self.add(simd, lattice, hashes, corner, n_cells);
+                let words = row_words(simd, row, &columns, first);
+                self.add(simd, lattice, words, corner, n_cells);
             }
         }
     }
@@ -138,12 +135,12 @@ impl Table {
         &mut self,
         simd: S,
         lattice: &Lattice,
-        hashes: CellHashes<S>,
+        words: [u32x16<S>; 2],
         corner: [i32; MOST_AXES],
         n_cells: usize,
     ) {
         let n_axes = lattice.n_axes;
-        let cells = SixteenCells::new(simd, lattice, hashes);
+        let cells = SixteenCells::new(simd, lattice, words);
         let cell = core::array::from_fn(|axis| {
             self.cells.first[axis] + i64::from(corner[axis] >> STEP_BITS)
         });
@@ -193,7 +190,7 @@ impl Table {
         }
         self.scratch = scratch;
         if self.wants_ids {
-            self.add_ids(simd, hashes, &numbers[..n_cells]);
+            self.add_ids(simd, CellHashes::of_words(words), &numbers[..n_cells]);
         }
     }
 
@@ -298,7 +295,20 @@ pub(super) fn numbers<S: Simd>(
     numbers
 }
 
-/// The low and the high half of a coordinate.
-pub(super) fn words(coordinate: i64) -> [u32; 2] {
-    [coordinate as u32, (coordinate >> 32) as u32]
+/// The words of sixteen cells of a row, from the parts of the row and of all columns.
+#[inline(always)]
+pub(super) fn row_words<S: Simd>(
+    simd: S,
+    row: [u32; 2],
+    (first, second): &(Vec<u32>, Vec<u32>),
+    from: usize,
+) -> [u32x16<S>; 2] {
+    let columns = [
+        u32x16::from_slice(simd, &first[from..from + LANES]),
+        u32x16::from_slice(simd, &second[from..from + LANES]),
+    ];
+    both(
+        columns,
+        [u32x16::splat(simd, row[0]), u32x16::splat(simd, row[1])],
+    )
 }

@@ -1,7 +1,9 @@
 //! Tests of the table of ranges of the named combinations.
 
 use dapple_hash::Seed;
-use dapple_worley::{Axes, Combination, Metric, Space, Worley, WorleyErrorKind};
+use dapple_worley::{
+    Axes, Combination, Metric, Scatter, Space, Worley, Worley2, WorleyError, WorleyErrorKind,
+};
 
 /// The combinations whose range in the table differs from the measured range.
 fn measured_otherwise<const N: usize>() -> Vec<String>
@@ -9,15 +11,18 @@ where
     Axes: Space<N>,
 {
     let mut other = Vec::new();
-    for (_, metric) in Metric::NAMED {
-        let worley = Worley::<N>::new(Seed(0)).with_metric(metric).unwrap();
-        for (name, combination) in Combination::NAMED {
-            let texture = worley.combine(combination);
-            let range = texture.measure_range(Seed(1), 20_000).unwrap();
-            // All that makes the values, with all digits.
-            let measured = format!("{:?}", texture.clone().with_range(range));
-            if format!("{:?}", texture.normalized()) != measured {
-                other.push(format!("{metric:?} {N} {name}: {range:?}"));
+    for scatter in [Scatter::default(), Scatter::Jittered { jitter: 1.0 }] {
+        for (_, metric) in Metric::NAMED {
+            let worley = Worley::<N>::new(Seed(0)).with_metric(metric).unwrap();
+            let worley = worley.with_scatter(scatter).unwrap();
+            for (name, combination) in Combination::NAMED {
+                let texture = worley.combine(combination);
+                let range = texture.measure_range(Seed(1), 20_000).unwrap();
+                // All that makes the values, with all digits.
+                let measured = format!("{:?}", texture.clone().with_range(range));
+                if format!("{:?}", texture.normalized()) != measured {
+                    other.push(format!("{scatter:?} {metric:?} {N} {name}: {range:?}"));
+                }
             }
         }
     }
@@ -52,14 +57,32 @@ fn normalized_values_fill_zero_to_one_and_others_are_refused() {
         low.abs() < 0.02 && (high - 1.0).abs() < 0.1,
         "{low} to {high}"
     );
-    let odd = worley
-        .combine(Combination::new([0.5, 0.0, 0.0, 0.0]))
-        .normalized();
-    assert_eq!(*odd.unwrap_err().kind(), WorleyErrorKind::NoRange);
-    let dense = worley
-        .with_density(5.0)
-        .unwrap()
-        .combine(Combination::F1)
-        .normalized();
-    assert_eq!(*dense.unwrap_err().kind(), WorleyErrorKind::NoRange);
+}
+
+#[test]
+fn textures_without_a_range_say_what_is_in_the_way() {
+    let plain = Worley2::new(Seed(9));
+    let f1 = |worley: Worley2| worley.combine(Combination::F1).normalized();
+    let causes = [
+        (
+            plain
+                .combine(Combination::new([0.5, 0.0, 0.0, 0.0]))
+                .normalized(),
+            "have a name",
+        ),
+        (f1(plain.clone().with_density(5.0).unwrap()), "scatter"),
+        (f1(plain.with_varying_density(|_| 3.0)), "vary"),
+        (
+            f1(plain.clone().with_metric(Metric::Minkowski(3.0)).unwrap()),
+            "Chebyshev",
+        ),
+        (f1(plain).and_then(|texture| texture.normalized()), "yet"),
+    ];
+    for (result, cause) in causes {
+        let error: WorleyError = result.unwrap_err();
+        let WorleyErrorKind::NoRange { measured } = *error.kind() else {
+            panic!("{error}");
+        };
+        assert!(measured.contains(cause), "{measured}");
+    }
 }

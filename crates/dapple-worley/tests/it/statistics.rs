@@ -422,3 +422,36 @@ fn cell_values_are_uniform() {
     });
     is_uniform("cell values", &histogram(64, values));
 }
+
+#[test]
+fn cells_at_the_corners_of_rectangles_are_unrelated() {
+    // The words of cells are exclusive ors of the hashes of columns and rows, which cancel each other over the four
+    // corners of a rectangle. The numbers and places of points must not show it.
+    const SIDE: i64 = 256;
+    let worley = Worley::<2>::new(Seed(3));
+    // Counts are clamped to 1 to 9, with a mean of 3.05 and a variance of 2.8; places are uniform.
+    let values = |cell: [i64; 2]| {
+        let points = worley.cell_points(cell);
+        let count = (points.len() as f64 - 3.05) / 2.8_f64.sqrt();
+        let [x, y] = [points[0].offset.x, points[0].offset.y];
+        [count, (x - 0.5) * 12_f64.sqrt(), (y - 0.5) * 12_f64.sqrt()]
+    };
+    for [dx, dy] in [[1, 1], [2, 1], [1, 16], [64, 64]] {
+        let mut products = [0.0; 3];
+        for cell in 0..SIDE * SIDE {
+            let [x, y] = [cell % SIDE, cell / SIDE];
+            let corners = [[x, y], [x + dx, y], [x, y + dy], [x + dx, y + dy]].map(values);
+            for (which, product) in products.iter_mut().enumerate() {
+                *product += corners.iter().map(|corner| corner[which]).product::<f64>();
+            }
+        }
+        for product in products {
+            // The mean of so many products of independent numbers with variance 1 has a deviation of 1 / SIDE.
+            let mean = product / (SIDE * SIDE) as f64;
+            assert!(
+                mean.abs() < QUANTILE / SIDE as f64,
+                "{dx}, {dy}: {products:?}"
+            );
+        }
+    }
+}

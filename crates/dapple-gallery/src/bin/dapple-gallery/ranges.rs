@@ -1,29 +1,40 @@
 //! Measures the ranges of the named combinations of Worley's basis, for the table in `dapple-worley`.
 
-use dapple_worley::{Axes, Combination, Metric, Space, Worley, WorleyError, hash::Seed};
+use dapple_worley::{Axes, Combination, Metric, Scatter, Space, Worley, WorleyError, hash::Seed};
 use std::fmt::Write as _;
 
-/// Returns the table as it stands in `crates/dapple-worley/src/ranges.rs`: metrics, numbers of axes, combinations.
+/// Returns the table as it stands in `crates/dapple-worley/src/ranges.rs`: scatters, metrics, numbers of axes,
+/// combinations.
 pub(crate) fn table() -> anyhow::Result<String> {
     let mut text = String::from("[\n");
-    for (_, metric) in Metric::NAMED {
-        let rows = [row::<2>(metric)?, row::<3>(metric)?, row::<4>(metric)?];
-        writeln!(text, "    [\n{}    ],", rows.concat())?;
+    for scatter in [Scatter::default(), Scatter::Jittered { jitter: 1.0 }] {
+        text.push_str("    [\n");
+        for (_, metric) in Metric::NAMED {
+            let rows = [
+                row::<2>(scatter, metric)?,
+                row::<3>(scatter, metric)?,
+                row::<4>(scatter, metric)?,
+            ];
+            writeln!(text, "        [\n{}        ],", rows.concat())?;
+        }
+        text.push_str("    ],\n");
     }
     text.push(']');
     Ok(text)
 }
 
-/// Returns the row of a metric: the ranges of all combinations with `N` axes.
-fn row<const N: usize>(metric: Metric) -> Result<String, WorleyError>
+/// Returns the row of a scatter and a metric: the ranges of all combinations with `N` axes.
+fn row<const N: usize>(scatter: Scatter, metric: Metric) -> Result<String, WorleyError>
 where
     Axes: Space<N>,
 {
-    let worley = Worley::<N>::new(Seed(0)).with_metric(metric)?;
+    let worley = Worley::<N>::new(Seed(0))
+        .with_scatter(scatter)?
+        .with_metric(metric)?;
     let ranges = Combination::NAMED.map(|(_, combination)| {
         let range = worley.combine(combination).measure_range(Seed(1), 20_000);
         range.map(|range| format!("{range:?}"))
     });
     let ranges: Result<Vec<_>, _> = ranges.into_iter().collect();
-    Ok(format!("        [{}],\n", ranges?.join(", ")))
+    Ok(format!("            [{}],\n", ranges?.join(", ")))
 }
