@@ -10,7 +10,7 @@ pub use combinators::FieldExt;
 pub use fractal::{Fractal, FractalShape};
 pub use period::common_period;
 pub use positions::{Frequency, Offset, Rotated, Warped};
-pub use values::{Mapped, Mixed, Pair, PairOperation};
+pub use values::{Change, Linear, Mapped, Mixed, Pair, PairOperation};
 
 use crate::{Raster, RasterError, RasterErrorKind, RasterViewMut, Window};
 use core::fmt;
@@ -19,8 +19,8 @@ use std::sync::Arc;
 
 /// A scalar function of the plane that can also fill a window.
 ///
-/// References, boxes and `Arc`s of fields are fields, and so are numbers (`f32`, the same everywhere) and closures in
-/// [`field_fn`]. Fields are composed with the methods of [`FieldExt`].
+/// References, boxes and `Arc`s of fields are fields, and so are a [`Constant`] and closures in [`field_fn`]. Fields are
+/// composed with the methods of [`FieldExt`], which take numbers, too.
 ///
 /// All methods give the same bits: `render` and `sample_many` equal `sample` at every position. An implementation
 /// overrides them when it is faster on many positions at once. At a position that is not finite the value is NaN.
@@ -134,14 +134,54 @@ macro_rules! forward_field {
 
 forward_field!(&F, Box<F>, Arc<F>);
 
-/// The constant field of this value.
-impl Field for f32 {
+/// The field that has one value everywhere.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Constant(pub f32);
+
+impl Field for Constant {
     fn sample(&self, _position: DVec2) -> f32 {
-        *self
+        self.0
     }
 
     fn period(&self) -> [Option<f64>; 2] {
         [Some(0.0); 2]
+    }
+}
+
+/// What can stand for a field in an argument: a field, or a number, which is a [`Constant`] then.
+///
+/// Numbers are not fields themselves: with [`FieldExt`] in scope, `value.max(0.0)` would be ambiguous for an `f32`.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_raster::{Field, FieldExt, field_fn, glam::DVec2};
+///
+/// let slope = field_fn(|position| position.x as f32);
+/// assert_eq!(slope.add(2.0).sample(DVec2::new(0.25, 7.0)), 2.25);
+/// assert_eq!([1.0_f32, 3.0].map(|value| value.max(2.0)), [2.0, 3.0]);
+/// ```
+pub trait IntoField {
+    /// The field.
+    type Field: Field;
+
+    /// This as a field.
+    fn into_field(self) -> Self::Field;
+}
+
+impl<F: Field> IntoField for F {
+    type Field = F;
+
+    fn into_field(self) -> F {
+        self
+    }
+}
+
+impl IntoField for f32 {
+    type Field = Constant;
+
+    fn into_field(self) -> Constant {
+        Constant(self)
     }
 }
 

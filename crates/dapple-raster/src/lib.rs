@@ -39,8 +39,8 @@ pub mod text;
 
 pub use error::{RasterError, RasterErrorKind};
 pub use field::{
-    Field, FieldExt, FieldFn, Fractal, FractalShape, Frequency, Mapped, Mixed, Offset, Pair,
-    PairOperation, Rotated, Warped, common_period, field_fn,
+    Change, Constant, Field, FieldExt, FieldFn, Fractal, FractalShape, Frequency, IntoField,
+    Linear, Mapped, Mixed, Offset, Pair, PairOperation, Rotated, Warped, common_period, field_fn,
 };
 pub use glam;
 pub use named::Named;

@@ -1,9 +1,10 @@
 //! The trait [`FieldExt`]: methods that compose fields.
 
 use super::{
-    Fractal, FractalShape, Frequency, Mapped, Mixed, Offset, Pair, PairOperation, Rotated, Warped,
+    Fractal, FractalShape, Frequency, Linear, Mapped, Mixed, Offset, Pair, PairOperation, Rotated,
+    Warped,
 };
-use crate::{Field, RasterError};
+use crate::{Field, IntoField, RasterError};
 use glam::DVec2;
 
 /// Composition of fields: transformed positions, changed values, and sums at several scales.
@@ -58,11 +59,16 @@ pub trait FieldExt: Field + Sized {
     /// This field at the position plus `amount · (x, y)`, where `x` and `y` are the values of two fields there: domain
     /// warping. An amount of 1 moves a position by as many units of the plane as the values say.
     #[doc(alias = "domain warping")]
-    fn warp<X: Field, Y: Field>(self, x: X, y: Y, amount: f64) -> Warped<Self, X, Y> {
+    fn warp<X: IntoField, Y: IntoField>(
+        self,
+        x: X,
+        y: Y,
+        amount: f64,
+    ) -> Warped<Self, X::Field, Y::Field> {
         Warped {
             field: self,
-            x,
-            y,
+            x: x.into_field(),
+            y: y.into_field(),
             amount,
         }
     }
@@ -80,11 +86,7 @@ pub trait FieldExt: Field + Sized {
     /// # Errors
     ///
     /// [`Range`](crate::RasterErrorKind::Range) if the length of `from` is 0 or not finite, or an end of `to` is not finite.
-    fn remap(
-        self,
-        from: [f32; 2],
-        to: [f32; 2],
-    ) -> Result<Mapped<Self, impl Fn(f32) -> f32 + Copy + Send + Sync>, RasterError> {
+    fn remap(self, from: [f32; 2], to: [f32; 2]) -> Result<Mapped<Self, Linear>, RasterError> {
         let length = from[1] - from[0];
         for (what, value, holds, range) in [
             (
@@ -98,47 +100,55 @@ pub trait FieldExt: Field + Sized {
         ] {
             RasterError::check_range(holds && value.is_finite(), what, value.into(), range)?;
         }
-        Ok(self.map(move |value| to[0] + (to[1] - to[0]) * ((value - from[0]) / length)))
+        let from = from[0];
+        Ok(Mapped {
+            field: self,
+            function: Linear { from, length, to },
+        })
     }
 
     /// The sum of two fields.
-    fn add<B: Field>(self, other: B) -> Pair<Self, B> {
+    fn add<B: IntoField>(self, other: B) -> Pair<Self, B::Field> {
         self.with(other, PairOperation::Add)
     }
 
     /// This field less another.
-    fn sub<B: Field>(self, other: B) -> Pair<Self, B> {
+    fn sub<B: IntoField>(self, other: B) -> Pair<Self, B::Field> {
         self.with(other, PairOperation::Subtract)
     }
 
     /// The product of two fields.
-    fn mul<B: Field>(self, other: B) -> Pair<Self, B> {
+    fn mul<B: IntoField>(self, other: B) -> Pair<Self, B::Field> {
         self.with(other, PairOperation::Multiply)
     }
 
     /// The smaller of the values of two fields.
-    fn min<B: Field>(self, other: B) -> Pair<Self, B> {
+    fn min<B: IntoField>(self, other: B) -> Pair<Self, B::Field> {
         self.with(other, PairOperation::Minimum)
     }
 
     /// The larger of the values of two fields.
-    fn max<B: Field>(self, other: B) -> Pair<Self, B> {
+    fn max<B: IntoField>(self, other: B) -> Pair<Self, B::Field> {
         self.with(other, PairOperation::Maximum)
     }
 
     /// Two fields combined value by value with an operation.
-    fn with<B: Field>(self, other: B, operation: PairOperation) -> Pair<Self, B> {
+    fn with<B: IntoField>(self, other: B, operation: PairOperation) -> Pair<Self, B::Field> {
         Pair {
             first: self,
-            second: other,
+            second: other.into_field(),
             operation,
         }
     }
 
     /// The linear interpolation from this field to another: this field where `by` is 0 or less, the other one where it
     /// is 1 or more.
-    fn mix<B: Field, T: Field>(self, to: B, by: T) -> Mixed<Self, B, T> {
-        Mixed { from: self, to, by }
+    fn mix<B: IntoField, T: IntoField>(self, to: B, by: T) -> Mixed<Self, B::Field, T::Field> {
+        Mixed {
+            from: self,
+            to: to.into_field(),
+            by: by.into_field(),
+        }
     }
 
     /// Fractional Brownian motion: `Σ gain^i · field(lacunarity^i · position)` for `i` below `octaves`.

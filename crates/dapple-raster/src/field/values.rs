@@ -15,6 +15,33 @@ pub struct Mapped<F, M> {
     pub(super) function: M,
 }
 
+/// What a [`Mapped`] field does with a value: any function of a number, or a [`Linear`] one.
+pub trait Change: Send + Sync {
+    /// The new value.
+    fn change(&self, value: f32) -> f32;
+}
+
+impl<M: Fn(f32) -> f32 + Send + Sync> Change for M {
+    fn change(&self, value: f32) -> f32 {
+        self(value)
+    }
+}
+
+/// The linear function from one range to another: see [`FieldExt::remap`](super::FieldExt::remap).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Linear {
+    pub(super) from: f32,
+    pub(super) length: f32,
+    pub(super) to: [f32; 2],
+}
+
+impl Change for Linear {
+    fn change(&self, value: f32) -> f32 {
+        let [start, end] = self.to;
+        start + (end - start) * ((value - self.from) / self.length)
+    }
+}
+
 /// Two fields combined value by value: see [`FieldExt::add`](super::FieldExt::add) and its siblings.
 #[derive(Clone, Copy, Debug)]
 pub struct Pair<A, B> {
@@ -74,15 +101,15 @@ where
     }
 }
 
-impl<F: Field, M: Fn(f32) -> f32 + Send + Sync> Field for Mapped<F, M> {
+impl<F: Field, M: Change> Field for Mapped<F, M> {
     fn sample(&self, position: DVec2) -> f32 {
-        (self.function)(self.field.sample(position))
+        self.function.change(self.field.sample(position))
     }
 
     fn sample_many(&self, positions: &[DVec2], values: &mut [f32]) -> Result<(), RasterError> {
         self.field.sample_many(positions, values)?;
         for value in values {
-            *value = (self.function)(*value);
+            *value = self.function.change(*value);
         }
         Ok(())
     }
@@ -91,7 +118,7 @@ impl<F: Field, M: Fn(f32) -> f32 + Send + Sync> Field for Mapped<F, M> {
         self.field.render(window, out.reborrow())?;
         for values in out.rows_mut() {
             for value in values {
-                *value = (self.function)(*value);
+                *value = self.function.change(*value);
             }
         }
         Ok(())

@@ -183,3 +183,23 @@ fn numbers_out_of_range_are_refused() {
     }
     assert!(Waves.remap([0.0, 1.0], [0.0, f32::NAN]).is_err(), "to NaN");
 }
+
+#[test]
+fn numbers_keep_their_own_methods_beside_the_trait() {
+    use core::ops::{Add as _, Mul as _, Sub as _};
+
+    // All of these names are methods of `FieldExt`, too.
+    let values = [-1.0_f32, 0.5, 3.0];
+    let clipped: Vec<f32> = values.iter().map(|value| value.max(0.0)).collect();
+    assert_eq!(clipped, [0.0, 0.5, 3.0]);
+    let halved: Vec<f32> = values.iter().map(|value| value.mul(0.5).min(1.0)).collect();
+    assert_eq!(halved, [-0.5, 0.25, 1.0]);
+    let sum: f32 = (&values[1]).add(&values[2]);
+    assert_eq!(sum, 3.5);
+    assert_eq!(values[2].clamp(0.0, 1.0).mul_add(2.0, 1.0), 3.0);
+    assert_eq!(Ord::max(3, 4), 3.max(4));
+    assert_eq!(1.0_f32.sub(0.25), 0.75);
+    // And numbers stand for fields in arguments.
+    let field = Waves.mix(1.0, 0.25).add(2.0).max(0.5).warp(0.0, Waves, 0.1);
+    assert_eq!(field.period(), [Some(2.0), Some(3.0)]);
+}
