@@ -13,6 +13,12 @@ use crate::mix::{GOLDEN, mix64};
 )]
 pub struct Seed(pub u64);
 
+impl From<u64> for Seed {
+    fn from(seed: u64) -> Self {
+        Self(seed)
+    }
+}
+
 impl Seed {
     /// The seed of a part: its bits depend on this seed, on `name` and on `index`.
     ///

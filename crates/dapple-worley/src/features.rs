@@ -204,7 +204,9 @@ impl Tone {
     where
         Axes: Space<N>,
     {
-        let vectors = worley.nearest(self.depth(), place).map(|hit| hit.vector);
+        let vectors = worley
+            .nearest_hits(self.depth(), place)
+            .map(|hit| hit.vector);
         self.gradient(worley.metric, &vectors)
     }
 }

@@ -160,6 +160,7 @@ where
                 OctaveSeeds::Same => self.worley.clone(),
                 OctaveSeeds::Own => self
                     .worley
+                    .clone()
                     .with_seed(self.worley.seed.child("octave", u64::from(index))),
             };
             for period in &mut worley.lattice.period {

@@ -51,7 +51,7 @@ impl Tone {
     where
         Axes: Space<N>,
     {
-        let hits = worley.nearest(self.depth(), place);
+        let hits = worley.nearest_hits(self.depth(), place);
         self.of(&hits.map(|hit| worley.metric.distance(hit.key)))
     }
 

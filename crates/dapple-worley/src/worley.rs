@@ -105,11 +105,11 @@ where
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/with-seed.md"))]
     #[must_use]
-    pub fn with_seed(&self, seed: Seed) -> Self {
+    pub fn with_seed(self, seed: Seed) -> Self {
         Self {
             seed,
             lattice: self.lattice.with_seed(seed),
-            ..self.clone()
+            ..self
         }
     }
 
@@ -157,11 +157,11 @@ where
     ///
     /// let ramp = Ramp { from: DVec2::ZERO, to: DVec2::X * 20.0, start: 0.5, end: 8.0 };
     /// let worley = Worley2::new(Seed(7)).with_varying_density(move |at| ramp.at(at));
-    /// assert!(worley.sample::<1>([30.0, 1.0])[0].distance < 2.0);
+    /// assert!(worley.nearest([30.0, 1.0]).distance < 2.0);
     /// ```
     #[must_use]
     pub fn with_varying_density(
-        &self,
+        self,
         density: impl Fn(Vector<N>) -> f64 + Send + Sync + 'static,
     ) -> Self {
         let of = Arc::new(move |position: [f64; MOST_AXES]| {
@@ -169,12 +169,9 @@ where
         });
         let lattice = Lattice {
             density: Some(Density { of }),
-            ..self.lattice.clone()
+            ..self.lattice
         };
-        Self {
-            lattice,
-            ..self.clone()
-        }
+        Self { lattice, ..self }
     }
 
     /// This basis with another metric.
@@ -208,7 +205,7 @@ where
     /// # Errors
     ///
     /// [`Range`](crate::WorleyErrorKind::Range) if a period is 0.
-    pub fn with_period(&self, period: [Option<u32>; N]) -> Result<Self, WorleyError> {
+    pub fn with_period(self, period: [Option<u32>; N]) -> Result<Self, WorleyError> {
         WorleyError::check(!period.contains(&Some(0)), "period", 0.0, "at least 1 cell")?;
         let mut cells = [0; MOST_AXES];
         for (cells, period) in cells.iter_mut().zip(period) {
@@ -216,11 +213,23 @@ where
         }
         let lattice = Lattice {
             period: cells,
-            ..self.lattice.clone()
+            ..self.lattice
         };
-        Ok(Self {
-            lattice,
-            ..self.clone()
+        Ok(Self { lattice, ..self })
+    }
+
+    /// The seed of the feature points.
+    #[must_use]
+    pub fn seed(&self) -> Seed {
+        self.seed
+    }
+
+    /// The number of cells after which the feature points repeat along each axis.
+    #[must_use]
+    pub fn periods(&self) -> [Option<u32>; N] {
+        core::array::from_fn(|axis| match self.lattice.period[axis] {
+            0 => None,
+            cells => Some(cells),
         })
     }
 
@@ -234,6 +243,14 @@ where
     #[must_use]
     pub fn scatter(&self) -> Scatter {
         self.scatter
+    }
+
+    /// The nearest feature point of a position: the first of [`sample`](Self::sample).
+    #[must_use]
+    #[inline]
+    pub fn nearest(&self, position: impl Into<Vector<N>>) -> Feature<Vector<N>> {
+        let [nearest] = self.sample(position);
+        nearest
     }
 
     /// The `K` nearest feature points of a position, nearest first; `K` is from 1 to 4.
@@ -286,7 +303,7 @@ where
     }
 
     /// The `n` nearest points of a place, at most four; the rest are absent.
-    pub(crate) fn nearest(&self, n: usize, place: &Place<N>) -> [Hit<N>; LIMIT] {
+    pub(crate) fn nearest_hits(&self, n: usize, place: &Place<N>) -> [Hit<N>; LIMIT] {
         let mut hits = [Hit::NONE; LIMIT];
         Axes::nearest(self.metric, &self.lattice, place, &mut hits[..n]);
         hits

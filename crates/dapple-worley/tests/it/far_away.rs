@@ -128,8 +128,8 @@ where
 {
     for metric in METRICS {
         let worley = Worley::<N>::new(Seed(84)).with_metric(metric)?;
-        let varying = worley.with_varying_density(|at| at.into()[0]);
-        let periodic = worley.with_period([Some(3); N])?;
+        let varying = worley.clone().with_varying_density(|at| at.into()[0]);
+        let periodic = worley.clone().with_period([Some(3); N])?;
         for (worley, at) in [&worley, &varying, &periodic]
             .into_iter()
             .flat_map(|worley| {
@@ -291,7 +291,7 @@ where
 fn windows_without_a_place_hold_what_samples_give() -> Result<(), WorleyError> {
     let worley = Worley::<2>::new(Seed(85));
     windows_hold_what_samples_give(&worley)?;
-    windows_hold_what_samples_give(&worley.with_period([Some(3), None])?)?;
+    windows_hold_what_samples_give(&worley.clone().with_period([Some(3), None])?)?;
     windows_hold_what_samples_give(&worley.with_varying_density(|at| at.x))?;
     windows_hold_what_samples_give(&Worley::<3>::new(Seed(85)))
 }

@@ -119,7 +119,11 @@ where
             OctaveSeeds::Same => seed,
             OctaveSeeds::Own => seed.child("octave", u64::from(index)),
         };
-        let octave = texture.worley().with_seed(seed).combine(combination);
+        let octave = texture
+            .worley()
+            .clone()
+            .with_seed(seed)
+            .combine(combination);
         let scaled = at.map(|part| part * frequency);
         sum += weight * f64::from(octave.value(Vector::<N>::from(scaled)));
         frequency *= octaves.lacunarity;
@@ -325,7 +329,10 @@ fn pictures_of_one_period_fit_together_bit_for_bit() -> Result<(), WorleyError> 
 #[test]
 fn bad_octaves_are_refused_with_their_number() -> Result<(), WorleyError> {
     let texture = Worley::<2>::new(Seed(112)).combine(Combination::F1);
-    let periodic = texture.worley().with_period([Some(1 << 20), None])?;
+    let periodic = texture
+        .worley()
+        .clone()
+        .with_period([Some(1 << 20), None])?;
     let periodic = periodic.combine(Combination::F1);
     let default = Octaves::default();
     let count = |count| Octaves { count, ..default };

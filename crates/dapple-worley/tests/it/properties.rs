@@ -352,7 +352,7 @@ proptest! {
         let worley = Worley::<2>::new(Seed(seed));
         for other in [other, seed ^ 1 << bit, seed.wrapping_add(1)] {
             prop_assume!(other != seed);
-            let changed = worley.with_seed(Seed(other));
+            let changed = worley.clone().with_seed(Seed(other));
             prop_assert_ne!(points_about(&worley, cell), points_about(&changed, cell));
             let ids = [&worley, &changed].map(|worley| worley.sample::<1>(cell.map(|part| part as f64))[0].id);
             prop_assert_ne!(ids[0], ids[1]);
@@ -545,7 +545,7 @@ fn points_at_the_same_distance_are_in_the_order_of_their_ids() {
 fn positions_just_below_a_whole_number_are_those_of_the_last_step_or_of_the_number() {
     for metric in [Metric::Euclidean, Metric::Minkowski(3.0)] {
         let worley = Worley::<2>::new(Seed(65)).with_metric(metric).unwrap();
-        let periodic = worley.with_period([Some(1), Some(3)]).unwrap();
+        let periodic = worley.clone().with_period([Some(1), Some(3)]).unwrap();
         for (worley, whole) in [&worley, &periodic]
             .into_iter()
             .flat_map(|worley| [0.0, 1.0, -1.0, 3.0, 4_294_967_296.0].map(|whole| (worley, whole)))

@@ -71,7 +71,7 @@ fn textures_without_a_range_say_what_is_in_the_way() {
             "have a name",
         ),
         (f1(plain.clone().with_density(5.0).unwrap()), "scatter"),
-        (f1(plain.with_varying_density(|_| 3.0)), "vary"),
+        (f1(plain.clone().with_varying_density(|_| 3.0)), "vary"),
         (
             f1(plain.clone().with_metric(Metric::Minkowski(3.0)).unwrap()),
             "Chebyshev",

@@ -68,7 +68,9 @@ pub(super) const VARYING: Strip = Strip {
     caption: "Feature points and their Voronoi cells in 8 by 8 unit cells",
     render: || {
         let worley = basis();
-        let ramp = worley.with_varying_density(|at| 0.25 + 0.12 * at.x * at.x);
+        let ramp = worley
+            .clone()
+            .with_varying_density(|at| 0.25 + 0.12 * at.x * at.x);
         let disk = worley.with_varying_density(|at| {
             let from_middle = (at - DVec2::splat(4.0)).length_squared();
             if from_middle < 6.25 { 8.0 } else { 0.5 }
