@@ -16,7 +16,7 @@ use dapple_points::{
 use dapple_pups::{
     CowOptions, OctavesOptions, Pups, SpaceGiraffeOptions, cow, space_giraffe, turbulence,
 };
-use dapple_raster::{Field, Named, Ramp, Raster, Varying, Window, glam::DVec2};
+use dapple_raster::{Field, Named, Ramp, Raster, Varying, Window, Wrap, glam::DVec2};
 use dapple_tile::{
     Blend, CornerTiles, Layer, Map, Method, Mixing, Seamless, SoftCut, Weighting, blend_by_tile,
     rank_equalize, repeat,
@@ -114,7 +114,10 @@ fn folder() -> PathBuf {
 fn color_normal_map() -> anyhow::Result<Vec<u8>> {
     let dome = |at: DVec2| (0.2 - (at - DVec2::splat(0.5)).length_squared()).max(0.0) as f32;
     let height = Raster::from_window(&window()?, dome)?;
-    let normals = normal_map(&height, &HeightPlane::for_window(&window()?).into())?;
+    let normals = normal_map(
+        &height,
+        &HeightPlane::for_window(&window()?, [Wrap::Repeat; 2]).into(),
+    )?;
     let codes = normals.map(|normal| normal.to_codes::<u8>());
     Ok(encode_png(codes.view(), Transfer::Data)?)
 }

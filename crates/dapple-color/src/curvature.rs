@@ -86,12 +86,12 @@ impl CurvatureOptions {
 ///
 /// ```
 /// use dapple_color::{HeightPlane, curvature, curvature_to_gray};
-/// use dapple_raster::{Raster, Window};
+/// use dapple_raster::{Raster, Window, Wrap};
 ///
 /// // A hill around the middle of the unit square.
 /// let window = Window::unit([64, 64])?;
 /// let hill = Raster::from_window(&window, |at| -(at - 0.5).length_squared() as f32)?;
-/// let bent = curvature(&hill, &HeightPlane::for_window(&window).into())?;
+/// let bent = curvature(&hill, &HeightPlane::for_window(&window, [Wrap::Clamp; 2]).into())?;
 /// assert!((bent.row(32)[32] - 2.0).abs() < 0.01, "the top is that of a sphere of radius 1/2");
 /// assert!(curvature_to_gray(bent.row(32)[32], 0.1) > 0.59);
 /// # Ok::<(), Box<dyn std::error::Error>>(())

@@ -9,12 +9,12 @@
 //!
 //! ```
 //! use dapple_color::{HeightPlane, OcclusionOptions, ambient_occlusion};
-//! use dapple_raster::{Raster, Window};
+//! use dapple_raster::{Raster, Window, Wrap};
 //!
 //! // A groove along the middle of the unit square, with walls of 45 degrees.
 //! let window = Window::unit([64, 64])?;
 //! let height = Raster::from_window(&window, |at| (at.x - 0.5).abs() as f32)?;
-//! let options = OcclusionOptions { radius: 0.5, ..HeightPlane::for_window(&window).into() };
+//! let options = OcclusionOptions { radius: 0.5, ..HeightPlane::for_window(&window, [Wrap::Clamp; 2]).into() };
 //! let seen = ambient_occlusion(&height, &options)?;
 //! assert!((0.5..0.6).contains(&seen.row(32)[33]), "half of the sky, but for the end of the walls");
 //! # Ok::<(), Box<dyn std::error::Error>>(())
@@ -31,6 +31,7 @@ mod hex;
 mod linear;
 mod normal;
 mod occlusion;
+mod of_field;
 mod oklab;
 mod palette;
 mod plane;
@@ -46,6 +47,7 @@ pub use normal::{
     Normal, NormalOptions, NormalY, normal_map, normal_map_from_gradient, normal_map_of_part,
 };
 pub use occlusion::{OcclusionOptions, ambient_occlusion, ambient_occlusion_of_part};
+pub use of_field::{ambient_occlusion_of_field, curvature_of_field, normal_map_of_field};
 pub use palette::Palette;
 pub use plane::{HeightPlane, continue_heights};
 pub use ramp::{ColorRamp, ColorStop, Interpolation, Outside, RampSpace};

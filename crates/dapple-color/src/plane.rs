@@ -40,12 +40,15 @@ impl Default for HeightPlane {
 }
 
 impl HeightPlane {
-    /// The plane of heights that were rendered in a window.
+    /// The plane of heights that were rendered in a window, whose sides wrap as given: both repeat in a picture that tiles;
+    /// in a part of a larger plane neither does, and [`normal_map_of_field`](crate::normal_map_of_field) and its siblings
+    /// read the heights past its sides.
     #[must_use]
-    pub fn for_window(window: &Window) -> Self {
+    pub fn for_window(window: &Window, wrap: [Wrap; 2]) -> Self {
         let size = DVec2::new(window.size[0].into(), window.size[1].into());
         Self {
             extent: (window.pixel * window.scale * size).abs(),
+            wrap,
             ..Self::default()
         }
     }

@@ -11,7 +11,7 @@ use dapple::hash::Seed;
 use dapple::image::{Depth, write_color_png, write_normal_png};
 use dapple::points::Domain;
 use dapple::pups::{OctavesOptions, octaves};
-use dapple::raster::{Field, Window, glam::DVec2};
+use dapple::raster::{Field, Window, Wrap, glam::DVec2};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     // Control points at least 0.2 apart in the first octave; each further one is twice as fine and half as strong.
@@ -34,7 +34,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     // Heights of 1 are a tenth of the tile high. The map repeats because the height does.
     let plane = HeightPlane {
         strength: 0.1,
-        ..HeightPlane::for_window(&window)
+        ..HeightPlane::for_window(&window, [Wrap::Repeat; 2])
     };
     let path = out::path("04_pups_noise_normal.png")?;
     write_normal_png(&path, &normal_map(&height, &plane.into())?, Depth::Eight)?;

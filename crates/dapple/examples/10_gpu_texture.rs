@@ -16,7 +16,7 @@ use dapple::color::{HeightPlane, Palette, normal_map};
 use dapple::hash::Seed;
 use dapple::image::{Transfer, write_png};
 use dapple::pups::{CellsOptions, cells};
-use dapple::raster::{Field, Raster, Window};
+use dapple::raster::{Field, Raster, Window, Wrap};
 use upload::Upload;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -25,7 +25,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let window = Window::new(domain.origin, domain.size, [256, 256])?;
     let values = cells(&options, Seed(7))?.to_raster(&window)?;
     let upload = Upload::color(&Palette::Ember.ramp().apply(&values))?;
-    let normals = normal_map(&values, &HeightPlane::for_window(&window).into())?;
+    let normals = normal_map(
+        &values,
+        &HeightPlane::for_window(&window, [Wrap::Repeat; 2]).into(),
+    )?;
     for upload in [&upload, &Upload::normal(&normals)?] {
         tell(upload);
     }

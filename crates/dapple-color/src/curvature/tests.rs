@@ -170,7 +170,7 @@ fn pixels_need_not_be_square() {
     let ball = Raster::from_window(&window, |at| ball(at) as f32).unwrap();
     let options = CurvatureOptions {
         radius: 0.01,
-        ..HeightPlane::for_window(&window).into()
+        ..HeightPlane::for_window(&window, [Wrap::Repeat; 2]).into()
     };
     assert_eq!(
         options.halo([256, 256]),

@@ -61,7 +61,7 @@ fn a_plane_has_the_normal_of_its_slope() {
     let plane = Raster::from_window(&window, |at| (3.0 * at.x - 4.0 * at.y) as f32).unwrap();
     let options = HeightPlane {
         strength: 0.5,
-        ..HeightPlane::for_window(&window)
+        ..HeightPlane::for_window(&window, [Wrap::Repeat; 2])
     }
     .into();
     let normal = normal_map(&plane, &options).unwrap().row(7)[9];

@@ -73,7 +73,7 @@ fn a_tilted_plane_hides_nothing_of_its_sky() {
             radius: 0.15,
             plane: HeightPlane {
                 wrap: [Wrap::Clamp; 2],
-                ..HeightPlane::for_window(&window)
+                ..HeightPlane::for_window(&window, [Wrap::Repeat; 2])
             },
             ..OcclusionOptions::default()
         };

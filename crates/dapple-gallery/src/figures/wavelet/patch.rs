@@ -8,7 +8,7 @@ use super::super::fractal::FractalNoise;
 use dapple_color::{HeightPlane, LinearRgb, NormalOptions, NormalY, normal_map};
 use dapple_points::Domain;
 use dapple_points::hash::{CellHash, Seed, unit_f64};
-use dapple_raster::{Raster, RasterError, Window};
+use dapple_raster::{Raster, RasterError, Window, Wrap};
 use glam::{DVec2, DVec3};
 
 /// The side of a picture, in parts.
@@ -149,7 +149,7 @@ impl Patch {
             y: NormalY::OpenGl,
             plane: HeightPlane {
                 strength: depth,
-                ..HeightPlane::for_window(&self.window)
+                ..HeightPlane::for_window(&self.window, [Wrap::Repeat; 2])
             },
         };
         let height = spots.map(|spot| spot.height);
