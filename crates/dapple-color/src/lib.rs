@@ -43,10 +43,12 @@ pub use code::Code;
 pub use curvature::{CurvatureOptions, curvature, curvature_of_part, curvature_to_gray};
 pub use error::{ColorError, ColorErrorKind};
 pub use linear::{LinearRgb, LinearRgba};
-pub use normal::{
-    Normal, NormalOptions, NormalY, normal_map, normal_map_from_gradient, normal_map_of_part,
-};
-pub use occlusion::{OcclusionOptions, ambient_occlusion, ambient_occlusion_of_part};
+#[doc(alias("height map", "heightmap", "bump map", "normal map"))]
+pub use normal::normal_map;
+pub use normal::{Normal, NormalOptions, NormalY, normal_map_from_gradient, normal_map_of_part};
+#[doc(alias("ao", "ambient occlusion"))]
+pub use occlusion::ambient_occlusion;
+pub use occlusion::{OcclusionOptions, ambient_occlusion_of_part};
 pub use of_field::{ambient_occlusion_of_field, curvature_of_field, normal_map_of_field};
 pub use palette::Palette;
 pub use plane::{HeightPlane, continue_heights};

@@ -104,8 +104,6 @@ impl NormalOptions {
 /// assert_eq!(normals.row(3)[5].to_codes::<u8>(), [128, 128, 255]);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[doc(alias = "heightmap")]
-#[doc(alias = "bump map")]
 pub fn normal_map(
     height: &Raster<f32>,
     options: &NormalOptions,

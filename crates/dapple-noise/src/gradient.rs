@@ -27,6 +27,9 @@ pub(crate) const MOST_CORNERS: usize = 8;
 /// Perlin's improved noise: every corner of a lattice of unit cells has a random gradient, and the noise is 0 there
 /// with that slope, and smooth in between.
 ///
+/// So the value at a whole position is 0, for every seed. A grid of blocks or tiles needs positions between the corners,
+/// such as the block's number times 0.1, or [`fractal`](Self::fractal), whose octaves have offsets of their own.
+///
 /// Most of the power lies between ½ and 1½ cycles per cell. The value and its first and second derivatives are
 /// continuous. Over all positions and seeds the mean is 0 and the variance `VARIANCE` (0.0931 in the plane, 0.0729 in space
 /// and 0.0857 in four dimensions). No value is further from zero than `BOUND` (1, 1.0364 and 1.5366). There is no
@@ -44,7 +47,6 @@ pub(crate) const MOST_CORNERS: usize = 8;
 /// assert_eq!(noise.sample([3.0, -8.0, 21.0]), 0.0);
 /// # Ok::<(), dapple_noise::raster::RasterError>(())
 /// ```
-#[doc(alias = "perlin")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct GradientNoise<const N: usize> {
     seed: Seed,

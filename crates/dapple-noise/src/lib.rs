@@ -24,5 +24,7 @@ mod slice;
 
 pub use dapple_hash as hash;
 pub use dapple_raster as raster;
-pub use gradient::{GradientNoise, GradientNoise2, GradientNoise3, GradientNoise4};
+#[doc(alias("perlin", "perlin noise", "simplex", "fbm", "ridged", "turbulence"))]
+pub use gradient::GradientNoise;
+pub use gradient::{GradientNoise2, GradientNoise3, GradientNoise4};
 pub use slice::Slice;

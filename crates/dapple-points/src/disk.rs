@@ -58,8 +58,6 @@ const GIVEN_SLACK: f64 = 1e-9;
 /// assert!((260..300).contains(&points.len()));
 /// # Ok::<(), dapple_points::PointsError>(())
 /// ```
-#[doc(alias = "blue noise")]
-#[doc(alias = "Poisson disc")]
 pub fn poisson_disk(domain: Domain, radius: f64, seed: Seed) -> Result<PointSet, PointsError> {
     PoissonDisk::new(domain, radius)?.sample(seed)
 }

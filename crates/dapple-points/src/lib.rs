@@ -19,8 +19,10 @@ mod variable;
 
 pub use dapple_hash as hash;
 pub use dapple_raster as raster;
+#[doc(alias("blue noise", "poisson disc", "poisson disk", "poisson sampling"))]
+pub use disk::poisson_disk;
 pub use disk::{
-    MAX_POISSON_DISK_POINTS, PoissonDisk, extend_poisson_disk, poisson_disk, poisson_disk_about,
+    MAX_POISSON_DISK_POINTS, PoissonDisk, extend_poisson_disk, poisson_disk_about,
     poisson_disk_radius,
 };
 pub use domain::Domain;

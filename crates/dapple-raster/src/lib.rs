@@ -38,9 +38,11 @@ pub mod simd;
 pub mod text;
 
 pub use error::{RasterError, RasterErrorKind};
+#[doc(alias("heightmap", "height map", "noise"))]
+pub use field::Field;
 pub use field::{
-    Change, Constant, Field, FieldExt, FieldFn, Fractal, FractalShape, Frequency, IntoField,
-    Linear, Mapped, Mixed, Offset, Pair, PairOperation, Rotated, Warped, common_period, field_fn,
+    Change, Constant, FieldExt, FieldFn, Fractal, FractalShape, Frequency, IntoField, Linear,
+    Mapped, Mixed, Offset, Pair, PairOperation, Rotated, Warped, common_period, field_fn,
 };
 pub use glam;
 pub use named::Named;

@@ -191,9 +191,9 @@ pub use matcher::{Match, Matcher, MatcherMemory, distance_sq};
 pub use neighborhood::{Part, Pass, Reads, Schedule, Shape};
 pub use options::{Axes, Coherence, Matching, Options, Sources};
 pub use orientation::{Direction, Orientation, Symmetry};
-pub use plane::{
-    PlaneTexture, synthesize_plane, synthesize_plane_guided, synthesize_plane_with, tile_plane,
-};
+#[doc(alias("texture synthesis", "inpaint", "inpainting"))]
+pub use plane::synthesize_plane;
+pub use plane::{PlaneTexture, synthesize_plane_guided, synthesize_plane_with, tile_plane};
 pub use plane_along::{PlaneAlong, PlaneScales, synthesize_plane_along};
 pub use side_by_side::SideBySide;
 pub use sites::{

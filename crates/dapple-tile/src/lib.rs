@@ -73,7 +73,9 @@ mod pyramid;
 #[cfg(test)]
 mod test_fields;
 
-pub use blend::{Blend, Layer, Mixing, blend, blend_by_tile};
+#[doc(alias("splat map", "terrain blending"))]
+pub use blend::blend;
+pub use blend::{Blend, Layer, Mixing, blend_by_tile};
 pub use blend_map::BlendMap;
 pub use corner::CornerTiles;
 pub use crossfade::Crossfade;
@@ -88,6 +90,8 @@ pub use repeat::{repeat, repeat_into};
 pub use report::{
     ChannelReport, DetailKept, Fault, Seam, SeamOptions, SeamRatio, SeamReport, SeamReports,
 };
+#[doc(alias("tileable", "seamless"))]
+pub use seamless::Seamless;
 pub use seamless::*;
 pub use weighting::Weighting;
 

@@ -102,7 +102,9 @@ mod noise_tile;
 
 pub use bands::Bands;
 pub use error::{WaveletError, WaveletErrorKind};
-pub use noise::{WaveletNoise, WaveletNoise2, WaveletNoise3};
+#[doc(alias("band-limited noise", "simplex"))]
+pub use noise::WaveletNoise;
+pub use noise::{WaveletNoise2, WaveletNoise3};
 pub use noise_tile::wavelet_tile;
 pub use plane::FilterMemory;
 pub use spline::{Border, Degree, Fit, Phase, SplineFilter};

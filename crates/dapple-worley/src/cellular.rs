@@ -158,7 +158,7 @@ where
 
     /// This texture with values mapped so that about 0 to 1 is their range. The ranges come from a table of
     /// measurements for [the combinations that have a name](Combination::NAMED), the default scatter and
-    /// [`Scatter::Jittered`] with a jitter of 1, and every metric but Minkowski's. One value in a thousand lies below 0,
+    /// [`Scatter::Jittered`](crate::Scatter::Jittered) with a jitter of 1, and every metric but Minkowski's. One value in a thousand lies below 0,
     /// and one above 1.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/normalized.md"))]

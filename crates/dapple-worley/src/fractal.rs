@@ -98,8 +98,6 @@ impl Octaves {
 /// assert!(crumpled.value([0.5, 0.25, 3.0]) > 0.0);
 /// # Ok::<(), dapple_worley::WorleyError>(())
 /// ```
-#[doc(alias = "fBm")]
-#[doc(alias = "turbulence")]
 #[derive(Clone, Debug)]
 pub struct Fractal<const N: usize> {
     octaves: Vec<Octave<N>>,

@@ -81,10 +81,13 @@ pub use cellular::Cellular;
 pub use combination::Combination;
 pub use dapple_hash as hash;
 pub use dapple_raster as raster;
+#[doc(alias("voronoi edges", "cell borders"))]
 pub use edges::EdgeDistances;
 pub use error::{WorleyError, WorleyErrorKind};
 pub use features::FeatureView;
-pub use fractal::{Fractal, OctaveSeeds, Octaves};
+#[doc(alias("fbm", "turbulence", "ridged"))]
+pub use fractal::Fractal;
+pub use fractal::{OctaveSeeds, Octaves};
 pub use metric::Metric;
 pub use plane::Plane;
 pub use profile::Profile;
@@ -93,4 +96,6 @@ pub use scatter::Scatter;
 pub use set::FeatureSet;
 pub use slice::Slice;
 pub use space::{Axes, Space, Vector};
-pub use worley::{CellPoint, Feature, LIMIT, RESOLUTION, Worley, Worley2, Worley3, Worley4};
+#[doc(alias("voronoi", "cellular noise", "cellular", "cell noise"))]
+pub use worley::Worley;
+pub use worley::{CellPoint, Feature, LIMIT, RESOLUTION, Worley2, Worley3, Worley4};

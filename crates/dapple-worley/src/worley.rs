@@ -37,8 +37,6 @@ pub type Worley4 = Worley<4>;
 /// assert!(first.distance <= second.distance);
 /// # Ok::<(), dapple_worley::WorleyError>(())
 /// ```
-#[doc(alias = "Voronoi")]
-#[doc(alias = "cellular noise")]
 #[derive(Clone, Debug)]
 pub struct Worley<const N: usize> {
     pub(crate) seed: Seed,
