@@ -542,7 +542,7 @@ impl<S: Simd, const K: usize> Found<S, K> {
 
 /// The vector from a point to the place, in steps, where both are relative to the lower corner of the point's cell.
 #[inline(always)]
-fn vector<S: Simd, const N: usize>(
+pub(crate) fn vector<S: Simd, const N: usize>(
     origins: &[i32x16<S>; N],
     point: &[u32x16<S>; N],
 ) -> [f32x16<S>; N] {

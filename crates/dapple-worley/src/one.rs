@@ -7,12 +7,13 @@ use crate::Metric;
 use crate::fixed::{Place, STEP, STEPS};
 use crate::lattice::{Lattice, SixteenCells, both};
 use crate::levels::wide;
-use crate::many::{Found, Search};
+use crate::many::{Found, NOTHING, Search, vector};
+use crate::metric::Measure as _;
 use crate::places::{LANES, cells_by_distance, digit};
 use crate::search::{self, Hit, Name, Ranking};
 use dapple_hash::mix32_pairs;
 use dapple_raster::simd;
-use fearless_simd::{i32x16, prelude::*, u32x16};
+use fearless_simd::{i32x16, mask32x16, prelude::*, u32x16};
 
 /// The number of cells that are visited: the nearest ones on average. The others are the own cell's neighbors across
 /// most corners and the cells beyond the neighbors.
@@ -45,12 +46,13 @@ fn finds<const N: usize>(
     }
     let search = Search::new(N, lattice, metric);
     let level = simd::level();
-    let is_certain = if lattice.counts.thresholds().is_empty() && hits.len() == 1 {
-        wide!(level, simd => search_by_axes::<_, N, 1, true>(simd, search, place, hits))
+    let counts = &lattice.counts;
+    let is_certain = if counts.thresholds().is_empty() && counts.least() == 1 {
+        wide!(level, simd => search_by_axes::<_, N, 0>(simd, search, place, hits))
     } else if hits.len() <= 2 {
-        wide!(level, simd => search_by_axes::<_, N, 2, false>(simd, search, place, hits))
+        wide!(level, simd => search_by_axes::<_, N, 2>(simd, search, place, hits))
     } else {
-        wide!(level, simd => search_by_axes::<_, N, 4, false>(simd, search, place, hits))
+        wide!(level, simd => search_by_axes::<_, N, 4>(simd, search, place, hits))
     };
     is_certain.unwrap_or(false)
 }
@@ -93,8 +95,12 @@ impl<const N: usize> Around<N> {
             for which in 0..3 {
                 let cell = self.cells[axis][which];
                 words[3 * axis + which] = cell as u32;
-                is_near &= cell == i64::from(cell as i32);
             }
+            // The coordinates are whole numbers of 32 bits with a sign.
+            is_near &= match lattice.period[axis] {
+                0 => self.cells[axis][0].unsigned_abs() < (1 << 31) - 1,
+                period => period <= 1 << 31,
+            };
         }
         let mut parts = [[0; LANES]; 2];
         if is_near {
@@ -119,17 +125,9 @@ impl<const N: usize> Around<N> {
         parts
     }
 
-    /// Visits the cells, in `C` registers; `IS_SINGLE` says that each has one point.
+    /// The words of the cells, and the place in steps from their lower edges, in `C` registers.
     #[inline(always)]
-    fn search<S: Simd, const K: usize, const C: usize, const IS_SINGLE: bool>(
-        &self,
-        simd: S,
-        search: Search<'_>,
-        place: &Place<N>,
-        hits: &mut [Hit<N>],
-    ) -> bool {
-        let lattice = search.lattice;
-        let (index_bits, code_mask) = (search.index_bits, search.code_mask);
+    fn lanes<S: Simd, const C: usize>(&self, simd: S, lattice: &Lattice) -> Lanes<S, N, C> {
         let mut words = [[u32x16::splat(simd, 0); 2]; C];
         let mut origins = [[i32x16::splat(simd, 0); N]; C];
         let [first, second] = self.parts(simd, lattice);
@@ -146,27 +144,7 @@ impl<const N: usize> Around<N> {
                 origins[register][axis] = pick(digits, &origin, 0).bitcast();
             }
         }
-        let mut cells = SixteenCells::new_each(simd, lattice, words);
-        let mut found = Found::<S, K>::new(simd, 0);
-        for register in 0..C {
-            // What is known to be 0 is not computed where a register of the processor has eight lanes.
-            let numbers = u32x16::from_slice(simd, &const { numbers() }[register]);
-            let is_visited = numbers.simd_lt(n_visited(N) as u32);
-            let counts = cells[register].counts;
-            let counts = if IS_SINGLE {
-                u32x16::splat(simd, 1)
-            } else {
-                counts
-            };
-            cells[register].counts = is_visited.select(counts, u32x16::splat(simd, 0));
-            let most = if IS_SINGLE {
-                1
-            } else {
-                cells[register].counts.reduce_max()
-            };
-            let codes = numbers << index_bits;
-            found.look(search, &cells[register], &origins[register], codes, most);
-        }
+        let cells = SixteenCells::new_each(simd, lattice, words);
         let mut halves = [[[0; 8]; 2]; 4];
         for register in 0..C {
             for which in 0..2 {
@@ -174,6 +152,85 @@ impl<const N: usize> Around<N> {
                 low.store_slice(&mut halves[2 * register][which]);
                 high.store_slice(&mut halves[2 * register + 1][which]);
             }
+        }
+        Lanes {
+            cells,
+            origins,
+            halves,
+        }
+    }
+
+    /// Visits cells that have one point each.
+    #[inline(always)]
+    fn search_single<S: Simd, const C: usize>(
+        &self,
+        simd: S,
+        search: Search<'_>,
+        hits: &mut [Hit<N>],
+    ) -> bool {
+        let lanes = self.lanes::<S, C>(simd, search.lattice);
+        let mut keys = [u32x16::splat(simd, NOTHING); C];
+        let mut vectors = [[[0.0; 8]; N]; 4];
+        for register in 0..C {
+            let index = u32x16::splat(simd, 0);
+            let point: [_; N] = lanes.cells[register].steps(index, search.lattice.jitter);
+            let mut vector = vector(&lanes.origins[register], &point);
+            let key = search.exact.keys(vector);
+            keys[register] =
+                is_visited::<S, N>(simd, register).select(key.bitcast(), keys[register]);
+            for axis in 0..N {
+                vector[axis] *= STEP;
+                let (low, high) = vector[axis].split();
+                low.store_slice(&mut vectors[2 * register][axis]);
+                high.store_slice(&mut vectors[2 * register + 1][axis]);
+            }
+        }
+        for hit in &mut *hits {
+            let mut least = keys[0].reduce_min();
+            for register in 1..C {
+                least = least.min(keys[register].reduce_min());
+            }
+            let mut lanes_of_least = 0;
+            for register in 0..C {
+                let is_least = keys[register].simd_eq(least);
+                lanes_of_least |= is_least.to_bitmask() << (register * LANES);
+                keys[register] = is_least.select(u32x16::splat(simd, NOTHING), keys[register]);
+            }
+            // The order of points with one key is decided by their ids.
+            if !lanes_of_least.is_power_of_two() {
+                return false;
+            }
+            let number = lanes_of_least.trailing_zeros() as usize % n_visited(N);
+            let (half, lane) = (number / 8, number % 8);
+            for axis in 0..N {
+                hit.vector[axis] = vectors[half][axis][lane];
+            }
+            hit.key = search.exact.0.key(hit.vector);
+            let words = lanes.words(number);
+            hit.name = Some(Name { words, index: 0 });
+        }
+        true
+    }
+
+    /// Visits cells with any number of points.
+    #[inline(always)]
+    fn search_several<S: Simd, const K: usize, const C: usize>(
+        &self,
+        simd: S,
+        search: Search<'_>,
+        hits: &mut [Hit<N>],
+    ) -> bool {
+        let (index_bits, code_mask) = (search.index_bits, search.code_mask);
+        let mut lanes = self.lanes::<S, C>(simd, search.lattice);
+        let mut found = Found::<S, K>::new(simd, 0);
+        for register in 0..C {
+            let numbers = u32x16::from_slice(simd, &const { numbers() }[register]);
+            let cells = &mut lanes.cells[register];
+            let zero = u32x16::splat(simd, 0);
+            cells.counts = is_visited::<S, N>(simd, register).select(cells.counts, zero);
+            let most = cells.counts.reduce_max();
+            let codes = numbers << index_bits;
+            found.look(search, cells, &lanes.origins[register], codes, most);
         }
         let mut coded = found.pop();
         for rank in 0..K {
@@ -186,18 +243,13 @@ impl<const N: usize> Around<N> {
                 return false;
             }
             let code = coded & code_mask;
-            let (number, index) = (
-                (code >> index_bits) as usize,
-                code & ((1 << index_bits) - 1),
-            );
-            let number = number % n_visited(N);
-            let (half, lane) = (number / 8, number % 8);
-            let words = [halves[half][0][lane], halves[half][1][lane]];
-            *hit = self.hit(search, cells_by_distance::<N>()[number], words, index);
+            let number = (code >> index_bits) as usize % n_visited(N);
+            let index = code & ((1 << index_bits) - 1);
+            let neighbor = cells_by_distance::<N>()[number];
+            *hit = self.hit(search, neighbor, lanes.words(number), index);
             coded = next;
         }
-        let reach = hits.last().map_or(0.0, |hit| hit.key);
-        reach < self.border(search.exact.0) || visit_rest(search, place, hits)
+        true
     }
 
     /// A lower bound of the keys of all points of cells that are not visited.
@@ -270,19 +322,49 @@ fn visit_rest<const N: usize>(search: Search<'_>, place: &Place<N>, hits: &mut [
     ranking.reach() < around.outer_border(exact.0)
 }
 
+/// The cells of a search, one in each lane.
+struct Lanes<S: Simd, const N: usize, const C: usize> {
+    cells: [SixteenCells<S>; C],
+    /// The place, in steps from the lower corners of the cells.
+    origins: [[i32x16<S>; N]; C],
+    /// The words of the cells in memory, eight at a time.
+    halves: [[[u32; 8]; 2]; 4],
+}
+
+impl<S: Simd, const N: usize, const C: usize> Lanes<S, N, C> {
+    /// The words of a cell.
+    #[inline(always)]
+    fn words(&self, number: usize) -> [u32; 2] {
+        let [first, second] = &self.halves[number / 8];
+        [first[number % 8], second[number % 8]]
+    }
+}
+
+/// Whether the cells of a register are visited. What is known of the others is not computed where a register of the
+/// processor has eight lanes.
 #[inline(always)]
-fn search_by_axes<S: Simd, const N: usize, const K: usize, const IS_SINGLE: bool>(
+fn is_visited<S: Simd, const N: usize>(simd: S, register: usize) -> mask32x16<S> {
+    let numbers = u32x16::from_slice(simd, &const { numbers() }[register]);
+    numbers.simd_lt(n_visited(N) as u32)
+}
+
+/// Searches for at most `K` points, or for any number of them in cells with one point each if `K` is 0.
+#[inline(always)]
+fn search_by_axes<S: Simd, const N: usize, const K: usize>(
     simd: S,
     search: Search<'_>,
     place: &Place<N>,
     hits: &mut [Hit<N>],
 ) -> bool {
     let around = Around::new(search.lattice, place);
-    if const { N == 2 } {
-        around.search::<S, K, 1, IS_SINGLE>(simd, search, place, hits)
-    } else {
-        around.search::<S, K, 2, IS_SINGLE>(simd, search, place, hits)
-    }
+    let is_certain = match const { (N, K) } {
+        (2, 0) => around.search_single::<S, 1>(simd, search, hits),
+        (_, 0) => around.search_single::<S, 2>(simd, search, hits),
+        (2, _) => around.search_several::<S, K, 1>(simd, search, hits),
+        _ => around.search_several::<S, K, 2>(simd, search, hits),
+    };
+    let reach = hits.last().map_or(0.0, |hit| hit.key);
+    is_certain && (reach < around.border(search.exact.0) || visit_rest(search, place, hits))
 }
 
 /// The code of each cell along each axis, see [`places`](crate::places), in two registers.

@@ -263,16 +263,19 @@ where
         position: impl Into<Vector<N>>,
     ) -> [Feature<Vector<N>>; K] {
         const { assert!(K >= 1 && K <= LIMIT, "F1 to F4 are there to be asked for") };
-        match Place::new(position.into().into()) {
-            Some(place) => self.hits(&place).map(|hit| self.feature(hit)),
-            None => {
-                [Feature {
-                    distance: f32::NAN,
-                    vector: [f64::NAN; N].into(),
-                    id: 0,
-                }; K]
+        let mut features = [Feature {
+            distance: f32::NAN,
+            vector: [f64::NAN; N].into(),
+            id: 0,
+        }; K];
+        if let Some(place) = Place::new(position.into().into()) {
+            // Not mapped: that would be a call for each.
+            let hits = self.hits::<K>(&place);
+            for (feature, hit) in features.iter_mut().zip(hits) {
+                *feature = self.feature(hit);
             }
         }
+        features
     }
 
     /// The feature points of a cell, in no particular order. All other results follow from them.
@@ -315,9 +318,13 @@ where
 
     #[inline]
     pub(crate) fn feature(&self, hit: Hit<N>) -> Feature<Vector<N>> {
+        let mut vector = [0.0; N];
+        for axis in 0..N {
+            vector[axis] = f64::from(hit.vector[axis]);
+        }
         Feature {
             distance: self.metric.distance(hit.key),
-            vector: hit.vector.map(f64::from).into(),
+            vector: vector.into(),
             id: hit.name.map_or(0, Name::id),
         }
     }

@@ -164,7 +164,9 @@ where
         .collect();
     let ours = Side::new(vec![[0.0; K]; N_POSITIONS], |values: &mut Vec<_>| {
         for (value, &at) in values.iter_mut().zip(&positions) {
-            *value = worley.sample::<K>(at).map(|feature| feature.distance);
+            for (value, feature) in value.iter_mut().zip(worley.sample::<K>(at)) {
+                *value = feature.distance;
+            }
         }
     });
     let theirs = Side::new(vec![0.0; N_POSITIONS], |values: &mut Vec<f32>| {
