@@ -6,7 +6,7 @@
 use crate::error::Result;
 use crate::function::{Function, Made, Volume, position, scales};
 use dapple::raster::glam::DVec2;
-use dapple::raster::{Field, Fractal, RasterError, RasterViewMut, Window};
+use dapple::raster::{Constant, Field, Fractal, RasterError, RasterViewMut, Window};
 use std::sync::Arc;
 
 /// Returns a part of a composition in a plane: its index, and the change of each further coordinate.
@@ -160,7 +160,9 @@ impl Volume for Composed {
                 rest: rest.to_vec(),
             }),
             // The same composition was made before, at other coordinates.
-            _ => self.plane(rest).unwrap_or_else(|_| Arc::new(f32::NAN)),
+            _ => self
+                .plane(rest)
+                .unwrap_or_else(|_| Arc::new(Constant(f32::NAN))),
         }
     }
 }

@@ -11,7 +11,8 @@ use crate::recipe::NodeMade;
 use crate::shared::{Build, Shared};
 use dapple::raster::glam::DVec2;
 use dapple::raster::{
-    Field, FieldExt, Fractal, FractalShape, PairOperation, RasterError, RasterViewMut, Window,
+    Constant, Field, FieldExt, Fractal, FractalShape, PairOperation, RasterError, RasterViewMut,
+    Window,
 };
 use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -299,7 +300,7 @@ impl Made {
     /// Makes the function of this description.
     fn function(&self) -> Result<Function> {
         match self {
-            Self::Constant(number) => return Ok(Function::Plane(Arc::new(*number))),
+            Self::Constant(number) => return Ok(Function::Plane(Arc::new(Constant(*number)))),
             Self::Worley(made) => return made.build(),
             Self::GradientNoise(made) => return made.build(),
             Self::WaveletNoise(made) => return made.get(),
