@@ -117,7 +117,7 @@ mod tests {
 
     #[test]
     fn neighboring_corners_are_not_correlated() {
-        let value = |x: i64, y: i64| f64::from(hash(1, [x, y, 0])) / 2_f64.powi(32) - 0.5;
+        let value = |x: i64, y: i64| f64::from(hash(1, [x, y, 0])) / 4_294_967_296.0 - 0.5;
         let side = 512;
         for [dx, dy] in [
             [1, 0],

@@ -411,10 +411,6 @@ impl Column {
 
     /// Blends the corners of a column, in the order of [`corner`], along all axes but the first, the last axis last.
     #[inline(always)]
-    #[expect(
-        clippy::needless_range_loop,
-        reason = "a range is unrolled; an iterator that skips an axis is not, and takes twice as long"
-    )]
     pub(crate) fn blend<const N: usize>(
         mut columns: [Self; MOST_CORNERS],
         offsets: &[f32; N],

@@ -91,7 +91,7 @@ fn value<S: Simd, const N: usize>(
     for index in 0..corners(N) {
         let mut row = u32x16::splat(simd, 0);
         for axis in 1..N {
-            row = row ^ parts[axis][index >> (axis - 1) & 1];
+            row ^= parts[axis][index >> (axis - 1) & 1];
         }
         let bits = lattice_bits([row ^ parts[0][0], row ^ parts[0][1]]);
         for side in 0..2 {
@@ -104,7 +104,7 @@ fn value<S: Simd, const N: usize>(
                 } else {
                     offsets[axis]
                 };
-                value = value + gradient[axis] * offset;
+                value += gradient[axis] * offset;
             }
             columns[side][index] = [gradient[0], value];
         }

@@ -196,8 +196,9 @@ fn numbers_keep_their_own_methods_beside_the_trait() {
     assert_eq!(halved, [-0.5, 0.25, 1.0]);
     let sum: f32 = (&values[1]).add(&values[2]);
     assert_eq!(sum, 3.5);
-    assert_eq!(values[2].clamp(0.0, 1.0).mul_add(2.0, 1.0), 3.0);
-    assert_eq!(Ord::max(3, 4), 3.max(4));
+    assert_eq!(values[2].clamp(0.0, 1.0), 1.0);
+    let lengths = [3_usize, 4].map(|length| length.max(values.len() + 1));
+    assert_eq!(lengths, [4, 4]);
     assert_eq!(1.0_f32.sub(0.25), 0.75);
     // And numbers stand for fields in arguments.
     let field = Waves.mix(1.0, 0.25).add(2.0).max(0.5).warp(0.0, Waves, 0.1);
