@@ -100,7 +100,7 @@ pub(super) struct PlaneArgs {
     /// Make only those pixels of the example again at which this image, of its size, is white, such as a scratch or a thing
     /// that does not belong there. All others stay as they are. Of an example that is a mesh, those of its texture and of the
     /// maps in its material, from what is around them on the mesh. A repaired glTF file stays the same document, with other
-    /// images. If each unit square has a texture (UDIM), there is a mask for each, as in 'mask.<UDIM>.png', and an output
+    /// images. If each unit square has a texture (UDIM), there is a mask for each, as in `mask.<UDIM>.png`, and an output
     /// NAME.1001.png.
     #[arg(long, value_name = "IMAGE", conflicts_with_all = ["size", "wrap", "evenness", "paper"])]
     pub(super) repair: Option<PathBuf>,
