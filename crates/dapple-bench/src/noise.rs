@@ -199,7 +199,7 @@ pub(crate) fn one_by_one<const N: usize>(
     }
 }
 
-/// Measures values at positions anywhere in a cube of `cells`, in random order, beside Perlin noise of
+/// Measures values at positions anywhere in a cube of `cells`, in random order, next to Perlin noise of
 /// `noise-functions`.
 pub(crate) fn beside_perlin<const N: usize>(
     bench: &mut Bench,

@@ -1,7 +1,7 @@
 //! Maps of a field in a window, which look at the heights past the sides of the window where the field has them.
 //!
-//! A raster ends at its sides, so that a map of it needs to be told how heights go on there. A field does not end: the maps
-//! of two windows side by side fit, and those of a window are the same in every window that contains it.
+//! A raster ends at its sides, so a map of it needs a rule for the heights beyond. A field does not end: the maps of two
+//! adjacent windows fit, and the map of a window is the same in every window that contains it.
 
 use crate::{
     ColorError, CurvatureOptions, HeightPlane, Normal, NormalOptions, OcclusionOptions,

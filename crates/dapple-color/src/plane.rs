@@ -40,7 +40,7 @@ impl Default for HeightPlane {
 }
 
 impl HeightPlane {
-    /// The plane of heights that were rendered in a window, whose sides wrap as given: both repeat in a picture that tiles;
+    /// The plane of heights that were rendered in a window, whose sides wrap as given: both repeat in a raster that tiles;
     /// in a part of a larger plane neither does, and [`normal_map_of_field`](crate::normal_map_of_field) and its siblings
     /// read the heights past its sides.
     #[must_use]

@@ -104,7 +104,7 @@ mod tests {
                     *flips += changed >> output & 1;
                 }
             }
-            // Gradients are chosen by the upper 24 bits, of which the first five decide nearly always.
+            // The upper 24 bits choose a gradient, and the first five of them decide nearly always.
             for (output, &flips) in flips.iter().enumerate().skip(24) {
                 let rate = (f64::from(flips) / n as f64 - 0.5).abs();
                 if rate > worst.0 {

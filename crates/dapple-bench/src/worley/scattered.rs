@@ -1,4 +1,4 @@
-//! Our evaluation at scattered positions, of many at once and of one, beside the fastest functions of other crates for
+//! Our evaluation at scattered positions, of many at once and of one, next to the fastest functions of other crates for
 //! one position.
 //!
 //! The positions lie anywhere in 1000×1000 or 1000×1000×1000 cells, in random order, so that consecutive positions do
