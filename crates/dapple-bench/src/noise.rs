@@ -215,7 +215,7 @@ pub(crate) fn beside_perlin<const N: usize>(
     let at: Vec<[f64; N]> = positions_in(N_POSITIONS, f64::from(cells));
     let their_at: Vec<[f32; N]> = at.iter().map(|at| at.map(|part| part as f32)).collect();
     let ours = Side::new(vec![0.0; N_POSITIONS], |values: &mut Vec<f32>| {
-        fill(&at, values)
+        fill(&at, values);
     });
     let theirs = Side::new(vec![0.0; N_POSITIONS], |values: &mut Vec<f32>| {
         perlin(&their_at, values);

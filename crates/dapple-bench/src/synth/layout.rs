@@ -1,4 +1,5 @@
-//! Charts beside triangles by area on a large mesh, each with the synthesis and the bake around it.
+//! Layouts of large meshes, each with the synthesis and the bake around it: charts next to triangles by area, and loose
+//! squares with all that the defaults do next to the synthesis of the paper.
 
 use super::scene::{Picture, leaves};
 use crate::harness::Bench;
@@ -22,6 +23,17 @@ const CHARTS: Case = Case {
     note: "wall time on two threads, 65,536 sites; the model is a procedural animal",
 };
 
+const LOOSE: Case = Case {
+    case: "synthesis and bake of 40,344 loose squares, map 2048×2048",
+    peer: "ours, as in the paper",
+    must: Must::CostAtMost(3.0),
+    note: "wall time on two threads, 65,536 sites; the squares cover a cube",
+    ..CHARTS
+};
+
+/// The squares along an edge of the cube.
+const SQUARES: u32 = 82;
+
 /// The side of the texture map in texels.
 const MAP_SIDE: u32 = 2048;
 
@@ -32,16 +44,29 @@ const RUNS: u32 = 2;
 type Layout = fn(&Surface, u32) -> Result<Atlas, SynthError>;
 
 pub(super) fn run(bench: &mut Bench) -> Result<()> {
-    if !bench.wants(&CHARTS) {
-        return Ok(());
+    if bench.wants(&CHARTS) {
+        charts(bench)?;
     }
+    if bench.wants(&LOOSE) {
+        loose(bench)?;
+    }
+    Ok(())
+}
+
+/// Charts next to triangles by area.
+fn charts(bench: &mut Bench) -> Result<()> {
     let (mesh, _) = bunny(100_000)?.repair();
+    let down = Direction {
+        at: bunny::TAIL,
+        vector: DVec3::NEG_Y,
+    };
     let picture = leaves(64)?;
     let (mut charts, mut area) = (f64::INFINITY, f64::INFINITY);
     for _ in 0..RUNS {
         let sides: [(Layout, _); 2] = [(Atlas::charts, &mut charts), (Atlas::by_area, &mut area)];
         for (layout, least) in sides {
-            let (seconds, made) = bench.on_two(|| baked(&mesh, &picture, layout));
+            let (seconds, made) =
+                bench.on_two(|| baked(&mesh, &picture, &[down], layout, &Options::default()));
             made?;
             *least = f64::min(*least, seconds);
         }
@@ -50,15 +75,66 @@ pub(super) fn run(bench: &mut Bench) -> Result<()> {
     Ok(())
 }
 
+/// Loose squares with the default options next to those of the paper.
+fn loose(bench: &mut Bench) -> Result<()> {
+    let mesh = loose_squares()?;
+    let picture = leaves(64)?;
+    let (mut ours, mut paper) = (f64::INFINITY, f64::INFINITY);
+    for _ in 0..RUNS {
+        let sides = [
+            (Options::default(), &mut ours),
+            (Options::paper(), &mut paper),
+        ];
+        for (options, least) in sides {
+            let (seconds, made) =
+                bench.on_two(|| baked(&mesh, &picture, &[], Atlas::by_area, &options));
+            made?;
+            *least = f64::min(*least, seconds);
+        }
+    }
+    bench.measured(&LOOSE, ours, paper);
+    Ok(())
+}
+
+/// The surface of a cube as squares that share no vertex.
+fn loose_squares() -> Result<Mesh> {
+    let mut positions = Vec::new();
+    let mut faces = Vec::new();
+    let edge = 2.0 / f64::from(SQUARES);
+    for side in 0..6 {
+        let axis = side / 2;
+        let out = if side % 2 == 0 { 1.0 } else { -1.0 };
+        for square in 0..SQUARES * SQUARES {
+            let first = positions.len() as u32;
+            for corner in [[0.05, 0.05], [0.95, 0.05], [0.95, 0.95], [0.05, 0.95]] {
+                let [x, y] = [square % SQUARES, square / SQUARES].map(f64::from);
+                // Turned over on the other side, so that all squares face out.
+                let along = [
+                    (x + corner[0]) * edge - 1.0,
+                    ((y + corner[1]) * edge - 1.0) * out,
+                ];
+                let mut position = [out; 3];
+                position[(axis + 1) % 3] = along[0];
+                position[(axis + 2) % 3] = along[1];
+                positions.push(DVec3::from(position));
+            }
+            faces.extend([[0, 1, 2], [0, 2, 3]].map(|face| face.map(|corner| first + corner)));
+        }
+    }
+    Ok(Mesh::new(positions, &faces)?)
+}
+
 /// Covers a mesh with an example and bakes it.
-fn baked(mesh: &Mesh, picture: &Picture, layout: Layout) -> Result<Raster<LinearRgb>> {
+fn baked(
+    mesh: &Mesh,
+    picture: &Picture,
+    directions: &[Direction],
+    layout: Layout,
+    options: &Options,
+) -> Result<Raster<LinearRgb>> {
     let surface = Surface::new(mesh.clone())?;
     let atlas = layout(&surface, MAP_SIDE)?;
-    let down = Direction {
-        at: bunny::TAIL,
-        vector: DVec3::NEG_Y,
-    };
-    let synthesizer = Synthesizer::new(surface, &[down], &HierarchyOptions::default())?;
-    let texture = synthesizer.synthesize(&picture.exemplar()?, &Options::default())?;
+    let synthesizer = Synthesizer::new(surface, directions, &HierarchyOptions::default())?;
+    let texture = synthesizer.synthesize(&picture.exemplar()?, options)?;
     Ok(bake_colors(&synthesizer, &texture, &picture.image, &atlas)?)
 }
