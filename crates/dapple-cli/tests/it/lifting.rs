@@ -84,6 +84,20 @@ fn colors_of_vertices_are_lifted_too() {
     }
 }
 
+/// Checks that texels differ in the stain of the mask alone, and that some do.
+fn assert_only_the_stain_is_new(before: &Raster<[u8; 3]>, after: &Raster<[u8; 3]>) {
+    let mut n_new = 0;
+    for y in 0..SHELL_SIDE {
+        for x in 0..SHELL_SIDE {
+            let is_stain = x.abs_diff(128) < 24 && y.abs_diff(128) < 24;
+            let [before, after] = [before, after].map(|map| map.row(y)[x as usize]);
+            assert!(is_stain || before == after, "texel {x} {y}");
+            n_new += usize::from(before != after);
+        }
+    }
+    assert!(n_new > 0, "something is made again");
+}
+
 #[test]
 fn a_repair_of_a_mesh_changes_only_texels_that_are_white_in_its_mask() {
     let folder = Folder::with_inputs("mending");
@@ -96,16 +110,7 @@ fn a_repair_of_a_mesh_changes_only_texels_that_are_white_in_its_mask() {
     let after = codes(clean.material.base_color.as_ref());
     let alone = std::fs::read(folder.path("clean.png")).unwrap();
     assert!(codes(Some(&EncodedImage::new(alone).unwrap())) == after);
-    let mut n_new = 0;
-    for y in 0..SHELL_SIDE {
-        for x in 0..SHELL_SIDE {
-            let is_stain = x.abs_diff(128) < 24 && y.abs_diff(128) < 24;
-            let [before, after] = [&before, &after].map(|map| map.row(y)[x as usize]);
-            assert!(is_stain || before == after, "texel {x} {y}");
-            n_new += usize::from(before != after);
-        }
-    }
-    assert!(n_new > 0, "something is made again");
+    assert_only_the_stain_is_new(&before, &after);
     assert_eq!(clean.uvs, read_model(folder.path("shell.glb")).unwrap().uvs);
 }
 
@@ -329,16 +334,7 @@ fn a_repair_writes_an_image_for_each_unit_square() {
     let before = codes(Some(checker));
     assert!(read("clean.1001.png") == before, "its mask is black");
     let after = read("clean.1012.png");
-    let mut n_new = 0;
-    for y in 0..SHELL_SIDE {
-        for x in 0..SHELL_SIDE {
-            let is_stain = x.abs_diff(128) < 24 && y.abs_diff(128) < 24;
-            let [before, after] = [&before, &after].map(|map| map.row(y)[x as usize]);
-            assert!(is_stain || before == after, "texel {x} {y}");
-            n_new += usize::from(before != after);
-        }
-    }
-    assert!(n_new > 0, "something is made again");
+    assert_only_the_stain_is_new(&before, &after);
 }
 
 #[test]

@@ -38,12 +38,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 /// [`ImageErrorKind::Windows`] if the data and display windows have no pixel in common,
 /// [`ImageErrorKind::TooManyPixels`] or [`ImageErrorKind::TooManyBytes`] past a limit.
 pub fn decode_exr(bytes: &[u8], limits: &Limits) -> Result<ExrImage, ImageError> {
-    if !bytes.starts_with(&SIGNATURE) {
-        return Err(ImageError::new(ImageErrorKind::UnknownFormat));
-    }
-    // No data that a panic could leave half done outlives the call.
-    catch_unwind(AssertUnwindSafe(|| decode(bytes, limits)))
-        .unwrap_or_else(|_| Err(ImageError::damaged("OpenEXR", "the codec gave up")))
+    guarded(bytes, || decode(bytes, limits))
 }
 
 /// Decodes a part of the picture in an OpenEXR file: `size` pixels from column and row `first` of the display window. Only the
@@ -58,14 +53,20 @@ pub fn decode_exr_region(
     size: [u32; 2],
     limits: &Limits,
 ) -> Result<ExrImage, ImageError> {
+    guarded(bytes, || decode_region(bytes, first, size, limits))
+}
+
+/// Decodes bytes that begin as an OpenEXR file does; a panic of the codec becomes an error.
+fn guarded(
+    bytes: &[u8],
+    decode: impl FnOnce() -> Result<ExrImage, ImageError>,
+) -> Result<ExrImage, ImageError> {
     if !bytes.starts_with(&SIGNATURE) {
         return Err(ImageError::new(ImageErrorKind::UnknownFormat));
     }
     // No data that a panic could leave half done outlives the call.
-    catch_unwind(AssertUnwindSafe(|| {
-        decode_region(bytes, first, size, limits)
-    }))
-    .unwrap_or_else(|_| Err(ImageError::damaged("OpenEXR", "the codec gave up")))
+    catch_unwind(AssertUnwindSafe(decode))
+        .unwrap_or_else(|_| Err(ImageError::damaged("OpenEXR", "the codec gave up")))
 }
 
 fn decode(bytes: &[u8], limits: &Limits) -> Result<ExrImage, ImageError> {

@@ -214,21 +214,14 @@ fn fractal_sums_vary_from_one_whole_position_to_the_next() {
         let values: Vec<f32> = positions::<2>(1000)
             .map(|corner| sum.sample(corner.map(f64::round).into()))
             .collect();
-        let mean = values.iter().sum::<f32>() / 1000.0;
-        let variance = values
-            .iter()
-            .map(|value| (value - mean) * (value - mean))
-            .sum::<f32>()
-            / 1000.0;
         let elsewhere: Vec<f32> = positions::<2>(1000)
             .map(|at| sum.sample(at.into()))
             .collect();
-        let mean = elsewhere.iter().sum::<f32>() / 1000.0;
-        let expected = elsewhere
-            .iter()
-            .map(|value| (value - mean) * (value - mean))
-            .sum::<f32>()
-            / 1000.0;
+        let [variance, expected] = [values, elsewhere].map(|values| {
+            let mean = values.iter().sum::<f32>() / 1000.0;
+            let squares = values.iter().map(|value| (value - mean) * (value - mean));
+            squares.sum::<f32>() / 1000.0
+        });
         // Offsets differ from octave to octave, so that some are near corners and others are not.
         assert!(
             variance > 0.25 * expected,
