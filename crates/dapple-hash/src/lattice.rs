@@ -7,8 +7,8 @@ use crate::mix::{M1, M2, mix32};
 ///
 /// Each coordinate is hashed alone, by [`part`](Self::part), with a key of its axis; the exclusive or of the parts of
 /// all axes is hashed once more, by [`bits`](Self::bits). The corners around a position have two coordinates along each
-/// axis, so that most of the work is done once for several corners. A [`CellHash`](crate::CellHash), which has 64 bits
-/// and a counter, takes three times as long.
+/// axis, so that most of the work is done once for several corners. A [`CellHash`](crate::CellHash) has 64 bits and
+/// a counter, and costs more.
 ///
 /// # Examples
 ///

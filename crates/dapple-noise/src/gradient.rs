@@ -172,8 +172,8 @@ impl<const N: usize> GradientNoise<N> {
         Column::between(sides, offsets[0], fade(offsets[0]))
     }
 
-    /// The values at many positions in cells, into memory of the same length: those of [`sample`](Self::sample), in a
-    /// tenth of the time.
+    /// The values at many positions in cells, into memory of the same length: those of [`sample`](Self::sample), in about
+    /// a quarter of the time.
     ///
     /// # Errors
     ///

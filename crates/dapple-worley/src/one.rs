@@ -15,8 +15,8 @@ use dapple_hash::mix32_pairs;
 use dapple_raster::simd;
 use fearless_simd::{i32x16, mask32x16, prelude::*, u32x16};
 
-/// The number of cells that are visited: the nearest ones on average. The others are the own cell's neighbors across
-/// most corners and the cells beyond the neighbors.
+/// The number of cells in lanes: the own cell and the neighbors that are nearest on average. The few neighbors that are
+/// left out are far from the place along at least two axes.
 const fn n_visited(n_axes: usize) -> usize {
     [0, 0, 8, 24][n_axes]
 }
