@@ -6,7 +6,7 @@ use dapple_noise::{GradientNoise2, GradientNoise3};
 use dapple_points::Domain;
 use dapple_pups::{NoiseOptions, OctavesOptions, noise, octaves};
 use dapple_raster::glam::DVec2;
-use dapple_raster::{Field, FieldExt, FractalShape, Window};
+use dapple_raster::{Constant, Field, FieldExt, FractalShape, Window};
 use dapple_wavelet::WaveletNoise2;
 use dapple_worley::{Combination, Octaves, Worley2, Worley4};
 
@@ -43,7 +43,7 @@ fn fields() -> Result<Vec<(&'static str, Box<dyn Field>)>> {
         ("distances to edges", Box::new(worley.edge_distances())),
         ("cells in four dimensions", Box::new(moving)),
         ("gradient noise", Box::new(gradient)),
-        ("gradient noise in space", Box::new(slice.slice(0.3))),
+        ("gradient noise in space", Box::new(slice.slice([0.3]))),
         (
             "ridges",
             Box::new(gradient.fractal(3, 0.5, 2.0, FractalShape::Ridged)?),
@@ -54,7 +54,10 @@ fn fields() -> Result<Vec<(&'static str, Box<dyn Field>)>> {
         ),
         ("partitions of unity", Box::new(noise(&pups, SEED)?)),
         ("octaves of them", Box::new(octaves(&sum, SEED)?)),
-        ("warped cells", Box::new(f1.warp(gradient, 0.5_f32, 0.25))),
+        (
+            "warped cells",
+            Box::new(f1.warp((gradient, Constant(0.5)), 0.25)),
+        ),
     ])
 }
 

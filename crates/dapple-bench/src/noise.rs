@@ -127,7 +127,7 @@ fn terrain(bench: &mut Bench) -> Result<()> {
         [1, 2, 3, 4].map(|child| GradientNoise2::new(SEED.child("terrain", child)));
     let hills = hills.fractal(6, 0.5, 2.0, FractalShape::Sum)?;
     let ridges = ridges.fractal(5, 0.5, 2.0, FractalShape::Ridged)?;
-    let height = hills.add(ridges.mul(0.5)).warp(x, y, 0.5);
+    let height = hills.add(ridges.mul(0.5)).warp([x, y], 0.5);
     let extent = f64::from(CHUNK) * CHUNK_STEP;
     let window = Window::new(DVec2::ZERO, DVec2::splat(extent), [CHUNK; 2])?;
     let n = (CHUNK * CHUNK) as usize;

@@ -21,12 +21,12 @@ use dapple_raster::{Field, Raster, Window, Wrap};
 ///
 /// ```
 /// use dapple_color::{NormalOptions, normal_map_of_field};
-/// use dapple_raster::{Window, field_fn, glam::DVec2};
+/// use dapple_raster::{Window, field_fn};
 ///
 /// // Two chunks of a slope of 45 degrees: no seam, and no edge.
-/// let slope = field_fn(|at| at.x as f32);
+/// let slope = field_fn(|[x, _y]| x as f32);
 /// for chunk in 0..2 {
-///     let window = Window::new(DVec2::X * f64::from(chunk), DVec2::ONE, [64, 64])?;
+///     let window = Window::new([f64::from(chunk), 0.0], [1.0; 2], [64, 64])?;
 ///     let normals = normal_map_of_field(&slope, &window, &NormalOptions::default())?;
 ///     assert!(normals.pixels().iter().all(|normal| normal.x == -0.5_f32.sqrt()));
 /// }
@@ -114,24 +114,23 @@ mod tests {
     use super::{ambient_occlusion_of_field, curvature_of_field, normal_map_of_field};
     use crate::{CurvatureOptions, HeightPlane, NormalOptions, OcclusionOptions};
     use crate::{ambient_occlusion, curvature, normal_map};
-    use dapple_raster::glam::DVec2;
-    use dapple_raster::{Raster, Window, Wrap, field_fn};
+    use dapple_raster::{Field as _, Raster, Window, Wrap, field_fn};
 
     /// Chunks of 64 × 64 positions, a 32nd apart: all numbers are exact.
     fn chunk(column: i64, row: i64) -> Window {
-        let whole = Window::new(DVec2::ZERO, DVec2::splat(6.0), [192; 2]).unwrap();
+        let whole = Window::new([0.0; 2], [6.0; 2], [192; 2]).unwrap();
         whole.crop([64 * column, 64 * row], [64; 2]).unwrap()
     }
 
-    fn hills(at: DVec2) -> f32 {
-        (0.2 * libm::sin(3.0 * at.x) * libm::cos(2.0 * at.y + at.x)) as f32
+    fn hills([x, y]: [f64; 2]) -> f32 {
+        (0.2 * libm::sin(3.0 * x) * libm::cos(2.0 * y + x)) as f32
     }
 
     #[test]
     fn chunks_have_the_bits_of_the_whole() {
         let field = field_fn(hills);
-        let whole = Window::new(DVec2::ZERO, DVec2::splat(6.0), [192; 2]).unwrap();
-        let heights = Raster::from_window(&whole, hills).unwrap();
+        let whole = Window::new([0.0; 2], [6.0; 2], [192; 2]).unwrap();
+        let heights = field.to_raster(&whole).unwrap();
         let plane = HeightPlane::for_window(&whole, [Wrap::Clamp; 2]);
         let occlusion = OcclusionOptions {
             radius: 0.5,
@@ -155,7 +154,7 @@ mod tests {
 
     #[test]
     fn a_repeated_chunk_would_lean_the_other_way_at_its_sides() {
-        let slope = field_fn(|at| at.x as f32);
+        let slope = field_fn(|[x, _y]| x as f32);
         let window = chunk(0, 0);
         let normals = normal_map_of_field(&slope, &window, &NormalOptions::default()).unwrap();
         let right = 0.5_f32.sqrt();

@@ -45,9 +45,12 @@ impl HeightPlane {
     /// read the heights past its sides.
     #[must_use]
     pub fn for_window(window: &Window, wrap: [Wrap; 2]) -> Self {
-        let size = DVec2::new(window.size[0].into(), window.size[1].into());
+        let side = |axis: usize| {
+            let pixel = window.pixel[axis] * window.scale[axis];
+            (pixel * f64::from(window.size[axis])).abs()
+        };
         Self {
-            extent: (window.pixel * window.scale * size).abs(),
+            extent: DVec2::new(side(0), side(1)),
             wrap,
             ..Self::default()
         }

@@ -180,7 +180,8 @@ impl<T: Texel> Canvas<T> {
     /// Converts a position of the plane to pixels from the top left corner.
     fn pixel_from_plane(&self, position: DVec2) -> DVec2 {
         let [first_x, first_y] = self.window.first.map(|first| first as f64);
-        (position - self.window.origin) / self.window.pixel - DVec2::new(first_x, first_y)
+        let [origin, pixel] = [self.window.origin, self.window.pixel].map(DVec2::from);
+        (position - origin) / pixel - DVec2::new(first_x, first_y)
     }
 }
 

@@ -16,7 +16,6 @@ use dapple_hash::{LatticeHash, Seed, lattice_bits};
 use dapple_raster::simd::{self, dispatch};
 use dapple_raster::{Field, Fractal, FractalShape, RasterError, RasterViewMut, Window};
 use fearless_simd::{Level, prelude::*, u32x16};
-use glam::DVec2;
 
 /// How many corners are hashed at once.
 const LANES: usize = 32;
@@ -45,6 +44,18 @@ pub(crate) const MOST_CORNERS: usize = 8;
 /// let noise = GradientNoise3::new(Seed(7)).with_period([Some(4), None, None])?;
 /// assert_eq!(noise.sample([0.25, 1e9, -3.5]), noise.sample([4.25, 1e9, -3.5]));
 /// assert_eq!(noise.sample([3.0, -8.0, 21.0]), 0.0);
+/// # Ok::<(), dapple_noise::raster::RasterError>(())
+/// ```
+///
+/// A texture that moves, and begins again after 6 cells of time:
+///
+/// ```
+/// use dapple_noise::{GradientNoise3, hash::Seed, raster::prelude::*};
+///
+/// let noise = GradientNoise3::new(Seed(7)).with_period([None, None, Some(6)])?;
+/// let window = Window::unit([64, 64])?;
+/// let [first, last] = [0.5, 6.5].map(|time| noise.slice([time]).to_raster(&window));
+/// assert_eq!(first?, last?);
 /// # Ok::<(), dapple_noise::raster::RasterError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -288,9 +299,7 @@ impl<const N: usize> GradientNoise<N> {
         }
         Ok(octaves)
     }
-}
 
-impl GradientNoise<2> {
     /// The sum of this noise at several scales, `Σ gain^i · shape(noise_i(lacunarity^i · position + offset_i))`, where each
     /// octave has a seed and an offset of its own.
     ///
@@ -302,7 +311,7 @@ impl GradientNoise<2> {
     ///
     /// [`Range`](dapple_raster::RasterErrorKind::Range) unless there are 1 to 32 octaves, the gain is from -1 to 1, the
     /// lacunarity is from 1 to 16, and a whole number where the noise has a period, and periods stay below 2^32 cells.
-    #[doc(alias = "fBm")]
+    #[doc(alias("fBm", "fbm", "ridged", "billow", "turbulence"))]
     pub fn fractal(
         &self,
         octaves: u32,
@@ -315,20 +324,20 @@ impl GradientNoise<2> {
 }
 
 /// Positions in cells; windows are filled on all cores where the feature `rayon` is on.
-impl Field for GradientNoise<2> {
-    fn sample(&self, position: DVec2) -> f32 {
-        Self::sample(self, position)
+impl<const N: usize> Field<N> for GradientNoise<N> {
+    fn value(&self, position: [f64; N]) -> f32 {
+        self.sample(position)
     }
 
-    fn sample_many(&self, positions: &[DVec2], values: &mut [f32]) -> Result<(), RasterError> {
-        Self::sample_many(self, positions, values)
+    fn values(&self, positions: &[[f64; N]], values: &mut [f32]) -> Result<(), RasterError> {
+        self.sample_many(positions, values)
     }
 
-    fn render(&self, window: &Window, out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
-        Lines::new(self, window, []).render(out)
+    fn render(&self, window: &Window<N>, out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
+        Lines::new(self, window).render(out)
     }
 
-    fn period(&self) -> [Option<f64>; 2] {
+    fn period(&self) -> [Option<f64>; N] {
         self.periods().map(|cells| cells.map(f64::from))
     }
 }

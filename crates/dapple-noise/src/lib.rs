@@ -24,11 +24,9 @@ mod gradient;
 mod gradients;
 mod lines;
 mod many;
-mod slice;
 
 pub use dapple_hash as hash;
 pub use dapple_raster as raster;
 #[doc(alias("perlin", "perlin noise", "simplex", "fbm", "ridged", "turbulence"))]
 pub use gradient::GradientNoise;
 pub use gradient::{GradientNoise2, GradientNoise3, GradientNoise4};
-pub use slice::Slice;

@@ -16,12 +16,12 @@ const ROWS: u32 = 32;
 /// The mean length in pixels from which on runs are long enough for registers of more than four values.
 const LONG: usize = 24;
 
-/// A plane through the noise, and the data that the rows of a window share.
-pub(crate) struct Lines<'a, const N: usize, const REST: usize> {
+/// The data that the rows of a window share.
+pub(crate) struct Lines<'a, const N: usize> {
     noise: &'a GradientNoise<N>,
-    window: &'a Window,
-    /// The coordinates along the axes past the second.
-    rest: [Place; REST],
+    window: &'a Window<N>,
+    /// The coordinates of all pixels along the axes past the second; the first two are unused.
+    rest: [Place; N],
     /// The first coordinates of the corners.
     columns: Vec<i64>,
     /// The runs of pixels in the same column of cells, from left to right.
@@ -57,8 +57,8 @@ struct Line<const N: usize> {
     gradients: Vec<[f32; N]>,
 }
 
-impl<'a, const N: usize, const REST: usize> Lines<'a, N, REST> {
-    pub(crate) fn new(noise: &'a GradientNoise<N>, window: &'a Window, rest: [f64; REST]) -> Self {
+impl<'a, const N: usize> Lines<'a, N> {
+    pub(crate) fn new(noise: &'a GradientNoise<N>, window: &'a Window<N>) -> Self {
         let mut columns = Vec::new();
         let mut runs: Vec<Run> = Vec::new();
         let mut offsets = Vec::with_capacity(window.size[0] as usize);
@@ -76,7 +76,7 @@ impl<'a, const N: usize, const REST: usize> Lines<'a, N, REST> {
         Self {
             noise,
             window,
-            rest: core::array::from_fn(|axis| Place::of(noise.moved(rest[axis], axis + 2))),
+            rest: core::array::from_fn(|axis| Place::of(noise.moved(window.depth(axis), axis))),
             columns,
             runs,
             fades: offsets.iter().map(|&offset| fade(offset)).collect(),
@@ -101,8 +101,8 @@ impl<'a, const N: usize, const REST: usize> Lines<'a, N, REST> {
     }
 
     fn fill_row(&self, row: u32, values: &mut [f32], corners: &mut Corners<N>) {
-        let mut places = [Place::of(self.noise.moved(self.window.row_y(row), 1)); N];
-        places[2..].copy_from_slice(&self.rest);
+        let mut places = self.rest;
+        places[..2].fill(Place::of(self.noise.moved(self.window.row_y(row), 1)));
         if places.iter().any(|place| !place.offset.is_finite()) {
             values.fill(f32::NAN);
             return;

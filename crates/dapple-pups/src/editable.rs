@@ -230,10 +230,8 @@ impl EditablePups {
     /// The texture in a window: of the points whose supports reach into it.
     fn field(&self, window: &Window) -> Result<Arc<dyn NetField>, PupsError> {
         let [width, height] = window.size;
-        let (first, last) = (
-            window.position(0, 0),
-            window.position(width.max(1) - 1, height.max(1) - 1),
-        );
+        let corners = [[0, 0], [width.max(1) - 1, height.max(1) - 1]];
+        let [first, last] = corners.map(|[x, y]| DVec2::from(window.position(x, y)));
         let (low, high) = (first.min(last) - self.reach, first.max(last) + self.reach);
         let points = self.graph.points_in(low, high);
         let given = points

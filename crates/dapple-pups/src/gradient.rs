@@ -10,7 +10,7 @@
 use crate::net::{AxisBlock, BLOCK, Instance, Net};
 use crate::pups::LEAST_TOTAL;
 use crate::{AxialWeight, Texture};
-use dapple_raster::{Field, Raster, RasterError, Window};
+use dapple_raster::{FieldExt as _, Raster, RasterError, Window};
 use glam::DVec2;
 
 impl Texture {

@@ -251,7 +251,7 @@ impl Pups {
             PupsError::check(
                 false,
                 "position of a pixel",
-                position.x + position.y,
+                position[0] + position[1],
                 "finite",
             )?;
         }

@@ -21,7 +21,7 @@ use std::sync::OnceLock;
 ///
 /// ```
 /// use dapple_pups::{Pups, points::{Domain, white_noise}, hash::Seed};
-/// use dapple_raster::{Field, Window};
+/// use dapple_raster::prelude::*;
 ///
 /// let points = white_noise(Domain::paper_torus(), 50, Seed(1))?;
 /// let values = (0..50).map(|index| index as f32 / 49.0).collect();
@@ -63,9 +63,9 @@ impl Texture {
 
 impl Field for Texture {
     #[inline]
-    fn sample(&self, position: DVec2) -> f32 {
+    fn value(&self, position: [f64; 2]) -> f32 {
         let mut value = [0.0];
-        self.values.sample(position, &mut value);
+        self.values.sample(position.into(), &mut value);
         value[0]
     }
 
@@ -102,9 +102,9 @@ impl<const N: usize> VectorTexture<N> {
 
     /// The vector at a position.
     #[must_use]
-    pub fn sample(&self, position: DVec2) -> [f32; N] {
+    pub fn sample(&self, position: impl Into<[f64; 2]>) -> [f32; N] {
         let mut vector = [0.0; N];
-        self.values.sample(position, &mut vector);
+        self.values.sample(position.into().into(), &mut vector);
         vector
     }
 

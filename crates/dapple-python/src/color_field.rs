@@ -3,11 +3,12 @@
 use crate::arrays::{self, Positions};
 use crate::error::Result;
 use crate::field::{FIRST, Field};
-use crate::function::{Made, Reduced, position};
+use crate::function::{Made, Reduced};
 use crate::grid::{Grid, GridArguments, default_extent};
 use crate::pups::{Values, Vectors};
 use crate::threads;
 use crate::watch;
+use dapple::raster::glam::DVec2;
 use dapple::raster::parallel;
 use pyo3::prelude::*;
 use std::sync::Arc;
@@ -154,7 +155,7 @@ impl ColorField {
                 parallel::for_each_chunk(values, CHUNK * n_channels, |chunk, values| {
                     let places = numbers[chunk * CHUNK * 2..].chunks_exact(2);
                     for (vector, place) in values.chunks_exact_mut(n_channels).zip(places) {
-                        self.vectors.sample(position(place), vector);
+                        self.vectors.sample(DVec2::from_slice(place), vector);
                     }
                 });
                 Ok(())

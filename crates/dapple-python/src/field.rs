@@ -3,13 +3,13 @@
 use crate::arrays::{self, Positions};
 use crate::color_field;
 use crate::error::{Error, Result};
-use crate::function::{Function, Made, Reduced, position};
+use crate::function::{Function, Made, Reduced};
 use crate::generators::Worley;
 use crate::grid::{Grid, GridArguments, default_extent, numbers};
 use crate::shared::Shared;
 use crate::threads;
 use crate::watch::{self, Stop};
-use dapple::raster::{Field as _, FractalShape, PairOperation, RasterViewMut, Window, parallel};
+use dapple::raster::{FractalShape, PairOperation, RasterViewMut, Window, parallel};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use std::sync::Arc;
@@ -51,52 +51,22 @@ impl Field {
 
     /// The periods along all axes.
     fn periods(&self) -> Vec<Option<f64>> {
-        match &self.function {
-            Function::Plane(field) => field.period().to_vec(),
-            Function::Space(volume) => volume.period(),
-        }
+        self.function.period()
     }
 
     /// Writes the values at the pixels of a grid into memory of the right length.
     fn fill(&self, grid: &Grid, values: &mut [f32], stop: &Stop) -> Result<()> {
-        let window = grid.plane();
-        let planes = grid.planes();
-        let n_pixels = window.n_pixels();
         match &self.function {
-            Function::Plane(field) => {
-                fill_rows(&window, values, stop, |window, view| {
-                    Ok(field.render(window, view)?)
-                })?;
-            }
-            // Small planes are rendered together.
-            Function::Space(volume) if n_pixels <= FIRST => {
-                watch::in_parts(stop, planes.len(), FIRST / n_pixels.max(1), |part| {
-                    let values = &mut values[part.start * n_pixels..part.end * n_pixels];
-                    Ok(volume.render(&window, &planes[part], values)?)
-                })?;
-            }
-            Function::Space(volume) => {
-                for (plane, values) in planes.iter().zip(values.chunks_mut(n_pixels)) {
-                    let slice = volume.slice(plane);
-                    fill_rows(&window, values, stop, |window, view| {
-                        Ok(slice.render(window, view)?)
-                    })?;
-                }
-            }
+            Function::Plane(field) => fill_planes(field.as_ref(), grid, values, stop),
+            Function::Space(field) => fill_planes(field.as_ref(), grid, values, stop),
+            Function::Time(field) => fill_planes(field.as_ref(), grid, values, stop),
         }
-        Ok(())
     }
 
     /// Writes the values at some positions.
     fn sample_chunk(&self, positions: &[f64], values: &mut [f32]) {
-        match &self.function {
-            Function::Plane(field) => {
-                let places: Vec<_> = positions.chunks_exact(2).map(position).collect();
-                // The lengths are equal, and there are no other errors.
-                let _ = field.sample_many(&places, values);
-            }
-            Function::Space(volume) => volume.sample_many(positions, values),
-        }
+        // The lengths are equal, and there are no other errors.
+        let _ = self.function.values(positions, values);
     }
 
     /// Combines this field and another field or number, value by value.
@@ -134,27 +104,6 @@ impl Field {
             shape,
         })
     }
-}
-
-/// Writes the values at the pixels of a window in parts: some rows of a strip of columns each.
-fn fill_rows(
-    window: &Window,
-    values: &mut [f32],
-    stop: &Stop,
-    render: impl Fn(&Window, RasterViewMut<'_, f32>) -> Result<()>,
-) -> Result<()> {
-    let width = window.size[0] as usize;
-    for left in (0..window.size[0]).step_by(STRIP as usize) {
-        let columns = STRIP.min(window.size[0] - left);
-        let first = FIRST / columns as usize;
-        watch::in_parts(stop, window.size[1] as usize, first, |rows| {
-            let size = [columns, rows.len() as u32];
-            let part = window.crop([left.into(), rows.start as i64], size)?;
-            let values = &mut values[rows.start * width + left as usize..];
-            render(&part, RasterViewMut::new(values, width, size)?)
-        })?;
-    }
-    Ok(())
 }
 
 /// A field, or a number as a field.
@@ -746,4 +695,47 @@ impl Field {
     fn __repr__(&self) -> Result<String> {
         Ok(format!("Field({})", self.made.made().summary()?))
     }
+}
+
+/// Writes the values at the pixels of a grid, plane by plane.
+fn fill_planes<const N: usize>(
+    field: &dyn dapple::raster::Field<N>,
+    grid: &Grid,
+    values: &mut [f32],
+    stop: &Stop,
+) -> Result<()> {
+    let window = grid.plane();
+    let n_pixels = window.n_pixels();
+    let windows: Vec<Window<N>> = (grid.planes().iter())
+        .map(|rest| {
+            let mut origin = [0.0; N];
+            origin[2..].copy_from_slice(rest);
+            window.in_space(origin)
+        })
+        .collect();
+    // Small planes are rendered together.
+    if windows.len() > 1 && n_pixels <= FIRST {
+        return watch::in_parts(stop, windows.len(), FIRST / n_pixels.max(1), |part| {
+            let values = &mut values[part.start * n_pixels..part.end * n_pixels];
+            let views = values
+                .chunks_mut(n_pixels)
+                .map(|values| RasterViewMut::new(values, window.size[0] as usize, window.size));
+            let views = views.collect::<core::result::Result<_, _>>()?;
+            Ok(field.render_stack(&windows[part], views)?)
+        });
+    }
+    let width = window.size[0] as usize;
+    for (whole, values) in windows.iter().zip(values.chunks_mut(n_pixels)) {
+        for left in (0..window.size[0]).step_by(STRIP as usize) {
+            let columns = STRIP.min(window.size[0] - left);
+            let first = FIRST / columns as usize;
+            watch::in_parts(stop, window.size[1] as usize, first, |rows| {
+                let size = [columns, rows.len() as u32];
+                let part = whole.crop([left.into(), rows.start as i64], size)?;
+                let values = &mut values[rows.start * width + left as usize..];
+                Ok(field.render(&part, RasterViewMut::new(values, width, size)?)?)
+            })?;
+        }
+    }
+    Ok(())
 }

@@ -2,17 +2,14 @@
 //!
 //! A field is made from its description alone, so that the description can be sent to another process.
 
-use crate::composed::{Composed, Part};
 use crate::error::{Error, Result};
 use crate::generators::{CellsMade, GradientMade, WaveletMade};
 use crate::grid::CELLS;
 use crate::pups::{PupsMade, TextureMade};
 use crate::recipe::NodeMade;
 use crate::shared::{Build, Shared};
-use dapple::raster::glam::DVec2;
 use dapple::raster::{
-    Constant, Field, FieldExt, Fractal, FractalShape, PairOperation, RasterError, RasterViewMut,
-    Window,
+    Constant, Field, FieldExt, Fractal, FractalShape, PairOperation,
 };
 use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -25,42 +22,10 @@ use std::sync::Arc;
 pub(crate) enum Function {
     /// A function of the plane.
     Plane(Arc<dyn Field>),
-    /// A function of three or four axes.
-    Space(Arc<dyn Volume>),
-}
-
-/// A function of three or four axes.
-pub(crate) trait Volume: Send + Sync {
-    /// The distances after which it repeats along each axis.
-    fn period(&self) -> Vec<Option<f64>>;
-
-    /// The value at a position.
-    fn sample(&self, position: &[f64]) -> f32;
-
-    /// The values at positions, whose coordinates lie one after the other.
-    fn sample_many(&self, positions: &[f64], values: &mut [f32]) {
-        let n_axes = self.period().len();
-        for (value, position) in values.iter_mut().zip(positions.chunks_exact(n_axes)) {
-            *value = self.sample(position);
-        }
-    }
-
-    /// The plane along the first two axes at fixed further coordinates.
-    fn slice(&self, rest: &[f64]) -> Arc<dyn Field>;
-
-    /// The values at the pixels of several planes, which lie one after the other.
-    fn render(
-        &self,
-        window: &Window,
-        planes: &[Vec<f64>],
-        values: &mut [f32],
-    ) -> core::result::Result<(), RasterError> {
-        for (plane, values) in planes.iter().zip(values.chunks_mut(window.n_pixels())) {
-            let view = RasterViewMut::new(values, window.size[0] as usize, window.size)?;
-            self.slice(plane).render(window, view)?;
-        }
-        Ok(())
-    }
+    /// A function of three axes.
+    Space(Arc<dyn Field<3>>),
+    /// A function of four axes.
+    Time(Arc<dyn Field<4>>),
 }
 
 impl Function {
@@ -68,7 +33,41 @@ impl Function {
     pub(crate) fn n_axes(&self) -> usize {
         match self {
             Self::Plane(_) => 2,
-            Self::Space(volume) => volume.period().len(),
+            Self::Space(_) => 3,
+            Self::Time(_) => 4,
+        }
+    }
+
+    /// The distances after which it repeats along each axis.
+    pub(crate) fn period(&self) -> Vec<Option<f64>> {
+        match self {
+            Self::Plane(field) => field.period().to_vec(),
+            Self::Space(field) => field.period().to_vec(),
+            Self::Time(field) => field.period().to_vec(),
+        }
+    }
+
+    /// Writes the values at positions, given as flat coordinates.
+    pub(crate) fn values(&self, positions: &[f64], values: &mut [f32]) -> Result<()> {
+        Ok(match self {
+            Self::Plane(field) => field.values(positions.as_chunks().0, values)?,
+            Self::Space(field) => field.values(positions.as_chunks().0, values)?,
+            Self::Time(field) => field.values(positions.as_chunks().0, values)?,
+        })
+    }
+
+    /// The plane along the first two axes at fixed further coordinates.
+    fn slice(self, rest: &[f64]) -> Result<Arc<dyn Field>> {
+        match (self, rest) {
+            (Self::Space(field), &[z]) => Ok(Arc::new(field.slice([z]))),
+            (Self::Time(field), &[z, w]) => Ok(Arc::new(field.slice([z, w]))),
+            _ => Err(Error::new(
+                "axes",
+                format!(
+                    "a slice at {} further coordinates is of a field with as many axes more than two",
+                    rest.len()
+                ),
+            )),
         }
     }
 }
@@ -204,7 +203,7 @@ impl Shared<Made> {
     pub(crate) fn plane(&self) -> Result<Arc<dyn Field>> {
         match self.get()?.function {
             Function::Plane(field) => Ok(field),
-            Function::Space(_) => Err(Error::new(
+            _ => Err(Error::new(
                 "axes",
                 "a field of the plane is needed: of one with three or four axes, take `slice(…)` first",
             )),
@@ -308,18 +307,7 @@ impl Made {
             Self::Texture(made) => return Ok(Function::Plane(made.get()?.numbers()?)),
             Self::Node(made) => return made.get(),
             Self::Slice { field, rest } => {
-                return match field.get()?.function {
-                    Function::Space(volume) if volume.period().len() == rest.len() + 2 => {
-                        Ok(Function::Plane(volume.slice(rest)))
-                    }
-                    _ => Err(Error::new(
-                        "axes",
-                        format!(
-                            "a slice at {} further coordinates is of a field with as many axes more than two",
-                            rest.len()
-                        ),
-                    )),
-                };
+                return Ok(Function::Plane(field.get()?.function.slice(rest)?));
             }
             _ => {}
         }
@@ -328,16 +316,6 @@ impl Made {
             .map(|part| Ok(part.get()?.function))
             .collect::<Result<_>>()?;
         let n_axes = parts.iter().map(Function::n_axes).max().unwrap_or(2);
-        // A field of the plane is the same in every plane of space.
-        if parts
-            .iter()
-            .any(|part| ![2, n_axes].contains(&part.n_axes()))
-        {
-            return Err(Error::new(
-                "axes",
-                "fields of three and of four axes are not combined: take a `slice(…)`, or fields of the same number of axes",
-            ));
-        }
         if let Self::Warp { further, .. } = self
             && further.len() + 2 > n_axes
         {
@@ -347,49 +325,61 @@ impl Made {
             );
             return Err(Error::new("axes", message));
         }
-        let composed = Composed::new(self.clone(), parts, n_axes);
-        let plane = composed.plane(&vec![0.0; n_axes - 2])?;
+        let uneven = || {
+            Error::new(
+                "axes",
+                "fields of three and of four axes are not combined: take a `slice(…)`, or fields of the same number of axes",
+            )
+        };
+        // A field of the plane is the same in every plane of space.
+        let parts = parts.into_iter();
         Ok(match n_axes {
-            2 => Function::Plane(plane),
-            _ => Function::Space(Arc::new(composed)),
+            2 => Function::Plane(self.composed(parts.map(|part| match part {
+                Function::Plane(field) => Ok(field),
+                _ => Err(uneven()),
+            }))?),
+            3 => Function::Space(self.composed(parts.map(|part| match part {
+                Function::Plane(field) => Ok(Arc::new(field.extrude()) as Arc<dyn Field<3>>),
+                Function::Space(field) => Ok(field),
+                Function::Time(_) => Err(uneven()),
+            }))?),
+            _ => Function::Time(self.composed(parts.map(|part| match part {
+                Function::Plane(field) => Ok(Arc::new(field.extrude()) as Arc<dyn Field<4>>),
+                Function::Space(_) => Err(uneven()),
+                Function::Time(field) => Ok(field),
+            }))?),
         })
     }
 
-    /// Composes fields of a plane along two axes, of which `first` is the first. `part` returns a part by its index, at
-    /// further coordinates that are changed by a function of their index and value.
-    pub(crate) fn of_planes(&self, part: Part<'_>, first: usize) -> Result<Arc<dyn Field>> {
-        let same = |index| part(index, &|_, at| at);
-        // Along axes that the field does not have, nothing changes.
-        let along = |numbers: &[f64], default: f64| -> DVec2 {
-            [0, 1]
-                .map(|axis| numbers.get(first + axis).copied().unwrap_or(default))
-                .into()
+    /// Composes fields with any number of axes.
+    fn composed<const N: usize>(
+        &self,
+        parts: impl Iterator<Item = Result<Arc<dyn Field<N>>>>,
+    ) -> Result<Arc<dyn Field<N>>> {
+        let parts: Vec<_> = parts.collect::<Result<_>>()?;
+        let part = |index: usize| Arc::clone(&parts[index]);
+        // Axes without a number keep their coordinate.
+        let along = |numbers: &[f64], default: f64| -> [f64; N] {
+            core::array::from_fn(|axis| numbers.get(axis).copied().unwrap_or(default))
         };
         Ok(match self {
             Self::Frequency { frequency, .. } => {
-                let inner = part(0, &|axis, at| at * frequency[axis + 2]);
-                Arc::new(inner.frequency_xy(along(frequency, 1.0)))
+                Arc::new(part(0).frequency_per_axis(along(frequency, 1.0)))
             }
-            Self::Offset { offset, .. } => {
-                let inner = part(0, &|axis, at| at + offset[axis + 2]);
-                Arc::new(inner.offset(along(offset, 0.0)))
-            }
-            // It turns about the axes after the first two.
-            Self::Rotate { angle, .. } if first == 0 => Arc::new(same(0).rotate(*angle)),
-            Self::Warp {
-                amount, further, ..
-            } => {
-                // Displacements out of the plane are left to `Composed`; here they shape the period alone.
-                let inner = (3..3 + further.len()).fold(same(0), |inner, index| {
-                    Arc::new(inner.warp(same(index), same(index), 0.0))
+            Self::Offset { offset, .. } => Arc::new(part(0).offset(along(offset, 0.0))),
+            Self::Rotate { angle, .. } => Arc::new(part(0).rotate(*angle)),
+            Self::Warp { amount, .. } => {
+                let by: [Arc<dyn Field<N>>; N] = core::array::from_fn(|axis| {
+                    let along = parts.get(axis + 1).cloned();
+                    along.unwrap_or_else(|| Arc::new(Constant(0.0)))
                 });
-                Arc::new(inner.warp(same(1), same(2), *amount))
+                Arc::new(part(0).warp(by, *amount))
             }
-            Self::Remap { from, to, .. } => Arc::new(same(0).remap(*from, *to)?),
-            Self::Clamp { bounds, .. } => Arc::new(clamped(same(0), *bounds)?),
-            Self::Absolute(_) => Arc::new(same(0).map(f32::abs)),
-            Self::Pair { operation, .. } => Arc::new(same(0).with(same(1), *operation)),
-            Self::Mix { .. } => Arc::new(same(0).mix(same(1), same(2))),
+            Self::Remap { from, to, .. } => Arc::new(part(0).remap(*from, *to)?),
+            Self::Clamp { bounds, .. } => Arc::new(part(0).map(clamp(*bounds)?)),
+            Self::Absolute(_) => Arc::new(part(0).map(f32::abs)),
+            Self::Pair { operation, .. } => Arc::new(part(0).with(part(1), *operation)),
+            Self::Mix { .. } => Arc::new(part(0).mix(part(1), part(2))),
             Self::Fractal {
                 octaves,
                 gain,
@@ -397,11 +387,10 @@ impl Made {
                 shape,
                 ..
             } => {
-                let octaves =
-                    scales(*octaves, *lacunarity).map(|scale| part(0, &|_, at| at * scale));
+                let octaves = core::iter::repeat_n(part(0), *octaves as usize);
                 Arc::new(Fractal::new(octaves, *gain, *lacunarity, *shape)?)
             }
-            _ => same(0),
+            _ => part(0),
         })
     }
 
@@ -446,30 +435,19 @@ pub(crate) fn hex(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// A field whose values stay between two bounds.
-fn clamped(field: Arc<dyn Field>, [low, high]: [f32; 2]) -> Result<impl Field> {
+/// The function that keeps values between two bounds.
+fn clamp([low, high]: [f32; 2]) -> Result<impl Fn(f32) -> f32 + Send + Sync> {
     if low > high || low.is_nan() || high.is_nan() {
         return Err(Error::new(
             "range",
             format!("the bounds are {low} and {high}, but the first must not be above the second"),
         ));
     }
-    Ok(field.map(move |value: f32| {
+    Ok(move |value: f32| {
         if value.is_nan() {
             value
         } else {
             value.clamp(low, high)
         }
-    }))
-}
-
-/// A position of two axes, from its numbers.
-pub(crate) fn position(numbers: &[f64]) -> DVec2 {
-    DVec2::from_slice(numbers)
-}
-
-/// The frequencies of the octaves of a sum, relative to the first.
-pub(crate) fn scales(octaves: u32, lacunarity: f64) -> impl Iterator<Item = f64> {
-    let scales = core::iter::successors(Some(1.0), move |scale| Some(scale * lacunarity));
-    scales.take(octaves as usize)
+    })
 }

@@ -95,11 +95,11 @@ impl Grid {
     pub(crate) fn plane(&self) -> Window {
         let [x, y] = [self.axes[0], self.axes[1]];
         Window {
-            origin: DVec2::new(x.origin, y.origin),
-            pixel: DVec2::new(x.extent, y.extent) / DVec2::new(x.whole.into(), y.whole.into()),
+            origin: [x.origin, y.origin],
+            pixel: [x, y].map(|axis| axis.extent / f64::from(axis.whole)),
             first: [x.first, y.first],
             size: [x.size, y.size],
-            scale: DVec2::ONE,
+            scale: [1.0; 2],
         }
     }
 

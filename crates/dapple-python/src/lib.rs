@@ -7,7 +7,6 @@ mod arrays;
 mod bands;
 mod blending;
 mod color_field;
-mod composed;
 mod data;
 mod error;
 mod field;

@@ -33,6 +33,7 @@ mod window;
 mod wrap;
 
 pub mod parallel;
+pub mod prelude;
 #[cfg(feature = "simd")]
 pub mod simd;
 pub mod text;
@@ -41,8 +42,9 @@ pub use error::{RasterError, RasterErrorKind};
 #[doc(alias("heightmap", "height map", "noise"))]
 pub use field::Field;
 pub use field::{
-    Change, Constant, FieldExt, FieldFn, Fractal, FractalShape, Frequency, IntoField, Linear,
-    Mapped, Mixed, Offset, Pair, PairOperation, Rotated, Warped, common_period, field_fn,
+    Change, Constant, Displacement, Extruded, FieldExt, FieldFn, Fractal, FractalShape, Frequency,
+    IntoField, Linear, Mapped, Mixed, Offset, Pair, PairOperation, Rotated, Slice, Warped,
+    common_period, field_fn,
 };
 pub use glam;
 pub use named::Named;

@@ -1,20 +1,30 @@
-//! Windows: grids of pixels in the plane.
+//! Windows: grids of pixels in the plane, and in planes through space.
 
 use crate::raster::check_same_size;
 use crate::{RasterError, RasterErrorKind};
-use glam::DVec2;
 
-/// A grid of pixels in the plane: the pixel `[i, j]` has its center at `(origin + (first + [i, j] + ½) · pixel) · scale`.
+/// A grid of pixels along the first two axes: the pixel `[i, j]` has its center at `(origin + (first + [i, j] + ½) ·
+/// pixel) · scale`.
+///
+/// In three or four dimensions the window lies in a plane along the first two axes: all pixels have the further
+/// coordinates `origin · scale`. Make one with [`in_space`](Self::in_space).
 ///
 /// `first` counts whole pixels from the origin, so a part of a window keeps the origin and the pixel of the whole and
 /// has the same positions to the last bit: see [`crop`](Self::crop).
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Window {
-    /// The corner from which pixels are counted.
-    pub origin: DVec2,
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(bound(
+        serialize = "[f64; N]: serde::Serialize",
+        deserialize = "[f64; N]: serde::Deserialize<'de>"
+    ))
+)]
+pub struct Window<const N: usize = 2> {
+    /// The corner from which pixels are counted, before scaling, and the coordinates along further axes.
+    pub origin: [f64; N],
     /// The width and height of a pixel. A negative height makes rows go up.
-    pub pixel: DVec2,
+    pub pixel: [f64; 2],
     /// The column and row of the first pixel, counted from the origin.
     pub first: [i64; 2],
     /// Columns and rows.
@@ -22,7 +32,7 @@ pub struct Window {
     /// The factor by which positions are multiplied last, such as the frequency of a texture: 1, except in
     /// [`scaled`](Self::scaled) windows.
     #[cfg_attr(feature = "serde", serde(default = "one"))]
-    pub scale: DVec2,
+    pub scale: [f64; N],
 }
 
 impl Window {
@@ -32,25 +42,32 @@ impl Window {
     ///
     /// [`RasterErrorKind::Empty`] if a side of `size` is zero, [`RasterErrorKind::TooLarge`] past 2^31 pixels,
     /// [`RasterErrorKind::NotFinite`] if the origin or the extent is not finite or the extent is zero.
-    pub fn new(origin: DVec2, extent: DVec2, size: [u32; 2]) -> Result<Self, RasterError> {
+    pub fn new(
+        origin: impl Into<[f64; 2]>,
+        extent: impl Into<[f64; 2]>,
+        size: [u32; 2],
+    ) -> Result<Self, RasterError> {
+        let (origin, extent) = (origin.into(), extent.into());
         check_size(size)?;
         for (what, value, zero) in [
-            ("origin of the window", origin.x, true),
-            ("origin of the window", origin.y, true),
-            ("extent of the window", extent.x, false),
-            ("extent of the window", extent.y, false),
+            ("origin of the window", origin[0], true),
+            ("origin of the window", origin[1], true),
+            ("extent of the window", extent[0], false),
+            ("extent of the window", extent[1], false),
         ] {
             if !value.is_finite() || (!zero && value == 0.0) {
                 return Err(RasterError::new(RasterErrorKind::NotFinite { what, value }));
             }
         }
-        let pixel = extent / DVec2::new(f64::from(size[0]), f64::from(size[1]));
         Ok(Self {
             origin,
-            pixel,
+            pixel: [
+                extent[0] / f64::from(size[0]),
+                extent[1] / f64::from(size[1]),
+            ],
             first: [0, 0],
             size,
-            scale: DVec2::ONE,
+            scale: [1.0; 2],
         })
     }
 
@@ -60,14 +77,65 @@ impl Window {
     ///
     /// The errors of [`new`](Self::new) for `size`.
     pub fn unit(size: [u32; 2]) -> Result<Self, RasterError> {
-        Self::new(DVec2::ZERO, DVec2::ONE, size)
+        Self::new([0.0; 2], [1.0; 2], size)
+    }
+
+    /// This window in the plane through `origin` along the first two axes of space. The first two coordinates of
+    /// `origin` are ignored.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use dapple_raster::Window;
+    ///
+    /// let window = Window::unit([4, 4])?.in_space([0.0, 0.0, 7.5]);
+    /// assert_eq!(window.position(0, 1), [0.125, 0.375, 7.5]);
+    /// # Ok::<(), dapple_raster::RasterError>(())
+    /// ```
+    #[must_use]
+    pub fn in_space<const N: usize>(&self, mut origin: [f64; N]) -> Window<N> {
+        let mut scale = [1.0; N];
+        origin[..2].copy_from_slice(&self.origin);
+        scale[..2].copy_from_slice(&self.scale);
+        Window {
+            origin,
+            pixel: self.pixel,
+            first: self.first,
+            size: self.size,
+            scale,
+        }
+    }
+}
+
+impl<const N: usize> Window<N> {
+    /// This window in the plane, without the coordinates along further axes.
+    #[must_use]
+    pub fn in_plane(&self) -> Window {
+        Window {
+            origin: [self.origin[0], self.origin[1]],
+            pixel: self.pixel,
+            first: self.first,
+            size: self.size,
+            scale: [self.scale[0], self.scale[1]],
+        }
+    }
+
+    /// The coordinate of all pixels along an axis past the second.
+    ///
+    /// # Panics
+    ///
+    /// If `axis` is not below `N`.
+    #[must_use]
+    #[inline]
+    pub fn depth(&self, axis: usize) -> f64 {
+        self.origin[axis] * self.scale[axis]
     }
 
     /// The part of `size` pixels that begins `first` pixels into this window (before it, if negative).
     ///
     /// # Errors
     ///
-    /// [`RasterErrorKind::Empty`] or [`RasterErrorKind::TooLarge`], as in [`new`](Self::new).
+    /// [`RasterErrorKind::Empty`] or [`RasterErrorKind::TooLarge`], as in [`new`](Window::new).
     pub fn crop(&self, first: [i64; 2], size: [u32; 2]) -> Result<Self, RasterError> {
         check_size(size)?;
         let first = [
@@ -87,40 +155,52 @@ impl Window {
     /// # Examples
     ///
     /// ```
-    /// use dapple_raster::{Window, glam::DVec2};
+    /// use dapple_raster::Window;
     ///
     /// let window = Window::unit([64, 64])?;
-    /// let scaled = window.scaled(DVec2::new(12.0, 0.3)).expect("nothing was scaled before");
-    /// assert_eq!(scaled.position(5, 7), window.position(5, 7) * DVec2::new(12.0, 0.3));
+    /// let scaled = window.scaled([12.0, 0.3]).expect("nothing was scaled before");
+    /// let [x, y] = window.position(5, 7);
+    /// assert_eq!(scaled.position(5, 7), [x * 12.0, y * 0.3]);
     /// # Ok::<(), dapple_raster::RasterError>(())
     /// ```
     #[must_use]
-    pub fn scaled(&self, factor: DVec2) -> Option<Self> {
-        let is_exact = |a, b| is_power_of_two(a) || is_power_of_two(b);
-        let is_exact = is_exact(self.scale.x, factor.x) && is_exact(self.scale.y, factor.y);
-        let scale = self.scale * factor;
-        is_exact.then_some(Self { scale, ..*self })
+    pub fn scaled(&self, factor: impl Into<[f64; N]>) -> Option<Self> {
+        let factor = factor.into();
+        let mut scale = self.scale;
+        for (scale, factor) in scale.iter_mut().zip(factor) {
+            if !is_power_of_two(*scale) && !is_power_of_two(factor) {
+                return None;
+            }
+            *scale *= factor;
+        }
+        Some(Self { scale, ..*self })
     }
 
     /// The x coordinate of the centers of column `column`, counted within the window.
     #[must_use]
     #[inline]
     pub fn column_x(&self, column: u32) -> f64 {
-        center(self.origin.x, self.pixel.x, self.first[0], column) * self.scale.x
+        center(self.origin[0], self.pixel[0], self.first[0], column) * self.scale[0]
     }
 
     /// The y coordinate of the centers of row `row`, counted within the window.
     #[must_use]
     #[inline]
     pub fn row_y(&self, row: u32) -> f64 {
-        center(self.origin.y, self.pixel.y, self.first[1], row) * self.scale.y
+        center(self.origin[1], self.pixel[1], self.first[1], row) * self.scale[1]
     }
 
     /// The center of a pixel.
     #[must_use]
     #[inline]
-    pub fn position(&self, column: u32, row: u32) -> DVec2 {
-        DVec2::new(self.column_x(column), self.row_y(row))
+    pub fn position(&self, column: u32, row: u32) -> [f64; N] {
+        let mut position = [0.0; N];
+        position[0] = self.column_x(column);
+        position[1] = self.row_y(row);
+        for (axis, further) in position.iter_mut().enumerate().skip(2) {
+            *further = self.depth(axis);
+        }
+        position
     }
 
     /// Checks that memory has the size of this window.
@@ -153,8 +233,8 @@ fn is_power_of_two(number: f64) -> bool {
 
 /// The default scale of windows that were written without one.
 #[cfg(feature = "serde")]
-fn one() -> DVec2 {
-    DVec2::ONE
+fn one<const N: usize>() -> [f64; N] {
+    [1.0; N]
 }
 
 /// Checks that a size has pixels, and no more than the limit.
@@ -190,10 +270,7 @@ mod tests {
                     part.position(column, row),
                     whole.position(column + 15, row + 11),
                 ];
-                assert_eq!(
-                    here.to_array().map(f64::to_bits),
-                    there.to_array().map(f64::to_bits)
-                );
+                assert_eq!(here.map(f64::to_bits), there.map(f64::to_bits));
             }
         }
     }
@@ -207,14 +284,9 @@ mod tests {
             let scaled = window.scaled(factors[0]).unwrap();
             let scaled = scaled.scaled(factors[1]).unwrap();
             for column in 0..11 {
-                let [here, there] = [
-                    scaled.position(column, 3),
-                    window.position(column, 3) * factors[0] * factors[1],
-                ];
-                assert_eq!(
-                    here.to_array().map(f64::to_bits),
-                    there.to_array().map(f64::to_bits)
-                );
+                let product = DVec2::from(window.position(column, 3)) * factors[0] * factors[1];
+                let [here, there] = [scaled.position(column, 3), product.to_array()];
+                assert_eq!(here.map(f64::to_bits), there.map(f64::to_bits));
             }
         }
         let twice = window.scaled(odd).unwrap().scaled(odd);
@@ -258,7 +330,8 @@ mod tests {
                 .crop([1, -1], [2, 2])
                 .unwrap()
                 .position(1, 1)
-                .is_finite()
+                .iter()
+                .all(|part| part.is_finite())
         );
     }
 }

@@ -325,11 +325,11 @@ impl Plan {
             )?;
         }
         Ok(Window {
-            origin: DVec2::ZERO,
-            pixel: self.extent / DVec2::new(size[0].into(), size[1].into()),
+            origin: [0.0; 2],
+            pixel: (self.extent / DVec2::new(size[0].into(), size[1].into())).into(),
             first: [0, 0],
             size,
-            scale: DVec2::ONE,
+            scale: [1.0; 2],
         })
     }
 

@@ -1,8 +1,7 @@
 //! The random number of the Voronoi cell at each position, as a field.
 
 use crate::worley::cell_value;
-use crate::{FeatureView, Plane, Worley2};
-use dapple_raster::glam::DVec2;
+use crate::{Axes, FeatureView, Plane, Space, Worley};
 use dapple_raster::{Field, RasterError, RasterViewMut, Window};
 
 /// A random number in `[0, 1)` for each Voronoi cell: [`Feature::cell_value`](crate::Feature::cell_value) of the
@@ -11,34 +10,63 @@ use dapple_raster::{Field, RasterError, RasterViewMut, Window};
 /// # Examples
 ///
 /// ```
-/// use dapple_worley::{Worley2, hash::Seed, raster::{Field, glam::DVec2}};
+/// use dapple_worley::{Worley2, hash::Seed, raster::FieldExt};
 ///
 /// let worley = Worley2::new(Seed(7));
-/// let at = DVec2::new(0.25, 0.75);
-/// assert_eq!(worley.cell_values().sample(at), worley.sample::<1>(at)[0].cell_value());
+/// let at = [0.25, 0.75];
+/// assert_eq!(worley.cell_values().sample(at), worley.nearest(at).cell_value());
 /// ```
 #[derive(Clone, Debug)]
-pub struct CellValues {
-    worley: Worley2,
+pub struct CellValues<const N: usize> {
+    worley: Worley<N>,
 }
 
-impl Worley2 {
+impl<const N: usize> Worley<N>
+where
+    Axes: Space<N>,
+{
     /// The texture whose value is the random number of the Voronoi cell, in `[0, 1)`.
     #[must_use]
-    pub fn cell_values(&self) -> CellValues {
+    pub fn cell_values(&self) -> CellValues<N> {
         CellValues {
             worley: self.clone(),
         }
     }
 }
 
-impl Field for CellValues {
-    fn sample(&self, position: DVec2) -> f32 {
-        let [nearest] = self.worley.sample(position);
+impl<const N: usize> CellValues<N>
+where
+    Axes: Space<N>,
+{
+    /// The values at the pixel centers of a window of a plane, into memory of its size.
+    ///
+    /// # Errors
+    ///
+    /// [`SizeMismatch`](dapple_raster::RasterErrorKind::SizeMismatch) if `out` has another size than the window.
+    pub fn render_plane(
+        &self,
+        plane: &Plane<N>,
+        window: &Window,
+        out: RasterViewMut<'_, f32>,
+    ) -> Result<(), RasterError> {
+        let nearest = FeatureView {
+            cell_value: Some(out),
+            ..FeatureView::default()
+        };
+        self.worley.render_features(plane, window, [nearest])
+    }
+}
+
+impl<const N: usize> Field<N> for CellValues<N>
+where
+    Axes: Space<N>,
+{
+    fn value(&self, position: [f64; N]) -> f32 {
+        let nearest = self.worley.nearest(position);
         value(nearest.distance, nearest.id)
     }
 
-    fn sample_many(&self, positions: &[DVec2], values: &mut [f32]) -> Result<(), RasterError> {
+    fn values(&self, positions: &[[f64; N]], values: &mut [f32]) -> Result<(), RasterError> {
         RasterError::check_length(values.len(), positions.len())?;
         self.worley
             .nearest_of_many(positions, |index, distance, id| {
@@ -47,17 +75,12 @@ impl Field for CellValues {
         Ok(())
     }
 
-    fn render(&self, window: &Window, out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
-        let nearest = FeatureView {
-            cell_value: Some(out),
-            ..FeatureView::default()
-        };
-        self.worley
-            .render_features(&Plane::default(), window, [nearest])
+    fn render(&self, window: &Window<N>, out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
+        self.render_plane(&Plane::of_window(window), &window.in_plane(), out)
     }
 
-    fn period(&self) -> [Option<f64>; 2] {
-        self.worley.plane_period()
+    fn period(&self) -> [Option<f64>; N] {
+        self.worley.period()
     }
 }
 

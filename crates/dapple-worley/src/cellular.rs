@@ -7,19 +7,18 @@ use crate::sink::{Tone, Values};
 use crate::{Axes, Combination, Plane, Space, Vector, Worley, WorleyError, WorleyErrorKind};
 use dapple_hash::{CellHash, Seed, unit_f64};
 use dapple_raster::{Field, RasterError, RasterViewMut, Window};
-use glam::DVec2;
 
 /// A scalar texture: a combination of F1 to F4 at every position.
 ///
 /// # Examples
 ///
 /// ```
-/// use dapple_worley::{Combination, Worley2, hash::Seed, raster::{Field, Window, glam::DVec2}};
+/// use dapple_worley::{Combination, Worley2, hash::Seed, raster::{Field, Window}};
 ///
 /// let cracks = Worley2::new(Seed(7)).combine(Combination::F2_MINUS_F1);
-/// let window = Window::new(DVec2::ZERO, DVec2::splat(4.0), [64, 64])?;
+/// let window = Window::new([0.0; 2], [4.0; 2], [64, 64])?;
 /// let raster = cracks.to_raster(&window)?;
-/// assert_eq!(raster.row(3)[5], cracks.sample(window.position(5, 3)));
+/// assert_eq!(raster.row(3)[5], cracks.value(window.position(5, 3)));
 /// # Ok::<(), dapple_worley::raster::RasterError>(())
 /// ```
 #[derive(Clone, Debug)]
@@ -54,14 +53,9 @@ where
 
     /// The value at a position. NaN if the position has no place, see [`Worley::sample`].
     #[must_use]
-    pub fn value(&self, position: impl Into<Vector<N>>) -> f32 {
-        let place = Place::new(position.into().into());
+    pub fn value(&self, position: impl Into<[f64; N]>) -> f32 {
+        let place = Place::new(position.into());
         place.map_or(f32::NAN, |place| self.tone.at(&self.worley, &place))
-    }
-
-    /// The values at many positions.
-    pub(crate) fn values(&self, positions: &[Vector<N>], values: &mut [f32]) {
-        self.worley.tones(&self.tone, positions, values);
     }
 
     /// The gradient of the value at a position, per cell: the combination of the gradients of the distances.
@@ -70,8 +64,8 @@ where
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/gradient.md"))]
     #[must_use]
-    pub fn gradient(&self, position: impl Into<Vector<N>>) -> Vector<N> {
-        let place = Place::new(position.into().into());
+    pub fn gradient(&self, position: impl Into<[f64; N]>) -> Vector<N> {
+        let place = Place::new(position.into());
         let gradient = place.map_or([f32::NAN; N], |place| {
             self.tone.gradient_at(&self.worley, &place)
         });
@@ -106,10 +100,10 @@ where
     ///
     /// ```
     /// use dapple_worley::{Combination, Plane, Worley3, hash::Seed};
-    /// use dapple_worley::raster::{Raster, Window, glam::{DVec2, DVec3}};
+    /// use dapple_worley::raster::{Raster, Window, glam::DVec3};
     ///
     /// let texture = Worley3::new(Seed(1)).combine(Combination::F1);
-    /// let window = Window::new(DVec2::ZERO, DVec2::splat(2.0), [64, 64])?;
+    /// let window = Window::new([0.0; 2], [2.0; 2], [64, 64])?;
     /// let planes = (0..32).map(|slice| Plane::slice(DVec3::new(0.0, 0.0, f64::from(slice) / 32.0)));
     /// let mut volume = Raster::filled([64, 64 * 32], 0.0)?;
     /// texture.render_slices(&window, planes.zip(volume.view_mut().bands(64)).collect())?;
@@ -151,9 +145,7 @@ where
     ///
     /// [`Range`](crate::WorleyErrorKind::Range) if `n` is below 1000.
     pub fn measure_range(&self, seed: Seed, n: u32) -> Result<[f32; 2], WorleyError> {
-        measure_range(seed, n, |position: [f64; N]| {
-            self.value(Vector::<N>::from(position))
-        })
+        measure_range(seed, n, |position: [f64; N]| self.value(position))
     }
 
     /// This texture with values mapped so that about 0 to 1 is their range. The ranges come from a table of
@@ -197,23 +189,45 @@ where
     }
 }
 
-impl Field for Cellular<2> {
-    fn sample(&self, position: DVec2) -> f32 {
+impl<const N: usize> Field<N> for Cellular<N>
+where
+    Axes: Space<N>,
+{
+    fn value(&self, position: [f64; N]) -> f32 {
         self.value(position)
     }
 
-    fn sample_many(&self, positions: &[DVec2], values: &mut [f32]) -> Result<(), RasterError> {
+    fn values(&self, positions: &[[f64; N]], values: &mut [f32]) -> Result<(), RasterError> {
         RasterError::check_length(values.len(), positions.len())?;
-        self.values(positions, values);
+        self.worley.tones(&self.tone, positions, values);
         Ok(())
     }
 
-    fn render(&self, window: &Window, out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
-        self.render_plane(&Plane::default(), window, out)
+    fn render(&self, window: &Window<N>, out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
+        self.render_plane(&Plane::of_window(window), &window.in_plane(), out)
     }
 
-    fn period(&self) -> [Option<f64>; 2] {
-        self.worley.plane_period()
+    fn render_stack(
+        &self,
+        windows: &[Window<N>],
+        outs: Vec<RasterViewMut<'_, f32>>,
+    ) -> Result<(), RasterError> {
+        RasterError::check_length(outs.len(), windows.len())?;
+        let mut slices = windows.iter().zip(outs).peekable();
+        // Planes of the same pixels share their columns and rows.
+        while let Some((first, out)) = slices.next() {
+            let flat = first.in_plane();
+            let mut stack = vec![(Plane::of_window(first), out)];
+            while let Some((window, out)) = slices.next_if(|(next, _)| next.in_plane() == flat) {
+                stack.push((Plane::of_window(window), out));
+            }
+            self.render_slices(&flat, stack)?;
+        }
+        Ok(())
+    }
+
+    fn period(&self) -> [Option<f64>; N] {
+        self.worley.period()
     }
 }
 

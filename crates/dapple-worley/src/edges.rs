@@ -1,8 +1,7 @@
 //! The distance to the edge of the Voronoi cell at each position, as a texture.
 
 use crate::render::Output;
-use crate::{Axes, Metric, Plane, Space, Vector, Worley};
-use dapple_raster::glam::DVec2;
+use crate::{Axes, Metric, Plane, Space, Worley};
 use dapple_raster::{Field, RasterError, RasterViewMut, Window};
 
 /// The texture of the distances to the edges of the Voronoi cells: [`Worley::edge_distance`] at every position.
@@ -10,11 +9,11 @@ use dapple_raster::{Field, RasterError, RasterViewMut, Window};
 /// # Examples
 ///
 /// ```
-/// use dapple_worley::{Worley2, hash::Seed, raster::{Field, Window, glam::DVec2}};
+/// use dapple_worley::{Worley2, hash::Seed, raster::{Field, Window}};
 ///
 /// let worley = Worley2::new(Seed(7));
 /// let edges = worley.edge_distances();
-/// let window = Window::new(DVec2::ZERO, DVec2::splat(4.0), [64, 64])?;
+/// let window = Window::new([0.0; 2], [4.0; 2], [64, 64])?;
 /// let raster = edges.to_raster(&window)?;
 /// assert_eq!(raster.row(3)[5], worley.edge_distance(window.position(5, 3)));
 /// # Ok::<(), dapple_worley::raster::RasterError>(())
@@ -46,7 +45,7 @@ where
 {
     /// The value at a position: [`Worley::edge_distance`].
     #[must_use]
-    pub fn value(&self, position: impl Into<Vector<N>>) -> f32 {
+    pub fn value(&self, position: impl Into<[f64; N]>) -> f32 {
         self.worley.edge_distance(position)
     }
 
@@ -68,16 +67,19 @@ where
     }
 }
 
-impl Field for EdgeDistances<2> {
-    fn sample(&self, position: DVec2) -> f32 {
+impl<const N: usize> Field<N> for EdgeDistances<N>
+where
+    Axes: Space<N>,
+{
+    fn value(&self, position: [f64; N]) -> f32 {
         self.value(position)
     }
 
-    fn render(&self, window: &Window, out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
-        self.render_plane(&Plane::default(), window, out)
+    fn render(&self, window: &Window<N>, out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
+        self.render_plane(&Plane::of_window(window), &window.in_plane(), out)
     }
 
-    fn period(&self) -> [Option<f64>; 2] {
-        self.worley.plane_period()
+    fn period(&self) -> [Option<f64>; N] {
+        self.worley.period()
     }
 }

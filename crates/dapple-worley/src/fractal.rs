@@ -16,7 +16,6 @@ use crate::sink::{Tone, Values};
 use crate::{Axes, Cellular, Plane, Space, Vector, Worley, WorleyError};
 use dapple_hash::Seed;
 use dapple_raster::{Field, RasterError, RasterViewMut, Window};
-use glam::DVec2;
 
 /// Options of a fractal sum: the number of octaves and how they differ.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -99,7 +98,7 @@ impl Octaves {
 /// # Ok::<(), dapple_worley::WorleyError>(())
 /// ```
 #[derive(Clone, Debug)]
-pub struct Fractal<const N: usize> {
+pub struct CellularFractal<const N: usize> {
     octaves: Vec<Octave<N>>,
     /// The combination of the first octave and the one of the others; the sum is mapped to the range last.
     tone: Tone,
@@ -123,7 +122,7 @@ where
     ///
     /// [`Range`](crate::WorleyErrorKind::Range) if one of the octaves' numbers is out of its range, if the basis has a
     /// period and the lacunarity is not a whole number, or if a period gets longer than 2^32 - 1 cells.
-    pub fn fractal(&self, octaves: Octaves) -> Result<Fractal<N>, WorleyError> {
+    pub fn fractal(&self, octaves: Octaves) -> Result<CellularFractal<N>, WorleyError> {
         let Octaves {
             count,
             lacunarity,
@@ -179,7 +178,7 @@ where
             frequency *= lacunarity;
             weight *= gain;
         }
-        Ok(Fractal {
+        Ok(CellularFractal {
             octaves: sum,
             tone: self.tone,
             range: Tone::plain(crate::Combination::F1),
@@ -187,14 +186,14 @@ where
     }
 }
 
-impl<const N: usize> Fractal<N>
+impl<const N: usize> CellularFractal<N>
 where
     Axes: Space<N>,
 {
     /// The value at a position. NaN if the position, or that of an octave, has no place, see [`Worley::sample`].
     #[must_use]
-    pub fn value(&self, position: impl Into<Vector<N>>) -> f32 {
-        let position: [f64; N] = position.into().into();
+    pub fn value(&self, position: impl Into<[f64; N]>) -> f32 {
+        let position: [f64; N] = position.into();
         let mut sum = 0.0;
         for octave in &self.octaves {
             let Some(place) = octave.place(position) else {
@@ -203,26 +202,6 @@ where
             sum += self.tone.at(&octave.worley, &place) * octave.weight;
         }
         self.value_of(sum)
-    }
-
-    /// The values at many positions.
-    pub(crate) fn values(&self, positions: &[Vector<N>], values: &mut [f32]) {
-        let mut tones = vec![0.0; values.len()];
-        values.fill(0.0);
-        for octave in &self.octaves {
-            let scaled = positions.iter().map(|&position| {
-                let position: [f64; N] = position.into();
-                position.map(|part| part * octave.frequency).into()
-            });
-            let scaled: Vec<Vector<N>> = scaled.collect();
-            octave.worley.tones(&self.tone, &scaled, &mut tones);
-            for (value, tone) in values.iter_mut().zip(&tones) {
-                *value += tone * octave.weight;
-            }
-        }
-        for value in values {
-            *value = self.value_of(*value);
-        }
     }
 
     /// The value of a sum of octaves. All NaNs have the same bits.
@@ -236,8 +215,8 @@ where
     /// The gradient of the value at a position, per cell of the first octave. All components are NaN where the value
     /// is.
     #[must_use]
-    pub fn gradient(&self, position: impl Into<Vector<N>>) -> Vector<N> {
-        let position: [f64; N] = position.into().into();
+    pub fn gradient(&self, position: impl Into<[f64; N]>) -> Vector<N> {
+        let position: [f64; N] = position.into();
         let mut sum = [0.0; N];
         for octave in &self.octaves {
             let Some(place) = octave.place(position) else {
@@ -315,9 +294,7 @@ where
     ///
     /// [`Range`](crate::WorleyErrorKind::Range) if `n` is below 1000.
     pub fn measure_range(&self, seed: Seed, n: u32) -> Result<[f32; 2], WorleyError> {
-        measure_range(seed, n, |position: [f64; N]| {
-            self.value(Vector::<N>::from(position))
-        })
+        measure_range(seed, n, |position: [f64; N]| self.value(position))
     }
 
     /// This texture with values mapped so that `range` becomes 0 to 1. Values beyond it are not clamped.
@@ -333,40 +310,69 @@ where
     }
 }
 
-impl<const N: usize> Fractal<N>
+impl<const N: usize> Field<N> for CellularFractal<N>
 where
     Axes: Space<N>,
 {
-    /// The number of cells of the first octave after which the first two axes repeat; the other octaves repeat by then
-    /// too.
-    pub(crate) fn plane_period(&self) -> [Option<f64>; 2] {
-        let first = self.octaves.first();
-        first.map_or([None; 2], |octave| octave.worley.plane_period())
-    }
-}
-
-impl Field for Fractal<2> {
-    fn sample(&self, position: DVec2) -> f32 {
+    fn value(&self, position: [f64; N]) -> f32 {
         self.value(position)
     }
 
-    fn sample_many(&self, positions: &[DVec2], values: &mut [f32]) -> Result<(), RasterError> {
+    fn values(&self, positions: &[[f64; N]], values: &mut [f32]) -> Result<(), RasterError> {
         RasterError::check_length(values.len(), positions.len())?;
-        self.values(positions, values);
+        let mut tones = vec![0.0; values.len()];
+        values.fill(0.0);
+        for octave in &self.octaves {
+            let scaled = positions.iter().map(|&position| octave.scaled(position));
+            let scaled: Vec<_> = scaled.collect();
+            octave.worley.tones(&self.tone, &scaled, &mut tones);
+            for (value, tone) in values.iter_mut().zip(&tones) {
+                *value += tone * octave.weight;
+            }
+        }
+        for value in values {
+            *value = self.value_of(*value);
+        }
         Ok(())
     }
 
-    fn render(&self, window: &Window, out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
-        self.render_plane(&Plane::default(), window, out)
+    fn render(&self, window: &Window<N>, out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
+        self.render_plane(&Plane::of_window(window), &window.in_plane(), out)
     }
 
-    fn period(&self) -> [Option<f64>; 2] {
-        self.plane_period()
+    fn render_stack(
+        &self,
+        windows: &[Window<N>],
+        outs: Vec<RasterViewMut<'_, f32>>,
+    ) -> Result<(), RasterError> {
+        RasterError::check_length(outs.len(), windows.len())?;
+        let mut slices = windows.iter().zip(outs).peekable();
+        // Planes of the same pixels share their columns and rows.
+        while let Some((first, out)) = slices.next() {
+            let flat = first.in_plane();
+            let mut stack = vec![(Plane::of_window(first), out)];
+            while let Some((window, out)) = slices.next_if(|(next, _)| next.in_plane() == flat) {
+                stack.push((Plane::of_window(window), out));
+            }
+            self.render_slices(&flat, stack)?;
+        }
+        Ok(())
+    }
+
+    /// The number of cells of the first octave after which the sum repeats; the other octaves repeat by then too.
+    fn period(&self) -> [Option<f64>; N] {
+        let first = self.octaves.first();
+        first.map_or([None; N], |octave| octave.worley.period())
     }
 }
 
 impl<const N: usize> Octave<N> {
     fn place(&self, position: [f64; N]) -> Option<Place<N>> {
-        Place::new(position.map(|part| part * self.frequency))
+        Place::new(self.scaled(position))
+    }
+
+    /// A position in cells of this octave.
+    fn scaled(&self, position: [f64; N]) -> [f64; N] {
+        position.map(|part| part * self.frequency)
     }
 }

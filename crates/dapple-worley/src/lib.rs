@@ -8,16 +8,16 @@
 //! second nearest, and so on. [`Worley`] holds such a basis, with its [`Scatter`], its [`Metric`] and its period.
 //!
 //! ```
-//! use dapple_worley::{Combination, Worley2, hash::Seed, raster::{Field, Window, glam::DVec2}};
+//! use dapple_worley::{Combination, Worley2, hash::Seed, raster::{Field, Window}};
 //!
 //! let worley = Worley2::new(Seed(7));
 //! let [nearest, second] = worley.sample([0.25, 0.75]);
 //! assert!(nearest.distance <= second.distance);
 //!
 //! let cracks = worley.combine(Combination::F2_MINUS_F1).normalized()?;
-//! let window = Window::new(DVec2::ZERO, DVec2::splat(8.0), [256, 256])?;
+//! let window = Window::new([0.0; 2], [8.0; 2], [256, 256])?;
 //! let picture = cracks.to_raster(&window)?;
-//! assert_eq!(picture.row(3)[5], cracks.sample(window.position(5, 3)));
+//! assert_eq!(picture.row(3)[5], cracks.value(window.position(5, 3)));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
@@ -26,7 +26,7 @@
 //! [`Worley::render_features`], [`Cellular::render_gradient`]), which is by far the fastest. A volume is filled slice
 //! by slice ([`Cellular::render_slices`]).
 //!
-//! On top of F1 to F4 are [`Combination`]s, [`Fractal`] sums, [`Profile`]s for bumps, [`Radial`] cells for spheres, and
+//! On top of F1 to F4 are [`Combination`]s, [`CellularFractal`] sums, [`Profile`]s for bumps, [`Radial`] cells for spheres, and
 //! the geometry of the Voronoi cells: [`Worley::edge_distance`] and, as a texture, [`EdgeDistances`],
 //! [`Worley::smooth_f1`], [`Worley::sphere_radius`], [`Feature::cell_value`]. A [`FeatureSet`] is the same basis over
 //! points that you have placed.
@@ -59,7 +59,6 @@ mod radial;
 mod ranges;
 mod scattered;
 mod set;
-mod slice;
 mod voronoi;
 
 mod doors;
@@ -86,7 +85,7 @@ pub use edges::EdgeDistances;
 pub use error::{WorleyError, WorleyErrorKind};
 pub use features::FeatureView;
 #[doc(alias("fbm", "turbulence", "ridged"))]
-pub use fractal::Fractal;
+pub use fractal::CellularFractal;
 pub use fractal::{OctaveSeeds, Octaves};
 pub use metric::Metric;
 pub use plane::Plane;
@@ -94,7 +93,6 @@ pub use profile::Profile;
 pub use radial::{Radial, RadialCells};
 pub use scatter::Scatter;
 pub use set::FeatureSet;
-pub use slice::Slice;
 pub use space::{Axes, Space, Vector};
 #[doc(alias("voronoi", "cellular noise", "cellular", "cell noise"))]
 pub use worley::Worley;

@@ -2,7 +2,7 @@
 
 use crate::fixed::MOST_AXES;
 use crate::{Axes, Space, Vector};
-use glam::DVec2;
+use dapple_raster::Window;
 
 /// A plane through space, in which pictures lie. Its position `[x, y]` is `origin + x·u + y·v`.
 ///
@@ -48,9 +48,17 @@ where
         }
     }
 
+    /// The plane in which a window of space lies.
+    pub(crate) fn of_window(window: &Window<N>) -> Self {
+        let mut origin = window.position(0, 0);
+        origin[..2].fill(0.0);
+        Self::slice(origin.into())
+    }
+
     /// The position in space of a position of the plane.
     #[must_use]
-    pub fn position(&self, position: DVec2) -> Vector<N> {
+    pub fn position(&self, position: impl Into<[f64; 2]>) -> Vector<N> {
+        let position = position.into();
         let section = self.section();
         Vector::<N>::from(core::array::from_fn(|axis| {
             section.coordinate(axis, position)
@@ -85,8 +93,8 @@ pub(crate) struct Section {
 impl Section {
     /// One coordinate of a position of the plane.
     #[inline]
-    pub(crate) fn coordinate(&self, axis: usize, position: DVec2) -> f64 {
-        self.origin[axis] + (self.u[axis] * position.x + self.v[axis] * position.y)
+    pub(crate) fn coordinate(&self, axis: usize, [x, y]: [f64; 2]) -> f64 {
+        self.origin[axis] + (self.u[axis] * x + self.v[axis] * y)
     }
 
     /// Whether another plane has the same coordinates along an axis.

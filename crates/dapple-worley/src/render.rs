@@ -36,7 +36,6 @@ use crate::sink::{Tone, Values};
 use block::{Block, Memory};
 use dapple_raster::{RasterViewMut, Window, parallel, simd};
 use fearless_simd::Level;
-use glam::DVec2;
 use std::sync::Arc;
 
 pub(crate) use basis::Basis;
@@ -130,7 +129,7 @@ impl Picture<'_> {
                 columns.clone()
             }
             _ => Arc::new(self.line(0, self.window.size[0], |column| {
-                DVec2::new(self.window.column_x(column), 0.0)
+                [self.window.column_x(column), 0.0]
             })),
         }
     }
@@ -146,7 +145,7 @@ impl Picture<'_> {
                 let last = self.window.row_y((first + n) as u32 - 1);
                 let is_level = self.section.v[axis] == 0.0 && last.is_finite();
                 let mut line = self.line(axis, if is_level { 1 } else { n as u32 }, |row| {
-                    DVec2::new(0.0, self.window.row_y(first as u32 + row))
+                    [0.0, self.window.row_y(first as u32 + row)]
                 });
                 line.places.resize(n, line.places[0]);
                 Arc::new(line)
@@ -156,7 +155,7 @@ impl Picture<'_> {
 
     /// The coordinates of columns or rows along one axis. They equal those of [`place`](Self::place) if the plane is
     /// upright, since the other part of the position then adds zero.
-    fn line(&self, axis: usize, len: u32, position: impl Fn(u32) -> DVec2) -> Line {
+    fn line(&self, axis: usize, len: u32, position: impl Fn(u32) -> [f64; 2]) -> Line {
         let coordinate = |index| self.section.coordinate(axis, position(index)) * self.frequency;
         let mut places: Vec<_> = (0..len)
             .map_while(|index| split(coordinate(index)))

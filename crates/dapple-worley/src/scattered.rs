@@ -33,7 +33,7 @@ where
     /// ```
     pub fn sample_many<const K: usize>(
         &self,
-        positions: &[Vector<N>],
+        positions: &[impl Copy + Into<[f64; N]>],
         features: &mut [[Feature<Vector<N>>; K]],
     ) -> Result<(), WorleyError> {
         const { assert!(K >= 1 && K <= LIMIT, "F1 to F4 are there to be asked for") };
@@ -57,7 +57,12 @@ where
     }
 
     /// The values of a combination at many positions.
-    pub(crate) fn tones(&self, tone: &Tone, positions: &[Vector<N>], values: &mut [f32]) {
+    pub(crate) fn tones(
+        &self,
+        tone: &Tone,
+        positions: &[impl Copy + Into<[f64; N]>],
+        values: &mut [f32],
+    ) {
         let depth = if tone.depth() <= 2 { 2 } else { LIMIT };
         self.each_group(depth, positions, |range, holds, points| {
             for (place, index) in range.enumerate() {
@@ -78,7 +83,7 @@ where
     /// Calls `put` with the index of each position, and the distance and the id of the nearest point.
     pub(crate) fn nearest_of_many(
         &self,
-        positions: &[Vector<N>],
+        positions: &[impl Copy + Into<[f64; N]>],
         mut put: impl FnMut(usize, f32, u64),
     ) {
         self.each_group(2, positions, |range, holds, points| {
@@ -99,7 +104,7 @@ where
     fn each_group(
         &self,
         depth: usize,
-        positions: &[Vector<N>],
+        positions: &[impl Copy + Into<[f64; N]>],
         mut found: impl FnMut(Range<usize>, u64, &[Points<N>]),
     ) {
         let mut group = Group::new(depth);

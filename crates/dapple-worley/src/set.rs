@@ -140,12 +140,9 @@ where
     /// Points at the same distance are in the order of their indices. Where there are fewer points, the rest are
     /// infinitely far away, with the id `u64::MAX`. A position that is not finite gives NaN and the same id.
     #[must_use]
-    pub fn sample<const K: usize>(
-        &self,
-        position: impl Into<Vector<N>>,
-    ) -> [Feature<Vector<N>>; K] {
+    pub fn sample<const K: usize>(&self, position: impl Into<[f64; N]>) -> [Feature<Vector<N>>; K] {
         const { assert!(K >= 1 && K <= LIMIT, "F1 to F4 are there to be asked for") };
-        let position: [f64; N] = position.into().into();
+        let position: [f64; N] = position.into();
         if position.iter().any(|part| !part.is_finite()) {
             return [Feature {
                 distance: f32::NAN,

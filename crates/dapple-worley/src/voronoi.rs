@@ -6,7 +6,7 @@
 use crate::doors::Doors as _;
 use crate::fixed::{Place, STEP, STEPS};
 use crate::search::{Hit, Name, order};
-use crate::{Axes, Metric, Space, Vector, Worley, WorleyError};
+use crate::{Axes, Metric, Space, Worley, WorleyError};
 
 impl<const N: usize> Worley<N>
 where
@@ -20,8 +20,8 @@ where
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/edge-distance.md"))]
     #[must_use]
-    pub fn edge_distance(&self, position: impl Into<Vector<N>>) -> f32 {
-        let place = Place::new(position.into().into());
+    pub fn edge_distance(&self, position: impl Into<[f64; N]>) -> f32 {
+        let place = Place::new(position.into());
         place.map_or(f32::NAN, |place| self.edge_distance_at(&place))
     }
 
@@ -52,8 +52,8 @@ where
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/sphere-radius.md"))]
     #[must_use]
-    pub fn sphere_radius(&self, position: impl Into<Vector<N>>) -> f32 {
-        let Some(place) = Place::new(position.into().into()) else {
+    pub fn sphere_radius(&self, position: impl Into<[f64; N]>) -> f32 {
+        let Some(place) = Place::new(position.into()) else {
             return f32::NAN;
         };
         let [hit] = self.hits::<1>(&place);
@@ -85,7 +85,7 @@ where
     /// [`Range`](crate::WorleyErrorKind::Range) if the radius is not above 0 and at most 4.
     pub fn smooth_f1(
         &self,
-        position: impl Into<Vector<N>>,
+        position: impl Into<[f64; N]>,
         radius: f32,
     ) -> Result<f32, WorleyError> {
         let holds = radius > 0.0 && radius <= 4.0 && radius.recip().is_finite();
@@ -95,7 +95,7 @@ where
             f64::from(radius),
             "above 0, at most 4",
         )?;
-        let Some(place) = Place::new(position.into().into()) else {
+        let Some(place) = Place::new(position.into()) else {
             return Ok(f32::NAN);
         };
         let [first] = self.distances::<1>(&place);

@@ -184,12 +184,9 @@ where
         })
     }
 
-    /// The number of cells after which the first two axes repeat.
-    pub(crate) fn plane_period(&self) -> [Option<f64>; 2] {
-        [0, 1].map(|axis| match self.lattice.period[axis] {
-            0 => None,
-            cells => Some(cells.into()),
-        })
+    /// The number of cells after which each axis repeats.
+    pub(crate) fn period(&self) -> [Option<f64>; N] {
+        self.periods().map(|cells| cells.map(f64::from))
     }
 
     /// Makes the feature points repeat after a number of cells along each axis; `None` along an axis that does not
@@ -246,7 +243,7 @@ where
     /// The nearest feature point of a position: the first of [`sample`](Self::sample).
     #[must_use]
     #[inline]
-    pub fn nearest(&self, position: impl Into<Vector<N>>) -> Feature<Vector<N>> {
+    pub fn nearest(&self, position: impl Into<[f64; N]>) -> Feature<Vector<N>> {
         let [nearest] = self.sample(position);
         nearest
     }
@@ -258,17 +255,14 @@ where
     /// unclamped points has no point at all, distances and vectors are infinite and ids 0.
     #[must_use]
     #[inline]
-    pub fn sample<const K: usize>(
-        &self,
-        position: impl Into<Vector<N>>,
-    ) -> [Feature<Vector<N>>; K] {
+    pub fn sample<const K: usize>(&self, position: impl Into<[f64; N]>) -> [Feature<Vector<N>>; K] {
         const { assert!(K >= 1 && K <= LIMIT, "F1 to F4 are there to be asked for") };
         let mut features = [Feature {
             distance: f32::NAN,
             vector: [f64::NAN; N].into(),
             id: 0,
         }; K];
-        if let Some(place) = Place::new(position.into().into()) {
+        if let Some(place) = Place::new(position.into()) {
             // Not mapped: that would be a call for each.
             let hits = self.hits::<K>(&place);
             for (feature, hit) in features.iter_mut().zip(hits) {

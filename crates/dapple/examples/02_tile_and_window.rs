@@ -12,7 +12,7 @@ mod out;
 use dapple::color::Palette;
 use dapple::hash::Seed;
 use dapple::image::{Depth, write_color_png};
-use dapple::raster::{Field, Window, glam::DVec2};
+use dapple::raster::{Field, FieldExt as _, Window, glam::DVec2};
 use dapple::worley::{Combination, Worley2};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {

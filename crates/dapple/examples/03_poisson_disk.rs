@@ -29,7 +29,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         for [dx, dy] in (-4..=4).flat_map(|dy| (-4..=4).map(move |dx| [dx, dy])) {
             let wrapped = [column + dx, row + dy].map(|at| at.rem_euclid(SIDE.into()) as u32);
             let [x, y] = wrapped;
-            let from_point = domain.delta(point, window.position(x, y)) * f64::from(SIDE);
+            let from_point = domain.delta(point, window.position(x, y).into()) * f64::from(SIDE);
             let ink = (4.0 - from_point.length()).clamp(0.0, 1.0) as f32;
             let at = (y * SIDE + x) as usize;
             picture.pixels_mut()[at] = f32::min(picture.pixels()[at], 1.0 - ink);

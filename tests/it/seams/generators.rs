@@ -339,8 +339,8 @@ fn gradient_noise(seed: Seed, window: &Window) -> Result<Raster<f32>> {
 fn ridged_noise(seed: Seed, window: &Window) -> Result<Raster<f32>> {
     let noise = GradientNoise4::new(seed).with_period([Some(PERIOD), Some(PERIOD), None, None])?;
     Ok(noise
-        .slice(0.375, 7.625)
-        .ridged(3, 0.5, 2.0)?
+        .fractal(3, 0.5, 2.0, FractalShape::Ridged)?
+        .slice([0.375, 7.625])
         .to_raster(window)?)
 }
 
@@ -366,9 +366,7 @@ fn wavelet_noise(seed: Seed, window: &Window) -> Result<Raster<f32>> {
 
 fn wavelet_noise_in_space(seed: Seed, window: &Window) -> Result<Raster<f32>> {
     let noise = WaveletNoise3::new(2 * PERIOD, seed)?.with_weights(&WEIGHTS)?;
-    let mut raster = Raster::filled(window.size, 0.0)?;
-    noise.render_slice(4.625, &in_half_units(window)?, raster.view_mut())?;
-    Ok(raster)
+    Ok(noise.slice([4.625]).to_raster(&in_half_units(window)?)?)
 }
 
 /// Draws a tile of three bands, whose lattice has 2^3 pixels.

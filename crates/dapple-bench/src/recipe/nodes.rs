@@ -4,7 +4,7 @@ use crate::harness::{Bench, Done, Side};
 use crate::row::{Case, Must, Unit};
 use anyhow::{Context as _, Result, ensure};
 use dapple_hash::Seed;
-use dapple_raster::{Field, Raster};
+use dapple_raster::{Field, FieldExt as _, Raster};
 use dapple_recipe::{Images, NodeField, Plan, Recipe};
 use dapple_worley::{Combination, Feature, Worley2};
 use glam::DVec2;
@@ -142,8 +142,8 @@ fn warped(bench: &mut Bench) -> Result<()> {
     let window = ours.plan.window([SIDE; 2])?;
     let at = |index: u32| {
         let position = window.position(index % SIDE, index / SIDE);
-        let shift = position.to_array().map(|part| f64::from(part as f32));
-        (position + AMOUNT * DVec2::from(shift)) * 12.0
+        let shift = position.map(|part| f64::from(part as f32));
+        (DVec2::from(position) + AMOUNT * DVec2::from(shift)) * 12.0
     };
     let positions: Vec<DVec2> = (0..SIDE * SIDE).map(at).collect();
     let none: [Feature<DVec2>; 2] = worley.sample(DVec2::NAN);

@@ -39,6 +39,6 @@ fn panels(side: u32, labels: [&str; 5]) -> anyhow::Result<[Panel; 5]> {
         panel(labels[1], &fractal(FractalShape::Sum)?, [-0.9, 0.9])?,
         panel(labels[2], &fractal(FractalShape::Ridged)?, [0.9, 1.9])?,
         panel(labels[3], &fractal(FractalShape::Billow)?, [0.0, 1.0])?,
-        panel(labels[4], &noise.warp(right, down, 1.5), [-0.8, 0.8])?,
+        panel(labels[4], &noise.warp([right, down], 1.5), [-0.8, 0.8])?,
     ])
 }

@@ -52,7 +52,7 @@ pub(super) fn edged(label: &str, field: &dyn Field, window: &Window) -> anyhow::
 /// The window of all samples, [`SAMPLES`] along each side of a pixel.
 pub(super) fn finer(window: &Window) -> anyhow::Result<Window> {
     let size = window.size.map(|pixels| pixels * SAMPLES);
-    let extent = DVec2::from(window.size.map(f64::from)) * window.pixel;
+    let extent = DVec2::from(window.size.map(f64::from)) * DVec2::from(window.pixel);
     Ok(Window::new(window.origin, extent, size)?)
 }
 

@@ -11,7 +11,9 @@ const STROKE: f64 = 0.14;
 impl<T: Texel> Canvas<T> {
     /// Draws a straight line with an arrowhead at its end. The width is in pixels.
     pub fn arrow(&mut self, [from, to]: [DVec2; 2], width_px: f64, ink: T) {
-        let back = (from - to).normalize_or_zero() * (5.0 * width_px) * self.window.pixel.abs();
+        let back = (from - to).normalize_or_zero()
+            * (5.0 * width_px)
+            * DVec2::from(self.window.pixel).abs();
         let aside = 0.5 * back.perp();
         let head = [[back + aside, DVec2::ZERO], [back - aside, DVec2::ZERO]];
         let head = head.map(|line| line.map(|end| to + end));

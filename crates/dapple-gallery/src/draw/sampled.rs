@@ -19,12 +19,12 @@ pub fn sampled<T: Texel + Send>(
         let mut sum: Option<T> = None;
         for y in row * side..(row + 1) * side {
             for x in column * side..(column + 1) * side {
-                let sample = value(fine.position(x, y));
+                let sample = value(fine.position(x, y).into());
                 sum = Some(sum.map_or(sample, |sum| sum + sample));
             }
         }
         // There is a first sample, so there is a sum.
-        sum.unwrap_or_else(|| value(fine.position(column, row))) * share
+        sum.unwrap_or_else(|| value(fine.position(column, row).into())) * share
     };
     let mean = &mean;
     Raster::from_rows(size, |row| {

@@ -4,10 +4,10 @@ use super::{GradientNoise, GradientNoise2, GradientNoise3, GradientNoise4, Place
 use crate::gradients::{all, gradient};
 use crate::many;
 use dapple_hash::{LatticeHash, Seed, hash1};
+use dapple_raster::glam::DVec2;
 use dapple_raster::simd::for_every_level;
-use dapple_raster::{Field, FractalShape, RasterErrorKind, Window};
+use dapple_raster::{Field, FieldExt as _, FractalShape, RasterErrorKind, Window};
 use fearless_simd::Level;
-use glam::DVec2;
 use proptest::prelude::*;
 
 const SEED: Seed = Seed(7);
@@ -184,7 +184,7 @@ fn fractal_sums_stay_in_their_ranges_and_leave_the_range_of_one_octave() {
         ] {
             let fractal = noise.fractal(count, gain, 2.0, shape).unwrap();
             assert!((f64::from(fractal.weight()) - weight).abs() < 1e-5);
-            let values = positions::<2>(20_000).map(|at| fractal.sample(at.into()));
+            let values = positions::<2>(20_000).map(|at| fractal.sample(at));
             let values: Vec<f32> = values.collect();
             let [lowest, highest] = values.iter().fold([f32::MAX, f32::MIN], |[low, high], &v| {
                 [low.min(v), high.max(v)]
@@ -212,11 +212,9 @@ fn fractal_sums_vary_from_one_whole_position_to_the_next() {
             .fractal(6, 0.5, 2.0, shape)
             .unwrap();
         let values: Vec<f32> = positions::<2>(1000)
-            .map(|corner| sum.sample(corner.map(f64::round).into()))
+            .map(|corner| sum.sample(corner.map(f64::round)))
             .collect();
-        let elsewhere: Vec<f32> = positions::<2>(1000)
-            .map(|at| sum.sample(at.into()))
-            .collect();
+        let elsewhere: Vec<f32> = positions::<2>(1000).map(|at| sum.sample(at)).collect();
         let [variance, expected] = [values, elsewhere].map(|values| {
             let mean = values.iter().sum::<f32>() / 1000.0;
             let squares = values.iter().map(|value| (value - mean) * (value - mean));
@@ -235,15 +233,19 @@ fn a_window_has_the_values_of_its_positions_bit_for_bit() {
     let plane = GradientNoise2::new(SEED)
         .with_period([Some(5), None])
         .unwrap();
-    let fields: [&dyn Field; 4] = [
+    let clouds = GradientNoise3::new(SEED).with_period([Some(3); 3]).unwrap();
+    let clouds = clouds.fractal(4, 0.5, 2.0, FractalShape::Sum).unwrap();
+    let fields: [&dyn Field; 6] = [
         &plane,
-        &GradientNoise3::new(SEED).slice(0.3),
-        &GradientNoise4::new(SEED).slice(-2.75, 1e6 + 0.1),
+        &(&clouds).slice([0.75]),
+        &(&clouds).warp([&clouds; 3], 0.5).slice([0.75]),
+        &GradientNoise3::new(SEED).slice([0.3]),
+        &GradientNoise4::new(SEED).slice([-2.75, 1e6 + 0.1]),
         &plane.fractal(3, 0.5, 2.0, FractalShape::Billow).unwrap(),
     ];
     for extent in [[1.3, 0.7], [-40.0, 90.0], [700.0, 1e9]] {
         let origin = DVec2::new(-3.3, 1e7 + 0.2);
-        let whole = Window::new(origin, extent.into(), [90, 70]).unwrap();
+        let whole = Window::new(origin, extent, [90, 70]).unwrap();
         let window = whole.crop([-5, 3], [85, 67]).unwrap();
         for field in fields {
             let raster = field.to_raster(&window).unwrap();
@@ -370,7 +372,7 @@ fn a_tile_repeats_exactly_along_each_axis_that_was_asked_for() {
         other[1] += 3.0;
         assert_ne!(noise.sample(other), value, "axis 1 at {position:?}");
     }
-    assert_eq!(noise.slice(0.0, 0.0).period(), [Some(3.0), None]);
+    assert_eq!(noise.slice([0.0, 0.0]).period(), [Some(3.0), None]);
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use crate::PupsError;
 use dapple_hash::{Seed, hash1, unit_f32};
 use dapple_points::PointSet;
-use dapple_raster::{Field, Varying};
+use dapple_raster::{Field, FieldExt as _, Varying};
 
 /// Independent random values, uniform in `[0, 1)`: those of the paper's noise.
 ///

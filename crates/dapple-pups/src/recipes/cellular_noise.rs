@@ -68,7 +68,7 @@ impl Default for CellularNoiseOptions {
 /// # Examples
 ///
 /// ```
-/// use dapple_pups::{CellularNoiseOptions, cellular_noise, glam::DVec2, hash::Seed, raster::Field};
+/// use dapple_pups::{CellularNoiseOptions, cellular_noise, glam::DVec2, hash::Seed, raster::FieldExt};
 ///
 /// let texture = cellular_noise(&CellularNoiseOptions::default(), Seed(7))?.normalized();
 /// assert!((0.0..=1.0).contains(&texture.sample(DVec2::new(0.25, -0.5))));

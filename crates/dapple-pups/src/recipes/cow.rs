@@ -54,7 +54,7 @@ impl Default for CowOptions {
 /// # Examples
 ///
 /// ```
-/// use dapple_pups::{CowOptions, cow, glam::DVec2, hash::Seed, raster::Field};
+/// use dapple_pups::{CowOptions, cow, glam::DVec2, hash::Seed, raster::FieldExt};
 ///
 /// let texture = cow(&CowOptions::default(), Seed(7))?;
 /// assert!([0.0, 1.0].contains(&texture.sample(DVec2::new(0.25, -0.5))));

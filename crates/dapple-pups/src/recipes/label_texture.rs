@@ -16,7 +16,7 @@ use glam::DVec2;
 ///
 /// ```
 /// use dapple_pups::points::{Domain, white_noise};
-/// use dapple_pups::raster::{Field, glam::DVec2};
+/// use dapple_pups::raster::{FieldExt, glam::DVec2};
 /// use dapple_pups::{LabelTexture, Pups, hash::Seed, random_labels};
 ///
 /// let points = white_noise(Domain::paper_torus(), 50, Seed(1))?;
@@ -151,19 +151,19 @@ impl LabelTexture {
     }
 
     /// The value of a point's label; NaN where there is no point.
-    fn value(&self, point: Option<PointIdx>) -> f32 {
+    fn of_point(&self, point: Option<PointIdx>) -> f32 {
         let label = point.and_then(|point| self.labels.get(point.index()));
         label.map_or(f32::NAN, |&label| self.values[label as usize])
     }
 }
 
 impl Field for LabelTexture {
-    fn sample(&self, position: DVec2) -> f32 {
-        self.value(self.pups.strongest(position))
+    fn value(&self, position: [f64; 2]) -> f32 {
+        self.of_point(self.pups.strongest(position.into()))
     }
 
     fn render(&self, window: &Window, out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
-        render_labels(&self.pups, window, out, |point| self.value(Some(point)))
+        render_labels(&self.pups, window, out, |point| self.of_point(Some(point)))
     }
 
     fn period(&self) -> [Option<f64>; 2] {
@@ -188,8 +188,8 @@ impl<const N: usize> VectorLabelTexture<N> {
 
     /// The vector at a position; NaN at one that is not finite.
     #[must_use]
-    pub fn sample(&self, position: DVec2) -> [f32; N] {
-        self.value(self.pups.strongest(position))
+    pub fn sample(&self, position: impl Into<[f64; 2]>) -> [f32; N] {
+        self.of_point(self.pups.strongest(position.into().into()))
     }
 
     /// The vectors at the pixel centers of a window, into memory of its size.
@@ -202,7 +202,7 @@ impl<const N: usize> VectorLabelTexture<N> {
         window: &Window,
         out: RasterViewMut<'_, [f32; N]>,
     ) -> Result<(), RasterError> {
-        render_labels(&self.pups, window, out, |point| self.value(Some(point)))
+        render_labels(&self.pups, window, out, |point| self.of_point(Some(point)))
     }
 
     /// The vectors at the pixel centers of a window, as a new raster.
@@ -217,7 +217,7 @@ impl<const N: usize> VectorLabelTexture<N> {
         Ok(raster)
     }
 
-    fn value(&self, point: Option<PointIdx>) -> [f32; N] {
+    fn of_point(&self, point: Option<PointIdx>) -> [f32; N] {
         let label = point.and_then(|point| self.labels.get(point.index()));
         label.map_or([f32::NAN; N], |&label| self.values[label as usize])
     }

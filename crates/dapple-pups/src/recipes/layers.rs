@@ -1,7 +1,6 @@
 //! Sums of layers, each with an amplitude: octaves of noise (equation 5) and cells of several sizes (figure 10).
 
 use dapple_raster::{Field, Raster, RasterError, RasterViewMut, Window, common_period};
-use glam::DVec2;
 
 /// A weighted sum of fields whose values are between 0 and 1.
 ///
@@ -89,10 +88,10 @@ fn part(value: f32, amplitude: f32) -> f32 {
 }
 
 impl<F: Field> Field for Layers<F> {
-    fn sample(&self, position: DVec2) -> f32 {
+    fn value(&self, position: [f64; 2]) -> f32 {
         let mut sum = 0.0;
         for (layer, &amplitude) in self.layers.iter().zip(&self.amplitudes) {
-            sum += part(layer.sample(position), amplitude);
+            sum += part(layer.value(position), amplitude);
         }
         self.finish(sum)
     }

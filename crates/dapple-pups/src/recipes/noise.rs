@@ -44,7 +44,7 @@ impl Default for NoiseOptions {
 /// # Examples
 ///
 /// ```
-/// use dapple_pups::{NoiseOptions, glam::DVec2, hash::Seed, noise, raster::Field};
+/// use dapple_pups::{NoiseOptions, glam::DVec2, hash::Seed, noise, raster::FieldExt};
 ///
 /// let texture = noise(&NoiseOptions::default(), Seed(7))?;
 /// let position = DVec2::new(0.25, -0.5);

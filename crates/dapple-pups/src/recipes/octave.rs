@@ -2,7 +2,6 @@
 
 use crate::Texture;
 use dapple_raster::{Field, RasterError, RasterViewMut, Window};
-use glam::DVec2;
 
 /// One octave: a texture with values in `[0, 1]`, rescaled and perhaps folded.
 #[derive(Clone, Debug)]
@@ -58,8 +57,8 @@ fn fold(value: f32) -> f32 {
 }
 
 impl Field for Octave {
-    fn sample(&self, position: DVec2) -> f32 {
-        let value = self.texture.sample(position * self.scale);
+    fn value(&self, position: [f64; 2]) -> f32 {
+        let value = self.texture.value(position.map(|at| at * self.scale));
         match self.folding {
             Folding::Plain => value,
             Folding::Folded => fold(value),
@@ -69,8 +68,8 @@ impl Field for Octave {
     fn render(&self, window: &Window, mut out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
         // With a power of two, the positions of this window are those of the other times the scale, to the last bit.
         let window = Window {
-            origin: window.origin * self.scale,
-            pixel: window.pixel * self.scale,
+            origin: window.origin.map(|at| at * self.scale),
+            pixel: window.pixel.map(|side| side * self.scale),
             ..*window
         };
         self.texture.render(&window, out.reborrow())?;

@@ -5,7 +5,7 @@ use dapple_hash::Seed;
 use dapple_points::{Domain, PointIdx, poisson_disk, white_noise};
 use dapple_pups::Pups;
 use dapple_raster::simd::for_every_level;
-use dapple_raster::{Field, Raster, Window};
+use dapple_raster::{Field, FieldExt as _, Raster, Window};
 use glam::DVec2;
 
 /// A window that lies across the borders of the domain.
@@ -28,7 +28,7 @@ fn render_equals_sample_bit_for_bit() {
         let texture = case.texture();
         let window = window(&case);
         let flipped = Window {
-            pixel: -window.pixel,
+            pixel: window.pixel.map(|side| -side),
             first: [-53, -37],
             ..window
         };

@@ -4,7 +4,7 @@ use super::sets::values;
 use dapple_hash::Seed;
 use dapple_points::{Domain, PointSet, poisson_disk};
 use dapple_pups::{Pups, PupsOptions};
-use dapple_raster::{Field, Raster, Window};
+use dapple_raster::{Field, FieldExt as _, Raster, Window};
 use glam::DVec2;
 
 /// The texture after a part of a way that takes one point past several others.

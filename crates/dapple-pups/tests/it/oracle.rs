@@ -3,7 +3,7 @@
 use super::sets::{Case, cases, positions};
 use dapple_graph::Axis;
 use dapple_pups::{AxialWeight, PupsOptions};
-use dapple_raster::Field;
+use dapple_raster::FieldExt as _;
 use glam::{DVec2, DVec3};
 
 /// The weights of all images of all control points that are not zero: the point, and the weight.

@@ -5,7 +5,7 @@ use dapple_graph::{Direction, Graph, delaunay, gabriel, k_nearest, yao};
 use dapple_hash::Seed;
 use dapple_points::{Domain, PointIdx, poisson_disk, white_noise};
 use dapple_pups::{Orientation, Pups, PupsOptions};
-use dapple_raster::Field;
+use dapple_raster::FieldExt as _;
 use glam::{DVec2, DVec3};
 
 #[test]

@@ -19,8 +19,7 @@ use features::{cell_points, check_count, draw, find, gradients};
 use numpy::IntoPyArray;
 use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
-use std::sync::Arc;
-use texture::{Cells, Texture};
+use texture::Texture;
 
 /// The description of a field of cells.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -50,33 +49,11 @@ enum CellsRange {
 impl CellsMade {
     pub(crate) fn build(&self) -> Result<Function> {
         match self.dims {
-            2 => {
-                let texture = self.texture::<2>()?;
-                let field: Arc<dyn dapple::raster::Field> = match texture {
-                    Texture::Cellular(cellular) => Arc::new(cellular),
-                    Texture::Fractal(fractal) => Arc::new(fractal),
-                    Texture::Edges(edges) => Arc::new(edges),
-                    Texture::CellValues(basis) => Arc::new(basis.cell_values()),
-                };
-                Ok(Function::Plane(field))
-            }
-            3 => self.volume::<3>(),
-            4 => self.volume::<4>(),
+            2 => Ok(Function::Plane(self.texture()?.field())),
+            3 => Ok(Function::Space(self.texture()?.field())),
+            4 => Ok(Function::Time(self.texture()?.field())),
             dims => Err(unknown_axes(dims, "2, 3 or 4")),
         }
-    }
-
-    fn volume<const N: usize>(&self) -> Result<Function>
-    where
-        Axes: Space<N>,
-    {
-        let texture = Arc::new(self.texture::<N>()?);
-        let period = self
-            .period
-            .iter()
-            .map(|period| period.map(f64::from))
-            .collect();
-        Ok(Function::Space(Arc::new(Cells { texture, period })))
     }
 
     /// The basis, without the combination of its distances.
@@ -116,7 +93,7 @@ impl CellsMade {
             return Ok(if is_edges {
                 Texture::Edges(basis.edge_distances())
             } else {
-                Texture::CellValues(basis)
+                Texture::CellValues(basis.cell_values())
             });
         };
         let cellular = basis.combine(combination);

@@ -2,12 +2,12 @@
 
 use super::{array, periods, unknown_axes};
 use crate::data;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::field::Field;
-use crate::function::{Function, Made, Volume};
+use crate::function::{Function, Made};
 use crate::seed::SeedArgument;
 use dapple::hash::Seed;
-use dapple::noise::{GradientNoise2, GradientNoise3, GradientNoise4};
+use dapple::noise::{GradientNoise, GradientNoise2, GradientNoise3, GradientNoise4};
 use dapple::raster::FractalShape;
 use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -34,58 +34,27 @@ struct OctavesMade {
 impl GradientMade {
     pub(crate) fn build(&self) -> Result<Function> {
         match self.dims {
-            2 => {
-                let noise = GradientNoise2::new(self.seed).with_period(array(&self.period)?)?;
-                Ok(Function::Plane(match self.octaves {
-                    None => Arc::new(noise),
-                    Some(OctavesMade {
-                        count,
-                        gain,
-                        lacunarity,
-                        shape,
-                    }) => Arc::new(noise.fractal(count, gain, lacunarity, shape)?),
-                }))
-            }
-            _ if self.octaves.is_some() => Err(Error::new(
-                "axes",
-                "`octaves` of gradient noise are of two axes; take `fbm` for three and four",
-            )),
-            3 => Ok(Function::Space(Arc::new(
-                GradientNoise3::new(self.seed).with_period(array(&self.period)?)?,
-            ))),
-            4 => Ok(Function::Space(Arc::new(
-                GradientNoise4::new(self.seed).with_period(array(&self.period)?)?,
-            ))),
+            2 => Ok(Function::Plane(self.field(GradientNoise2::new(self.seed))?)),
+            3 => Ok(Function::Space(self.field(GradientNoise3::new(self.seed))?)),
+            4 => Ok(Function::Time(self.field(GradientNoise4::new(self.seed))?)),
             dims => Err(unknown_axes(dims, "2, 3 or 4")),
         }
     }
-}
 
-impl Volume for GradientNoise3 {
-    fn period(&self) -> Vec<Option<f64>> {
-        self.periods().map(|cells| cells.map(f64::from)).to_vec()
-    }
-
-    fn sample(&self, position: &[f64]) -> f32 {
-        Self::sample(self, [position[0], position[1], position[2]])
-    }
-
-    fn slice(&self, rest: &[f64]) -> Arc<dyn dapple::raster::Field> {
-        Arc::new(Self::slice(*self, rest[0]))
-    }
-}
-
-impl Volume for GradientNoise4 {
-    fn period(&self) -> Vec<Option<f64>> {
-        self.periods().map(|cells| cells.map(f64::from)).to_vec()
-    }
-
-    fn sample(&self, position: &[f64]) -> f32 {
-        Self::sample(self, [position[0], position[1], position[2], position[3]])
-    }
-
-    fn slice(&self, rest: &[f64]) -> Arc<dyn dapple::raster::Field> {
-        Arc::new(Self::slice(*self, rest[0], rest[1]))
+    fn field<const N: usize>(
+        &self,
+        noise: GradientNoise<N>,
+    ) -> Result<Arc<dyn dapple::raster::Field<N>>> {
+        let noise = noise.with_period(array(&self.period)?)?;
+        Ok(match self.octaves {
+            None => Arc::new(noise),
+            Some(OctavesMade {
+                count,
+                gain,
+                lacunarity,
+                shape,
+            }) => Arc::new(noise.fractal(count, gain, lacunarity, shape)?),
+        })
     }
 }
 
@@ -108,7 +77,7 @@ impl Volume for GradientNoise4 {
 ///     The number of cells after which it repeats exactly: one number, or one for each axis, x first; None for an axis
 ///     along which it does not.
 /// octaves : int or None, default None
-///     The number of octaves that are summed (fBm), each with a seed of its own; 1 to 32. Two axes only.
+///     The number of octaves that are summed (fBm), each with its own seed; 1 to 32.
 /// gain : float, default 0.5
 ///     The ratio of the heights of an octave and the one before, -1 to 1.
 /// lacunarity : float, default 2.0

@@ -3,13 +3,11 @@
 use super::{array, unknown_axes};
 use crate::error::{Error, Result};
 use crate::field::Field;
-use crate::function::{Function, Made, Volume};
+use crate::function::{Function, Made};
 use crate::grid::per_axis;
 use crate::seed::SeedArgument;
 use crate::shared::{Build, Shared};
 use dapple::hash::Seed;
-use dapple::raster::glam::{DVec2, DVec3};
-use dapple::raster::{RasterError, RasterViewMut, Window};
 use dapple::wavelet::{WaveletNoise2, WaveletNoise3};
 use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -36,57 +34,12 @@ impl Build for WaveletMade {
             }
             3 => {
                 let noise = WaveletNoise3::of_size(array(&self.period)?, self.seed)?;
-                Ok(Function::Space(Arc::new(Solid(Arc::new(
+                Ok(Function::Space(Arc::new(
                     noise.with_weights(&self.weights)?,
-                )))))
+                )))
             }
             dims => Err(unknown_axes(dims, "2 or 3")),
         }
-    }
-}
-
-/// Wavelet noise in three dimensions.
-struct Solid(Arc<WaveletNoise3>);
-
-/// Wavelet noise in three dimensions, restricted to a plane.
-struct Section {
-    noise: Arc<WaveletNoise3>,
-    z: f64,
-}
-
-impl Volume for Solid {
-    fn period(&self) -> Vec<Option<f64>> {
-        self.0.size().map(|cells| Some(cells.into())).to_vec()
-    }
-
-    fn sample(&self, position: &[f64]) -> f32 {
-        self.0.sample(DVec3::from_slice(position))
-    }
-
-    fn slice(&self, rest: &[f64]) -> Arc<dyn dapple::raster::Field> {
-        Arc::new(Section {
-            noise: Arc::clone(&self.0),
-            z: rest[0],
-        })
-    }
-}
-
-impl dapple::raster::Field for Section {
-    fn sample(&self, position: DVec2) -> f32 {
-        self.noise.sample(position.extend(self.z))
-    }
-
-    fn render(
-        &self,
-        window: &Window,
-        out: RasterViewMut<'_, f32>,
-    ) -> core::result::Result<(), RasterError> {
-        self.noise.render_slice(self.z, window, out)
-    }
-
-    fn period(&self) -> [Option<f64>; 2] {
-        let [x, y, _] = self.noise.size();
-        [Some(x.into()), Some(y.into())]
     }
 }
 

@@ -4,7 +4,7 @@ use crate::error::Result;
 use crate::field::Field;
 use crate::{arrays, data};
 use dapple::points::Domain;
-use dapple::raster::{Varying, Wrap};
+use dapple::raster::{Field as _, Varying, Wrap};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Arc;
@@ -21,7 +21,7 @@ pub(crate) fn varying(what: &str, data: &Bound<'_, PyAny>, domain: &Domain) -> R
     if let Ok(field) = data.cast::<Field>() {
         let field = field.get().plane()?;
         return Ok(Varying::function(move |position| {
-            field.sample(position).into()
+            field.value(position.into()).into()
         }));
     }
     let wrap = domain.wrap.map(|wraps| match wraps {

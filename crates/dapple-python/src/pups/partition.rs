@@ -5,7 +5,7 @@ use crate::arrays::{self, Positions};
 use crate::color_field;
 use crate::data;
 use crate::error::{Error, Result};
-use crate::function::{Made, position};
+use crate::function::Made;
 use crate::grid::{Grid, GridArguments, default_extent};
 use crate::points::{Domain, Graph, GraphMade, Points};
 use crate::seed::SeedArgument;
@@ -303,7 +303,7 @@ impl Partition {
         let pups = self.pups.clone();
         let rows = threads::run(py, move || {
             parallel::map_at_least(256, positions.len() / 2, |index| {
-                pups.weights(position(&positions[2 * index..2 * index + 2]))
+                pups.weights(DVec2::from_slice(&positions[2 * index..]))
             })
         })?;
         let mut offsets = vec![0_i64];

@@ -1,74 +1,149 @@
-//! The trait [`FieldExt`]: methods that compose fields.
+//! The trait [`FieldExt`]: sampling at the vectors of any library, and methods that compose fields.
 
 use super::{
-    Fractal, FractalShape, Frequency, Linear, Mapped, Mixed, Offset, Pair, PairOperation, Rotated,
-    Warped,
+    Extruded, Frequency, Linear, Mapped, Mixed, Offset, Pair, PairOperation, Rotated, Slice, Warped,
 };
-use crate::{Field, IntoField, RasterError};
-use glam::DVec2;
+use crate::{Displacement, Field, IntoField, RasterError};
 
-/// Composition of fields: transformed positions, changed values, and sums at several scales.
+/// The methods of every field: values at positions, and composition.
 ///
-/// Every field has these methods. Their results keep the promises of [`Field`], above all the same bits from all of its
-/// methods, and have the period that follows from those of their parts.
+/// A position is an array of `N` coordinates or whatever converts to one, such as the vectors of any version of glam.
+///
+/// Compositions transform positions and change values; [`Fractal`](crate::Fractal) sums several scales. Every
+/// composition keeps the promises of [`Field`]: all methods give the same bits, and the period follows from the periods
+/// of the parts. Compositions work in the plane and in space.
 ///
 /// # Examples
 ///
 /// ```
-/// use dapple_raster::{Field, FieldExt, field_fn, glam::DVec2};
+/// use dapple_raster::{FieldExt, field_fn, glam::DVec2};
 ///
-/// let waves = field_fn(|position| (position.x - position.x.floor()) as f32);
+/// let waves = field_fn(|[x, _y]| (x - x.floor()) as f32);
 /// let field = (&waves).frequency(8.0).remap([0.0, 1.0], [-1.0, 1.0])?.add(waves);
+/// assert_eq!(field.sample([0.0625, 0.0]), 0.0625);
 /// assert_eq!(field.sample(DVec2::new(0.0625, 0.0)), 0.0625);
 /// # Ok::<(), dapple_raster::RasterError>(())
 /// ```
-pub trait FieldExt: Field + Sized {
-    /// This field at the position times `frequency`: so many times as many features along each axis.
+pub trait FieldExt<const N: usize = 2>: Field<N> + Sized {
+    /// The value at a position.
+    fn sample(&self, position: impl Into<[f64; N]>) -> f32 {
+        self.value(position.into())
+    }
+
+    /// The values at many positions, into memory of the same length. Faster than one at a time for most fields; with
+    /// arrays at hand, [`Field::values`] saves a copy of them.
     ///
-    /// For one number use `DVec2::splat`, or [`frequency`](Self::frequency).
-    fn frequency_xy(self, frequency: DVec2) -> Frequency<Self> {
-        Frequency {
+    /// # Errors
+    ///
+    /// [`Length`](crate::RasterErrorKind::Length) if the lengths differ.
+    fn sample_many<P: Copy + Into<[f64; N]>>(
+        &self,
+        positions: &[P],
+        values: &mut [f32],
+    ) -> Result<(), RasterError> {
+        let positions: Vec<[f64; N]> = positions.iter().map(|&at| at.into()).collect();
+        self.values(&positions, values)
+    }
+
+    /// The plane along the first two axes at fixed coordinates along the others: `[z]` in space, `[z, w]` in four
+    /// dimensions, such as a place and a moment. A number of them that does not fit is an error of compilation.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use dapple_raster::{Field, FieldExt, Window, field_fn};
+    ///
+    /// let solid = field_fn(|[x, y, z]| (x * y + z) as f32);
+    /// let plane = solid.slice([0.5]).to_raster(&Window::unit([2, 2])?)?;
+    /// assert_eq!(plane.row(1)[1], 1.0625);
+    /// # Ok::<(), dapple_raster::RasterError>(())
+    /// ```
+    fn slice<const REST: usize>(self, rest: [f64; REST]) -> Slice<Self, N> {
+        const {
+            assert!(
+                REST + 2 == N,
+                "a plane has a coordinate for each axis past the second"
+            );
+        }
+        let mut whole = [0.0; N];
+        whole[2..].copy_from_slice(&rest);
+        Slice {
             field: self,
-            frequency,
+            rest: whole,
         }
     }
 
-    /// This field at the position times `frequency`: so many times as many features along both axes.
-    fn frequency(self, frequency: f64) -> Frequency<Self> {
-        self.frequency_xy(DVec2::splat(frequency))
+    /// This field of the plane as a field of space, the same at all coordinates along further axes.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use dapple_raster::{FieldExt, field_fn};
+    ///
+    /// let ground = field_fn(|[x, _y]| x as f32);
+    /// let above = field_fn(|[_x, _y, z]| z as f32).sub(ground.extrude());
+    /// assert_eq!(above.sample([2.0, 7.0, 5.0]), 3.0);
+    /// ```
+    fn extrude(self) -> Extruded<Self>
+    where
+        Self: Field,
+    {
+        Extruded { field: self }
+    }
+
+    /// This field at the position times `frequency` along each axis: `frequency` times as many features.
+    ///
+    /// For one number use [`frequency`](Self::frequency).
+    fn frequency_per_axis(self, frequency: impl Into<[f64; N]>) -> Frequency<Self, N> {
+        Frequency {
+            field: self,
+            frequency: frequency.into(),
+        }
+    }
+
+    /// This field at the position times `frequency`: `frequency` times as many features along all axes.
+    fn frequency(self, frequency: f64) -> Frequency<Self, N> {
+        self.frequency_per_axis([frequency; N])
     }
 
     /// This field at the position plus `offset`: its features move by `-offset`.
-    fn offset(self, offset: DVec2) -> Offset<Self> {
+    fn offset(self, offset: impl Into<[f64; N]>) -> Offset<Self, N> {
         Offset {
             field: self,
-            offset,
+            offset: offset.into(),
         }
     }
 
-    /// This field turned about the origin by an angle in radians, from x towards y: clockwise in a picture, whose rows
-    /// go down. It has no period.
+    /// This field turned about the origin by an angle in radians, from x towards y: clockwise in an image, whose rows
+    /// go down. In space it turns about the line where x and y are 0. It has no period along x and y.
     fn rotate(self, angle: f64) -> Rotated<Self> {
         let (sin, cos) = libm::sincos(angle);
         Rotated {
             field: self,
-            direction: DVec2::new(cos, sin),
+            direction: [cos, sin],
         }
     }
 
-    /// This field at the position plus `amount · (x, y)`, where `x` and `y` are the values of two fields there: domain
-    /// warping. An amount of 1 moves a position by as many units of the plane as the values say.
+    /// This field at the position plus `amount` times the values of other fields there, one field for each axis: domain
+    /// warping. An amount of 1 moves a position by as many units as the values say.
+    ///
+    /// `by` is an array of fields, or a tuple of fields of several types.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use dapple_raster::{Constant, FieldExt, field_fn};
+    ///
+    /// let stripes = field_fn(|[x, _y]| x.rem_euclid(1.0) as f32);
+    /// let waves = field_fn(|[_x, y]| (y * y) as f32);
+    /// let bent = stripes.warp((waves, Constant(0.0)), 0.5);
+    /// assert_eq!(bent.sample([0.25, 1.0]), 0.75);
+    /// ```
     #[doc(alias = "domain warping")]
-    fn warp<X: IntoField, Y: IntoField>(
-        self,
-        x: X,
-        y: Y,
-        amount: f64,
-    ) -> Warped<Self, X::Field, Y::Field> {
+    fn warp<D: Displacement<N>>(self, by: D, amount: f64) -> Warped<Self, D> {
         Warped {
             field: self,
-            x: x.into_field(),
-            y: y.into_field(),
+            by,
             amount,
         }
     }
@@ -108,32 +183,32 @@ pub trait FieldExt: Field + Sized {
     }
 
     /// The sum of two fields.
-    fn add<B: IntoField>(self, other: B) -> Pair<Self, B::Field> {
+    fn add<B: IntoField<N>>(self, other: B) -> Pair<Self, B::Field> {
         self.with(other, PairOperation::Add)
     }
 
     /// This field less another.
-    fn sub<B: IntoField>(self, other: B) -> Pair<Self, B::Field> {
+    fn sub<B: IntoField<N>>(self, other: B) -> Pair<Self, B::Field> {
         self.with(other, PairOperation::Subtract)
     }
 
     /// The product of two fields.
-    fn mul<B: IntoField>(self, other: B) -> Pair<Self, B::Field> {
+    fn mul<B: IntoField<N>>(self, other: B) -> Pair<Self, B::Field> {
         self.with(other, PairOperation::Multiply)
     }
 
     /// The smaller of the values of two fields.
-    fn min<B: IntoField>(self, other: B) -> Pair<Self, B::Field> {
+    fn min<B: IntoField<N>>(self, other: B) -> Pair<Self, B::Field> {
         self.with(other, PairOperation::Minimum)
     }
 
     /// The larger of the values of two fields.
-    fn max<B: IntoField>(self, other: B) -> Pair<Self, B::Field> {
+    fn max<B: IntoField<N>>(self, other: B) -> Pair<Self, B::Field> {
         self.with(other, PairOperation::Maximum)
     }
 
     /// Two fields combined value by value with an operation.
-    fn with<B: IntoField>(self, other: B, operation: PairOperation) -> Pair<Self, B::Field> {
+    fn with<B: IntoField<N>>(self, other: B, operation: PairOperation) -> Pair<Self, B::Field> {
         Pair {
             first: self,
             second: other.into_field(),
@@ -143,70 +218,20 @@ pub trait FieldExt: Field + Sized {
 
     /// The linear interpolation from this field to another: this field where `by` is 0 or less, the other one where it
     /// is 1 or more.
-    fn mix<B: IntoField, T: IntoField>(self, to: B, by: T) -> Mixed<Self, B::Field, T::Field> {
+    fn mix<B: IntoField<N>, T: IntoField<N>>(
+        self,
+        to: B,
+        by: T,
+    ) -> Mixed<Self, B::Field, T::Field> {
         Mixed {
             from: self,
             to: to.into_field(),
             by: by.into_field(),
         }
     }
-
-    /// Fractional Brownian motion: `Σ gain^i · field(lacunarity^i · position)` for `i` below `octaves`.
-    ///
-    /// All octaves are this one field, and so agree at the origin; [`Fractal::new`] takes a field of its own for each. A
-    /// lacunarity of 2 and a gain of ½ are usual.
-    ///
-    /// # Errors
-    ///
-    /// The errors of [`Fractal::new`].
-    #[doc(alias = "fBm")]
-    fn fbm(self, octaves: u32, gain: f64, lacunarity: f64) -> Result<Fractal<Self>, RasterError>
-    where
-        Self: Clone,
-    {
-        repeat(self, octaves, gain, lacunarity, FractalShape::Sum)
-    }
-
-    /// Ridges where the values of this field, which should lie about 0, cross 0: a sum of octaves like that of
-    /// [`fbm`](Self::fbm), of `1 - |value|`.
-    ///
-    /// # Errors
-    ///
-    /// The errors of [`Fractal::new`].
-    fn ridged(self, octaves: u32, gain: f64, lacunarity: f64) -> Result<Fractal<Self>, RasterError>
-    where
-        Self: Clone,
-    {
-        repeat(self, octaves, gain, lacunarity, FractalShape::Ridged)
-    }
-
-    /// Round hills with creases where the values of this field, which should lie about 0, cross 0: a sum of octaves
-    /// like that of [`fbm`](Self::fbm), of `|value|`.
-    ///
-    /// # Errors
-    ///
-    /// The errors of [`Fractal::new`].
-    #[doc(alias = "turbulence")]
-    fn billow(self, octaves: u32, gain: f64, lacunarity: f64) -> Result<Fractal<Self>, RasterError>
-    where
-        Self: Clone,
-    {
-        repeat(self, octaves, gain, lacunarity, FractalShape::Billow)
-    }
 }
 
-impl<F: Field> FieldExt for F {}
-
-fn repeat<F: Field + Clone>(
-    field: F,
-    octaves: u32,
-    gain: f64,
-    lacunarity: f64,
-    shape: FractalShape,
-) -> Result<Fractal<F>, RasterError> {
-    let octaves = core::iter::repeat_n(field, octaves as usize);
-    Fractal::new(octaves, gain, lacunarity, shape)
-}
+impl<const N: usize, F: Field<N>> FieldExt<N> for F {}
 
 #[cfg(test)]
 mod tests;

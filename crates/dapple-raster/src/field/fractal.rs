@@ -6,31 +6,39 @@
 use super::common_period;
 use super::values::{by_bands, zip_rows};
 use crate::{Field, Frequency, RasterError, RasterViewMut, Window};
-use glam::DVec2;
 
 /// The largest number of octaves of a sum.
 const MOST_OCTAVES: usize = 32;
 
-/// A sum of octaves, `Σ gain^i · shape(field_i(lacunarity^i · position))`, not divided by the sum of the weights.
+/// A sum of octaves, `Σ gain^i · shape(field_i(lacunarity^i · position))`, not divided by the sum of the weights:
+/// fractional Brownian motion, ridges or billows, by the shape. A lacunarity of 2 and a gain of ½ are usual.
+///
+/// Octaves of one field, such as `vec![field; 5]`, agree at the origin. Octaves with their own seeds agree
+/// nowhere; the noises and cells of dapple have methods that make such octaves from one seed.
 ///
 /// # Examples
 ///
-/// Octaves that are fields of their own have no place in common where all of them are alike:
 ///
 /// ```
-/// use dapple_raster::{Field, Fractal, FractalShape, field_fn, glam::DVec2};
+/// use dapple_raster::{FieldExt, Fractal, FractalShape, field_fn};
 ///
-/// let octaves = (0..5).map(|octave| field_fn(move |p| (p.x + f64::from(octave)).fract() as f32));
+/// let octaves = (0..5).map(|octave| field_fn(move |[x, _y]| (x + f64::from(octave)).fract() as f32));
 /// let sum = Fractal::new(octaves, 0.5, 2.0, FractalShape::Sum)?;
-/// assert_eq!(sum.sample(DVec2::ZERO), 0.0);
+/// assert_eq!(sum.sample([0.0, 0.0]), 0.0);
 /// # Ok::<(), dapple_raster::RasterError>(())
 /// ```
 #[derive(Clone, Debug)]
 pub struct Fractal<F> {
-    /// The octaves, coarsest first.
-    octaves: Vec<Frequency<F>>,
-    weights: Vec<f32>,
+    /// Coarsest first.
+    octaves: Vec<Octave<F>>,
     shape: FractalShape,
+}
+
+#[derive(Clone, Debug)]
+struct Octave<F> {
+    field: F,
+    frequency: f64,
+    weight: f32,
 }
 
 crate::named! {
@@ -62,7 +70,7 @@ impl FractalShape {
     }
 }
 
-impl<F: Field> Fractal<F> {
+impl<F> Fractal<F> {
     /// The sum of `octaves`, coarsest first, each `lacunarity` times finer and `gain` times as high as the one before.
     ///
     /// # Errors
@@ -81,15 +89,14 @@ impl<F: Field> Fractal<F> {
         let (mut frequency, mut weight) = (1.0, 1.0);
         let mut sum = Self {
             octaves: Vec::new(),
-            weights: Vec::new(),
             shape,
         };
         for field in octaves.into_iter().take(MOST_OCTAVES + 1) {
-            sum.octaves.push(Frequency {
+            sum.octaves.push(Octave {
                 field,
-                frequency: DVec2::splat(frequency),
+                frequency,
+                weight: weight as f32,
             });
-            sum.weights.push(weight as f32);
             frequency *= lacunarity;
             weight *= gain;
         }
@@ -103,30 +110,38 @@ impl<F: Field> Fractal<F> {
     /// number (see [`FractalShape`] for other shapes).
     #[must_use]
     pub fn weight(&self) -> f32 {
-        let weights = self.weights.iter().map(|weight| f64::from(weight.abs()));
+        let octaves = self.octaves.iter();
+        let weights = octaves.map(|octave| f64::from(octave.weight.abs()));
         weights.sum::<f64>() as f32
     }
 
-    fn octaves(&self) -> impl Iterator<Item = (&Frequency<F>, f32)> {
-        self.octaves.iter().zip(self.weights.iter().copied())
+    /// The octaves at their frequencies, and their weights.
+    fn octaves<const N: usize>(&self) -> impl Iterator<Item = (Frequency<&F, N>, f32)> {
+        self.octaves.iter().map(|octave| {
+            let scaled = Frequency {
+                field: &octave.field,
+                frequency: [octave.frequency; N],
+            };
+            (scaled, octave.weight)
+        })
     }
 }
 
-impl<F: Field> Field for Fractal<F> {
-    fn sample(&self, position: DVec2) -> f32 {
+impl<const N: usize, F: Field<N>> Field<N> for Fractal<F> {
+    fn value(&self, position: [f64; N]) -> f32 {
         let mut sum = 0.0;
         for (octave, weight) in self.octaves() {
-            sum += weight * self.shape.of(octave.sample(position));
+            sum += weight * self.shape.of(octave.value(position));
         }
         sum
     }
 
-    fn sample_many(&self, positions: &[DVec2], values: &mut [f32]) -> Result<(), RasterError> {
+    fn values(&self, positions: &[[f64; N]], values: &mut [f32]) -> Result<(), RasterError> {
         RasterError::check_length(values.len(), positions.len())?;
         values.fill(0.0);
         let mut others = vec![0.0; positions.len()];
         for (octave, weight) in self.octaves() {
-            octave.sample_many(positions, &mut others)?;
+            octave.values(positions, &mut others)?;
             for (value, &other) in values.iter_mut().zip(&others) {
                 *value += weight * self.shape.of(other);
             }
@@ -134,7 +149,7 @@ impl<F: Field> Field for Fractal<F> {
         Ok(())
     }
 
-    fn render(&self, window: &Window, out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
+    fn render(&self, window: &Window<N>, out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
         window.check_size(out.size())?;
         by_bands(window, out, |part, mut band, memory| {
             band.fill(0.0);
@@ -148,8 +163,8 @@ impl<F: Field> Field for Fractal<F> {
         })
     }
 
-    fn period(&self) -> [Option<f64>; 2] {
-        let periods = self.octaves.iter().map(Field::period);
-        periods.fold([Some(0.0); 2], common_period)
+    fn period(&self) -> [Option<f64>; N] {
+        let periods = self.octaves().map(|(octave, _)| octave.period());
+        periods.fold([Some(0.0); N], common_period)
     }
 }

@@ -7,7 +7,7 @@ const MOST_REPEATS: u32 = 64;
 /// The distance after which two fields repeat together along each axis: the least common multiple of their
 /// [periods](crate::Field::period), if it is at most 64 times the longer one. For fields that are made of other fields.
 #[must_use]
-pub fn common_period(a: [Option<f64>; 2], b: [Option<f64>; 2]) -> [Option<f64>; 2] {
+pub fn common_period<const N: usize>(a: [Option<f64>; N], b: [Option<f64>; N]) -> [Option<f64>; N] {
     core::array::from_fn(|axis| common_multiple(a[axis]?, b[axis]?))
 }
 

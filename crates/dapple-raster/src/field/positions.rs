@@ -3,20 +3,19 @@
 use super::common_period;
 use super::values::by_bands;
 use crate::{Field, RasterError, RasterViewMut, Window};
-use glam::DVec2;
 
 /// A field at the position times a factor: see [`FieldExt::frequency`](super::FieldExt::frequency).
 #[derive(Clone, Copy, Debug)]
-pub struct Frequency<F> {
+pub struct Frequency<F, const N: usize = 2> {
     pub(super) field: F,
-    pub(super) frequency: DVec2,
+    pub(super) frequency: [f64; N],
 }
 
 /// A field at the position plus an offset: see [`FieldExt::offset`](super::FieldExt::offset).
 #[derive(Clone, Copy, Debug)]
-pub struct Offset<F> {
+pub struct Offset<F, const N: usize = 2> {
     pub(super) field: F,
-    pub(super) offset: DVec2,
+    pub(super) offset: [f64; N],
 }
 
 /// A field turned about the origin: see [`FieldExt::rotate`](super::FieldExt::rotate).
@@ -24,22 +23,48 @@ pub struct Offset<F> {
 pub struct Rotated<F> {
     pub(super) field: F,
     /// The cosine and the sine of the angle.
-    pub(super) direction: DVec2,
+    pub(super) direction: [f64; 2],
 }
 
-/// A field at positions that two others displace: see [`FieldExt::warp`](super::FieldExt::warp).
+/// A field at positions that other fields displace: see [`FieldExt::warp`](super::FieldExt::warp).
 #[derive(Clone, Copy, Debug)]
-pub struct Warped<F, X, Y> {
+pub struct Warped<F, D> {
     pub(super) field: F,
-    pub(super) x: X,
-    pub(super) y: Y,
+    pub(super) by: D,
     pub(super) amount: f64,
 }
 
+/// The fields that displace positions, one for each axis: an array of fields of one type, or a tuple of any.
+pub trait Displacement<const N: usize = 2>: Send + Sync {
+    /// The displacement along an axis, which is below `N`.
+    fn along(&self, axis: usize) -> &dyn Field<N>;
+}
+
+impl<const N: usize, F: Field<N>> Displacement<N> for [F; N] {
+    fn along(&self, axis: usize) -> &dyn Field<N> {
+        &self[axis]
+    }
+}
+
+macro_rules! displacement {
+    ($n:literal: $($field:ident $index:tt),*) => {
+        impl<$($field: Field<$n>),*> Displacement<$n> for ($($field),*) {
+            fn along(&self, axis: usize) -> &dyn Field<$n> {
+                let along: [&dyn Field<$n>; $n] = [$(&self.$index),*];
+                along[axis]
+            }
+        }
+    };
+}
+
+displacement!(2: X 0, Y 1);
+displacement!(3: X 0, Y 1, Z 2);
+displacement!(4: X 0, Y 1, Z 2, W 3);
+
 /// Fills a window from its positions, on all cores where the feature `rayon` is on.
-fn render_rows(
-    field: &impl Field,
-    window: &Window,
+fn render_rows<const N: usize>(
+    field: &impl Field<N>,
+    window: &Window<N>,
     out: RasterViewMut<'_, f32>,
 ) -> Result<(), RasterError> {
     window.check_size(out.size())?;
@@ -48,122 +73,160 @@ fn render_rows(
         for (row, values) in (0..).zip(band.rows_mut()) {
             positions.clear();
             positions.extend((0..part.size[0]).map(|column| part.position(column, row)));
-            field.sample_many(&positions, values)?;
+            field.values(&positions, values)?;
         }
         Ok(())
     })
 }
 
-impl<F: Field> Field for Frequency<F> {
-    fn sample(&self, position: DVec2) -> f32 {
-        self.field.sample(position * self.frequency)
+impl<F, const N: usize> Frequency<F, N> {
+    fn moved(&self, mut position: [f64; N]) -> [f64; N] {
+        for (at, frequency) in position.iter_mut().zip(self.frequency) {
+            *at *= frequency;
+        }
+        position
+    }
+}
+
+impl<F: Field<N>, const N: usize> Field<N> for Frequency<F, N> {
+    fn value(&self, position: [f64; N]) -> f32 {
+        self.field.value(self.moved(position))
     }
 
-    fn sample_many(&self, positions: &[DVec2], values: &mut [f32]) -> Result<(), RasterError> {
-        let scaled: Vec<_> = positions.iter().map(|&at| at * self.frequency).collect();
-        self.field.sample_many(&scaled, values)
+    fn values(&self, positions: &[[f64; N]], values: &mut [f32]) -> Result<(), RasterError> {
+        let scaled: Vec<_> = positions.iter().map(|&at| self.moved(at)).collect();
+        self.field.values(&scaled, values)
     }
 
-    fn render(&self, window: &Window, out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
+    fn render(&self, window: &Window<N>, out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
         match window.scaled(self.frequency) {
             Some(scaled) => self.field.render(&scaled, out),
             None => render_rows(self, window, out),
         }
     }
 
-    fn period(&self) -> [Option<f64>; 2] {
-        let [x, y] = self.field.period();
-        let shorter = |period: Option<f64>, factor: f64| match period? / factor.abs() {
-            period if period.is_finite() => Some(period),
-            _ => Some(0.0),
-        };
-        [shorter(x, self.frequency.x), shorter(y, self.frequency.y)]
+    fn period(&self) -> [Option<f64>; N] {
+        let mut period = self.field.period();
+        for (period, frequency) in period.iter_mut().zip(self.frequency) {
+            let shorter = period.map(|period| period / frequency.abs());
+            *period = match shorter {
+                Some(shorter) if !shorter.is_finite() => Some(0.0),
+                shorter => shorter,
+            };
+        }
+        period
     }
 }
 
-impl<F: Field> Field for Offset<F> {
-    fn sample(&self, position: DVec2) -> f32 {
-        self.field.sample(position + self.offset)
+impl<F, const N: usize> Offset<F, N> {
+    fn moved(&self, mut position: [f64; N]) -> [f64; N] {
+        for (at, offset) in position.iter_mut().zip(self.offset) {
+            *at += offset;
+        }
+        position
+    }
+}
+
+impl<F: Field<N>, const N: usize> Field<N> for Offset<F, N> {
+    fn value(&self, position: [f64; N]) -> f32 {
+        self.field.value(self.moved(position))
     }
 
-    fn sample_many(&self, positions: &[DVec2], values: &mut [f32]) -> Result<(), RasterError> {
-        let moved: Vec<_> = positions.iter().map(|&at| at + self.offset).collect();
-        self.field.sample_many(&moved, values)
+    fn values(&self, positions: &[[f64; N]], values: &mut [f32]) -> Result<(), RasterError> {
+        let moved: Vec<_> = positions.iter().map(|&at| self.moved(at)).collect();
+        self.field.values(&moved, values)
     }
 
-    fn render(&self, window: &Window, out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
+    fn render(&self, window: &Window<N>, out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
         render_rows(self, window, out)
     }
 
-    fn period(&self) -> [Option<f64>; 2] {
+    fn period(&self) -> [Option<f64>; N] {
         self.field.period()
     }
 }
 
 impl<F> Rotated<F> {
-    fn turn(&self, DVec2 { x, y }: DVec2) -> DVec2 {
-        let [cos, sin] = self.direction.to_array();
-        DVec2::new(x * cos + y * sin, y * cos - x * sin)
+    fn moved<const N: usize>(&self, mut position: [f64; N]) -> [f64; N] {
+        let ([cos, sin], [x, y]) = (self.direction, [position[0], position[1]]);
+        position[0] = x * cos + y * sin;
+        position[1] = y * cos - x * sin;
+        position
     }
 }
 
-impl<F: Field> Field for Rotated<F> {
-    fn sample(&self, position: DVec2) -> f32 {
-        self.field.sample(self.turn(position))
+impl<F: Field<N>, const N: usize> Field<N> for Rotated<F> {
+    fn value(&self, position: [f64; N]) -> f32 {
+        self.field.value(self.moved(position))
     }
 
-    fn sample_many(&self, positions: &[DVec2], values: &mut [f32]) -> Result<(), RasterError> {
-        let turned: Vec<_> = positions.iter().map(|&at| self.turn(at)).collect();
-        self.field.sample_many(&turned, values)
+    fn values(&self, positions: &[[f64; N]], values: &mut [f32]) -> Result<(), RasterError> {
+        let turned: Vec<_> = positions.iter().map(|&at| self.moved(at)).collect();
+        self.field.values(&turned, values)
     }
 
-    fn render(&self, window: &Window, out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
+    fn render(&self, window: &Window<N>, out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
         render_rows(self, window, out)
     }
+
+    fn period(&self) -> [Option<f64>; N] {
+        let mut period = self.field.period();
+        period[..2].fill(None);
+        period
+    }
 }
 
-impl<F: Field, X: Field, Y: Field> Field for Warped<F, X, Y> {
-    fn sample(&self, position: DVec2) -> f32 {
-        let by = [self.x.sample(position), self.y.sample(position)];
-        self.field.sample(displaced(position, by, self.amount))
+impl<F, D> Warped<F, D> {
+    /// Adds the displacements along an axis to positions.
+    fn displace<const N: usize>(&self, positions: &mut [[f64; N]], axis: usize, by: &[f32]) {
+        for (position, &by) in positions.iter_mut().zip(by) {
+            position[axis] += self.amount * f64::from(by);
+        }
+    }
+}
+
+impl<F: Field<N>, D: Displacement<N>, const N: usize> Field<N> for Warped<F, D> {
+    fn value(&self, position: [f64; N]) -> f32 {
+        let mut moved = position;
+        for (axis, at) in moved.iter_mut().enumerate() {
+            *at += self.amount * f64::from(self.by.along(axis).value(position));
+        }
+        self.field.value(moved)
     }
 
-    fn sample_many(&self, positions: &[DVec2], values: &mut [f32]) -> Result<(), RasterError> {
+    fn values(&self, positions: &[[f64; N]], values: &mut [f32]) -> Result<(), RasterError> {
         RasterError::check_length(values.len(), positions.len())?;
-        let mut x = vec![0.0; positions.len()];
-        self.x.sample_many(positions, &mut x)?;
-        self.y.sample_many(positions, values)?;
-        let moved: Vec<_> = (positions.iter().zip(&x).zip(&*values))
-            .map(|((&position, &x), &y)| displaced(position, [x, y], self.amount))
-            .collect();
-        self.field.sample_many(&moved, values)
+        let mut moved = positions.to_vec();
+        for axis in 0..N {
+            self.by.along(axis).values(positions, values)?;
+            self.displace(&mut moved, axis, values);
+        }
+        self.field.values(&moved, values)
     }
 
-    fn render(&self, window: &Window, out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
+    fn render(&self, window: &Window<N>, out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
         window.check_size(out.size())?;
         by_bands(window, out, |part, mut band, memory| {
-            self.x.render(part, memory.reborrow())?;
-            self.y.render(part, band.reborrow())?;
-            let mut moved = Vec::with_capacity(part.size[0] as usize);
-            for ((row, values), x) in (0..).zip(band.rows_mut()).zip(memory.rows_mut()) {
-                moved.clear();
-                moved.extend((0..).zip(&*x).zip(&*values).map(|((column, &dx), &dy)| {
-                    displaced(part.position(column, row), [dx, dy], self.amount)
-                }));
-                self.field.sample_many(&moved, values)?;
+            let [width, height] = part.size;
+            let rows =
+                (0..height).map(|row| (0..width).map(move |column| part.position(column, row)));
+            let mut moved: Vec<_> = rows.flatten().collect();
+            for axis in 0..N {
+                self.by.along(axis).render(part, memory.reborrow())?;
+                let rows = moved.chunks_mut(width as usize).zip(memory.rows_mut());
+                for (positions, by) in rows {
+                    self.displace(positions, axis, by);
+                }
+            }
+            for (positions, values) in moved.chunks(width as usize).zip(band.rows_mut()) {
+                self.field.values(positions, values)?;
             }
             Ok(())
         })
     }
 
-    fn period(&self) -> [Option<f64>; 2] {
-        common_period(
-            self.field.period(),
-            common_period(self.x.period(), self.y.period()),
-        )
+    fn period(&self) -> [Option<f64>; N] {
+        let along = (0..N).map(|axis| self.by.along(axis).period());
+        along.fold(self.field.period(), common_period)
     }
-}
-
-fn displaced(position: DVec2, by: [f32; 2], amount: f64) -> DVec2 {
-    position + amount * DVec2::from(by.map(f64::from))
 }

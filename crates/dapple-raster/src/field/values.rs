@@ -3,7 +3,6 @@
 use super::common_period;
 use crate::{Field, RasterError, RasterViewMut, Window, parallel};
 use core::fmt;
-use glam::DVec2;
 
 /// How many values of a field are computed at a time: few enough that two such bands stay in a core's cache.
 const BAND: usize = 1 << 17;
@@ -101,20 +100,24 @@ where
     }
 }
 
-impl<F: Field, M: Change> Field for Mapped<F, M> {
-    fn sample(&self, position: DVec2) -> f32 {
-        self.function.change(self.field.sample(position))
+impl<F: Field<N>, M: Change, const N: usize> Field<N> for Mapped<F, M> {
+    fn value(&self, position: [f64; N]) -> f32 {
+        self.function.change(self.field.value(position))
     }
 
-    fn sample_many(&self, positions: &[DVec2], values: &mut [f32]) -> Result<(), RasterError> {
-        self.field.sample_many(positions, values)?;
+    fn values(&self, positions: &[[f64; N]], values: &mut [f32]) -> Result<(), RasterError> {
+        self.field.values(positions, values)?;
         for value in values {
             *value = self.function.change(*value);
         }
         Ok(())
     }
 
-    fn render(&self, window: &Window, mut out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
+    fn render(
+        &self,
+        window: &Window<N>,
+        mut out: RasterViewMut<'_, f32>,
+    ) -> Result<(), RasterError> {
         self.field.render(window, out.reborrow())?;
         for values in out.rows_mut() {
             for value in values {
@@ -124,59 +127,67 @@ impl<F: Field, M: Change> Field for Mapped<F, M> {
         Ok(())
     }
 
-    fn period(&self) -> [Option<f64>; 2] {
+    fn period(&self) -> [Option<f64>; N] {
         self.field.period()
     }
 }
 
-impl<A: Field, B: Field> Field for Pair<A, B> {
-    fn sample(&self, position: DVec2) -> f32 {
-        let (a, b) = (self.first.sample(position), self.second.sample(position));
+impl<A: Field<N>, B: Field<N>, const N: usize> Field<N> for Pair<A, B> {
+    fn value(&self, position: [f64; N]) -> f32 {
+        let (a, b) = (self.first.value(position), self.second.value(position));
         self.operation.apply(a, b)
     }
 
-    fn sample_many(&self, positions: &[DVec2], values: &mut [f32]) -> Result<(), RasterError> {
-        self.first.sample_many(positions, values)?;
+    fn values(&self, positions: &[[f64; N]], values: &mut [f32]) -> Result<(), RasterError> {
+        self.first.values(positions, values)?;
         let mut others = vec![0.0; positions.len()];
-        self.second.sample_many(positions, &mut others)?;
+        self.second.values(positions, &mut others)?;
         for (value, &other) in values.iter_mut().zip(&others) {
             *value = self.operation.apply(*value, other);
         }
         Ok(())
     }
 
-    fn render(&self, window: &Window, mut out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
+    fn render(
+        &self,
+        window: &Window<N>,
+        mut out: RasterViewMut<'_, f32>,
+    ) -> Result<(), RasterError> {
         self.first.render(window, out.reborrow())?;
         join(&self.second, window, out, |value, other| {
             *value = self.operation.apply(*value, other);
         })
     }
 
-    fn period(&self) -> [Option<f64>; 2] {
+    fn period(&self) -> [Option<f64>; N] {
         common_period(self.first.period(), self.second.period())
     }
 }
 
-impl<A: Field, B: Field, T: Field> Field for Mixed<A, B, T> {
-    fn sample(&self, position: DVec2) -> f32 {
-        let (from, to) = (self.from.sample(position), self.to.sample(position));
-        from + (to - from) * unit(self.by.sample(position))
+impl<A: Field<N>, B: Field<N>, T: Field<N>, const N: usize> Field<N> for Mixed<A, B, T> {
+    fn value(&self, position: [f64; N]) -> f32 {
+        let (from, to) = (self.from.value(position), self.to.value(position));
+        from + (to - from) * unit(self.by.value(position))
     }
 
-    fn sample_many(&self, positions: &[DVec2], values: &mut [f32]) -> Result<(), RasterError> {
+    fn values(&self, positions: &[[f64; N]], values: &mut [f32]) -> Result<(), RasterError> {
         RasterError::check_length(values.len(), positions.len())?;
         let mut from = vec![0.0; positions.len()];
         let mut to = vec![0.0; positions.len()];
-        self.from.sample_many(positions, &mut from)?;
-        self.to.sample_many(positions, &mut to)?;
-        self.by.sample_many(positions, values)?;
+        self.from.values(positions, &mut from)?;
+        self.to.values(positions, &mut to)?;
+        self.by.values(positions, values)?;
         for ((value, from), to) in values.iter_mut().zip(from).zip(to) {
             *value = from + (to - from) * unit(*value);
         }
         Ok(())
     }
 
-    fn render(&self, window: &Window, mut out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
+    fn render(
+        &self,
+        window: &Window<N>,
+        mut out: RasterViewMut<'_, f32>,
+    ) -> Result<(), RasterError> {
         let from = self.from.to_raster(window)?;
         let to = self.to.to_raster(window)?;
         self.by.render(window, out.reborrow())?;
@@ -189,7 +200,7 @@ impl<A: Field, B: Field, T: Field> Field for Mixed<A, B, T> {
         Ok(())
     }
 
-    fn period(&self) -> [Option<f64>; 2] {
+    fn period(&self) -> [Option<f64>; N] {
         common_period(
             common_period(self.from.period(), self.to.period()),
             self.by.period(),
@@ -202,9 +213,9 @@ fn unit(value: f32) -> f32 {
 }
 
 /// Renders a field band by band and passes each of its values to `change` with the value already in the output.
-fn join(
-    field: &impl Field,
-    window: &Window,
+fn join<const N: usize>(
+    field: &impl Field<N>,
+    window: &Window<N>,
     out: RasterViewMut<'_, f32>,
     change: impl Fn(&mut f32, f32) + Sync,
 ) -> Result<(), RasterError> {
@@ -217,11 +228,11 @@ fn join(
 
 /// Fills bands that fit a core's cache, on all cores where the feature `rayon` is on: `fill` is given the part of the window,
 /// its pixels, and memory for as many.
-pub(super) fn by_bands(
-    window: &Window,
+pub(super) fn by_bands<const N: usize>(
+    window: &Window<N>,
     out: RasterViewMut<'_, f32>,
     fill: impl Fn(
-        &Window,
+        &Window<N>,
         RasterViewMut<'_, f32>,
         &mut RasterViewMut<'_, f32>,
     ) -> Result<(), RasterError>

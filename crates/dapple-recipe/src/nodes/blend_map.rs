@@ -38,7 +38,7 @@ impl NodeKind for BlendMapOf {
         let inputs = vec![plan.any(&self.input)?];
         let step = plan.global(inputs, [1; 2], move |tile| {
             let mut how = how;
-            how.feature_size = feature_size / tile.window.pixel.max_element();
+            how.feature_size = feature_size / tile.window.pixel[0].max(tile.window.pixel[1]);
             let map = how.apply(&tile.inputs[0].raster(tile.window.size)?)?;
             Ok(Values::Numbers(rank_equalize(&map)?.into_pixels()))
         });

@@ -5,7 +5,6 @@ use crate::RecipeError;
 use crate::plan::{Builder, Step};
 use dapple_pups::{Range, range};
 use dapple_raster::field_fn;
-use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
 /// The coordinate of a position along a direction: `(position − center) · along`.
@@ -35,10 +34,9 @@ impl NodeKind for Coordinate {
         for number in self.center.into_iter().chain(self.along) {
             RecipeError::check_in(PART, "part of a coordinate", number)?;
         }
-        let [center, along] = [self.center, self.along].map(DVec2::from);
-        Ok(Step::field(field_fn(move |position: DVec2| {
-            let offset = position - center;
-            (offset.x * along.x + offset.y * along.y) as f32
+        let (center, along) = (self.center, self.along);
+        Ok(Step::field(field_fn(move |[x, y]| {
+            ((x - center[0]) * along[0] + (y - center[1]) * along[1]) as f32
         })))
     }
 }

@@ -26,8 +26,8 @@ impl NodeKind for Distance {
             RecipeError::check_in(CENTER, "center", number)?;
         }
         let (center, tile) = (DVec2::from(self.center), plan.domain());
-        Ok(Step::field(field_fn(move |position: DVec2| {
-            let mut offset = position - center;
+        Ok(Step::field(field_fn(move |position: [f64; 2]| {
+            let mut offset = DVec2::from(position) - center;
             for axis in 0..2 {
                 if tile.wrap[axis] {
                     let repeats = (offset[axis] / tile.size[axis] + 0.5).floor();

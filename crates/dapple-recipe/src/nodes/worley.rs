@@ -5,9 +5,8 @@ use crate::plan::{Builder, Step};
 use crate::{RecipeError, RecipeErrorKind};
 use core::fmt;
 use dapple_pups::{Range, range};
-use dapple_raster::{Field, FieldExt, field_fn};
+use dapple_raster::{Field, FieldExt};
 use dapple_worley::{Axes, Combination, Metric, Octaves, Scatter, Space, Worley, Worley2, Worley4};
-use glam::DVec2;
 use serde::de::value::SeqAccessDeserializer;
 use serde::de::{Deserializer, Error, SeqAccess, Visitor};
 use serde::ser::Serializer;
@@ -113,7 +112,7 @@ impl NodeKind for WorleyNode {
                 self.moving_field(worley, [z, plan.time() * f64::from(cells)])?
             }
         };
-        Ok(Step::field(field.frequency_xy(self.frequency.0.into())))
+        Ok(Step::field(field.frequency_per_axis(self.frequency.0)))
     }
 }
 
@@ -159,22 +158,17 @@ impl WorleyNode {
         let worley = self.basis(worley)?;
         let combination = match self.value {
             WorleyValue::Combination(combination) => combination,
-            WorleyValue::CellValue => {
-                let [z, w] = place;
-                let value = move |at: DVec2| cell_value(&worley, [at.x, at.y, z, w]);
-                return Ok(Arc::new(field_fn(value)));
-            }
+            WorleyValue::CellValue => return Ok(Arc::new(worley.cell_values().slice(place))),
             WorleyValue::EdgeDistance => return Ok(Arc::new(worley.edge_distances().slice(place))),
         };
         let cellular = worley.combine(combination);
-        Ok(Arc::new(match (self.octaves, self.range) {
-            (None, None) => cellular.slice(place),
-            (None, Some(range)) => cellular.with_range(range)?.slice(place),
-            (Some(octaves), None) => cellular.fractal(octaves)?.slice(place),
-            (Some(octaves), Some(range)) => {
-                cellular.fractal(octaves)?.with_range(range)?.slice(place)
-            }
-        }))
+        let solid: Arc<dyn Field<4>> = match (self.octaves, self.range) {
+            (None, None) => Arc::new(cellular),
+            (None, Some(range)) => Arc::new(cellular.with_range(range)?),
+            (Some(octaves), None) => Arc::new(cellular.fractal(octaves)?),
+            (Some(octaves), Some(range)) => Arc::new(cellular.fractal(octaves)?.with_range(range)?),
+        };
+        Ok(Arc::new(solid.slice(place)))
     }
 
     /// Fails for options that only combinations of distances have.
@@ -191,16 +185,6 @@ impl WorleyNode {
 }
 
 const PLACE: Range = range!(finite);
-
-/// The value of the cell at a position of four dimensions; NaN for a position without a cell.
-fn cell_value(worley: &Worley4, at: [f64; 4]) -> f32 {
-    let [nearest] = worley.sample(at);
-    if nearest.distance.is_nan() {
-        f32::NAN
-    } else {
-        nearest.cell_value()
-    }
-}
 
 impl Serialize for Frequency {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {

@@ -4,6 +4,7 @@ use super::step::{Laid, Step, needed};
 use super::{Picture, Values, Whole};
 use crate::{RecipeError, RecipeErrorKind};
 use dapple_color::LinearRgb;
+use dapple_raster::FieldExt;
 use dapple_raster::{Raster, RasterViewMut, Texel, Window, parallel};
 use glam::DVec2;
 use std::sync::Arc;
@@ -28,7 +29,7 @@ impl<'a> Places<'a> {
     pub(super) fn pixels(window: &'a Window) -> Self {
         Self {
             at: At::Window(window),
-            area: (window.pixel * window.scale).abs(),
+            area: (DVec2::from(window.pixel) * DVec2::from(window.scale)).abs(),
         }
     }
 

@@ -6,7 +6,6 @@ use crate::{RecipeError, RecipeErrorKind, Values};
 use dapple_color::LinearRgb;
 use dapple_raster::{Field, Raster, RasterError, RasterViewMut, Window};
 use dapple_tile::TileErrorKind;
-use glam::DVec2;
 use std::sync::Arc;
 
 /// The number of a node at every position of the plane.
@@ -14,7 +13,7 @@ use std::sync::Arc;
 /// A position is a point: unlike in a [`Bake`](crate::Bake), images are not averaged over the pixels of a window.
 ///
 /// A node may fail for its inputs, such as a blend with weights below 0. Then sampling of many positions and of windows
-/// fails, and [`sample`](Field::sample), which cannot fail, returns NaN.
+/// fails, and [`value`](Field::value), which cannot fail, returns NaN.
 #[derive(Clone, Debug)]
 pub struct NodeField {
     steps: Arc<[Step]>,
@@ -35,22 +34,23 @@ impl NodeField {
         Self { steps, step }
     }
 
-    fn values(&self, places: Places<'_>) -> Result<Arc<Values>, RasterError> {
+    fn at(&self, places: Places<'_>) -> Result<Arc<Values>, RasterError> {
         one(&self.steps, places, self.step).map_err(|error| refused(&error))
     }
 }
 
 impl Field for NodeField {
-    fn sample(&self, position: DVec2) -> f32 {
-        match self.values(Places::points(&[position])) {
+    fn value(&self, position: [f64; 2]) -> f32 {
+        match self.at(Places::points(&[position.into()])) {
             Ok(values) => values.numbers().first().copied().unwrap_or(f32::NAN),
             Err(_) => f32::NAN,
         }
     }
 
-    fn sample_many(&self, positions: &[DVec2], values: &mut [f32]) -> Result<(), RasterError> {
+    fn values(&self, positions: &[[f64; 2]], values: &mut [f32]) -> Result<(), RasterError> {
         RasterError::check_length(values.len(), positions.len())?;
-        let made = self.values(Places::points(positions))?;
+        let positions: Vec<_> = positions.iter().map(|&at| at.into()).collect();
+        let made = self.at(Places::points(&positions))?;
         RasterError::check_length(made.numbers().len(), values.len())?;
         values.copy_from_slice(made.numbers());
         Ok(())
@@ -58,7 +58,7 @@ impl Field for NodeField {
 
     fn render(&self, window: &Window, mut out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
         window.check_size(out.size())?;
-        let made = self.values(Places::centers(window))?;
+        let made = self.at(Places::centers(window))?;
         RasterError::check_length(made.numbers().len(), window.n_pixels())?;
         let rows = made.numbers().chunks(window.size[0] as usize);
         for (line, row) in out.rows_mut().zip(rows) {
@@ -78,7 +78,8 @@ impl NodeColors {
     /// # Errors
     ///
     /// The errors of the node and its inputs, such as a blend with weights below 0.
-    pub fn sample(&self, position: DVec2) -> Result<LinearRgb, RecipeError> {
+    pub fn sample(&self, position: impl Into<[f64; 2]>) -> Result<LinearRgb, RecipeError> {
+        let position = position.into().into();
         let values = one(&self.steps, Places::points(&[position]), self.step)?;
         // There is a value for each position.
         Ok(Arc::unwrap_or_clone(values).into_colors()[0])

@@ -256,7 +256,7 @@ impl Kept {
 
 impl Pixels {
     fn of(window: &Window) -> Self {
-        let bits = |vector: glam::DVec2| vector.to_array().map(f64::to_bits);
+        let bits = |vector: [f64; 2]| vector.map(f64::to_bits);
         Self {
             origin: bits(window.origin),
             pixel: bits(window.pixel),

@@ -61,11 +61,11 @@ impl Plan {
         Ok(TileSamples {
             window: Window {
                 // The centers of pixels become corners. The first one is exact.
-                origin: -0.5 * pixel,
-                pixel,
+                origin: (-0.5 * pixel).into(),
+                pixel: pixel.into(),
                 first: [0, 0],
                 size: distinct,
-                scale: DVec2::ONE,
+                scale: [1.0; 2],
             },
             extent: pixel * DVec2::new(distinct[0].into(), distinct[1].into()),
         })

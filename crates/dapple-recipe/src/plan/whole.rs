@@ -196,11 +196,10 @@ impl Global {
             RecipeError::check(pixels.fract() == 0.0, what, pixels, range)?;
             *side /= copies;
         }
-        let [across, down] = self.copies.map(f64::from);
-        let copies = DVec2::new(across, down);
+        let times = |part: [f64; 2]| [0, 1].map(|axis| part[axis] * f64::from(self.copies[axis]));
         Ok(Window {
-            origin: window.origin * copies,
-            pixel: window.pixel * copies,
+            origin: times(window.origin),
+            pixel: times(window.pixel),
             size,
             ..*window
         })
@@ -224,7 +223,7 @@ impl Whole {
             _ => {
                 let laid = Laid {
                     picture: picture.clone(),
-                    origin: tile.origin,
+                    origin: tile.origin.into(),
                     extent: self.extent,
                     wrap: self.wrap,
                 };

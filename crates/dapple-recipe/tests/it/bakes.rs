@@ -1,6 +1,7 @@
 //! Tests of bakes: bands, regions, threads and the surroundings of pixels.
 
 use dapple_color::{ColorRamp, LinearRgb, RampSpace};
+use dapple_raster::FieldExt;
 use dapple_raster::{Raster, Wrap};
 use dapple_recipe::{
     Bake, BakeMemory, BakeOptions, Images, MapKind, MapRows, Picture, Plan, Recipe,

@@ -1,7 +1,7 @@
 //! Tests of bakes with samples on corners, as terrains have them.
 
 use crate::bakes::{ALL_NODES, bake, crop, options, plan};
-use dapple_raster::Field;
+use dapple_raster::FieldExt as _;
 use dapple_raster::glam::DVec2;
 use dapple_recipe::{Bake, BakeOptions, MapKind, MapRows, Plan, Region, Samples};
 

@@ -1,6 +1,6 @@
 //! Tests of the errors of a plan.
 
-use dapple_raster::{Field, glam::DVec2};
+use dapple_raster::{Field, FieldExt as _, glam::DVec2};
 use dapple_recipe::{Images, Plan, PlanLimits, Recipe, RecipeError, RecipeErrorKind};
 
 /// Returns the error of a recipe with these nodes, whose height is the node `a`.

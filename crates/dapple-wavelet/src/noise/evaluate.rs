@@ -11,8 +11,8 @@ impl WaveletNoise<2> {
     /// The value at a position in cells.
     #[must_use]
     #[inline]
-    pub fn sample(&self, position: DVec2) -> f32 {
-        self.sum(position.to_array(), |places| self.tile.value(places))
+    pub fn sample(&self, position: impl Into<[f64; 2]>) -> f32 {
+        self.sum(position.into(), |places| self.tile.value(places))
     }
 
     /// The value at a position in cells, equal to that of [`sample`](Self::sample), and its gradient per cell.
@@ -20,11 +20,10 @@ impl WaveletNoise<2> {
     /// The gradient is the spline's own, not a difference; where a coordinate is not finite it is NaN.
     #[must_use]
     #[inline]
-    pub fn sample_with_gradient(&self, position: DVec2) -> (f32, DVec2) {
+    pub fn sample_with_gradient(&self, position: impl Into<[f64; 2]>) -> (f32, DVec2) {
         let tile = &self.tile;
-        let (value, gradient) = self.sum_with_gradient(position.to_array(), |places| {
-            tile.value_with_gradient(places)
-        });
+        let (value, gradient) =
+            self.sum_with_gradient(position.into(), |places| tile.value_with_gradient(places));
         (value, gradient.into())
     }
 }
@@ -32,8 +31,8 @@ impl WaveletNoise<2> {
 /// Positions in cells; windows are filled on all cores where the feature `rayon` is on.
 impl Field for WaveletNoise<2> {
     #[inline]
-    fn sample(&self, position: DVec2) -> f32 {
-        Self::sample(self, position)
+    fn value(&self, position: [f64; 2]) -> f32 {
+        self.sample(position)
     }
 
     fn render(&self, window: &Window, out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
@@ -50,8 +49,8 @@ impl WaveletNoise<3> {
     /// The value at a position in cells.
     #[must_use]
     #[inline]
-    pub fn sample(&self, position: DVec3) -> f32 {
-        self.sum(position.to_array(), |places| self.tile.value(places))
+    pub fn sample(&self, position: impl Into<[f64; 3]>) -> f32 {
+        self.sum(position.into(), |places| self.tile.value(places))
     }
 
     /// The value at a position in cells, equal to that of [`sample`](Self::sample), and its gradient per cell.
@@ -59,39 +58,41 @@ impl WaveletNoise<3> {
     /// The gradient is the spline's own, not a difference; where a coordinate is not finite it is NaN.
     #[must_use]
     #[inline]
-    pub fn sample_with_gradient(&self, position: DVec3) -> (f32, DVec3) {
+    pub fn sample_with_gradient(&self, position: impl Into<[f64; 3]>) -> (f32, DVec3) {
         let tile = &self.tile;
-        let (value, gradient) = self.sum_with_gradient(position.to_array(), |places| {
-            tile.value_with_gradient(places)
-        });
+        let (value, gradient) =
+            self.sum_with_gradient(position.into(), |places| tile.value_with_gradient(places));
         (value, gradient.into())
     }
+}
 
-    /// The values at the pixel centers of a window that lies at the depth `z`, into memory of its size.
-    ///
-    /// They equal those of [`sample`](Self::sample) to the last bit. The whole slice of the tile is computed first,
-    /// once for each band, which does not pay for windows much smaller than a slice.
-    ///
-    /// # Errors
-    ///
-    /// [`RasterErrorKind::SizeMismatch`](dapple_raster::RasterErrorKind::SizeMismatch) if `out` has another size than
-    /// the window.
-    pub fn render_slice(
+/// Positions in cells. Of a window, the whole slice of the tile is computed first, once for each band, which does not
+/// pay for windows much smaller than a slice.
+impl Field<3> for WaveletNoise<3> {
+    #[inline]
+    fn value(&self, position: [f64; 3]) -> f32 {
+        self.sample(position)
+    }
+
+    fn render(
         &self,
-        z: f64,
-        window: &Window,
+        window: &Window<3>,
         mut out: RasterViewMut<'_, f32>,
     ) -> Result<(), RasterError> {
         window.check_size(out.size())?;
         let [x_period, y_period, z_period] = self.periods;
-        let Some(z) = z_period.place_of(z) else {
+        let Some(z) = z_period.place_of(window.depth(2)) else {
             out.fill(f32::NAN);
             return Ok(());
         };
         let slice = |band: &Band<3>| self.tile.slice(band.place(z_period, z, 2));
         let slices: Vec<_> = self.bands.iter().map(slice).collect();
         let bands: Vec<_> = self.bands.iter().zip(&slices).collect();
-        render(&bands, [x_period, y_period], window, out)
+        render(&bands, [x_period, y_period], &window.in_plane(), out)
+    }
+
+    fn period(&self) -> [Option<f64>; 3] {
+        self.size().map(|cells| Some(f64::from(cells)))
     }
 }
 

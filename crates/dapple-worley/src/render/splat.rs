@@ -65,10 +65,10 @@ impl Splat {
         }
         let window = block.bands[0].picture.window;
         let frequency = block.bands[0].picture.frequency;
-        let pixel = window.pixel * window.scale;
+        let [x, y] = [0, 1].map(|axis| window.pixel[axis] * window.scale[axis]);
         let pixel = [
-            (section.u[0] * pixel.x * frequency) as f32,
-            (section.v[row_axis] * pixel.y * frequency) as f32,
+            (section.u[0] * x * frequency) as f32,
+            (section.v[row_axis] * y * frequency) as f32,
         ];
         // A tile begins half a pixel before its first pixel.
         let reach = |pixel: f32, pixels: usize| (pixels as f32 + 0.5) * pixel.abs() * SURE;

@@ -19,11 +19,11 @@ pub(super) const COMBINATIONS: [Combination; 5] = [
 /// Windows with large and small pixels, near and far, flipped, of odd sizes.
 pub(super) fn windows() -> Vec<Window> {
     let window = |origin: [f64; 2], pixel: [f64; 2], size: [u32; 2]| Window {
-        origin: origin.into(),
-        pixel: pixel.into(),
+        origin,
+        pixel,
         first: [-3, 5],
         size,
-        scale: DVec2::ONE,
+        scale: [1.0; 2],
     };
     vec![
         window([0.0, 0.0], [1.0 / 64.0, 1.0 / 64.0], [97, 70]),
@@ -35,7 +35,7 @@ pub(super) fn windows() -> Vec<Window> {
         window([1e12, 5.0], [1e-7, 40.0], [17, 3]),
         window([f64::MAX, f64::NAN], [1e300, 1.0], [5, 3]),
         Window {
-            scale: DVec2::new(11.7, 0.3),
+            scale: [11.7, 0.3],
             ..window([0.3, -0.7], [1.0 / 700.0, 1.0 / 19.0], [75, 66])
         },
     ]

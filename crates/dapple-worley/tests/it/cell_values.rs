@@ -1,7 +1,7 @@
 //! Tests of random values of cells.
 
 use dapple_hash::Seed;
-use dapple_raster::{Field, Window, glam::DVec2};
+use dapple_raster::{Field, FieldExt as _, Window, glam::DVec2};
 use dapple_worley::Worley2;
 
 #[test]

@@ -72,11 +72,11 @@ where
     let mut origin = at;
     origin[..2].fill(0.0);
     let window = Window {
-        origin: DVec2::new(at[0], at[1]) - DVec2::new(2.5, 1.5) * PIXEL,
-        pixel: DVec2::splat(PIXEL),
+        origin: (DVec2::new(at[0], at[1]) - DVec2::new(2.5, 1.5) * PIXEL).into(),
+        pixel: [PIXEL; 2],
         first: [0, 0],
         size: [5, 3],
-        scale: DVec2::ONE,
+        scale: [1.0; 2],
     };
     (Plane::slice(origin.into()), window)
 }

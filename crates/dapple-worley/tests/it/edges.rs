@@ -117,7 +117,7 @@ fn edge_picture_is_that_of_all_planes() -> Result<(), WorleyError> {
     edges.render_plane(&Plane::default(), &window, raster.view_mut())?;
     for index in (0..64 * 48).step_by(23) {
         let (column, row) = (index % 64, index / 64);
-        let at = window.position(column, row).to_array();
+        let at = window.position(column, row);
         let all = brute_force_vectors(&worley, at, 6);
         let [x, y] = all[0].1;
         let planes = all[1..].iter().map(|(_, [other_x, other_y])| {

@@ -8,7 +8,7 @@ use dapple_worley::{
     Axes, Combination, FeatureView, Octaves, Plane, Radial, RadialCells, Space, Vector, Worley,
     WorleyError,
 };
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 
 /// Walks along the first axis in steps of 1/64 and compares F1 to F4 with the previous step.
 fn steps_are_told_apart<const N: usize>(
@@ -82,11 +82,11 @@ fn pattern_far_away_is_as_precise_as_near_the_origin() -> Result<(), WorleyError
             let mut pictures = Vec::new();
             for origin in [[0.5, -1.25], [far + 0.5, -far - 1.25]] {
                 let window = Window {
-                    origin: origin.into(),
-                    pixel: DVec2::new(1.0 / 64.0, 1.0 / 32.0),
+                    origin,
+                    pixel: [1.0 / 64.0, 1.0 / 32.0],
                     first: [0, 0],
                     size: [70, 50],
-                    scale: DVec2::ONE,
+                    scale: [1.0; 2],
                 };
                 let mut values = Raster::filled(window.size, -1.0)?;
                 texture.render(&window, values.view_mut())?;
@@ -202,11 +202,11 @@ fn radial_positions_that_are_not_finite_have_no_value() -> Result<(), WorleyErro
 fn windows_without_a_place() -> Vec<Window> {
     let edge = (1_u64 << 62) as f64;
     let window = |origin: [f64; 2], pixel: [f64; 2], first: [i64; 2]| Window {
-        origin: origin.into(),
-        pixel: pixel.into(),
+        origin,
+        pixel,
         first,
         size: [37, 5],
-        scale: DVec2::ONE,
+        scale: [1.0; 2],
     };
     vec![
         window([f64::NAN, 0.0], [0.1, 0.1], [0, 0]),
@@ -304,7 +304,7 @@ fn coordinates_up_to_the_farthest_have_a_place() -> Result<(), WorleyError> {
         for at in [[edge, -edge], [-edge, edge], [edge - 512.0, 0.5]] {
             let found = worley.sample::<4>(at);
             let mut many = [worley.sample::<4>([0.0, 0.0])];
-            worley.sample_many(&[at.into()], &mut many)?;
+            worley.sample_many(&[at], &mut many)?;
             assert_eq!(many[0], found, "{at:?}");
             agrees_with_oracle(&worley, at, 5, &found);
         }

@@ -4,8 +4,8 @@ use super::oracle::{METRICS, position};
 use dapple_hash::Seed;
 use dapple_raster::{Field, Raster, Window};
 use dapple_worley::{
-    Axes, Cellular, Combination, Fractal, Metric, OctaveSeeds, Octaves, Plane, Scatter, Space,
-    Vector, Worley, WorleyError, WorleyErrorKind,
+    Axes, Cellular, CellularFractal, Combination, Metric, OctaveSeeds, Octaves, Plane, Scatter,
+    Space, Vector, Worley, WorleyError, WorleyErrorKind,
 };
 use glam::DVec2;
 
@@ -19,11 +19,11 @@ const ODD: Octaves = Octaves {
 /// Windows with large and small pixels, near and far, flipped.
 fn windows() -> [Window; 5] {
     let window = |origin: [f64; 2], pixel: [f64; 2]| Window {
-        origin: origin.into(),
-        pixel: pixel.into(),
+        origin,
+        pixel,
         first: [-3, 5],
         size: [67, 35],
-        scale: DVec2::ONE,
+        scale: [1.0; 2],
     };
     [
         window([0.3, -0.7], [1.0 / 64.0, 1.0 / 64.0]),
@@ -35,7 +35,7 @@ fn windows() -> [Window; 5] {
 }
 
 fn render_equals_value<const N: usize>(
-    fractal: &Fractal<N>,
+    fractal: &CellularFractal<N>,
     plane: &Plane<N>,
 ) -> Result<(), WorleyError>
 where

@@ -7,7 +7,6 @@ use super::oracle::{METRICS, SCATTERS, position};
 use dapple_hash::Seed;
 use dapple_raster::{Raster, Window};
 use dapple_worley::{Axes, Metric, Plane, RESOLUTION, Space, Vector, Worley, WorleyError};
-use glam::DVec2;
 
 /// The largest change of the difference of two distances by rounding. A key is rounded a few times and its root once,
 /// and powers are accurate to about 1e-6.
@@ -180,8 +179,8 @@ where
         for (x, y) in (1..height).flat_map(|y| (1..width).map(move |x| (x, y))) {
             let [row, above] = [values.row(y), values.row(y - 1)];
             let column = x as usize;
-            check([row[column - 1], row[column]], window.pixel.x, [x, y]);
-            check([above[column], row[column]], window.pixel.y, [x, y]);
+            check([row[column - 1], row[column]], window.pixel[0], [x, y]);
+            check([above[column], row[column]], window.pixel[1], [x, y]);
         }
     }
     Ok(())
@@ -191,11 +190,11 @@ where
 fn pictures_have_no_jumps_in_any_metric_or_scatter() -> Result<(), WorleyError> {
     // The pixels are powers of two, so that no position is rounded.
     let window = |pixel: [f64; 2], size: [u32; 2]| Window {
-        origin: DVec2::new(-5.0, 1024.0),
-        pixel: pixel.into(),
+        origin: [-5.0, 1024.0],
+        pixel,
         first: [0, 0],
         size,
-        scale: DVec2::ONE,
+        scale: [1.0; 2],
     };
     let slanted = Plane::slice([0.0, 0.0, 0.625].into());
     for (metric, scatter) in METRICS.iter().flat_map(|&m| SCATTERS.map(|s| (m, s))) {

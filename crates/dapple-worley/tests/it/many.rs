@@ -2,7 +2,7 @@
 
 use super::oracle::{METRICS, SCATTERS, position};
 use dapple_hash::Seed;
-use dapple_raster::Field;
+use dapple_raster::{Field, FieldExt as _};
 use dapple_worley::{Combination, OctaveSeeds, Octaves, Worley, Worley2, WorleyError};
 use glam::DVec2;
 

@@ -145,11 +145,11 @@ fn any_window() -> impl Strategy<Value = Window> {
         [1_u32..50, 1_u32..24],
     )
         .prop_map(|(origin, pixel, first, size)| Window {
-            origin: origin.into(),
-            pixel: pixel.into(),
+            origin,
+            pixel,
             first,
             size,
-            scale: glam::DVec2::ONE,
+            scale: [1.0; 2],
         })
 }
 

@@ -80,11 +80,11 @@ where
         for zoom in [6, 9, 12, 16, 20] {
             let pixel = DVec2::new(1.0, 1.25) / f64::from(1 << zoom);
             let window = Window {
-                origin: DVec2::new(at[0], at[1]) - 24.0 * pixel,
-                pixel,
+                origin: (DVec2::new(at[0], at[1]) - 24.0 * pixel).into(),
+                pixel: pixel.into(),
                 first: [0, 0],
                 size: [50, 47],
-                scale: DVec2::ONE,
+                scale: [1.0; 2],
             };
             for combination in combinations {
                 picture_equals_value(&worley, combination, &plane, &window)?;

@@ -1,7 +1,7 @@
 //! Tests of slices of spaces as fields.
 
 use dapple_hash::Seed;
-use dapple_raster::{Field, Window, glam::DVec2};
+use dapple_raster::{Field, FieldExt as _, Raster, Window, glam::DVec2};
 use dapple_worley::{Combination, Octaves, Worley4};
 
 #[test]
@@ -14,20 +14,51 @@ fn render_equals_sample_bit_for_bit() {
     let fractal = cells.fractal(octaves).unwrap();
     let window = Window::new(DVec2::new(-3.0, 7.0), DVec2::new(4.0, 3.0), [23, 17]).unwrap();
     let edges = cells.worley().edge_distances();
-    for slice in [
-        cells.slice([0.5, 1.25]),
-        fractal.slice([0.5, 1.25]),
-        edges.slice([0.5, 1.25]),
-    ] {
+    let values = cells.worley().cell_values();
+    let slices: [&dyn Field; 5] = [
+        &(&cells).slice([0.5, 1.25]),
+        &(&fractal).slice([0.5, 1.25]),
+        &edges.slice([0.5, 1.25]),
+        &values.slice([0.5, 1.25]),
+        // The third and the fourth axis are scaled with the first two.
+        &(&fractal).frequency(0.5).slice([1.0, 2.5]),
+    ];
+    for slice in slices {
         let raster = slice.to_raster(&window).unwrap();
         for (row, column) in (0..17).flat_map(|row| (0..23).map(move |column| (row, column))) {
             let sample = slice.sample(window.position(column, row));
             let rendered = raster.row(row)[column as usize];
             assert_eq!(sample.to_bits(), rendered.to_bits(), "{column}, {row}");
         }
-        let positions: Vec<DVec2> = (0..23).map(|column| window.position(column, 9)).collect();
+        let positions: Vec<_> = (0..23).map(|column| window.position(column, 9)).collect();
         let mut values = [0.0; 23];
         slice.sample_many(&positions, &mut values).unwrap();
         assert_eq!(values, *raster.row(9));
+    }
+}
+
+#[test]
+fn a_stack_of_windows_has_the_values_of_each_bit_for_bit() {
+    let cells = Worley4::new(Seed(7)).combine(Combination::F2_MINUS_F1);
+    let octaves = Octaves {
+        count: 2,
+        ..Octaves::default()
+    };
+    let fractal = cells.fractal(octaves).unwrap();
+    let wide = Window::new([-3.0, 7.0], [4.0, 3.0], [23, 17]).unwrap();
+    let narrow = wide.crop([2, 1], [9, 17]).unwrap();
+    let places = [0.5, 0.6, 0.7, 0.7];
+    let planes = [wide, wide, narrow, wide];
+    let windows: Vec<_> = (planes.iter().zip(places))
+        .map(|(plane, z)| plane.in_space([0.0, 0.0, z, 1.25]))
+        .collect();
+    for field in [&cells as &dyn Field<4>, &fractal] {
+        let mut rasters = planes.map(|plane| Raster::filled(plane.size, 0.0).unwrap());
+        let views = rasters.iter_mut().map(Raster::view_mut).collect();
+        field.render_stack(&windows, views).unwrap();
+        for (window, raster) in windows.iter().zip(&rasters) {
+            assert_eq!(*raster, field.to_raster(window).unwrap());
+        }
+        assert!(field.render_stack(&windows, Vec::new()).is_err());
     }
 }

@@ -5,7 +5,6 @@ use super::oracle::{METRICS, position};
 use dapple_hash::Seed;
 use dapple_raster::{Raster, Window};
 use dapple_worley::{Axes, Plane, Scatter, Space, Vector, Worley, WorleyError};
-use glam::DVec2;
 
 /// Varies from the least density to the largest and back, several times within 40 cells, and is clamped at both ends.
 fn waves<const N: usize>(at: [f64; N]) -> f64 {
@@ -93,11 +92,11 @@ fn doors_agree_with_the_oracle_where_the_density_varies() -> Result<(), WorleyEr
 #[test]
 fn windows_equal_samples_where_the_density_varies() -> Result<(), WorleyError> {
     let windows = [[1.0 / 16.0, 1.0 / 8.0], [0.5, 0.75]].map(|pixel| Window {
-        origin: DVec2::new(-10.3, 4.1),
-        pixel: pixel.into(),
+        origin: [-10.3, 4.1],
+        pixel,
         first: [0, 0],
         size: [90, 70],
-        scale: DVec2::ONE,
+        scale: [1.0; 2],
     });
     for (index, window) in windows.iter().enumerate() {
         let worley = varying::<2>(97).with_metric(METRICS[index])?;

@@ -49,8 +49,8 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
 struct Distance;
 
 impl Field for Distance {
-    fn sample(&self, position: DVec2) -> f32 {
-        position.length() as f32
+    fn value(&self, position: [f64; 2]) -> f32 {
+        DVec2::from(position).length() as f32
     }
 }
 

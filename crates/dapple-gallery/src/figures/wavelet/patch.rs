@@ -79,7 +79,7 @@ impl Patch {
 
     /// The side of a pixel, in parts.
     pub(super) fn pixel(&self) -> f64 {
-        self.window.pixel.x
+        self.window.pixel[0]
     }
 
     /// The side of the torus, in parts.
@@ -121,7 +121,7 @@ impl Patch {
                 let middle = center + DVec2::new(turn_x, turn_y);
                 let pixel = row as usize * width + column as usize;
                 paint(
-                    self.window.position(column, row) - middle,
+                    DVec2::from(self.window.position(column, row)) - middle,
                     &mut spots.pixels_mut()[pixel],
                 );
             }

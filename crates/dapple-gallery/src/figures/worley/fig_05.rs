@@ -10,7 +10,7 @@ use crate::figure::source;
 use crate::{Figure, Panel};
 use dapple_color::{ColorError, ColorRamp, ColorStop, LinearRgb};
 use dapple_preview::{Camera, Environment, Light, Material, Object, Scene, Shape, Sky, Surface};
-use dapple_worley::{Combination, Fractal, Octaves, Worley3, hash::Seed};
+use dapple_worley::{CellularFractal, Combination, Octaves, Worley3, hash::Seed};
 use glam::{DVec2, DVec3};
 
 pub(super) const FIGURE: Figure = Figure {
@@ -89,7 +89,7 @@ fn spots([spot, hide, far]: [&str; 3]) -> Result<ColorRamp, ColorError> {
 
 /// The textures and colors of the creature's parts.
 struct Look {
-    hide: Fractal<3>,
+    hide: CellularFractal<3>,
     back: ColorRamp,
     belly: ColorRamp,
     tongue: FractalNoise,

@@ -8,7 +8,7 @@ use crate::figure::source;
 use crate::{Figure, Panel};
 use dapple_color::{ColorRamp, LinearRgb};
 use dapple_preview::{Camera, Cut, Light, Material, Object, Part, Scene, Shadows, Shape, Surface};
-use dapple_worley::{Combination, Fractal, Octaves, Worley3, hash::Seed};
+use dapple_worley::{CellularFractal, Combination, Octaves, Worley3, hash::Seed};
 use glam::DVec3;
 
 pub(super) const FIGURE: Figure = Figure {
@@ -91,7 +91,7 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
 }
 
 /// Returns the fractal version of a primitive, with its measured range scaled to 0 to 1.
-fn solid(primitive: Combination, seed: Seed) -> anyhow::Result<Fractal<3>> {
+fn solid(primitive: Combination, seed: Seed) -> anyhow::Result<CellularFractal<3>> {
     let octaves = Octaves {
         count: 5,
         ..Octaves::paper()

@@ -62,7 +62,7 @@ fn strays(options: &SpaceGiraffeOptions, seed: Seed, window: &Window) -> usize {
     for row in 0..window.size[1] {
         for (column, point) in (0..).zip(strongest.row(row)) {
             if texture.labels()[point.index()] == 1 {
-                let (center, margin) = nearest(&centers, window.position(column, row));
+                let (center, margin) = nearest(&centers, window.position(column, row).into());
                 // A tie is on the border of both cells.
                 strays += usize::from(center != owners[point.index()] && margin > 1e-9);
             }

@@ -4,7 +4,7 @@ use super::common::paper_window;
 use dapple_hash::Seed;
 use dapple_points::{Domain, PointSet, poisson_disk};
 use dapple_pups::*;
-use dapple_raster::{Field, Ramp, Raster, Varying};
+use dapple_raster::{Field, FieldExt as _, Ramp, Raster, Varying};
 use glam::{DVec2, DVec3};
 
 fn points() -> PointSet {

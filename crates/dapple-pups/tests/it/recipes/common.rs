@@ -3,7 +3,7 @@
 use dapple_hash::Seed;
 use dapple_pups::*;
 use dapple_pups::{ReferenceImage, Texture};
-use dapple_raster::{Field, Raster, Window};
+use dapple_raster::{Field, FieldExt as _, Raster, Window};
 use glam::DVec2;
 
 /// The window of `size` pixels over the paper's torus.
@@ -96,8 +96,9 @@ fn recipes_repeat_and_their_doors_agree_bit_for_bit() {
             .to_raster(&window.crop([-9, 31], [17, 40]).unwrap())
             .unwrap();
         for (column, row) in [(0, 0), (8, 3), (9, 39), (16, 20)] {
-            let position = window.position(0, 0)
-                + DVec2::new(f64::from(column) - 9.0, f64::from(row) + 31.0) * window.pixel;
+            let position = DVec2::from(window.position(0, 0))
+                + DVec2::new(f64::from(column) - 9.0, f64::from(row) + 31.0)
+                    * DVec2::from(window.pixel);
             assert_eq!(
                 part.row(row)[column as usize],
                 field.sample(position),

@@ -4,7 +4,7 @@ use super::common::paper_window;
 use dapple_hash::Seed;
 use dapple_points::Domain;
 use dapple_pups::*;
-use dapple_raster::{Field, Raster};
+use dapple_raster::{Field, FieldExt as _, Raster};
 use glam::DVec2;
 
 #[test]
@@ -19,7 +19,10 @@ fn cells_of_one_point_have_a_label_for_each() {
         .zip(labels.pixels().iter().zip(values.pixels()))
     {
         assert_eq!(value, texture.values()[label as usize]);
-        assert_eq!(texture.label(window.position(column, row)), Some(label));
+        assert_eq!(
+            texture.label(window.position(column, row).into()),
+            Some(label)
+        );
     }
 }
 

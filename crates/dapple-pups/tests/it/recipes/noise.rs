@@ -4,7 +4,7 @@ use super::common::paper_window;
 use dapple_hash::Seed;
 use dapple_pups::*;
 use dapple_pups::{PupsErrorKind, points::Domain};
-use dapple_raster::{Field, Ramp, Varying};
+use dapple_raster::{Field, FieldExt as _, Ramp, Varying};
 use glam::DVec2;
 
 #[test]

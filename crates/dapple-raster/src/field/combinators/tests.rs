@@ -1,7 +1,7 @@
 //! Every combinator beside its formula, with all methods of a field, and its errors.
 
 use super::FieldExt;
-use crate::{Field, Fractal, FractalShape, RasterErrorKind, Window, field_fn};
+use crate::{Constant, Field, Fractal, FractalShape, RasterErrorKind, Window, field_fn};
 use core::f64::consts::{FRAC_PI_2, TAU};
 use glam::DVec2;
 
@@ -10,13 +10,25 @@ use glam::DVec2;
 struct Waves;
 
 impl Field for Waves {
-    fn sample(&self, position: DVec2) -> f32 {
-        (libm::sin(position.x * TAU / 2.0) * libm::cos(position.y * TAU / 3.0)) as f32
+    fn value(&self, [x, y]: [f64; 2]) -> f32 {
+        (libm::sin(x * TAU / 2.0) * libm::cos(y * TAU / 3.0)) as f32
     }
 
     fn period(&self) -> [Option<f64>; 2] {
         [Some(2.0), Some(3.0)]
     }
+}
+
+/// A sum of octaves of one field.
+fn octaves<F: Clone>(
+    field: F,
+    count: usize,
+    gain: f64,
+    lacunarity: f64,
+    shape: FractalShape,
+) -> Result<Fractal<F>, crate::RasterError> {
+    let fields = core::iter::repeat_n(field, count);
+    Fractal::new(fields, gain, lacunarity, shape)
 }
 
 fn slope(position: DVec2) -> f32 {
@@ -30,14 +42,15 @@ fn check(name: &str, field: &dyn Field, formula: impl Fn(DVec2) -> f32) {
     let window = whole.scaled(DVec2::new(0.9, 1.1)).unwrap();
     let window = window.crop([7, -3], [410, 330]).unwrap();
     let raster = field.to_raster(&window).unwrap();
-    let positions: Vec<DVec2> = (0..330)
+    let positions: Vec<[f64; 2]> = (0..330)
         .flat_map(|row| (0..410).map(move |column| window.position(column, row)))
         .collect();
     let mut many = vec![0.0; positions.len()];
-    field.sample_many(&positions, &mut many).unwrap();
+    field.values(&positions, &mut many).unwrap();
     for ((&position, &rendered), &many) in positions.iter().zip(raster.pixels()).zip(&many) {
-        let expected = formula(position).to_bits();
-        assert_eq!(field.sample(position).to_bits(), expected, "{name} sampled");
+        let expected = formula(position.into()).to_bits();
+        let sampled = field.sample(DVec2::from(position));
+        assert_eq!(sampled.to_bits(), expected, "{name} sampled");
         assert_eq!(rendered.to_bits(), expected, "{name} rendered");
         assert_eq!(many.to_bits(), expected, "{name}, many samples");
     }
@@ -45,14 +58,14 @@ fn check(name: &str, field: &dyn Field, formula: impl Fn(DVec2) -> f32) {
 
 #[test]
 fn combinators_are_their_formulas_bit_for_bit() {
-    let (waves, slopes) = (|p: DVec2| Waves.sample(p), field_fn(slope));
+    let (waves, slopes) = (|p: DVec2| Waves.sample(p), field_fn(|p| slope(p.into())));
     check("frequency", &Waves.frequency(1.7), |p| waves(p * 1.7));
     let uneven = DVec2::new(2.0, -0.3);
-    check("frequencies", &Waves.frequency_xy(uneven), |p| {
+    check("frequencies", &Waves.frequency_per_axis(uneven), |p| {
         waves(p * uneven)
     });
     check("offset", &Waves.offset(uneven), |p| waves(p + uneven));
-    check("warp", &Waves.warp(slopes, Waves, 0.2), |p| {
+    check("warp", &Waves.warp((slopes, Waves), 0.2), |p| {
         waves(p + 0.2 * DVec2::new(slope(p).into(), waves(p).into()))
     });
     check("map", &Waves.map(|v| v * v), |p| waves(p) * waves(p));
@@ -90,19 +103,32 @@ fn fractals_are_their_sums_bit_for_bit() {
             0.0 + octave(1.0) + 0.5 * octave(3.0) + 0.25 * octave(9.0)
         }
     };
-    check("fbm", &Waves.fbm(3, 0.5, 3.0).unwrap(), sum(|value| value));
+    check(
+        "fbm",
+        &octaves(Waves, 3, 0.5, 3.0, FractalShape::Sum).unwrap(),
+        sum(|value| value),
+    );
     check(
         "ridged",
-        &Waves.ridged(3, 0.5, 3.0).unwrap(),
+        &octaves(Waves, 3, 0.5, 3.0, FractalShape::Ridged).unwrap(),
         sum(|value| 1.0 - value.abs()),
     );
-    check("billow", &Waves.billow(3, 0.5, 3.0).unwrap(), sum(f32::abs));
-    assert_eq!(Waves.fbm(3, -0.5, 3.0).unwrap().weight(), 1.75);
+    check(
+        "billow",
+        &octaves(Waves, 3, 0.5, 3.0, FractalShape::Billow).unwrap(),
+        sum(f32::abs),
+    );
+    assert_eq!(
+        octaves(Waves, 3, -0.5, 3.0, FractalShape::Sum)
+            .unwrap()
+            .weight(),
+        1.75
+    );
 }
 
 #[test]
 fn a_turn_moves_features_clockwise() {
-    let right = field_fn(|position| position.x as f32).rotate(FRAC_PI_2);
+    let right = field_fn(|[x, _y]| x as f32).rotate(FRAC_PI_2);
     assert!(
         (right.sample(DVec2::Y) - 1.0).abs() < 1e-7,
         "x points down now; sincos is rounded"
@@ -119,7 +145,7 @@ fn periods_follow_from_those_of_the_parts() {
     let period = |field: &dyn Field| field.period();
     assert_eq!(period(&Waves.frequency(4.0)), [Some(0.5), Some(0.75)]);
     assert_eq!(
-        period(&Waves.frequency_xy(DVec2::new(0.0, -2.0))),
+        period(&Waves.frequency_per_axis(DVec2::new(0.0, -2.0))),
         [Some(0.0), Some(1.5)]
     );
     assert_eq!(
@@ -132,20 +158,23 @@ fn periods_follow_from_those_of_the_parts() {
         [Some(8.0), Some(12.0)]
     );
     assert_eq!(
-        period(&Waves.fbm(4, 0.5, 2.0).unwrap()),
+        period(&octaves(Waves, 4, 0.5, 2.0, FractalShape::Sum).unwrap()),
         [Some(2.0), Some(3.0)]
     );
     assert_eq!(
-        period(&Waves.warp(Waves, 0.0_f32, 0.1)),
+        period(&Waves.warp((Waves, Constant(0.0)), 0.1)),
         [Some(2.0), Some(3.0)]
     );
-    assert_eq!(period(&Waves.mix(Waves, field_fn(slope))), [None; 2]);
+    assert_eq!(
+        period(&Waves.mix(Waves, field_fn(|p| slope(p.into())))),
+        [None; 2]
+    );
     assert_eq!(period(&Waves.rotate(1.0)), [None; 2]);
 }
 
 #[test]
 fn a_tile_repeats_to_the_last_bit() {
-    let field = Waves.frequency(0.5).warp(0.0_f32, 0.0_f32, 1.0);
+    let field = Waves.frequency(0.5).warp([Constant(0.0); 2], 1.0);
     let tile = field.tile_raster([16, 24]).unwrap();
     let twice = Window::new(DVec2::ZERO, DVec2::new(8.0, 12.0), [32, 48]).unwrap();
     let twice = field.to_raster(&twice).unwrap();
@@ -169,14 +198,14 @@ fn numbers_out_of_range_are_refused() {
         );
         error.to_string()
     };
-    assert!(refused(Waves.fbm(0, 0.5, 2.0)).contains("number of octaves"));
+    assert!(refused(octaves(Waves, 0, 0.5, 2.0, FractalShape::Sum)).contains("number of octaves"));
     assert!(
-        refused(Waves.fbm(u32::MAX, 0.5, 2.0)).contains("33"),
+        refused(octaves(Waves, usize::MAX, 0.5, 2.0, FractalShape::Sum)).contains("33"),
         "all are not made first"
     );
-    assert!(refused(Waves.ridged(3, 1.5, 2.0)).contains("gain is 1.5"));
-    assert!(refused(Waves.billow(3, f64::NAN, 2.0)).contains("gain"));
-    assert!(refused(Waves.fbm(3, 0.5, 0.5)).contains("lacunarity is 0.5"));
+    assert!(refused(octaves(Waves, 3, 1.5, 2.0, FractalShape::Ridged)).contains("gain is 1.5"));
+    assert!(refused(octaves(Waves, 3, f64::NAN, 2.0, FractalShape::Billow)).contains("gain"));
+    assert!(refused(octaves(Waves, 3, 0.5, 0.5, FractalShape::Sum)).contains("lacunarity is 0.5"));
     assert!(refused(Fractal::new([], 0.5, 2.0, FractalShape::Sum)).contains("octaves"));
     for ends in [[1.0, 1.0], [0.0, f32::INFINITY], [f32::NAN, 0.0]] {
         assert!(Waves.remap(ends, [0.0, 1.0]).is_err(), "from {ends:?}");
@@ -186,6 +215,7 @@ fn numbers_out_of_range_are_refused() {
 
 #[test]
 fn numbers_keep_their_own_methods_beside_the_trait() {
+    use crate::prelude::*;
     use core::ops::{Add as _, Mul as _, Sub as _};
 
     // All of these names are methods of `FieldExt`, too.
@@ -201,6 +231,95 @@ fn numbers_keep_their_own_methods_beside_the_trait() {
     assert_eq!(lengths, [4, 4]);
     assert_eq!(1.0_f32.sub(0.25), 0.75);
     // And numbers stand for fields in arguments.
-    let field = Waves.mix(1.0, 0.25).add(2.0).max(0.5).warp(0.0, Waves, 0.1);
+    let field = Waves
+        .mix(1.0, 0.25)
+        .add(2.0)
+        .max(0.5)
+        .warp((Constant(0.0), Waves), 0.1);
     assert_eq!(field.period(), [Some(2.0), Some(3.0)]);
+}
+
+/// A field of space that repeats after 1, 2 and 3.
+#[derive(Clone, Copy, Debug)]
+struct Solid;
+
+impl Field<3> for Solid {
+    fn value(&self, [x, y, z]: [f64; 3]) -> f32 {
+        let [x, y, z] = [x, y / 2.0, z / 3.0].map(|at| at - at.floor());
+        (x * y - z) as f32
+    }
+
+    fn period(&self) -> [Option<f64>; 3] {
+        [Some(1.0), Some(2.0), Some(3.0)]
+    }
+}
+
+#[test]
+fn fields_of_space_have_the_same_combinators_bit_for_bit() {
+    let field = octaves(Solid, 3, 0.5, 2.0, FractalShape::Ridged)
+        .unwrap()
+        .warp((Solid, Constant(0.25), Solid.frequency(2.0)), 0.3)
+        .rotate(0.4)
+        .offset([0.5, -0.25, 8.0])
+        .frequency_per_axis([0.3, 1.7, 2.0])
+        .add(Solid.mul(Waves.extrude()))
+        .mix(1.0, 0.25)
+        .map(|value| value * value);
+    let formula = |[x, y, z]: [f64; 3]| {
+        let [u, v, w] = [x * 0.3 + 0.5, y * 1.7 + -0.25, z * 2.0 + 8.0];
+        let (sin, cos) = libm::sincos(0.4);
+        let turned = [u * cos + v * sin, v * cos - u * sin, w];
+        let by = [
+            Solid.value(turned),
+            0.25,
+            Solid.value(turned.map(|at| at * 2.0)),
+        ];
+        let mut moved = turned;
+        for axis in 0..3 {
+            moved[axis] += 0.3 * f64::from(by[axis]);
+        }
+        let mut sum = 0.0;
+        for (frequency, weight) in [(1.0, 1.0), (2.0, 0.5), (4.0, 0.25)] {
+            let value = Solid.value(moved.map(|at| at * frequency));
+            sum += weight * (1.0 - value.abs());
+        }
+        let value = sum + Solid.value([x, y, z]) * Waves.sample([x, y]);
+        let mixed = value + (1.0 - value) * 0.25;
+        mixed * mixed
+    };
+    let window = Window::new([-1.3, 0.7], [5.1, 3.3], [420, 340]).unwrap();
+    let window = window.in_space([0.0, 0.0, 0.7]);
+    let raster = field.to_raster(&window).unwrap();
+    let slice = (&field).slice([0.7]);
+    assert_eq!(slice.to_raster(&window.in_plane()).unwrap(), raster);
+    let positions: Vec<_> = (0..340)
+        .flat_map(|row| (0..420).map(move |column| window.position(column, row)))
+        .collect();
+    let mut many = vec![0.0; positions.len()];
+    field.sample_many(&positions, &mut many).unwrap();
+    assert_eq!(raster.pixels(), many);
+    for (&position, &rendered) in positions.iter().zip(raster.pixels()) {
+        let expected = formula(position).to_bits();
+        assert_eq!(rendered.to_bits(), expected, "rendered at {position:?}");
+        assert_eq!(
+            field.sample(glam::DVec3::from(position)).to_bits(),
+            expected
+        );
+        let [x, y, _] = position;
+        assert_eq!(slice.sample([x, y]).to_bits(), expected, "sliced");
+    }
+    let period = field.period();
+    assert_eq!(
+        period,
+        [None, None, Some(3.0)],
+        "turned about the third axis"
+    );
+    assert_eq!(Solid.slice([0.5]).period(), [Some(1.0), Some(2.0)]);
+}
+
+#[test]
+fn a_tile_of_space_lies_where_further_coordinates_are_0() {
+    let tile = Solid.tile_raster([4, 2]).unwrap();
+    let window = Window::new([0.0; 2], [1.0, 2.0], [4, 2]).unwrap();
+    assert_eq!(tile, Solid.slice([0.0]).to_raster(&window).unwrap());
 }

@@ -3,7 +3,7 @@
 use super::positions;
 use crate::{WaveletError, WaveletErrorKind, WaveletNoise2, WaveletNoise3, wavelet_tile};
 use dapple_hash::Seed;
-use dapple_raster::{Field, Raster, RasterErrorKind, Window};
+use dapple_raster::{Field, FieldExt as _, Raster, RasterErrorKind, Window};
 use glam::{DVec2, DVec3};
 use proptest::prelude::*;
 
@@ -65,7 +65,7 @@ fn render_slice_equals_sample_bit_for_bit() {
             (&oblong, 1e6 + 0.7),
         ] {
             let mut raster = Raster::filled(window.size, 0.0).unwrap();
-            noise.render_slice(z, &window, raster.view_mut()).unwrap();
+            noise.slice([z]).render(&window, raster.view_mut()).unwrap();
             check(&raster, &window, |position| {
                 noise.sample(position.extend(z))
             });
@@ -76,17 +76,17 @@ fn render_slice_equals_sample_bit_for_bit() {
 /// Wide, narrow, far and upside down, and one with columns and rows that have no position.
 fn windows() -> Vec<Window> {
     let window = |x, y, pixel, size| Window {
-        origin: DVec2::new(x, y),
+        origin: [x, y],
         pixel,
         first: [-3, 7],
         size,
-        scale: DVec2::ONE,
+        scale: [1.0; 2],
     };
     vec![
-        window(0.1, 0.2, DVec2::splat(0.37), [70, 40]),
-        window(-5.0, 0.2, DVec2::splat(0.25), [3, 33]),
-        window(1e9, -1e12, DVec2::new(0.125, -3.5), [40, 3]),
-        window(0.0, 0.0, DVec2::splat(5e307), [50, 30]),
+        window(0.1, 0.2, DVec2::splat(0.37).into(), [70, 40]),
+        window(-5.0, 0.2, DVec2::splat(0.25).into(), [3, 33]),
+        window(1e9, -1e12, DVec2::new(0.125, -3.5).into(), [40, 3]),
+        window(0.0, 0.0, DVec2::splat(5e307).into(), [50, 30]),
     ]
 }
 
@@ -95,7 +95,7 @@ fn check(raster: &Raster<f32>, window: &Window, sample: impl Fn(DVec2) -> f32) {
         for column in 0..window.size[0] {
             let [here, there] = [
                 raster.row(row)[column as usize],
-                sample(window.position(column, row)),
+                sample(window.position(column, row).into()),
             ];
             assert_eq!(here.to_bits(), there.to_bits(), "{window:?} {column} {row}");
         }
@@ -128,7 +128,10 @@ fn noise_is_the_same_at_any_number_of_threads() {
             .unwrap();
         let space = WaveletNoise3::new(18, Seed(6)).unwrap();
         let mut slice = Raster::filled(window.size, 0.0).unwrap();
-        space.render_slice(0.7, &window, slice.view_mut()).unwrap();
+        (&space)
+            .slice([0.7])
+            .render(&window, slice.view_mut())
+            .unwrap();
         (plane.to_raster(&window).unwrap(), slice)
     };
     let expected = render();
@@ -248,7 +251,7 @@ fn weights_at_their_limit_give_finite_values() {
     let noise = WaveletNoise2::new(8, Seed(0)).unwrap();
     let noise = noise.with_weights(&weights).unwrap();
     for position in positions::<2>(200, 10.0) {
-        let (value, gradient) = noise.sample_with_gradient(position.into());
+        let (value, gradient) = noise.sample_with_gradient(position);
         assert!(
             value.abs() <= noise.bound() && gradient.is_finite(),
             "{position:?}: {value}"
@@ -302,8 +305,10 @@ fn memory_of_another_size_is_refused() {
     let space = WaveletNoise3::new(4, Seed(0)).unwrap();
     for result in [
         plane.render(&window, raster.view_mut()),
-        space.render_slice(0.0, &window, raster.view_mut()),
-        space.render_slice(f64::NAN, &window, raster.view_mut()),
+        (&space).slice([0.0]).render(&window, raster.view_mut()),
+        (&space)
+            .slice([f64::NAN])
+            .render(&window, raster.view_mut()),
     ] {
         let error = result.unwrap_err();
         assert!(

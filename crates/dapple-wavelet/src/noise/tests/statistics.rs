@@ -122,7 +122,7 @@ fn variances_of_bands_add_up() {
         .with_weights(&[1.0, 0.5, 0.25])
         .unwrap();
     let positions = scattered::<2>(40_000, 1000.0);
-    let squares = positions.map(|position| square(noise.sample(position.into())));
+    let squares = positions.map(|position| square(noise.sample(position)));
     let mean_square = squares.sum::<f64>() / 40_000.0;
     // The tolerance is that of independent bands, plus the correlation of neighboring bands.
     assert!((mean_square / 1.3125 - 1.0).abs() < 0.05, "{mean_square}");

@@ -17,7 +17,7 @@ fn value_equals_the_sum_of_all_b_splines_in_the_plane() {
         let many = one.clone().with_weights(&WEIGHTS).unwrap();
         for position in positions(500, 300.0) {
             for noise in [&one, &many] {
-                let value = f64::from(noise.sample(position.into()));
+                let value = f64::from(noise.sample(position));
                 let expected = oracle(noise, position);
                 assert!(
                     (value - expected).abs() < TOLERANCE,
@@ -35,7 +35,7 @@ fn value_equals_the_sum_of_all_b_splines_in_space() {
         let many = one.clone().with_weights(&WEIGHTS).unwrap();
         for position in positions(300, 100.0) {
             for noise in [&one, &many] {
-                let value = f64::from(noise.sample(position.into()));
+                let value = f64::from(noise.sample(position));
                 let expected = oracle(noise, position);
                 assert!(
                     (value - expected).abs() < TOLERANCE,
@@ -53,15 +53,15 @@ fn gradient_equals_differences_of_the_oracle() {
     for weights in [&[1.0], &WEIGHTS[..]] {
         let plane = plane.clone().with_weights(weights).unwrap();
         for position in positions::<2>(300, 100.0) {
-            let (value, gradient) = plane.sample_with_gradient(position.into());
-            assert_eq!(value, plane.sample(position.into()), "{position:?}");
+            let (value, gradient) = plane.sample_with_gradient(position);
+            assert_eq!(value, plane.sample(position), "{position:?}");
             let expected = differences(position, |position| oracle(&plane, position));
             check_gradient(&gradient.to_array(), &expected);
         }
         let space = space.clone().with_weights(weights).unwrap();
         for position in positions::<3>(200, 100.0) {
-            let (value, gradient) = space.sample_with_gradient(position.into());
-            assert_eq!(value, space.sample(position.into()), "{position:?}");
+            let (value, gradient) = space.sample_with_gradient(position);
+            assert_eq!(value, space.sample(position), "{position:?}");
             let expected = differences(position, |position| oracle(&space, position));
             check_gradient(&gradient.to_array(), &expected);
         }
