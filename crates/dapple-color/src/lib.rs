@@ -37,6 +37,7 @@ mod palette;
 mod plane;
 mod ramp;
 mod srgb;
+mod texture;
 
 pub use bleed::bleed_color;
 pub use code::Code;
@@ -53,3 +54,4 @@ pub use of_field::{ambient_occlusion_of_field, curvature_of_field, normal_map_of
 pub use palette::Palette;
 pub use plane::{HeightPlane, continue_heights};
 pub use ramp::{ColorRamp, ColorStop, Interpolation, Outside, RampSpace};
+pub use texture::{ColorPixel, TexturePixel, TextureRaster};

@@ -230,7 +230,7 @@ impl Normal {
     }
 
     /// The unit vector in a direction; a flat normal for a direction without a length.
-    fn unit([x, y, z]: [f32; 3]) -> Self {
+    pub(crate) fn unit([x, y, z]: [f32; 3]) -> Self {
         let length = (x * x + y * y + z * z).sqrt();
         if length > 0.0 {
             let [x, y, z] = [x, y, z].map(|part| part / length);

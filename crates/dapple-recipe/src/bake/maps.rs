@@ -5,7 +5,8 @@ use crate::plan::TileSamples;
 use crate::{Plan, RecipeError, Values, Whole};
 use dapple_color::{
     CurvatureOptions, HeightPlane, LinearRgb, Normal, NormalOptions, OcclusionOptions,
-    ambient_occlusion_of_part, curvature_of_part, curvature_to_gray, normal_map_of_part,
+    TexturePixel, TextureRaster as _, ambient_occlusion_of_part, curvature_of_part,
+    curvature_to_gray, normal_map_of_part,
 };
 use dapple_raster::{Raster, RasterError, Window, Wrap};
 use glam::DVec2;
@@ -120,6 +121,38 @@ impl MapRows {
             Self::Color(raster) => raster.size(),
             Self::Normal(raster) => raster.size(),
             Self::Packed(raster) => raster.size(),
+        }
+    }
+
+    /// The bytes of a texture on a GPU, 4 for each pixel, row by row from the top: sRGB codes of a color
+    /// (`Rgba8UnormSrgb`), and linear codes of all other maps (`Rgba8Unorm`).
+    #[must_use]
+    pub fn to_rgba8(&self) -> Vec<u8> {
+        match self {
+            Self::Gray(raster) => raster.to_rgba8(),
+            Self::Color(raster) => raster.to_rgba8_srgb(),
+            Self::Normal(raster) => raster.to_rgba8(),
+            Self::Packed(raster) => raster.to_rgba8(),
+        }
+    }
+
+    /// The mip levels of a whole map: see [`mip_levels`](dapple_color::TextureRaster::mip_levels).
+    ///
+    /// # Errors
+    ///
+    /// The errors of [`mip_levels`](dapple_color::TextureRaster::mip_levels).
+    pub fn mip_levels(&self) -> Result<Vec<Self>, RecipeError> {
+        fn levels<T: TexturePixel>(
+            raster: &Raster<T>,
+            of: fn(Raster<T>) -> MapRows,
+        ) -> Result<Vec<MapRows>, RecipeError> {
+            Ok(raster.mip_levels()?.into_iter().map(of).collect())
+        }
+        match self {
+            Self::Gray(raster) => levels(raster, Self::Gray),
+            Self::Color(raster) => levels(raster, Self::Color),
+            Self::Normal(raster) => levels(raster, Self::Normal),
+            Self::Packed(raster) => levels(raster, Self::Packed),
         }
     }
 

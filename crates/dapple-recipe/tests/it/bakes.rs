@@ -535,3 +535,33 @@ height = "moved"
     let error = Bake::new(&plan, &banded).expect_err("bands have no whole tile");
     assert!(matches!(error.kind(), RecipeErrorKind::Global { .. }));
 }
+
+#[test]
+fn baked_maps_are_bytes_of_textures() {
+    use dapple_color::TextureRaster as _;
+
+    let options = BakeOptions {
+        size: [8, 6],
+        maps: vec![MapKind::Albedo, MapKind::Normal, MapKind::Orm],
+        ..BakeOptions::default()
+    };
+    let plan = plan(ALL_NODES);
+    for band in Bake::new(&plan, &options).unwrap() {
+        for (kind, map) in band.unwrap().maps {
+            let expected = match &map {
+                MapRows::Gray(raster) => raster.to_rgba8(),
+                MapRows::Color(raster) => raster.to_rgba8_srgb(),
+                MapRows::Normal(raster) => raster.to_rgba8(),
+                MapRows::Packed(raster) => raster.to_rgba8(),
+            };
+            assert_eq!(map.to_rgba8(), expected, "{kind:?}");
+            let sizes: Vec<_> = map
+                .mip_levels()
+                .unwrap()
+                .iter()
+                .map(MapRows::size)
+                .collect();
+            assert_eq!(sizes, [[8, 6], [4, 3], [2, 1], [1, 1]]);
+        }
+    }
+}
