@@ -42,6 +42,7 @@ mod texture;
 pub use bleed::bleed_color;
 pub use code::Code;
 pub use curvature::{CurvatureOptions, curvature, curvature_of_part, curvature_to_gray};
+pub use dapple_raster as raster;
 pub use error::{ColorError, ColorErrorKind};
 pub use linear::{LinearRgb, LinearRgba};
 #[doc(alias("height map", "heightmap", "bump map", "normal map"))]

@@ -27,6 +27,7 @@ dapple_raster::named! {
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/interpolation.md"))]
     #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+    #[non_exhaustive]
     pub enum Interpolation {
         /// A straight line from color to color.
         #[default]
@@ -41,6 +42,7 @@ dapple_raster::named! {
 dapple_raster::named! {
     /// The space in which a color ramp mixes the colors of two stops.
     #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+    #[non_exhaustive]
     pub enum RampSpace {
         /// Oklab (Ottosson 2020): equal steps look about equal, and the middle of two colors is halfway in lightness
         /// and hue. Between two strong colors a component may be a little below 0 or above 1, which files clamp.

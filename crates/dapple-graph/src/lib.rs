@@ -27,6 +27,7 @@ mod lattice;
 pub use build::Direction;
 pub use dapple_points as points;
 pub use dapple_points::{PointIdx, PointSet, glam};
+pub use dapple_raster as raster;
 pub use delaunay::{
     EditableDelaunay, IsCancelled, Star, Triangle, delaunay, delaunay_cancellable,
     delaunay_triangles, delaunay_triangles_cancellable,

@@ -85,6 +85,8 @@ pub use changes::{FileChanges, FileStamp};
 pub use channels::Channels;
 pub use color_space::ColorSpace;
 pub use content::{Content, Depth, Encoding};
+pub use dapple_color as color;
+pub use dapple_raster as raster;
 pub use error::{ImageError, ImageErrorKind};
 pub use file::{AtomicFile, open_regular, remove_left_behind, replace, sync_folder};
 pub use header::{ImageHeader, read_header};

@@ -51,6 +51,10 @@ mod test_meshes;
 #[cfg(all(test, feature = "gltf"))]
 mod tests;
 
+pub use dapple_color as color;
+pub use dapple_image as image;
+pub use dapple_mesh as mesh;
+pub use dapple_raster as raster;
 pub use error::{MeshIoError, MeshIoErrorKind};
 pub use files::{read_model, replace_images, write_model};
 pub use formats::*;

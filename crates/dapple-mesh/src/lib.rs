@@ -50,6 +50,8 @@ mod walk;
 pub use adjacency::{Adjacency, FaceEdge};
 pub use bvh::{Bvh, NearestPoint, Ray, RayHit};
 pub use crease::CREASE;
+pub use dapple_color as color;
+pub use dapple_raster as raster;
 pub use error::{MeshError, MeshErrorKind};
 pub use glam;
 pub use idx::{FaceIdx, VertexIdx};

@@ -8,9 +8,9 @@ mod solid;
 
 pub use cut::Cut;
 
-use crate::mesh::Mesh;
 use crate::ray::Ray;
 use crate::surface::{Chart, Part};
+use crate::traced::Mesh;
 use crate::{PreviewError, PreviewErrorKind};
 use dapple_mesh::RayHit;
 use glam::{DVec2, DVec3};

@@ -32,9 +32,11 @@ mod view;
 mod window;
 mod wrap;
 
+#[doc(hidden)]
 pub mod parallel;
 pub mod prelude;
 #[cfg(feature = "simd")]
+#[doc(hidden)]
 pub mod simd;
 pub mod text;
 
@@ -47,10 +49,12 @@ pub use field::{
     common_period, field_fn,
 };
 pub use glam;
+#[doc(hidden)]
 pub use named::Named;
 #[cfg(feature = "serde")]
 #[doc(hidden)]
 pub use named::read_named;
+#[doc(hidden)]
 pub use parts::Parts;
 pub use raster::Raster;
 pub use resample::Texel;

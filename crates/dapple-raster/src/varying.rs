@@ -20,6 +20,7 @@ use std::sync::Arc;
 /// ```
 /// As data it is a number, where it is constant, or `{ ramp = … }` and `{ geometric_ramp = … }` with the fields of [`Ramp`].
 #[derive(Clone)]
+#[non_exhaustive]
 pub enum Varying {
     /// One number everywhere.
     Constant(f64),

@@ -19,7 +19,10 @@ pub use bake::{Bake, BakeMemory, BakeOptions, Band, MapKind, MapRows, Region, Sh
 pub use dapple_color as color;
 pub use dapple_hash as hash;
 pub use dapple_raster as raster;
+pub use dapple_synth as synth;
+pub use dapple_tile as tile;
 pub use error::{Place, RecipeError, RecipeErrorKind};
+pub use indexmap;
 pub use input::Input;
 pub use nodes::*;
 pub use plan::{

@@ -28,6 +28,7 @@ const MAX_VALUE: f32 = 1e12;
 dapple_raster::named! {
     /// What lies past the edges of an exemplar, or of a texture in the plane.
     #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+    #[non_exhaustive]
     pub enum Edges {
         /// Empty space: neighborhoods of an exemplar that reach past an edge are not compared.
         #[default]

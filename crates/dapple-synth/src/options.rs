@@ -55,6 +55,7 @@ pub struct Options {
 #[cfg_attr(doc, doc = include_str!("../docs/coherence.md"))]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub enum Coherence {
     /// A factor of 2; but for a regular exemplar, one whose [`Exemplar::regularity`] is above 0.9, the least distance
     /// wins in passes that read a coarser level.
@@ -113,6 +114,7 @@ impl FromStr for Coherence {
 dapple_raster::named! {
     /// The values that are compared to find the pixels of the sites on a surface.
     #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+    #[non_exhaustive]
     pub enum Matching {
         /// Colors of squares, site after site in the order of the sweep, as in the paper.
         Colors = "colors",
@@ -131,6 +133,7 @@ dapple_raster::named! {
 dapple_raster::named! {
     /// What the finest sites on a surface have of the exemplar, and what texture maps show between them.
     #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+    #[non_exhaustive]
     pub enum Sources {
         /// Places between pixels, moved to where the neighbors that go on with the same piece of the exemplar predict
         /// them. Texture maps read the exemplar there, as sharp as it is, or a larger version of it.
@@ -144,6 +147,7 @@ dapple_raster::named! {
 dapple_raster::named! {
     /// Which way the rows and columns of a neighborhood on a surface go.
     #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+    #[non_exhaustive]
     pub enum Axes {
         /// They turn as the field around the site does, so that features along the field are straight in a neighborhood.
         #[default]

@@ -15,6 +15,7 @@ pub struct Octave {
 ///
 #[cfg_attr(doc, doc = include_str!("../../docs/folding.md"))]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Folding {
     /// It is as it was interpolated.
     #[default]
