@@ -17,6 +17,7 @@ use dapple_raster::glam::DVec2;
 
 /// A unit vector on a surface: x to the right, y up or down as [`NormalY`] says, z out of the surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Normal {
     /// To the right, from -1 to 1.
     pub x: f32,

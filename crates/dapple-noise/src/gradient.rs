@@ -59,6 +59,11 @@ pub(crate) const MOST_CORNERS: usize = 8;
 /// # Ok::<(), dapple_noise::raster::RasterError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(into = "Description", try_from = "Description")
+)]
 pub struct GradientNoise<const N: usize> {
     seed: Seed,
     hash: LatticeHash<N>,
@@ -117,6 +122,60 @@ impl GradientNoise<4> {
 
     /// The variance over all positions and seeds.
     pub const VARIANCE: f32 = 0.085_703;
+}
+
+/// The data from which noise is made.
+#[cfg(feature = "serde")]
+#[derive(serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Description {
+    seed: Seed,
+    /// The number of cells of the period along each axis.
+    period: Vec<Option<u32>>,
+    /// The offsets of an octave along each axis, in cells.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    offset: Vec<f64>,
+}
+
+#[cfg(feature = "serde")]
+impl<const N: usize> From<GradientNoise<N>> for Description {
+    fn from(noise: GradientNoise<N>) -> Self {
+        let has_offset = noise.offset != [0; N];
+        let offset = noise.offset.map(f64::from_bits);
+        Self {
+            seed: noise.seed,
+            period: noise.periods().to_vec(),
+            offset: if has_offset {
+                offset.to_vec()
+            } else {
+                Vec::new()
+            },
+        }
+    }
+}
+
+#[cfg(feature = "serde")]
+impl<const N: usize> TryFrom<Description> for GradientNoise<N> {
+    type Error = RasterError;
+
+    fn try_from(description: Description) -> Result<Self, RasterError> {
+        let Description {
+            seed,
+            period,
+            offset,
+        } = description;
+        RasterError::check_length(period.len(), N)?;
+        let period = core::array::from_fn(|axis| period[axis]);
+        let mut noise = Self::of(seed).with_period(period)?;
+        if !offset.is_empty() {
+            RasterError::check_length(offset.len(), N)?;
+            for (bits, offset) in noise.offset.iter_mut().zip(offset) {
+                RasterError::check_range(offset.is_finite(), "offset", offset, "finite")?;
+                *bits = offset.to_bits();
+            }
+        }
+        Ok(noise)
+    }
 }
 
 impl<const N: usize> GradientNoise<N> {

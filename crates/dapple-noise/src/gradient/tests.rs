@@ -478,3 +478,32 @@ proptest! {
         prop_assert!(!finite || time.abs() <= GradientNoise4::BOUND);
     }
 }
+
+#[cfg(feature = "serde")]
+#[test]
+fn noise_is_read_from_what_it_wrote() {
+    let noise = GradientNoise3::new(SEED)
+        .with_period([Some(4), None, Some(7)])
+        .unwrap();
+    let octave = noise.octaves(2, 2.0).unwrap()[1];
+    for noise in [noise, octave] {
+        let text = serde_json::to_string(&noise).unwrap();
+        let read: GradientNoise3 = serde_json::from_str(&text).unwrap();
+        assert_eq!(read, noise, "{text}");
+    }
+    for (text, expected) in [
+        (r#"{"seed": 7, "period": [4, null]}"#, "3"),
+        (r#"{"seed": 7, "period": [0, null, null]}"#, "period"),
+        (
+            r#"{"seed": 7, "period": [4, null, null], "offset": [0.5]}"#,
+            "3",
+        ),
+        (
+            r#"{"seed": 7, "period": [4, null, null], "scale": 2}"#,
+            "scale",
+        ),
+    ] {
+        let error = serde_json::from_str::<GradientNoise3>(text).unwrap_err();
+        assert!(error.to_string().contains(expected), "{text}: {error}");
+    }
+}
