@@ -10,6 +10,7 @@
 
 mod disk;
 mod domain;
+mod endless;
 mod error;
 mod nested;
 mod set;
@@ -26,6 +27,9 @@ pub use disk::{
     poisson_disk_radius,
 };
 pub use domain::Domain;
+#[doc(alias("chunk", "infinite", "scatter", "tile"))]
+pub use endless::EndlessPoissonDisk;
+pub use endless::{EndlessPoint, EndlessVariablePoissonDisk};
 pub use error::{PointsError, PointsErrorKind};
 pub use glam;
 pub use nested::{NestedPointSet, nested_poisson_disk};
