@@ -8,7 +8,8 @@ use anyhow::{Context as _, Result};
 use dapple_points::glam::DVec2;
 use dapple_points::raster::{Ramp, Varying};
 use dapple_points::{
-    Domain, PointSet, VariablePoissonOptions, poisson_disk, variable_poisson_disk,
+    Domain, EndlessPoint, EndlessPoissonDisk, PointSet, VariablePoissonOptions, poisson_disk,
+    variable_poisson_disk,
 };
 use std::time::Duration;
 
@@ -30,8 +31,17 @@ const TWO_THREADS: Case = Case {
     ..VARIABLE
 };
 
+const ENDLESS: Case = Case {
+    case: "endless Poisson disk, 100 k points",
+    peer: "ours, maximal",
+    must: Must::CostAtMost(6.0),
+    note: "a window of the endless plane, with 0.92 of the points of a maximal set",
+    ..VARIABLE
+};
+
 pub(super) fn run(bench: &mut Bench) -> Result<()> {
     variable(bench)?;
+    endless(bench)?;
     two_threads(bench)
 }
 
@@ -76,6 +86,26 @@ fn variable(bench: &mut Bench) -> Result<()> {
         confirm(ours, least, 1e-9, 0.0..=1.0)?;
         Ok(Done {
             ours: n_ours,
+            theirs: confirm_maximal(theirs, radius)?,
+        })
+    })
+}
+
+fn endless(bench: &mut Bench) -> Result<()> {
+    let radius = sets::radius_of(100_000);
+    // Far from the origin by a power of two, so that positions in the window are exact.
+    let corner = 64.0;
+    let endless = EndlessPoissonDisk::new(radius, SEED)?;
+    let ours = Side::new(None, |points: &mut Option<Vec<EndlessPoint>>| {
+        *points = endless.points([corner; 2], [corner + 1.0; 2]).ok();
+    })
+    .prepared(|points| *points = None);
+    bench.beside(&ENDLESS, 15, ours, maximal(radius), |ours, theirs| {
+        let ours = ours.as_ref().context("no points")?;
+        let positions = ours.iter().map(|point| point.position - corner).collect();
+        let domain = Domain::rectangle(DVec2::ZERO, DVec2::ONE);
+        Ok(Done {
+            ours: confirm(&PointSet::new(domain, positions)?, radius, 0.0, 0.63..=0.65)?,
             theirs: confirm_maximal(theirs, radius)?,
         })
     })
