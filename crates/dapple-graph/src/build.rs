@@ -67,6 +67,7 @@ pub(crate) fn graph_of(
         offsets,
         axes,
         symmetric: true,
+        delaunay: false,
     };
     graph.symmetric = direction == Direction::Symmetric || graph.every_axis_has_its_opposite();
     Ok(graph)

@@ -20,7 +20,7 @@ mod order;
 mod patch;
 mod star;
 mod tiles;
-mod triangles;
+pub(crate) mod triangles;
 
 pub use editable::{EditableDelaunay, Star};
 pub use triangles::{Triangle, delaunay_triangles, delaunay_triangles_cancellable};
@@ -108,6 +108,7 @@ pub fn delaunay_cancellable(
         offsets: rows.offsets,
         axes: rows.axes,
         symmetric: true,
+        delaunay: true,
     })
 }
 

@@ -76,6 +76,8 @@ dapple_raster::error! {
              {limit} copies of points, which is the limit";
         /// The callback of the caller asked to stop.
         Cancelled => "the callback asked to stop";
+        /// A graph has no triangles and no Voronoi diagram, since it was not made as a Delaunay graph.
+        NotDelaunay => "the graph was not made as a Delaunay graph, so that it has no triangles and no Voronoi diagram";
         /// A row's axes are not in their order, or one of them comes twice.
         Order {
             /// The point whose row it is.

@@ -20,13 +20,26 @@ pub struct Axis {
 ///
 /// Vectors are exact differences of the positions after these were snapped to the nearest multiple (from the origin
 /// of the domain) of a power of two between 2^-50 and 2^-49 of the domain's larger side.
-#[derive(Clone, Debug, PartialEq)]
+///
+/// Two graphs are equal if they have the same points and axes, whatever function made them.
+#[derive(Clone, Debug)]
 pub struct Graph {
     pub(crate) lattice: Lattice,
     pub(crate) sites: Vec<DVec2>,
     pub(crate) offsets: Vec<u32>,
     pub(crate) axes: Vec<Axis>,
     pub(crate) symmetric: bool,
+    /// Whether the graph was made as a Delaunay graph.
+    pub(crate) delaunay: bool,
+}
+
+impl PartialEq for Graph {
+    fn eq(&self, other: &Self) -> bool {
+        self.lattice == other.lattice
+            && self.sites == other.sites
+            && self.offsets == other.offsets
+            && self.axes == other.axes
+    }
 }
 
 impl Graph {
@@ -121,6 +134,22 @@ impl Graph {
     #[must_use]
     pub fn is_symmetric(&self) -> bool {
         self.symmetric
+    }
+
+    /// Whether the graph was made as a Delaunay graph, so that it has [`triangles`](Self::triangles) and a
+    /// [`Voronoi`](crate::Voronoi) diagram.
+    #[must_use]
+    pub fn is_delaunay(&self) -> bool {
+        self.delaunay
+    }
+
+    /// Fails if the graph was not made as a Delaunay graph.
+    pub(crate) fn check_delaunay(&self) -> Result<(), GraphError> {
+        if self.delaunay {
+            Ok(())
+        } else {
+            Err(GraphError::new(GraphErrorKind::NotDelaunay))
+        }
     }
 }
 

@@ -42,13 +42,45 @@ impl Lattice {
 
     /// The site of a position, in steps, brought into the domain along the wrapped axes.
     pub(crate) fn site(&self, position: DVec2) -> DVec2 {
-        let mut site = round((position - self.origin) * self.per_step);
+        self.snapped((position - self.origin) * self.per_step)
+    }
+
+    /// The nearest place of the lattice to any position, in steps, brought into the domain along the wrapped axes. `None`
+    /// if the position is not finite or lies outside along an axis that does not wrap.
+    pub(crate) fn place(&self, position: DVec2) -> Option<DVec2> {
+        let mut offset = position - self.origin;
+        let size = self.vector(self.size);
+        for axis in 0..2 {
+            let size = size[axis];
+            if self.wrap[axis] && !(offset[axis] >= 0.0 && offset[axis] < size) {
+                offset[axis] -= (offset[axis] / size).floor() * size;
+                // Far from the domain, rounding may leave a place outside.
+                offset[axis] = offset[axis].clamp(0.0, size);
+            }
+        }
+        let steps = offset * self.per_step;
+        // A place half a step beyond the end snaps to it.
+        let is_inside = steps.cmpge(DVec2::ZERO) & steps.cmplt(self.size + 0.5);
+        if !is_inside.all() {
+            return None;
+        }
+        Some(self.snapped(steps))
+    }
+
+    /// A place rounded to whole steps; the end of a wrapped axis is its start.
+    fn snapped(&self, steps: DVec2) -> DVec2 {
+        let mut site = round(steps);
         for axis in 0..2 {
             if self.wrap[axis] && site[axis] >= self.size[axis] {
                 site[axis] -= self.size[axis];
             }
         }
         site
+    }
+
+    /// The position of a site, in the caller's unit.
+    pub(crate) fn position(&self, site: DVec2) -> DVec2 {
+        self.origin + self.vector(site)
     }
 
     /// A difference of sites, in the caller's unit; exact.

@@ -17,6 +17,7 @@ mod sanity;
 mod delaunay;
 mod gabriel;
 mod nearest;
+mod voronoi;
 mod yao;
 
 mod angle;
@@ -36,4 +37,7 @@ pub use error::{GraphError, GraphErrorKind};
 pub use gabriel::{gabriel, gabriel_cancellable};
 pub use graph::{Axis, Graph};
 pub use nearest::k_nearest;
+#[doc(alias("dirichlet", "thiessen", "circumcenter", "point location"))]
+pub use voronoi::Voronoi;
+pub use voronoi::{NearestSite, VoronoiCell, VoronoiSide, VoronoiVertex};
 pub use yao::yao;

@@ -162,6 +162,7 @@ impl EditableDelaunay {
             offsets: vec![0],
             axes: Vec::new(),
             symmetric: true,
+            delaunay: true,
         };
         for &number in &self.numbers {
             graph

@@ -53,11 +53,42 @@ pub fn delaunay_triangles_cancellable(
     points: &PointSet,
     is_cancelled: &IsCancelled,
 ) -> Result<Vec<Triangle>, GraphError> {
-    let graph = delaunay_cancellable(points, is_cancelled)?;
-    let next = next_around_faces(&graph);
+    delaunay_cancellable(points, is_cancelled)?.triangles()
+}
+
+impl Graph {
+    /// The triangles of a Delaunay graph, as [`delaunay_triangles`] makes them from its points.
+    ///
+    /// # Errors
+    ///
+    /// [`GraphErrorKind::NotDelaunay`](crate::GraphErrorKind::NotDelaunay) unless the graph
+    /// [was made as one](Self::is_delaunay).
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use dapple_graph::points::{Domain, hash::Seed, white_noise};
+    /// use dapple_graph::{delaunay, delaunay_triangles};
+    ///
+    /// let points = white_noise(Domain::paper_torus(), 100, Seed(7))?;
+    /// let graph = delaunay(&points)?;
+    /// assert_eq!(graph.triangles()?, delaunay_triangles(&points)?);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn triangles(&self) -> Result<Vec<Triangle>, GraphError> {
+        self.check_delaunay()?;
+        let mut triangles = Vec::with_capacity(2 * self.n_points());
+        visit_faces(self, |first, face| push_fan(first, face, &mut triangles));
+        Ok(triangles)
+    }
+}
+
+/// Calls `visit` for every face that lies in an empty circle: with its first point, and the axes around it, in the
+/// direction from x towards y. Skips the outer face.
+pub(crate) fn visit_faces(graph: &Graph, mut visit: impl FnMut(PointIdx, &[FaceAxis])) {
+    let next = next_around_faces(graph);
     let mut is_walked = vec![false; graph.n_axes()];
-    let mut triangles = Vec::with_capacity(2 * graph.n_points());
-    let mut face = Vec::new();
+    let mut face: Vec<FaceAxis> = Vec::new();
     for first in (0..graph.n_points() as u32).map(PointIdx) {
         let start = graph.offsets[first.index()] as usize;
         for index in start..start + graph.axes(first).len() {
@@ -65,13 +96,30 @@ pub fn delaunay_triangles_cancellable(
             let mut at = index;
             while !is_walked[at] {
                 is_walked[at] = true;
-                face.push(graph.axes[at]);
+                face.push(FaceAxis {
+                    index: at,
+                    axis: graph.axes[at],
+                });
                 at = next[at] as usize;
             }
-            push_fan(&graph, first, &face, &mut triangles);
+            let [a, b, ..] = &face[..] else {
+                continue;
+            };
+            // All corners of an inner face turn one way; those of the outer face turn the other way, or lie on a line.
+            let steps = |axis: &FaceAxis| graph.lattice.steps(axis.axis.vector);
+            if turn(steps(a), steps(b)) > 0.0 {
+                visit(first, &face);
+            }
         }
     }
-    Ok(triangles)
+}
+
+/// An axis on the border of a face.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FaceAxis {
+    /// Its index among all axes.
+    pub(crate) index: usize,
+    pub(crate) axis: Axis,
 }
 
 /// For each axis, the next one around the face beside it, in the direction from x towards y.
@@ -88,24 +136,16 @@ fn next_around_faces(graph: &Graph) -> Vec<u32> {
     axes.collect()
 }
 
-/// Cuts a face into triangles at its first corner, if it is not the outer one.
-fn push_fan(graph: &Graph, first: PointIdx, face: &[Axis], triangles: &mut Vec<Triangle>) {
-    let [a, b, ..] = face else {
-        return;
-    };
-    // All corners of an inner face turn one way; those of the outer face turn the other way, or lie on a line.
-    let steps = |axis: &Axis| graph.lattice.steps(axis.vector);
-    if turn(steps(a), steps(b)) <= 0.0 {
-        return;
-    }
-    let mut corner = a;
-    let mut side = a.vector;
-    for axis in &face[1..face.len() - 1] {
+/// Cuts a face into triangles at its first corner.
+fn push_fan(first: PointIdx, face: &[FaceAxis], triangles: &mut Vec<Triangle>) {
+    let mut corner = face[0].axis;
+    let mut side = corner.vector;
+    for FaceAxis { axis, .. } in &face[1..face.len() - 1] {
         triangles.push(Triangle {
             corners: [first, corner.to, axis.to],
             sides: [side, side + axis.vector],
         });
-        corner = axis;
+        corner = *axis;
         side += axis.vector;
     }
 }
@@ -113,7 +153,7 @@ fn push_fan(graph: &Graph, first: PointIdx, face: &[Axis], triangles: &mut Vec<T
 #[cfg(test)]
 mod tests {
     use super::{Triangle, delaunay_triangles};
-    use crate::delaunay;
+    use crate::{EditableDelaunay, GraphErrorKind, delaunay, gabriel};
     use dapple_points::hash::Seed;
     use dapple_points::{Domain, PointSet, white_noise};
     use glam::DVec2;
@@ -174,6 +214,24 @@ mod tests {
                 "{wrap:?}"
             );
         }
+    }
+
+    #[test]
+    fn graphs_that_were_not_made_as_delaunay_graphs_have_no_triangles() {
+        let points = white_noise(domain([true; 2]), 60, Seed(5)).unwrap();
+        let graph = delaunay(&points).unwrap();
+        assert_eq!(
+            graph.triangles().unwrap(),
+            delaunay_triangles(&points).unwrap()
+        );
+        let edited = EditableDelaunay::new(&points).unwrap().to_graph();
+        assert_eq!(edited.triangles().unwrap(), graph.triangles().unwrap());
+        let other = gabriel(&points).unwrap();
+        assert!(!other.is_delaunay());
+        assert_eq!(
+            other.triangles().unwrap_err().kind(),
+            &GraphErrorKind::NotDelaunay
+        );
     }
 
     #[test]

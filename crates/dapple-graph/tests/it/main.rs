@@ -4,3 +4,4 @@ mod delaunay_oracle;
 mod editable;
 mod other_graphs;
 mod thin;
+mod voronoi;
