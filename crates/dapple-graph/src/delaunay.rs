@@ -112,6 +112,13 @@ pub fn delaunay_cancellable(
     })
 }
 
+/// Whether the axes of a graph are those of the Delaunay graph of its points.
+#[cfg(feature = "serde")]
+pub(crate) fn is_delaunay(graph: &Graph) -> bool {
+    let expected = rows(&graph.lattice, &graph.sites, &|| false);
+    expected.is_ok_and(|rows| rows.offsets == graph.offsets && rows.axes == graph.axes)
+}
+
 /// The reason why no rows could be made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Refusal {

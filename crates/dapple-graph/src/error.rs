@@ -78,6 +78,15 @@ dapple_raster::error! {
         Cancelled => "the callback asked to stop";
         /// A graph has no triangles and no Voronoi diagram, since it was not made as a Delaunay graph.
         NotDelaunay => "the graph was not made as a Delaunay graph, so that it has no triangles and no Voronoi diagram";
+        /// The data of a graph has a step or a size that no domain leads to.
+        Lattice {
+            /// The length of a step.
+            step: f64,
+            /// Width and height in steps.
+            size: [i64; 2],
+        } =>
+            "the graph has steps of {step} and a size of {} by {} steps, but a step must be a power of two, and the \
+             larger side have 2^49 to 2^50 steps", size[0], size[1];
         /// A row's axes are not in their order, or one of them comes twice.
         Order {
             /// The point whose row it is.

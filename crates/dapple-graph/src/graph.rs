@@ -2,6 +2,8 @@
 
 use crate::angle::{by_angle, is_lower};
 use crate::build::{Choice, graph_of};
+#[cfg(feature = "serde")]
+use crate::data::GraphData;
 use crate::lattice::Lattice;
 use crate::{Direction, GraphError, GraphErrorKind};
 use dapple_points::{PointIdx, PointSet};
@@ -21,8 +23,16 @@ pub struct Axis {
 /// Vectors are exact differences of the positions after these were snapped to the nearest multiple (from the origin
 /// of the domain) of a power of two between 2^-50 and 2^-49 of the domain's larger side.
 ///
+/// As data (feature `serde`), a graph has its positions and vectors in whole steps of that power of two. Reading checks all
+/// that [`sanity_check`](Graph::sanity_check) does, and triangulates the points of a Delaunay graph once more to compare.
+///
 /// Two graphs are equal if they have the same points and axes, whatever function made them.
 #[derive(Clone, Debug)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(try_from = "GraphData", into = "GraphData")
+)]
 pub struct Graph {
     pub(crate) lattice: Lattice,
     pub(crate) sites: Vec<DVec2>,

@@ -35,6 +35,39 @@ impl Lattice {
         }
     }
 
+    /// The lattice from its parts, if some domain has it.
+    #[cfg(feature = "serde")]
+    pub(crate) fn from_parts(
+        origin: DVec2,
+        step: f64,
+        size: [i64; 2],
+        wrap: [bool; 2],
+    ) -> Option<Self> {
+        let is_power_of_two = step.is_normal() && step > 0.0 && step.to_bits() << 12 == 0;
+        let [shorter, longer] = [size[0].min(size[1]), size[0].max(size[1])];
+        // Only tiny domains have steps that are longer than they would be.
+        let is_long = longer >= 1 << 49 || step == f64::MIN_POSITIVE;
+        if !(is_power_of_two && shorter >= 1 && is_long && longer <= 1 << 50) {
+            return None;
+        }
+        let lattice = Self {
+            origin,
+            step,
+            per_step: 1.0 / step,
+            size: size.map(|side| side as f64).into(),
+            wrap,
+        };
+        let size = lattice.vector(lattice.size);
+        let is_domain = Domain { origin, size, wrap }.checked().is_ok();
+        is_domain.then_some(lattice)
+    }
+
+    /// The origin of the domain and the length of a step, in the caller's unit.
+    #[cfg(feature = "serde")]
+    pub(crate) fn origin_and_step(&self) -> (DVec2, f64) {
+        (self.origin, self.step)
+    }
+
     /// The sites of all points, in the order of the points.
     pub(crate) fn sites(&self, points: &PointSet) -> Vec<DVec2> {
         points.positions().iter().map(|&p| self.site(p)).collect()

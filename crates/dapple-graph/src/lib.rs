@@ -22,6 +22,8 @@ mod yao;
 
 mod angle;
 mod build;
+#[cfg(feature = "serde")]
+mod data;
 mod grid;
 mod lattice;
 

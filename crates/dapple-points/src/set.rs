@@ -5,6 +5,11 @@ use glam::DVec2;
 
 /// The number of a point within its set, from 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(transparent)
+)]
 pub struct PointIdx(pub u32);
 
 impl PointIdx {
@@ -17,10 +22,35 @@ impl PointIdx {
 }
 
 /// Points in a domain, in a fixed order. Its meaning depends on the function that made them.
+///
+/// As data (feature `serde`) it is its domain and its positions; reading checks them as [`PointSet::new`] does.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(try_from = "Unchecked")
+)]
 pub struct PointSet {
     domain: Domain,
     positions: Vec<DVec2>,
+}
+
+/// The data of a point set before it is checked.
+#[cfg(feature = "serde")]
+#[derive(serde::Deserialize)]
+#[serde(rename = "PointSet", deny_unknown_fields)]
+struct Unchecked {
+    domain: Domain,
+    positions: Vec<DVec2>,
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<Unchecked> for PointSet {
+    type Error = PointsError;
+
+    fn try_from(data: Unchecked) -> Result<Self, PointsError> {
+        Self::new(data.domain, data.positions)
+    }
 }
 
 impl PointSet {
@@ -118,6 +148,43 @@ mod tests {
                 matches!(error.kind(), PointsErrorKind::Outside { point, .. } if point.0 == 1),
                 "{error}"
             );
+        }
+    }
+    #[cfg(feature = "serde")]
+    #[test]
+    fn sets_are_read_as_they_were_written_or_refused() {
+        let positions = vec![
+            DVec2::new(-0.75, 0.5),
+            DVec2::ZERO,
+            DVec2::new(0.1, 1.0 / 3.0),
+        ];
+        let set = PointSet::new(Domain::paper_torus(), positions).unwrap();
+        let text = serde_json::to_string(&set).unwrap();
+        assert_eq!(serde_json::from_str::<PointSet>(&text).unwrap(), set);
+        let start = r#"{"domain":{"origin":[0.0,0.0],"size":"#;
+        let read = |rest: &str| serde_json::from_str::<PointSet>(&format!("{start}{rest}"));
+        let wrapped = read(r#"[2.0,2.0],"wrap":[true,false]},"positions":[[-0.5,2.0]]}"#).unwrap();
+        assert_eq!(wrapped.positions(), [DVec2::new(1.5, 2.0)]);
+        for (bad, cause) in [
+            (
+                r#"[0.0,1.0],"wrap":[true,true]},"positions":[]}"#,
+                "has size",
+            ),
+            (
+                r#"[1.0,1.0],"wrap":[true,false]},"positions":[[0.0,1.5]]}"#,
+                "point 0 at",
+            ),
+            (
+                r#"[1.0,1.0],"wrap":[true,true]},"positions":[[0.0,1e999]]}"#,
+                "out of range",
+            ),
+            (
+                r#"[1.0,1.0],"wrap":[true,true]},"positions":[],"n":1}"#,
+                "unknown field",
+            ),
+        ] {
+            let error = read(bad).unwrap_err().to_string();
+            assert!(error.contains(cause), "{error}");
         }
     }
 }
