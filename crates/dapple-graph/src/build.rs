@@ -8,6 +8,7 @@ use glam::DVec2;
 /// Whether an edge counts for the point that chose it or for both of its ends.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub enum Direction {
     /// Each point has the axes that it chose itself.
     #[default]
