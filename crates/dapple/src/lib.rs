@@ -58,6 +58,8 @@
 //! | a heightmap, or the normal map of one | any field through [`to_raster`](raster::Field::to_raster); [`color::normal_map`] |
 //! | tileable or seamless textures | generators repeat exactly with a `period`; [`tile::Seamless`] for images that somebody else made |
 //! | blue noise | [`points::poisson_disk`]: points that keep their distance |
+//! | trees of an endless world, scatter in chunks | [`points::EndlessPoissonDisk`], also with a radius that [varies](points::EndlessVariablePoissonDisk) |
+//! | a Voronoi diagram, the nearest of some points | [`graph::Voronoi`] |
 //! | texture synthesis from a photograph | [`synth::synthesize_plane`] |
 //! | splat maps, terrain blending | [`tile::blend`](tile::blend()) |
 //!
@@ -88,6 +90,7 @@
 //! | `10_gpu_texture` | the bytes of a GPU texture with mip levels |
 //! | `11_synthesize_plane` | a tile that looks like a small example |
 //! | `12_baked_model` | stripes grown over a mesh, as a GLB file |
+//! | `13_terrain_chunks` | a world without an end in chunks: heights, biomes and trees |
 //!
 //! # Features
 //!
