@@ -4,6 +4,8 @@
 //! leads there. On a domain that wraps, the vector goes around where the edge does, an axis may lead to another image
 //! of the point itself, and several axes may lead to different images of the same point.
 //!
+//! A [`Voronoi`] diagram is the dual of the [`delaunay`] graph: cells, vertices, and the nearest point of a position.
+//!
 //! Positions are snapped to a fine lattice first (2^-50 of the domain's larger side, see [`Graph`]). On the lattice
 //! every difference and every image is an exact number, and all decisions are made by exact predicates: the same
 //! graph on every machine, and the same axes on both ends of an edge.

@@ -1,7 +1,8 @@
 //! Point sets on domains that wrap per axis: maximal Poisson disk, variable density, nested; and their statistics.
 //!
 //! A [`Domain`] is a rectangle whose left and right, and top and bottom, may be joined. A [`PointSet`] is a list of
-//! positions in a domain; all functions that make points return one, and all that use points take one.
+//! positions in a domain; all functions that make points of a domain return one, and all that use points take one.
+//! [`EndlessPoissonDisk`] has no domain: it makes the points of any window of the plane.
 //!
 //! Positions are `f64` in the units of the caller. Every set is a function of its options and its seed, the same on
 //! every machine and for any number of threads.
