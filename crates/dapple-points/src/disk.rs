@@ -23,7 +23,7 @@ mod sheet;
 mod slice;
 mod solve;
 
-use crate::{Domain, PointIdx, PointSet, PointsError, PointsErrorKind, RSA_DENSITY};
+use crate::{Domain, IsCancelled, PointIdx, PointSet, PointsError, PointsErrorKind, RSA_DENSITY};
 use dapple_hash::Seed;
 use fearless_simd::Level;
 use grid::{Cell, Grid};
@@ -59,7 +59,30 @@ const GIVEN_SLACK: f64 = 1e-9;
 /// # Ok::<(), dapple_points::PointsError>(())
 /// ```
 pub fn poisson_disk(domain: Domain, radius: f64, seed: Seed) -> Result<PointSet, PointsError> {
-    PoissonDisk::new(domain, radius)?.sample(seed)
+    poisson_disk_cancellable(domain, radius, seed, &|| false)
+}
+
+/// The set of [`poisson_disk`], unless `is_cancelled` returns true.
+///
+/// # Errors
+///
+/// The errors of [`poisson_disk`], and [`PointsErrorKind::Cancelled`].
+///
+/// # Examples
+///
+/// ```
+/// use dapple_points::{Domain, PointsErrorKind, hash::Seed, poisson_disk_cancellable};
+///
+/// let error = poisson_disk_cancellable(Domain::paper_torus(), 0.1, Seed(7), &|| true).unwrap_err();
+/// assert_eq!(error.kind(), &PointsErrorKind::Cancelled);
+/// ```
+pub fn poisson_disk_cancellable(
+    domain: Domain,
+    radius: f64,
+    seed: Seed,
+    is_cancelled: &IsCancelled,
+) -> Result<PointSet, PointsError> {
+    PoissonDisk::new(domain, radius)?.sample_cancellable(seed, is_cancelled)
 }
 
 /// A maximal Poisson-disk set of about `n_points` points.
@@ -147,7 +170,21 @@ pub fn extend_poisson_disk(
     radius: f64,
     seed: Seed,
 ) -> Result<PointSet, PointsError> {
-    PoissonDisk::new(*given.domain(), radius)?.extend(given, seed)
+    extend_poisson_disk_cancellable(given, radius, seed, &|| false)
+}
+
+/// The set of [`extend_poisson_disk`], unless `is_cancelled` returns true.
+///
+/// # Errors
+///
+/// The errors of [`extend_poisson_disk`], and [`PointsErrorKind::Cancelled`].
+pub fn extend_poisson_disk_cancellable(
+    given: &PointSet,
+    radius: f64,
+    seed: Seed,
+    is_cancelled: &IsCancelled,
+) -> Result<PointSet, PointsError> {
+    PoissonDisk::new(*given.domain(), radius)?.extend_cancellable(given, seed, is_cancelled)
 }
 
 /// A maker of Poisson-disk sets of one radius in one domain, for any number of seeds.
@@ -180,9 +217,17 @@ impl PoissonDisk {
     ///
     /// None for what [`new`](Self::new) accepts.
     pub fn sample(&self, seed: Seed) -> Result<PointSet, PointsError> {
-        let mut solution = Solution::new(&self.grid, &self.coverage, level());
-        solution.fill(seed);
-        PointSet::new(self.grid.domain, solution.positions())
+        self.sample_cancellable(seed, &|| false)
+    }
+
+    fn sample_cancellable(
+        &self,
+        seed: Seed,
+        is_cancelled: &IsCancelled,
+    ) -> Result<PointSet, PointsError> {
+        let mut solution = Solution::new(&self.grid, &self.coverage, level(), is_cancelled)?;
+        solution.fill(seed)?;
+        PointSet::new(self.grid.domain, solution.positions()?)
     }
 
     /// The set of a seed that contains the given points; see [`extend_poisson_disk`].
@@ -192,6 +237,15 @@ impl PoissonDisk {
     /// [`PointsErrorKind::DifferentDomains`] if the given points are in another domain,
     /// [`PointsErrorKind::TooClose`] if two of them are closer than the radius.
     pub fn extend(&self, given: &PointSet, seed: Seed) -> Result<PointSet, PointsError> {
+        self.extend_cancellable(given, seed, &|| false)
+    }
+
+    fn extend_cancellable(
+        &self,
+        given: &PointSet,
+        seed: Seed,
+        is_cancelled: &IsCancelled,
+    ) -> Result<PointSet, PointsError> {
         if *given.domain() != self.grid.domain {
             return Err(PointsError::new(PointsErrorKind::DifferentDomains {
                 first: self.grid.domain,
@@ -199,11 +253,11 @@ impl PoissonDisk {
             }));
         }
         let places = self.places(given)?;
-        let mut solution = Solution::new(&self.grid, &self.coverage, level());
-        solution.give(&places);
-        solution.fill(seed);
+        let mut solution = Solution::new(&self.grid, &self.coverage, level(), is_cancelled)?;
+        solution.give(&places)?;
+        solution.fill(seed)?;
         let mut positions = given.positions().to_vec();
-        positions.extend(solution.positions());
+        positions.extend(solution.positions()?);
         PointSet::new(self.grid.domain, positions)
     }
 

@@ -9,6 +9,7 @@
 
 #![forbid(unsafe_code)]
 
+mod cancel;
 mod disk;
 mod domain;
 mod endless;
@@ -19,13 +20,14 @@ mod statistics;
 mod uniform;
 mod variable;
 
+pub use cancel::{Cancel, IsCancelled};
 pub use dapple_hash as hash;
 pub use dapple_raster as raster;
 #[doc(alias("blue noise", "poisson disc", "poisson disk", "poisson sampling"))]
 pub use disk::poisson_disk;
 pub use disk::{
-    MAX_POISSON_DISK_POINTS, PoissonDisk, extend_poisson_disk, poisson_disk_about,
-    poisson_disk_radius,
+    MAX_POISSON_DISK_POINTS, PoissonDisk, extend_poisson_disk, extend_poisson_disk_cancellable,
+    poisson_disk_about, poisson_disk_cancellable, poisson_disk_radius,
 };
 pub use domain::Domain;
 #[doc(alias("chunk", "infinite", "scatter", "tile"))]
@@ -33,7 +35,7 @@ pub use endless::EndlessPoissonDisk;
 pub use endless::{EndlessPoint, EndlessVariablePoissonDisk};
 pub use error::{PointsError, PointsErrorKind};
 pub use glam;
-pub use nested::{NestedPointSet, nested_poisson_disk};
+pub use nested::{NestedPointSet, nested_poisson_disk, nested_poisson_disk_cancellable};
 pub use set::{PointIdx, PointSet};
 pub use statistics::{
     EmptyCircle, Spectrum, SpectrumOptions, SpectrumRing, spectrum, spectrum_cancellable,
@@ -41,5 +43,5 @@ pub use statistics::{
 pub use uniform::{jittered_grid, white_noise};
 pub use variable::{
     DiskRule, RSA_DENSITY, VariablePoissonOptions, gentle_radius_for_count, radius_for_count,
-    radius_from_density, variable_poisson_disk,
+    radius_from_density, variable_poisson_disk, variable_poisson_disk_cancellable,
 };

@@ -5,7 +5,9 @@
 //! come first. Points of later levels are not where a set of their radius alone would have them: the coarse points are
 //! further apart than such a set needs.
 
-use crate::{Domain, PointSet, PointsError, PointsErrorKind, extend_poisson_disk};
+use crate::{
+    Domain, IsCancelled, PointSet, PointsError, PointsErrorKind, extend_poisson_disk_cancellable,
+};
 use dapple_hash::Seed;
 
 /// Points in levels: the first few are the coarsest level, the first few more the next one, all of them the finest.
@@ -70,6 +72,20 @@ pub fn nested_poisson_disk(
     radii: &[f64],
     seed: Seed,
 ) -> Result<NestedPointSet, PointsError> {
+    nested_poisson_disk_cancellable(domain, radii, seed, &|| false)
+}
+
+/// The sets of [`nested_poisson_disk`], unless `is_cancelled` returns true.
+///
+/// # Errors
+///
+/// The errors of [`nested_poisson_disk`], and [`PointsErrorKind::Cancelled`].
+pub fn nested_poisson_disk_cancellable(
+    domain: Domain,
+    radii: &[f64],
+    seed: Seed,
+    is_cancelled: &IsCancelled,
+) -> Result<NestedPointSet, PointsError> {
     let mut points = PointSet::new(domain, Vec::new())?;
     let mut lengths = Vec::with_capacity(radii.len());
     for (level, &radius) in radii.iter().enumerate() {
@@ -81,7 +97,8 @@ pub fn nested_poisson_disk(
                 before,
             }));
         }
-        points = extend_poisson_disk(&points, radius, seed.child("level", level as u64))?;
+        let seed = seed.child("level", level as u64);
+        points = extend_poisson_disk_cancellable(&points, radius, seed, is_cancelled)?;
         lengths.push(points.len());
     }
     Ok(NestedPointSet { points, lengths })

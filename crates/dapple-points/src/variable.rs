@@ -18,9 +18,11 @@ mod gentle;
 mod leaf;
 mod rule;
 
+use crate::cancel::{IsCancelled, cancelled, check};
 use crate::disk::level;
 use crate::{Domain, PointSet, PointsError, PointsErrorKind};
 use block::{Block, Neighbor, Setting};
+use core::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use dapple_hash::{Seed, hash1};
 use dapple_raster::simd::dispatch;
 use dapple_raster::{Varying, parallel};
@@ -109,6 +111,21 @@ pub fn variable_poisson_disk(
     options: &VariablePoissonOptions,
     seed: Seed,
 ) -> Result<PointSet, PointsError> {
+    variable_poisson_disk_cancellable(domain, radius, options, seed, &|| false)
+}
+
+/// The set of [`variable_poisson_disk`], unless `is_cancelled` returns true.
+///
+/// # Errors
+///
+/// The errors of [`variable_poisson_disk`], and [`PointsErrorKind::Cancelled`].
+pub fn variable_poisson_disk_cancellable(
+    domain: Domain,
+    radius: &Varying,
+    options: &VariablePoissonOptions,
+    seed: Seed,
+    is_cancelled: &IsCancelled,
+) -> Result<PointSet, PointsError> {
     let domain = domain.checked()?;
     let place = |rise| {
         let field = RadiusField {
@@ -116,7 +133,8 @@ pub fn variable_poisson_disk(
             radius,
             rise,
         };
-        place_points(field, options, seed.child("variable poisson disk", 0))
+        let seed = seed.child("variable poisson disk", 0);
+        place_points(field, options, seed, is_cancelled)
     };
     match place(RISE) {
         // Rougher than it seemed at first: once more with room for anything below 1.
@@ -131,6 +149,7 @@ fn place_points(
     field: RadiusField<'_>,
     options: &VariablePoissonOptions,
     seed: Seed,
+    is_cancelled: &IsCancelled,
 ) -> Result<PointSet, PointsError> {
     let setting = Setting {
         field,
@@ -138,26 +157,28 @@ fn place_points(
         seed,
     };
     let level = level();
-    let tree = Tree::new(setting.field, options.point_limit)?;
+    let tree = Tree::new(setting.field, options.point_limit, is_cancelled)?;
     check_periods(field.domain, &tree)?;
+    check(is_cancelled)?;
     let mut blocks = blocks_of(&tree, &setting);
+    check(is_cancelled)?;
     let colors = colors_of(&blocks);
     let n_colors = colors.len() as u64;
     for (round, share) in (0..).zip(ROUNDS) {
         let first = hash1(setting.seed.child("turn", 0), [round], 0) % n_colors;
         for turn in 0..n_colors {
             let color = &colors[((first + turn) % n_colors) as usize];
-            take_turns(&mut blocks, color, |block, blocks| {
+            take_turns(&mut blocks, color, is_cancelled, |block, blocks| {
                 block.pull(blocks, &setting);
                 dispatch!(level, _simd => block.throw_round(round as u32, share, &setting));
-            });
+            })?;
         }
     }
     for color in &colors {
-        take_turns(&mut blocks, color, |block, blocks| {
+        take_turns(&mut blocks, color, is_cancelled, |block, blocks| {
             block.pull(blocks, &setting);
             dispatch!(level, _simd => Filler::default().fill(block, &setting));
-        });
+        })?;
     }
     collect(*field.domain, blocks)
 }
@@ -229,16 +250,34 @@ fn colors_of(blocks: &[Block]) -> Vec<Vec<u32>> {
     colors
 }
 
+/// The number of blocks that work before it is asked again whether the set is still wanted; a block has some hundred
+/// points.
+const BLOCKS: usize = 64;
+
 /// Lets the blocks of one color work, at the same time, while all others stand still.
-fn take_turns(blocks: &mut [Block], color: &[u32], work: impl Fn(&mut Block, &[Block]) + Sync) {
+fn take_turns(
+    blocks: &mut [Block],
+    color: &[u32],
+    is_cancelled: &IsCancelled,
+    work: impl Fn(&mut Block, &[Block]) + Sync,
+) -> Result<(), PointsError> {
     let mut taken: Vec<Block> = color
         .iter()
         .map(|&index| core::mem::take(&mut blocks[index as usize]))
         .collect();
-    parallel::for_each_mut(&mut taken, |_, block| work(block, blocks));
+    let is_over = AtomicBool::new(false);
+    parallel::for_each_mut(&mut taken, |index, block| {
+        if index % BLOCKS == 0 && is_cancelled() {
+            is_over.store(true, Relaxed);
+        }
+        if !is_over.load(Relaxed) {
+            work(block, blocks);
+        }
+    });
     for (&index, block) in color.iter().zip(taken) {
         blocks[index as usize] = block;
     }
+    cancelled(is_over.into_inner())
 }
 
 /// The points of all blocks, or the first error.

@@ -7,6 +7,9 @@ use super::grid::{Cell, FAR, Grid, HALO};
 use super::mask::Coverage;
 use super::sheet::{GIVEN, POINT, Sheet, domain_rows};
 use super::slice::{Band, cover, dart_chances};
+use crate::PointsError;
+use crate::cancel::{IsCancelled, cancelled};
+use core::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use dapple_hash::Seed;
 use dapple_raster::parallel;
 use dapple_raster::simd::dispatch;
@@ -20,9 +23,9 @@ const BAND_ROWS: u32 = 64;
 /// The mean number of darts at a cell in each slice.
 const DARTS: [f64; 8] = [0.3, 0.4, 0.6, 1.0, 2.0, 4.0, 8.0, 16.0];
 
-/// A set under construction.
-#[derive(Debug)]
+/// A set under construction. Once the caller asked to stop, steps do nothing but fail.
 pub(crate) struct Solution<'a> {
+    is_cancelled: &'a IsCancelled<'a>,
     grid: &'a Grid,
     coverage: &'a Coverage,
     sheet: Sheet,
@@ -33,25 +36,32 @@ pub(crate) struct Solution<'a> {
 
 impl<'a> Solution<'a> {
     /// A solution for the domain, without points.
-    pub(crate) fn new(grid: &'a Grid, coverage: &'a Coverage, level: Level) -> Self {
+    pub(crate) fn new(
+        grid: &'a Grid,
+        coverage: &'a Coverage,
+        level: Level,
+        is_cancelled: &'a IsCancelled<'a>,
+    ) -> Result<Self, PointsError> {
         let end = HALO + grid.cells[1];
         let first_rows = (HALO..end).step_by(BAND_ROWS as usize);
         let mut bands = vec![Band::default(); first_rows.len()];
-        for_each(bands.iter_mut().zip(first_rows), |(band, first)| {
+        let items = bands.iter_mut().zip(first_rows);
+        for_each(is_cancelled, items, |(band, first)| {
             *band = Band::new(grid, first..end.min(first + BAND_ROWS));
-        });
-        Self {
+        })?;
+        Ok(Self {
+            is_cancelled,
             grid,
             coverage,
             sheet: Sheet::new(grid),
             masks: vec![u64::MAX; grid.stride() * grid.rows()],
             bands,
             level,
-        }
+        })
     }
 
     /// Takes given points, each in a cell of its own.
-    pub(crate) fn give(&mut self, places: &[(Cell, [f32; 2])]) {
+    pub(crate) fn give(&mut self, places: &[(Cell, [f32; 2])]) -> Result<(), PointsError> {
         for &(cell, offset) in places {
             let band = (cell.row - HALO) / BAND_ROWS;
             self.bands[band as usize].accepted.push((cell, offset));
@@ -65,32 +75,34 @@ impl<'a> Solution<'a> {
                 sheet.put(self.grid, cell, offset, GIVEN);
             }
         }
-        self.cover();
+        self.cover()
     }
 
     /// Adds points until none fits.
-    pub(crate) fn fill(&mut self, seed: Seed) {
+    pub(crate) fn fill(&mut self, seed: Seed) -> Result<(), PointsError> {
         for (slice, mean) in (0..).zip(DARTS) {
-            self.throw_darts(mean, seed.child("darts", slice));
-            self.settle();
-            self.cover();
+            self.throw_darts(mean, seed.child("darts", slice))?;
+            self.settle()?;
+            self.cover()?;
         }
         let mut round = 0;
         while self.bands.iter().any(|band| !band.open.is_empty()) {
-            self.search_gaps(seed.child("gaps", round));
-            self.settle();
-            self.cover();
+            self.search_gaps(seed.child("gaps", round))?;
+            self.settle()?;
+            self.cover()?;
             round += 1;
         }
+        Ok(())
     }
 
     /// The positions of the points that were not given, cell by cell.
-    pub(crate) fn positions(&self) -> Vec<DVec2> {
+    pub(crate) fn positions(&self) -> Result<Vec<DVec2>, PointsError> {
         let mut parts = vec![Vec::new(); self.bands.len()];
-        for_each(self.bands.iter().zip(&mut parts), |(band, part)| {
+        let items = self.bands.iter().zip(&mut parts);
+        for_each(self.is_cancelled, items, |(band, part)| {
             *part = self.positions_in(band);
-        });
-        parts.concat()
+        })?;
+        Ok(parts.concat())
     }
 
     fn positions_in(&self, band: &Band) -> Vec<DVec2> {
@@ -111,59 +123,62 @@ impl<'a> Solution<'a> {
     }
 
     /// Lets open cells propose the places of random darts.
-    fn throw_darts(&mut self, mean: f64, seed: Seed) {
+    fn throw_darts(&mut self, mean: f64, seed: Seed) -> Result<(), PointsError> {
         let (grid, level) = (self.grid, self.level);
         let chances = dart_chances(mean);
         let masks = self.masks[domain_rows(grid)].chunks(BAND_ROWS as usize * grid.stride());
         let rows = self.sheet.bands(grid, BAND_ROWS).zip(masks);
-        for_each(self.bands.iter_mut().zip(rows), |(band, (sheet, masks))| {
+        let items = self.bands.iter_mut().zip(rows);
+        for_each(self.is_cancelled, items, |(band, (sheet, masks))| {
             dispatch!(level, _simd => band.draw_darts(grid, sheet, masks, &chances, seed));
-        });
+        })
     }
 
     /// Lets open cells propose random free places.
-    fn search_gaps(&mut self, seed: Seed) {
+    fn search_gaps(&mut self, seed: Seed) -> Result<(), PointsError> {
         let (grid, sheet, level) = (self.grid, &self.sheet, self.level);
         let masks = self.masks[domain_rows(grid)].chunks_mut(BAND_ROWS as usize * grid.stride());
-        for_each(self.bands.iter_mut().zip(masks), |(band, masks)| {
+        let items = self.bands.iter_mut().zip(masks);
+        for_each(self.is_cancelled, items, |(band, masks)| {
             dispatch!(level, simd => band.draw_gaps(simd, grid, sheet, masks, seed));
-        });
+        })?;
         let rows = self.sheet.bands(grid, BAND_ROWS);
-        for_each(self.bands.iter().zip(rows), |(band, sheet)| {
+        let items = self.bands.iter().zip(rows);
+        for_each(self.is_cancelled, items, |(band, sheet)| {
             band.place_gaps(grid, sheet, seed);
-        });
+        })
     }
 
     /// Settles the proposals and makes points of those that are accepted.
-    fn settle(&mut self) {
+    fn settle(&mut self) -> Result<(), PointsError> {
         let (grid, level) = (self.grid, self.level);
         self.sheet.wrap_rows(grid);
         let sheet = &self.sheet;
-        for_each(self.bands.iter_mut(), |band| {
+        for_each(self.is_cancelled, self.bands.iter_mut(), |band| {
             dispatch!(level, simd => band.judge(simd, grid, sheet));
             band.settle(grid, sheet);
-        });
+        })?;
         let rows = self.sheet.bands(grid, BAND_ROWS);
-        for_each(self.bands.iter().zip(rows), |(band, sheet)| {
+        let items = self.bands.iter().zip(rows);
+        for_each(self.is_cancelled, items, |(band, sheet)| {
             band.keep_accepted(grid, sheet);
-        });
+        })?;
         self.sheet.wrap_rows(grid);
+        Ok(())
     }
 
     /// Clears the subcells that the newest points cover from the masks.
-    fn cover(&mut self) {
+    fn cover(&mut self) -> Result<(), PointsError> {
         let (grid, coverage, level) = (self.grid, self.coverage, self.level);
         let bands = &self.bands;
         let masks = self.masks[domain_rows(grid)].chunks_mut(BAND_ROWS as usize * grid.stride());
-        for_each(
-            bands.iter().enumerate().zip(masks),
-            |((own, band), masks)| {
-                for neighbor in neighbors(own, bands.len()) {
-                    let accepted = &bands[neighbor].accepted;
-                    dispatch!(level, _simd => cover(grid, coverage, masks, &band.rows, accepted));
-                }
-            },
-        );
+        let items = bands.iter().enumerate().zip(masks);
+        for_each(self.is_cancelled, items, |((own, band), masks)| {
+            for neighbor in neighbors(own, bands.len()) {
+                let accepted = &bands[neighbor].accepted;
+                dispatch!(level, _simd => cover(grid, coverage, masks, &band.rows, accepted));
+            }
+        })
     }
 }
 
@@ -173,7 +188,19 @@ fn neighbors(band: usize, count: usize) -> impl Iterator<Item = usize> {
     (0..around.len().min(count)).map(move |at| around[at])
 }
 
-/// Calls `work` for every item, on all cores where the feature `rayon` is on.
-fn for_each<T: Send>(items: impl Iterator<Item = T>, work: impl Fn(T) + Sync) {
-    parallel::consume(items.collect(), |_, item| work(item));
+/// Calls `work` for every item, on all cores where the feature `rayon` is on, until the caller asks to stop.
+fn for_each<T: Send>(
+    is_cancelled: &IsCancelled,
+    items: impl Iterator<Item = T>,
+    work: impl Fn(T) + Sync,
+) -> Result<(), PointsError> {
+    let is_over = AtomicBool::new(false);
+    parallel::consume(items.collect(), |_, item| {
+        if is_over.load(Relaxed) || is_cancelled() {
+            is_over.store(true, Relaxed);
+        } else {
+            work(item);
+        }
+    });
+    cancelled(is_over.into_inner())
 }

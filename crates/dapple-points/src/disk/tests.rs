@@ -3,10 +3,17 @@
 use super::mask::Coverage;
 use super::solve::Solution;
 use super::{
-    PoissonDisk, extend_poisson_disk, poisson_disk, poisson_disk_about, poisson_disk_radius,
+    PoissonDisk, extend_poisson_disk, poisson_disk, poisson_disk_about, poisson_disk_cancellable,
+    poisson_disk_radius,
 };
-use crate::{Domain, PointIdx, PointSet, PointsErrorKind, RSA_DENSITY, SpectrumOptions, spectrum};
+use crate::{
+    Domain, IsCancelled, PointIdx, PointSet, PointsError, PointsErrorKind, RSA_DENSITY,
+    SpectrumOptions, VariablePoissonOptions, nested_poisson_disk_cancellable, spectrum,
+    variable_poisson_disk_cancellable,
+};
+use core::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use dapple_hash::{CellHash, Seed, unit_f64};
+use dapple_raster::{Ramp, Varying, parallel};
 use fearless_simd::Level;
 use glam::DVec2;
 
@@ -240,9 +247,9 @@ fn every_simd_level_gives_the_same_bits() {
     let solver = PoissonDisk::new(torus, 0.02).unwrap();
     let with = |level: Level| {
         let coverage = Coverage::new(&solver.grid, level);
-        let mut solution = Solution::new(&solver.grid, &coverage, level);
-        solution.fill(Seed(3));
-        solution.positions()
+        let mut solution = Solution::new(&solver.grid, &coverage, level, &|| false).unwrap();
+        solution.fill(Seed(3)).unwrap();
+        solution.positions().unwrap()
     };
     let expected = solver.sample(Seed(3)).unwrap();
     let best = Level::new();
@@ -372,4 +379,58 @@ fn value_stability_poisson_disk() {
     });
     assert_eq!(set.len(), 282);
     assert_eq!(bits, 8764673758391801309);
+}
+
+/// Makes points with a callback that asks to stop at its calls from `last` on, and returns the number of calls.
+fn cancelled_at(
+    last: usize,
+    make: &dyn Fn(&IsCancelled) -> Result<PointSet, PointsError>,
+) -> usize {
+    let n_calls = AtomicUsize::new(0);
+    let made = make(&|| n_calls.fetch_add(1, Relaxed) >= last);
+    let n_calls = n_calls.into_inner();
+    let is_cancelled = made.is_err_and(|error| *error.kind() == PointsErrorKind::Cancelled);
+    assert_eq!(is_cancelled, n_calls > last, "at call {last}");
+    n_calls
+}
+
+#[test]
+fn sets_can_be_cancelled_at_every_call_and_are_asked_often() {
+    let domain = Domain::paper_torus();
+    let ramp = Varying::Ramp(Ramp {
+        from: DVec2::NEG_ONE,
+        to: DVec2::ONE,
+        start: 0.008,
+        end: 0.012,
+    });
+    let plane = Domain {
+        wrap: [false; 2],
+        ..domain
+    };
+    let options = VariablePoissonOptions::default();
+    let makers: [&dyn Fn(&IsCancelled) -> Result<PointSet, PointsError>; 3] = [
+        &|stop| poisson_disk_cancellable(domain, 0.01, Seed(1), stop),
+        &|stop| {
+            let nested = nested_poisson_disk_cancellable(domain, &[0.01, 0.005], Seed(1), stop)?;
+            Ok(nested.points().clone())
+        },
+        &|stop| variable_poisson_disk_cancellable(plane, &ramp, &options, Seed(1), stop),
+    ];
+    for make in makers {
+        let n_calls = cancelled_at(usize::MAX, make);
+        let n_points = make(&|| false).unwrap().len();
+        // A thousand points take less than a millisecond.
+        assert!(
+            n_calls * 2000 > n_points,
+            "{n_calls} calls, {n_points} points"
+        );
+        for last in (0..n_calls).step_by(n_calls / 12) {
+            let n_calls = cancelled_at(last, make);
+            // Each thread may have asked once more before it knew.
+            assert!(
+                n_calls <= last + parallel::n_threads() + 1,
+                "{n_calls} from {last} on"
+            );
+        }
+    }
 }

@@ -17,7 +17,7 @@
 
 mod periodogram;
 
-use crate::{PointSet, PointsError, PointsErrorKind};
+use crate::{IsCancelled, PointSet, PointsError, PointsErrorKind};
 use periodogram::Periodogram;
 
 /// The most frequencies that a spectrum looks at.
@@ -153,7 +153,7 @@ pub fn spectrum(sets: &[PointSet], options: &SpectrumOptions) -> Result<Spectrum
 pub fn spectrum_cancellable(
     sets: &[PointSet],
     options: &SpectrumOptions,
-    is_cancelled: &(dyn Fn() -> bool + Sync),
+    is_cancelled: &IsCancelled,
 ) -> Result<Spectrum, PointsError> {
     let unit = unit_frequency(sets)?;
     let options = options.checked()?;

@@ -7,6 +7,7 @@
 
 use super::density::RSA_DENSITY;
 use super::rule::DiskRule;
+use crate::cancel::{IsCancelled, check};
 use crate::{Domain, PointsError, PointsErrorKind};
 use core::f64::consts::SQRT_2;
 use dapple_raster::Varying;
@@ -71,6 +72,10 @@ pub(super) struct Radii {
     /// The largest distance of a place in the leaf to the places where the radius was read.
     pub(super) spread: f64,
 }
+
+/// The number of rectangles that are cut before it is asked again whether the set is still wanted. In each the radius is
+/// read a hundred times, by a function of the caller at most some microseconds each.
+const NODES: u32 = 64;
 
 /// The tree of rectangles; parents come before their children.
 #[derive(Debug, Default)]
@@ -201,12 +206,19 @@ impl RadiusField<'_> {
 
 impl Tree {
     /// Cuts up the whole domain.
-    pub(super) fn new(field: RadiusField<'_>, point_limit: u64) -> Result<Self, PointsError> {
+    pub(super) fn new(
+        field: RadiusField<'_>,
+        point_limit: u64,
+        is_cancelled: &IsCancelled,
+    ) -> Result<Self, PointsError> {
         let mut tree = Self::default();
         let (mut n_points, mut first_guess) = (0.0, 0.0_f64);
         let mut open = vec![(DVec2::ZERO, field.domain.size, None)];
         while let Some((min, size, parent)) = open.pop() {
             let node = tree.nodes.len() as u32;
+            if node.is_multiple_of(NODES) {
+                check(is_cancelled)?;
+            }
             if let Some((parent, child)) = parent {
                 tree.set_child(parent, child, node);
             }

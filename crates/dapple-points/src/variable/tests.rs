@@ -372,6 +372,7 @@ fn leaves_cover_the_domain_with_their_radii() {
             rise: 0.1,
         },
         1 << 24,
+        &|| false,
     )
     .unwrap();
     let area: f64 = tree

@@ -3,7 +3,7 @@
 //! exp(i(a ± b)) needs only the four products of the sines and cosines of a and b, so that one pass over the points
 //! gives two frequencies. Sines and cosines of the multiples come by complex multiplication from the first.
 
-use crate::PointSet;
+use crate::{IsCancelled, PointSet};
 use core::f64::consts::TAU;
 use dapple_raster::parallel;
 
@@ -41,7 +41,7 @@ impl Periodogram {
     }
 
     /// Adds the power of a set that is not empty. It is left incomplete once `is_cancelled` returns true.
-    pub(super) fn add(&mut self, set: &PointSet, is_cancelled: &(dyn Fn() -> bool + Sync)) {
+    pub(super) fn add(&mut self, set: &PointSet, is_cancelled: &IsCancelled) {
         let mut sums = vec![Products::default(); self.powers.len()];
         let n_rows = self.counts[1] as usize + 1;
         for block in set.positions().chunks(BLOCK) {

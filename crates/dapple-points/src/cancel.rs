@@ -1,0 +1,46 @@
+//! The request of a caller to stop.
+
+use crate::{PointsError, PointsErrorKind};
+use core::fmt;
+use std::sync::Arc;
+
+/// A callback that returns whether the caller no longer needs the result. It is called on any thread, once for some
+/// milliseconds of work at most.
+pub type IsCancelled<'a> = dyn Fn() -> bool + Sync + 'a;
+
+/// A callback of the form of [`IsCancelled`] that options of textures can hold; by default there is none.
+#[derive(Clone, Default)]
+pub struct Cancel(Option<Arc<dyn Fn() -> bool + Send + Sync>>);
+
+impl Cancel {
+    /// Asks a callback.
+    #[must_use]
+    pub fn by(is_cancelled: impl Fn() -> bool + Send + Sync + 'static) -> Self {
+        Self(Some(Arc::new(is_cancelled)))
+    }
+
+    /// Whether the caller no longer needs the result.
+    #[must_use]
+    pub fn is_cancelled(&self) -> bool {
+        self.0.as_ref().is_some_and(|is_cancelled| is_cancelled())
+    }
+}
+
+impl fmt::Debug for Cancel {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_tuple("Cancel").field(&self.0.is_some()).finish()
+    }
+}
+
+/// Fails if the caller asked to stop.
+pub(crate) fn check(is_cancelled: &IsCancelled) -> Result<(), PointsError> {
+    cancelled(is_cancelled())
+}
+
+/// Fails if the caller has asked to stop.
+pub(crate) fn cancelled(is_cancelled: bool) -> Result<(), PointsError> {
+    match is_cancelled {
+        true => Err(PointsError::new(PointsErrorKind::Cancelled)),
+        false => Ok(()),
+    }
+}
