@@ -27,7 +27,7 @@ pub use triangles::{Triangle, delaunay_triangles, delaunay_triangles_cancellable
 
 use crate::grid::{LazyGrid, TooThin};
 use crate::lattice::{Lattice, check_distinct};
-use crate::{Graph, GraphError, GraphErrorKind};
+use crate::{Graph, GraphError, GraphErrorKind, IsCancelled};
 use dapple_points::{PointIdx, PointSet};
 use glam::DVec2;
 use images::Cover;
@@ -68,7 +68,8 @@ pub fn delaunay(points: &PointSet) -> Result<Graph, GraphError> {
 /// The graph of [`delaunay`], unless `is_cancelled` returns true.
 ///
 /// On domains that wrap along both axes it is called about once for 8192 points, on any thread. Elsewhere all points
-/// belong to a single triangulation, and it is called before and after that.
+/// belong to a single triangulation, which cannot be stopped and takes about a second for a million points; it is called
+/// before and after that.
 ///
 /// # Errors
 ///
@@ -121,7 +122,7 @@ pub(crate) fn is_delaunay(graph: &Graph) -> bool {
 
 /// The reason why no rows could be made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Refusal {
+pub(crate) enum Refusal {
     /// Two sites coincide.
     Coincident,
     /// Too many images are needed.
@@ -130,11 +131,8 @@ enum Refusal {
     Cancelled,
 }
 
-/// A callback that returns whether the caller no longer needs the result.
-pub type IsCancelled<'a> = dyn Fn() -> bool + Sync + 'a;
-
 /// Fails if the caller asked to stop.
-fn check(is_cancelled: &IsCancelled) -> Result<(), Refusal> {
+pub(crate) fn check(is_cancelled: &IsCancelled) -> Result<(), Refusal> {
     match is_cancelled() {
         true => Err(Refusal::Cancelled),
         false => Ok(()),

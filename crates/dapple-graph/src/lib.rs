@@ -31,17 +31,17 @@ mod lattice;
 
 pub use build::Direction;
 pub use dapple_points as points;
-pub use dapple_points::{PointIdx, PointSet, glam};
+pub use dapple_points::{IsCancelled, PointIdx, PointSet, glam};
 pub use dapple_raster as raster;
 pub use delaunay::{
-    EditableDelaunay, IsCancelled, Star, Triangle, delaunay, delaunay_cancellable,
-    delaunay_triangles, delaunay_triangles_cancellable,
+    EditableDelaunay, Star, Triangle, delaunay, delaunay_cancellable, delaunay_triangles,
+    delaunay_triangles_cancellable,
 };
 pub use error::{GraphError, GraphErrorKind};
 pub use gabriel::{gabriel, gabriel_cancellable};
 pub use graph::{Axis, Graph};
-pub use nearest::k_nearest;
+pub use nearest::{k_nearest, k_nearest_cancellable};
 #[doc(alias("dirichlet", "thiessen", "circumcenter", "point location"))]
 pub use voronoi::Voronoi;
 pub use voronoi::{NearestSite, VoronoiCell, VoronoiSide, VoronoiVertex};
-pub use yao::yao;
+pub use yao::{yao, yao_cancellable};

@@ -1,9 +1,10 @@
 //! The graph of nearest neighbors, and the search for neighbors, nearest first, which other graphs use as well.
 
 use crate::build::{Choice, Direction, graph_of};
+use crate::delaunay::{Refusal, check};
 use crate::grid::{Budget, Grid, TooThin};
 use crate::lattice::{Lattice, check_distinct};
-use crate::{Graph, GraphError, GraphErrorKind};
+use crate::{Graph, GraphError, GraphErrorKind, IsCancelled};
 use dapple_points::PointSet;
 use glam::DVec2;
 
@@ -33,6 +34,32 @@ use glam::DVec2;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn k_nearest(points: &PointSet, k: u32, direction: Direction) -> Result<Graph, GraphError> {
+    k_nearest_cancellable(points, k, direction, &|| false)
+}
+
+/// The graph of [`k_nearest`], unless `is_cancelled` returns true, which is called about once for 256 points.
+///
+/// # Errors
+///
+/// The errors of [`k_nearest`], and [`GraphErrorKind::Cancelled`].
+///
+/// # Examples
+///
+/// ```
+/// use dapple_graph::{Direction, GraphErrorKind, k_nearest_cancellable};
+/// use dapple_graph::{glam::DVec2, points::{Domain, hash::Seed, white_noise}};
+///
+/// let points = white_noise(Domain::torus(DVec2::ZERO, DVec2::ONE), 1000, Seed(1))?;
+/// let error = k_nearest_cancellable(&points, 6, Direction::Directed, &|| true).unwrap_err();
+/// assert_eq!(error.kind(), &GraphErrorKind::Cancelled);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn k_nearest_cancellable(
+    points: &PointSet,
+    k: u32,
+    direction: Direction,
+    is_cancelled: &IsCancelled,
+) -> Result<Graph, GraphError> {
     let lattice = Lattice::new(points.domain());
     let limit = if lattice.wraps() {
         MAX_NEIGHBORS.min(points.len().saturating_mul(10) as u32)
@@ -47,7 +74,7 @@ pub fn k_nearest(points: &PointSet, k: u32, direction: Direction) -> Result<Grap
     let grid = Grid::new(&lattice, &sites);
     let wanted = k as usize;
     let mut budget = Budget::new(sites.len());
-    let rows = sites.iter().map(|&site| {
+    let rows = rows_of(&sites, is_cancelled, |site| {
         // A disc of this radius holds about twice the number of neighbors needed.
         let mut radius = 0.8 * grid.mean_distance() * f64::from(k + 1).sqrt();
         loop {
@@ -60,9 +87,35 @@ pub fn k_nearest(points: &PointSet, k: u32, direction: Direction) -> Result<Grap
             radius *= 1.5;
         }
     });
-    let rows: Result<_, TooThin> = rows.collect();
-    let rows = rows.map_err(|TooThin| GraphError::thin(points))?;
-    graph_of(lattice, sites, rows, direction)
+    graph_of(lattice, sites, made(rows, points)?, direction)
+}
+
+/// The number of points whose neighbors are searched before it is asked again whether the graph is still wanted. With
+/// the most neighbors a point takes a tenth of a millisecond.
+const POINTS: usize = 256;
+
+/// The row of each site, until the caller asks to stop.
+pub(crate) fn rows_of(
+    sites: &[DVec2],
+    is_cancelled: &IsCancelled,
+    mut row: impl FnMut(DVec2) -> Result<Vec<Choice>, TooThin>,
+) -> Result<Vec<Vec<Choice>>, Refusal> {
+    let mut rows = Vec::with_capacity(sites.len());
+    for sites in sites.chunks(POINTS) {
+        check(is_cancelled)?;
+        for &site in sites {
+            rows.push(row(site)?);
+        }
+    }
+    Ok(rows)
+}
+
+/// The rows, or the reason why there are none, as an error of the graph of some points.
+pub(crate) fn made<T>(rows: Result<T, Refusal>, points: &PointSet) -> Result<T, GraphError> {
+    rows.map_err(|refusal| match refusal {
+        Refusal::Cancelled => GraphError::new(GraphErrorKind::Cancelled),
+        Refusal::Thin | Refusal::Coincident => GraphError::thin(points),
+    })
 }
 
 /// The largest number of neighbors that can be asked for.
@@ -96,4 +149,34 @@ pub(crate) fn near(
 fn length_sq(steps: DVec2) -> i128 {
     let [x, y] = [steps.x, steps.y].map(|coordinate| coordinate as i128);
     x * x + y * y
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{Direction, Graph, GraphError, GraphErrorKind, IsCancelled};
+    use crate::{k_nearest_cancellable, yao_cancellable};
+    use core::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+    use dapple_points::{Domain, hash::Seed, white_noise};
+
+    #[test]
+    fn searches_for_neighbors_can_be_cancelled_at_every_call() {
+        let points = white_noise(Domain::paper_torus(), 2000, Seed(1)).unwrap();
+        let makers: [&dyn Fn(&IsCancelled) -> Result<Graph, GraphError>; 2] = [
+            &|stop| k_nearest_cancellable(&points, 5, Direction::Symmetric, stop),
+            &|stop| yao_cancellable(&points, 6, Direction::Directed, stop),
+        ];
+        for make in makers {
+            let whole = make(&|| false);
+            // One call for 256 points.
+            for last in 0..=8 {
+                let n_calls = AtomicUsize::new(0);
+                let made = make(&|| n_calls.fetch_add(1, Relaxed) >= last);
+                match last {
+                    8 => assert_eq!(made, whole),
+                    _ => assert_eq!(made.unwrap_err().kind(), &GraphErrorKind::Cancelled),
+                }
+                assert_eq!(n_calls.into_inner(), 8.min(last + 1));
+            }
+        }
+    }
 }

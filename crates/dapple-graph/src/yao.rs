@@ -10,10 +10,10 @@
 
 use crate::angle::{by_angle, turn};
 use crate::build::{Choice, Direction, graph_of};
-use crate::grid::{Budget, Grid, TooThin};
+use crate::grid::{Budget, Grid};
 use crate::lattice::{Lattice, check_distinct};
-use crate::nearest::near;
-use crate::{Graph, GraphError, GraphErrorKind};
+use crate::nearest::{made, near, rows_of};
+use crate::{Graph, GraphError, GraphErrorKind, IsCancelled};
 use core::cmp::Ordering;
 use core::f64::consts::TAU;
 use dapple_points::PointSet;
@@ -45,6 +45,20 @@ use glam::DVec2;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn yao(points: &PointSet, cones: u32, direction: Direction) -> Result<Graph, GraphError> {
+    yao_cancellable(points, cones, direction, &|| false)
+}
+
+/// The graph of [`yao`], unless `is_cancelled` returns true, which is called about once for 256 points.
+///
+/// # Errors
+///
+/// The errors of [`yao`], and [`GraphErrorKind::Cancelled`].
+pub fn yao_cancellable(
+    points: &PointSet,
+    cones: u32,
+    direction: Direction,
+    is_cancelled: &IsCancelled,
+) -> Result<Graph, GraphError> {
     if cones == 0 || cones > MAX_CONES {
         return Err(GraphError::new(GraphErrorKind::Cones {
             cones,
@@ -57,7 +71,7 @@ pub fn yao(points: &PointSet, cones: u32, direction: Direction) -> Result<Graph,
     check_distinct(&sites)?;
     let grid = Grid::new(&lattice, &sites);
     let mut budget = Budget::new(sites.len());
-    let rows = sites.iter().map(|&site| {
+    let rows = rows_of(&sites, is_cancelled, |site| {
         let mut radius = (2.0 * grid.mean_distance()).min(grid.farthest());
         loop {
             let chosen = nearest_per_cone(&near(&grid, site, radius, &mut budget)?, &borders);
@@ -67,9 +81,7 @@ pub fn yao(points: &PointSet, cones: u32, direction: Direction) -> Result<Graph,
             radius = (2.0 * radius).min(grid.farthest());
         }
     });
-    let rows: Result<_, TooThin> = rows.collect();
-    let rows = rows.map_err(|TooThin| GraphError::thin(points))?;
-    graph_of(lattice, sites, rows, direction)
+    graph_of(lattice, sites, made(rows, points)?, direction)
 }
 
 /// The largest number of cones.

@@ -2,7 +2,8 @@
 
 use super::images::Cover;
 use super::patch::{Image, Patch, Rows};
-use super::{IsCancelled, Refusal, check};
+use super::{Refusal, check};
+use crate::IsCancelled;
 use crate::grid::LazyGrid;
 use crate::lattice::Lattice;
 use dapple_raster::parallel;

@@ -3,7 +3,8 @@
 //! Every face but the outer one lies in an empty circle with all its corners on it. A face with more than three corners
 //! is a polygon, which is cut into a fan.
 
-use super::{IsCancelled, delaunay_cancellable};
+use super::delaunay_cancellable;
+use crate::IsCancelled;
 use crate::angle::turn;
 use crate::{Axis, Graph, GraphError};
 use dapple_points::{PointIdx, PointSet};
