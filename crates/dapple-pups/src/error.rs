@@ -1,8 +1,8 @@
 //! Why a texture was refused.
 
 use crate::Range;
-use dapple_graph::GraphError;
-use dapple_points::PointsError;
+use dapple_graph::{GraphError, GraphErrorKind, IsCancelled};
+use dapple_points::{PointsError, PointsErrorKind};
 use dapple_raster::RasterError;
 
 dapple_raster::error! {
@@ -42,6 +42,8 @@ dapple_raster::error! {
             /// The rule, as a sentence without a full stop.
             rule: &'static str,
         } => "{rule}";
+        /// The callback of the caller asked to stop.
+        Cancelled => "the callback asked to stop";
     }
     from {
         /// The points could not be made.
@@ -54,6 +56,28 @@ dapple_raster::error! {
 }
 
 impl PupsError {
+    /// Fails if the caller asked to stop.
+    pub(crate) fn check_wanted(is_cancelled: &IsCancelled) -> Result<(), Self> {
+        match is_cancelled() {
+            true => Err(Self::new(PupsErrorKind::Cancelled)),
+            false => Ok(()),
+        }
+    }
+
+    /// The error of making points or a graph, which is [`PupsErrorKind::Cancelled`] if the caller asked to stop.
+    pub(crate) fn of_part(error: impl Into<Self>) -> Self {
+        let error = error.into();
+        let is_cancelled = match error.kind() {
+            PupsErrorKind::Points(error) => *error.kind() == PointsErrorKind::Cancelled,
+            PupsErrorKind::Graph(error) => *error.kind() == GraphErrorKind::Cancelled,
+            _ => false,
+        };
+        match is_cancelled {
+            true => Self::new(PupsErrorKind::Cancelled),
+            false => error,
+        }
+    }
+
     /// Refuses a number outside of a range.
     pub(crate) fn check_in(range: Range, what: &'static str, value: f64) -> Result<(), Self> {
         Self::check(range.holds(value), what, value, range.text)

@@ -59,6 +59,7 @@ pub use assign::{
 pub use dapple_graph as graph;
 pub use dapple_hash as hash;
 pub use dapple_points as points;
+pub use dapple_points::{Cancel, IsCancelled};
 pub use dapple_raster as raster;
 pub use editable::{Changed, EditablePups};
 pub use error::{PupsError, PupsErrorKind};

@@ -13,11 +13,14 @@
 use crate::bins::Bins;
 use crate::support::{fading, has_gap, padded_box};
 use crate::{PupsError, PupsErrorKind, PupsOptions};
-use dapple_graph::{Graph, delaunay};
+use dapple_graph::{Graph, IsCancelled, delaunay_cancellable};
 use dapple_points::{Domain, PointIdx, PointSet};
 use fearless_simd::{f32x8, prelude::*};
 use glam::DVec2;
 use std::sync::OnceLock;
+
+/// The number of points that are added to a net before it is asked again whether it is still wanted.
+const POINTS: u32 = 1 << 13;
 
 /// How many axes are evaluated together.
 pub(crate) const BLOCK: usize = 8;
@@ -102,6 +105,7 @@ impl Net {
         graph: &Graph,
         kind: GraphKind,
         options: PupsOptions,
+        is_cancelled: &IsCancelled,
     ) -> Result<Self, PupsError> {
         if points.is_empty() {
             return Err(PupsError::new(PupsErrorKind::NoPoints));
@@ -111,10 +115,13 @@ impl Net {
         let mut closing = None;
         let mut axes = Vec::new();
         for (point, center) in points.iter() {
+            if point.0.is_multiple_of(POINTS) {
+                PupsError::check_wanted(is_cancelled)?;
+            }
             axes.clear();
             axes.extend(graph.axes(point).iter().map(|axis| axis.vector));
             if kind == GraphKind::Any && has_gap(&axes) {
-                close_gap(point, &mut axes, points, &mut closing)?;
+                close_gap(point, &mut axes, points, &mut closing, is_cancelled)?;
             }
             net.push(point, center, &axes)?;
         }
@@ -315,10 +322,14 @@ fn close_gap(
     axes: &mut Vec<DVec2>,
     points: &PointSet,
     closing: &mut Option<Graph>,
+    is_cancelled: &IsCancelled,
 ) -> Result<(), PupsError> {
     let graph = match closing {
         Some(graph) => graph,
-        None => closing.insert(delaunay(points)?),
+        None => {
+            let graph = delaunay_cancellable(points, is_cancelled);
+            closing.insert(graph.map_err(PupsError::of_part)?)
+        }
     };
     for axis in graph.axes(point) {
         if !axes.contains(&axis.vector) {

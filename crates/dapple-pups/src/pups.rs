@@ -5,7 +5,7 @@ use crate::render::render;
 use crate::sink::Sink;
 use crate::splat::LANES;
 use crate::{PupsError, PupsOptions, Texture, VectorTexture};
-use dapple_graph::{Graph, delaunay};
+use dapple_graph::{Graph, IsCancelled, delaunay_cancellable};
 use dapple_points::{Domain, PointIdx, PointSet};
 use dapple_raster::{Raster, RasterError, RasterViewMut, Window};
 use fearless_simd::prelude::*;
@@ -51,7 +51,21 @@ impl Pups {
     ///
     /// What [`new`](Self::new) refuses, and [`Graph`](crate::PupsErrorKind::Graph) if there is no triangulation.
     pub fn delaunay_with(points: &PointSet, options: PupsOptions) -> Result<Self, PupsError> {
-        Self::of_delaunay(points, &delaunay(points)?, options)
+        Self::delaunay_cancellable(points, options, &|| false)
+    }
+
+    /// The net of [`delaunay_with`](Self::delaunay_with), unless `is_cancelled` returns true.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`delaunay_with`](Self::delaunay_with), and [`Cancelled`](crate::PupsErrorKind::Cancelled).
+    pub fn delaunay_cancellable(
+        points: &PointSet,
+        options: PupsOptions,
+        is_cancelled: &IsCancelled,
+    ) -> Result<Self, PupsError> {
+        let graph = delaunay_cancellable(points, is_cancelled).map_err(PupsError::of_part)?;
+        Self::of_delaunay(points, &graph, options, is_cancelled)
     }
 
     /// The net of a graph that is the Delaunay triangulation of `points`.
@@ -59,8 +73,9 @@ impl Pups {
         points: &PointSet,
         graph: &Graph,
         options: PupsOptions,
+        is_cancelled: &IsCancelled,
     ) -> Result<Self, PupsError> {
-        let net = Net::new(points, graph, GraphKind::Delaunay, options)?;
+        let net = Net::new(points, graph, GraphKind::Delaunay, options, is_cancelled)?;
         Ok(Self {
             net: Arc::new(net),
             points: Arc::new(points.clone()),
@@ -82,9 +97,23 @@ impl Pups {
     /// of the domain's larger side, [`Range`](crate::PupsErrorKind::Range) if the domain is smaller than 1e-18 or larger
     /// than 1e18, and what [`PupsOptions::check`] refuses.
     pub fn new(points: &PointSet, graph: &Graph, options: PupsOptions) -> Result<Self, PupsError> {
-        let net = Arc::new(Net::new(points, graph, GraphKind::Any, options)?);
+        Self::new_cancellable(points, graph, options, &|| false)
+    }
+
+    /// The net of [`new`](Self::new), unless `is_cancelled` returns true.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`new`](Self::new), and [`Cancelled`](crate::PupsErrorKind::Cancelled).
+    pub fn new_cancellable(
+        points: &PointSet,
+        graph: &Graph,
+        options: PupsOptions,
+        is_cancelled: &IsCancelled,
+    ) -> Result<Self, PupsError> {
+        let net = Net::new(points, graph, GraphKind::Any, options, is_cancelled)?;
         Ok(Self {
-            net,
+            net: Arc::new(net),
             points: Arc::new(points.clone()),
         })
     }

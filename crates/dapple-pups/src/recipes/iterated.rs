@@ -15,7 +15,7 @@ use crate::{
 };
 use core::f64::consts::SQRT_2;
 use dapple_hash::Seed;
-use dapple_points::{Domain, PointSet, nested_poisson_disk};
+use dapple_points::{Domain, PointSet, nested_poisson_disk_cancellable};
 
 /// Options of [`iterated_reference`].
 #[derive(Clone, Debug)]
@@ -136,7 +136,8 @@ impl IteratedOptions {
         if self.points == IterationPoints::Fresh {
             let points = |(iteration, factor)| {
                 let seed = seed.child("iteration", iteration).child("points", 0);
-                self.spacing.finer(factor).points(self.domain, seed)
+                let spacing = self.spacing.finer(factor);
+                spacing.points_cancellable(self.domain, seed, &self.net.is_cancelled())
             };
             return (0..).zip(factors).map(points).collect();
         }
@@ -144,7 +145,9 @@ impl IteratedOptions {
             return Err(PupsError::new(PupsErrorKind::SpacingVaries));
         };
         let radii: Vec<f64> = factors.map(|factor| distance / factor).collect();
-        let nested = nested_poisson_disk(self.domain, &radii, seed.child("points", 0))?;
+        let (seed, is_cancelled) = (seed.child("points", 0), self.net.is_cancelled());
+        let nested = nested_poisson_disk_cancellable(self.domain, &radii, seed, &is_cancelled);
+        let nested = nested.map_err(PupsError::of_part)?;
         let positions = nested.points().positions();
         let level = |&length: &usize| {
             let positions = positions[..length].to_vec();

@@ -7,9 +7,9 @@ use crate::options::is_never;
 #[cfg(feature = "schema")]
 use crate::options::{AXIS_SCALE, FADE, STRENGTH};
 use crate::{AxialWeight, Orientation, Orientations, Pups, PupsError, PupsOptions, Spacing};
-use dapple_graph::{Graph, delaunay};
+use dapple_graph::{Graph, delaunay_cancellable};
 use dapple_hash::Seed;
-use dapple_points::{Domain, PointSet};
+use dapple_points::{Cancel, Domain, PointSet};
 use dapple_raster::Parts;
 use std::sync::Arc;
 
@@ -54,6 +54,10 @@ pub struct NetOptions {
     /// by default there are none.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub parts: Parts,
+    /// A callback that is asked, on any thread and once for some milliseconds of work, whether the texture is no longer
+    /// needed; then making it fails with [`Cancelled`](crate::PupsErrorKind::Cancelled). By default there is none.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pub cancel: Cancel,
 }
 
 impl Default for NetOptions {
@@ -67,6 +71,7 @@ impl Default for NetOptions {
             motion: None,
             time: 0.0,
             parts: Parts::default(),
+            cancel: Cancel::default(),
         }
     }
 }
@@ -107,7 +112,10 @@ impl NetOptions {
         let orientation = self.orientation(points, seed)?;
         match self.moved(points, graph, seed)? {
             Some(moved) => self.net(&moved, &*self.delaunay(&moved)?, orientation),
-            None => Pups::new(points, graph, self.pups_options(orientation)),
+            None => {
+                let options = self.pups_options(orientation);
+                Pups::new_cancellable(points, graph, options, &self.is_cancelled())
+            }
         }
     }
 
@@ -132,7 +140,7 @@ impl NetOptions {
         domain: Domain,
         seed: Seed,
     ) -> Result<Arc<PointSet>, PupsError> {
-        let make = || spacing.points(domain, seed);
+        let make = || spacing.points_cancellable(domain, seed, &self.is_cancelled());
         let Some(spacing) = spacing.description() else {
             return Ok(Arc::new(make()?));
         };
@@ -149,12 +157,18 @@ impl NetOptions {
         Ok(scattered.points.clone())
     }
 
+    /// The callback of the caller.
+    pub(crate) fn is_cancelled(&self) -> impl Fn() -> bool + Sync {
+        || self.cancel.is_cancelled()
+    }
+
     /// The Delaunay graph of points.
     pub(crate) fn delaunay(&self, points: &PointSet) -> Result<Arc<Graph>, PupsError> {
         let triangulated = self.parts.get_or_make(
             |other: &Triangulated| is_same(&other.points, points),
             || {
-                let graph = Arc::new(delaunay(points)?);
+                let graph = delaunay_cancellable(points, &self.is_cancelled());
+                let graph = Arc::new(graph.map_err(PupsError::of_part)?);
                 let points = points.clone();
                 Ok::<_, PupsError>(Triangulated { points, graph })
             },
@@ -174,7 +188,7 @@ impl NetOptions {
             |other: &Pups| {
                 is_same_options(other.options(), &options) && is_same(other.points(), points)
             },
-            || Pups::of_delaunay(points, graph, options.clone()),
+            || Pups::of_delaunay(points, graph, options.clone(), &self.is_cancelled()),
         )?;
         Ok(Pups::clone(&pups))
     }
@@ -270,8 +284,10 @@ fn orientation_bits(options: &PupsOptions) -> impl Iterator<Item = u64> {
 #[cfg(test)]
 mod tests {
     use super::NetOptions;
-    use crate::{Layers, Octave, OctavesOptions, octaves};
+    use crate::{Cancel, Layers, Octave, OctavesOptions, PupsErrorKind, octaves};
+    use core::sync::atomic::{AtomicUsize, Ordering::Relaxed};
     use dapple_hash::Seed;
+    use dapple_points::Domain;
     use dapple_raster::{Field as _, Parts, Window};
     use glam::DVec2;
     use std::sync::Arc;
@@ -304,6 +320,55 @@ mod tests {
             let alone = made(gain, axis_scale, &Parts::default());
             let [kept, alone] = [other, alone].map(|octaves| octaves.to_raster(&window).unwrap());
             assert_eq!(kept, alone);
+        }
+    }
+
+    #[test]
+    fn textures_can_be_cancelled_at_every_call() {
+        let [torus, plane] = [[true; 2], [false; 2]].map(|wrap| Domain {
+            wrap,
+            ..Domain::paper_torus()
+        });
+        for domain in [torus, plane] {
+            let make = |last: usize| {
+                let n_calls = Arc::new(AtomicUsize::new(0));
+                let calls = n_calls.clone();
+                let parts = Parts::keeping();
+                let net = NetOptions {
+                    cancel: Cancel::by(move || calls.fetch_add(1, Relaxed) >= last),
+                    parts: parts.clone(),
+                    ..NetOptions::default()
+                };
+                let options = OctavesOptions {
+                    domain,
+                    net,
+                    ..OctavesOptions::default()
+                };
+                (octaves(&options, Seed(7)), n_calls.load(Relaxed), parts)
+            };
+            let (whole, n_calls, _) = make(usize::MAX);
+            let window = Window::new(DVec2::NEG_ONE, DVec2::splat(2.0), [32; 2]).unwrap();
+            let whole = whole.unwrap().to_raster(&window).unwrap();
+            for last in (0..n_calls).step_by(1 + n_calls / 16) {
+                let (stopped, _, parts) = make(last);
+                let error = stopped.unwrap_err();
+                assert_eq!(*error.kind(), PupsErrorKind::Cancelled, "at call {last}");
+                // What was kept before is whole.
+                let options = OctavesOptions {
+                    domain,
+                    net: NetOptions {
+                        parts,
+                        ..NetOptions::default()
+                    },
+                    ..OctavesOptions::default()
+                };
+                let again = octaves(&options, Seed(7)).unwrap();
+                assert_eq!(
+                    again.to_raster(&window).unwrap(),
+                    whole,
+                    "after call {last}"
+                );
+            }
         }
     }
 }

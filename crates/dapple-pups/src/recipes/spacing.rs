@@ -6,8 +6,8 @@ mod data;
 use crate::PupsError;
 use dapple_hash::Seed;
 use dapple_points::{
-    Domain, PointSet, VariablePoissonOptions, poisson_disk, poisson_disk_about,
-    poisson_disk_radius, radius_from_density, variable_poisson_disk,
+    Domain, IsCancelled, PointSet, VariablePoissonOptions, poisson_disk_cancellable,
+    poisson_disk_radius, radius_from_density, variable_poisson_disk_cancellable,
 };
 use dapple_raster::{Ramp, Varying};
 use glam::DVec2;
@@ -51,21 +51,38 @@ impl Spacing {
     ///
     /// # Errors
     ///
-    /// [`Points`](crate::PupsErrorKind::Points) for what [`poisson_disk`] or, if the spacing varies,
-    /// [`variable_poisson_disk`] refuses.
+    /// [`Points`](crate::PupsErrorKind::Points) for what [`poisson_disk`](dapple_points::poisson_disk) or, if
+    /// the spacing varies, [`variable_poisson_disk`](dapple_points::variable_poisson_disk) refuses.
     pub fn points(&self, domain: Domain, seed: Seed) -> Result<PointSet, PupsError> {
+        self.points_cancellable(domain, seed, &|| false)
+    }
+
+    /// The set of [`points`](Self::points), unless `is_cancelled` returns true.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`points`](Self::points), and [`Cancelled`](crate::PupsErrorKind::Cancelled).
+    pub fn points_cancellable(
+        &self,
+        domain: Domain,
+        seed: Seed,
+        is_cancelled: &IsCancelled,
+    ) -> Result<PointSet, PupsError> {
         let radius = match self {
             Self::Distance(distance) => distance.clone(),
             Self::Density(density) => radius_from_density(density),
-            Self::Count(n_points) => return Ok(poisson_disk_about(domain, *n_points, seed)?),
+            Self::Count(n_points) => poisson_disk_radius(domain, *n_points)?.into(),
         };
-        Ok(match radius {
-            Varying::Constant(radius) => poisson_disk(domain, radius, seed)?,
+        let points = match radius {
+            Varying::Constant(radius) => {
+                poisson_disk_cancellable(domain, radius, seed, is_cancelled)
+            }
             radius => {
                 let options = VariablePoissonOptions::default();
-                variable_poisson_disk(domain, &radius, &options, seed)?
+                variable_poisson_disk_cancellable(domain, &radius, &options, seed, is_cancelled)
             }
-        })
+        };
+        points.map_err(PupsError::of_part)
     }
 
     /// About how many points [`points`](Self::points) makes in the domain, rather too many than too few, without making
