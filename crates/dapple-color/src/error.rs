@@ -48,6 +48,8 @@ dapple_raster::error! {
             /// The position before it.
             before: f32,
         } => "the stop at {position} follows the stop at {before}, but stops must be in order";
+        /// The callback of the caller asked to stop.
+        Cancelled => "the callback asked to stop";
     }
     from {
         /// An error of the resulting raster.

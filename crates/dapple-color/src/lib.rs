@@ -50,7 +50,10 @@ pub use normal::normal_map;
 pub use normal::{Normal, NormalOptions, NormalY, normal_map_from_gradient, normal_map_of_part};
 #[doc(alias("ao", "ambient occlusion"))]
 pub use occlusion::ambient_occlusion;
-pub use occlusion::{OcclusionOptions, ambient_occlusion_of_part};
+pub use occlusion::{
+    OcclusionOptions, ambient_occlusion_cancellable, ambient_occlusion_of_part,
+    ambient_occlusion_of_part_cancellable,
+};
 pub use of_field::{ambient_occlusion_of_field, curvature_of_field, normal_map_of_field};
 pub use palette::Palette;
 pub use plane::{HeightPlane, continue_heights};

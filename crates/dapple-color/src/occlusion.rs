@@ -25,6 +25,7 @@
 //! occludes nothing, and the tangent plane beside it is level, as in a normal map.
 
 use crate::{ColorError, ColorErrorKind, HeightPlane, plane};
+use core::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use dapple_raster::simd::dispatch;
 use dapple_raster::{Raster, simd};
 use fearless_simd::Level;
@@ -131,13 +132,31 @@ pub fn ambient_occlusion(
     height: &Raster<f32>,
     options: &OcclusionOptions,
 ) -> Result<Raster<f32>, ColorError> {
+    ambient_occlusion_cancellable(height, options, &|| false)
+}
+
+/// The occlusion of [`ambient_occlusion`], unless `is_cancelled` returns true. It is called on any thread, once for each
+/// row.
+///
+/// # Errors
+///
+/// The errors of [`ambient_occlusion`], and [`ColorErrorKind::Cancelled`].
+pub fn ambient_occlusion_cancellable(
+    height: &Raster<f32>,
+    options: &OcclusionOptions,
+    is_cancelled: &(dyn Fn() -> bool + Sync),
+) -> Result<Raster<f32>, ColorError> {
     options.rays(height.size())?;
-    let margin = options.plane.open_margin(options.halo(height.size()));
-    if margin == [0; 2] {
-        return ambient_occlusion_of_part(height, margin, height.size(), options);
+    let (whole, margin) = (
+        height.size(),
+        options.plane.open_margin(options.halo(height.size())),
+    );
+    let of_part =
+        |part| ambient_occlusion_of_part_cancellable(part, margin, whole, options, is_cancelled);
+    match margin {
+        [0, 0] => of_part(height),
+        _ => of_part(&plane::with_margin(height, margin)?),
     }
-    let extended = plane::with_margin(height, margin)?;
-    ambient_occlusion_of_part(&extended, margin, height.size(), options)
 }
 
 /// The occlusion of a part of a raster of `whole` pixels, whose extent is that of the options; see
@@ -157,7 +176,23 @@ pub fn ambient_occlusion_of_part(
     whole: [u32; 2],
     options: &OcclusionOptions,
 ) -> Result<Raster<f32>, ColorError> {
-    occlusion_at(simd::level(), height, margin, whole, options)
+    ambient_occlusion_of_part_cancellable(height, margin, whole, options, &|| false)
+}
+
+/// The occlusion of [`ambient_occlusion_of_part`], unless `is_cancelled` returns true. It is called on any thread, once
+/// for each row.
+///
+/// # Errors
+///
+/// The errors of [`ambient_occlusion_of_part`], and [`ColorErrorKind::Cancelled`].
+pub fn ambient_occlusion_of_part_cancellable(
+    height: &Raster<f32>,
+    margin: [u32; 2],
+    whole: [u32; 2],
+    options: &OcclusionOptions,
+    is_cancelled: &(dyn Fn() -> bool + Sync),
+) -> Result<Raster<f32>, ColorError> {
+    occlusion_at(simd::level(), height, margin, whole, options, is_cancelled)
 }
 
 fn occlusion_at(
@@ -166,17 +201,26 @@ fn occlusion_at(
     margin: [u32; 2],
     whole: [u32; 2],
     options: &OcclusionOptions,
+    is_cancelled: &(dyn Fn() -> bool + Sync),
 ) -> Result<Raster<f32>, ColorError> {
     let rays = options.rays(whole)?;
     let inside =
         [0, 1].map(|axis| height.size()[axis].saturating_sub(margin[axis].saturating_mul(2)));
     let mut seen = Raster::filled(inside, 0.0)?;
     let heights = Heights::new(height, margin, whole, options, &rays)?;
+    let is_over = AtomicBool::new(false);
     plane::fill_rows(&mut seen, |row, values| {
+        if is_over.load(Relaxed) || is_cancelled() {
+            is_over.store(true, Relaxed);
+            return;
+        }
         let lines = heights.lines(margin[1] + row, &rays, options.plane.strength);
         dispatch!(level, simd => see_row(simd, &lines, values));
     });
-    Ok(seen)
+    match is_over.into_inner() {
+        true => Err(ColorError::new(ColorErrorKind::Cancelled)),
+        false => Ok(seen),
+    }
 }
 
 #[cfg(test)]

@@ -1,8 +1,12 @@
 //! Ambient occlusion: crops, turns, resolution, fading, levels, threads, bad input.
 
-use super::{OcclusionOptions, ambient_occlusion, ambient_occlusion_of_part, occlusion_at};
+use super::{
+    OcclusionOptions, ambient_occlusion, ambient_occlusion_cancellable, ambient_occlusion_of_part,
+    occlusion_at,
+};
 use crate::plane::checks;
 use crate::{ColorErrorKind, HeightPlane};
+use core::sync::atomic::{AtomicU32, Ordering::Relaxed};
 use dapple_raster::glam::DVec2;
 use dapple_raster::simd::for_every_level;
 use dapple_raster::{Raster, Window, Wrap};
@@ -299,7 +303,8 @@ fn levels_and_threads_do_not_change_a_bit() {
     let bits = |raster: Raster<f32>| raster.map(|seen| seen.to_bits());
     let expected = bits(ambient_occlusion(&height, &options).unwrap());
     for_every_level(|level| {
-        let seen = occlusion_at(level, &height, [0; 2], height.size(), &options).unwrap();
+        let seen =
+            occlusion_at(level, &height, [0; 2], height.size(), &options, &|| false).unwrap();
         assert_eq!(bits(seen), expected, "{level:?}");
     });
     checks::threads_do_not_change_a_bit(|| bits(ambient_occlusion(&height, &options).unwrap()));
@@ -350,6 +355,25 @@ proptest! {
             if let Ok(seen) = ambient_occlusion(&height, &options) {
                 prop_assert!(seen.pixels().iter().all(|seen| (0.0..=1.0).contains(seen)), "{seen:?}");
             }
+        }
+    }
+}
+
+#[test]
+fn occlusion_can_be_cancelled_at_every_row() {
+    let height = rubble([24, 40]);
+    let options = options();
+    for last in [0, 1, 20, 39, 40] {
+        let n_calls = AtomicU32::new(0);
+        let is_cancelled = || n_calls.fetch_add(1, Relaxed) >= last;
+        let seen = ambient_occlusion_cancellable(&height, &options, &is_cancelled);
+        match last {
+            40 => assert_eq!(seen, ambient_occlusion(&height, &options)),
+            _ => assert_eq!(
+                seen.unwrap_err().kind(),
+                &ColorErrorKind::Cancelled,
+                "{last}"
+            ),
         }
     }
 }
