@@ -31,9 +31,10 @@
 //!
 //! Reference: Hardy and Mc Roberts, as above, for the idea; the formula is our own.
 
-use crate::TileError;
+use crate::error::check;
 use crate::gauss::blur;
 use crate::map::check_finite;
+use crate::{IsCancelled, TileError};
 use dapple_color::LinearRgb;
 use dapple_raster::{Raster, Wrap};
 
@@ -131,27 +132,50 @@ impl BlendMap {
     /// [`Range`](crate::TileErrorKind::Range) for a feature size or a contrast that is out of range,
     /// [`NotFinite`](crate::TileErrorKind::NotFinite) for a pixel that is NaN or infinite.
     pub fn apply(&self, texture: &Raster<f32>) -> Result<Raster<f32>, TileError> {
+        self.apply_cancellable(texture, &|| false)
+    }
+
+    /// The blend map of [`apply`](Self::apply), unless `is_cancelled` returns true, which is called before each of the
+    /// passes over the texture.
+    ///
+    /// # Errors
+    ///
+    /// The errors of [`apply`](Self::apply), and [`Cancelled`](crate::TileErrorKind::Cancelled).
+    pub fn apply_cancellable(
+        &self,
+        texture: &Raster<f32>,
+        is_cancelled: &IsCancelled,
+    ) -> Result<Raster<f32>, TileError> {
         let (size, contrast) = (self.feature_size, self.contrast);
         let holds = (1.0..=4096.0).contains(&size);
         TileError::check(holds, "feature size", size, "from 1 to 4096 pixels")?;
         let holds = contrast.is_finite() && contrast >= 0.0;
         TileError::check(holds, "contrast", contrast, "at least 0 and finite")?;
         check_finite(texture)?;
-        let importance = self.importance(&to_unit_range(texture))?;
+        let importance = self.importance(&to_unit_range(texture), is_cancelled)?;
+        check(is_cancelled)?;
         let median = median(&importance);
         Ok(importance.par_map(|&value| squash(contrast * f64::from(value - median))))
     }
 
     /// The importance `I` of a texture in the range from -1 to 1.
-    fn importance(&self, texture: &Raster<f32>) -> Result<Raster<f32>, TileError> {
+    fn importance(
+        &self,
+        texture: &Raster<f32>,
+        is_cancelled: &IsCancelled,
+    ) -> Result<Raster<f32>, TileError> {
+        let blur = |texture: &Raster<f32>, sigma| {
+            check(is_cancelled)?;
+            blur(texture, sigma, self.wrap)
+        };
         let sigma = (self.feature_size / FINE).max(LEAST_SIGMA);
-        let smooth = blur(texture, sigma, self.wrap)?;
-        let around = blur(texture, COARSE * sigma, self.wrap)?;
+        let smooth = blur(texture, sigma)?;
+        let around = blur(texture, COARSE * sigma)?;
         let band = smooth.zip_map(&around, |smooth, around| smooth - around)?;
-        let edges = blur(&slopes(&smooth, self.wrap)?, sigma, self.wrap)?;
+        let edges = blur(&slopes(&smooth, self.wrap)?, sigma)?;
         let squares = band.map(|band| band * band);
         let floor = WHOLE * mean(&squares) + FLAT;
-        let power = blur(&squares, COARSE * sigma, self.wrap)?;
+        let power = blur(&squares, COARSE * sigma)?;
         let excess = band.zip_map(&edges, |band, edge| band - sigma as f32 * edge)?;
         Ok(excess.zip_map(&power, |excess, power| excess / (power + floor).sqrt())?)
     }

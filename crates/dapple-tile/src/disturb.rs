@@ -14,10 +14,11 @@
 //! Reference: Du Jin-Lian, Wang Song and Meng Xianhai, "Wavelet and Blend maps for texture synthesis", section 4 C; the
 //! shifts and the cut are our own.
 
+use crate::error::check;
 use crate::frame::{Frame, framed};
 use crate::map::check_planes;
 use crate::piece::{Piece, lay, pieces};
-use crate::{Map, TileError, TileErrorKind};
+use crate::{IsCancelled, Map, TileError, TileErrorKind};
 use dapple_hash::{CellHash, Seed};
 use dapple_raster::Raster;
 
@@ -86,7 +87,7 @@ impl Disturbance {
         first: [i64; 2],
         size: [u32; 2],
     ) -> Result<Raster<f32>, TileError> {
-        let mut maps = self.render_planes(core::slice::from_ref(tile), first, size)?;
+        let mut maps = self.render_planes(core::slice::from_ref(tile), first, size, &|| false)?;
         Ok(maps.swap_remove(0))
     }
 
@@ -104,8 +105,27 @@ impl Disturbance {
         first: [i64; 2],
         size: [u32; 2],
     ) -> Result<Vec<Map>, TileError> {
+        self.render_maps_cancellable(maps, first, size, &|| false)
+    }
+
+    /// The maps of [`render_maps`](Self::render_maps), unless `is_cancelled` returns true, which is called once for each
+    /// copy and map.
+    ///
+    /// # Errors
+    ///
+    /// The errors of [`render_maps`](Self::render_maps), and [`TileErrorKind::Cancelled`].
+    pub fn render_maps_cancellable(
+        &self,
+        maps: &[Map],
+        first: [i64; 2],
+        size: [u32; 2],
+        is_cancelled: &IsCancelled,
+    ) -> Result<Vec<Map>, TileError> {
         let planes: Vec<_> = maps.iter().flat_map(Map::planes).collect();
-        Map::all_with_planes(maps, self.render_planes(&planes, first, size)?)
+        Map::all_with_planes(
+            maps,
+            self.render_planes(&planes, first, size, is_cancelled)?,
+        )
     }
 
     fn render_planes(
@@ -113,6 +133,7 @@ impl Disturbance {
         tile: &[Raster<f32>],
         first: [i64; 2],
         size: [u32; 2],
+        is_cancelled: &IsCancelled,
     ) -> Result<Vec<Raster<f32>>, TileError> {
         let sides = check_planes(tile)?;
         self.check_width(sides)?;
@@ -121,16 +142,21 @@ impl Disturbance {
         let [columns, rows] = [0, 1].map(|axis| pieces(first[axis], size[axis], sides[axis]));
         let copies = Raster::from_rows([columns.len() as u32, rows.len() as u32], |row| {
             let hash = CellHash::new(seed, [rows[row as usize].copy]);
-            let copy = move |column: &Piece| self.copy(tile, hash.axis(column.copy));
+            let copy = move |column: &Piece| {
+                check(is_cancelled)?;
+                self.copy(tile, hash.axis(column.copy))
+            };
             columns.iter().map(copy)
         })?;
         let copies = copies.into_pixels().into_iter();
         let copies = copies.collect::<Result<Vec<_>, _>>()?;
         let at = |[column, row]: [usize; 2]| &copies[row * columns.len() + column];
         let planes = 0..tile.len();
-        planes
-            .map(|plane| lay([&columns, &rows], |place| &at(place)[plane]))
-            .collect()
+        let lay = |plane| {
+            check(is_cancelled)?;
+            lay([&columns, &rows], |place: [usize; 2]| &at(place)[plane])
+        };
+        planes.map(lay).collect()
     }
 
     /// The planes of a copy.

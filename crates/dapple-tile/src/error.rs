@@ -4,6 +4,17 @@ use dapple_color::ColorError;
 use dapple_raster::RasterError;
 use dapple_wavelet::WaveletError;
 
+/// A callback that returns whether the caller no longer needs the result. It is called on any thread.
+pub type IsCancelled<'a> = dyn Fn() -> bool + Sync + 'a;
+
+/// Fails if the caller asked to stop.
+pub(crate) fn check(is_cancelled: &IsCancelled) -> Result<(), TileError> {
+    match is_cancelled() {
+        true => Err(TileError::new(TileErrorKind::Cancelled)),
+        false => Ok(()),
+    }
+}
+
 dapple_raster::error! {
     /// An error of making a tile, a report or a blend.
     TileError,
@@ -48,6 +59,8 @@ dapple_raster::error! {
             /// The value of the pixel.
             value: f32,
         } => "the pixel in column {column} and row {row} is {value}, but all must be finite";
+        /// The callback of the caller asked to stop.
+        Cancelled => "the callback asked to stop";
     }
     from {
         /// An error of the wavelet filter: an odd size, or one not divisible by 2^levels.

@@ -24,10 +24,15 @@ pub(crate) fn framed(
     frame: &[Raster<f32>],
     width: Frame,
 ) -> Result<Vec<Raster<f32>>, TileError> {
-    framed_along(planes, width, |_, axis| match axis {
+    framed_along(planes, width, |_, axis| in_axis(frame, axis))
+}
+
+/// The planes of a frame, with their rows along an axis.
+pub(crate) fn in_axis(frame: &[Raster<f32>], axis: Axis) -> Result<Vec<Raster<f32>>, TileError> {
+    match axis {
         Axis::X => Ok(frame.to_vec()),
         Axis::Y => frame.iter().map(transpose).collect(),
-    })
+    }
 }
 
 /// Puts planes into a frame that is computed for each axis from the current planes, whose rows run along that axis.

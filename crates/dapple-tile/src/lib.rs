@@ -80,7 +80,7 @@ pub use blend_map::BlendMap;
 pub use corner::CornerTiles;
 pub use crossfade::Crossfade;
 pub use disturb::Disturbance;
-pub use error::{TileError, TileErrorKind};
+pub use error::{IsCancelled, TileError, TileErrorKind};
 pub use gauss::blur;
 pub use map::Map;
 pub use match_borders::{BorderSource, MatchBorders};

@@ -19,9 +19,10 @@
 
 use crate::axis::Axis;
 use crate::disturb::rolled;
-use crate::frame::{Frame, framed, framed_along};
+use crate::error::check;
+use crate::frame::{Frame, framed_along, in_axis};
 use crate::piece::{lay, pieces};
-use crate::{Map, TileError, TileErrorKind};
+use crate::{IsCancelled, Map, TileError, TileErrorKind};
 use dapple_hash::{CellHash, Seed};
 use dapple_raster::Raster;
 
@@ -89,7 +90,7 @@ impl MatchBorders {
             .iter()
             .map(|tile| vec![Map::Value(tile.clone())])
             .collect();
-        let matched = self.matched(Map::planes_of_all(&materials)?)?;
+        let matched = self.matched(Map::planes_of_all(&materials)?, &|| false)?;
         Ok(matched.into_iter().flatten().collect())
     }
 
@@ -100,7 +101,21 @@ impl MatchBorders {
     /// The errors of [`apply`](Self::apply); [`TileErrorKind::Count`] too for materials without maps, or with more or
     /// fewer than the first, and [`TileErrorKind::KindMismatch`] for maps of other kinds.
     pub fn apply_maps(&self, tiles: &[Vec<Map>]) -> Result<Vec<Vec<Map>>, TileError> {
-        let matched = self.matched(Map::planes_of_all(tiles)?)?;
+        self.apply_maps_cancellable(tiles, &|| false)
+    }
+
+    /// The tiles of [`apply_maps`](Self::apply_maps), unless `is_cancelled` returns true, which is called for each axis of
+    /// each tile.
+    ///
+    /// # Errors
+    ///
+    /// The errors of [`apply_maps`](Self::apply_maps), and [`TileErrorKind::Cancelled`].
+    pub fn apply_maps_cancellable(
+        &self,
+        tiles: &[Vec<Map>],
+        is_cancelled: &IsCancelled,
+    ) -> Result<Vec<Vec<Map>>, TileError> {
+        let matched = self.matched(Map::planes_of_all(tiles)?, is_cancelled)?;
         let pairs = tiles.iter().zip(matched);
         pairs
             .map(|(maps, planes)| Map::all_with_planes(maps, planes))
@@ -122,7 +137,7 @@ impl MatchBorders {
         first: [i64; 2],
         size: [u32; 2],
     ) -> Result<Vec<Map>, TileError> {
-        let matched = self.matched(Map::planes_of_all(tiles)?)?;
+        let matched = self.matched(Map::planes_of_all(tiles)?, &|| false)?;
         Raster::<()>::filled(size, ())?;
         let seed = seed.child("match borders", 0);
         let side = matched[0][0].size();
@@ -139,7 +154,11 @@ impl MatchBorders {
         Map::all_with_planes(&tiles[0], planes.collect::<Result<_, _>>()?)
     }
 
-    fn matched(&self, tiles: Vec<Vec<Raster<f32>>>) -> Result<Vec<Vec<Raster<f32>>>, TileError> {
+    fn matched(
+        &self,
+        tiles: Vec<Vec<Raster<f32>>>,
+        is_cancelled: &IsCancelled,
+    ) -> Result<Vec<Vec<Raster<f32>>>, TileError> {
         let first = tiles.first().ok_or(TileError::new(TileErrorKind::Count {
             what: "tiles",
             count: 0,
@@ -148,11 +167,15 @@ impl MatchBorders {
         self.check_width(first[0].size())?;
         let donor = match self.source {
             BorderSource::Border => first.clone(),
-            BorderSource::Middle => self.with_middle_at_borders(first)?,
+            BorderSource::Middle => self.with_middle_at_borders(first, is_cancelled)?,
         };
-        let others = tiles[1..]
-            .iter()
-            .map(|tile| framed(tile, &donor, self.frame()));
+        let framed = |tile: &Vec<Raster<f32>>| {
+            framed_along(tile, self.frame(), |_, axis| {
+                check(is_cancelled)?;
+                in_axis(&donor, axis)
+            })
+        };
+        let others = tiles[1..].iter().map(framed);
         let others: Vec<_> = others.collect::<Result<_, _>>()?;
         Ok([donor].into_iter().chain(others).collect())
     }
@@ -178,8 +201,13 @@ impl MatchBorders {
     }
 
     /// The tile with the strip along its middle at its borders, where it is continuous.
-    fn with_middle_at_borders(&self, tile: &[Raster<f32>]) -> Result<Vec<Raster<f32>>, TileError> {
+    fn with_middle_at_borders(
+        &self,
+        tile: &[Raster<f32>],
+        is_cancelled: &IsCancelled,
+    ) -> Result<Vec<Raster<f32>>, TileError> {
         framed_along(tile, self.frame(), |planes, _: Axis| {
+            check(is_cancelled)?;
             let half = planes[0].width() / 2;
             planes
                 .iter()

@@ -2,7 +2,8 @@
 
 use super::{Disturbance, shift};
 use crate::test_fields::{gravel, same_on_threads, seam_ratio_of, variance};
-use crate::{Map, TileErrorKind};
+use crate::{BlendMap, IsCancelled, Map, MatchBorders, TileError, TileErrorKind};
+use core::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use dapple_color::LinearRgb;
 use dapple_hash::Seed;
 use dapple_raster::Raster;
@@ -254,4 +255,51 @@ fn value_stability_disturb() {
     let bits = [[0, 0], [10, 15], [50, 50], [89, 89]]
         .map(|[x, y]: [usize; 2]| map.row(y as u32)[x].to_bits());
     assert_eq!(bits, [1052928431, 1063551567, 1059975078, 1057285837]);
+}
+
+/// Checks that work which asks whether it is still wanted ends with the typed error at each call that says no, and is
+/// unchanged if none does; returns the number of calls.
+fn check_cancel<T: PartialEq + core::fmt::Debug>(
+    made: &T,
+    make: impl Fn(&IsCancelled) -> Result<T, TileError>,
+) -> usize {
+    let calls = AtomicUsize::new(0);
+    let count = |last| {
+        calls.store(0, Relaxed);
+        move |calls: &AtomicUsize| calls.fetch_add(1, Relaxed) >= last
+    };
+    let never = count(usize::MAX);
+    assert_eq!(make(&|| never(&calls)).as_ref(), Ok(made));
+    let n_calls = calls.load(Relaxed);
+    for last in 0..n_calls {
+        let is_over = count(last);
+        let error = make(&|| is_over(&calls)).unwrap_err();
+        assert_eq!(error.kind(), &TileErrorKind::Cancelled, "at call {last}");
+    }
+    n_calls
+}
+
+#[test]
+fn work_on_whole_tiles_can_be_cancelled_at_every_call() {
+    let tiles = [1, 2].map(|seed| vec![Map::Value(gravel(seed, [64; 2], true))]);
+    let disturbance = Disturbance::new(Seed(7));
+    let made = disturbance
+        .render_maps(&tiles[0], [0, 0], [192, 128])
+        .unwrap();
+    let n_calls = check_cancel(&made, |stop| {
+        disturbance.render_maps_cancellable(&tiles[0], [0, 0], [192, 128], stop)
+    });
+    assert_eq!(n_calls, 3 * 2 + 1, "once for each copy and map");
+
+    let matching = MatchBorders::default();
+    let made = matching.apply_maps(&tiles).unwrap();
+    let n_calls = check_cancel(&made, |stop| matching.apply_maps_cancellable(&tiles, stop));
+    assert_eq!(n_calls, 2, "once for each axis of the second tile");
+
+    let texture = gravel(3, [64; 2], true);
+    let made = BlendMap::new(8.0).apply(&texture).unwrap();
+    let n_calls = check_cancel(&made, |stop| {
+        BlendMap::new(8.0).apply_cancellable(&texture, stop)
+    });
+    assert_eq!(n_calls, 5, "before each blur and the median");
 }
