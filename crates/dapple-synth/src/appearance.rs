@@ -27,7 +27,7 @@ mod links;
 
 use crate::endless::evenness::Costs;
 use crate::endless::stage::{self, DIAGONALS, N_FEATURES, Stage, narrow};
-use crate::engine::{self, Callback, Progress};
+use crate::engine::{self, Callback, Progress, Wanted};
 use crate::guides::Targets;
 use crate::options::REGULAR;
 use crate::orientation::offset_after;
@@ -119,7 +119,14 @@ impl<'a> Appearance<'a> {
             || exemplar.n_guides() > 0
             || exemplar.regularity() > REGULAR;
         let symmetry = synthesizer.orientation().symmetry();
-        let mut stages = stage::stages(exemplar, &exemplar.guides, symmetry, options.n_levels)?;
+        let wanted = Wanted::new(&|| false);
+        let mut stages = stage::stages(
+            exemplar,
+            &exemplar.guides,
+            symmetry,
+            options.n_levels,
+            &wanted,
+        )?;
         for stage in &mut stages {
             stage.coherence = match options.coherence {
                 // Measured: also what repeats goes on better than with less.

@@ -22,7 +22,7 @@ pub(crate) mod evenness;
 pub(crate) mod stage;
 mod window;
 
-use crate::engine::Progress;
+use crate::engine::{Progress, Wanted};
 use crate::guides::Guides;
 use crate::options::REGULAR;
 use crate::{Edges, Exemplar, PlaneTexture, Symmetry, SynthError, SynthErrorKind};
@@ -112,6 +112,21 @@ impl Endless {
     /// Typed errors for another number of levels than 1 to 16, for more than there are pixels along a side of the exemplar,
     /// for a period that is no multiple of 2 to their number, and for a mask that leaves nothing.
     pub fn new(exemplar: &Exemplar, options: &EndlessOptions) -> Result<Self, SynthError> {
+        Self::new_cancellable(exemplar, options, &|| false)
+    }
+
+    /// What [`new`](Self::new) prepares, unless `is_cancelled` returns true. It is called on any thread, and once for some
+    /// milliseconds of work.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`new`](Self::new), and [`SynthErrorKind::Cancelled`](crate::SynthErrorKind::Cancelled).
+    pub fn new_cancellable(
+        exemplar: &Exemplar,
+        options: &EndlessOptions,
+        is_cancelled: &(dyn Fn() -> bool + Sync),
+    ) -> Result<Self, SynthError> {
+        let wanted = Wanted::new(is_cancelled);
         let side = exemplar.size[0].min(exemplar.size[1]);
         let most = side
             .checked_ilog2()
@@ -133,6 +148,7 @@ impl Endless {
             &Guides::default(),
             Symmetry::One,
             n_levels as usize,
+            &wanted,
         )?;
         let is_tile = exemplar.edges == Edges::Wrap && exemplar.usable.is_none();
         let is_regular = exemplar.regularity() > REGULAR;
@@ -150,7 +166,8 @@ impl Endless {
         };
         // Copies of what repeats are even, and moving it would break it.
         if !texture.is_lattice {
-            texture.even_out(if is_regular { 0.0 } else { REPETITION });
+            let repetition = if is_regular { 0.0 } else { REPETITION };
+            texture.even_out(repetition, &wanted)?;
         }
         Ok(texture)
     }

@@ -10,10 +10,10 @@ use crate::neighborhood::{Part, Pass, Reads};
 use crate::visit::Visit;
 use crate::{Candidates, Exemplar, Options, Pyramid, Symmetry, SynthError, SynthErrorKind};
 use core::ops::ControlFlow;
-use core::sync::atomic::{AtomicU8, AtomicU32, Ordering};
+use core::sync::atomic::{AtomicBool, AtomicU8, AtomicU32, Ordering};
 use dapple_hash::{Seed, hash1};
 
-/// The progress of a synthesis.
+/// The progress of a synthesis, or of other work in passes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Progress {
     /// The pass, from 0.
@@ -26,6 +26,15 @@ pub struct Progress {
     pub n_sites: usize,
 }
 
+impl Progress {
+    /// The part of the work that is done, from 0 to 1, if all passes take the same time.
+    #[must_use]
+    pub fn part(&self) -> f64 {
+        let done = self.done as f64 / self.n_sites.max(1) as f64;
+        (self.pass as f64 + done) / self.n_passes.max(1) as f64
+    }
+}
+
 /// A callback for progress; it can stop the synthesis.
 pub(crate) type Callback<'a> = &'a mut dyn FnMut(Progress) -> ControlFlow<()>;
 
@@ -34,6 +43,37 @@ pub(crate) fn report(callback: Callback<'_>, progress: Progress) -> Result<(), S
     match callback(progress) {
         ControlFlow::Continue(()) => Ok(()),
         ControlFlow::Break(()) => Err(SynthError::new(SynthErrorKind::Cancelled)),
+    }
+}
+
+/// A request to stop the preparation of a synthesis, which is looked at on all threads.
+pub(crate) struct Wanted<'a> {
+    is_cancelled: &'a (dyn Fn() -> bool + Sync),
+    is_over: AtomicBool,
+}
+
+impl<'a> Wanted<'a> {
+    pub(crate) fn new(is_cancelled: &'a (dyn Fn() -> bool + Sync)) -> Self {
+        Self {
+            is_cancelled,
+            is_over: AtomicBool::new(false),
+        }
+    }
+
+    /// Whether the caller has asked to stop. What is made then is thrown away, and may be anything.
+    pub(crate) fn is_over(&self) -> bool {
+        if !self.is_over.load(Ordering::Relaxed) && (self.is_cancelled)() {
+            self.is_over.store(true, Ordering::Relaxed);
+        }
+        self.is_over.load(Ordering::Relaxed)
+    }
+
+    /// Fails if the caller has asked to stop.
+    pub(crate) fn check(&self) -> Result<(), SynthError> {
+        match self.is_over() {
+            true => Err(SynthError::new(SynthErrorKind::Cancelled)),
+            false => Ok(()),
+        }
     }
 }
 

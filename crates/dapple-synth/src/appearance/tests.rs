@@ -3,6 +3,7 @@
 use super::links::Links;
 use super::{Appearance, Choice, around, choose, distance_sq, middle, pixel, quarters};
 use crate::endless::stage::{self, DIAGONALS, Stage};
+use crate::engine::Wanted;
 use crate::guides::Targets;
 use crate::orientation::offset_before;
 use crate::places::{Frame, Frames};
@@ -338,7 +339,14 @@ fn features_of_what_looks_alike_when_turned_are_those_at_the_turned_place() {
     let plane = Raster::from_fn([SIDE as u32; 2], value).unwrap();
     let exemplar = Exemplar::from_planes(&[(&plane, 1.0)], Edges::Wrap).unwrap();
     for symmetry in [Symmetry::One, Symmetry::Two, Symmetry::Four] {
-        let stage = &stage::stages(&exemplar, &exemplar.guides, symmetry, 1).unwrap()[0];
+        let stage = &stage::stages(
+            &exemplar,
+            &exemplar.guides,
+            symmetry,
+            1,
+            &Wanted::new(&|| false),
+        )
+        .unwrap()[0];
         for place in (0..SIDE * SIDE).map(|pixel| [pixel % SIDE, pixel / SIDE]) {
             for &quarters in symmetry.quarters() {
                 let turned = offset_before(around(place), quarters).map(|at| at + 7);

@@ -18,6 +18,8 @@
 use super::Endless;
 use super::stage::Stage;
 use super::window::{Area, READS};
+use crate::SynthError;
+use crate::engine::Wanted;
 use dapple_raster::parallel;
 
 /// The columns and rows of the piece that a trial makes, in pixels of the level.
@@ -101,16 +103,20 @@ impl Costs {
 impl Endless {
     /// Finds out what the parts of the exemplar cost on the coarser levels, and what `repetition` does, which is given in mean
     /// squared distances.
-    pub(crate) fn even_out(&mut self, repetition: f32) {
+    pub(crate) fn even_out(
+        &mut self,
+        repetition: f32,
+        wanted: &Wanted<'_>,
+    ) -> Result<(), SynthError> {
         let mut coarser: Option<Area> = None;
         for level in (0..self.stages.len()).rev() {
             let Stage { size, spacing, .. } = self.stages[level];
             if SIDE * spacing < i64::from(size[0].max(size[1])) {
-                return;
+                return Ok(());
             }
             let mut costs = Costs::new(size, spacing as u32);
             let usable = self.stages[level].usable_pixels();
-            let wanted = costs.shares(
+            let even = costs.shares(
                 usable
                     .iter()
                     .map(|pixel| [pixel % size[0], pixel / size[0]]),
@@ -119,6 +125,7 @@ impl Endless {
             let mut scale = None;
             let mut best = (f32::INFINITY, costs.clone(), None);
             for trial in 0..N_TRIALS {
+                wanted.check()?;
                 self.stages[level].costs = costs.clone();
                 let made = self.area(level, coarser.as_ref(), [-half..half, -half..half]);
                 let scale = *scale.get_or_insert_with(|| made.mean_sq(&self.stages[level]));
@@ -127,19 +134,20 @@ impl Endless {
                     self.stages[level].repetition_cost = repetition * scale;
                 }
                 let shares = costs.shares(made.inner().map(|at| made.at(at).map(|at| at as u32)));
-                let pairs = || shares.iter().zip(&wanted);
+                let pairs = || shares.iter().zip(&even);
                 let uneven = pairs().map(|(a, b)| (a - b).abs()).sum();
                 if uneven < best.0 {
                     best = (uneven, costs.clone(), Some(made));
                 }
                 costs.change(
                     &shares,
-                    &wanted,
+                    &even,
                     STEP * scale / (1.0 + trial as f32 / HALF_STEP),
                 );
             }
             (_, self.stages[level].costs, coarser) = best;
         }
+        Ok(())
     }
 }
 

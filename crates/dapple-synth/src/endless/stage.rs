@@ -4,6 +4,7 @@
 //! far apart as those of the texture are on it. So a texture may go on at any pixel of the exemplar on coarse levels, too.
 
 use super::evenness::Costs;
+use crate::engine::Wanted;
 use crate::exemplar::blend;
 use crate::guides::Guides;
 use crate::matcher::{Basis, Matcher, MatcherMemory, Query};
@@ -32,6 +33,9 @@ const GRID: i64 = 1 << 14;
 
 /// Pixels of the grid that are searched together.
 const PIXELS: usize = 512;
+
+/// The searches after which it is asked again whether the texture is still wanted.
+const ASKED: usize = 64;
 
 /// The most windows whose principal components are taken.
 const SAMPLE: usize = 4096;
@@ -81,11 +85,13 @@ pub(crate) fn stages(
     guides: &Guides,
     symmetry: Symmetry,
     n_levels: usize,
+    wanted: &Wanted<'_>,
 ) -> Result<Vec<Stage>, SynthError> {
     let mut pixels = vec![exemplar.pixels.clone()];
     let mut guides_of = vec![guides.values.clone()];
     let n_guides = guides.roots.len();
     for level in 1..n_levels {
+        wanted.check()?;
         let step = 1 << (level - 1);
         pixels.push(blurred(
             exemplar,
@@ -99,6 +105,7 @@ pub(crate) fn stages(
     let mut reach = i64::MAX;
     let mut masks = Vec::with_capacity(n_levels);
     for level in (0..n_levels).rev() {
+        wanted.check()?;
         reach = reach.min(HALF << level);
         let (mask, left) = usable(exemplar, level, reach)?;
         masks.push(mask);
@@ -106,11 +113,11 @@ pub(crate) fn stages(
     }
     masks.reverse();
     let stage = |level: usize| {
-        let features = features(exemplar, symmetry, &pixels[level], 1 << level);
+        let features = features(exemplar, symmetry, &pixels[level], 1 << level, wanted)?;
         let (guides, mask) = (guides_of[level].clone(), masks[level].clone());
-        Stage::new(exemplar, level, features, guides, mask)
+        Stage::new(exemplar, level, features, guides, mask, wanted)
     };
-    Ok(parallel::map(n_levels, stage))
+    parallel::map(n_levels, stage).into_iter().collect()
 }
 
 /// A place in the exemplar, which has less than 2^32 columns and rows.
@@ -150,7 +157,8 @@ fn features(
     symmetry: Symmetry,
     pixels: &[f32],
     spacing: i64,
-) -> [Vec<[f32; N_FEATURES]>; 4] {
+    wanted: &Wanted<'_>,
+) -> Result<[Vec<[f32; N_FEATURES]>; 4], SynthError> {
     let n = exemplar.n_channels;
     let [width, height] = exemplar.size;
     let wrap = exemplar.edges.wrap();
@@ -184,6 +192,9 @@ fn features(
     let level = simd::level();
     let turned = |quarters: u8| {
         let rows = parallel::map(height as usize, |row| {
+            if wanted.is_over() {
+                return Vec::new();
+            }
             let (mut values, mut centered) = (Vec::new(), Vec::new());
             let mut rotated = basis.memory();
             let features = |column| {
@@ -199,8 +210,9 @@ fn features(
     let mut features = [const { Vec::new() }; 4];
     for &quarters in symmetry.quarters() {
         features[usize::from(quarters)] = turned(quarters);
+        wanted.check()?;
     }
-    features
+    Ok(features)
 }
 
 /// The pixels that textures may have, and how far they are from what they may not have: at most `reach`, and less, down to
@@ -269,7 +281,8 @@ impl Stage {
         features: [Vec<[f32; N_FEATURES]>; 4],
         guides: Vec<f32>,
         usable: Option<Vec<bool>>,
-    ) -> Self {
+        wanted: &Wanted<'_>,
+    ) -> Result<Self, SynthError> {
         let spacing = 1_i64 << level;
         let n_pixels = i64::from(exemplar.size[0]) * i64::from(exemplar.size[1]);
         let mut step = spacing;
@@ -290,8 +303,8 @@ impl Stage {
             repetition_cost: 0.0,
             coherence: 0.0,
         };
-        stage.search_alike();
-        stage
+        stage.search_alike(wanted)?;
+        Ok(stage)
     }
 
     /// The pixel at a column and row, of which those past the edges are mirrored or wrapped.
@@ -431,7 +444,7 @@ impl Stage {
     }
 
     /// Finds the pixel of the grid that is most like each of the grid, not too near to it.
-    fn search_alike(&mut self) {
+    fn search_alike(&mut self, wanted: &Wanted<'_>) -> Result<(), SynthError> {
         let [width, height] = self.grid();
         let n_pixels = (width * height) as usize;
         let is_usable = |pixel: &usize| self.usable(self.grid_place(*pixel)).is_some();
@@ -457,6 +470,9 @@ impl Stage {
             let mut hint = None;
             let rows = block * PIXELS..pixels.len().min((block + 1) * PIXELS);
             let search = |row: usize| {
+                if row.is_multiple_of(ASKED) && wanted.is_over() {
+                    return None;
+                }
                 self.mark(&row_of, pixels[row], apart, f32::INFINITY, &mut factors);
                 let query = Query {
                     values: &values[row],
@@ -468,15 +484,17 @@ impl Stage {
                 self.mark(&row_of, pixels[row], apart, 1.0, &mut factors);
                 // What is most like the next one is often beside it.
                 hint = found.map(|row| row + 1);
-                found.map_or(NONE, |row| pixels[row as usize] as u32)
+                Some(found.map_or(NONE, |row| pixels[row as usize] as u32))
             };
-            rows.map(search).collect::<Vec<u32>>()
+            rows.map_while(search).collect::<Vec<u32>>()
         });
+        wanted.check()?;
         self.similar = vec![NONE; row_of.len()];
         for (&pixel, found) in pixels.iter().zip(found.concat()) {
             self.similar[pixel] = found;
         }
         self.searched = (n_guides > 0).then_some(Grid { pixels, matcher });
+        Ok(())
     }
 
     /// How far pixels that are alike are from each other at least, but for rounding, in steps of the grid.

@@ -4,10 +4,11 @@ use super::evenness::Costs;
 use super::stage::{DIAGONALS, N_FEATURES, Stage};
 use super::window::{N_PASSES, QUARTERS};
 use super::{Endless, EndlessOptions};
-use crate::{Edges, Exemplar, PlaneTexture, SynthErrorKind};
+use crate::{Edges, Exemplar, PlaneTexture, Progress, SynthErrorKind};
 use core::ops::ControlFlow;
+use core::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use dapple_hash::{Seed, hash2, unit_f32, unit_f64};
-use dapple_raster::Raster;
+use dapple_raster::{Raster, parallel};
 use proptest::prelude::*;
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
@@ -470,4 +471,58 @@ proptest! {
             prop_assert_eq!(part.sources().row(row), &line[..size[0] as usize]);
         }
     }
+}
+
+#[test]
+fn preparation_can_be_cancelled_at_every_call_and_is_asked_often() {
+    let exemplar = spots([64, 64], Edges::Cut);
+    let options = EndlessOptions::default();
+    let prepare = |last: usize| {
+        let n_calls = AtomicUsize::new(0);
+        let is_cancelled = || n_calls.fetch_add(1, Relaxed) >= last;
+        let made = Endless::new_cancellable(&exemplar, &options, &is_cancelled);
+        (made, n_calls.into_inner())
+    };
+    let (made, n_calls) = prepare(usize::MAX);
+    let alone = window(
+        &Endless::new(&exemplar, &options).unwrap(),
+        [3, 5],
+        [70, 40],
+    );
+    let same = window(&made.unwrap(), [3, 5], [70, 40]);
+    assert_eq!(same.sources(), alone.sources());
+    // Half a second of work.
+    assert!(n_calls > 100, "{n_calls} calls");
+    for last in (0..n_calls).step_by(n_calls / 12) {
+        let (made, n_calls) = prepare(last);
+        let error = made.unwrap_err();
+        assert!(matches!(error.kind(), SynthErrorKind::Cancelled), "{error}");
+        // It is not asked again, but by threads that were asking at the time.
+        assert!(
+            n_calls <= last + parallel::n_threads(),
+            "{n_calls} from {last} on"
+        );
+    }
+}
+
+#[test]
+fn progress_of_large_windows_is_reported_within_quarters() {
+    let texture = endless(&spots([32, 32], Edges::Wrap), 2, [None; 2]);
+    let mut reports = Vec::new();
+    let large = texture.window([0, 0], [700, 600], |progress| {
+        reports.push(progress);
+        ControlFlow::Continue(())
+    });
+    // The finest level has 420,000 pixels and its corrections 12 quarters, each in parts of a few thousand pixels.
+    assert!(reports.len() > 12 * 6, "{} reports", reports.len());
+    let place = |progress: &Progress| (progress.pass, progress.done);
+    assert!(
+        reports.is_sorted_by(|a, b| place(a) < place(b)),
+        "{reports:?}"
+    );
+    // Parts of quarters have the bits of smaller windows, whose quarters are in one part.
+    let small = window(&texture, [600, 500], [90, 90]);
+    let rows =
+        (0..90).map(|row| large.as_ref().unwrap().sources().row(500 + row)[600..690].to_vec());
+    assert_eq!(rows.flatten().collect::<Vec<_>>(), small.sources().pixels());
 }

@@ -20,6 +20,10 @@ const MOVES: f64 = 8.0;
 /// How far the pixels are that a correction of one pixel reads.
 pub(super) const READS: i64 = 2;
 
+/// The pixels of a level from one report of the progress to the next: a quarter of them is corrected, in some
+/// milliseconds.
+const REPORTED: i64 = 1 << 16;
+
 /// The pixels that are corrected at a time: the remainders of columns and rows by 2, in this order.
 pub(super) const QUARTERS: [[i64; 2]; 4] = [[0, 0], [1, 1], [0, 1], [1, 0]];
 
@@ -83,14 +87,18 @@ impl Endless {
             let area = self.start(level, coarser.as_ref(), around);
             let n_quarters = area.places.len() / QUARTERS.len();
             for (corrected, &quarter) in (0..n_passes).flat_map(|_| &QUARTERS).enumerate() {
-                let progress = Progress {
-                    pass: self.stages.len() - 1 - level,
-                    n_passes: self.stages.len(),
-                    done: corrected * n_quarters,
-                    n_sites: QUARTERS.len() * n_passes * n_quarters,
-                };
-                engine::report(callback, progress)?;
-                area.correct(stage, &[quarter]);
+                for rows in area.parts() {
+                    let above = (rows.start - area.rows.start) as usize;
+                    let before = n_quarters * above / (area.rows.end - area.rows.start) as usize;
+                    let progress = Progress {
+                        pass: self.stages.len() - 1 - level,
+                        n_passes: self.stages.len(),
+                        done: corrected * n_quarters + before,
+                        n_sites: QUARTERS.len() * n_passes * n_quarters,
+                    };
+                    engine::report(callback, progress)?;
+                    area.correct(stage, &[quarter], rows);
+                }
             }
             coarser = Some(area);
         }
@@ -126,7 +134,8 @@ impl Endless {
         ranges: [Range<i64>; 2],
     ) -> Area {
         let area = self.start(level, coarser, ranges);
-        area.correct(&self.stages[level], &QUARTERS.repeat(n_passes(coarser)));
+        let (quarters, rows) = (QUARTERS.repeat(n_passes(coarser)), area.rows.clone());
+        area.correct(&self.stages[level], &quarters, rows);
         area
     }
 
@@ -201,10 +210,11 @@ impl Area {
         ]
     }
 
-    /// Corrects quarters of the pixels one after the other, but those pixels from which not all is here that is read.
-    fn correct(&self, stage: &Stage, quarters: &[[i64; 2]]) {
+    /// Corrects quarters of the pixels in some rows one after the other, but those pixels from which not all is there that
+    /// is read.
+    fn correct(&self, stage: &Stage, quarters: &[[i64; 2]], rows: Range<i64>) {
         let level = simd::level();
-        let turns = self.turns(quarters);
+        let turns = self.turns(quarters, &rows);
         let mut workers = vec![(); parallel::n_threads()];
         let board = Board::new(0..turns.len(), workers.len());
         parallel::together(&mut workers, |thread, ()| {
@@ -215,6 +225,14 @@ impl Area {
                 dispatch!(level, _simd => self.correct_row(stage, columns, row));
             }
         });
+    }
+
+    /// The rows, in parts after which the progress is reported, each with the rows around it that it reads.
+    fn parts(&self) -> impl Iterator<Item = Range<i64>> + use<> {
+        let rows = self.rows.start..self.rows.end - 2 * READS;
+        let n_rows = (REPORTED / (self.columns.end - self.columns.start)).max(2);
+        let firsts = rows.clone().step_by(n_rows as usize);
+        firsts.map(move |first| first..rows.end.min(first + n_rows) + 2 * READS)
     }
 
     /// Corrects some pixels of a row.
@@ -229,12 +247,12 @@ impl Area {
     }
 
     /// The rows of quarters. Each waits for those of the quarter before it that it reads, and that read it.
-    fn turns(&self, quarters: &[[i64; 2]]) -> Vec<Turn> {
+    fn turns(&self, quarters: &[[i64; 2]], rows: &Range<i64>) -> Vec<Turn> {
         let mut turns: Vec<Turn> = Vec::new();
         let mut before = 0..0;
         for &quarter in quarters {
             let first = turns.len();
-            for row in odd_or_even(&self.rows, quarter[1]) {
+            for row in odd_or_even(rows, quarter[1]) {
                 let is_near = |turn: &Turn| turn.row <= row + READS;
                 let wait = before.start + turns[before.clone()].partition_point(is_near);
                 turns.push(Turn { quarter, row, wait });
