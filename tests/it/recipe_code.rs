@@ -25,7 +25,7 @@ fn recipe_code_is_current() {
 #[test]
 fn recipe_code_has_the_bits_of_the_recipe() {
     let (size, maps) = ([64, 48], vec![MapKind::Height, MapKind::Albedo]);
-    let bands = flagstone::bake(size, maps.clone(), &Images::new()).unwrap();
+    let baked = flagstone::bake(size, maps.clone(), &Images::new()).unwrap();
     let recipe = Recipe::builtin("flagstone").unwrap();
     let plan = Plan::new(&recipe, &Images::new(), 0.0).unwrap();
     let options = BakeOptions {
@@ -33,6 +33,6 @@ fn recipe_code_has_the_bits_of_the_recipe() {
         maps,
         ..BakeOptions::default()
     };
-    let expected = Bake::new(&plan, &options).unwrap().next().unwrap().unwrap();
-    assert_eq!(bands[0].maps, expected.maps, "height and albedo");
+    let expected = Bake::new(&plan, &options).unwrap().whole_maps().unwrap();
+    assert_eq!(baked, expected, "height and albedo");
 }

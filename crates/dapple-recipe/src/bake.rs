@@ -16,7 +16,7 @@ mod shards;
 pub use maps::{MapKind, MapRows};
 pub use shards::Shards;
 
-use crate::plan::TileSamples;
+use crate::plan::{Pass, TileSamples};
 use crate::{Plan, RecipeError, Samples, Whole};
 use dapple_raster::Window;
 use heights::Heights;
@@ -36,8 +36,9 @@ pub struct BakeOptions {
     pub maps: Vec<MapKind>,
     /// The limit of memory.
     pub memory: BakeMemory,
-    /// The approximate number of pixels of a band; 2^20 by default: enough for all cores, and few enough that several
-    /// values of each fit in memory. The bits do not depend on it.
+    /// The approximate number of pixels of a band, at most; 2^20 by default: enough for all cores, and few enough that
+    /// several values of each fit in memory. Smaller pictures have about eight bands, for their progress, unless a band
+    /// would have fewer than 2^15 pixels or 16 rows. The bits do not depend on it.
     pub band_pixels: u32,
 }
 
@@ -59,6 +60,12 @@ pub enum BakeMemory {
     /// Only some rows at a time are in memory; nodes that depend on the whole tile are errors.
     Banded,
 }
+
+/// The least number of bands of pictures that are not small.
+const LEAST_BANDS: u32 = 8;
+
+/// The least number of pixels of a band that is one of so few.
+const LEAST_PIXELS: u32 = 1 << 15;
 
 impl Default for BakeOptions {
     fn default() -> Self {
@@ -113,13 +120,16 @@ pub struct Bake<'a> {
 }
 
 impl<'a> Bake<'a> {
-    /// Prepares a bake; the work is done when the bands are taken.
+    /// Prepares a bake. Nodes that depend on the whole tile are evaluated here, which may be most of the work; all else is
+    /// computed when the bands are taken. A callback of the plan for the
+    /// [progress](crate::Plan::new_with_progress) hears of both.
     ///
     /// # Errors
     ///
     /// [`Range`](crate::RecipeErrorKind::Range) for a size of zero, a region past the tile, or a radius out of range,
     /// [`Global`](crate::RecipeErrorKind::Global) for a node that depends on the whole tile under
-    /// [`BakeMemory::Banded`], and the errors of such nodes.
+    /// [`BakeMemory::Banded`], [`Cancelled`](crate::RecipeErrorKind::Cancelled) if
+    /// the callback of the plan asks to stop, and the errors of such nodes.
     pub fn new(plan: &'a Plan, options: &BakeOptions) -> Result<Self, RecipeError> {
         let tile = plan.tile_samples(options.size, options.samples)?;
         let all = Window {
@@ -134,9 +144,11 @@ impl<'a> Bake<'a> {
             plan.check_local()?;
         }
         let heights = Heights::new(plan, &tile, &options.maps)?;
+        let whole = plan.whole_at(&tile)?;
+        whole.watch.begin(Pass::Rows, window.size[1] as usize);
         Ok(Self {
             plan,
-            whole: plan.whole_at(&tile)?,
+            whole,
             maps: options.maps.clone(),
             tile,
             window,
@@ -169,6 +181,8 @@ impl<'a> Bake<'a> {
     fn band(&mut self) -> Result<Band, RecipeError> {
         let [width, height] = self.window.size;
         let first_row = self.next_row;
+        self.whole.watch.reach(first_row as usize);
+        self.whole.watch.check()?;
         let [left, top] = [
             self.window.first[0],
             self.window.first[1].saturating_add(first_row.into()),
@@ -177,7 +191,10 @@ impl<'a> Bake<'a> {
             u32::try_from(i64::from(self.tile.window.size[axis]) - first).unwrap_or(0)
         };
         let columns = distinct(0, left).min(width);
-        let rows = (self.band_pixels / width).max(16).min(height - first_row);
+        let most = self.band_pixels / width;
+        let least = (LEAST_PIXELS / width).min(most);
+        let rows = height.div_ceil(LEAST_BANDS).clamp(least, most);
+        let rows = rows.max(16).min(height - first_row);
         // Past the last distinct row comes a copy of the first one.
         let (top, rows) = match distinct(1, top) {
             0 => (0, 1),

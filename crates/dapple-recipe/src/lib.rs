@@ -21,6 +21,7 @@ pub use dapple_hash as hash;
 pub use dapple_raster as raster;
 pub use dapple_synth as synth;
 pub use dapple_tile as tile;
+pub use dapple_synth::Progress;
 pub use error::{Place, RecipeError, RecipeErrorKind};
 pub use indexmap;
 pub use input::Input;

@@ -5,18 +5,17 @@
 //! that depend on the whole tile, which are evaluated beforehand for a whole picture: see [`Plan::whole`].
 
 mod builder;
-mod cancel;
 mod evaluate;
 mod field;
 mod memory;
 mod order;
 mod samples;
 mod step;
+mod watch;
 mod whole;
 mod work;
 
 pub(crate) use builder::{Builder, FREQUENCY};
-use cancel::Cancel;
 pub(crate) use evaluate::Known;
 pub use field::{NodeColors, NodeField};
 pub use memory::Memory;
@@ -25,14 +24,17 @@ pub(crate) use order::order;
 pub use samples::Samples;
 pub(crate) use samples::TileSamples;
 pub(crate) use step::{Laid, Step};
+pub(crate) use watch::{OF_NODE, Pass, Watch};
 pub use whole::Whole;
 pub use work::PlanLimits;
 pub(crate) use work::Work;
 
 use crate::{ImageAlpha, Input, Material, Node, Recipe, RecipeError, RecipeErrorKind, Values};
+use core::ops::ControlFlow;
 use dapple_color::LinearRgb;
 use dapple_pups::{Range, range};
 use dapple_raster::{Raster, Window};
+use dapple_synth::Progress;
 use glam::DVec2;
 use indexmap::IndexMap;
 use std::cell::RefCell;
@@ -117,7 +119,7 @@ pub struct Plan {
     material: Material,
     limits: PlanLimits,
     memory: Option<Memory>,
-    cancel: Cancel,
+    watch: Watch,
     /// Whether a node changes with time.
     moves: bool,
     /// The number of each step in the memory.
@@ -203,7 +205,7 @@ impl Plan {
         time: f64,
         limits: &PlanLimits,
     ) -> Result<Self, RecipeError> {
-        Self::make(recipe, images, time, limits, None)
+        Self::make(recipe, images, time, limits, None, Watch::default())
     }
 
     /// Makes all nodes of the recipe, and reuses from the memory parts of earlier plans, for programs that redraw a
@@ -235,7 +237,49 @@ impl Plan {
         limits: &PlanLimits,
         memory: &Memory,
     ) -> Result<Self, RecipeError> {
-        Self::make(recipe, images, time, limits, Some(memory))
+        Self::make(recipe, images, time, limits, Some(memory), Watch::default())
+    }
+
+    /// Makes all nodes of the recipe, and calls `progress` meanwhile, which can stop the work with
+    /// [`Cancelled`](RecipeErrorKind::Cancelled): games load recipes on a thread, show a bar and cancel. The plan keeps the
+    /// callback for its bakes and pictures of nodes.
+    ///
+    /// It is called on any thread, possibly on several at a time, from the beginning on and then at least once for some 50
+    /// milliseconds of work of one core; only the making of wavelet noise and of a Delaunay triangulation of points that do
+    /// not repeat, and single passes of `tile`, `blend` and `corner_tiles` nodes over pictures of millions of pixels, take
+    /// longer. It is not called again after it asked to stop, but by threads that call it at that time.
+    ///
+    /// There are three passes: in the first nodes are made, in the second, in [`Bake::new`](crate::Bake::new), the nodes that
+    /// depend on the whole tile are evaluated, each a thousand sites; in the third, the bands of a bake are computed, whose
+    /// rows are the sites. [`Progress::part`] is the part of all work.
+    ///
+    /// # Errors
+    ///
+    /// The errors of [`new_within`](Self::new_within), and [`Cancelled`](RecipeErrorKind::Cancelled).
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use core::ops::ControlFlow;
+    /// use dapple_recipe::{Images, Plan, PlanLimits, Recipe, RecipeErrorKind};
+    ///
+    /// let (recipe, limits) = (Recipe::builtin("rock")?, PlanLimits::default());
+    /// let plan = Plan::new_with_progress(&recipe, &Images::new(), 0.0, &limits, None, |progress| {
+    ///     println!("{:.0} %", 100.0 * progress.part());
+    ///     ControlFlow::Break(())
+    /// });
+    /// assert!(matches!(plan.unwrap_err().kind(), RecipeErrorKind::Cancelled));
+    /// # Ok::<(), dapple_recipe::RecipeError>(())
+    /// ```
+    pub fn new_with_progress(
+        recipe: &Recipe,
+        images: &Images,
+        time: f64,
+        limits: &PlanLimits,
+        memory: Option<&Memory>,
+        progress: impl Fn(Progress) -> ControlFlow<()> + Send + Sync + 'static,
+    ) -> Result<Self, RecipeError> {
+        Self::make(recipe, images, time, limits, memory, Watch::by(progress))
     }
 
     fn make(
@@ -244,6 +288,7 @@ impl Plan {
         time: f64,
         limits: &PlanLimits,
         memory: Option<&Memory>,
+        watch: Watch,
     ) -> Result<Self, RecipeError> {
         RecipeError::check_in(TIME, "time", time)?;
         for side in recipe.extent {
@@ -252,10 +297,13 @@ impl Plan {
         if let Some(memory) = memory {
             memory.begin();
         }
-        let mut builder = Builder::new(recipe, images, time, limits, memory);
-        for name in order(recipe)? {
+        watch.begin(Pass::Nodes, OF_NODE * recipe.nodes.len());
+        let mut builder = Builder::new(recipe, images, time, limits, memory, &watch);
+        for (index, name) in order(recipe)?.into_iter().enumerate() {
+            watch.reach(OF_NODE * index);
+            watch.check()?;
             let added = builder.add(name, &recipe.nodes[name]);
-            added.map_err(|error| error.within(name))?;
+            added.map_err(|error| watch.reason(error.within(name)))?;
         }
         let channels = channels(recipe, &mut builder).map_err(|error| error.within("material"))?;
         let plan = Self {
@@ -267,7 +315,7 @@ impl Plan {
             material: recipe.material.clone(),
             limits: *limits,
             memory: memory.cloned(),
-            cancel: Cancel::default(),
+            watch: watch.clone(),
             moves: builder.moves,
             ids: builder.ids.into(),
         };
@@ -275,26 +323,28 @@ impl Plan {
         Ok(plan)
     }
 
-    /// The same plan, whose bakes and pictures of nodes stop with [`Cancelled`](RecipeErrorKind::Cancelled) once
-    /// `is_cancelled` returns true.
-    ///
-    /// It is called on any thread, for each node that depends on the whole tile and for at most 2^16 pixels of the other
-    /// nodes.
+    /// The same plan, with another callback for the progress of its bakes and pictures of nodes: see
+    /// [`new_with_progress`](Self::new_with_progress).
     ///
     /// # Examples
     ///
     /// ```
+    /// use core::ops::ControlFlow;
     /// use dapple_recipe::{Bake, BakeOptions, Images, Plan, Recipe, RecipeErrorKind};
     ///
-    /// let plan = Plan::new(&Recipe::builtin("rock")?, &Images::new(), 0.0)?.with_cancel(|| true);
+    /// let plan = Plan::new(&Recipe::builtin("rock")?, &Images::new(), 0.0)?;
+    /// let plan = plan.with_progress(|_| ControlFlow::Break(()));
     /// let mut bake = Bake::new(&plan, &BakeOptions::default())?;
     /// let error = bake.next().expect("a band is left").unwrap_err();
     /// assert!(matches!(error.kind(), RecipeErrorKind::Cancelled));
     /// # Ok::<(), dapple_recipe::RecipeError>(())
     /// ```
     #[must_use]
-    pub fn with_cancel(mut self, is_cancelled: impl Fn() -> bool + Send + Sync + 'static) -> Self {
-        self.cancel = Cancel::by(is_cancelled);
+    pub fn with_progress(
+        mut self,
+        progress: impl Fn(Progress) -> ControlFlow<()> + Send + Sync + 'static,
+    ) -> Self {
+        self.watch = Watch::by(progress);
         self
     }
 
@@ -485,6 +535,11 @@ impl Plan {
         let is_picture =
             above.any(|index| matches!(self.steps[index], Step::Image(_) | Step::Global(_)));
         self.wrap.map(|repeats| is_picture && !repeats)
+    }
+
+    /// The callback for new work of the plan.
+    pub(crate) fn watch(&self) -> Watch {
+        self.watch.again()
     }
 
     pub(crate) fn material(&self) -> &Material {

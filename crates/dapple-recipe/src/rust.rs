@@ -30,18 +30,21 @@ impl Recipe {
 /// The program, up to the text of the recipe.
 const PROGRAM: &str = "
 use dapple::image::{Depth, write_color_png, write_gray_png, write_normal_png};
-use dapple::recipe::{Bake, BakeOptions, Band, Images, MapKind, MapRows, Plan, Recipe, RecipeError};
+use dapple::recipe::{Bake, BakeOptions, Images, MapKind, MapRows, Plan, Recipe, RecipeError};
 
-/// The maps of the material, in bands from the top down. What images the recipe names has to be put into `images`.
-pub fn bake(size: [u32; 2], maps: Vec<MapKind>, images: &Images) -> Result<Vec<Band>, RecipeError> {
+/// The maps of the material. What images the recipe names has to be put into `images`.
+pub fn bake(
+    size: [u32; 2],
+    maps: Vec<MapKind>,
+    images: &Images,
+) -> Result<Vec<(MapKind, MapRows)>, RecipeError> {
     let plan = Plan::new(&Recipe::from_toml(RECIPE)?, images, 0.0)?;
-    Bake::new(&plan, &BakeOptions { size, maps, ..BakeOptions::default() })?.collect()
+    Bake::new(&plan, &BakeOptions { size, maps, ..BakeOptions::default() })?.whole_maps()
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let maps = vec![MapKind::Height, MapKind::Normal, MapKind::Albedo];
-    // A picture of this size is a single band.
-    for (kind, rows) in bake([512, 512], maps, &Images::new())?.remove(0).maps {
+    for (kind, rows) in bake([512, 512], maps, &Images::new())? {
         let path = format!(\"{}.png\", kind.name());
         match rows {
             MapRows::Gray(values) => write_gray_png(path, &values, Depth::Sixteen)?,

@@ -1,11 +1,11 @@
 //! The maps of a band.
 
 use super::heights::Margined;
-use crate::plan::TileSamples;
+use crate::plan::{TileSamples, Watch};
 use crate::{Plan, RecipeError, Values, Whole};
 use dapple_color::{
     CurvatureOptions, HeightPlane, LinearRgb, Normal, NormalOptions, OcclusionOptions,
-    TexturePixel, TextureRaster as _, ambient_occlusion_of_part, curvature_of_part,
+    TexturePixel, TextureRaster as _, ambient_occlusion_of_part_cancellable, curvature_of_part,
     curvature_to_gray, normal_map_of_part,
 };
 use dapple_raster::{Raster, RasterError, Window, Wrap};
@@ -282,6 +282,7 @@ pub(super) fn maps(
     let mut local = || values.next().unwrap_or(Values::Numbers(Vec::new()));
     let mut around = Around {
         plan,
+        watch: &whole.watch,
         tile,
         size: band.size,
         heights,
@@ -294,6 +295,7 @@ pub(super) fn maps(
     }
     let mut maps = Vec::with_capacity(kinds.len());
     for &kind in kinds {
+        whole.watch.check()?;
         let rows = match kind {
             MapKind::Height => MapRows::Gray(around.height()?),
             MapKind::Normal => MapRows::Normal(around.normal()?),
@@ -326,6 +328,7 @@ fn pack(
 /// The maps that depend on the surroundings of a pixel.
 struct Around<'a> {
     plan: &'a Plan,
+    watch: &'a Watch,
     tile: &'a TileSamples,
     size: [u32; 2],
     heights: &'a Margined,
@@ -370,7 +373,10 @@ impl Around<'_> {
         let (heights, margin) = (self.margined()?, self.heights.halo);
         let options = occlusion_options(self.plan, self.tile.extent)?;
         let size = self.tile.window.size;
-        Ok(ambient_occlusion_of_part(heights, margin, size, &options)?)
+        let is_cancelled = || self.watch.is_cancelled();
+        let seen =
+            ambient_occlusion_of_part_cancellable(heights, margin, size, &options, &is_cancelled);
+        seen.map_err(|error| self.watch.reason(error.into()))
     }
 
     fn curvature(&self) -> Result<Raster<f32>, RecipeError> {

@@ -39,7 +39,9 @@ impl NodeKind for BlendMapOf {
         let step = plan.global(inputs, [1; 2], move |tile| {
             let mut how = how;
             how.feature_size = feature_size / tile.window.pixel[0].max(tile.window.pixel[1]);
-            let map = how.apply(&tile.inputs[0].raster(tile.window.size)?)?;
+            let texture = tile.inputs[0].raster(tile.window.size)?;
+            let map = how.apply_cancellable(&texture, &tile.is_cancelled())?;
+            tile.watch.check()?;
             Ok(Values::Numbers(rank_equalize(&map)?.into_pixels()))
         });
         Ok(step.with_numbers())

@@ -67,7 +67,14 @@ impl NodeKind for Disturbed {
         };
         let inputs = vec![plan.any(&self.input)?];
         Ok(plan.global(inputs, self.copies, move |tile| {
-            Values::of_map(disturbance.render_maps(&tile.maps()?, [0, 0], tile.window.size)?)
+            let (maps, size) = (tile.maps()?, tile.window.size);
+            let is_cancelled = tile.is_cancelled();
+            Values::of_map(disturbance.render_maps_cancellable(
+                &maps,
+                [0, 0],
+                size,
+                &is_cancelled,
+            )?)
         }))
     }
 }

@@ -36,7 +36,8 @@ impl NodeKind for Framed {
         let inputs = vec![plan.any(&self.border)?, plan.any(&self.input)?];
         Ok(plan.global(inputs, [1; 2], move |tile| {
             let maps: Vec<_> = tile.maps()?.into_iter().map(|map| vec![map]).collect();
-            Values::of_map(options.apply_maps(&maps)?.swap_remove(1))
+            let mut matched = options.apply_maps_cancellable(&maps, &tile.is_cancelled())?;
+            Values::of_map(matched.swap_remove(1))
         }))
     }
 }

@@ -106,6 +106,7 @@ impl Fractal {
             gain: self.gain,
             net: NetOptions {
                 parts: plan.parts(),
+                cancel: plan.watch().cancel(),
                 ..NetOptions::default()
             },
             ..OctavesOptions::default()

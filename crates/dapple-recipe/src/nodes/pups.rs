@@ -1,7 +1,7 @@
 //! The textures of `dapple-pups` over the tile of a recipe.
 
 use super::{ImageAlpha, NodeKind};
-use crate::plan::{Builder, Images, Picture, PlanLimits, Step, TIME, Work};
+use crate::plan::{Builder, Images, Picture, PlanLimits, Step, TIME, Watch, Work};
 use crate::{Recipe, RecipeError, RecipeErrorKind};
 use dapple_points::Domain;
 use dapple_pups::{ControlNet, ControlPoints, PupsField, PupsRecipe, ReferenceImage};
@@ -89,6 +89,7 @@ fn now<T: PupsRecipe<Image>, Image>(options: &T, plan: &Builder<'_>) -> T {
     let mut options = placed(options, plan.domain());
     let net = options.net_mut();
     net.parts = plan.parts();
+    net.cancel = plan.watch().cancel();
     if net.motion.is_some() {
         net.time = plan.time();
     }
@@ -211,7 +212,8 @@ impl Recipe {
         let Some(texture) = node.kind().pups() else {
             return Ok(None);
         };
-        let mut builder = Builder::new(self, images, time, limits, None);
+        let watch = Watch::default();
+        let mut builder = Builder::new(self, images, time, limits, None, &watch);
         let field = builder
             .enter(name, node)
             .and_then(|()| texture.build(&builder))

@@ -2,7 +2,7 @@
 
 use super::{ImageAlpha, NodeKind, NodeSeed};
 use crate::RecipeError;
-use crate::plan::{Builder, Laid, Picture, Step, Work};
+use crate::plan::{Builder, Laid, OF_NODE, Picture, Step, Watch, Work};
 use core::ops::ControlFlow;
 use dapple_pups::{Range, range};
 use dapple_synth::{Edges, Endless, EndlessOptions, Exemplar, PlaneTexture};
@@ -97,7 +97,15 @@ impl NodeKind for SynthNode {
                 let is_alike = grown.options == options && grown.edges == self.edges;
                 is_alike && grown.texture.sources().size() == self.size && grown.example == *example
             },
-            || Grown::new(example, self.edges, options.clone(), self.size),
+            || {
+                Grown::new(
+                    example,
+                    self.edges,
+                    options.clone(),
+                    self.size,
+                    plan.watch(),
+                )
+            },
         )?;
         let picture = match plan.image(&self.file)? {
             Picture::Numbers(numbers) => {
@@ -135,13 +143,23 @@ impl Grown {
         edges: Edges,
         options: EndlessOptions,
         size: [u32; 2],
+        watch: &Watch,
     ) -> Result<Self, RecipeError> {
         let exemplar = match example {
             Picture::Numbers(numbers) => Exemplar::from_planes(&[(numbers, 1.0)], edges)?,
             Picture::Colors(colors) => Exemplar::new(colors, edges)?,
         };
-        let endless = Endless::new(&exemplar, &options)?;
-        let texture = endless.window([0; 2], size, |_| ControlFlow::Continue(()))?;
+        let endless = Endless::new_cancellable(&exemplar, &options, &|| watch.is_cancelled())?;
+        // The preparation is about half of the work.
+        let half = OF_NODE / 2;
+        let prepared = watch.done() + half;
+        let texture = endless.window([0; 2], size, |progress| {
+            watch.reach(prepared + (progress.part() * half as f64) as usize);
+            match watch.is_cancelled() {
+                true => ControlFlow::Break(()),
+                false => ControlFlow::Continue(()),
+            }
+        })?;
         Ok(Self {
             example: example.clone(),
             edges,

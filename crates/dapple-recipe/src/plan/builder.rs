@@ -3,7 +3,7 @@
 use super::memory::{Memory, StepId};
 use super::step::{Global, Local, Step, Tile};
 use super::work::{Work, WorkSum};
-use super::{ImageSource, Images, Picture, PlanLimits, not_a_number, order};
+use super::{ImageSource, Images, Picture, PlanLimits, Watch, not_a_number, order};
 use crate::text::is_data;
 use crate::{Input, Node, NodeSeed, Recipe, RecipeError, RecipeErrorKind, Values};
 use dapple_color::LinearRgb;
@@ -24,6 +24,7 @@ pub(crate) struct Builder<'a> {
     node: &'a str,
     work: WorkSum<'a>,
     memory: Option<&'a Memory>,
+    watch: &'a Watch,
     /// Parts of steps of this plan, and of earlier ones, if there is a memory.
     shared_parts: Parts,
     /// Whether the current node has used the time.
@@ -46,6 +47,7 @@ impl<'a> Builder<'a> {
         time: f64,
         limits: &'a PlanLimits,
         memory: Option<&'a Memory>,
+        watch: &'a Watch,
     ) -> Self {
         Self {
             recipe,
@@ -54,6 +56,7 @@ impl<'a> Builder<'a> {
             node: "",
             work: WorkSum::new(limits),
             memory,
+            watch,
             shared_parts: memory.map_or_else(Parts::keeping, |memory| memory.parts().clone()),
             asks_time: Cell::new(false),
             moves: false,
@@ -126,6 +129,11 @@ impl<'a> Builder<'a> {
         self.node = name;
         let work: Work = node.kind().work(self)?;
         self.work.add(&work)
+    }
+
+    /// The callback of the caller.
+    pub(crate) fn watch(&self) -> &'a Watch {
+        self.watch
     }
 
     /// Parts of steps of earlier plans, if there is a memory.

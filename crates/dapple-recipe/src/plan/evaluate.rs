@@ -90,6 +90,9 @@ pub(super) fn evaluate(
     let last_use = last_uses(steps, &order, wanted);
     for index in order {
         if values[index].is_none() {
+            if let Some(whole) = whole {
+                whole.watch.check()?;
+            }
             values[index] = Some(Arc::new(step(steps, whole, places, index, &values)?));
         }
         // The next steps reuse the memory while it is in a cache.
@@ -141,7 +144,6 @@ pub(super) fn window(
     let pixels = u32::try_from(share).map_or(most, |share| share.clamp(fewest, most));
     let rows = (pixels / width.max(1)).max(1);
     let chunks = parallel::map(height.div_ceil(rows) as usize, |chunk| {
-        whole.cancel.check()?;
         let first = chunk as u32 * rows;
         let part = Window {
             first: [

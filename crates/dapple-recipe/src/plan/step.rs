@@ -1,6 +1,6 @@
 //! The steps of a plan; each computes the values of a node or of a constant.
 
-use super::Picture;
+use super::{Picture, Watch};
 use crate::{RecipeError, Values};
 use dapple_color::LinearRgb;
 use dapple_pups::VectorTexture;
@@ -54,6 +54,8 @@ pub(crate) struct Tile<'a> {
     pub(crate) input_size: [u32; 2],
     /// The pixels of the tile.
     pub(crate) window: &'a Window,
+    /// The callback of the caller.
+    pub(crate) watch: &'a Watch,
 }
 
 /// An image that covers the tile.
@@ -67,6 +69,11 @@ pub(crate) struct Laid {
 }
 
 impl Tile<'_> {
+    /// Whether the caller no longer needs the picture.
+    pub(crate) fn is_cancelled(&self) -> impl Fn() -> bool + Sync {
+        || self.watch.is_cancelled()
+    }
+
     /// The inputs as maps: all in color, if any input is.
     pub(crate) fn maps(&self) -> Result<Vec<Map>, RecipeError> {
         Ok(Values::maps(self.inputs, self.input_size)?)

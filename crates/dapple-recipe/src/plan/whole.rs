@@ -1,10 +1,9 @@
 //! The steps that depend on the whole tile, evaluated beforehand for a picture of a given size.
 
 use super::builder::wrap;
-use super::cancel::Cancel;
 use super::evaluate::{At, Places};
 use super::step::{Global, Laid, Step, Tile, ancestors};
-use super::{Picture, Plan, Samples, TileSamples};
+use super::{OF_NODE, Pass, Picture, Plan, Samples, TileSamples, Watch};
 use crate::{RecipeError, RecipeErrorKind, Region, Values};
 use dapple_raster::{Raster, Window, Wrap};
 use glam::DVec2;
@@ -18,8 +17,8 @@ pub struct Whole {
     wrap: [Wrap; 2],
     extent: DVec2,
     pictures: Vec<Option<Picture>>,
-    /// The request to stop the evaluation of steps.
-    pub(super) cancel: Cancel,
+    /// The callback of the caller for what is made with it.
+    pub(crate) watch: Watch,
 }
 
 impl Plan {
@@ -71,20 +70,25 @@ impl Plan {
     /// [`TooMuch`](RecipeErrorKind::TooMuch) for more pixels in all than the limits of the plan allow.
     pub fn whole(&self, size: [u32; 2]) -> Result<Whole, RecipeError> {
         let tile = self.tile_samples(size, Samples::Centers)?;
-        self.whole_of(&tile, &self.channels().steps())
+        self.whole_of(&tile, &self.channels().steps(), self.watch())
     }
 
     /// Evaluates the steps that depend on the whole tile, for the samples of a bake.
     pub(crate) fn whole_at(&self, tile: &TileSamples) -> Result<Whole, RecipeError> {
-        self.whole_of(tile, &self.channels().steps())
+        self.whole_of(tile, &self.channels().steps(), self.watch())
     }
 
     /// Evaluates the steps that depend on the whole tile and are needed for `wanted`.
-    fn whole_of(&self, tile: &TileSamples, wanted: &[usize]) -> Result<Whole, RecipeError> {
+    fn whole_of(
+        &self,
+        tile: &TileSamples,
+        wanted: &[usize],
+        watch: Watch,
+    ) -> Result<Whole, RecipeError> {
         let globals = self.needed_globals(wanted);
         let Some(&(first, _)) = globals.first() else {
             return Ok(Whole {
-                cancel: self.cancel.clone(),
+                watch,
                 ..Whole::default()
             });
         };
@@ -99,12 +103,15 @@ impl Plan {
             wrap: wrap(self.wrap),
             extent: tile.extent,
             pictures: vec![None; self.steps().len()],
-            cancel: self.cancel.clone(),
+            watch,
         };
-        for (index, global) in globals {
-            self.cancel.check()?;
+        whole.watch.begin(Pass::Whole, OF_NODE * globals.len());
+        for (number, (index, global)) in globals.into_iter().enumerate() {
+            whole.watch.reach(OF_NODE * number);
+            whole.watch.check()?;
             let picture = self.known_picture(&whole, &window, index, global);
-            whole.pictures[index] = Some(picture.map_err(|error| self.within(index, error))?);
+            let picture = picture.map_err(|error| whole.watch.reason(self.within(index, error)))?;
+            whole.pictures[index] = Some(picture);
         }
         Ok(whole)
     }
@@ -127,7 +134,8 @@ impl Plan {
             None => tile.window,
             Some(region) => region.of(&tile.window)?,
         };
-        let whole = self.whole_of(&tile, &[step])?;
+        let whole = self.whole_of(&tile, &[step], self.watch())?;
+        whole.watch.begin(Pass::Rows, window.size[1] as usize);
         let values = self.values(&whole, &window, &[step], &[])?;
         values.into_iter().next().map_or_else(
             || Err(RecipeError::new(RecipeErrorKind::Global { during: "yet" })),
@@ -166,11 +174,12 @@ impl Plan {
     ) -> Result<Values, RecipeError> {
         let of_inputs = step.window_of_inputs(window)?;
         let made = self.values(whole, &of_inputs, &step.inputs, &[])?;
-        self.cancel.check()?;
+        whole.watch.check()?;
         (step.apply)(&Tile {
             inputs: &made.iter().collect::<Vec<_>>(),
             input_size: of_inputs.size,
             window,
+            watch: &whole.watch,
         })
     }
 }

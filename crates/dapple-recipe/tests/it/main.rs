@@ -7,6 +7,7 @@ mod memory;
 mod pictures;
 mod points;
 mod program;
+mod progress;
 mod refusals;
 #[cfg(feature = "schema")]
 mod schema;
