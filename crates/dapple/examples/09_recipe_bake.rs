@@ -33,18 +33,16 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         ..BakeOptions::default()
     };
 
-    // A bake comes in bands of about a million pixels, so a picture of this size is a single one.
-    for band in Bake::new(&plan, &options)? {
-        for (kind, rows) in band?.maps {
-            let path = out::path(&format!("09_recipe_bake_{}.png", kind.name()))?;
-            match rows {
-                MapRows::Gray(rows) => write_gray_png(&path, &rows, Depth::Sixteen)?,
-                MapRows::Color(rows) => write_color_png(&path, &rows, Depth::Eight)?,
-                MapRows::Normal(rows) => write_normal_png(&path, &rows, Depth::Eight)?,
-                MapRows::Packed(_) => continue,
-            }
-            out::wrote(&path);
+    // A bake comes in bands, which large pictures are written in; these maps are joined.
+    for (kind, rows) in Bake::new(&plan, &options)?.whole_maps()? {
+        let path = out::path(&format!("09_recipe_bake_{}.png", kind.name()))?;
+        match rows {
+            MapRows::Gray(rows) => write_gray_png(&path, &rows, Depth::Sixteen)?,
+            MapRows::Color(rows) => write_color_png(&path, &rows, Depth::Eight)?,
+            MapRows::Normal(rows) => write_normal_png(&path, &rows, Depth::Eight)?,
+            MapRows::Packed(_) => continue,
         }
+        out::wrote(&path);
     }
     Ok(())
 }

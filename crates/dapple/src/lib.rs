@@ -91,6 +91,7 @@
 //! | `11_synthesize_plane` | a tile that looks like a small example |
 //! | `12_baked_model` | stripes grown over a mesh, as a GLB file |
 //! | `13_terrain_chunks` | a world without an end in chunks: heights, biomes and trees |
+//! | `14_recipe_at_load` | a material made while a game loads, with a bar, and given up |
 //!
 //! # Features
 //!

@@ -1,0 +1,111 @@
+//! A material that a game makes from its recipe while it loads: on a thread of its own, with a bar, and until it is no
+//! longer wanted.
+//!
+//! One callback hears of all work, from the first node to the last row, and stops it. Here the first try is given up after a
+//! tenth of its work, as when a player leaves the level, and the second is completed.
+//!
+//! ```sh
+//! cargo run -p dapple --example 14_recipe_at_load
+//! ```
+
+mod out;
+
+use core::ops::ControlFlow;
+use dapple::image::{Depth, write_color_png, write_gray_png, write_normal_png};
+use dapple::recipe::{
+    Bake, BakeOptions, Images, MapKind, MapRows, Plan, PlanLimits, Progress, Recipe, RecipeError,
+    RecipeErrorKind,
+};
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::sync::{Arc, mpsc};
+use std::thread;
+
+/// The maps of a material.
+type Maps = Vec<(MapKind, MapRows)>;
+
+/// A material that is being made.
+struct Loading {
+    /// The part of the work that is done, from 0 to 1, whenever it grows.
+    parts: mpsc::Receiver<f64>,
+    /// Whether the material is no longer wanted.
+    is_over: Arc<AtomicBool>,
+    maps: thread::JoinHandle<Result<Maps, RecipeError>>,
+}
+
+impl Loading {
+    fn new(recipe: Recipe) -> Self {
+        let (sender, parts) = mpsc::channel();
+        let is_over = Arc::new(AtomicBool::new(false));
+        let asked = is_over.clone();
+        let listen = move |progress: Progress| {
+            // Nobody may listen any more.
+            let _ = sender.send(progress.part());
+            match asked.load(Relaxed) {
+                true => ControlFlow::Break(()),
+                false => ControlFlow::Continue(()),
+            }
+        };
+        let maps = thread::spawn(move || {
+            let (images, limits) = (Images::new(), PlanLimits::default());
+            let plan = Plan::new_with_progress(&recipe, &images, 0.0, &limits, None, listen)?;
+            let options = BakeOptions {
+                size: [512, 512],
+                maps: vec![MapKind::Height, MapKind::Normal, MapKind::Albedo],
+                ..BakeOptions::default()
+            };
+            Bake::new(&plan, &options)?.whole_maps()
+        });
+        Self {
+            parts,
+            is_over,
+            maps,
+        }
+    }
+
+    /// Shows the progress, up to a part of the work, and returns the maps, or that they were given up.
+    fn until(self, end: f64) -> Result<Maps, RecipeError> {
+        let mut shown = 0;
+        // A game looks once for each frame, with `try_iter`.
+        for part in &self.parts {
+            let percent = (100.0 * part) as u32;
+            if percent >= shown + 10 {
+                shown = percent;
+                say(&format!("{percent} %"));
+            }
+            if part > end {
+                self.is_over.store(true, Relaxed);
+            }
+        }
+        match self.maps.join() {
+            Ok(maps) => maps,
+            Err(panic) => std::panic::resume_unwind(panic),
+        }
+    }
+}
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let recipe = Recipe::builtin("stone-and-grass")?;
+    let given_up = Loading::new(recipe.clone()).until(0.1);
+    match given_up {
+        Err(error) if *error.kind() == RecipeErrorKind::Cancelled => say("given up"),
+        Err(error) => return Err(error.into()),
+        Ok(_) => return Err("it was done before it was given up".into()),
+    }
+    for (kind, rows) in Loading::new(recipe).until(1.0)? {
+        let path = out::path(&format!("14_recipe_at_load_{}.png", kind.name()))?;
+        match rows {
+            MapRows::Gray(rows) => write_gray_png(&path, &rows, Depth::Sixteen)?,
+            MapRows::Color(rows) => write_color_png(&path, &rows, Depth::Eight)?,
+            MapRows::Normal(rows) => write_normal_png(&path, &rows, Depth::Eight)?,
+            MapRows::Packed(_) => continue,
+        }
+        out::wrote(&path);
+    }
+    Ok(())
+}
+
+/// Prints a line.
+#[expect(clippy::print_stdout, reason = "an example talks")]
+fn say(line: &str) {
+    println!("{line}");
+}
