@@ -9,6 +9,7 @@ use crate::job::{Context, eprintln_if_possible};
 use anyhow::Result;
 #[cfg(feature = "studio")]
 use anyhow::anyhow;
+use core::ops::ControlFlow;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::{self, IsTerminal};
 #[cfg(feature = "studio")]
@@ -88,6 +89,24 @@ impl Progress {
             return Err(anyhow!("the export was stopped"));
         }
         Ok(())
+    }
+
+    /// A callback for the progress of work, which stops it when it is to stop.
+    pub(crate) fn listener(
+        &self,
+    ) -> impl Fn(dapple::synth::Progress) -> ControlFlow<()> + Send + Sync + 'static {
+        #[cfg(feature = "studio")]
+        let stop = self.stop.clone();
+        move |_| {
+            #[cfg(feature = "studio")]
+            if stop
+                .as_ref()
+                .is_some_and(|stop| stop.load(Ordering::SeqCst))
+            {
+                return ControlFlow::Break(());
+            }
+            ControlFlow::Continue(())
+        }
     }
 
     /// Sets the amount of work done.

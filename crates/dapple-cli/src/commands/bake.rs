@@ -285,12 +285,11 @@ impl Work {
             images => images.insert(read_images(recipe, &self.folder, args.material.finite)?),
         };
         progress.check()?;
-        let plan = match &made.memory {
-            Some(memory) => {
-                Plan::new_with_memory(recipe, images, time, &PlanLimits::default(), memory)
-            }
-            None => Plan::new(recipe, images, time),
-        };
+        let (limits, memory) = (PlanLimits::default(), made.memory.as_ref());
+        let listen = progress.listener();
+        let plan = Plan::new_with_progress(recipe, images, time, &limits, memory, listen);
+        // A plan that was stopped is not the fault of an option.
+        progress.check()?;
         let plan = plan.map_err(|error| args.material.blame(error))?;
         if args.frames.is_some() && args.frame.is_none_or(Frame::is_first) && !plan.moves() {
             job.note_work(STILL);
@@ -301,7 +300,9 @@ impl Work {
             Some(_) => advise_shard,
             None => advise,
         };
-        let bake = Bake::new(&plan, &options).map_err(|error| refused(error).wrong_value())?;
+        let bake = Bake::new(&plan, &options);
+        progress.check()?;
+        let bake = bake.map_err(|error| refused(error).wrong_value())?;
         claimed.write(&mut job, bake, recipe, progress)?;
         if let (Some((output, format)), Some(thing)) = (claimed.preview, args.preview) {
             let picture = preview::picture(recipe, images, time, thing)?;
