@@ -95,7 +95,8 @@ dapple_raster::error! {
             first: Domain,
             /// The domain of another one.
             other: Domain,
-        } => "one set is in {other:?}, but the first one is in {first:?}";
+        } => "one set is in the domain from {} of size {} that wraps along x and y: {:?}, but the first one in that from {} of size \
+             {}, wrapping: {:?}", other.origin, other.size, other.wrap, first.origin, first.size, first.wrap;
         /// A spectrum would have more frequencies, or rings, than the limit allows.
         TooManyFrequencies {
             /// The number of frequencies or rings, about.
