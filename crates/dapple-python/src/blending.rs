@@ -6,6 +6,7 @@ use crate::error::{Error, Result};
 use crate::maps::per_axis;
 use crate::pictures::{self, Content, Layout, numbers};
 use crate::threads;
+use crate::watch;
 use dapple::color::LinearRgb;
 use dapple::raster::{Raster, Wrap};
 use dapple::tile::{Blend, BlendMap, Layer, Map, TileError};
@@ -59,12 +60,15 @@ pub(crate) fn blend_map<'py>(
         wrap: per_axis("wrap", wrap, Wrap::Repeat)?,
     };
     let (_, maps) = pictures::read("texture", texture)?;
-    let map = threads::run(py, move || match maps.as_slice() {
-        [Map::Value(values)] => Ok(options.apply(values)?),
-        [Map::Color(colors)] => Ok(options.apply_color(colors)?),
-        _ => {
-            let message = "the texture of a blend map is numbers, or colors without alpha";
-            Err(Error::new("channels", message))
+    let map = watch::run(py, None, move |_, stop| {
+        let apply = |values| Ok(options.apply_cancellable(values, &|| stop.is_set())?);
+        match maps.as_slice() {
+            [Map::Value(values)] => apply(values),
+            [Map::Color(colors)] => apply(&colors.map(|color| color.luminance())),
+            _ => {
+                let message = "the texture of a blend map is numbers, or colors without alpha";
+                Err(Error::new("channels", message))
+            }
         }
     })??;
     arrays::numbers(py, map)

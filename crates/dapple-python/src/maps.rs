@@ -173,8 +173,8 @@ pub(crate) fn ambient_occlusion<'py>(
         fade,
     };
     let height = numbers("height", height)?;
-    let seen = threads::run(py, move || {
-        dapple::color::ambient_occlusion(&height, &options)
+    let seen = watch::run(py, None, move |_, stop| {
+        dapple::color::ambient_occlusion_cancellable(&height, &options, &|| stop.is_set())
     })??;
     arrays::numbers(py, seen)
 }

@@ -287,7 +287,7 @@ pub(crate) fn synthesize_on<'py>(
             true => CHARTS,
             false => 0.0,
         };
-        let heard = |steps| heard(part_of(first..1.0, watch::part(steps)));
+        let heard = |steps: dapple::synth::Progress| heard(part_of(first..1.0, steps.part()));
         let shading = surface.mesh().corner_normals(crease);
         let is_double_sided = repair.before.back_to_back_faces > 0;
         let hierarchy = Hierarchy::new(&surface, &hierarchy)?;

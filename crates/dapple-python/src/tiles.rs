@@ -7,7 +7,7 @@ use crate::grid::size;
 use crate::pictures::{self, Content, Kind, Layout, numbers};
 use crate::seed::SeedArgument;
 use crate::threads;
-use crate::watch;
+use crate::watch::{self, Stop};
 use dapple::raster::Raster;
 use dapple::tile::{
     BorderSource, ChannelReport, CornerTiles as Corners, Disturbance, Map, MatchBorders, Method,
@@ -39,7 +39,9 @@ fn rows(
     py: Python<'_>,
     first: [i64; 2],
     size: [u32; 2],
-    render: impl Fn([i64; 2], [u32; 2]) -> core::result::Result<Vec<Map>, TileError> + Send + 'static,
+    render: impl Fn([i64; 2], [u32; 2], &Stop) -> core::result::Result<Vec<Map>, TileError>
+    + Send
+    + 'static,
 ) -> Result<Vec<Map>> {
     watch::run(py, None, move |_, stop| {
         let mut whole: Option<Vec<Map>> = None;
@@ -48,7 +50,7 @@ fn rows(
             stop.check()?;
             let height = u32::try_from(band).unwrap_or(u32::MAX).min(size[1] - top);
             let first = [first[0], first[1].wrapping_add(top.into())];
-            let maps = render(first, [size[0], height])?;
+            let maps = render(first, [size[0], height], stop)?;
             match &mut whole {
                 None => whole = Some(maps),
                 Some(whole) => extend(whole, maps)?,
@@ -403,8 +405,8 @@ pub(crate) fn disturb<'py>(
         margin,
         seed: seed.0,
     };
-    let maps = rows(py, first, size, move |first, size| {
-        disturbance.render_maps(&maps, first, size)
+    let maps = rows(py, first, size, move |first, size, stop| {
+        disturbance.render_maps_cancellable(&maps, first, size, &|| stop.is_set())
     })?;
     layout.python(py, maps)
 }
@@ -449,7 +451,9 @@ pub(crate) fn match_borders<'py>(
 ) -> Result<Bound<'py, PyList>> {
     let (layout, tiles) = pictures::read_all("tiles", tiles)?;
     let options = borders(width, source)?;
-    let matched = threads::run(py, move || options.apply_maps(&tiles))??;
+    let matched = watch::run(py, None, move |_, stop| {
+        options.apply_maps_cancellable(&tiles, &|| stop.is_set())
+    })??;
     list(py, &layout, matched)
 }
 
@@ -651,7 +655,9 @@ impl CornerTiles {
     /// Raises
     /// ------
     /// DappleError
-    ///     If the size or `first` is out of range.
+    ///     If the size is out of range.
+    /// OverflowError
+    ///     If a number in `first` does not fit into 64 bits.
     #[pyo3(signature = (size, *, seed = SeedArgument::default(), first = None),
         text_signature = "($self, size, *, seed=0, first=(0, 0))")]
     fn render<'py>(
@@ -663,7 +669,7 @@ impl CornerTiles {
     ) -> Result<Bound<'py, PyAny>> {
         let (first, size) = (self::first(first)?, self::size(size)?);
         let tiles = Arc::clone(&self.tiles);
-        let maps = rows(py, first, size, move |first, size| {
+        let maps = rows(py, first, size, move |first, size, _| {
             tiles.render(seed.0, first, size)
         })?;
         self.layout.python(py, maps)

@@ -10,9 +10,11 @@
 
 use crate::error::{Error, Result};
 use crate::threads;
+use core::cell::RefCell;
 use core::ops::{ControlFlow, Range};
 use core::sync::atomic::{AtomicBool, Ordering};
 use core::time::Duration;
+use dapple::points::Cancel;
 use dapple::synth::Progress;
 use pyo3::prelude::*;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
@@ -33,7 +35,45 @@ pub(crate) type Heard<'a> = &'a mut (dyn FnMut(Progress) -> ControlFlow<()> + Se
 #[derive(Clone, Default)]
 pub(crate) struct Stop(Arc<AtomicBool>);
 
+thread_local! {
+    /// The request to stop the work that this thread does, for objects that are made deep inside of it from their
+    /// descriptions.
+    static CURRENT: RefCell<Stop> = RefCell::default();
+}
+
+/// Does work whose request to stop is the one of the thread meanwhile.
+fn with_current<T>(stop: &Stop, work: impl FnOnce() -> T) -> T {
+    /// Restores the request of other work, which this thread goes on with after this one.
+    struct Restore(Stop);
+    impl Drop for Restore {
+        fn drop(&mut self) {
+            CURRENT.replace(self.0.clone());
+        }
+    }
+    let _restore = Restore(CURRENT.replace(stop.clone()));
+    work()
+}
+
 impl Stop {
+    /// The request to stop the work that this thread does.
+    pub(crate) fn current() -> Self {
+        CURRENT.with_borrow(Self::clone)
+    }
+
+    /// The request in the form that options of textures hold.
+    pub(crate) fn cancel(&self) -> Cancel {
+        let stop = self.clone();
+        Cancel::by(move || stop.is_set())
+    }
+
+    /// What a callback for progress returns.
+    pub(crate) fn flow(&self) -> ControlFlow<()> {
+        match self.is_set() {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
+        }
+    }
+
     /// Whether the work should end.
     pub(crate) fn is_set(&self) -> bool {
         self.0.load(Ordering::Relaxed)
@@ -71,14 +111,13 @@ pub(crate) fn run<T: Send + 'static>(
     pool.spawn(move || {
         let mut tell = |steps: Progress| {
             // After an exception nobody receives the progress.
-            let _ = sender.send(Message::Part(part(steps)));
-            match ended.is_set() {
-                true => ControlFlow::Break(()),
-                false => ControlFlow::Continue(()),
-            }
+            let _ = sender.send(Message::Part(steps.part()));
+            ended.flow()
         };
         // A panic in a spawned task would end the process.
-        let made = catch_unwind(AssertUnwindSafe(|| work(&mut tell, &ended)));
+        let made = catch_unwind(AssertUnwindSafe(|| {
+            with_current(&ended, || work(&mut tell, &ended))
+        }));
         let _ = sender.send(Message::Done(made));
     });
     match py.detach(move || listen(&receiver, progress.as_ref())) {
@@ -144,12 +183,6 @@ pub(crate) fn in_parts(
         begin = end;
     }
     Ok(())
-}
-
-/// The part of a synthesis that is done; all passes count the same.
-pub(crate) fn part(steps: Progress) -> f64 {
-    let part = steps.done as f64 / steps.n_sites.max(1) as f64;
-    (steps.pass as f64 + part) / steps.n_passes.max(1) as f64
 }
 
 /// Waits until the work is done, or an exception is raised.

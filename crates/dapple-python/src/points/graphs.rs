@@ -32,11 +32,16 @@ impl GraphMade {
         points: &PointSet,
         stop: &Stop,
     ) -> core::result::Result<dapple::graph::Graph, GraphError> {
+        let is_cancelled = || stop.is_set();
         match self {
-            Self::Delaunay => dapple::graph::delaunay_cancellable(points, &|| stop.is_set()),
-            Self::Gabriel => dapple::graph::gabriel_cancellable(points, &|| stop.is_set()),
-            Self::Yao { cones, direction } => dapple::graph::yao(points, cones, direction),
-            Self::KNearest { k, direction } => dapple::graph::k_nearest(points, k, direction),
+            Self::Delaunay => dapple::graph::delaunay_cancellable(points, &is_cancelled),
+            Self::Gabriel => dapple::graph::gabriel_cancellable(points, &is_cancelled),
+            Self::Yao { cones, direction } => {
+                dapple::graph::yao_cancellable(points, cones, direction, &is_cancelled)
+            }
+            Self::KNearest { k, direction } => {
+                dapple::graph::k_nearest_cancellable(points, k, direction, &is_cancelled)
+            }
         }
     }
 }

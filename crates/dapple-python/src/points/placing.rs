@@ -5,6 +5,7 @@ use crate::data;
 use crate::error::{Error, Result};
 use crate::seed::SeedArgument;
 use crate::threads;
+use crate::watch::{self, Stop};
 use dapple::hash::Seed;
 use dapple::points::{PointSet, PointsError, RSA_DENSITY, VariablePoissonOptions};
 use dapple::raster::Varying;
@@ -27,19 +28,30 @@ impl Wanted {
         domain: dapple::points::Domain,
         options: &VariablePoissonOptions,
         seed: Seed,
+        stop: &Stop,
     ) -> core::result::Result<PointSet, PointsError> {
+        let is_cancelled = || stop.is_set();
         let distance = match self {
-            Self::Distance(Varying::Constant(distance)) => {
-                return dapple::points::poisson_disk(domain, distance, seed);
-            }
-            Self::Count(count) => return dapple::points::poisson_disk_about(domain, count, seed),
+            Self::Distance(Varying::Constant(distance)) => distance.into(),
+            Self::Count(count) => dapple::points::poisson_disk_radius(domain, count)?.into(),
             Self::Distance(distance) => distance,
             Self::CountAfter(density, count) => {
                 let places = places(&domain, count);
                 dapple::points::gentle_radius_for_count(domain, &density, count.into(), places)?
             }
         };
-        dapple::points::variable_poisson_disk(domain, &distance, options, seed)
+        match distance {
+            Varying::Constant(distance) => {
+                dapple::points::poisson_disk_cancellable(domain, distance, seed, &is_cancelled)
+            }
+            distance => dapple::points::variable_poisson_disk_cancellable(
+                domain,
+                &distance,
+                options,
+                seed,
+                &is_cancelled,
+            ),
+        }
     }
 }
 
@@ -131,7 +143,9 @@ pub(crate) fn poisson_disk(
             return Err(Error::new("conflict", message));
         }
     };
-    let set = threads::run(py, move || wanted.place(domain, &options, seed.0))??;
+    let set = watch::run(py, None, move |_, stop| {
+        wanted.place(domain, &options, seed.0, stop)
+    })??;
     Ok(Points::new(set))
 }
 
@@ -177,8 +191,9 @@ pub(crate) fn extend_poisson_disk(
     seed: SeedArgument,
 ) -> Result<Points> {
     let given = Points::read(points, domain)?;
-    let set = threads::run(py, move || {
-        dapple::points::extend_poisson_disk(&given, distance, seed.0)
+    let set = watch::run(py, None, move |_, stop| {
+        let is_cancelled = || stop.is_set();
+        dapple::points::extend_poisson_disk_cancellable(&given, distance, seed.0, &is_cancelled)
     })??;
     Ok(Points::new(set))
 }
@@ -222,8 +237,9 @@ pub(crate) fn nested_poisson_disk(
     seed: SeedArgument,
 ) -> Result<Vec<Points>> {
     let domain = domain.0;
-    let nested = threads::run(py, move || {
-        dapple::points::nested_poisson_disk(domain, &distances, seed.0)
+    let nested = watch::run(py, None, move |_, stop| {
+        let is_cancelled = || stop.is_set();
+        dapple::points::nested_poisson_disk_cancellable(domain, &distances, seed.0, &is_cancelled)
     })??;
     let levels = (0..nested.lengths().len()).filter_map(|level| nested.level(level));
     Ok(levels.map(Points::new).collect())

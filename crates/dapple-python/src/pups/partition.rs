@@ -37,9 +37,14 @@ impl Build for NetMade {
     fn build(&self) -> Result<Pups> {
         let points = PointSet::new(self.domain, self.points.clone())?;
         let options = self.options.clone();
+        let stop = Stop::current();
+        let is_cancelled = || stop.is_set();
         Ok(match self.graph {
-            GraphMade::Delaunay => Pups::delaunay_with(&points, options)?,
-            graph => Pups::new(&points, &graph.build(&points, &Stop::default())?, options)?,
+            GraphMade::Delaunay => Pups::delaunay_cancellable(&points, options, &is_cancelled)?,
+            graph => {
+                let graph = graph.build(&points, &stop)?;
+                Pups::new_cancellable(&points, &graph, options, &is_cancelled)?
+            }
         })
     }
 }

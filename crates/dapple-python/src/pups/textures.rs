@@ -9,6 +9,7 @@ use crate::function::Made;
 use crate::points::Domain;
 use crate::seed::SeedArgument;
 use crate::shared::{Build, Shared};
+use crate::watch::Stop;
 use dapple::hash::Seed;
 use dapple::pups::{PupsField, PupsRecipe, ReferenceImage};
 use dapple::raster::Raster;
@@ -100,6 +101,7 @@ fn placed<T: PupsRecipe<I>, I>(mut options: T, domain: Option<dapple::points::Do
             ..domain
         };
     }
+    options.net_mut().cancel = Stop::current().cancel();
     options
 }
 

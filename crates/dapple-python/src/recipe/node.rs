@@ -3,7 +3,8 @@
 use crate::error::Result;
 use crate::function::Function;
 use crate::shared::Build;
-use dapple::recipe::{Images, Plan, Recipe};
+use crate::watch::Stop;
+use dapple::recipe::{Images, Plan, PlanLimits, Recipe, RecipeError};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -21,10 +22,22 @@ impl Build for NodeMade {
     type Built = Function;
 
     fn build(&self) -> Result<Function> {
-        let plan = Plan::new(&Recipe::from_json(&self.recipe)?, &Images::new(), self.time)?;
+        let recipe = Recipe::from_json(&self.recipe)?;
+        let plan = plan(&recipe, &Images::new(), self.time, Stop::current())?;
         Ok(Function::Plane(Arc::new(match &self.node {
             Some(node) => plan.field(node)?,
             None => plan.height()?,
         })))
     }
+}
+
+/// The plan of a recipe, unless it is no longer wanted.
+pub(super) fn plan(
+    recipe: &Recipe,
+    images: &Images,
+    time: f64,
+    stop: Stop,
+) -> core::result::Result<Plan, RecipeError> {
+    let limits = PlanLimits::default();
+    Plan::new_with_progress(recipe, images, time, &limits, None, move |_| stop.flow())
 }

@@ -1,6 +1,7 @@
 //! Plans: recipes that are ready to be baked.
 
 use super::maps::{_map_info, kind_of, maps};
+use super::node::plan;
 use super::{NodeMade, Recipe, sha256};
 use crate::arrays;
 use crate::data::named;
@@ -9,7 +10,6 @@ use crate::field::Field;
 use crate::function::Made;
 use crate::grid::{Grid, GridArguments, size as size_of};
 use crate::shared::Shared;
-use crate::threads;
 use crate::watch::{self, Stop};
 use dapple::color::{LinearRgb, Normal};
 use dapple::recipe::{
@@ -35,8 +35,8 @@ impl Plan {
         images: Images,
         time: f64,
     ) -> Result<Self> {
-        threads::run(py, move || -> Result<Self> {
-            let plan = RustPlan::new(&recipe, &images, time)?;
+        watch::run(py, None, move |_, stop| -> Result<Self> {
+            let plan = plan(&recipe, &images, time, stop.clone())?;
             Ok(Self {
                 recipe,
                 images,
@@ -93,7 +93,7 @@ fn bake_all(
     stop: &Stop,
 ) -> Result<([usize; 2], Vec<Gathered>)> {
     let wanted = stop.clone();
-    let plan = plan.clone().with_cancel(move || wanted.is_set());
+    let plan = plan.clone().with_progress(move |_| wanted.flow());
     let bake = Bake::new(&plan, options)?;
     let [columns, rows] = bake.size().map(|side| side as usize);
     let n_values = |map| columns * rows * kind_of(map).n_channels;
