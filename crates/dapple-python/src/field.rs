@@ -203,7 +203,9 @@ impl Field {
     /// ------
     /// DappleError
     ///     If `size`, `extent`, `origin` or `window` is out of range or of another number of axes, or `out` has another
-    ///     shape or type.
+    ///     shape.
+    /// TypeError
+    ///     If `out` is no array of float32.
     #[pyo3(signature = (size, *, extent = None, origin = None, window = None, out = None))]
     fn render<'py>(
         &self,

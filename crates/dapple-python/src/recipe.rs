@@ -261,7 +261,7 @@ impl Recipe {
     /// Returns
     /// -------
     /// dict
-    ///     The recipe, with lists, numbers, words and dictionaries alone. `Recipe.from_dict` reads it.
+    ///     The recipe, with lists, numbers, words and dictionaries alone. `Recipe` reads it.
     fn to_dict<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyAny>> {
         Ok(py
             .import("json")?

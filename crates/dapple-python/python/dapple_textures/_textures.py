@@ -716,7 +716,7 @@ def control_points(
     Raises
     ------
     DappleError
-        If two points coincide, or an option is unknown or out of range.
+        If there is no point, one is outside of the domain, two coincide, or an option is unknown or out of range.
 
     Examples
     --------
