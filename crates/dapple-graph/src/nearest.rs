@@ -158,10 +158,13 @@ mod tests {
     use core::sync::atomic::{AtomicUsize, Ordering::Relaxed};
     use dapple_points::{Domain, hash::Seed, white_noise};
 
+    /// Makes a graph, unless it is cancelled.
+    type Make<'a> = &'a dyn Fn(&IsCancelled) -> Result<Graph, GraphError>;
+
     #[test]
     fn searches_for_neighbors_can_be_cancelled_at_every_call() {
         let points = white_noise(Domain::paper_torus(), 2000, Seed(1)).unwrap();
-        let makers: [&dyn Fn(&IsCancelled) -> Result<Graph, GraphError>; 2] = [
+        let makers: [Make<'_>; 2] = [
             &|stop| k_nearest_cancellable(&points, 5, Direction::Symmetric, stop),
             &|stop| yao_cancellable(&points, 6, Direction::Directed, stop),
         ];

@@ -381,11 +381,11 @@ fn value_stability_poisson_disk() {
     assert_eq!(bits, 8764673758391801309);
 }
 
+/// Makes points, unless it is cancelled.
+type Make<'a> = &'a dyn Fn(&IsCancelled) -> Result<PointSet, PointsError>;
+
 /// Makes points with a callback that asks to stop at its calls from `last` on, and returns the number of calls.
-fn cancelled_at(
-    last: usize,
-    make: &dyn Fn(&IsCancelled) -> Result<PointSet, PointsError>,
-) -> usize {
+fn cancelled_at(last: usize, make: Make<'_>) -> usize {
     let n_calls = AtomicUsize::new(0);
     let made = make(&|| n_calls.fetch_add(1, Relaxed) >= last);
     let n_calls = n_calls.into_inner();
@@ -408,7 +408,7 @@ fn sets_can_be_cancelled_at_every_call_and_are_asked_often() {
         ..domain
     };
     let options = VariablePoissonOptions::default();
-    let makers: [&dyn Fn(&IsCancelled) -> Result<PointSet, PointsError>; 3] = [
+    let makers: [Make<'_>; 3] = [
         &|stop| poisson_disk_cancellable(domain, 0.01, Seed(1), stop),
         &|stop| {
             let nested = nested_poisson_disk_cancellable(domain, &[0.01, 0.005], Seed(1), stop)?;
