@@ -22,4 +22,6 @@ readmes! {
     pups: "../crates/dapple-pups/README.md",
     raster: "../crates/dapple-raster/README.md",
     recipe: "../crates/dapple-recipe/README.md",
+    chunks: "../docs/terrain-chunks.md",
+    others: "../docs/from-other-noise-libraries.md",
 }
