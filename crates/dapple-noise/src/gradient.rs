@@ -14,7 +14,7 @@ use crate::lines::Lines;
 use crate::many;
 use dapple_hash::{LatticeHash, Seed, lattice_bits};
 use dapple_raster::simd::{self, dispatch};
-use dapple_raster::{Field, Fractal, FractalShape, RasterError, RasterViewMut, Window};
+use dapple_raster::{Field, Fractal, FractalShape, Gradient, RasterError, RasterViewMut, Window};
 use fearless_simd::{Level, prelude::*, u32x16};
 
 /// How many corners are hashed at once.
@@ -258,6 +258,14 @@ impl<const N: usize> GradientNoise<N> {
         Ok(())
     }
 
+    /// The value at a position in cells, equal to that of [`sample`](Self::sample), and its derivative along each axis,
+    /// per cell. They are NaN where a coordinate is not finite.
+    #[doc(alias("derivative", "analytic derivatives"))]
+    #[must_use]
+    pub fn sample_with_gradient(&self, position: impl Into<[f64; N]>) -> (f32, [f32; N]) {
+        self.value_and_gradient(position.into())
+    }
+
     /// The gradients at corners that differ in the first coordinate alone. The first coordinate of `at` is ignored.
     pub(crate) fn line(&self, level: Level, at: [i64; N], columns: &[i64]) -> Vec<[f32; N]> {
         let row = self.row(at);
@@ -398,6 +406,50 @@ impl<const N: usize> Field<N> for GradientNoise<N> {
 
     fn period(&self) -> [Option<f64>; N] {
         self.periods().map(|cells| cells.map(f64::from))
+    }
+}
+
+impl<const N: usize> Gradient<N> for GradientNoise<N> {
+    fn value_and_gradient(&self, position: [f64; N]) -> (f32, [f32; N]) {
+        let value = self.sample(position);
+        if value.is_nan() {
+            return (value, [f32::NAN; N]);
+        }
+        // The blend weights of both sides of the cell along each axis, and their derivatives
+        let (mut offsets, mut parts) = ([0.0; N], [[0; 2]; N]);
+        let (mut weights, mut slopes) = ([[0.0; 2]; N], [0.0; N]);
+        for axis in 0..N {
+            let place = Place::of(self.moved(position[axis], axis));
+            let sides = self.pair(place.cell, axis);
+            let t = place.offset;
+            offsets[axis] = t;
+            parts[axis] = sides.map(|side| self.hash.part(axis, side));
+            weights[axis] = [1.0 - fade(t), fade(t)];
+            slopes[axis] = 30.0 * t * t * (t - 1.0) * (t - 1.0);
+        }
+        let mut sum = [0.0; N];
+        for corner in 0..1_usize << N {
+            let side = |axis: usize| corner >> axis & 1;
+            // The linear function of the corner: its gradient and its value here
+            let bits = (0..N).fold(0, |bits, axis| bits ^ parts[axis][side(axis)]);
+            let linear = gradient::<N>(LatticeHash::<N>::bits(bits));
+            let height = |axis: usize| linear[axis] * (offsets[axis] - side(axis) as f32);
+            let height = (0..N).map(height).sum::<f32>();
+            for axis in 0..N {
+                // The product rule: the weight of the corner moves along the axis, and so does its function.
+                let others = (0..N).filter(|&other| other != axis);
+                let others = others
+                    .map(|other| weights[other][side(other)])
+                    .product::<f32>();
+                let slope = if side(axis) == 1 {
+                    slopes[axis]
+                } else {
+                    -slopes[axis]
+                };
+                sum[axis] += others * (slope * height + weights[axis][side(axis)] * linear[axis]);
+            }
+        }
+        (value, sum)
     }
 }
 

@@ -2,6 +2,7 @@
 
 mod combinators;
 mod fractal;
+mod gradient;
 mod period;
 mod positions;
 mod slice;
@@ -9,6 +10,7 @@ mod values;
 
 pub use combinators::FieldExt;
 pub use fractal::{Fractal, FractalShape};
+pub use gradient::{DisplacementGradient, Gradient};
 pub use period::common_period;
 pub use positions::{Displacement, Frequency, Offset, Rotated, Warped};
 pub use slice::{Extruded, Slice};

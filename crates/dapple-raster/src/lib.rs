@@ -44,9 +44,9 @@ pub use error::{RasterError, RasterErrorKind};
 #[doc(alias("heightmap", "height map", "noise"))]
 pub use field::Field;
 pub use field::{
-    Change, Constant, Displacement, Extruded, FieldExt, FieldFn, Fractal, FractalShape, Frequency,
-    IntoField, Linear, Mapped, Mixed, Offset, Pair, PairOperation, Rotated, Slice, Warped,
-    common_period, field_fn,
+    Change, Constant, Displacement, DisplacementGradient, Extruded, FieldExt, FieldFn, Fractal,
+    FractalShape, Frequency, Gradient, IntoField, Linear, Mapped, Mixed, Offset, Pair,
+    PairOperation, Rotated, Slice, Warped, common_period, field_fn,
 };
 pub use glam;
 #[doc(hidden)]

@@ -9,4 +9,4 @@
 //! # Ok::<(), dapple_raster::RasterError>(())
 //! ```
 
-pub use crate::{Field, FieldExt, Raster, Window};
+pub use crate::{Field, FieldExt, Gradient, Raster, Window};

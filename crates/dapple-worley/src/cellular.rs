@@ -6,7 +6,7 @@ use crate::render::{Output, Picture, render_stack};
 use crate::sink::{Tone, Values};
 use crate::{Axes, Combination, Plane, Space, Vector, Worley, WorleyError, WorleyErrorKind};
 use dapple_hash::{CellHash, Seed, unit_f64};
-use dapple_raster::{Field, RasterError, RasterViewMut, Window};
+use dapple_raster::{Field, Gradient, RasterError, RasterViewMut, Window};
 
 /// A scalar texture: a combination of F1 to F4 at every position.
 ///
@@ -228,6 +228,16 @@ where
 
     fn period(&self) -> [Option<f64>; N] {
         self.worley.period()
+    }
+}
+
+impl<const N: usize> Gradient<N> for Cellular<N>
+where
+    Axes: Space<N>,
+{
+    fn value_and_gradient(&self, position: [f64; N]) -> (f32, [f32; N]) {
+        let gradient: [f64; N] = self.gradient(position).into();
+        (self.value(position), gradient.map(|part| part as f32))
     }
 }
 

@@ -15,7 +15,7 @@ use crate::render::{Output, Picture, render_stack};
 use crate::sink::{Tone, Values};
 use crate::{Axes, Cellular, Plane, Space, Vector, Worley, WorleyError};
 use dapple_hash::Seed;
-use dapple_raster::{Field, RasterError, RasterViewMut, Window};
+use dapple_raster::{Field, Gradient, RasterError, RasterViewMut, Window};
 
 /// Options of a fractal sum: the number of octaves and how they differ.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -363,6 +363,16 @@ where
     fn period(&self) -> [Option<f64>; N] {
         let first = self.octaves.first();
         first.map_or([None; N], |octave| octave.worley.period())
+    }
+}
+
+impl<const N: usize> Gradient<N> for CellularFractal<N>
+where
+    Axes: Space<N>,
+{
+    fn value_and_gradient(&self, position: [f64; N]) -> (f32, [f32; N]) {
+        let gradient: [f64; N] = self.gradient(position).into();
+        (self.value(position), gradient.map(|part| part as f32))
     }
 }
 

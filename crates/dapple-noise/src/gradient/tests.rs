@@ -507,3 +507,58 @@ fn noise_is_read_from_what_it_wrote() {
         assert!(error.to_string().contains(expected), "{text}: {error}");
     }
 }
+
+#[test]
+fn gradients_are_those_of_differences() {
+    fn check<const N: usize>(noise: GradientNoise<N>) {
+        const STEP: f64 = 1.0 / 256.0;
+        for position in positions::<N>(400) {
+            let (value, gradient) = noise.sample_with_gradient(position);
+            assert_eq!(value.to_bits(), noise.sample(position).to_bits());
+            for axis in 0..N {
+                let at = |step: f64| {
+                    let mut moved = position;
+                    moved[axis] += step;
+                    f64::from(noise.sample(moved))
+                };
+                let difference = (at(STEP) - at(-STEP)) / (2.0 * STEP);
+                let error = (f64::from(gradient[axis]) - difference).abs();
+                // Third derivatives are below 200, and jump at the borders of cells: 200 · STEP² / 6 and a little.
+                assert!(error < 4e-3, "{error} along {axis} at {position:?}");
+            }
+        }
+        let (value, gradient) = noise.sample_with_gradient([f64::INFINITY; N]);
+        assert!(value.is_nan() && gradient.iter().all(|part| part.is_nan()));
+    }
+    check(GradientNoise2::new(SEED));
+    check(
+        GradientNoise3::new(SEED)
+            .with_period([Some(3), None, Some(1)])
+            .unwrap(),
+    );
+    check(GradientNoise4::new(SEED));
+    // At a corner the gradient is the corner's own, whose length is the same everywhere.
+    let at_corner = GradientNoise2::new(SEED)
+        .sample_with_gradient([3.0, -8.0])
+        .1;
+    let length_sq = at_corner.iter().map(|part| part * part).sum::<f32>();
+    assert!((1.0..=2.01).contains(&length_sq), "{length_sq}");
+}
+
+#[test]
+fn sums_of_octaves_have_gradients() {
+    let noise = GradientNoise3::new(SEED);
+    let sum = noise.fractal(4, 0.5, 2.0, FractalShape::Sum).unwrap();
+    let (value, gradient) = sum.sample_with_gradient([0.3, 0.7, -1.2]);
+    assert_eq!(value, sum.sample([0.3, 0.7, -1.2]));
+    for axis in 0..3 {
+        let at = |step: f64| {
+            let mut moved = [0.3, 0.7, -1.2];
+            moved[axis] += step;
+            f64::from(sum.sample(moved))
+        };
+        let difference = (at(1e-3) - at(-1e-3)) * 500.0;
+        // The finest octave has 512 times the third derivative, an eighth as high: 64 · 200 · 1e-6 / 6.
+        assert!((f64::from(gradient[axis]) - difference).abs() < 4e-3);
+    }
+}

@@ -3,7 +3,7 @@
 use super::{
     Extruded, Frequency, Linear, Mapped, Mixed, Offset, Pair, PairOperation, Rotated, Slice, Warped,
 };
-use crate::{Displacement, Field, IntoField, RasterError};
+use crate::{Displacement, Field, Gradient, IntoField, RasterError};
 
 /// The methods of every field: values at positions, and composition.
 ///
@@ -43,6 +43,16 @@ pub trait FieldExt<const N: usize = 2>: Field<N> + Sized {
     ) -> Result<(), RasterError> {
         let positions: Vec<[f64; N]> = positions.iter().map(|&at| at.into()).collect();
         self.values(&positions, values)
+    }
+
+    /// The value at a position, equal to that of [`sample`](Self::sample), and its derivative along each axis, for fields
+    /// that have a [`Gradient`].
+    #[doc(alias("derivative", "analytic derivatives"))]
+    fn sample_with_gradient(&self, position: impl Into<[f64; N]>) -> (f32, [f32; N])
+    where
+        Self: Gradient<N>,
+    {
+        self.value_and_gradient(position.into())
     }
 
     /// The plane along the first two axes at fixed coordinates along the others: `[z]` in space, `[z, w]` in four

@@ -61,7 +61,7 @@ crate::named! {
 
 impl FractalShape {
     #[inline]
-    fn of(self, value: f32) -> f32 {
+    pub(super) fn of(self, value: f32) -> f32 {
         match self {
             Self::Sum => value,
             Self::Ridged => 1.0 - value.abs(),
@@ -115,8 +115,12 @@ impl<F> Fractal<F> {
         weights.sum::<f64>() as f32
     }
 
+    pub(super) const fn shape(&self) -> FractalShape {
+        self.shape
+    }
+
     /// The octaves at their frequencies, and their weights.
-    fn octaves<const N: usize>(&self) -> impl Iterator<Item = (Frequency<&F, N>, f32)> {
+    pub(super) fn octaves<const N: usize>(&self) -> impl Iterator<Item = (Frequency<&F, N>, f32)> {
         self.octaves.iter().map(|octave| {
             let scaled = Frequency {
                 field: &octave.field,

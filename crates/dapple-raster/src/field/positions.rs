@@ -80,7 +80,7 @@ fn render_rows<const N: usize>(
 }
 
 impl<F, const N: usize> Frequency<F, N> {
-    fn moved(&self, mut position: [f64; N]) -> [f64; N] {
+    pub(super) fn moved(&self, mut position: [f64; N]) -> [f64; N] {
         for (at, frequency) in position.iter_mut().zip(self.frequency) {
             *at *= frequency;
         }
@@ -119,7 +119,7 @@ impl<F: Field<N>, const N: usize> Field<N> for Frequency<F, N> {
 }
 
 impl<F, const N: usize> Offset<F, N> {
-    fn moved(&self, mut position: [f64; N]) -> [f64; N] {
+    pub(super) fn moved(&self, mut position: [f64; N]) -> [f64; N] {
         for (at, offset) in position.iter_mut().zip(self.offset) {
             *at += offset;
         }
@@ -147,7 +147,7 @@ impl<F: Field<N>, const N: usize> Field<N> for Offset<F, N> {
 }
 
 impl<F> Rotated<F> {
-    fn moved<const N: usize>(&self, mut position: [f64; N]) -> [f64; N] {
+    pub(super) fn moved<const N: usize>(&self, mut position: [f64; N]) -> [f64; N] {
         let ([cos, sin], [x, y]) = (self.direction, [position[0], position[1]]);
         position[0] = x * cos + y * sin;
         position[1] = y * cos - x * sin;

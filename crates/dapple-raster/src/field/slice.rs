@@ -12,7 +12,7 @@ pub struct Slice<F, const N: usize> {
 }
 
 impl<F, const N: usize> Slice<F, N> {
-    fn in_space(&self, [x, y]: [f64; 2]) -> [f64; N] {
+    pub(super) fn in_space(&self, [x, y]: [f64; 2]) -> [f64; N] {
         let mut position = self.rest;
         position[0] = x;
         position[1] = y;

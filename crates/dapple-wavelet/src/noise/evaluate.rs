@@ -4,7 +4,7 @@ use super::WaveletNoise;
 use super::band::Band;
 use super::place::{Period, Place};
 use super::render::render;
-use dapple_raster::{Field, RasterError, RasterViewMut, Window};
+use dapple_raster::{Field, Gradient, RasterError, RasterViewMut, Window};
 use glam::{DVec2, DVec3};
 
 impl WaveletNoise<2> {
@@ -93,6 +93,20 @@ impl Field<3> for WaveletNoise<3> {
 
     fn period(&self) -> [Option<f64>; 3] {
         self.size().map(|cells| Some(f64::from(cells)))
+    }
+}
+
+impl Gradient for WaveletNoise<2> {
+    fn value_and_gradient(&self, position: [f64; 2]) -> (f32, [f32; 2]) {
+        let (value, gradient) = self.sample_with_gradient(position);
+        (value, gradient.to_array().map(|part| part as f32))
+    }
+}
+
+impl Gradient<3> for WaveletNoise<3> {
+    fn value_and_gradient(&self, position: [f64; 3]) -> (f32, [f32; 3]) {
+        let (value, gradient) = self.sample_with_gradient(position);
+        (value, gradient.to_array().map(|part| part as f32))
     }
 }
 

@@ -62,3 +62,18 @@ fn a_stack_of_windows_has_the_values_of_each_bit_for_bit() {
         assert!(field.render_stack(&windows, Vec::new()).is_err());
     }
 }
+
+#[test]
+fn compositions_of_cells_have_gradients() {
+    let cells = Worley4::new(Seed(7)).combine(Combination::F1);
+    let field = (&cells).frequency(2.0).slice([0.5, 1.25]);
+    for index in 0..50 {
+        let at = [0.31 * f64::from(index), 5.0 - 0.17 * f64::from(index)];
+        let (value, gradient) = field.sample_with_gradient(at);
+        assert_eq!(value, field.sample(at));
+        let [x, y] = at;
+        let expected = cells.gradient([2.0 * x, 2.0 * y, 1.0, 2.5]).to_array();
+        let expected = [expected[0], expected[1]].map(|part| (2.0 * part) as f32);
+        assert_eq!(gradient, expected);
+    }
+}
