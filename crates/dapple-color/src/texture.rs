@@ -1,8 +1,8 @@
 //! Rasters as the bytes of a texture on a GPU, and their mip levels.
 //!
 //! The bytes have the order of `Rgba8Unorm` and `Rgba8UnormSrgb` in WebGPU and its siblings elsewhere: red, green, blue,
-//! alpha, row by row from the top, without padding. Colors are sRGB codes, of which the GPU makes linear light when it
-//! samples; data is linear in the texture too.
+//! alpha, row by row from the top, without padding. Colors are sRGB codes, which the GPU
+//! decodes to linear light when it samples; data is linear in the texture too.
 //!
 //! A mip level has half of the columns and rows of the level before, rounded down, and at least one. Its pixels are the
 //! means over their areas in linear light; along an odd side the areas share pixels. Such a level of an image that
@@ -31,7 +31,7 @@ pub trait ColorPixel: TexturePixel {
     fn to_rgba8_srgb(self) -> [u8; 4];
 }
 
-/// The methods by which a raster becomes a texture of a GPU.
+/// Conversion of a raster to the bytes and the mip levels of a GPU texture.
 ///
 /// # Examples
 ///

@@ -75,7 +75,7 @@ pub struct VoronoiSide {
     /// The axis of the Delaunay graph that leads to the neighbor's site.
     pub neighbor: Axis,
     /// The vertices at both ends, in counterclockwise order (from x towards y) around the cell; `None` where the side is
-    /// a ray that goes on for ever.
+    /// an unbounded ray.
     pub vertices: [Option<u32>; 2],
     /// The ends, relative to the site of the cell.
     pub ends: [Option<DVec2>; 2],

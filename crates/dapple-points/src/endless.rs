@@ -183,7 +183,7 @@ impl<F: Fn([f64; 2]) -> f64> EndlessVariablePoissonDisk<F> {
         self
     }
 
-    /// The set that repeats along the axes with a period. The radius is read in the first period, from 0 on.
+    /// The set that repeats with a period along each axis that has one. The radius is read in the first period, which starts at 0.
     ///
     /// # Errors
     ///
@@ -210,7 +210,7 @@ impl<F: Fn([f64; 2]) -> f64> EndlessVariablePoissonDisk<F> {
     }
 }
 
-/// The cells of the plane, and the rules by which they throw darts.
+/// Cell grid of the plane and the rules of its dart throwing.
 #[derive(Clone, Debug, PartialEq)]
 struct Plane {
     seed: Seed,
@@ -361,7 +361,7 @@ impl Plane {
         }
     }
 
-    /// The number of cells from that of a point to the farthest one that may hold a point too close to it.
+    /// Search radius in cells: points in conflict are at most this many cells apart.
     fn reach(&self) -> i64 {
         let most = (self.radii[1] / self.step) as i64 + 1;
         let narrowest = self.axes[0].narrowest().min(self.axes[1].narrowest());

@@ -57,9 +57,9 @@ struct Dart {
     radius: f64,
 }
 
-/// What a neighboring cell has against a dart.
+/// Conflict between a dart and a neighboring cell.
 enum Rival {
-    /// Nothing.
+    /// No conflict.
     None,
     /// A point too close to the dart.
     Winner,
@@ -161,7 +161,7 @@ impl<'a, F: Fn([f64; 2]) -> f64> Block<'a, F> {
         Ok(found.collect())
     }
 
-    /// Decides the darts of a cell up to and including those of a round.
+    /// Decides the darts of a cell in all rounds up to `round`, inclusive.
     fn decide(&mut self, index: usize, round: u8) -> Result<(), Stop> {
         if self.cells[index].state == State::New {
             self.start(index)?;
@@ -183,7 +183,7 @@ impl<'a, F: Fn([f64; 2]) -> f64> Block<'a, F> {
         let (dart, round) = (self.cells[index].dart, self.cells[index].round);
         let reach = self.plane.rule.distance(dart.radius, self.radii[1]);
         let begin = self.earlier.len();
-        // Look at what is decided already, and collect what is not.
+        // Check the rivals that are decided, and collect the undecided ones.
         for which in 0..self.around.len() {
             let neighbor = self.around[which];
             if neighbor.distance_sq >= reach * reach {
@@ -226,7 +226,7 @@ impl<'a, F: Fn([f64; 2]) -> f64> Block<'a, F> {
         Ok(is_free)
     }
 
-    /// What a neighboring cell has against a dart that belongs to a cell with this hash.
+    /// Conflict of a dart with another cell; `hash` is the hash of the cell of the dart.
     fn next_rival(
         &self,
         dart: &Dart,
@@ -285,7 +285,7 @@ impl<'a, F: Fn([f64; 2]) -> f64> Block<'a, F> {
         self.throw(index)
     }
 
-    /// Throws the dart of the current round; goes on to the next round while it is certain not to stay.
+    /// Throws the dart of the current round, and of the following rounds until one may stay.
     fn throw(&mut self, index: usize) -> Result<(), Stop> {
         while self.cells[index].round < N_ROUNDS {
             let cell = &self.cells[index];
@@ -409,8 +409,8 @@ const ID: u32 = 1;
 const RANK: u32 = 2;
 const THIN: u32 = RANK + N_ROUNDS as u32;
 
-/// What the bits of a cell's place are changed by in each round: the first numbers of Sobol's sequence, x in the upper
-/// half. The darts of a cell so fall into different parts of it.
+/// First numbers of Sobol's sequence, x in the upper half, combined with the position bits of a cell in each round, so
+/// that the darts of a cell fall into different parts of it.
 const DARTS: [u64; N_ROUNDS as usize] = {
     let mut darts = [0; N_ROUNDS as usize];
     let mut round = 0;
