@@ -8,9 +8,7 @@ use crate::grid::CELLS;
 use crate::pups::{PupsMade, TextureMade};
 use crate::recipe::NodeMade;
 use crate::shared::{Build, Shared};
-use dapple::raster::{
-    Constant, Field, FieldExt, Fractal, FractalShape, PairOperation,
-};
+use dapple::raster::{Constant, Field, FieldExt, Fractal, FractalShape, PairOperation};
 use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -49,11 +47,12 @@ impl Function {
 
     /// Writes the values at positions, given as flat coordinates.
     pub(crate) fn values(&self, positions: &[f64], values: &mut [f32]) -> Result<()> {
-        Ok(match self {
+        match self {
             Self::Plane(field) => field.values(positions.as_chunks().0, values)?,
             Self::Space(field) => field.values(positions.as_chunks().0, values)?,
             Self::Time(field) => field.values(positions.as_chunks().0, values)?,
-        })
+        }
+        Ok(())
     }
 
     /// The plane along the first two axes at fixed further coordinates.

@@ -283,7 +283,8 @@ pub(crate) fn read_all(what: &str, data: &Bound<'_, PyAny>) -> Result<(Layout, V
         let (layout, maps) = read(what, &item?)?;
         let first = first.get_or_insert_with(|| layout.clone());
         if first.names != layout.names || first.kinds != layout.kinds {
-            let message = format!("number {index} of the {what} has other maps or channels than the first");
+            let message =
+                format!("number {index} of the {what} has other maps or channels than the first");
             return Err(Error::new("channels", message));
         }
         all.push(maps);

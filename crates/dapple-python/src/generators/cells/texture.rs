@@ -1,9 +1,7 @@
 //! Textures of cells: distances, their sums at several scales, borders and cell values.
 
 use dapple::raster::Field;
-use dapple::worley::{
-    Axes, CellValues, Cellular, CellularFractal, EdgeDistances, Plane, Space,
-};
+use dapple::worley::{Axes, CellValues, Cellular, CellularFractal, EdgeDistances, Plane, Space};
 use std::sync::Arc;
 
 /// A texture of cells, by the kind of its values.
