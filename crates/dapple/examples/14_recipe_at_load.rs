@@ -109,3 +109,16 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 fn say(line: &str) {
     println!("{line}");
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Loading;
+    use dapple::recipe::{Recipe, RecipeErrorKind};
+
+    #[test]
+    fn a_material_is_given_up_when_it_is_not_wanted() {
+        let recipe = Recipe::builtin("stone-and-grass").unwrap();
+        let error = Loading::new(recipe).until(0.1).unwrap_err();
+        assert_eq!(*error.kind(), RecipeErrorKind::Cancelled);
+    }
+}

@@ -92,6 +92,10 @@
 //! | `12_baked_model` | stripes grown over a mesh, as a GLB file |
 //! | `13_terrain_chunks` | a world without an end in chunks: heights, biomes and trees |
 //! | `14_recipe_at_load` | a material made while a game loads, with a bar, and given up |
+//! | `15_cracked_ground` | a cracked ground that tiles, as bytes with mip levels for a GPU |
+//! | `16_voronoi` | Voronoi cells on a torus, colored by their areas |
+//! | `17_moving_coat` | an animal coat that moves in a loop |
+//! | `18_grow_and_repair` | a scratch repaired with texture, and a tile grown from it |
 //!
 //! # Features
 //!
