@@ -210,19 +210,34 @@ impl<const N: usize> GradientNoise<N> {
     /// The value at a position in cells.
     #[must_use]
     pub fn sample(&self, position: impl Into<[f64; N]>) -> f32 {
-        let position = position.into();
+        match self.around(position.into()) {
+            Some((offsets, parts)) => Self::between_corners(&offsets, &parts),
+            None => f32::NAN,
+        }
+    }
+
+    /// The offset of a position in its cell along each axis, and the parts of the hashes of the corners on both sides;
+    /// `None` if a coordinate is not finite.
+    #[inline(always)]
+    fn around(&self, position: [f64; N]) -> Option<([f32; N], [[u32; 2]; N])> {
         // Loops: arrays that are mapped become calls from three axes on.
         let mut offsets = [0.0; N];
         let mut parts = [[0; 2]; N];
         for axis in 0..N {
             let place = Place::of(self.moved(position[axis], axis));
             if !place.offset.is_finite() {
-                return f32::NAN;
+                return None;
             }
             offsets[axis] = place.offset;
             let [near, far] = self.pair(place.cell, axis);
             parts[axis] = [self.hash.part(axis, near), self.hash.part(axis, far)];
         }
+        Some((offsets, parts))
+    }
+
+    /// The value between the corners of a cell.
+    #[inline(always)]
+    fn between_corners(offsets: &[f32; N], parts: &[[u32; 2]; N]) -> f32 {
         let mut columns = [[Column::default(); MOST_CORNERS]; 2];
         for index in 0..corners(N) {
             let mut row = 0;
@@ -231,14 +246,11 @@ impl<const N: usize> GradientNoise<N> {
             }
             for side in 0..2 {
                 let bits = LatticeHash::<N>::bits(row ^ parts[0][side]);
-                columns[side][index] = Column::of(gradient(bits), index, &offsets);
+                columns[side][index] = Column::of(gradient(bits), index, offsets);
             }
         }
         let [left, right] = columns;
-        let sides = [
-            Column::blend(left, &offsets),
-            Column::blend(right, &offsets),
-        ];
+        let sides = [Column::blend(left, offsets), Column::blend(right, offsets)];
         Column::between(sides, offsets[0], fade(offsets[0]))
     }
 
@@ -411,19 +423,14 @@ impl<const N: usize> Field<N> for GradientNoise<N> {
 
 impl<const N: usize> Gradient<N> for GradientNoise<N> {
     fn value_and_gradient(&self, position: [f64; N]) -> (f32, [f32; N]) {
-        let value = self.sample(position);
-        if value.is_nan() {
-            return (value, [f32::NAN; N]);
-        }
+        let Some((offsets, parts)) = self.around(position) else {
+            return (f32::NAN, [f32::NAN; N]);
+        };
+        let value = Self::between_corners(&offsets, &parts);
         // The blend weights of both sides of the cell along each axis, and their derivatives
-        let (mut offsets, mut parts) = ([0.0; N], [[0; 2]; N]);
         let (mut weights, mut slopes) = ([[0.0; 2]; N], [0.0; N]);
         for axis in 0..N {
-            let place = Place::of(self.moved(position[axis], axis));
-            let sides = self.pair(place.cell, axis);
-            let t = place.offset;
-            offsets[axis] = t;
-            parts[axis] = sides.map(|side| self.hash.part(axis, side));
+            let t = offsets[axis];
             weights[axis] = [1.0 - fade(t), fade(t)];
             slopes[axis] = 30.0 * t * t * (t - 1.0) * (t - 1.0);
         }
