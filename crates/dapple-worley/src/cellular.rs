@@ -212,18 +212,9 @@ where
         windows: &[Window<N>],
         outs: Vec<RasterViewMut<'_, f32>>,
     ) -> Result<(), RasterError> {
-        RasterError::check_length(outs.len(), windows.len())?;
-        let mut slices = windows.iter().zip(outs).peekable();
-        // Planes of the same pixels share their columns and rows.
-        while let Some((first, out)) = slices.next() {
-            let flat = first.in_plane();
-            let mut stack = vec![(Plane::of_window(first), out)];
-            while let Some((window, out)) = slices.next_if(|(next, _)| next.in_plane() == flat) {
-                stack.push((Plane::of_window(window), out));
-            }
-            self.render_slices(&flat, stack)?;
-        }
-        Ok(())
+        render_windows(windows, outs, |window, slices| {
+            self.render_slices(window, slices)
+        })
     }
 
     fn period(&self) -> [Option<f64>; N] {
@@ -239,6 +230,29 @@ where
         let gradient: [f64; N] = self.gradient(position).into();
         (self.value(position), gradient.map(|part| part as f32))
     }
+}
+
+/// Renders windows of space by a function that fills several planes of one window.
+pub(crate) fn render_windows<'v, const N: usize>(
+    windows: &[Window<N>],
+    outs: Vec<RasterViewMut<'v, f32>>,
+    render: impl Fn(&Window, Vec<(Plane<N>, RasterViewMut<'v, f32>)>) -> Result<(), RasterError>,
+) -> Result<(), RasterError>
+where
+    Axes: Space<N>,
+{
+    RasterError::check_length(outs.len(), windows.len())?;
+    let mut slices = windows.iter().zip(outs).peekable();
+    // Planes of the same pixels share their columns and rows.
+    while let Some((first, out)) = slices.next() {
+        let flat = first.in_plane();
+        let mut stack = vec![(Plane::of_window(first), out)];
+        while let Some((window, out)) = slices.next_if(|(next, _)| next.in_plane() == flat) {
+            stack.push((Plane::of_window(window), out));
+        }
+        render(&flat, stack)?;
+    }
+    Ok(())
 }
 
 /// The range of some values without the lowest and the highest thousandth.

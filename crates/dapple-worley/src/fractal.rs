@@ -8,7 +8,7 @@
 //! With a period, octave `i` repeats after `lacunarity^i` times as many of its own cells, so that the sum repeats with
 //! the period of the first octave and no octave more often.
 
-use crate::cellular::measure_range;
+use crate::cellular::{measure_range, render_windows};
 use crate::doors::Doors as _;
 use crate::fixed::Place;
 use crate::render::{Output, Picture, render_stack};
@@ -345,18 +345,9 @@ where
         windows: &[Window<N>],
         outs: Vec<RasterViewMut<'_, f32>>,
     ) -> Result<(), RasterError> {
-        RasterError::check_length(outs.len(), windows.len())?;
-        let mut slices = windows.iter().zip(outs).peekable();
-        // Planes of the same pixels share their columns and rows.
-        while let Some((first, out)) = slices.next() {
-            let flat = first.in_plane();
-            let mut stack = vec![(Plane::of_window(first), out)];
-            while let Some((window, out)) = slices.next_if(|(next, _)| next.in_plane() == flat) {
-                stack.push((Plane::of_window(window), out));
-            }
-            self.render_slices(&flat, stack)?;
-        }
-        Ok(())
+        render_windows(windows, outs, |window, slices| {
+            self.render_slices(window, slices)
+        })
     }
 
     /// The number of cells of the first octave after which the sum repeats; the other octaves repeat by then too.
