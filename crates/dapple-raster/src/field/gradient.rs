@@ -1,5 +1,6 @@
 //! Fields with exact gradients, by the chain rule.
 
+use super::values::unit;
 use super::{
     Extruded, FractalShape, Frequency, Linear, Mapped, Mixed, Offset, Pair, PairOperation, Rotated,
     Slice, Warped,
@@ -179,7 +180,7 @@ impl<A: Gradient<N>, B: Gradient<N>, T: Gradient<N>, const N: usize> Gradient<N>
         let (from, by_from) = self.from.value_and_gradient(position);
         let (to, by_to) = self.to.value_and_gradient(position);
         let (by, by_by) = self.by.value_and_gradient(position);
-        let part = by.clamp(0.0, 1.0);
+        let part = unit(by);
         let mut gradient = plus(times(by_from, 1.0 - part), times(by_to, part));
         if part == by {
             gradient = plus(gradient, times(by_by, to - from));

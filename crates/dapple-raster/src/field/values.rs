@@ -208,7 +208,7 @@ impl<A: Field<N>, B: Field<N>, T: Field<N>, const N: usize> Field<N> for Mixed<A
     }
 }
 
-fn unit(value: f32) -> f32 {
+pub(super) fn unit(value: f32) -> f32 {
     value.clamp(0.0, 1.0)
 }
 
