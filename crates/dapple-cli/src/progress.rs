@@ -56,6 +56,13 @@ pub(crate) struct Progress {
     stop: Option<Arc<AtomicBool>>,
 }
 
+/// Whether a stop was requested.
+#[cfg(feature = "studio")]
+fn is_set(stop: &Option<Arc<AtomicBool>>) -> bool {
+    stop.as_ref()
+        .is_some_and(|stop| stop.load(Ordering::SeqCst))
+}
+
 impl Progress {
     /// Shows a spinner.
     pub(crate) fn spinner(label: &'static str, context: &Context) -> Self {
@@ -83,9 +90,7 @@ impl Progress {
     /// That it was stopped.
     pub(crate) fn check(&self) -> Result<()> {
         #[cfg(feature = "studio")]
-        if let Some(stop) = &self.stop
-            && stop.load(Ordering::SeqCst)
-        {
+        if is_set(&self.stop) {
             return Err(anyhow!("the export was stopped"));
         }
         Ok(())
@@ -99,10 +104,7 @@ impl Progress {
         let stop = self.stop.clone();
         move |_| {
             #[cfg(feature = "studio")]
-            if stop
-                .as_ref()
-                .is_some_and(|stop| stop.load(Ordering::SeqCst))
-            {
+            if is_set(&stop) {
                 return ControlFlow::Break(());
             }
             ControlFlow::Continue(())
