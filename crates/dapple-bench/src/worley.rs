@@ -22,7 +22,7 @@ use crate::harness::{Bench, Side};
 use crate::sets::SEED;
 use anyhow::{Result, ensure};
 use dapple_raster::{Raster, Window};
-use dapple_worley::{Axes, Cellular, Combination, Plane, Space, Vector, Worley};
+use dapple_worley::{Cellular, Combination, Dimensions, Plane, Space, Vector, Worley};
 use glam::DVec2;
 
 /// Measures the rows of the group.
@@ -73,7 +73,7 @@ const F2_MINUS_F1_IN_SPACE: Known = Known {
 /// A cellular texture and the pixels of its raster, cut into slices along the first two axes.
 struct Grid<const N: usize>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     size: [u32; N],
     px_per_cell: u32,
@@ -85,7 +85,7 @@ where
 
 impl<const N: usize> Grid<N>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     /// Returns a raster of `size` pixels that begins at the origin, with `px_per_cell` pixels per unit cell along each
     /// axis.

@@ -9,7 +9,7 @@ use glam::DVec2;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
-pub enum Direction {
+pub enum EdgeDirection {
     /// Each point has the axes that it chose itself.
     #[default]
     Directed,
@@ -29,9 +29,9 @@ pub(crate) fn graph_of(
     lattice: Lattice,
     sites: Vec<DVec2>,
     mut rows: Vec<Vec<Choice>>,
-    direction: Direction,
+    direction: EdgeDirection,
 ) -> Result<Graph, GraphError> {
-    if direction == Direction::Symmetric {
+    if direction == EdgeDirection::Symmetric {
         for from in 0..rows.len() {
             for index in 0..rows[from].len() {
                 let Choice { to, steps } = rows[from][index];
@@ -70,6 +70,6 @@ pub(crate) fn graph_of(
         symmetric: true,
         delaunay: false,
     };
-    graph.symmetric = direction == Direction::Symmetric || graph.every_axis_has_its_opposite();
+    graph.symmetric = direction == EdgeDirection::Symmetric || graph.every_axis_has_its_opposite();
     Ok(graph)
 }

@@ -111,7 +111,7 @@ impl TryFrom<GraphData> for Graph {
 
 #[cfg(test)]
 mod tests {
-    use crate::{Direction, EditableDelaunay, Graph, PointSet, delaunay, gabriel, k_nearest};
+    use crate::{EdgeDirection, EditableDelaunay, Graph, PointSet, delaunay, gabriel, k_nearest};
     use dapple_points::hash::Seed;
     use dapple_points::{Domain, white_noise};
     use glam::DVec2;
@@ -138,7 +138,7 @@ mod tests {
                 EditableDelaunay::new(&points).unwrap().to_graph(),
                 delaunay(&empty).unwrap(),
                 gabriel(&points).unwrap(),
-                k_nearest(&points, 3, Direction::Directed).unwrap(),
+                k_nearest(&points, 3, EdgeDirection::Directed).unwrap(),
             ] {
                 let text = serde_json::to_string(&graph).unwrap();
                 let read: Graph = serde_json::from_str(&text).unwrap();

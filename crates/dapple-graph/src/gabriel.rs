@@ -6,7 +6,7 @@
 //! The Gabriel graph is a part of the Delaunay graph. A point on the circle itself counts as inside of it, as in the
 //! paper, so that the remaining edges are those that cross the side that the Voronoi cells of their ends share.
 
-use crate::build::{Choice, Direction, graph_of};
+use crate::build::{Choice, EdgeDirection, graph_of};
 use crate::{Axis, Graph, GraphError, IsCancelled, delaunay_cancellable};
 use dapple_points::PointSet;
 use glam::DVec2;
@@ -70,7 +70,7 @@ pub fn gabriel_cancellable(
         star.iter().filter(empty).map(choice).collect()
     });
     let rows: Vec<Vec<Choice>> = rows.collect();
-    graph_of(lattice, sites, rows, Direction::Directed)
+    graph_of(lattice, sites, rows, EdgeDirection::Directed)
 }
 
 /// Whether a place lies outside of the circle with the diameter from the origin to `edge`, or is its end; exact.

@@ -5,7 +5,7 @@ use crate::build::{Choice, graph_of};
 #[cfg(feature = "serde")]
 use crate::data::GraphData;
 use crate::lattice::Lattice;
-use crate::{Direction, GraphError, GraphErrorKind};
+use crate::{EdgeDirection, GraphError, GraphErrorKind};
 use dapple_points::{PointIdx, PointSet};
 use glam::DVec2;
 
@@ -92,7 +92,7 @@ impl Graph {
         };
         let numbered = (0..).map(PointIdx).zip(rows);
         let rows = numbered.map(row).collect::<Result<Vec<_>, GraphError>>()?;
-        graph_of(lattice, sites, rows, Direction::Directed)
+        graph_of(lattice, sites, rows, EdgeDirection::Directed)
     }
 
     /// The axes of a point, counterclockwise, from the smallest angle in `[0, 2π)` from the x axis towards y; axes with

@@ -29,7 +29,7 @@ mod data;
 mod grid;
 mod lattice;
 
-pub use build::Direction;
+pub use build::EdgeDirection;
 pub use dapple_points as points;
 pub use dapple_points::{IsCancelled, PointIdx, PointSet, glam};
 pub use dapple_raster as raster;

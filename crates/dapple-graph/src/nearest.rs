@@ -1,6 +1,6 @@
 //! The graph of nearest neighbors, and the search for neighbors, nearest first, which other graphs use as well.
 
-use crate::build::{Choice, Direction, graph_of};
+use crate::build::{Choice, EdgeDirection, graph_of};
 use crate::delaunay::{Refusal, check};
 use crate::grid::{Budget, Grid, TooThin};
 use crate::lattice::{Lattice, check_distinct};
@@ -25,15 +25,15 @@ use glam::DVec2;
 /// # Examples
 ///
 /// ```
-/// use dapple_graph::{Direction, PointIdx, PointSet, glam::DVec2, k_nearest, points::Domain};
+/// use dapple_graph::{EdgeDirection, PointIdx, PointSet, glam::DVec2, k_nearest, points::Domain};
 ///
 /// let positions = [(0.0, 0.0), (0.3, 0.0), (0.9, 0.0)].map(DVec2::from).to_vec();
 /// let points = PointSet::new(Domain::torus(DVec2::ZERO, DVec2::ONE), positions)?;
-/// let graph = k_nearest(&points, 1, Direction::Directed)?;
+/// let graph = k_nearest(&points, 1, EdgeDirection::Directed)?;
 /// assert_eq!(graph.axes(PointIdx(0))[0].to, PointIdx(2), "around the torus");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn k_nearest(points: &PointSet, k: u32, direction: Direction) -> Result<Graph, GraphError> {
+pub fn k_nearest(points: &PointSet, k: u32, direction: EdgeDirection) -> Result<Graph, GraphError> {
     k_nearest_cancellable(points, k, direction, &|| false)
 }
 
@@ -46,18 +46,18 @@ pub fn k_nearest(points: &PointSet, k: u32, direction: Direction) -> Result<Grap
 /// # Examples
 ///
 /// ```
-/// use dapple_graph::{Direction, GraphErrorKind, k_nearest_cancellable};
+/// use dapple_graph::{EdgeDirection, GraphErrorKind, k_nearest_cancellable};
 /// use dapple_graph::{glam::DVec2, points::{Domain, hash::Seed, white_noise}};
 ///
 /// let points = white_noise(Domain::torus(DVec2::ZERO, DVec2::ONE), 1000, Seed(1))?;
-/// let error = k_nearest_cancellable(&points, 6, Direction::Directed, &|| true).unwrap_err();
+/// let error = k_nearest_cancellable(&points, 6, EdgeDirection::Directed, &|| true).unwrap_err();
 /// assert_eq!(error.kind(), &GraphErrorKind::Cancelled);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn k_nearest_cancellable(
     points: &PointSet,
     k: u32,
-    direction: Direction,
+    direction: EdgeDirection,
     is_cancelled: &IsCancelled,
 ) -> Result<Graph, GraphError> {
     let lattice = Lattice::new(points.domain());
@@ -153,7 +153,7 @@ fn length_sq(steps: DVec2) -> i128 {
 
 #[cfg(test)]
 mod tests {
-    use crate::{Direction, Graph, GraphError, GraphErrorKind, IsCancelled};
+    use crate::{EdgeDirection, Graph, GraphError, GraphErrorKind, IsCancelled};
     use crate::{k_nearest_cancellable, yao_cancellable};
     use core::sync::atomic::{AtomicUsize, Ordering::Relaxed};
     use dapple_points::{Domain, hash::Seed, white_noise};
@@ -165,8 +165,8 @@ mod tests {
     fn searches_for_neighbors_can_be_cancelled_at_every_call() {
         let points = white_noise(Domain::paper_torus(), 2000, Seed(1)).unwrap();
         let makers: [Make<'_>; 2] = [
-            &|stop| k_nearest_cancellable(&points, 5, Direction::Symmetric, stop),
-            &|stop| yao_cancellable(&points, 6, Direction::Directed, stop),
+            &|stop| k_nearest_cancellable(&points, 5, EdgeDirection::Symmetric, stop),
+            &|stop| yao_cancellable(&points, 6, EdgeDirection::Directed, stop),
         ];
         for make in makers {
             let whole = make(&|| false);

@@ -9,7 +9,7 @@
 //! exact. The borders in the directions of the axes are exact themselves, the other ones are rounded.
 
 use crate::angle::{by_angle, turn};
-use crate::build::{Choice, Direction, graph_of};
+use crate::build::{Choice, EdgeDirection, graph_of};
 use crate::grid::{Budget, Grid};
 use crate::lattice::{Lattice, check_distinct};
 use crate::nearest::{made, near, rows_of};
@@ -37,14 +37,14 @@ use glam::DVec2;
 /// # Examples
 ///
 /// ```
-/// use dapple_graph::{Direction, PointIdx, PointSet, glam::DVec2, points::Domain, yao};
+/// use dapple_graph::{EdgeDirection, PointIdx, PointSet, glam::DVec2, points::Domain, yao};
 ///
 /// let points = PointSet::new(Domain::torus(DVec2::ZERO, DVec2::ONE), vec![DVec2::ZERO])?;
-/// let graph = yao(&points, 4, Direction::Directed)?;
+/// let graph = yao(&points, 4, EdgeDirection::Directed)?;
 /// assert_eq!(graph.axes(PointIdx(0)).len(), 4, "its own images");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn yao(points: &PointSet, cones: u32, direction: Direction) -> Result<Graph, GraphError> {
+pub fn yao(points: &PointSet, cones: u32, direction: EdgeDirection) -> Result<Graph, GraphError> {
     yao_cancellable(points, cones, direction, &|| false)
 }
 
@@ -56,7 +56,7 @@ pub fn yao(points: &PointSet, cones: u32, direction: Direction) -> Result<Graph,
 pub fn yao_cancellable(
     points: &PointSet,
     cones: u32,
-    direction: Direction,
+    direction: EdgeDirection,
     is_cancelled: &IsCancelled,
 ) -> Result<Graph, GraphError> {
     if cones == 0 || cones > MAX_CONES {

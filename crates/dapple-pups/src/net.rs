@@ -342,7 +342,7 @@ fn close_gap(
 #[cfg(test)]
 mod tests {
     use crate::{Pups, PupsOptions};
-    use dapple_graph::{Direction, Graph, gabriel, k_nearest};
+    use dapple_graph::{EdgeDirection, Graph, gabriel, k_nearest};
     use dapple_hash::Seed;
     use dapple_points::{Domain, PointIdx, white_noise};
     use glam::DVec2;
@@ -352,8 +352,8 @@ mod tests {
         let points = white_noise(Domain::paper_torus(), 60, Seed(11)).unwrap();
         let alone: Vec<Vec<PointIdx>> = vec![Vec::new(); 60];
         let graphs = [
-            k_nearest(&points, 1, Direction::Directed).unwrap(),
-            k_nearest(&points, 3, Direction::Symmetric).unwrap(),
+            k_nearest(&points, 1, EdgeDirection::Directed).unwrap(),
+            k_nearest(&points, 3, EdgeDirection::Symmetric).unwrap(),
             gabriel(&points).unwrap(),
             Graph::from_adjacency(&points, &alone).unwrap(),
         ];

@@ -12,7 +12,7 @@ pub use combinators::FieldExt;
 pub use fractal::{Fractal, FractalShape};
 pub use gradient::{DisplacementGradient, Gradient};
 pub use period::common_period;
-pub use positions::{Displacement, Frequency, Offset, Rotated, Warped};
+pub use positions::{Displacement, Rotated, Scaled, Translated, Warped};
 pub use slice::{Extruded, Slice};
 pub use values::{Change, Linear, Mapped, Mixed, Pair, PairOperation};
 

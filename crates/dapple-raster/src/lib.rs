@@ -45,8 +45,8 @@ pub use error::{RasterError, RasterErrorKind};
 pub use field::Field;
 pub use field::{
     Change, Constant, Displacement, DisplacementGradient, Extruded, FieldExt, FieldFn, Fractal,
-    FractalShape, Frequency, Gradient, IntoField, Linear, Mapped, Mixed, Offset, Pair,
-    PairOperation, Rotated, Slice, Warped, common_period, field_fn,
+    FractalShape, Gradient, IntoField, Linear, Mapped, Mixed, Pair, PairOperation, Rotated, Scaled,
+    Slice, Translated, Warped, common_period, field_fn,
 };
 pub use glam;
 #[doc(hidden)]

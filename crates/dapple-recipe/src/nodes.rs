@@ -43,7 +43,7 @@ pub use image::ImageNode;
 pub use levels::{Levels, LevelsCurve};
 pub use match_borders::Framed;
 pub use mix::Mix;
-pub use noise::{Fractal, FractalBasis};
+pub use noise::{FractalBasis, FractalNode};
 pub use power::Power;
 pub use profile::ProfileOf;
 pub use pups::{ControlNets, PupsNode, Referenced};
@@ -139,7 +139,7 @@ nodes! {
     /// Wavelet noise.
     "wavelet" Wavelet(WaveletNode) in "cells and noise" as "{}",
     /// Octaves of noise from 0 to 1, of PUPs, gradients or wavelets.
-    "noise" Noise(Fractal) in "cells and noise" as "{}",
+    "noise" Noise(FractalNode) in "cells and noise" as "{}",
     /// The coordinate of a position along a direction.
     "coordinate" Coordinate(Coordinate) in "position" as r#"{"along":[1.0,0.0]}"#,
     /// The distance of a position from a center.

@@ -1,7 +1,7 @@
 //! The random number of the Voronoi cell at each position, as a field.
 
 use crate::worley::cell_value;
-use crate::{Axes, FeatureView, Plane, Space, Worley};
+use crate::{Dimensions, FeatureView, Plane, Space, Worley};
 use dapple_raster::{Field, RasterError, RasterViewMut, Window};
 
 /// A random number in `[0, 1)` for each Voronoi cell: [`Feature::cell_value`](crate::Feature::cell_value) of the
@@ -23,7 +23,7 @@ pub struct CellValues<const N: usize> {
 
 impl<const N: usize> Worley<N>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     /// The texture whose value is the random number of the Voronoi cell, in `[0, 1)`.
     #[must_use]
@@ -36,7 +36,7 @@ where
 
 impl<const N: usize> CellValues<N>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     /// The values at the pixel centers of a window of a plane, into memory of its size.
     ///
@@ -59,7 +59,7 @@ where
 
 impl<const N: usize> Field<N> for CellValues<N>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     fn value(&self, position: [f64; N]) -> f32 {
         let nearest = self.worley.nearest(position);

@@ -4,7 +4,7 @@ use crate::fixed::Place;
 use crate::ranges::range;
 use crate::render::{Output, Picture, render_stack};
 use crate::sink::{Tone, Values};
-use crate::{Axes, Combination, Plane, Space, Vector, Worley, WorleyError, WorleyErrorKind};
+use crate::{Combination, Dimensions, Plane, Space, Vector, Worley, WorleyError, WorleyErrorKind};
 use dapple_hash::{CellHash, Seed, unit_f64};
 use dapple_raster::{Field, Gradient, RasterError, RasterViewMut, Window};
 
@@ -29,7 +29,7 @@ pub struct Cellular<const N: usize> {
 
 impl<const N: usize> Worley<N>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     /// The texture whose values are a combination of the distances.
     #[must_use]
@@ -43,7 +43,7 @@ where
 
 impl<const N: usize> Cellular<N>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     /// The basis that the texture combines.
     #[must_use]
@@ -191,7 +191,7 @@ where
 
 impl<const N: usize> Field<N> for Cellular<N>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     fn value(&self, position: [f64; N]) -> f32 {
         self.value(position)
@@ -224,7 +224,7 @@ where
 
 impl<const N: usize> Gradient<N> for Cellular<N>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     fn value_and_gradient(&self, position: [f64; N]) -> (f32, [f32; N]) {
         let gradient: [f64; N] = self.gradient(position).into();
@@ -239,7 +239,7 @@ pub(crate) fn render_windows<'v, const N: usize>(
     render: impl Fn(&Window, Vec<(Plane<N>, RasterViewMut<'v, f32>)>) -> Result<(), RasterError>,
 ) -> Result<(), RasterError>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     RasterError::check_length(outs.len(), windows.len())?;
     let mut slices = windows.iter().zip(outs).peekable();

@@ -10,10 +10,10 @@ use crate::lattice::Lattice;
 use crate::many::Group;
 use crate::render::Basis;
 use crate::search::{Hit, within};
-use crate::{Axes, Metric, Worley, one, search};
+use crate::{Dimensions, Metric, Worley, one, search};
 use fearless_simd::Level;
 
-/// The functions that are compiled for a number of axes; [`Axes`] has them for 2, 3 and 4.
+/// The functions that are compiled for a number of axes; [`Dimensions`] has them for 2, 3 and 4.
 pub trait Doors<const N: usize>: Sized {
     /// The basis in the form that rendering uses.
     fn basis(worley: &Worley<N>) -> &dyn Basis;
@@ -31,7 +31,7 @@ pub trait Doors<const N: usize>: Sized {
 
 macro_rules! doors {
     ($($n:literal $nearest:path),*) => {$(
-        impl Doors<$n> for Axes {
+        impl Doors<$n> for Dimensions {
             // Inlined elsewhere, the conversion would compile there all that rendering calls.
             #[inline(never)]
             fn basis(worley: &Worley<$n>) -> &dyn Basis {

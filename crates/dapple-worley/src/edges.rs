@@ -1,7 +1,7 @@
 //! The distance to the edge of the Voronoi cell at each position, as a texture.
 
 use crate::render::Output;
-use crate::{Axes, Metric, Plane, Space, Worley};
+use crate::{Dimensions, Metric, Plane, Space, Worley};
 use dapple_raster::{Field, RasterError, RasterViewMut, Window};
 
 /// The texture of the distances to the edges of the Voronoi cells: [`Worley::edge_distance`] at every position.
@@ -26,7 +26,7 @@ pub struct EdgeDistances<const N: usize> {
 
 impl<const N: usize> Worley<N>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     /// The texture whose value is the distance to the nearest edge of the Voronoi cell.
     #[must_use]
@@ -41,7 +41,7 @@ where
 
 impl<const N: usize> EdgeDistances<N>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     /// The value at a position: [`Worley::edge_distance`].
     #[must_use]
@@ -69,7 +69,7 @@ where
 
 impl<const N: usize> Field<N> for EdgeDistances<N>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     fn value(&self, position: [f64; N]) -> f32 {
         self.value(position)

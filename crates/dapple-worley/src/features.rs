@@ -4,7 +4,7 @@ use crate::doors::Doors as _;
 use crate::fixed::STEP;
 use crate::render::{Output, Picture};
 use crate::sink::Tone;
-use crate::{Axes, Cellular, LIMIT, Plane, Space, Worley};
+use crate::{Cellular, Dimensions, MAX_NEAREST, Plane, Space, Worley};
 use dapple_raster::{RasterError, RasterViewMut, Window};
 
 /// Output views for one of the nearest feature points; a view that is `None` is not computed.
@@ -78,7 +78,7 @@ pub(crate) fn position((cell, steps): (i64, i32), way: f32) -> f64 {
 
 impl<const N: usize> Worley<N>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     /// Renders the `K` nearest feature points at the pixel centers of a window of a plane, into memory of its size.
     /// Equals [`sample`](Self::sample) there, bit for bit. `K` is from 1 to 4, and the nearest point comes first.
@@ -92,7 +92,12 @@ where
         window: &Window,
         mut views: [FeatureView<'_, N>; K],
     ) -> Result<(), RasterError> {
-        const { assert!(K >= 1 && K <= LIMIT, "F1 to F4 are there to be asked for") };
+        const {
+            assert!(
+                K >= 1 && K <= MAX_NEAREST,
+                "F1 to F4 are there to be asked for"
+            )
+        };
         for view in &views {
             let sizes = [
                 view.distance.as_ref().map(RasterViewMut::size),
@@ -135,7 +140,7 @@ where
         window: &'a Window,
     ) -> Picture<'a> {
         Picture {
-            basis: Axes::basis(self),
+            basis: Dimensions::basis(self),
             section: plane.section(),
             window,
             frequency: 1.0,
@@ -145,7 +150,7 @@ where
 
 impl<const N: usize> Cellular<N>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     /// Renders the gradients at the pixel centers of a window of a plane, into memory of its size. Equals
     /// [`gradient`](Self::gradient) there, bit for bit.
@@ -202,7 +207,7 @@ impl Tone {
         place: &crate::fixed::Place<N>,
     ) -> [f32; N]
     where
-        Axes: Space<N>,
+        Dimensions: Space<N>,
     {
         let vectors = worley
             .nearest_hits(self.depth(), place)

@@ -13,7 +13,7 @@ use crate::doors::Doors as _;
 use crate::fixed::Place;
 use crate::render::{Output, Picture, render_stack};
 use crate::sink::{Tone, Values};
-use crate::{Axes, Cellular, Plane, Space, Vector, Worley, WorleyError};
+use crate::{Cellular, Dimensions, Plane, Space, Vector, Worley, WorleyError};
 use dapple_hash::Seed;
 use dapple_raster::{Field, Gradient, RasterError, RasterViewMut, Window};
 
@@ -114,7 +114,7 @@ struct Octave<const N: usize> {
 
 impl<const N: usize> Cellular<N>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     /// The sum of this texture at several scales.
     ///
@@ -188,7 +188,7 @@ where
 
 impl<const N: usize> CellularFractal<N>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     /// The value at a position. NaN if the position, or that of an octave, has no place, see [`Worley::sample`].
     #[must_use]
@@ -270,7 +270,7 @@ where
             };
             let stack = slices.iter_mut().map(|(plane, out)| {
                 let picture = Picture {
-                    basis: Axes::basis(&octave.worley),
+                    basis: Dimensions::basis(&octave.worley),
                     section: plane.section(),
                     window,
                     frequency: octave.frequency,
@@ -312,7 +312,7 @@ where
 
 impl<const N: usize> Field<N> for CellularFractal<N>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     fn value(&self, position: [f64; N]) -> f32 {
         self.value(position)
@@ -359,7 +359,7 @@ where
 
 impl<const N: usize> Gradient<N> for CellularFractal<N>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     fn value_and_gradient(&self, position: [f64; N]) -> (f32, [f32; N]) {
         let gradient: [f64; N] = self.gradient(position).into();

@@ -31,7 +31,7 @@
 //! [`Worley::smooth_f1`], [`Worley::sphere_radius`], [`Feature::cell_value`]. A [`FeatureSet`] is the same basis over
 //! points that you have placed.
 //!
-//! Positions are `f64` and in cells, distances are `f32` and in cells. A position is rounded down to [`RESOLUTION`].
+//! Positions are `f64` and in cells, distances are `f32` and in cells. A position is rounded down to [`POSITION_STEP`].
 
 #![forbid(unsafe_code)]
 #![expect(
@@ -93,7 +93,7 @@ pub use profile::Profile;
 pub use radial::{Radial, RadialCells};
 pub use scatter::Scatter;
 pub use set::FeatureSet;
-pub use space::{Axes, Space, Vector};
+pub use space::{Dimensions, Space, Vector};
 #[doc(alias("voronoi", "cellular noise", "cellular", "cell noise"))]
 pub use worley::Worley;
-pub use worley::{CellPoint, Feature, LIMIT, RESOLUTION, Worley2, Worley3, Worley4};
+pub use worley::{CellPoint, Feature, MAX_NEAREST, POSITION_STEP, Worley2, Worley3, Worley4};

@@ -13,7 +13,7 @@ use crate::lattice::{IDS, Lattice, SixteenCells, both, parts_each};
 use crate::levels::wide;
 use crate::metric::{Exact, Measure as _};
 use crate::places::{LANES, Places, Words, cells_by_distance, digit, load, store};
-use crate::{LIMIT, Metric, Worley};
+use crate::{MAX_NEAREST, Metric, Worley};
 use dapple_hash::CellHashes;
 use fearless_simd::{Level, f32x16, i32x16, mask32x16, prelude::*, u32x16, u64x8};
 
@@ -51,10 +51,10 @@ pub struct Group<const N: usize> {
     near: [Near; MOST_NEAR],
     visits: Visits,
     /// The keys of the nearest points so far.
-    best: [[u32; GROUP]; LIMIT],
+    best: [[u32; GROUP]; MAX_NEAREST],
     /// The smallest key of all other points.
     next: [u32; GROUP],
-    points: [Points<N>; LIMIT],
+    points: [Points<N>; MAX_NEAREST],
 }
 
 /// The own cells of a register of places, or one of the neighbors on the nearer sides.
@@ -128,13 +128,13 @@ impl<const N: usize> Group<N> {
                 list: [0; FULL + (MOST_FAR + 1) * LANES],
                 len: 0,
             },
-            best: [[NOTHING; GROUP]; LIMIT],
+            best: [[NOTHING; GROUP]; MAX_NEAREST],
             next: [NOTHING; GROUP],
             points: [Points {
                 distances: [0.0; GROUP],
                 vectors: [[0.0; GROUP]; N],
                 ids: [0; GROUP],
-            }; LIMIT],
+            }; MAX_NEAREST],
         }
     }
 
@@ -165,7 +165,7 @@ impl<const N: usize> Group<N> {
         if const { N < MOST_AXES } && self.depth == 2 {
             return wide!(level, simd => self.search_with::<_, 2>(simd, search));
         }
-        wide!(level, simd => self.search_with::<_, LIMIT>(simd, search))
+        wide!(level, simd => self.search_with::<_, MAX_NEAREST>(simd, search))
     }
 
     #[inline(always)]

@@ -1,7 +1,7 @@
 //! Planes through spaces of two, three and four dimensions.
 
 use crate::fixed::MOST_AXES;
-use crate::{Axes, Space, Vector};
+use crate::{Dimensions, Space, Vector};
 use dapple_raster::Window;
 
 /// A plane through space, in which pictures lie. Its position `[x, y]` is `origin + x·u + y·v`.
@@ -19,7 +19,7 @@ use dapple_raster::Window;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plane<const N: usize>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     /// The position of `[0, 0]`.
     pub origin: Vector<N>,
@@ -31,7 +31,7 @@ where
 
 impl<const N: usize> Plane<N>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     /// The plane along the first two axes, through `origin`.
     #[must_use]
@@ -118,7 +118,7 @@ impl Section {
 
 impl<const N: usize> Default for Plane<N>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     /// The plane along the first two axes, where the others are zero.
     fn default() -> Self {

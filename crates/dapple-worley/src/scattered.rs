@@ -4,13 +4,13 @@ use crate::doors::Doors as _;
 use crate::fixed::Place;
 use crate::many::{GROUP, Group, Points};
 use crate::sink::Tone;
-use crate::{Axes, Feature, LIMIT, Space, Vector, Worley, WorleyError};
+use crate::{Dimensions, Feature, MAX_NEAREST, Space, Vector, Worley, WorleyError};
 use core::ops::Range;
 use dapple_raster::simd;
 
 impl<const N: usize> Worley<N>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     /// The `K` nearest feature points of each of many positions. Equals [`sample`](Self::sample) for each, bit for bit,
     /// and is several times as fast. Positions may lie anywhere and come in any order.
@@ -36,10 +36,15 @@ where
         positions: &[impl Copy + Into<[f64; N]>],
         features: &mut [[Feature<Vector<N>>; K]],
     ) -> Result<(), WorleyError> {
-        const { assert!(K >= 1 && K <= LIMIT, "F1 to F4 are there to be asked for") };
+        const {
+            assert!(
+                K >= 1 && K <= MAX_NEAREST,
+                "F1 to F4 are there to be asked for"
+            )
+        };
         WorleyError::check_length(features.len(), positions.len())?;
         // Three are hardly faster than four, but take as long to compile.
-        let depth = if K == 3 { LIMIT } else { K };
+        let depth = if K == 3 { MAX_NEAREST } else { K };
         self.each_group(depth, positions, |range, holds, points| {
             let positions = &positions[range.clone()];
             let features = &mut features[range];
@@ -63,11 +68,11 @@ where
         positions: &[impl Copy + Into<[f64; N]>],
         values: &mut [f32],
     ) {
-        let depth = if tone.depth() <= 2 { 2 } else { LIMIT };
+        let depth = if tone.depth() <= 2 { 2 } else { MAX_NEAREST };
         self.each_group(depth, positions, |range, holds, points| {
             for (place, index) in range.enumerate() {
                 values[index] = if holds >> place & 1 != 0 {
-                    let mut distances = [0.0; LIMIT];
+                    let mut distances = [0.0; MAX_NEAREST];
                     for (distance, points) in distances.iter_mut().zip(points) {
                         *distance = points.distances[place];
                     }
@@ -116,7 +121,7 @@ where
                     group.positions[axis][place] = position[axis];
                 }
             }
-            let holds = Axes::search_group(self, simd::level(), &mut group);
+            let holds = Dimensions::search_group(self, simd::level(), &mut group);
             let first = index * GROUP;
             found(first..first + positions.len(), holds, group.points());
         }
@@ -128,7 +133,7 @@ fn put<const N: usize, const K: usize>(
     points: &[Points<N>],
     features: &mut [[Feature<Vector<N>>; K]],
 ) where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     for (place, features) in features.iter_mut().enumerate() {
         for (feature, points) in features.iter_mut().zip(points) {

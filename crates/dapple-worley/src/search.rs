@@ -15,7 +15,7 @@
 use crate::fixed::{Place, STEP, STEPS, cells};
 use crate::lattice::{IDS, Lattice, both};
 use crate::places::{cells_by_distance, digit};
-use crate::{LIMIT, Metric};
+use crate::{MAX_NEAREST, Metric};
 use core::cmp::Ordering;
 use dapple_hash::CellHash;
 
@@ -150,7 +150,7 @@ pub(crate) fn within<const N: usize>(
 
 /// The nearest points so far, nearest first.
 pub(crate) struct Ranking<const N: usize> {
-    hits: [Hit<N>; LIMIT],
+    hits: [Hit<N>; MAX_NEAREST],
     /// The number of points to find.
     len: usize,
     /// The key from which on further points do not matter.
@@ -160,7 +160,7 @@ pub(crate) struct Ranking<const N: usize> {
 impl<const N: usize> Ranking<N> {
     pub(crate) fn new(len: usize) -> Self {
         Self {
-            hits: [Hit::NONE; LIMIT],
+            hits: [Hit::NONE; MAX_NEAREST],
             len,
             reach: f32::INFINITY,
         }

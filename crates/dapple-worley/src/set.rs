@@ -7,7 +7,7 @@
 //! Differences are taken in `f64` and rounded once to `f32`, so that the unit of positions is the caller's own.
 
 use crate::search::{Hit, Name, Ranking, by_rings};
-use crate::{Axes, Feature, LIMIT, Metric, Space, Vector, WorleyError};
+use crate::{Dimensions, Feature, MAX_NEAREST, Metric, Space, Vector, WorleyError};
 
 /// The mean number of points of a bin.
 const POINTS_PER_BIN: f64 = 2.0;
@@ -48,7 +48,7 @@ struct Bins<const N: usize> {
 
 impl<const N: usize> FeatureSet<N>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     /// The basis over `points`, which repeats after `period` along each axis that has one. The id of a point is its
     /// index.
@@ -141,7 +141,12 @@ where
     /// infinitely far away, with the id `u64::MAX`. A position that is not finite gives NaN and the same id.
     #[must_use]
     pub fn sample<const K: usize>(&self, position: impl Into<[f64; N]>) -> [Feature<Vector<N>>; K] {
-        const { assert!(K >= 1 && K <= LIMIT, "F1 to F4 are there to be asked for") };
+        const {
+            assert!(
+                K >= 1 && K <= MAX_NEAREST,
+                "F1 to F4 are there to be asked for"
+            )
+        };
         let position: [f64; N] = position.into();
         if position.iter().any(|part| !part.is_finite()) {
             return [Feature {

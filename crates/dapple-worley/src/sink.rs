@@ -4,7 +4,7 @@ use crate::fixed::{FlatPlace, Place};
 use crate::metric::Measure;
 use crate::render::Basis;
 use crate::search::Hit;
-use crate::{Axes, Combination, LIMIT, Space, Worley, WorleyError};
+use crate::{Combination, Dimensions, MAX_NEAREST, Space, Worley, WorleyError};
 use fearless_simd::{f32x16, prelude::*};
 
 /// A combination of distances, mapped to a range: `shift + W1·F1 + W2·F2 + …`.
@@ -49,7 +49,7 @@ impl Tone {
     /// The value at a place.
     pub(crate) fn at<const N: usize>(&self, worley: &Worley<N>, place: &Place<N>) -> f32
     where
-        Axes: Space<N>,
+        Dimensions: Space<N>,
     {
         let hits = worley.nearest_hits(self.depth(), place);
         self.of(&hits.map(|hit| worley.metric.distance(hit.key)))
@@ -79,10 +79,10 @@ impl Values {
     /// Writes the value at a place; NaN where there is no place.
     pub(crate) fn put_one(&self, basis: &dyn Basis, place: Option<FlatPlace>, out: &mut f32) {
         let value = place.map_or(f32::NAN, |place| {
-            let mut hits = [Hit::NONE; LIMIT];
+            let mut hits = [Hit::NONE; MAX_NEAREST];
             let hits = &mut hits[..self.tone.depth()];
             basis.nearest(&place, hits);
-            let mut distances = [0.0; LIMIT];
+            let mut distances = [0.0; MAX_NEAREST];
             for (distance, hit) in distances.iter_mut().zip(&*hits) {
                 *distance = basis.metric().distance(hit.key);
             }

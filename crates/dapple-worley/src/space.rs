@@ -6,25 +6,25 @@ use glam::{DVec2, DVec3, DVec4};
 
 /// A marker on which [`Space`] names the vector type for a known number of axes.
 #[derive(Debug)]
-pub struct Axes;
+pub struct Dimensions;
 
-/// A space with `N` axes; [`Axes`] implements it for 2, 3 and 4, and other implementations are not possible.
+/// A space with `N` axes; [`Dimensions`] implements it for 2, 3 and 4, and other implementations are not possible.
 pub trait Space<const N: usize>: Doors<N> {
     /// The vector type: `DVec2`, `DVec3` or `DVec4`.
     type Vector: Copy + fmt::Debug + PartialEq + From<[f64; N]> + Into<[f64; N]> + Send + Sync;
 }
 
 /// The vector type of the space with `N` axes.
-pub type Vector<const N: usize> = <Axes as Space<N>>::Vector;
+pub type Vector<const N: usize> = <Dimensions as Space<N>>::Vector;
 
-impl Space<2> for Axes {
+impl Space<2> for Dimensions {
     type Vector = DVec2;
 }
 
-impl Space<3> for Axes {
+impl Space<3> for Dimensions {
     type Vector = DVec3;
 }
 
-impl Space<4> for Axes {
+impl Space<4> for Dimensions {
     type Vector = DVec4;
 }

@@ -6,11 +6,11 @@
 use crate::doors::Doors as _;
 use crate::fixed::{Place, STEP, STEPS};
 use crate::search::{Hit, Name, order};
-use crate::{Axes, Metric, Space, Worley, WorleyError};
+use crate::{Dimensions, Metric, Space, Worley, WorleyError};
 
 impl<const N: usize> Worley<N>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     /// The distance from a position to the nearest edge of its Voronoi cell, in cells: zero or more.
     ///
@@ -29,14 +29,14 @@ where
     pub(crate) fn edge_distance_at(&self, place: &Place<N>) -> f32 {
         let (metric, lattice) = (Metric::Euclidean, &self.lattice);
         let mut pair = [Hit::NONE; 2];
-        Axes::nearest(metric, lattice, place, &mut pair);
+        Dimensions::nearest(metric, lattice, place, &mut pair);
         if pair[1].name.is_none() {
             return f32::INFINITY;
         }
         let [first, second] = pair.map(|hit| hit.vector.map(f64::from));
         // The plane halfway to a point at the distance d is at least (d − F1) / 2 away.
         let reach = length(first) + 2.0 * to_plane(first, second);
-        let hits = Axes::within(metric, lattice, place, (reach * 1.000_001) as f32);
+        let hits = Dimensions::within(metric, lattice, place, (reach * 1.000_001) as f32);
         let mut all: Vec<_> = hits.iter().map(|hit| hit.vector.map(f64::from)).collect();
         if let Some(own) = all.iter().position(|&vector| vector == first) {
             all.swap_remove(own);
@@ -103,7 +103,7 @@ where
             return Ok(first);
         }
         let reach = (first + radius) * 1.000_01;
-        let mut hits = Axes::within(self.metric, &self.lattice, &place, reach);
+        let mut hits = Dimensions::within(self.metric, &self.lattice, &place, reach);
         hits.sort_by(|a, b| order(a, b, Name::id));
         let distances = hits
             .iter()

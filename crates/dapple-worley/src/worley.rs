@@ -4,12 +4,12 @@ use crate::doors::Doors as _;
 use crate::fixed::{MOST_AXES, Place, STEP, STEPS, first_axes};
 use crate::lattice::{Density, Lattice};
 use crate::search::{Hit, Name};
-use crate::{Axes, Metric, Scatter, Space, Vector, WorleyError};
+use crate::{Dimensions, Metric, Scatter, Space, Vector, WorleyError};
 use dapple_hash::{Seed, unit_f32};
 use std::sync::Arc;
 
 /// The greatest n for which the basis has `F_n`.
-pub const LIMIT: usize = 4;
+pub const MAX_NEAREST: usize = 4;
 
 /// Worley's basis in two dimensions.
 pub type Worley2 = Worley<2>;
@@ -85,7 +85,7 @@ pub struct CellPoint<V> {
 
 impl<const N: usize> Worley<N>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     /// The basis with a Poisson-distributed number of points per cell, the Euclidean metric, and no period.
     #[must_use]
@@ -256,7 +256,12 @@ where
     #[must_use]
     #[inline]
     pub fn sample<const K: usize>(&self, position: impl Into<[f64; N]>) -> [Feature<Vector<N>>; K] {
-        const { assert!(K >= 1 && K <= LIMIT, "F1 to F4 are there to be asked for") };
+        const {
+            assert!(
+                K >= 1 && K <= MAX_NEAREST,
+                "F1 to F4 are there to be asked for"
+            )
+        };
         let mut features = [Feature {
             distance: f32::NAN,
             vector: [f64::NAN; N].into(),
@@ -293,14 +298,14 @@ where
     #[inline]
     pub(crate) fn hits<const K: usize>(&self, place: &Place<N>) -> [Hit<N>; K] {
         let mut hits = [Hit::NONE; K];
-        Axes::nearest(self.metric, &self.lattice, place, &mut hits);
+        Dimensions::nearest(self.metric, &self.lattice, place, &mut hits);
         hits
     }
 
     /// The `n` nearest points of a place, at most four; the rest are absent.
-    pub(crate) fn nearest_hits(&self, n: usize, place: &Place<N>) -> [Hit<N>; LIMIT] {
-        let mut hits = [Hit::NONE; LIMIT];
-        Axes::nearest(self.metric, &self.lattice, place, &mut hits[..n]);
+    pub(crate) fn nearest_hits(&self, n: usize, place: &Place<N>) -> [Hit<N>; MAX_NEAREST] {
+        let mut hits = [Hit::NONE; MAX_NEAREST];
+        Dimensions::nearest(self.metric, &self.lattice, place, &mut hits[..n]);
         hits
     }
 
@@ -325,4 +330,4 @@ where
 }
 
 /// The largest error of a coordinate, in cells: positions are rounded down to whole steps.
-pub const RESOLUTION: f32 = STEP;
+pub const POSITION_STEP: f32 = STEP;

@@ -2,7 +2,7 @@
 
 use super::accepted;
 use super::bytes::Bytes;
-use dapple::graph::{Direction, delaunay, gabriel, k_nearest, yao};
+use dapple::graph::{EdgeDirection, delaunay, gabriel, k_nearest, yao};
 use dapple::points::glam::DVec2;
 use dapple::points::{Domain, PointSet, SpectrumOptions, spectrum};
 
@@ -39,9 +39,9 @@ pub fn points(bytes: &[u8]) {
     }
     check_statistics(&points);
     let direction = if choice & 8 == 0 {
-        Direction::Directed
+        EdgeDirection::Directed
     } else {
-        Direction::Symmetric
+        EdgeDirection::Symmetric
     };
     let count = u32::from(choice >> 6) * 3;
     // Only one graph per input: on thin domains each graph may use all the work that it is allowed.

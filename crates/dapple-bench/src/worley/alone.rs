@@ -6,7 +6,7 @@ use crate::row::{Case, Must, Unit};
 use crate::sets::SEED;
 use anyhow::Result;
 use dapple_raster::Raster;
-use dapple_worley::{Axes, Metric, Space, Worley};
+use dapple_worley::{Dimensions, Metric, Space, Worley};
 use std::time::Duration;
 
 const MANHATTAN: Case = Case {
@@ -75,7 +75,7 @@ fn beside<const M: usize, const N: usize>(
     theirs: &Grid<N>,
 ) -> Result<()>
 where
-    Axes: Space<M> + Space<N>,
+    Dimensions: Space<M> + Space<N>,
 {
     bench.beside(case, turns, ours.side()?, theirs.side()?, |image, other| {
         ours.confirm(image)?;

@@ -5,7 +5,7 @@ use crate::harness::{Bench, Done, Side};
 use crate::peers::noise;
 use crate::row::{Case, Must, Unit};
 use anyhow::{Result, ensure};
-use dapple_worley::{Axes, Space};
+use dapple_worley::{Dimensions, Space};
 use std::ops::RangeInclusive;
 
 const F1_64: Case = Case {
@@ -137,7 +137,7 @@ const SIMPLEX_IN_SPACE: Peer<3> = Peer {
 
 fn row<const N: usize>(bench: &mut Bench, case: &Case, grid: &Grid<N>, peer: &Peer<N>) -> Result<()>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     let (size, frequency) = (
         grid.size.map(|side| side as usize),

@@ -9,7 +9,7 @@ use crate::peers::noise;
 use crate::row::{Case, Must, Unit};
 use crate::sets::{SEED, positions_in};
 use anyhow::{Result, ensure};
-use dapple_worley::{Axes, Feature, Scatter, Space, Vector, Worley};
+use dapple_worley::{Dimensions, Feature, Scatter, Space, Vector, Worley};
 
 const F1_AND_F2: Case = Case {
     group: "worley",
@@ -93,14 +93,14 @@ type Fill<const N: usize> = fn(&[[f32; N]], &mut [f32]);
 
 fn poisson<const N: usize>(bench: &mut Bench, case: &Case, mean: f64, fill: Fill<N>) -> Result<()>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     row::<N, 2>(bench, case, &Worley::new(SEED), mean, fill)
 }
 
 fn jittered<const N: usize>(bench: &mut Bench, case: &Case, mean: f64, fill: Fill<N>) -> Result<()>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     let worley = Worley::new(SEED).with_scatter(Scatter::Jittered { jitter: 1.0 })?;
     row::<N, 1>(bench, case, &worley, mean, fill)
@@ -114,7 +114,7 @@ fn row<const N: usize, const K: usize>(
     fill: Fill<N>,
 ) -> Result<()>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     let positions: Vec<[f64; N]> = positions_in(N_POSITIONS, N_CELLS);
     let their_positions: Vec<[f32; N]> = positions
@@ -154,7 +154,7 @@ fn one_by_one<const N: usize, const K: usize>(
     fill: Fill<N>,
 ) -> Result<()>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     let worley = Worley::new(SEED).with_scatter(Scatter::Jittered { jitter: 1.0 })?;
     let positions: Vec<[f64; N]> = positions_in(N_POSITIONS, N_CELLS);
@@ -196,7 +196,7 @@ fn confirm<const N: usize, const K: usize>(
     features: &[[Feature<Vector<N>>; K]],
 ) -> Result<()>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     for (&position, found) in positions.iter().zip(features).step_by(61) {
         let expected = worley.sample::<K>(position);

@@ -5,7 +5,7 @@ use crate::error::Exit;
 use crate::field::{Field, FieldArgs, check_whole_cells, draw, extent_of};
 use crate::job::{Context, eprintln_if_possible};
 use anyhow::Result;
-use dapple::recipe::{Fractal, FractalBasis, Images, Node};
+use dapple::recipe::{FractalBasis, FractalNode, Images, Node};
 use serde::Serialize;
 
 const EXAMPLES: &str = "\
@@ -60,7 +60,7 @@ pub(crate) struct Args {
 ///
 /// Errors of options that conflict or are out of range, and of writing.
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
-    let node = Fractal {
+    let node = FractalNode {
         basis: FractalBasis::Gradient,
         frequency: 1.0,
         octaves: args.octaves,

@@ -4,7 +4,7 @@ use super::picture::{BANNER, GRAYS, LARGE, banner_of, shaded};
 use super::{Documented, Strip};
 use crate::Panel;
 use crate::draw::Canvas;
-use dapple_graph::{Direction, Graph, delaunay, gabriel, k_nearest, yao};
+use dapple_graph::{EdgeDirection, Graph, delaunay, gabriel, k_nearest, yao};
 use dapple_points::{Domain, PointSet, hash::Seed, poisson_disk};
 use dapple_raster::Window;
 
@@ -17,11 +17,16 @@ pub(super) const DOCUMENTED: Documented = Documented {
         banner_of(&[
             edges("", &points, &delaunay(&points)?, BANNER)?,
             edges("", &points, &gabriel(&points)?, BANNER)?,
-            edges("", &points, &yao(&points, 6, Direction::Directed)?, BANNER)?,
             edges(
                 "",
                 &points,
-                &k_nearest(&points, 2, Direction::Directed)?,
+                &yao(&points, 6, EdgeDirection::Directed)?,
+                BANNER,
+            )?,
+            edges(
+                "",
+                &points,
+                &k_nearest(&points, 2, EdgeDirection::Directed)?,
                 BANNER,
             )?,
         ])
@@ -65,7 +70,7 @@ const YAO: Strip = Strip {
         [("4 cones", 4), ("8 cones", 8)]
             .into_iter()
             .map(|(label, cones)| {
-                let graph = yao(&points, cones, Direction::Directed)?;
+                let graph = yao(&points, cones, EdgeDirection::Directed)?;
                 edges(label, &points, &graph, LARGE)
             })
             .collect()
@@ -80,7 +85,7 @@ const K_NEAREST: Strip = Strip {
         [("1 neighbor", 1), ("4 neighbors", 4)]
             .into_iter()
             .map(|(label, k)| {
-                let graph = k_nearest(&points, k, Direction::Directed)?;
+                let graph = k_nearest(&points, k, EdgeDirection::Directed)?;
                 edges(label, &points, &graph, LARGE)
             })
             .collect()

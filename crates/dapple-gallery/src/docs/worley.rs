@@ -13,7 +13,7 @@ use crate::Panel;
 use crate::draw::shrink;
 use dapple_color::LinearRgb;
 use dapple_raster::{Raster, Window};
-use dapple_worley::{Axes, Cellular, Space, Worley2, WorleyError, hash::Seed};
+use dapple_worley::{Cellular, Dimensions, Space, Worley2, WorleyError, hash::Seed};
 use glam::DVec2;
 
 /// The crate with its strips, in the order of its documentation.
@@ -126,7 +126,7 @@ fn fine(cells: f64) -> anyhow::Result<Window> {
 /// Scales a texture so that its measured range becomes 0 to 1.
 fn ranged<const N: usize>(texture: Cellular<N>) -> Result<Cellular<N>, WorleyError>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     let range = texture.measure_range(Seed(1), N_POSITIONS)?;
     texture.with_range(range)

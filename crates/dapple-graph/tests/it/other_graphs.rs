@@ -3,7 +3,7 @@
 use dapple_graph::glam::DVec2;
 use dapple_graph::points::hash::{Seed, rand_core::Rng};
 use dapple_graph::points::{Domain, PointIdx, PointSet};
-use dapple_graph::{Direction, Graph, GraphErrorKind, delaunay, gabriel, k_nearest, yao};
+use dapple_graph::{EdgeDirection, Graph, GraphErrorKind, delaunay, gabriel, k_nearest, yao};
 
 type Edge = (u32, u32, i64, i64);
 
@@ -114,7 +114,7 @@ fn k_nearest_equals_a_search_through_all_images() {
             if k > limit {
                 continue;
             }
-            let graph = k_nearest(&points, k, Direction::Directed).unwrap();
+            let graph = k_nearest(&points, k, EdgeDirection::Directed).unwrap();
             let first = |mut all: Vec<_>| {
                 all.truncate(k as usize);
                 all
@@ -128,7 +128,7 @@ fn k_nearest_equals_a_search_through_all_images() {
 fn yao_equals_a_search_through_all_images() {
     for points in sets() {
         for cones in [1, 2, 4, 6, 7, 12] {
-            let graph = yao(&points, cones, Direction::Directed).unwrap();
+            let graph = yao(&points, cones, EdgeDirection::Directed).unwrap();
             let first_per_cone = |all: Vec<(u32, DVec2)>| {
                 let mut taken = vec![false; cones as usize];
                 let is_first = |&(_, v): &(u32, DVec2)| {
@@ -168,11 +168,11 @@ fn gabriel_equals_a_search_through_all_images() {
 #[test]
 fn symmetric_graphs_are_symmetric() {
     for points in sets() {
-        let graph = yao(&points, 6, Direction::Symmetric).unwrap();
+        let graph = yao(&points, 6, EdgeDirection::Symmetric).unwrap();
         assert!(graph.is_symmetric(), "yao of {points:?}");
         graph.sanity_check().unwrap();
         if points.len() > 3 {
-            let graph = k_nearest(&points, 3, Direction::Symmetric).unwrap();
+            let graph = k_nearest(&points, 3, EdgeDirection::Symmetric).unwrap();
             assert!(graph.is_symmetric(), "3 nearest of {points:?}");
             graph.sanity_check().unwrap();
         }
@@ -204,13 +204,16 @@ fn bad_input_is_refused() {
     for k in [0, 5] {
         let expected = GraphErrorKind::Neighbors { k, limit: 4 };
         assert_eq!(
-            kind(k_nearest(&rectangle, k, Direction::Directed)),
+            kind(k_nearest(&rectangle, k, EdgeDirection::Directed)),
             expected
         );
     }
     for cones in [0, 33] {
         let expected = GraphErrorKind::Cones { cones, limit: 32 };
-        assert_eq!(kind(yao(&rectangle, cones, Direction::Directed)), expected);
+        assert_eq!(
+            kind(yao(&rectangle, cones, EdgeDirection::Directed)),
+            expected
+        );
     }
     let (from, to, n_points) = (PointIdx(0), PointIdx(9), 5);
     let mut rows = vec![vec![to]; 5];

@@ -4,7 +4,7 @@
 use dapple_graph::glam::DVec2;
 use dapple_graph::points::hash::{Seed, rand_core::Rng, unit_f64};
 use dapple_graph::points::{Domain, PointSet};
-use dapple_graph::{Direction, Graph, GraphError, GraphErrorKind};
+use dapple_graph::{EdgeDirection, Graph, GraphError, GraphErrorKind};
 use dapple_graph::{delaunay, gabriel, k_nearest, yao};
 
 /// Random points on a torus of width 1.
@@ -20,8 +20,8 @@ fn graphs(points: &PointSet) -> [Result<Graph, GraphError>; 4] {
     [
         delaunay(points),
         gabriel(points),
-        k_nearest(points, 6, Direction::Directed),
-        yao(points, 7, Direction::Directed),
+        k_nearest(points, 6, EdgeDirection::Directed),
+        yao(points, 7, EdgeDirection::Directed),
     ]
 }
 

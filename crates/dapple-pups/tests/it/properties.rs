@@ -1,7 +1,7 @@
 //! What the theory promises of every net.
 
 use super::sets::{cases, positions, values};
-use dapple_graph::{Direction, Graph, delaunay, gabriel, k_nearest, yao};
+use dapple_graph::{EdgeDirection, Graph, delaunay, gabriel, k_nearest, yao};
 use dapple_hash::Seed;
 use dapple_points::{Domain, PointIdx, poisson_disk, white_noise};
 use dapple_pups::{Orientation, Pups, PupsOptions};
@@ -110,7 +110,7 @@ fn control_points_are_interpolated_by_delaunay_axes_only() {
         largest_error(&delaunay(&points).unwrap()) < 1e-6,
         "Delaunay axes interpolate"
     );
-    let sparse = yao(&points, 4, Direction::Directed).unwrap();
+    let sparse = yao(&points, 4, EdgeDirection::Directed).unwrap();
     assert!(
         largest_error(&sparse) > 1e-3,
         "four axes cannot keep all other points out"
@@ -122,8 +122,8 @@ fn supports_cover_the_torus_whatever_the_graph() {
     let points = white_noise(Domain::paper_torus(), 60, Seed(11)).unwrap();
     let alone: Vec<Vec<PointIdx>> = vec![Vec::new(); 60];
     let graphs = [
-        k_nearest(&points, 1, Direction::Directed).unwrap(),
-        k_nearest(&points, 3, Direction::Symmetric).unwrap(),
+        k_nearest(&points, 1, EdgeDirection::Directed).unwrap(),
+        k_nearest(&points, 3, EdgeDirection::Symmetric).unwrap(),
         gabriel(&points).unwrap(),
         Graph::from_adjacency(&points, &alone).unwrap(),
     ];

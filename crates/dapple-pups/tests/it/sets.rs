@@ -1,6 +1,6 @@
 //! Nets to test with.
 
-use dapple_graph::{Direction, Graph, GraphError, delaunay, k_nearest, yao};
+use dapple_graph::{EdgeDirection, Graph, GraphError, delaunay, k_nearest, yao};
 use dapple_hash::{Seed, hash1, unit_f32, unit_f64};
 use dapple_points::{Domain, PointIdx, PointSet, poisson_disk, white_noise};
 use dapple_pups::{AxialWeight, Orientation, Pups, PupsOptions, Texture};
@@ -95,11 +95,14 @@ pub(super) fn cases() -> Vec<Case> {
 fn other_graphs() -> Vec<Case> {
     let points = poisson_disk(Domain::paper_torus(), 0.3, Seed(2)).unwrap();
     let graphs = [
-        ("a Yao graph", yao(&points, 12, Direction::Symmetric)),
-        ("a directed Yao graph", yao(&points, 8, Direction::Directed)),
+        ("a Yao graph", yao(&points, 12, EdgeDirection::Symmetric)),
+        (
+            "a directed Yao graph",
+            yao(&points, 8, EdgeDirection::Directed),
+        ),
         (
             "nearest neighbors",
-            k_nearest(&points, 12, Direction::Directed),
+            k_nearest(&points, 12, EdgeDirection::Directed),
         ),
     ];
     let case = |(name, graph): (&str, Result<Graph, GraphError>)| {

@@ -14,7 +14,7 @@ use crate::seed::SeedArgument;
 use crate::watch;
 use dapple::hash::Seed;
 use dapple::recipe::WorleyValue;
-use dapple::worley::{Axes, Metric, Octaves, Scatter, Space, Worley as Basis};
+use dapple::worley::{Dimensions, Metric, Octaves, Scatter, Space, Worley as Basis};
 use features::{cell_points, check_count, draw, find, gradients};
 use numpy::IntoPyArray;
 use pyo3::prelude::*;
@@ -59,7 +59,7 @@ impl CellsMade {
     /// The basis, without the combination of its distances.
     fn basis<const N: usize>(&self) -> Result<Basis<N>>
     where
-        Axes: Space<N>,
+        Dimensions: Space<N>,
     {
         let basis = Basis::<N>::new(self.seed)
             .with_metric(self.metric)?
@@ -69,7 +69,7 @@ impl CellsMade {
 
     fn texture<const N: usize>(&self) -> Result<Texture<N>>
     where
-        Axes: Space<N>,
+        Dimensions: Space<N>,
     {
         let basis = self.basis::<N>()?;
         let WorleyValue::Combination(combination) = self.value else {

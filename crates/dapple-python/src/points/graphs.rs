@@ -4,7 +4,7 @@ use super::{Domain, Points, set};
 use crate::arrays;
 use crate::error::{Error, Result};
 use crate::watch::{self, Stop};
-use dapple::graph::{Axis, Direction, GraphError};
+use dapple::graph::{Axis, EdgeDirection, GraphError};
 use dapple::points::{PointIdx, PointSet};
 use dapple::raster::glam::DVec2;
 use pyo3::prelude::*;
@@ -20,9 +20,12 @@ pub(crate) enum GraphMade {
     /// The Gabriel graph: pairs of points whose circle is empty.
     Gabriel,
     /// The Yao graph: the nearest point in each cone.
-    Yao { cones: u32, direction: Direction },
+    Yao {
+        cones: u32,
+        direction: EdgeDirection,
+    },
     /// The graph of the `k` nearest points.
-    KNearest { k: u32, direction: Direction },
+    KNearest { k: u32, direction: EdgeDirection },
 }
 
 impl GraphMade {
@@ -253,11 +256,11 @@ pub(crate) fn _graph_from_description(
 }
 
 /// The direction of edges, from a flag.
-fn direction(symmetric: bool) -> Direction {
+fn direction(symmetric: bool) -> EdgeDirection {
     if symmetric {
-        Direction::Symmetric
+        EdgeDirection::Symmetric
     } else {
-        Direction::Directed
+        EdgeDirection::Directed
     }
 }
 

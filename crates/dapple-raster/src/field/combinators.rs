@@ -1,7 +1,8 @@
 //! The trait [`FieldExt`]: sampling at the vectors of any library, and methods that compose fields.
 
 use super::{
-    Extruded, Frequency, Linear, Mapped, Mixed, Offset, Pair, PairOperation, Rotated, Slice, Warped,
+    Extruded, Linear, Mapped, Mixed, Pair, PairOperation, Rotated, Scaled, Slice, Translated,
+    Warped,
 };
 use crate::{Displacement, Field, Gradient, IntoField, RasterError};
 
@@ -104,21 +105,21 @@ pub trait FieldExt<const N: usize = 2>: Field<N> + Sized {
     /// This field at the position times `frequency` along each axis: `frequency` times as many features.
     ///
     /// For one number use [`frequency`](Self::frequency).
-    fn frequency_per_axis(self, frequency: impl Into<[f64; N]>) -> Frequency<Self, N> {
-        Frequency {
+    fn frequency_per_axis(self, frequency: impl Into<[f64; N]>) -> Scaled<Self, N> {
+        Scaled {
             field: self,
             frequency: frequency.into(),
         }
     }
 
     /// This field at the position times `frequency`: `frequency` times as many features along all axes.
-    fn frequency(self, frequency: f64) -> Frequency<Self, N> {
+    fn frequency(self, frequency: f64) -> Scaled<Self, N> {
         self.frequency_per_axis([frequency; N])
     }
 
     /// This field at the position plus `offset`: its features move by `-offset`.
-    fn offset(self, offset: impl Into<[f64; N]>) -> Offset<Self, N> {
-        Offset {
+    fn offset(self, offset: impl Into<[f64; N]>) -> Translated<Self, N> {
+        Translated {
             field: self,
             offset: offset.into(),
         }

@@ -5,7 +5,7 @@
 
 use super::common_period;
 use super::values::{by_bands, zip_rows};
-use crate::{Field, Frequency, RasterError, RasterViewMut, Window};
+use crate::{Field, RasterError, RasterViewMut, Scaled, Window};
 
 /// The largest number of octaves of a sum.
 const MOST_OCTAVES: usize = 32;
@@ -120,9 +120,9 @@ impl<F> Fractal<F> {
     }
 
     /// The octaves at their frequencies, and their weights.
-    pub(super) fn octaves<const N: usize>(&self) -> impl Iterator<Item = (Frequency<&F, N>, f32)> {
+    pub(super) fn octaves<const N: usize>(&self) -> impl Iterator<Item = (Scaled<&F, N>, f32)> {
         self.octaves.iter().map(|octave| {
-            let scaled = Frequency {
+            let scaled = Scaled {
                 field: &octave.field,
                 frequency: [octave.frequency; N],
             };

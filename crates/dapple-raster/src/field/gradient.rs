@@ -2,8 +2,8 @@
 
 use super::values::unit;
 use super::{
-    Extruded, FractalShape, Frequency, Linear, Mapped, Mixed, Offset, Pair, PairOperation, Rotated,
-    Slice, Warped,
+    Extruded, FractalShape, Linear, Mapped, Mixed, Pair, PairOperation, Rotated, Scaled, Slice,
+    Translated, Warped,
 };
 use crate::{Change as _, Constant, Displacement, Field, Fractal};
 use std::sync::Arc;
@@ -75,7 +75,7 @@ fn plus<const N: usize>(mut gradient: [f32; N], other: [f32; N]) -> [f32; N] {
     gradient
 }
 
-impl<F: Gradient<N>, const N: usize> Gradient<N> for Frequency<F, N> {
+impl<F: Gradient<N>, const N: usize> Gradient<N> for Scaled<F, N> {
     fn value_and_gradient(&self, position: [f64; N]) -> (f32, [f32; N]) {
         let (value, mut gradient) = self.field.value_and_gradient(self.moved(position));
         for (part, frequency) in gradient.iter_mut().zip(self.frequency) {
@@ -85,7 +85,7 @@ impl<F: Gradient<N>, const N: usize> Gradient<N> for Frequency<F, N> {
     }
 }
 
-impl<F: Gradient<N>, const N: usize> Gradient<N> for Offset<F, N> {
+impl<F: Gradient<N>, const N: usize> Gradient<N> for Translated<F, N> {
     fn value_and_gradient(&self, position: [f64; N]) -> (f32, [f32; N]) {
         self.field.value_and_gradient(self.moved(position))
     }

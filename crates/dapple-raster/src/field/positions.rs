@@ -6,14 +6,14 @@ use crate::{Field, RasterError, RasterViewMut, Window};
 
 /// A field at the position times a factor: see [`FieldExt::frequency`](super::FieldExt::frequency).
 #[derive(Clone, Copy, Debug)]
-pub struct Frequency<F, const N: usize = 2> {
+pub struct Scaled<F, const N: usize = 2> {
     pub(super) field: F,
     pub(super) frequency: [f64; N],
 }
 
 /// A field at the position plus an offset: see [`FieldExt::offset`](super::FieldExt::offset).
 #[derive(Clone, Copy, Debug)]
-pub struct Offset<F, const N: usize = 2> {
+pub struct Translated<F, const N: usize = 2> {
     pub(super) field: F,
     pub(super) offset: [f64; N],
 }
@@ -79,7 +79,7 @@ fn render_rows<const N: usize>(
     })
 }
 
-impl<F, const N: usize> Frequency<F, N> {
+impl<F, const N: usize> Scaled<F, N> {
     pub(super) fn moved(&self, mut position: [f64; N]) -> [f64; N] {
         for (at, frequency) in position.iter_mut().zip(self.frequency) {
             *at *= frequency;
@@ -88,7 +88,7 @@ impl<F, const N: usize> Frequency<F, N> {
     }
 }
 
-impl<F: Field<N>, const N: usize> Field<N> for Frequency<F, N> {
+impl<F: Field<N>, const N: usize> Field<N> for Scaled<F, N> {
     fn value(&self, position: [f64; N]) -> f32 {
         self.field.value(self.moved(position))
     }
@@ -118,7 +118,7 @@ impl<F: Field<N>, const N: usize> Field<N> for Frequency<F, N> {
     }
 }
 
-impl<F, const N: usize> Offset<F, N> {
+impl<F, const N: usize> Translated<F, N> {
     pub(super) fn moved(&self, mut position: [f64; N]) -> [f64; N] {
         for (at, offset) in position.iter_mut().zip(self.offset) {
             *at += offset;
@@ -127,7 +127,7 @@ impl<F, const N: usize> Offset<F, N> {
     }
 }
 
-impl<F: Field<N>, const N: usize> Field<N> for Offset<F, N> {
+impl<F: Field<N>, const N: usize> Field<N> for Translated<F, N> {
     fn value(&self, position: [f64; N]) -> f32 {
         self.field.value(self.moved(position))
     }

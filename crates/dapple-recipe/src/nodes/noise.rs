@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
-pub struct Fractal {
+pub struct FractalNode {
     /// The noise of an octave; PUPs by default.
     pub basis: FractalBasis,
     /// The approximate number of bumps per unit of the plane in the first octave; 8 by default. For gradients and
@@ -31,7 +31,7 @@ pub struct Fractal {
     pub seed: Option<NodeSeed>,
 }
 
-impl Default for Fractal {
+impl Default for FractalNode {
     fn default() -> Self {
         Self {
             basis: FractalBasis::Pups,
@@ -62,7 +62,7 @@ pub enum FractalBasis {
 const OCTAVES: Range = range!(from 1 to 16);
 const GAIN: Range = range!(above 0 to 1);
 
-impl NodeKind for Fractal {
+impl NodeKind for FractalNode {
     fn work(&self, plan: &Builder<'_>) -> Result<Work, RecipeError> {
         match self.basis {
             FractalBasis::Pups => Ok(Work {
@@ -96,7 +96,7 @@ impl NodeKind for Fractal {
     }
 }
 
-impl Fractal {
+impl FractalNode {
     /// The options of the octaves of PUPs noise.
     fn pups(&self, plan: &Builder<'_>) -> OctavesOptions {
         OctavesOptions {

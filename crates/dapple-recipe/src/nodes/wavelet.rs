@@ -59,7 +59,7 @@ pub(super) fn noise(
     seed: Seed,
     frequency: f64,
     weights: &[f32],
-) -> Result<dapple_raster::Frequency<WaveletNoise2>, RecipeError> {
+) -> Result<dapple_raster::Scaled<WaveletNoise2>, RecipeError> {
     let size = cells(plan, frequency)?;
     let tile = plan.parts().get_or_make(
         |tile: &Tile| tile.noise.size() == size && tile.seed == seed,

@@ -6,7 +6,9 @@ use crate::{RecipeError, RecipeErrorKind};
 use core::fmt;
 use dapple_pups::{Range, range};
 use dapple_raster::{Field, FieldExt};
-use dapple_worley::{Axes, Combination, Metric, Octaves, Scatter, Space, Worley, Worley2, Worley4};
+use dapple_worley::{
+    Combination, Dimensions, Metric, Octaves, Scatter, Space, Worley, Worley2, Worley4,
+};
 use serde::de::value::SeqAccessDeserializer;
 use serde::de::{Deserializer, Error, SeqAccess, Visitor};
 use serde::ser::Serializer;
@@ -120,7 +122,7 @@ impl WorleyNode {
     /// A cellular basis with the metric and the scatter of the node.
     fn basis<const N: usize>(&self, worley: Worley<N>) -> Result<Worley<N>, RecipeError>
     where
-        Axes: Space<N>,
+        Dimensions: Space<N>,
     {
         match self.value {
             WorleyValue::Combination(_) => {}

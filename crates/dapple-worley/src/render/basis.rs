@@ -4,7 +4,7 @@ use crate::doors::Doors as _;
 use crate::fixed::{FlatPlace, MOST_AXES, Place, first_axes};
 use crate::lattice::Lattice;
 use crate::search::Hit;
-use crate::{Axes, LIMIT, Metric, Space, Worley};
+use crate::{Dimensions, MAX_NEAREST, Metric, Space, Worley};
 use core::fmt;
 
 /// A basis in the form that rendering uses, whatever the number of axes. Places and vectors have zeros along the missing
@@ -25,7 +25,7 @@ pub trait Basis: Sync + fmt::Debug {
 
 impl<const N: usize> Basis for Worley<N>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     fn metric(&self) -> Metric {
         self.metric
@@ -37,9 +37,9 @@ where
 
     fn nearest(&self, place: &FlatPlace, hits: &mut [Hit<MOST_AXES>]) {
         let place = own_axes(place);
-        let mut found = [Hit::NONE; LIMIT];
+        let mut found = [Hit::NONE; MAX_NEAREST];
         let found = &mut found[..hits.len()];
-        Axes::nearest(self.metric, &self.lattice, &place, found);
+        Dimensions::nearest(self.metric, &self.lattice, &place, found);
         for (hit, found) in hits.iter_mut().zip(found) {
             hit.key = found.key;
             hit.name = found.name;

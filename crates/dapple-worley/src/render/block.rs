@@ -11,7 +11,7 @@ use super::square::{Guess, Plan};
 use super::table::{CellBox, Table};
 use super::track::Lookup;
 use super::{Band, LANES, MANY_CELLS, Output, Picture};
-use crate::LIMIT;
+use crate::MAX_NEAREST;
 use crate::features::position;
 use crate::fixed::{MOST_AXES, STEPS};
 use crate::search::{Hit, Name};
@@ -223,7 +223,7 @@ impl Block<'_> {
         match (out, out.depth()) {
             (Output::Values(..), 1) => 1,
             (_, ..=2) => 2,
-            _ => LIMIT,
+            _ => MAX_NEAREST,
         }
     }
 
@@ -362,7 +362,7 @@ impl Block<'_> {
         let Picture { basis, section, .. } = band.picture;
         let place = band.picture.place(column, band.first + row);
         let nearest = |n: usize| {
-            let mut hits = [Hit::NONE; LIMIT];
+            let mut hits = [Hit::NONE; MAX_NEAREST];
             if let Some(place) = &place {
                 basis.nearest(place, &mut hits[..n]);
             } else {
@@ -381,7 +381,7 @@ impl Block<'_> {
             }
             Output::Edges(rows) => rows[row][column] = self.edge(column, row),
             Output::Features(features) => {
-                let hits = nearest(LIMIT);
+                let hits = nearest(MAX_NEAREST);
                 for (hit, features) in hits.iter().zip(features) {
                     let id = hit.name.map_or(0, Name::id);
                     if let Some(out) = features.distance.get_mut(row) {

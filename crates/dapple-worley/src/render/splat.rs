@@ -10,7 +10,7 @@ use super::block::{Block, Memory};
 use super::kernel::{empty, greater, lesser};
 use super::table::CellBox;
 use super::{BLOCK_COLUMNS, LANES, Picture};
-use crate::LIMIT;
+use crate::MAX_NEAREST;
 use crate::fixed::{MOST_AXES, STEP, STEP_BITS};
 use crate::levels::{is_wide, wide};
 use crate::metric::{Additive, Exact, General, Kernel, Longest, Measure};
@@ -267,7 +267,7 @@ fn fill_three(level: Level, runs: Runs<'_, 3>, tiles: &mut TileRow<'_>) {
 fn fill_any<const TILES: usize>(level: Level, runs: Runs<'_, TILES>, tiles: &mut TileRow<'_>) {
     let depth = match tiles.values.tone.depth() {
         depth @ ..=2 => depth,
-        _ => LIMIT,
+        _ => MAX_NEAREST,
     };
     let (sum, exact, any) = (
         Additive(runs.metric),
@@ -286,11 +286,11 @@ fn fill_any<const TILES: usize>(level: Level, runs: Runs<'_, TILES>, tiles: &mut
         }
         (Kernel::General, _) => None,
         _ => {
-            wide!(level, simd => fill::<_, _, LIMIT, TILES, TILES, true>(simd, exact, depth, runs, tiles))
+            wide!(level, simd => fill::<_, _, MAX_NEAREST, TILES, TILES, true>(simd, exact, depth, runs, tiles))
         }
     };
     if done.is_none() {
-        baseline!(simd => fill::<_, _, LIMIT, TILES, TILES, true>(simd, any, depth, runs, tiles));
+        baseline!(simd => fill::<_, _, MAX_NEAREST, TILES, TILES, true>(simd, any, depth, runs, tiles));
     }
 }
 

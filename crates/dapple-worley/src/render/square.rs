@@ -15,7 +15,7 @@ use crate::fixed::{MOST_AXES, STEP, STEPS};
 use crate::levels::{is_wide, wide};
 use crate::metric::{Additive, Exact, General, Kernel, Longest, Squares};
 use crate::sink::{Tone, Values};
-use crate::{LIMIT, Metric};
+use crate::{MAX_NEAREST, Metric};
 use core::ops::Range;
 use dapple_raster::simd::baseline;
 use fearless_simd::Level;
@@ -357,11 +357,13 @@ impl Block<'_> {
                 wide!(level, simd => rows.fill_register::<_, _, 2>(simd, Longest, depth, out))
             }
             (Kernel::General, _) => None,
-            _ => wide!(level, simd => rows.fill_register::<_, _, LIMIT>(simd, exact, depth, out)),
+            _ => {
+                wide!(level, simd => rows.fill_register::<_, _, MAX_NEAREST>(simd, exact, depth, out))
+            }
         };
         end.unwrap_or_else(|| {
             let any = General(metric);
-            baseline!(simd => rows.fill_groups::<_, _, LIMIT, 1, 0>(simd, any, depth, out))
+            baseline!(simd => rows.fill_groups::<_, _, MAX_NEAREST, 1, 0>(simd, any, depth, out))
         })
     }
 
@@ -388,7 +390,7 @@ impl Block<'_> {
                 wide!(level, simd => rows.fill::<_, _, 2>(simd, sum, 2, &mut put))
             }
             (Kernel::Squares | Kernel::Sum, _) => {
-                wide!(level, simd => rows.fill::<_, _, LIMIT>(simd, sum, LIMIT, &mut put))
+                wide!(level, simd => rows.fill::<_, _, MAX_NEAREST>(simd, sum, MAX_NEAREST, &mut put))
             }
             (Kernel::Longest, 2) => {
                 wide!(level, simd => rows.fill::<_, _, 2>(simd, Longest, 2, &mut put))
@@ -397,7 +399,7 @@ impl Block<'_> {
         };
         end.unwrap_or_else(|| {
             let any = General(metric);
-            baseline!(simd => rows.fill::<_, _, LIMIT>(simd, any, depth, &mut put))
+            baseline!(simd => rows.fill::<_, _, MAX_NEAREST>(simd, any, depth, &mut put))
         })
     }
 

@@ -7,7 +7,7 @@ use super::flat::FlatPoints;
 use super::kernel::{Candidate, empty, greater, lesser};
 use super::table::Table;
 use super::{Band, LANES};
-use crate::LIMIT;
+use crate::MAX_NEAREST;
 use crate::features::{FeatureRows, position};
 use crate::fixed::{MOST_AXES, STEP};
 use crate::many::NOTHING;
@@ -80,10 +80,10 @@ pub(super) struct TrackedRows<'a> {
 /// The nearest points of the pixels of a row. The numbers come first, so that registers do not lie across cache lines.
 #[repr(C, align(64))]
 pub(super) struct Found {
-    pub(super) distances: [[f32; LANES]; LIMIT],
+    pub(super) distances: [[f32; LANES]; MAX_NEAREST],
     /// The components of the vectors, one after the other.
-    pub(super) vectors: [[f32; MOST_AXES * LANES]; LIMIT],
-    pub(super) ids: [[u64; LANES]; LIMIT],
+    pub(super) vectors: [[f32; MOST_AXES * LANES]; MAX_NEAREST],
+    pub(super) ids: [[u64; LANES]; MAX_NEAREST],
     /// A bit for each lane whose order is unknown.
     pub(super) unknown: u64,
     pub(super) row: usize,
@@ -121,9 +121,9 @@ impl TrackedRows<'_> {
             columns: self.columns.clone(),
             n_axes: self.lookup.n_axes,
             depth,
-            distances: [[0.0; LANES]; LIMIT],
-            vectors: [[0.0; MOST_AXES * LANES]; LIMIT],
-            ids: [[0; LANES]; LIMIT],
+            distances: [[0.0; LANES]; MAX_NEAREST],
+            vectors: [[0.0; MOST_AXES * LANES]; MAX_NEAREST],
+            ids: [[0; LANES]; MAX_NEAREST],
             unknown: 0,
         };
         let columns = i32x16::from_slice(simd, &self.lines[0][..LANES]);
@@ -337,8 +337,8 @@ impl Found {
     }
 
     /// The vectors of a lane, nearest first.
-    pub(super) fn vectors<const N: usize>(&self, lane: usize) -> [[f32; N]; LIMIT] {
-        let mut vectors = [[0.0; N]; LIMIT];
+    pub(super) fn vectors<const N: usize>(&self, lane: usize) -> [[f32; N]; MAX_NEAREST] {
+        let mut vectors = [[0.0; N]; MAX_NEAREST];
         for rank in 0..self.depth {
             for axis in 0..N {
                 vectors[rank][axis] = self.vectors[rank][lane * N + axis];

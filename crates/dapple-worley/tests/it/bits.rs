@@ -5,7 +5,9 @@ use super::oracle::{METRICS, SCATTERS, position, vectors};
 use dapple_hash::{Seed, hash1, unit_f64};
 use dapple_raster::simd::for_every_level;
 use dapple_raster::{Raster, Window};
-use dapple_worley::{Axes, Combination, FeatureView, Plane, Space, Vector, Worley, WorleyError};
+use dapple_worley::{
+    Combination, Dimensions, FeatureView, Plane, Space, Vector, Worley, WorleyError,
+};
 use glam::DVec2;
 
 pub(super) const COMBINATIONS: [Combination; 5] = [
@@ -51,7 +53,7 @@ fn doors_agree<const N: usize>(
     combinations: &[Combination],
 ) -> Result<(), WorleyError>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     for (combination, plane) in combinations
         .iter()
@@ -88,7 +90,7 @@ where
 
 fn random<const N: usize>(seed: Seed, index: u64) -> Vector<N>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     let unit = |axis| unit_f64(hash1(seed.child("plane", index), [axis as i64], 0));
     Vector::<N>::from(core::array::from_fn(|axis| 2.0 * unit(axis) - 1.0))
@@ -124,7 +126,7 @@ fn render_equals_sample_bit_for_bit_in_space() -> Result<(), WorleyError> {
 
 fn features_agree<const N: usize>(worley: &Worley<N>, plane: &Plane<N>) -> Result<(), WorleyError>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     let texture = worley.combine(Combination::new([0.5, -1.0, 0.0, 0.25]));
     for window in windows() {
@@ -207,7 +209,7 @@ fn many_equal_single_ones<const N: usize, const K: usize>(
     spread: f64,
 ) -> Result<(), WorleyError>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     let mut positions: Vec<Vector<N>> = (0..333)
         .map(|index| Vector::<N>::from(position(Seed(8), index, spread)))
@@ -261,7 +263,7 @@ fn nearest_of_all<const N: usize>(
     reach: i64,
 ) -> Vec<(f32, u64, [f64; N])>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     let ways = vectors(worley, at, reach).into_iter();
     let mut all: Vec<_> = ways
@@ -278,7 +280,7 @@ where
 fn nearest_points_are_those_of_all_points_bit_for_bit() -> Result<(), WorleyError> {
     fn check<const N: usize>(worley: &Worley<N>, n: i64) -> Result<(), WorleyError>
     where
-        Axes: Space<N>,
+        Dimensions: Space<N>,
     {
         let reach = reach_of(worley)?;
         let positions = (0..n).map(|index| position::<N>(Seed(21), index, 1e4));

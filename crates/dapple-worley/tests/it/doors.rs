@@ -3,7 +3,8 @@
 use super::oracle::brute_force;
 use dapple_raster::{Raster, Window};
 use dapple_worley::{
-    Axes, Combination, Feature, FeatureView, Plane, RESOLUTION, Space, Vector, Worley, WorleyError,
+    Combination, Dimensions, Feature, FeatureView, POSITION_STEP, Plane, Space, Vector, Worley,
+    WorleyError,
 };
 use glam::DVec2;
 
@@ -26,7 +27,7 @@ pub(super) fn sample_by_every_door<const N: usize>(
     at: [f64; N],
 ) -> Result<[Feature<Vector<N>>; 4], WorleyError>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     let at = Vector::<N>::from(at);
     let expected = worley.sample::<4>(at);
@@ -67,7 +68,7 @@ where
 /// Returns a window of 5 × 3 pixels around a position.
 fn window_about<const N: usize>(at: [f64; N]) -> (Plane<N>, Window)
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     let mut origin = at;
     origin[..2].fill(0.0);
@@ -89,7 +90,7 @@ fn render_features<const N: usize>(
     [column, row]: [u32; 2],
 ) -> Result<[Feature<Vector<N>>; 4], WorleyError>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     let mut distances = [(); 4].map(|()| Raster::filled(window.size, -1.0).unwrap());
     let mut vectors = [(); 4].map(|()| Raster::filled(window.size, [0.0; N]).unwrap());
@@ -117,7 +118,7 @@ pub(super) fn agrees_with_oracle<const N: usize>(
     reach: i64,
     found: &[Feature<Vector<N>>; 4],
 ) where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     let expected = brute_force(worley, at, reach);
     assert!(
@@ -149,7 +150,7 @@ fn leads_to_its_point<const N: usize>(
     at: [f64; N],
     feature: &Feature<Vector<N>>,
 ) where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     let vector: [f64; N] = feature.vector.into();
     // Longer vectors are rounded.
@@ -159,8 +160,8 @@ fn leads_to_its_point<const N: usize>(
     let corner = at.map(f64::floor);
     let local: [f64; N] = core::array::from_fn(|axis| {
         // A position is rounded down to steps.
-        let steps = ((at[axis] - corner[axis]) / f64::from(RESOLUTION)).floor();
-        steps * f64::from(RESOLUTION) - vector[axis]
+        let steps = ((at[axis] - corner[axis]) / f64::from(POSITION_STEP)).floor();
+        steps * f64::from(POSITION_STEP) - vector[axis]
     });
     let cell = core::array::from_fn(|axis| corner[axis] as i64 + local[axis].floor() as i64);
     let offset: [f64; N] = local.map(|part| part - part.floor());
@@ -178,7 +179,7 @@ fn leads_to_its_point<const N: usize>(
 /// 10^7 times. Within this distance 30 points are expected, in the metric with the smallest balls.
 pub(super) fn reach_of<const N: usize>(worley: &Worley<N>) -> Result<i64, WorleyError>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     let manhattan_ball = [1.0, 2.0, 2.0, 4.0 / 3.0, 2.0 / 3.0][N];
     let volume = 30.0 / worley.scatter().mean()?;

@@ -6,7 +6,7 @@ use super::sheet::middle_ground;
 use dapple_hash::Seed;
 use dapple_raster::simd::for_every_level;
 use dapple_raster::{Raster, Window};
-use dapple_worley::{Axes, Plane, Space, Worley, WorleyError};
+use dapple_worley::{Dimensions, Plane, Space, Worley, WorleyError};
 use glam::DVec2;
 
 fn picture_equals_distance<const N: usize>(
@@ -15,7 +15,7 @@ fn picture_equals_distance<const N: usize>(
     window: &Window,
 ) -> Result<(), WorleyError>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     let [width, height] = window.size;
     let pixels = (0..height).flat_map(|row| (0..width).map(move |column| (column, row)));

@@ -5,8 +5,8 @@ use super::oracle::{METRICS, SCATTERS};
 use dapple_hash::Seed;
 use dapple_raster::{Field, Raster, Window};
 use dapple_worley::{
-    Axes, Combination, FeatureView, Octaves, Plane, Radial, RadialCells, Space, Vector, Worley,
-    WorleyError,
+    Combination, Dimensions, FeatureView, Octaves, Plane, Radial, RadialCells, Space, Vector,
+    Worley, WorleyError,
 };
 use glam::DVec3;
 
@@ -17,7 +17,7 @@ fn steps_are_told_apart<const N: usize>(
     n: u32,
 ) -> Result<(), WorleyError>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     let sample = |index: u32| {
         let mut at = start;
@@ -124,7 +124,7 @@ fn positions_without_a_place<const N: usize>() -> Vec<[f64; N]> {
 
 fn nothing_has_a_value<const N: usize>() -> Result<(), WorleyError>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     for metric in METRICS {
         let worley = Worley::<N>::new(Seed(84)).with_metric(metric)?;
@@ -225,7 +225,7 @@ fn windows_without_a_place() -> Vec<Window> {
 
 fn windows_hold_what_samples_give<const N: usize>(worley: &Worley<N>) -> Result<(), WorleyError>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     let texture = worley.combine(Combination::TWO_F3_MINUS_F2_MINUS_F1);
     let fractal = texture.fractal(Octaves {

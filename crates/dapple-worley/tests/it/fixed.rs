@@ -1,12 +1,12 @@
 //! Tests that positions are rounded down to whole steps of a cell.
 
 use dapple_hash::Seed;
-use dapple_worley::{RESOLUTION, Worley2};
+use dapple_worley::{POSITION_STEP, Worley2};
 
 #[test]
 fn places_are_rounded_down_to_steps() {
     let worley = Worley2::new(Seed(7));
-    let step = f64::from(RESOLUTION);
+    let step = f64::from(POSITION_STEP);
     for (position, place) in [
         (1.5 + 0.9 * step, 1.5),
         (-0.25 + 0.9 * step, -0.25),

@@ -6,12 +6,12 @@
 use super::doors::{agrees_with_oracle, reach_of, sample_by_every_door};
 use super::oracle::position;
 use dapple_hash::Seed;
-use dapple_worley::{Axes, Feature, Metric, Scatter, Space, Vector, Worley, WorleyError};
+use dapple_worley::{Dimensions, Feature, Metric, Scatter, Space, Vector, Worley, WorleyError};
 
 /// Returns the distance of a feature point in cells, along the axis where it is farthest.
 fn cells_away<const N: usize>(at: [f64; N], feature: &Feature<Vector<N>>) -> i64
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     let vector: [f64; N] = feature.vector.into();
     let away = |axis: usize| ((at[axis] - vector[axis]).floor() - at[axis].floor()).abs() as i64;
@@ -26,7 +26,7 @@ fn count_far_points<const N: usize>(
     n: i64,
 ) -> Result<[u32; 4], WorleyError>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     let worley = Worley::<N>::new(Seed(51))
         .with_metric(metric)?
@@ -147,7 +147,7 @@ fn points_many_cells_away_are_found_at_the_least_density() -> Result<(), WorleyE
 /// cell does not help the search. Returns how often the fourth point is beyond the neighbors.
 fn far_corners_agree<const N: usize>(metric: Metric, corner: f64) -> Result<u32, WorleyError>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     let worley = Worley::<N>::new(Seed(55))
         .with_metric(metric)?

@@ -4,8 +4,8 @@ use super::oracle::{METRICS, position};
 use dapple_hash::Seed;
 use dapple_raster::{Field, Raster, Window};
 use dapple_worley::{
-    Axes, Cellular, CellularFractal, Combination, Metric, OctaveSeeds, Octaves, Plane, Scatter,
-    Space, Vector, Worley, WorleyError, WorleyErrorKind,
+    Cellular, CellularFractal, Combination, Dimensions, Metric, OctaveSeeds, Octaves, Plane,
+    Scatter, Space, Vector, Worley, WorleyError, WorleyErrorKind,
 };
 use glam::DVec2;
 
@@ -39,7 +39,7 @@ fn render_equals_value<const N: usize>(
     plane: &Plane<N>,
 ) -> Result<(), WorleyError>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     for window in windows() {
         let mut values = Raster::filled(window.size, -1.0)?;
@@ -111,7 +111,7 @@ fn naive<const N: usize>(
     at: [f64; N],
 ) -> f64
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     let (mut sum, mut frequency, mut weight) = (0.0, 1.0, 1.0);
     for index in 0..octaves.count {
@@ -134,7 +134,7 @@ where
 
 fn sums_are_naive_sums<const N: usize>(n: i64) -> Result<(), WorleyError>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     for (metric, combination) in METRICS.into_iter().zip(
         [Combination::F1, Combination::F2_MINUS_F1, Combination::F4]
@@ -194,7 +194,7 @@ fn gradients_are_those_of_differences<const N: usize>(
     n: i64,
 ) -> Result<(), WorleyError>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     let texture = Worley::<N>::new(Seed(107)).combine(Combination::F2_MINUS_F1);
     let fractal = texture.fractal(octaves)?.with_range([-0.5, 1.5])?;

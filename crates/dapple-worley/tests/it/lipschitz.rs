@@ -6,7 +6,7 @@ use super::doors::RANKS;
 use super::oracle::{METRICS, SCATTERS, position};
 use dapple_hash::Seed;
 use dapple_raster::{Raster, Window};
-use dapple_worley::{Axes, Metric, Plane, RESOLUTION, Space, Vector, Worley, WorleyError};
+use dapple_worley::{Dimensions, Metric, POSITION_STEP, Plane, Space, Vector, Worley, WorleyError};
 
 /// The largest change of the difference of two distances by rounding. A key is rounded a few times and its root once,
 /// and powers are accurate to about 1e-6.
@@ -21,7 +21,7 @@ fn slack(metric: Metric, a: f32, b: f32) -> f32 {
 /// Walks `n` steps. The start and the step are multiples of 2^-21, so that no position is rounded.
 fn walk<const N: usize>(worley: &Worley<N>, start: [f64; N], step: [f64; N], n: u32)
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     let metric = worley.metric();
     let length = metric.length(step.map(|part| part as f32));
@@ -54,7 +54,7 @@ where
 
 fn walk_everywhere<const N: usize>(lines: i64, steps: u32) -> Result<(), WorleyError>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     for (metric, scatter) in METRICS.iter().flat_map(|&m| SCATTERS.map(|s| (m, s))) {
         let worley = Worley::<N>::new(Seed(31))
@@ -104,9 +104,9 @@ fn distances_never_differ_by_more_than_the_way_between_any_two_positions() -> Re
 /// Crosses a border of cells along each axis, in the smallest possible steps.
 fn cross<const N: usize>(worley: &Worley<N>, border: i64, index: i64)
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
-    let step = f64::from(RESOLUTION);
+    let step = f64::from(POSITION_STEP);
     for axis in 0..N {
         let mut start = position::<N>(Seed(37), index, 50.0);
         start[axis] = border as f64 - 2.0 * step;
@@ -162,7 +162,7 @@ fn pictures_have_no_jumps<const N: usize>(
     window: &Window,
 ) -> Result<(), WorleyError>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     let metric = worley.metric();
     let [width, height] = window.size;

@@ -1,7 +1,7 @@
 //! The oracle: F1 to F4 from all points of a wide neighborhood, sorted.
 
 use dapple_hash::{Seed, hash1, unit_f64};
-use dapple_worley::{Axes, Metric, Scatter, Space, Worley, WorleyError};
+use dapple_worley::{Dimensions, Metric, Scatter, Space, Worley, WorleyError};
 
 /// Returns all feature points within `reach` cells as distances and ids in double precision, nearest first.
 pub(super) fn brute_force<const N: usize>(
@@ -10,7 +10,7 @@ pub(super) fn brute_force<const N: usize>(
     reach: i64,
 ) -> Vec<(f64, u64)>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     let mut found: Vec<_> = vectors(worley, position, reach)
         .into_iter()
@@ -27,7 +27,7 @@ pub(super) fn vectors<const N: usize>(
     reach: i64,
 ) -> Vec<([f64; N], u64)>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     let base = position.map(|part| part.floor() as i64);
     let side = 2 * reach + 1;
@@ -88,7 +88,7 @@ pub(super) fn brute_force_vectors<const N: usize>(
     reach: i64,
 ) -> Vec<(f64, [f64; N])>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     let mut found: Vec<_> = vectors(worley, position, reach)
         .into_iter()
@@ -109,7 +109,7 @@ pub(super) fn position<const N: usize>(seed: Seed, index: i64, spread: f64) -> [
 
 fn agrees_with_brute_force<const N: usize>(samples: i64, reach: i64) -> Result<(), WorleyError>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     for (metric, scatter) in METRICS.iter().flat_map(|&m| SCATTERS.map(|s| (m, s))) {
         let seed = Seed(5);

@@ -2,7 +2,7 @@
 
 use dapple_hash::Seed;
 use dapple_raster::{Raster, Window, glam::DVec2};
-use dapple_worley::{Axes, FeatureView, Metric, Plane, RESOLUTION, Space, Vector, Worley};
+use dapple_worley::{Dimensions, FeatureView, Metric, POSITION_STEP, Plane, Space, Vector, Worley};
 
 /// All planes of one of the nearest points.
 struct Planes<const N: usize> {
@@ -37,7 +37,7 @@ impl<const N: usize> Planes<N> {
 
 fn render<const N: usize>(worley: &Worley<N>, plane: &Plane<N>, window: &Window) -> [Planes<N>; 2]
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     let mut planes = [(); 2].map(|()| Planes::new(window.size));
     let views = planes.each_mut().map(Planes::all);
@@ -47,7 +47,7 @@ where
 
 fn planes_are_those_of_samples<const N: usize>(worley: &Worley<N>, plane: &Plane<N>)
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     let window = Window::new(DVec2::new(-3.0, 1e6), DVec2::new(4.0, 2.5), [67, 41]).unwrap();
     let planes = render(worley, plane, &window);
@@ -83,7 +83,7 @@ where
                     "{column}, {row}"
                 );
                 let from_vector = at[axis] - vector[axis];
-                let tolerance = f64::from(RESOLUTION) * 1.01;
+                let tolerance = f64::from(POSITION_STEP) * 1.01;
                 assert!(
                     (from_vector - expected).abs() <= tolerance,
                     "{from_vector} is not {expected} at {column}, {row}"

@@ -4,7 +4,7 @@ use super::doors::{RANKS, agrees_with_oracle, reach_of, sample_by_every_door};
 use dapple_hash::Seed;
 use dapple_raster::{Raster, Window};
 use dapple_worley::{
-    Axes, Cellular, Combination, FeatureView, Metric, Plane, Scatter, Space, Vector, Worley,
+    Cellular, Combination, Dimensions, FeatureView, Metric, Plane, Scatter, Space, Vector, Worley,
 };
 use proptest::prelude::*;
 use std::collections::BTreeSet;
@@ -34,7 +34,7 @@ fn any_period<const N: usize>() -> impl Strategy<Value = [Option<u32>; N]> {
 
 fn any_worley<const N: usize>() -> impl Strategy<Value = Worley<N>>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     (any::<u64>(), any_metric(), any_scatter(), any_period::<N>()).prop_map(
         |(seed, metric, scatter, period)| {
@@ -49,7 +49,7 @@ where
 /// Returns longer periods for a scatter that may leave all cells of a short period empty.
 fn fitting<const N: usize>(worley: &Worley<N>, period: [Option<u32>; N]) -> [Option<u32>; N]
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     match worley.scatter() {
         Scatter::Unclamped { .. } => period.map(|period| period.map(|_| 1000)),
@@ -83,7 +83,7 @@ fn doors_agree<const N: usize>(
     oracle: bool,
 ) -> Result<(), TestCaseError>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     let found = sample_by_every_door(worley, at).unwrap();
     if oracle {
@@ -104,7 +104,7 @@ fn repeats<const N: usize>(
     turns: i64,
 ) -> Result<(), TestCaseError>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     let expected = worley.sample::<4>(Vector::<N>::from(at));
     for axes in 1..1 << N {
@@ -156,7 +156,7 @@ fn any_window() -> impl Strategy<Value = Window> {
 /// Planes; in most, columns go along the first axis only and rows along the others.
 fn any_plane<const N: usize>() -> impl Strategy<Value = Plane<N>>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     let part = prop_oneof![Just(0.0), Just(1.0), -1.5..1.5];
     let way = proptest::array::uniform::<_, N>(part);
@@ -180,7 +180,7 @@ fn window_holds_samples<const N: usize>(
     window: &Window,
 ) -> Result<(), TestCaseError>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     let mut values = Raster::filled(window.size, -1.0).unwrap();
     let mut gradients = Raster::filled(window.size, [-1.0; N]).unwrap();
@@ -229,7 +229,7 @@ fn ids_of_a_period<const N: usize>(
     first: [i64; N],
 ) -> Vec<u64>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     let mut ids = Vec::new();
     let n_cells: u32 = period.iter().product();
@@ -551,7 +551,7 @@ fn positions_just_below_a_whole_number_are_those_of_the_last_step_or_of_the_numb
             .flat_map(|worley| [0.0, 1.0, -1.0, 3.0, 4_294_967_296.0].map(|whole| (worley, whole)))
         {
             let below = f64::next_down(whole);
-            let step = f64::from(dapple_worley::RESOLUTION);
+            let step = f64::from(dapple_worley::POSITION_STEP);
             // Rounded down to a step, unless the way from the lower corner of its cell is rounded to a whole cell.
             let rounded = if below - below.floor() < 1.0 {
                 whole - step

@@ -2,13 +2,13 @@
 
 use dapple_hash::Seed;
 use dapple_worley::{
-    Axes, Combination, Metric, Scatter, Space, Worley, Worley2, WorleyError, WorleyErrorKind,
+    Combination, Dimensions, Metric, Scatter, Space, Worley, Worley2, WorleyError, WorleyErrorKind,
 };
 
 /// The combinations whose range in the table differs from the measured range.
 fn measured_otherwise<const N: usize>() -> Vec<String>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     let mut other = Vec::new();
     for scatter in [Scatter::default(), Scatter::Jittered { jitter: 1.0 }] {

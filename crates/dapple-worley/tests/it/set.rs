@@ -1,7 +1,7 @@
 //! Compares the basis over placed points with a search through all of them.
 
 use dapple_hash::{Seed, hash1, unit_f64};
-use dapple_worley::{Axes, FeatureSet, Metric, Space, Vector};
+use dapple_worley::{Dimensions, FeatureSet, Metric, Space, Vector};
 
 fn random<const N: usize>(seed: Seed, index: i64, extent: f64) -> [f64; N] {
     core::array::from_fn(|axis| extent * unit_f64(hash1(seed, [index], axis as u32)))
@@ -9,7 +9,7 @@ fn random<const N: usize>(seed: Seed, index: i64, extent: f64) -> [f64; N] {
 
 fn agrees_with_all_points<const N: usize>(n: i64, period: [Option<f64>; N], metric: Metric)
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     let points: Vec<Vector<N>> = (0..n)
         .map(|index| random::<N>(Seed(1), index, 10.0).into())

@@ -3,7 +3,7 @@
 use dapple_hash::Seed;
 use dapple_raster::{Field, Raster, RasterErrorKind, Window};
 use dapple_worley::{
-    Axes, Combination, FeatureView, Metric, Octaves, Plane, Scatter, Space, Vector, Worley,
+    Combination, Dimensions, FeatureView, Metric, Octaves, Plane, Scatter, Space, Vector, Worley,
     Worley2, Worley3, Worley4, WorleyError,
 };
 use glam::{DVec2, DVec3, DVec4};
@@ -12,7 +12,7 @@ use glam::{DVec2, DVec3, DVec4};
 /// another nearest point.
 pub(super) fn middle_ground<const N: usize>(worley: &Worley<N>, at: [f64; N]) -> [f64; N]
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     let nearest = |at: [f64; N]| worley.sample::<1>(at)[0].id;
     let id = nearest(at);
@@ -46,7 +46,7 @@ fn picture_equals_value<const N: usize>(
     window: &Window,
 ) -> Result<(), WorleyError>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     let texture = worley.combine(combination);
     let mut picture = Raster::filled(window.size, -1.0)?;
@@ -67,7 +67,7 @@ where
 /// Windows around places where a tiny difference decides which point is nearer, from a whole cell down to a few steps.
 fn hairs_are_split_right<const N: usize>() -> Result<(), WorleyError>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     let combinations = [Combination::F1, Combination::F2, Combination::F2_MINUS_F1];
     for seed in 0..6 {

@@ -6,13 +6,13 @@
 use super::oracle::SCATTERS;
 use dapple_hash::Seed;
 use dapple_worley::{
-    Axes, Combination, Feature, FeatureSet, Metric, OctaveSeeds, Octaves, Radial, RadialCells,
-    Scatter, Space, Vector, Worley, WorleyError,
+    Combination, Dimensions, Feature, FeatureSet, Metric, OctaveSeeds, Octaves, Radial,
+    RadialCells, Scatter, Space, Vector, Worley, WorleyError,
 };
 
 fn line<const N: usize>(features: &[Feature<Vector<N>>; 4]) -> String
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     let distances = features.map(|feature| format!("{:08x}", feature.distance.to_bits()));
     format!(
@@ -38,14 +38,14 @@ const POSITIONS: [[f64; 4]; 3] = [
 
 fn position<const N: usize>(index: usize) -> Vector<N>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     Vector::<N>::from(core::array::from_fn(|axis| POSITIONS[index][axis]))
 }
 
 fn samples<const N: usize>() -> Vec<String>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     let worley = Worley::<N>::new(Seed(7));
     (0..3)
@@ -119,7 +119,7 @@ fn value_stability_sample_by_metric_and_scatter() -> Result<(), WorleyError> {
 fn value_stability_cell_points() -> Result<(), WorleyError> {
     fn lines<const N: usize>(worley: &Worley<N>, cell: [i64; N]) -> Vec<String>
     where
-        Axes: Space<N>,
+        Dimensions: Space<N>,
     {
         let points = worley.cell_points(cell).into_iter().take(2);
         let line = |point: dapple_worley::CellPoint<Vector<N>>| {

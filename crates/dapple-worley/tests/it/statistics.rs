@@ -3,7 +3,7 @@
 //! Seeds are fixed, so every test always passes or always fails. True randomness exceeds the bounds one time in 10^4.
 
 use dapple_hash::{Seed, hash1, unit_f64};
-use dapple_worley::{Axes, Metric, Scatter, Space, Vector, Worley, WorleyError};
+use dapple_worley::{Dimensions, Metric, Scatter, Space, Vector, Worley, WorleyError};
 
 /// The quantile of the normal distribution for one in 10^4.
 const QUANTILE: f64 = 3.719;
@@ -63,7 +63,7 @@ fn histogram2(n_bins: usize, values: impl IntoIterator<Item = [f64; 2]>) -> Vec<
 /// Returns the offsets of the points in the cells of a cube around the origin, cell by cell.
 fn cells<const N: usize>(worley: &Worley<N>, side: i64) -> Vec<Vec<[f64; N]>>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     let n_cells = side.pow(N as u32);
     let cell =
@@ -76,7 +76,7 @@ where
 
 fn points_are_uniform<const N: usize>(side: i64) -> Result<(), WorleyError>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     for scatter in [
         Scatter::default(),
@@ -122,7 +122,7 @@ fn feature_points_are_uniform_in_four_dimensions() -> Result<(), WorleyError> {
 
 fn points_of_a_cell_are_independent<const N: usize>(side: i64)
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     let cells = cells(&Worley::<N>::new(Seed(72)), side);
     for index in 0..4 {
@@ -220,7 +220,7 @@ fn counts_follow<const N: usize>(
     weights: &[f64],
 ) -> Result<(), WorleyError>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     let worley = Worley::<N>::new(Seed(74)).with_scatter(scatter)?;
     let counts: Vec<_> = cells(&worley, side).iter().map(Vec::len).collect();
@@ -291,7 +291,7 @@ fn anywhere<const N: usize>(index: i64) -> [f64; N] {
 /// Returns the means of F1 to F4 and their standard errors.
 fn means<const N: usize>(worley: &Worley<N>, n: i64) -> [[f64; 2]; 4]
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     let mut sums = [[0.0; 2]; 4];
     for index in 0..n {
@@ -311,7 +311,7 @@ where
 
 fn means_are_those_measured<const N: usize>(n: i64, expected: [f64; 4])
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     let found = means(&Worley::<N>::new(Seed(76)), n);
     for ([mean, error], expected) in found.into_iter().zip(expected) {
@@ -349,7 +349,7 @@ fn distances_are_those_of_a_poisson_process<const N: usize>(
     n: i64,
 ) -> Result<(), WorleyError>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     let worley = Worley::<N>::new(Seed(77))
         .with_scatter(Scatter::Unclamped { density })?

@@ -4,7 +4,7 @@ use super::doors::{RANKS, agrees_with_oracle, sample_by_every_door};
 use super::oracle::{METRICS, position};
 use dapple_hash::Seed;
 use dapple_raster::{Raster, Window};
-use dapple_worley::{Axes, Plane, Scatter, Space, Vector, Worley, WorleyError};
+use dapple_worley::{Dimensions, Plane, Scatter, Space, Vector, Worley, WorleyError};
 
 /// Varies from the least density to the largest and back, several times within 40 cells, and is clamped at both ends.
 fn waves<const N: usize>(at: [f64; N]) -> f64 {
@@ -15,7 +15,7 @@ fn waves<const N: usize>(at: [f64; N]) -> f64 {
 
 fn varying<const N: usize>(seed: u64) -> Worley<N>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     Worley::new(Seed(seed)).with_varying_density(|at: Vector<N>| waves::<N>(at.into()))
 }

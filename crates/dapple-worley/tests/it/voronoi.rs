@@ -2,7 +2,7 @@
 
 use super::oracle::{brute_force_vectors, position};
 use dapple_hash::Seed;
-use dapple_worley::{Axes, Metric, Space, Worley};
+use dapple_worley::{Dimensions, Metric, Space, Worley};
 
 /// Returns the distance from a position to the plane halfway between two points, given the vectors from both of them.
 fn to_plane<const N: usize>(first: [f64; N], other: [f64; N]) -> f64 {
@@ -13,7 +13,7 @@ fn to_plane<const N: usize>(first: [f64; N], other: [f64; N]) -> f64 {
 
 fn edges_agree<const N: usize>(samples: i64, reach: i64)
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     let worley = Worley::<N>::new(Seed(5)).with_density(1.0).unwrap();
     for index in 0..samples {

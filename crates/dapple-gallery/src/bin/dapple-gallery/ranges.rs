@@ -1,6 +1,8 @@
 //! Measures the ranges of the named combinations of Worley's basis, for the table in `dapple-worley`.
 
-use dapple_worley::{Axes, Combination, Metric, Scatter, Space, Worley, WorleyError, hash::Seed};
+use dapple_worley::{
+    Combination, Dimensions, Metric, Scatter, Space, Worley, WorleyError, hash::Seed,
+};
 use std::fmt::Write as _;
 
 /// Returns the table as it stands in `crates/dapple-worley/src/ranges.rs`: scatters, metrics, numbers of axes,
@@ -26,7 +28,7 @@ pub(crate) fn table() -> anyhow::Result<String> {
 /// Returns the row of a scatter and a metric: the ranges of all combinations with `N` axes.
 fn row<const N: usize>(scatter: Scatter, metric: Metric) -> Result<String, WorleyError>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     let worley = Worley::<N>::new(Seed(0))
         .with_scatter(scatter)?

@@ -6,18 +6,18 @@ use crate::error::{Error, Result};
 use crate::generators::array;
 use crate::watch::{self, Stop};
 use dapple::raster::{RasterViewMut, Window};
-use dapple::worley::{Axes, FeatureView, LIMIT, Space, Vector};
+use dapple::worley::{Dimensions, FeatureView, MAX_NEAREST, Space, Vector};
 
 /// The number of positions between two looks for an interruption.
 const PART: usize = 1 << 15;
 
 pub(super) fn check_count(count: usize) -> Result<()> {
-    if (1..=LIMIT).contains(&count) {
+    if (1..=MAX_NEAREST).contains(&count) {
         return Ok(());
     }
     Err(Error::new(
         "count",
-        format!("the number of feature points is {count}, but it must be from 1 to {LIMIT}"),
+        format!("the number of feature points is {count}, but it must be from 1 to {MAX_NEAREST}"),
     ))
 }
 
@@ -34,7 +34,7 @@ pub(super) fn find<const N: usize, const K: usize>(
     stop: &Stop,
 ) -> Result<Found>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     let basis = made.basis::<N>()?;
     let mut found = Found {
@@ -74,7 +74,7 @@ pub(super) fn draw<const N: usize, const K: usize>(
     stop: &Stop,
 ) -> Result<Drawn>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     let basis = made.basis::<N>()?;
     let mut distance = wanted[0].then(|| vec![0.0_f32; K * n_values]);
@@ -119,7 +119,7 @@ pub(super) fn gradients<const N: usize>(
     stop: &Stop,
 ) -> Result<Vec<f64>>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     let texture = made.texture::<N>()?;
     let gradient: &(dyn Fn(Vector<N>) -> Vector<N> + Sync) = match &texture {
@@ -151,7 +151,7 @@ pub(super) fn cell_points<const N: usize>(
     cell: &[i64],
 ) -> Result<(Vec<f64>, Vec<u64>)>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     let cell: [i64; N] = array(cell)?;
     let points = made.basis::<N>()?.cell_points(cell);

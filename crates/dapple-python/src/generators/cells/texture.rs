@@ -1,13 +1,15 @@
 //! Textures of cells: distances, their sums at several scales, borders and cell values.
 
 use dapple::raster::Field;
-use dapple::worley::{Axes, CellValues, Cellular, CellularFractal, EdgeDistances, Plane, Space};
+use dapple::worley::{
+    CellValues, Cellular, CellularFractal, Dimensions, EdgeDistances, Plane, Space,
+};
 use std::sync::Arc;
 
 /// A texture of cells, by the kind of its values.
 pub(super) enum Texture<const N: usize>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     Cellular(Cellular<N>),
     Fractal(CellularFractal<N>),
@@ -17,7 +19,7 @@ where
 
 impl<const N: usize> Texture<N>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     pub(super) fn field(self) -> Arc<dyn Field<N>> {
         match self {
@@ -32,7 +34,7 @@ where
 /// The plane along the first two axes at fixed further coordinates.
 pub(super) fn plane<const N: usize>(rest: &[f64]) -> Plane<N>
 where
-    Axes: Space<N>,
+    Dimensions: Space<N>,
 {
     let mut origin = [0.0; N];
     origin[2..].copy_from_slice(rest);
