@@ -176,7 +176,6 @@ mod visit;
 pub use atlas::{Atlas, AtlasReport};
 pub use bake::bake;
 pub use bake_normals::bake_normals;
-pub use candidates::{Candidates, CoarserCenter};
 pub use dapple_color as color;
 pub use dapple_hash as hash;
 pub use dapple_mesh as mesh;
@@ -190,7 +189,6 @@ pub use exemplar::{Edges, Exemplar, Pyramid};
 pub use lift::MeshExemplar;
 pub use likeness::Likeness;
 pub use maps::{bake_colors, bake_colors_alpha, bake_values};
-pub use matcher::{Match, Matcher, MatcherMemory, distance_sq};
 pub use neighborhood::{Part, Pass, Reads, Schedule, Shape};
 pub use options::{Axes, Coherence, Matching, Options, Sources};
 pub use orientation::{Direction, Orientation, Symmetry};
@@ -200,13 +198,20 @@ pub use plane::{PlaneTexture, synthesize_plane_guided, synthesize_plane_with, ti
 pub use plane_along::{PlaneAlong, PlaneScales, synthesize_plane_along};
 pub use side_by_side::SideBySide;
 pub use sites::{
-    Blend, Connected, DOWNSAMPLE_STEPS, DOWNSAMPLE_T, Evenness, Hierarchy, HierarchyOptions,
-    INTERPOLATION_RADIUS, Level, LowPass, STAR_RADIUS, SiteGraph, SiteGrid, SiteIdx, SiteTriangles,
-    Sites, evenness, hexagonal_spacing, nested_points, repeats_of_sites, repel, scatter,
-    sites_for_repeats,
+    Blend, Connected, Evenness, Hierarchy, HierarchyOptions, Level, SiteGraph, SiteGrid, SiteIdx,
+    SiteTriangles, Sites, evenness, hexagonal_spacing, nested_points, repeats_of_sites, repel,
+    scatter, sites_for_repeats,
 };
 pub use surface_texture::SurfaceTexture;
 pub use sweep::Sweep;
 pub use synthesizer::{Synthesizer, synthesize};
 pub use table::{TableRow, parse_table};
 pub use turned::Turned;
+
+// For the benches and tests of the workspace alone.
+#[doc(hidden)]
+pub use candidates::{Candidates, CoarserCenter};
+#[doc(hidden)]
+pub use matcher::{Match, Matcher, MatcherMemory, distance_sq};
+#[doc(hidden)]
+pub use sites::{DOWNSAMPLE_STEPS, DOWNSAMPLE_T, INTERPOLATION_RADIUS, LowPass, STAR_RADIUS};
