@@ -11,11 +11,13 @@
 
 use crate::gradients::gradient;
 use crate::lines::Lines;
+#[cfg(feature = "simd")]
 use crate::many;
-use dapple_hash::{LatticeHash, Seed, lattice_bits};
-use dapple_raster::simd::{self, dispatch};
+use dapple_hash::{LatticeHash, Seed};
+#[cfg(feature = "simd")]
+use dapple_raster::simd;
+use dapple_raster::simd::{Level, dispatch};
 use dapple_raster::{Field, Fractal, FractalShape, Gradient, RasterError, RasterViewMut, Window};
-use fearless_simd::{Level, prelude::*, u32x16};
 
 /// How many corners are hashed at once.
 const LANES: usize = 32;
@@ -66,9 +68,9 @@ pub(crate) const MOST_CORNERS: usize = 8;
 )]
 pub struct GradientNoise<const N: usize> {
     seed: Seed,
-    hash: LatticeHash<N>,
+    pub(crate) hash: LatticeHash<N>,
     /// The number of cells after which the noise repeats along each axis; 0 along an axis where it does not.
-    period: [u32; N],
+    pub(crate) period: [u32; N],
     /// The bits of the numbers of cells that are added to positions along each axis; 0, except in octaves of a sum.
     offset: [u64; N],
 }
@@ -266,7 +268,12 @@ impl<const N: usize> GradientNoise<N> {
         values: &mut [f32],
     ) -> Result<(), RasterError> {
         RasterError::check_length(values.len(), positions.len())?;
+        #[cfg(feature = "simd")]
         many::fill(self, simd::level(), positions, values);
+        #[cfg(not(feature = "simd"))]
+        for (value, &position) in values.iter_mut().zip(positions) {
+            *value = self.sample(position);
+        }
         Ok(())
     }
 
@@ -287,7 +294,7 @@ impl<const N: usize> GradientNoise<N> {
             for (part, &column) in parts.iter_mut().zip(columns) {
                 *part = self.part(0, column) ^ row;
             }
-            let bits = dispatch!(level, simd => bits_of(simd, &parts));
+            let bits = dispatch!(level, _simd => bits_of::<N>(&parts));
             gradients.extend(bits[..columns.len()].iter().map(|&bits| gradient(bits)));
         }
         gradients
@@ -311,11 +318,6 @@ impl<const N: usize> GradientNoise<N> {
     #[inline(always)]
     pub(crate) const fn moved(&self, coordinate: f64, axis: usize) -> f64 {
         coordinate + f64::from_bits(self.offset[axis])
-    }
-
-    /// The key of an axis, and its period in cells or 0.
-    pub(crate) const fn axis(&self, axis: usize) -> (u32, u32) {
-        (self.hash.key(axis), self.period[axis])
     }
 
     /// The coordinates of the corners on both sides of a cell along an axis, brought into the period.
@@ -464,12 +466,11 @@ impl<const N: usize> Gradient<N> for GradientNoise<N> {
 #[derive(Clone, Copy)]
 pub(crate) struct Place {
     pub(crate) cell: i64,
-    pub(crate) floor: f64,
     pub(crate) offset: f32,
 }
 
 /// 1.5 · 2^52: a sum of it and a number nearer to 0 than 2^51 holds the nearest whole number in its lower bits.
-const SHIFT: f64 = 6_755_399_441_055_744.0;
+pub(crate) const SHIFT: f64 = 6_755_399_441_055_744.0;
 
 impl Place {
     #[inline(always)]
@@ -485,7 +486,6 @@ impl Place {
             let floor = cell as f64;
             return Self {
                 cell,
-                floor,
                 // The negative zero less zero is a negative zero.
                 offset: (coordinate - floor + 0.0) as f32,
             };
@@ -493,25 +493,7 @@ impl Place {
         let floor = coordinate.floor();
         Self {
             cell: floor as i64,
-            floor,
             offset: (coordinate - floor) as f32,
-        }
-    }
-
-    /// A coordinate nearer to 0 than 2^51, in operations that become vector instructions; `floor` is a call at the least
-    /// SIMD level of x86-64.
-    #[inline(always)]
-    pub(crate) fn near(coordinate: f64) -> Self {
-        let shifted = coordinate + SHIFT;
-        let nearest = shifted - SHIFT;
-        let is_past = nearest > coordinate;
-        let floor = nearest - if is_past { 1.0 } else { 0.0 };
-        let cell = shifted.to_bits().wrapping_sub(SHIFT.to_bits());
-        Self {
-            cell: cell.cast_signed() - i64::from(is_past),
-            floor,
-            // The difference of two negative zeros is a negative one.
-            offset: (coordinate - floor + 0.0) as f32,
         }
     }
 }
@@ -564,17 +546,12 @@ impl Column {
     }
 }
 
-/// The random bits of corners, given by the parts of their coordinates.
+/// The random bits of corners, given by the parts of their coordinates. Compilers make vector instructions of the loop.
 #[inline(always)]
-fn bits_of<S: Simd>(simd: S, parts: &[u32; LANES]) -> [u32; LANES] {
-    let halves = [
-        u32x16::from_slice(simd, &parts[..16]),
-        u32x16::from_slice(simd, &parts[16..]),
-    ];
-    let bits = lattice_bits(halves);
+fn bits_of<const N: usize>(parts: &[u32; LANES]) -> [u32; LANES] {
     let mut all = [0; LANES];
-    for (all, bits) in all.chunks_exact_mut(16).zip(bits) {
-        all.copy_from_slice(bits.as_slice());
+    for (bits, &part) in all.iter_mut().zip(parts) {
+        *bits = LatticeHash::<N>::bits(part);
     }
     all
 }

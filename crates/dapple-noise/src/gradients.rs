@@ -5,6 +5,7 @@
 //! the eight to corners and sides of a square, all of the same length.
 
 use core::f32::consts::SQRT_2;
+#[cfg(feature = "simd")]
 use fearless_simd::{f32x16, prelude::*, u32x16};
 
 /// How many gradients there are in two dimensions.
@@ -57,6 +58,7 @@ const fn picked(bits: u32, count: u32) -> u32 {
 }
 
 /// The gradients that random bits choose, a register for each part: those of [`gradient`].
+#[cfg(feature = "simd")]
 #[inline(always)]
 pub(crate) fn gradient_lanes<S: Simd, const N: usize>(simd: S, bits: u32x16<S>) -> [f32x16<S>; N] {
     let count = [N_PLANE, N_SPACE, N_TIME][N - 2];

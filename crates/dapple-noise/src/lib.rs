@@ -23,6 +23,7 @@
 mod gradient;
 mod gradients;
 mod lines;
+#[cfg(feature = "simd")]
 mod many;
 
 pub use dapple_hash as hash;

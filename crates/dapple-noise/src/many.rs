@@ -3,7 +3,7 @@
 //! The arithmetic is that of one position, operation by operation, so that the bits are the same.
 
 use crate::GradientNoise;
-use crate::gradient::{MOST_CORNERS, Place, corners};
+use crate::gradient::{MOST_CORNERS, Place, SHIFT, corners};
 use crate::gradients::gradient_lanes;
 use dapple_hash::{lattice_bits, lattice_parts};
 use dapple_raster::simd::dispatch;
@@ -40,7 +40,7 @@ fn fill_with<S: Simd, const N: usize, P: Copy + Into<[f64; N]>>(
     positions: &[P],
     values: &mut [f32],
 ) {
-    let has_words = (0..N).all(|axis| noise.axis(axis).1 <= 1 << 31);
+    let has_words = (0..N).all(|axis| axis_of(noise, axis).1 <= 1 << 31);
     for (positions, values) in positions.chunks(LANES).zip(values.chunks_mut(LANES)) {
         let mut coordinates = [[0.0; LANES]; N];
         for (lane, &position) in positions.iter().enumerate() {
@@ -79,7 +79,7 @@ fn value<S: Simd, const N: usize>(
     let mut parts = [[u32x16::splat(simd, 0); 2]; N];
     let mut offsets = [f32x16::splat(simd, 0.0); N];
     for axis in 0..N {
-        let (key, period) = noise.axis(axis);
+        let (key, period) = axis_of(noise, axis);
         let line = Line::new(&coordinates[axis], period);
         offsets[axis] = f32x16::from_slice(simd, &line.offsets);
         let cells = u32x16::from_slice(simd, &line.cells);
@@ -128,6 +128,28 @@ fn value<S: Simd, const N: usize>(
     near + fade(t) * (far - near)
 }
 
+/// The key of an axis, and its period in cells or 0.
+const fn axis_of<const N: usize>(noise: &GradientNoise<N>, axis: usize) -> (u32, u32) {
+    (noise.hash.key(axis), noise.period[axis])
+}
+
+/// The place of a coordinate nearer to 0 than 2^51, and the floor of the coordinate, in operations that become vector
+/// instructions; `floor` is a call at the least SIMD level of x86-64.
+#[inline(always)]
+fn near(coordinate: f64) -> (Place, f64) {
+    let shifted = coordinate + SHIFT;
+    let nearest = shifted - SHIFT;
+    let is_past = nearest > coordinate;
+    let floor = nearest - if is_past { 1.0 } else { 0.0 };
+    let cell = shifted.to_bits().wrapping_sub(SHIFT.to_bits());
+    let place = Place {
+        cell: cell.cast_signed() - i64::from(is_past),
+        // The difference of two negative zeros is a negative one.
+        offset: (coordinate - floor + 0.0) as f32,
+    };
+    (place, floor)
+}
+
 impl Line {
     /// The cells of coordinates nearer than [`NEAR`], in a period of some cells if that is not 0.
     #[inline(always)]
@@ -138,7 +160,7 @@ impl Line {
             offsets: [0.0; LANES],
         };
         for lane in 0..LANES {
-            let place = Place::near(coordinates[lane]);
+            let (place, _) = near(coordinates[lane]);
             line.cells[lane] = place.cell as u32;
             line.next[lane] = line.cells[lane].wrapping_add(1);
             line.offsets[lane] = place.offset;
@@ -149,7 +171,7 @@ impl Line {
             for cell in &mut line.cells {
                 let number = f64::from(cell.cast_signed());
                 // The quotient is off by at most one, and all products are whole numbers below 2^53.
-                let mut rest = number - Place::near(number * inverse).floor * whole;
+                let mut rest = number - near(number * inverse).1 * whole;
                 rest += if rest < 0.0 { whole } else { 0.0 };
                 rest -= if rest >= whole { whole } else { 0.0 };
                 *cell = rest as u32;

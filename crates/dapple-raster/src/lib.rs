@@ -35,7 +35,6 @@ mod wrap;
 #[doc(hidden)]
 pub mod parallel;
 pub mod prelude;
-#[cfg(feature = "simd")]
 #[doc(hidden)]
 pub mod simd;
 pub mod text;

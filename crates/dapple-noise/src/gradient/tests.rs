@@ -2,12 +2,10 @@
 
 use super::{GradientNoise, GradientNoise2, GradientNoise3, GradientNoise4, Place, fade};
 use crate::gradients::{all, gradient};
-use crate::many;
 use dapple_hash::{LatticeHash, Seed, hash1};
 use dapple_raster::glam::DVec2;
-use dapple_raster::simd::for_every_level;
+use dapple_raster::simd::{Level, for_every_level};
 use dapple_raster::{Field, FieldExt as _, FractalShape, RasterErrorKind, Window};
-use fearless_simd::Level;
 use proptest::prelude::*;
 
 const SEED: Seed = Seed(7);
@@ -304,7 +302,9 @@ fn every_simd_level_has_the_values_of_single_positions() {
             .collect();
         for_every_level(|level| {
             let mut values = vec![0.0; positions.len()];
-            many::fill(noise, level, &positions, &mut values);
+            noise
+                .sample_many(&positions, &mut values)
+                .expect("as many values as positions");
             for (at, value) in values.iter().enumerate() {
                 assert_eq!(
                     value.to_bits(),
