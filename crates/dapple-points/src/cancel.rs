@@ -1,5 +1,6 @@
 //! The request of a caller to stop.
 
+#[cfg(feature = "poisson-disk")]
 use crate::{PointsError, PointsErrorKind};
 use core::fmt;
 use std::sync::Arc;
@@ -33,11 +34,13 @@ impl fmt::Debug for Cancel {
 }
 
 /// Fails if the caller asked to stop.
+#[cfg(feature = "poisson-disk")]
 pub(crate) fn check(is_cancelled: &IsCancelled) -> Result<(), PointsError> {
     cancelled(is_cancelled())
 }
 
 /// Fails if the caller has asked to stop.
+#[cfg(feature = "poisson-disk")]
 pub(crate) fn cancelled(is_cancelled: bool) -> Result<(), PointsError> {
     match is_cancelled {
         true => Err(PointsError::new(PointsErrorKind::Cancelled)),
