@@ -29,10 +29,10 @@ const NONE: u32 = u32::MAX;
 /// # Examples
 ///
 /// ```
-/// use dapple_graph::points::{Domain, hash::Seed, poisson_disk};
+/// use dapple_graph::points::{Domain, hash::Seed, jittered_grid};
 /// use dapple_graph::{PointIdx, Voronoi, glam::DVec2};
 ///
-/// let points = poisson_disk(Domain::torus(DVec2::ZERO, DVec2::ONE), 0.1, Seed(7))?;
+/// let points = jittered_grid(Domain::torus(DVec2::ZERO, DVec2::ONE), [10, 10], 0.9, Seed(7))?;
 /// let voronoi = Voronoi::new(&points)?;
 /// let areas = (0..points.len() as u32).filter_map(|site| voronoi.cell(PointIdx(site)).area());
 /// assert!((areas.sum::<f64>() - 1.0).abs() < 1e-12, "the cells cover the torus once");

@@ -41,9 +41,9 @@ const CROWD: usize = 8;
 ///
 /// ```
 /// use dapple_graph::{EditableDelaunay, PointIdx, delaunay, glam::DVec2};
-/// use dapple_graph::points::{Domain, hash::Seed, poisson_disk};
+/// use dapple_graph::points::{Domain, hash::Seed, jittered_grid};
 ///
-/// let points = poisson_disk(Domain::paper_torus(), 0.1, Seed(7))?;
+/// let points = jittered_grid(Domain::paper_torus(), [20, 20], 0.9, Seed(7))?;
 /// let mut graph = EditableDelaunay::new(&points)?;
 /// let stars = graph.move_to(PointIdx(5), DVec2::new(0.25, -0.5))?;
 /// assert!(stars.len() < 40);
