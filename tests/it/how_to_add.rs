@@ -1,4 +1,4 @@
-//! Checks the section "How to add" of ARCHITECTURE.md: each row names the few files that a new item of its kind
+//! Checks the section "How to add" of CONTRIBUTING.md: each row names the few files that a new item of its kind
 //! touches.
 
 #![expect(clippy::disallowed_methods, reason = "sources are files")]
@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
-const ARCHITECTURE: &str = include_str!("../../ARCHITECTURE.md");
+const CONTRIBUTING: &str = include_str!("../../CONTRIBUTING.md");
 
 /// An existing item of a kind, whose files are counted.
 struct Example {
@@ -63,7 +63,7 @@ const EXAMPLES: [Example; 6] = [
 
 #[test]
 fn one_of_a_kind_stands_in_few_files_and_the_section_names_them() {
-    let (_, section) = ARCHITECTURE
+    let (_, section) = CONTRIBUTING
         .split_once("## How to add")
         .expect("there is the section");
     for example in &EXAMPLES {
