@@ -1,4 +1,4 @@
-//! The picture of the workspace's README: a row of figures, and below it a row of lit built-in recipes.
+//! The picture of the workspace's README: models covered from swatches, and below them lit built-in recipes.
 
 use super::Documented;
 use super::picture::{below, colored, of_figures, row};
@@ -7,14 +7,7 @@ pub(super) const DOCUMENTED: Documented = Documented {
     folder: "",
     strips: &[],
     banner: || {
-        let figures = [
-            ("pups-fig-02", 0),
-            ("pups-fig-05", 2),
-            ("pups-fig-08", 0),
-            ("pups-fig-extra-colors", 0),
-            ("pups-fig-14", 3),
-            ("pups-fig-15", 0),
-        ];
+        let models = [0, 1, 2, 3, 4, 5].map(|model| ("surface-fig-05", model));
         // The numbers are places in the list of all built-in recipes.
         let [
             flagstone,
@@ -33,7 +26,7 @@ pub(super) const DOCUMENTED: Documented = Documented {
             ice,
         ];
         let rows = [
-            row(&of_figures(&figures, HEIGHT)?)?,
+            row(&of_figures(&models, HEIGHT)?)?,
             row(&of_figures(&recipes, HEIGHT)?)?,
         ];
         Ok(colored("", &below(&rows)?, COLORS))
