@@ -14,7 +14,7 @@ use crate::{Dimensions, Metric, Worley, one, search};
 use fearless_simd::Level;
 
 /// The functions that are compiled for a number of axes; [`Dimensions`] has them for 2, 3 and 4.
-pub trait Doors<const N: usize>: Sized {
+pub trait DimensionDispatch<const N: usize>: Sized {
     /// The basis in the form that rendering uses.
     fn basis(worley: &Worley<N>) -> &dyn Basis;
 
@@ -29,9 +29,9 @@ pub trait Doors<const N: usize>: Sized {
     fn search_group(worley: &Worley<N>, level: Level, group: &mut Group<N>) -> u64;
 }
 
-macro_rules! doors {
+macro_rules! compiled_for {
     ($($n:literal $nearest:path),*) => {$(
-        impl Doors<$n> for Dimensions {
+        impl DimensionDispatch<$n> for Dimensions {
             // Inlined elsewhere, the conversion would compile there all that rendering calls.
             #[inline(never)]
             fn basis(worley: &Worley<$n>) -> &dyn Basis {
@@ -63,4 +63,4 @@ macro_rules! doors {
     )*};
 }
 
-doors!(2 one::nearest, 3 one::nearest, 4 search::nearest);
+compiled_for!(2 one::nearest, 3 one::nearest, 4 search::nearest);

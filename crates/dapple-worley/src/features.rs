@@ -1,6 +1,6 @@
 //! Rendering of the nearest feature points (distances, vectors, positions, ids, random numbers) and of gradients.
 
-use crate::doors::Doors as _;
+use crate::dispatch::DimensionDispatch as _;
 use crate::fixed::STEP;
 use crate::render::{Output, Picture};
 use crate::sink::Tone;

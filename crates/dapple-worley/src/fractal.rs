@@ -9,7 +9,7 @@
 //! the period of the first octave and no octave more often.
 
 use crate::cellular::{measure_range, render_windows};
-use crate::doors::Doors as _;
+use crate::dispatch::DimensionDispatch as _;
 use crate::fixed::Place;
 use crate::render::{Output, Picture, render_stack};
 use crate::sink::{Tone, Values};

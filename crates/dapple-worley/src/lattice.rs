@@ -9,7 +9,7 @@
 use crate::fixed::{MOST_AXES, STEP_BITS, STEPS};
 use crate::places::LANES;
 use crate::scatter::{DENSITIES, JITTER_PARTS, Scatter};
-use crate::search::Name;
+use crate::search::PointId;
 use core::fmt;
 use core::ops::{Add, BitAnd, BitOr, BitXor, Mul, Shl, Shr};
 use dapple_hash::{
@@ -144,7 +144,11 @@ impl Lattice {
 
     /// Calls `each` with every point of a cell: its steps from the cell's lower corner, and its name.
     #[inline]
-    pub(crate) fn visit<const N: usize>(&self, cell: [i64; N], each: impl FnMut([i32; N], Name)) {
+    pub(crate) fn visit<const N: usize>(
+        &self,
+        cell: [i64; N],
+        each: impl FnMut([i32; N], PointId),
+    ) {
         self.visit_words(cell, self.words(cell), each);
     }
 
@@ -154,10 +158,10 @@ impl Lattice {
         &self,
         cell: [i64; N],
         words: [u32; 2],
-        mut each: impl FnMut([i32; N], Name),
+        mut each: impl FnMut([i32; N], PointId),
     ) {
         for index in 0..self.count(&cell, words[0]) {
-            each(self.steps(words, index), Name { words, index });
+            each(self.steps(words, index), PointId { words, index });
         }
     }
 

@@ -61,7 +61,7 @@ mod scattered;
 mod set;
 mod voronoi;
 
-mod doors;
+mod dispatch;
 mod fixed;
 mod lattice;
 mod levels;

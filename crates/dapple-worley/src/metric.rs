@@ -103,11 +103,11 @@ fn sign(part: f32) -> f32 {
 
 // A metric is the sum, or the largest, of one *term* for each axis. That is the *key* of a vector, which is compared in
 // place of the distance: the squared distance, for the Euclidean metric. Keys are never below zero, and they do not
-// shrink when a difference grows; `looseness` says how far rounding may break that.
+// shrink when a difference grows; `rounding_slack` says how far rounding may break that.
 impl Metric {
     /// The factor that turns a key into a bound that holds despite rounding.
     #[inline]
-    pub(crate) fn looseness(self) -> f32 {
+    pub(crate) fn rounding_slack(self) -> f32 {
         match self {
             // `powf` is good to an ulp or two, so larger differences can have smaller powers by as much; this is 80
             // ulps.
@@ -171,7 +171,7 @@ impl Metric {
     /// A bound for exact keys, tightened so that it holds for rounded ones.
     #[inline]
     pub(crate) fn tightened(self, bound: f32) -> f32 {
-        bound / self.looseness()
+        bound / self.rounding_slack()
     }
 }
 

@@ -10,7 +10,7 @@ use crate::levels::wide;
 use crate::many::{Found, NOTHING, Search, vector};
 use crate::metric::Measure as _;
 use crate::places::{LANES, cells_by_distance, digit};
-use crate::search::{self, Hit, Name, Ranking};
+use crate::search::{self, Hit, PointId, Ranking};
 use dapple_hash::mix32_pairs;
 use dapple_raster::simd;
 use fearless_simd::{i32x16, mask32x16, prelude::*, u32x16};
@@ -207,7 +207,7 @@ impl<const N: usize> Around<N> {
             }
             hit.key = search.exact.0.key(hit.vector);
             let words = lanes.words(number);
-            hit.name = Some(Name { words, index: 0 });
+            hit.name = Some(PointId { words, index: 0 });
         }
         true
     }
@@ -292,7 +292,7 @@ impl<const N: usize> Around<N> {
             vector[axis] = ahead as f32 * STEP;
         }
         let key = search.exact.0.key(vector);
-        let name = Some(Name { words, index });
+        let name = Some(PointId { words, index });
         Hit { key, vector, name }
     }
 }
@@ -304,7 +304,7 @@ fn visit_rest<const N: usize>(search: Search<'_>, place: &Place<N>, hits: &mut [
     let around = Around::new(lattice, place);
     let mut ranking = Ranking::new(hits.len());
     for &hit in &*hits {
-        ranking.add(hit, Name::id);
+        ranking.add(hit, PointId::id);
     }
     for &neighbor in &cells_by_distance::<N>()[n_visited(N)..] {
         if around.gap(exact.0, neighbor) <= ranking.reach() {
@@ -314,7 +314,7 @@ fn visit_rest<const N: usize>(search: Search<'_>, place: &Place<N>, hits: &mut [
             }
             let words = lattice.words(cell);
             for index in 0..lattice.count(&cell, words[0]) {
-                ranking.add(around.hit(search, neighbor, words, index), Name::id);
+                ranking.add(around.hit(search, neighbor, words, index), PointId::id);
             }
         }
     }

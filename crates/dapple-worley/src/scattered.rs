@@ -1,6 +1,6 @@
 //! Sampling at many scattered positions, such as the shading points of a renderer.
 
-use crate::doors::Doors as _;
+use crate::dispatch::DimensionDispatch as _;
 use crate::fixed::Place;
 use crate::many::{GROUP, Group, Points};
 use crate::sink::Tone;

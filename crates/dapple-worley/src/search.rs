@@ -21,13 +21,13 @@ use dapple_hash::CellHash;
 
 /// The identity of a point in a lattice: its cell and its index there.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Name {
+pub(crate) struct PointId {
     /// The words of the cell.
     pub(crate) words: [u32; 2],
     pub(crate) index: u32,
 }
 
-impl Name {
+impl PointId {
     /// The id of the point.
     #[inline]
     pub(crate) fn id(self) -> u64 {
@@ -42,7 +42,7 @@ pub struct Hit<const N: usize> {
     /// The vector from the feature point to the position, in cells.
     pub(crate) vector: [f32; N],
     /// The identity of the point; `None` if no point was found.
-    pub(crate) name: Option<Name>,
+    pub(crate) name: Option<PointId>,
 }
 
 impl<const N: usize> Hit<N> {
@@ -76,7 +76,7 @@ pub(crate) fn by_rings<const N: usize>(
     let mut ranking = Ranking::new(n);
     for ring in 0.. {
         let border = visit(ring, &mut ranking);
-        if border == f32::INFINITY || ranking.reach * metric.looseness() < border {
+        if border == f32::INFINITY || ranking.reach * metric.rounding_slack() < border {
             break;
         }
     }
@@ -90,7 +90,7 @@ pub(crate) fn nearest<const N: usize>(
     place: &Place<N>,
     hits: &mut [Hit<N>],
 ) {
-    let looseness = metric.looseness();
+    let rounding_slack = metric.rounding_slack();
     let search = Search {
         lattice,
         metric,
@@ -103,8 +103,8 @@ pub(crate) fn nearest<const N: usize>(
             search.neighbors(ranking);
         } else {
             search.ring(ring, |shift, gap| {
-                if gap <= ranking.reach * looseness {
-                    search.cell(shift, |hit| ranking.add(hit, Name::id));
+                if gap <= ranking.reach * rounding_slack {
+                    search.cell(shift, |hit| ranking.add(hit, PointId::id));
                 }
             });
         }
@@ -125,7 +125,7 @@ pub(crate) fn within<const N: usize>(
     distance: f32,
 ) -> Vec<Hit<N>> {
     let mut hits = Vec::new();
-    let key = metric.term(distance) * metric.looseness();
+    let key = metric.term(distance) * metric.rounding_slack();
     let search = Search {
         lattice,
         metric,
@@ -177,14 +177,14 @@ impl<const N: usize> Ranking<N> {
 
     /// Inserts a point in its order.
     #[inline(always)]
-    pub(crate) fn add(&mut self, hit: Hit<N>, id: impl Fn(Name) -> u64) {
+    pub(crate) fn add(&mut self, hit: Hit<N>, id: impl Fn(PointId) -> u64) {
         if hit.key <= self.reach {
             self.insert(hit, id);
         }
     }
 
     #[inline]
-    fn insert(&mut self, hit: Hit<N>, id: impl Fn(Name) -> u64) {
+    fn insert(&mut self, hit: Hit<N>, id: impl Fn(PointId) -> u64) {
         let hits = &mut self.hits[..self.len];
         let mut at = hits.len();
         while at > 0 && order(&hit, &hits[at - 1], &id).is_lt() {
@@ -202,7 +202,11 @@ impl<const N: usize> Ranking<N> {
 
 /// The order of hits: by key, then by id; repeats of one point, by their vectors.
 #[inline]
-pub(crate) fn order<const N: usize>(a: &Hit<N>, b: &Hit<N>, id: impl Fn(Name) -> u64) -> Ordering {
+pub(crate) fn order<const N: usize>(
+    a: &Hit<N>,
+    b: &Hit<N>,
+    id: impl Fn(PointId) -> u64,
+) -> Ordering {
     match a.key.total_cmp(&b.key) {
         Ordering::Equal => order_of_equal(a, b, id),
         order => order,
@@ -211,7 +215,7 @@ pub(crate) fn order<const N: usize>(a: &Hit<N>, b: &Hit<N>, id: impl Fn(Name) ->
 
 /// The order of hits with one key.
 #[cold]
-fn order_of_equal<const N: usize>(a: &Hit<N>, b: &Hit<N>, id: impl Fn(Name) -> u64) -> Ordering {
+fn order_of_equal<const N: usize>(a: &Hit<N>, b: &Hit<N>, id: impl Fn(PointId) -> u64) -> Ordering {
     let [a_id, b_id] = [a, b].map(|hit| hit.name.map(&id));
     let parts = a.vector.iter().zip(&b.vector);
     a_id.cmp(&b_id)
@@ -285,12 +289,12 @@ impl<const N: usize> Search<'_, N> {
     /// Adds the points of the own cell of the place and of its neighbors to a ranking, those of the cells that are
     /// nearest on average first.
     fn neighbors(&self, ranking: &mut Ranking<N>) {
-        let looseness = self.metric.looseness();
+        let rounding_slack = self.metric.rounding_slack();
         let around = Around::new(self);
         let mut batch = [0; BATCH];
         let mut n = 0;
         for &neighbor in cells_by_distance::<N>() {
-            if around.gap(self.metric, neighbor) > ranking.reach * looseness {
+            if around.gap(self.metric, neighbor) > ranking.reach * rounding_slack {
                 continue;
             }
             batch[n] = neighbor;
@@ -307,9 +311,9 @@ impl<const N: usize> Search<'_, N> {
     /// not know the number of points of a cell before, and guesses it badly.
     #[inline]
     fn batch(&self, around: &Around<N>, neighbors: &[u8], ranking: &mut Ranking<N>) {
-        let looseness = self.metric.looseness();
+        let rounding_slack = self.metric.rounding_slack();
         for &neighbor in neighbors {
-            if around.gap(self.metric, neighbor) > ranking.reach * looseness {
+            if around.gap(self.metric, neighbor) > ranking.reach * rounding_slack {
                 continue;
             }
             let digit = |axis| digit(neighbor.into(), axis);
@@ -325,7 +329,7 @@ impl<const N: usize> Search<'_, N> {
                 }
                 let key = self.metric.key(vector);
                 let name = Some(name);
-                ranking.add(Hit { key, vector, name }, Name::id);
+                ranking.add(Hit { key, vector, name }, PointId::id);
             });
         }
     }
@@ -338,7 +342,7 @@ impl<const N: usize> Search<'_, N> {
 
     /// The hit of a point in the cell that is `shift` cells from the place's own.
     #[inline(always)]
-    fn hit(&self, shift: [i64; N], steps: [i32; N], name: Name) -> Hit<N> {
+    fn hit(&self, shift: [i64; N], steps: [i32; N], name: PointId) -> Hit<N> {
         let mut vector = [0.0; N];
         for axis in 0..N {
             let ahead = i64::from(self.place.steps[axis]) - i64::from(steps[axis]);

@@ -6,7 +6,7 @@
 //!
 //! Differences are taken in `f64` and rounded once to `f32`, so that the unit of positions is the caller's own.
 
-use crate::search::{Hit, Name, Ranking, by_rings};
+use crate::search::{Hit, PointId, Ranking, by_rings};
 use crate::{Dimensions, Feature, MAX_NEAREST, Metric, Space, Vector, WorleyError};
 
 /// The mean number of points of a bin.
@@ -218,7 +218,7 @@ where
             let hit = Hit {
                 key: self.metric.key(vector),
                 vector,
-                name: Some(Name {
+                name: Some(PointId {
                     words: [0; 2],
                     index: *index,
                 }),

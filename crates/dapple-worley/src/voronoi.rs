@@ -3,9 +3,9 @@
 //! The distance to the edge and the radius of the sphere are those known from Blender's Voronoi texture; here they are
 //! exact. The smooth F1 is our own definition, since the usual ones depend on the order of the points.
 
-use crate::doors::Doors as _;
+use crate::dispatch::DimensionDispatch as _;
 use crate::fixed::{Place, STEP, STEPS};
-use crate::search::{Hit, Name, order};
+use crate::search::{Hit, PointId, order};
 use crate::{Dimensions, Metric, Space, Worley, WorleyError};
 
 impl<const N: usize> Worley<N>
@@ -104,7 +104,7 @@ where
         }
         let reach = (first + radius) * 1.000_01;
         let mut hits = Dimensions::within(self.metric, &self.lattice, &place, reach);
-        hits.sort_by(|a, b| order(a, b, Name::id));
+        hits.sort_by(|a, b| order(a, b, PointId::id));
         let distances = hits
             .iter()
             .map(|hit| f64::from(self.feature(*hit).distance));

@@ -1,9 +1,9 @@
 //! Worley's basis: distances to the nearest feature points.
 
-use crate::doors::Doors as _;
+use crate::dispatch::DimensionDispatch as _;
 use crate::fixed::{MOST_AXES, Place, STEP, STEPS, first_axes};
 use crate::lattice::{Density, Lattice};
-use crate::search::{Hit, Name};
+use crate::search::{Hit, PointId};
 use crate::{Dimensions, Metric, Scatter, Space, Vector, WorleyError};
 use dapple_hash::{Seed, unit_f32};
 use std::sync::Arc;
@@ -324,7 +324,7 @@ where
         Feature {
             distance: self.metric.distance(hit.key),
             vector: vector.into(),
-            id: hit.name.map_or(0, Name::id),
+            id: hit.name.map_or(0, PointId::id),
         }
     }
 }

@@ -1,6 +1,6 @@
 //! The interface between rendering and a basis, for any number of axes.
 
-use crate::doors::Doors as _;
+use crate::dispatch::DimensionDispatch as _;
 use crate::fixed::{FlatPlace, MOST_AXES, Place, first_axes};
 use crate::lattice::Lattice;
 use crate::search::Hit;

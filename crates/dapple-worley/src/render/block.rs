@@ -14,7 +14,7 @@ use super::{Band, LANES, MANY_CELLS, Output, Picture};
 use crate::MAX_NEAREST;
 use crate::features::position;
 use crate::fixed::{MOST_AXES, STEPS};
-use crate::search::{Hit, Name};
+use crate::search::{Hit, PointId};
 use crate::worley::cell_value;
 use core::ops::Range;
 use fearless_simd::Level;
@@ -383,7 +383,7 @@ impl Block<'_> {
             Output::Features(features) => {
                 let hits = nearest(MAX_NEAREST);
                 for (hit, features) in hits.iter().zip(features) {
-                    let id = hit.name.map_or(0, Name::id);
+                    let id = hit.name.map_or(0, PointId::id);
                     if let Some(out) = features.distance.get_mut(row) {
                         let distance = || basis.metric().distance(hit.key);
                         out[column] = place.map_or(f32::NAN, |_| distance());

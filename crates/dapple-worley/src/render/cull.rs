@@ -91,7 +91,7 @@ pub(super) struct Points<'a> {
 /// The criterion for candidates.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Keep {
-    /// The points that can be among the given number of nearest ones; bounds are multiplied by the looseness.
+    /// The points that can be among the given number of nearest ones; bounds are multiplied by the rounding_slack.
     Nearest(usize, f32),
     /// The points whose smallest key is at most this.
     Within(f32),
@@ -161,7 +161,7 @@ impl PointList {
         }
         let bound = match cull.keep {
             Keep::Within(bound) => bound,
-            Keep::Nearest(depth, looseness) => smallest_but(depth - 1, least) * looseness,
+            Keep::Nearest(depth, rounding_slack) => smallest_but(depth - 1, least) * rounding_slack,
         };
         // With an infinite bound, padding must still be left out.
         let bound = bound.min(f32::MAX);

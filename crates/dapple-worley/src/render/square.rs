@@ -69,7 +69,7 @@ pub(super) struct Plan {
 impl Plan {
     /// The criterion for points that can be among the nearest.
     pub(super) fn nearest(&self) -> Keep {
-        Keep::Nearest(self.depth, self.metric.looseness())
+        Keep::Nearest(self.depth, self.metric.rounding_slack())
     }
 
     /// The box of pixels, in cells from its lower corner.
