@@ -30,7 +30,7 @@ pub fn read_model(path: impl AsRef<Path>) -> Result<Model, MeshIoError> {
     let format = format_of(path)?;
     let mut left = BYTES_MAX;
     let bytes = read_at_most(path, File::open(path), BYTES_MAX)?;
-    format.read(&bytes, &mut |name| beside(path, name, &mut left))
+    format.read(&bytes, &mut |name| resolve(path, name, &mut left))
 }
 
 /// Reads a mesh file and encodes it again with the second image of each pair in place of the first, and nothing else
@@ -48,7 +48,7 @@ pub fn replace_images(
     let format = format_of(path)?;
     let mut left = BYTES_MAX;
     let bytes = read_at_most(path, File::open(path), BYTES_MAX)?;
-    format.replace_images(&bytes, &mut |name| beside(path, name, &mut left), replaced)
+    format.replace_images(&bytes, &mut |name| resolve(path, name, &mut left), replaced)
 }
 
 /// Writes a mesh file, in the format of [`FORMATS`](crate::FORMATS) that is written with the ending of its path.
@@ -94,7 +94,7 @@ pub(crate) fn unwritable(name: String) -> MeshIoError {
 }
 
 /// The content of a file, by its name in another file, if it is in the folder of that file or deeper.
-fn beside(path: &Path, name: &str, left: &mut u64) -> Option<Vec<u8>> {
+fn resolve(path: &Path, name: &str, left: &mut u64) -> Option<Vec<u8>> {
     let inside = |part: Component<'_>| matches!(part, Component::Normal(_) | Component::CurDir);
     let name = Path::new(name);
     if !name.components().all(inside) {

@@ -29,7 +29,7 @@ pub struct MeshFormat {
     name: &'static str,
     /// The endings without the dot, in lower case.
     endings: &'static [&'static str],
-    read: fn(&[u8], &mut Beside<'_>) -> Result<Model, MeshIoError>,
+    read: fn(&[u8], &mut FileResolver<'_>) -> Result<Model, MeshIoError>,
     writer: Option<Writer>,
 }
 
@@ -48,8 +48,11 @@ struct Writer {
 }
 
 /// A function that takes a file, the files beside it, and pairs of an image and its replacement.
-type ReplaceImages =
-    fn(&[u8], &mut Beside<'_>, &[(EncodedImage, EncodedImage)]) -> Result<Vec<u8>, MeshIoError>;
+type ReplaceImages = fn(
+    &[u8],
+    &mut FileResolver<'_>,
+    &[(EncodedImage, EncodedImage)],
+) -> Result<Vec<u8>, MeshIoError>;
 
 /// The place where a writer puts the material of a model, with its textures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -67,7 +70,7 @@ pub enum MaterialPlace {
 ///
 /// It is an argument of readers of formats with several files. A name is as in the file, with slashes and without
 /// percent codes. It may be a path to anywhere, so a caller that opens files has to check it first.
-pub type Beside<'a> = dyn FnMut(&str) -> Option<Vec<u8>> + 'a;
+pub type FileResolver<'a> = dyn FnMut(&str) -> Option<Vec<u8>> + 'a;
 
 /// The name and the content of a file that is to be written.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -123,8 +126,8 @@ impl MeshFormat {
     /// # Errors
     ///
     /// The errors of the function `read` of the module of the format.
-    pub fn read(&self, bytes: &[u8], beside: &mut Beside<'_>) -> Result<Model, MeshIoError> {
-        (self.read)(bytes, beside)
+    pub fn read(&self, bytes: &[u8], resolve: &mut FileResolver<'_>) -> Result<Model, MeshIoError> {
+        (self.read)(bytes, resolve)
     }
 
     /// Encodes a file of this format with the second image of each pair in place of the first, and nothing else changed,
@@ -136,12 +139,12 @@ impl MeshFormat {
     pub fn replace_images(
         &self,
         bytes: &[u8],
-        beside: &mut Beside<'_>,
+        resolve: &mut FileResolver<'_>,
         replaced: &[(EncodedImage, EncodedImage)],
     ) -> Result<Option<Vec<u8>>, MeshIoError> {
         let replace = self.writer.and_then(|writer| writer.replace_images);
         replace
-            .map(|replace| replace(bytes, beside, replaced))
+            .map(|replace| replace(bytes, resolve, replaced))
             .transpose()
     }
 

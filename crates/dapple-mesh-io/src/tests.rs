@@ -89,9 +89,9 @@ fn read_all(bytes: &[u8]) {
         if format.written_ending().is_some() {
             let files = format.write(&model, "a").expect("it was checked");
             let main = files.last().expect("there is a main file");
-            let beside = |name: &str| files.iter().find(|file| file.name == name);
+            let resolve = |name: &str| files.iter().find(|file| file.name == name);
             let again = format.read(&main.bytes, &mut |name| {
-                beside(name).map(|file| file.bytes.clone())
+                resolve(name).map(|file| file.bytes.clone())
             });
             assert!(again.is_ok(), "{name}");
         }

@@ -97,13 +97,13 @@ mod tests {
     #[test]
     fn the_first_lines_of_a_library_and_of_its_model_are_read_after_a_mark() {
         let png = b"\x89PNG\r\n\x1a\n".to_vec();
-        let mut beside = |name: &str| match name {
+        let mut resolve = |name: &str| match name {
             "a.mtl" => Some("\u{feff}newmtl red\nmap_Kd red.png\n".into()),
             "red.png" => Some(png.clone()),
             _ => None,
         };
         let text = "\u{feff}mtllib a.mtl\nusemtl red\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
-        let model = obj::read_with(text.as_bytes(), &mut beside).expect("it is valid");
+        let model = obj::read_with(text.as_bytes(), &mut resolve).expect("it is valid");
         assert_eq!(
             model.material.base_color,
             EncodedImage::new(png.clone()).ok()

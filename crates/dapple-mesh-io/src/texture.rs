@@ -1,14 +1,14 @@
 //! Textures in other files, and the words for those that are not read.
 
-use crate::Beside;
+use crate::FileResolver;
 use dapple_mesh::{EncodedImage, Model};
 
 /// Texture coordinates beyond 0 to 1 by this much are out of the texture; less is rounding.
 const OUTSIDE: f64 = 1e-4;
 
 /// The texture with a name; or else the entry of [`Model::left_out`](dapple_mesh::Model::left_out) for it.
-pub(crate) fn texture(name: &str, beside: &mut Beside<'_>) -> Result<EncodedImage, String> {
-    let bytes = beside(name).ok_or_else(|| unreadable("texture", name))?;
+pub(crate) fn texture(name: &str, resolve: &mut FileResolver<'_>) -> Result<EncodedImage, String> {
+    let bytes = resolve(name).ok_or_else(|| unreadable("texture", name))?;
     encoded(name, bytes)
 }
 
@@ -103,14 +103,14 @@ mod tests {
     /// A triangle with texture coordinates at the corners of the texture, and a material.
     fn obj_with(material: &str) -> Model {
         let library = format!("newmtl a\n{material}\n");
-        let mut beside = |name: &str| match name {
+        let mut resolve = |name: &str| match name {
             "a.mtl" => Some(library.clone().into_bytes()),
             "a.png" => Some(PNG.to_vec()),
             "a.tif" => Some(b"II*\0".to_vec()),
             _ => None,
         };
         let text = format!("mtllib a.mtl\n{TRIANGLE}");
-        obj::read_with(text.as_bytes(), &mut beside).expect("it is valid")
+        obj::read_with(text.as_bytes(), &mut resolve).expect("it is valid")
     }
 
     #[test]
@@ -195,8 +195,8 @@ mod tests {
             )
         };
         let read = |comments: &str| {
-            let mut beside = |name: &str| (name == "my scan.png").then(|| PNG.to_vec());
-            ply::read_with(text(comments).as_bytes(), &mut beside).expect("it is valid")
+            let mut resolve = |name: &str| (name == "my scan.png").then(|| PNG.to_vec());
+            ply::read_with(text(comments).as_bytes(), &mut resolve).expect("it is valid")
         };
         let model = read("comment TextureFile my scan.png\r\n");
         assert_eq!(

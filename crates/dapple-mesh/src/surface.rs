@@ -14,7 +14,7 @@ mod flat;
 use crate::adjacency::{Adjacency, FaceEdge};
 use crate::{FaceIdx, Mesh, MeshError, MeshErrorKind};
 use flat::fold;
-pub(crate) use flat::{Flat, Fold};
+pub(crate) use flat::{EdgeTransition, FaceFrame};
 use glam::{DVec2, DVec3};
 
 /// A mesh whose faces are laid out flat, so that points on it have a place and paths can be followed.
@@ -24,7 +24,7 @@ use glam::{DVec2, DVec3};
 pub struct Surface {
     mesh: Mesh,
     adjacency: Adjacency,
-    flats: Vec<Flat>,
+    flats: Vec<FaceFrame>,
     vertex_normals: Vec<DVec3>,
     area: f64,
 }
@@ -63,8 +63,8 @@ impl Surface {
         }
         let faces = || (0..mesh.faces().len() as u32).map(FaceIdx);
         // The report has found that all faces have an area.
-        let mut flats: Vec<Flat> = faces()
-            .filter_map(|face| Flat::new(mesh.corners(face)))
+        let mut flats: Vec<FaceFrame> = faces()
+            .filter_map(|face| FaceFrame::new(mesh.corners(face)))
             .collect();
         if flats.is_empty() {
             return Err(MeshError::new(MeshErrorKind::NoArea));
@@ -87,7 +87,7 @@ impl Surface {
             }
         }
         Ok(Self {
-            area: flats.iter().map(Flat::area).sum(),
+            area: flats.iter().map(FaceFrame::area).sum(),
             vertex_normals: mesh.vertex_normals(),
             mesh,
             adjacency,
@@ -261,7 +261,7 @@ impl Surface {
     }
 
     #[inline]
-    pub(crate) fn flat(&self, face: FaceIdx) -> &Flat {
+    pub(crate) fn flat(&self, face: FaceIdx) -> &FaceFrame {
         &self.flats[face.index()]
     }
 }

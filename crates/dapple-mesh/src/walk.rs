@@ -8,7 +8,7 @@
 //! Every face on the way moves the end by at most a few roundings of the distance and of the size of the face, and turns
 //! the direction by a few roundings: 16 faces or fewer by less than 2^-46 of both.
 
-use crate::surface::Fold;
+use crate::surface::EdgeTransition;
 use crate::{Surface, SurfacePoint};
 use glam::DVec2;
 
@@ -113,7 +113,7 @@ impl Surface {
     ///
     /// Gives what is across that edge, or nothing at the end and at a border.
     #[inline]
-    fn leave_face(&self, walk: &mut Walk, entered: Option<u8>) -> Option<Fold> {
+    fn leave_face(&self, walk: &mut Walk, entered: Option<u8>) -> Option<EdgeTransition> {
         let flat = self.flat(walk.point.face);
         let corners = flat.corners();
         let from = walk.point.flat;

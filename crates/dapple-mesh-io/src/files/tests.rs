@@ -111,14 +111,14 @@ fn names_in_a_file_do_not_lead_out_of_its_folder() {
     let path = folder.join("inside").join("a.obj");
     let mut left = 10;
     assert_eq!(
-        beside(&path, "./known", &mut left).as_deref(),
+        resolve(&path, "./known", &mut left).as_deref(),
         Some(b"beside".as_slice())
     );
     assert_eq!(left, 4, "six of ten bytes were read");
-    assert_eq!(beside(&path, "known", &mut left), None, "too much");
+    assert_eq!(resolve(&path, "known", &mut left), None, "too much");
     let absolute = folder.join("secret").display().to_string();
     for name in ["../secret", "x/../../secret", absolute.as_str(), "", "."] {
-        assert_eq!(beside(&path, name, &mut 100), None, "{name}");
+        assert_eq!(resolve(&path, name, &mut 100), None, "{name}");
     }
     fs::remove_dir_all(folder).expect("it is there");
 }
@@ -137,10 +137,10 @@ fn only_regular_files_are_read_beside_a_file() {
     fs::write(folder.join("file"), "beside").expect("it is written");
     std::os::unix::fs::symlink("file", folder.join("link")).expect("it is made");
     for name in ["pipe", "zero", "inside"] {
-        assert_eq!(beside(&path, name, &mut 100), None, "{name}");
+        assert_eq!(resolve(&path, name, &mut 100), None, "{name}");
     }
     assert!(
-        beside(&path, "link", &mut 100).is_some(),
+        resolve(&path, "link", &mut 100).is_some(),
         "a link to a file"
     );
     let text = r#"{"asset":{"version":"2.0"},"images":[{"uri":"pipe"}],"textures":[{"source":0}],

@@ -37,7 +37,7 @@ mod tests;
 pub use images::replace_images;
 pub use write::write;
 
-use super::{Beside, MaterialPlace, MeshFormat, Writer, alone};
+use super::{FileResolver, MaterialPlace, MeshFormat, Writer, alone};
 use crate::{MeshIoError, MeshIoErrorKind};
 use container::{Container, percent_decoded};
 use dapple_mesh::Model;
@@ -108,7 +108,7 @@ pub fn read(bytes: &[u8]) -> Result<Model, MeshIoError> {
 /// # Errors
 ///
 /// The errors of [`read`]. A missing texture is no error.
-pub fn read_with(bytes: &[u8], beside: &mut Beside<'_>) -> Result<Model, MeshIoError> {
+pub fn read_with(bytes: &[u8], resolve: &mut FileResolver<'_>) -> Result<Model, MeshIoError> {
     let container = Container::read(bytes)?;
     // Other versions have other types in the same places, so the version has to be checked first.
     let Head { asset } = parse(container.json)?;
@@ -120,7 +120,7 @@ pub fn read_with(bytes: &[u8], beside: &mut Beside<'_>) -> Result<Model, MeshIoE
     if let Some(name) = document.extensions_required.iter().find(unknown) {
         return Err(unsupported(format!("the glTF extension {name}")));
     }
-    let buffers = container.buffers(&document, beside);
+    let buffers = container.buffers(&document, resolve);
     let source = Source { document, buffers };
     let n_bytes = bytes.len()
         + source
@@ -131,7 +131,7 @@ pub fn read_with(bytes: &[u8], beside: &mut Beside<'_>) -> Result<Model, MeshIoE
             .sum::<usize>();
     let (mut model, material) = scene::read(&source, n_bytes)?;
     if let Some(material) = material {
-        source.read_material(material, &mut model, beside);
+        source.read_material(material, &mut model, resolve);
     }
     if !source.document.animations.is_empty() {
         model.left_out.push("the animations".to_owned());
@@ -208,10 +208,10 @@ impl Source<'_> {
     }
 
     /// The bytes of an image, in any format.
-    fn image_bytes(&self, image: &Image, beside: &mut Beside<'_>) -> Option<Vec<u8>> {
+    fn image_bytes(&self, image: &Image, resolve: &mut FileResolver<'_>) -> Option<Vec<u8>> {
         match (&image.uri, image.buffer_view) {
             (Some(uri), _) if uri.starts_with("data:") => container::data(uri),
-            (Some(uri), _) => beside(&percent_decoded(uri)),
+            (Some(uri), _) => resolve(&percent_decoded(uri)),
             (None, view) => Some(self.view(view?).ok()?.to_vec()),
         }
     }

@@ -26,7 +26,7 @@ mod tile_tests;
 
 pub use write::{write, write_files};
 
-use super::{Beside, MaterialPlace, MeshFormat, Writer};
+use super::{FileResolver, MaterialPlace, MeshFormat, Writer};
 use crate::MeshIoError;
 use crate::colors::{self, Coding};
 use crate::line::{Line, lines};
@@ -105,7 +105,7 @@ pub fn read(bytes: &[u8]) -> Result<Model, MeshIoError> {
 ///
 /// The errors of [`read`]. In other files, only a text that is not ASCII or UTF-8, a keyword that is not ASCII, and a `Kd`
 /// beyond single precision are errors.
-pub fn read_with(bytes: &[u8], beside: &mut Beside<'_>) -> Result<Model, MeshIoError> {
+pub fn read_with(bytes: &[u8], resolve: &mut FileResolver<'_>) -> Result<Model, MeshIoError> {
     let mut draft = Draft::default();
     let text = joined(content(FORMAT, bytes)?);
     for line in lines(FORMAT, &text)? {
@@ -121,7 +121,7 @@ pub fn read_with(bytes: &[u8], beside: &mut Beside<'_>) -> Result<Model, MeshIoE
     let libraries = core::mem::take(&mut draft.libraries);
     let name = draft.material.take().map(|(name, _)| name);
     let mut model = draft.into_model()?;
-    mtl::add_material(&mut model, &libraries, name.as_deref(), beside)?;
+    mtl::add_material(&mut model, &libraries, name.as_deref(), resolve)?;
     model.check()?;
     Ok(model)
 }

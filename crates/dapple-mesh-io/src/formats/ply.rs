@@ -24,7 +24,7 @@ mod tests;
 
 pub use write::{write, write_text};
 
-use super::{Beside, MaterialPlace, MeshFormat, Writer, alone};
+use super::{FileResolver, MaterialPlace, MeshFormat, Writer, alone};
 use crate::MeshIoError;
 use crate::colors::{self, Coding};
 use crate::polygon::{Polygons, fan, strip};
@@ -115,7 +115,7 @@ pub fn read(bytes: &[u8]) -> Result<Model, MeshIoError> {
 /// # Errors
 ///
 /// The errors of [`read`]. A missing texture is no error, but listed in [`Model::left_out`].
-pub fn read_with(bytes: &[u8], beside: &mut Beside<'_>) -> Result<Model, MeshIoError> {
+pub fn read_with(bytes: &[u8], resolve: &mut FileResolver<'_>) -> Result<Model, MeshIoError> {
     let bytes = content(FORMAT, bytes)?;
     let (header, rest) = Header::read(bytes)?;
     let mut body = Body::new(header.encoding, bytes, rest);
@@ -141,7 +141,7 @@ pub fn read_with(bytes: &[u8], beside: &mut Beside<'_>) -> Result<Model, MeshIoE
     }
     let mut model = draft.into_model()?;
     if let Some(name) = header.textures.first() {
-        let image = texture(name, beside).map_err(|why| model.left_out.push(why));
+        let image = texture(name, resolve).map_err(|why| model.left_out.push(why));
         model.material.base_color = image.ok();
     }
     if header.textures.len() > 1 {

@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3};
 
 /// A face in its own plane.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Flat {
+pub(crate) struct FaceFrame {
     /// The first corner.
     pub(crate) origin: DVec3,
     /// The unit vector toward the second corner.
@@ -18,19 +18,19 @@ pub(crate) struct Flat {
     /// The third corner.
     pub(crate) apex: DVec2,
     /// The faces across the three edges.
-    pub(crate) across: [Option<Fold>; 3],
+    pub(crate) across: [Option<EdgeTransition>; 3],
 }
 
 /// The motion that takes the plane of a face to that of the face across an edge.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Fold {
+pub(crate) struct EdgeTransition {
     pub(crate) to: FaceEdge,
     /// Cosine and sine of the turn, and the shift after it, from this plane into the other one.
     pub(crate) turn: DVec2,
     pub(crate) shift: DVec2,
 }
 
-impl Flat {
+impl FaceFrame {
     /// The face in its plane, or nothing if it has no area.
     pub(super) fn new(corners: [DVec3; 3]) -> Option<Self> {
         let [a, b, c] = corners;
@@ -73,14 +73,20 @@ impl Flat {
 ///
 /// `along` is the edge in space; its directions in both planes give the turn. Those between the corners as they are in
 /// the planes would be less precise for short edges of needles.
-pub(super) fn fold(here: &Flat, edge: u8, there: &Flat, to: FaceEdge, along: DVec3) -> Fold {
-    let direction = |flat: &Flat| DVec2::new(along.dot(flat.x), along.dot(flat.y)).normalize();
+pub(super) fn fold(
+    here: &FaceFrame,
+    edge: u8,
+    there: &FaceFrame,
+    to: FaceEdge,
+    along: DVec3,
+) -> EdgeTransition {
+    let direction = |flat: &FaceFrame| DVec2::new(along.dot(flat.x), along.dot(flat.y)).normalize();
     let (a, b) = (direction(here), direction(there));
     let turn = DVec2::new(a.dot(b), a.perp_dot(b)).normalize();
     let from = here.corners()[usize::from(edge)];
     // The other face goes through the edge in the other direction.
     let from_there = there.corners()[(usize::from(to.edge) + 1) % 3];
-    Fold {
+    EdgeTransition {
         to,
         turn,
         shift: from_there - turn.rotate(from),

@@ -2,7 +2,7 @@
 
 use super::document::Document;
 use super::{FORMAT, unsupported, wrong};
-use crate::Beside;
+use crate::FileResolver;
 use crate::MeshIoError;
 use crate::text::content;
 use std::borrow::Cow;
@@ -46,7 +46,7 @@ impl<'a> Container<'a> {
     pub(super) fn buffers(
         &self,
         document: &Document,
-        beside: &mut Beside<'_>,
+        resolve: &mut FileResolver<'_>,
     ) -> Vec<Option<Cow<'a, [u8]>>> {
         let mut buffers = Vec::new();
         for (i, buffer) in document.buffers.iter().enumerate() {
@@ -54,7 +54,7 @@ impl<'a> Container<'a> {
                 None if i == 0 => self.bin.map(Cow::Borrowed),
                 None => None,
                 Some(uri) if uri.starts_with("data:") => data(uri).map(Cow::Owned),
-                Some(uri) => beside(&percent_decoded(uri)).map(Cow::Owned),
+                Some(uri) => resolve(&percent_decoded(uri)).map(Cow::Owned),
             };
             buffers.push(bytes.filter(|bytes| bytes.len() >= buffer.byte_length));
         }

@@ -3,7 +3,7 @@
 use super::container::Container;
 use super::document::Document;
 use super::{Source, parse, write, wrong};
-use crate::{Beside, MeshIoError};
+use crate::{FileResolver, MeshIoError};
 use dapple_mesh::EncodedImage;
 use serde_json::{Map, Value, json};
 use std::borrow::Cow;
@@ -33,7 +33,7 @@ struct Draft {
 /// [`MeshIoErrorKind::Size`](crate::MeshIoErrorKind::Size) if the file would have 2^32 bytes or more.
 pub fn replace_images(
     bytes: &[u8],
-    beside: &mut Beside<'_>,
+    resolve: &mut FileResolver<'_>,
     replaced: &[(EncodedImage, EncodedImage)],
 ) -> Result<Vec<u8>, MeshIoError> {
     let container = Container::read(bytes)?;
@@ -42,7 +42,7 @@ pub fn replace_images(
     if !value.is_object() {
         return Err(wrong("the document is no object"));
     }
-    let buffers = container.buffers(&document, beside);
+    let buffers = container.buffers(&document, resolve);
     let source = Source { document, buffers };
     // Views of a missing buffer would show bytes of another one.
     let mut views = source.document.buffer_views.iter();
@@ -59,7 +59,7 @@ pub fn replace_images(
     count_views(&draft.value, &mut draft.uses);
     draft.join_buffers(&source.buffers);
     for (at, image) in source.document.images.iter().enumerate() {
-        let Some(bytes) = source.image_bytes(image, beside) else {
+        let Some(bytes) = source.image_bytes(image, resolve) else {
             continue;
         };
         let is_inside = image

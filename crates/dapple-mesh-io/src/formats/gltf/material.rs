@@ -2,7 +2,7 @@
 
 use super::Source;
 use super::document::{Material as Entry, Pbr, TextureInfo};
-use crate::Beside;
+use crate::FileResolver;
 use crate::texture::{encoded, is_outside, shown, unreadable};
 use dapple_color::LinearRgba;
 use dapple_mesh::{AlphaMode, EncodedImage, Material, Model};
@@ -62,7 +62,12 @@ impl Source<'_> {
     }
 
     /// Reads the material with a number into a model that has its texture coordinates.
-    pub(super) fn read_material(&self, index: usize, model: &mut Model, beside: &mut Beside<'_>) {
+    pub(super) fn read_material(
+        &self,
+        index: usize,
+        model: &mut Model,
+        resolve: &mut FileResolver<'_>,
+    ) {
         let Some(material) = self.document.materials.get(index) else {
             return;
         };
@@ -74,7 +79,7 @@ impl Source<'_> {
         let mut image = |what: &str, info: Option<&TextureInfo>| {
             let info = info?;
             if Placement::new(info) == placement {
-                let image = self.image(info.index, beside);
+                let image = self.image(info.index, resolve);
                 return image.map_err(|why| left_out.push(why)).ok();
             }
             left_out.push(format!(
@@ -136,7 +141,7 @@ impl Source<'_> {
     }
 
     /// The image of a texture; or else the entry of [`Model::left_out`] for it.
-    fn image(&self, index: usize, beside: &mut Beside<'_>) -> Result<EncodedImage, String> {
+    fn image(&self, index: usize, resolve: &mut FileResolver<'_>) -> Result<EncodedImage, String> {
         let no_image = || format!("texture {index}, which has no image");
         let texture = self.document.textures.get(index).ok_or_else(no_image)?;
         let Some(at) = texture.source else {
@@ -155,7 +160,7 @@ impl Source<'_> {
         let name = uri
             .or(image.name.as_deref())
             .map_or_else(|| at.to_string(), str::to_owned);
-        let Some(bytes) = self.image_bytes(image, beside) else {
+        let Some(bytes) = self.image_bytes(image, resolve) else {
             return Err(unreadable("texture", &name));
         };
         encoded(&name, bytes)

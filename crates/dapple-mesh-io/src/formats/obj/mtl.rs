@@ -1,7 +1,7 @@
 //! MTL: the materials of an OBJ file.
 
 use super::{joined_words, name};
-use crate::Beside;
+use crate::FileResolver;
 use crate::MeshIoError;
 use crate::line::{Line, lines};
 use crate::text::parse;
@@ -50,13 +50,13 @@ pub(super) fn add_material(
     model: &mut Model,
     libraries: &[String],
     name: Option<&str>,
-    beside: &mut Beside<'_>,
+    resolve: &mut FileResolver<'_>,
 ) -> Result<(), MeshIoError> {
     let (mut entries, mut missing) = (Vec::new(), Vec::new());
     for library in libraries {
         // A name may contain spaces, and a line may have several names.
-        let found = beside(library).map(|bytes| vec![bytes]);
-        let found = found.unwrap_or_else(|| library.split(' ').filter_map(&mut *beside).collect());
+        let found = resolve(library).map(|bytes| vec![bytes]);
+        let found = found.unwrap_or_else(|| library.split(' ').filter_map(&mut *resolve).collect());
         if found.is_empty() {
             missing.push(unreadable("material library", library));
         }
@@ -78,7 +78,7 @@ pub(super) fn add_material(
     }
     model.left_out.extend(missing);
     if let Some(entry) = entry {
-        entry.add_to(model, beside);
+        entry.add_to(model, resolve);
     }
     Ok(())
 }
@@ -121,7 +121,7 @@ impl Entry {
     }
 
     /// Gives a model this material.
-    fn add_to(&self, model: &mut Model, beside: &mut Beside<'_>) {
+    fn add_to(&self, model: &mut Model, resolve: &mut FileResolver<'_>) {
         let first = self.diffuse_map.as_ref().or(self.normal_map.as_ref());
         let uv_map = first.and_then(Texture::map);
         if let (Some(map), Some(uvs)) = (uv_map, &mut model.uvs) {
@@ -130,7 +130,7 @@ impl Entry {
         let mut reading = Reading {
             squares: model.unit_squares(),
             uv_map,
-            beside,
+            resolve,
             left_out: &mut model.left_out,
         };
         let mut base_colors = reading.images(self.diffuse_map.as_ref());
@@ -187,7 +187,7 @@ struct Reading<'a, 'b> {
     /// The unit squares with faces.
     squares: Vec<u32>,
     uv_map: Option<UvMap>,
-    beside: &'a mut Beside<'b>,
+    resolve: &'a mut FileResolver<'b>,
     left_out: &'a mut Vec<String>,
 }
 
@@ -206,7 +206,7 @@ impl Reading<'_, '_> {
         let images = match self.tiles(found) {
             Some(images) => images,
             None => {
-                let image = texture(&found.name, self.beside);
+                let image = texture(&found.name, self.resolve);
                 vec![image.map_err(|why| self.left_out.push(why)).ok()]
             }
         };
@@ -248,7 +248,7 @@ impl Reading<'_, '_> {
         let mut n_missing = 0;
         let mut image = |&number: &u32| {
             let name = tile_name(name, number)?;
-            let image = texture(&name, self.beside);
+            let image = texture(&name, self.resolve);
             image
                 .map_err(|why| {
                     n_missing += 1;

@@ -294,8 +294,8 @@ fn files_of_a_model_read_back_as_the_same() {
         names,
         ["box_base_color.jpg", "box_normal.png", "box.mtl", "box.obj"]
     );
-    let mut beside = |name: &str| Some(files.iter().find(|file| file.name == name)?.bytes.clone());
-    let back = read_with(&files[3].bytes, &mut beside).expect("it is valid");
+    let mut resolve = |name: &str| Some(files.iter().find(|file| file.name == name)?.bytes.clone());
+    let back = read_with(&files[3].bytes, &mut resolve).expect("it is valid");
     assert_eq!(back, model);
 }
 

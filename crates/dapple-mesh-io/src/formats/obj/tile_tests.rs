@@ -24,11 +24,11 @@ fn text(squares: &[[f64; 2]]) -> String {
 /// The model of triangles in unit squares, with a material and files beside it.
 fn read(squares: &[[f64; 2]], material: &str, files: &[&str]) -> Model {
     let library = format!("newmtl a\n{material}\n");
-    let mut beside = |name: &str| match name {
+    let mut resolve = |name: &str| match name {
         "a.mtl" => Some(library.clone().into_bytes()),
         _ => files.contains(&name).then(|| png(name)),
     };
-    read_with(text(squares).as_bytes(), &mut beside).expect("it is valid")
+    read_with(text(squares).as_bytes(), &mut resolve).expect("it is valid")
 }
 
 /// The numbers of the unit squares, with the names of the files of their textures.
@@ -120,11 +120,11 @@ fn textures_of_unit_squares_are_written_and_read_again() {
     let names: Vec<_> = written.iter().map(|file| file.name.as_str()).collect();
     let [a, b, c] = [1001, 1002, 1011].map(|number| format!("out_base_color.{number}.png"));
     assert_eq!(names, [&a, &b, &c, "out.mtl", "out.obj"]);
-    let mut beside = |name: &str| {
+    let mut resolve = |name: &str| {
         let found = written.iter().find(|file| file.name == name);
         found.map(|file| file.bytes.clone())
     };
-    let again = read_with(&written[4].bytes, &mut beside).expect("it is valid");
+    let again = read_with(&written[4].bytes, &mut resolve).expect("it is valid");
     assert_eq!(again, model);
 }
 

@@ -123,19 +123,19 @@ fn buffers_and_images_in_other_files_become_part_of_the_file() {
     document["images"][1] = json!({ "uri": "kept.jpg" });
     document["images"][2] = json!({ "uri": "normal.png" });
     let jpeg = b"\xff\xd8\xff kept".to_vec();
-    let mut beside = |name: &str| match name {
+    let mut resolve = |name: &str| match name {
         "all .bin" => Some(bytes.clone()),
         "kept.jpg" => Some(jpeg.clone()),
         "normal.png" => Some(png("old normal").bytes().to_vec()),
         _ => None,
     };
     let text = document.to_string();
-    let old = read_with(text.as_bytes(), &mut beside).expect("it is valid");
+    let old = read_with(text.as_bytes(), &mut resolve).expect("it is valid");
     let pairs = [
         (png("old base"), png("new base")),
         (png("old normal"), png("new normal")),
     ];
-    let new = replace_images(text.as_bytes(), &mut beside, &pairs).expect("it is valid");
+    let new = replace_images(text.as_bytes(), &mut resolve, &pairs).expect("it is valid");
     let (_, images) = parts(&new);
     assert_eq!(
         images,
