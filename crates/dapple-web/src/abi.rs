@@ -1,10 +1,11 @@
-//! The functions that the worker calls, with the C ABI: numbers in, numbers out.
+//! The C ABI of the WebAssembly module: functions of numbers that the worker calls, so that no bindings are generated.
 //!
-//! The worker writes a message into the memory that [`room`] names and calls [`hear`]; it calls [`step`] while there is
-//! work, and [`take`] until nothing is left. A page and its buffers are the only state.
+//! To send a message, the worker calls [`alloc`], writes the bytes there, and calls [`receive`]. It calls [`step`] while
+//! there is work, and [`poll`] until the queue of results is empty; [`reply`] and [`reply_length`] locate the bytes of
+//! the last result.
 #![expect(
     unsafe_code,
-    reason = "names for the worker need `no_mangle`, and the clock is a function of the worker; no memory is touched"
+    reason = "exported names need `no_mangle`, and the clock is imported from the worker; no memory is touched"
 )]
 
 use crate::{Made, Page};
@@ -12,77 +13,78 @@ use std::cell::RefCell;
 
 #[link(wasm_import_module = "worker")]
 unsafe extern "C" {
-    /// Milliseconds since some moment.
+    /// Milliseconds since an arbitrary moment.
     safe fn now() -> f64;
 }
 
-/// A page, a message to it, and what was taken of it last.
-struct Door {
+/// The state of the module: a page and the buffers of both directions.
+struct Module {
     page: Page,
-    given: Vec<u8>,
-    taken: Vec<u8>,
+    message: Vec<u8>,
+    reply: Vec<u8>,
 }
 
 thread_local! {
-    static DOOR: RefCell<Door> = RefCell::new(Door {
+    static MODULE: RefCell<Module> = RefCell::new(Module {
         page: Page::new(|| now()),
-        given: Vec::new(),
-        taken: Vec::new(),
+        message: Vec::new(),
+        reply: Vec::new(),
     });
 }
 
-fn with<T>(act: impl FnOnce(&mut Door) -> T) -> T {
-    DOOR.with_borrow_mut(act)
+fn with<T>(act: impl FnOnce(&mut Module) -> T) -> T {
+    MODULE.with_borrow_mut(act)
 }
 
-/// Where a message of this many bytes is to be written.
+/// Allocates a message of `length` bytes and returns its address.
 #[unsafe(no_mangle)]
-extern "C" fn room(length: usize) -> *mut u8 {
-    with(|door| {
-        door.given.clear();
-        door.given.resize(length, 0);
-        door.given.as_mut_ptr()
+extern "C" fn alloc(length: usize) -> *mut u8 {
+    with(|module| {
+        module.message.clear();
+        module.message.resize(length, 0);
+        module.message.as_mut_ptr()
     })
 }
 
-/// Hears the message that was written.
+/// Processes the message that was written to [`alloc`]'s address.
 #[unsafe(no_mangle)]
-extern "C" fn hear() {
-    with(|door| {
-        let given = core::mem::take(&mut door.given);
-        door.page.hear(&given);
+extern "C" fn receive() {
+    with(|module| {
+        let message = core::mem::take(&mut module.message);
+        module.page.receive(&message);
     });
 }
 
-/// Works for some milliseconds, and says whether there is more to do.
+/// Works for some milliseconds. Returns whether there is more to do.
 #[unsafe(no_mangle)]
 extern "C" fn step() -> bool {
-    with(|door| door.page.step())
+    with(|module| module.page.step())
 }
 
-/// Takes what was made: 1 for a message, 2 for a picture, 3 for a file, and 0 where nothing is left.
+/// Removes a result from the queue. Returns its kind: 1 for a message, 2 for an image, 3 for a file, 0 if the queue is
+/// empty.
 #[unsafe(no_mangle)]
-extern "C" fn take() -> u32 {
-    with(|door| {
-        let (kind, bytes) = match door.page.take() {
+extern "C" fn poll() -> u32 {
+    with(|module| {
+        let (kind, bytes) = match module.page.poll() {
             None => (0, Vec::new()),
             Some(Made::Message(text)) => (1, text.into_bytes()),
             Some(Made::Picture(bytes)) => (2, bytes),
             Some(Made::File(bytes)) => (3, bytes),
         };
-        door.taken = bytes;
+        module.reply = bytes;
         kind
     })
 }
 
-/// Where the bytes of what was taken are.
+/// The address of the last result of [`poll`].
 #[unsafe(no_mangle)]
-extern "C" fn taken() -> *const u8 {
-    with(|door| door.taken.as_ptr())
+extern "C" fn reply() -> *const u8 {
+    with(|module| module.reply.as_ptr())
 }
 
-/// How many bytes were taken.
+/// The number of bytes of the last result of [`poll`].
 #[unsafe(no_mangle)]
-extern "C" fn taken_length() -> usize {
-    with(|door| door.taken.len())
+extern "C" fn reply_length() -> usize {
+    with(|module| module.reply.len())
 }

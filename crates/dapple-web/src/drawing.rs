@@ -4,7 +4,7 @@
 //! [`Renderer`], whose plan and values stay in its memory; the page sees the messages of one job.
 
 use dapple_recipe::{Images, Recipe};
-use dapple_studio::{Area, Job, Output, Picture, Renderer, Reply, StudioError, View, World};
+use dapple_studio::{Area, Job, Output, Picture, RenderHost, Renderer, Reply, StudioError, View};
 use std::cell::RefCell;
 
 /// The most and the fewest pixels of a piece, about.
@@ -50,7 +50,7 @@ pub(crate) struct Drawing {
     job: Job,
     start: f64,
     next: Next,
-    told: Told,
+    told: ReportedProgress,
     /// Parts of maps that are not sent yet.
     pending: RefCell<Vec<Picture>>,
 }
@@ -68,7 +68,7 @@ enum Next {
 
 /// What the page was told of the job.
 #[derive(Clone, Copy, Debug, Default)]
-struct Told {
+struct ReportedProgress {
     began: bool,
     graph: bool,
     draft: bool,
@@ -89,7 +89,7 @@ impl Drawing {
             } else {
                 Next::Rows(0)
             },
-            told: Told::default(),
+            told: ReportedProgress::default(),
             pending: RefCell::default(),
             job,
             start,
@@ -162,11 +162,11 @@ fn area_of(view: &View) -> Area {
 struct Place<'a> {
     drawing: &'a Drawing,
     now: fn() -> f64,
-    told: RefCell<Told>,
+    told: RefCell<ReportedProgress>,
     put: RefCell<&'a mut dyn FnMut(Output)>,
 }
 
-impl World for Place<'_> {
+impl RenderHost for Place<'_> {
     fn images(&self, recipe: &Recipe) -> Result<Images, StudioError> {
         images(recipe)
     }

@@ -2,10 +2,10 @@
 
 use crate::drawing::{Drawing, Pace, images};
 use crate::export;
-use dapple_recipe::{Images, Memory, Recipe};
+use dapple_recipe::{Images, PlanCache, Recipe};
 use dapple_studio::{
-    Export, Hello, Mode, Output, Renderer, Reply, Request, Session, Shown, StudioError, Task,
-    Variant, World, sample,
+    Export, Hello, Mode, Output, RenderHost, Renderer, Reply, Request, Session, Shown, StudioError,
+    Task, Variant, sample,
 };
 use std::cell::RefCell;
 use std::collections::VecDeque;
@@ -48,7 +48,7 @@ impl Page {
         let mut page = Self {
             now,
             session: Session::new(),
-            renderer: Renderer::new(&Memory::new(MEMORY)),
+            renderer: Renderer::new(&PlanCache::new(MEMORY)),
             tasks: VecDeque::new(),
             drawing: None,
             pace: Pace::default(),
@@ -63,13 +63,13 @@ impl Page {
         page
     }
 
-    /// Takes what was made first of what is left.
-    pub fn take(&mut self) -> Option<Made> {
+    /// Removes the oldest result from the queue.
+    pub fn poll(&mut self) -> Option<Made> {
         self.made.pop_front()
     }
 
-    /// Hears a message in JSON.
-    pub fn hear(&mut self, message: &[u8]) {
+    /// Processes a message in JSON.
+    pub fn receive(&mut self, message: &[u8]) {
         match serde_json::from_slice(message) {
             Ok(request) => self.answer(&request),
             Err(error) => {
@@ -177,7 +177,7 @@ struct Beside<'a> {
     made: RefCell<&'a mut VecDeque<Made>>,
 }
 
-impl World for Beside<'_> {
+impl RenderHost for Beside<'_> {
     fn images(&self, recipe: &Recipe) -> Result<Images, StudioError> {
         images(recipe)
     }

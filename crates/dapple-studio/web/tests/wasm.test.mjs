@@ -4,7 +4,7 @@ import { mkdtempSync, readFileSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { before, describe, test } from 'node:test';
-import { Door } from './door.mjs';
+import { WasmStudio } from './wasm_module.mjs';
 import { dapple, skipStatic, STATIC } from './harness.mjs';
 
 const MAPS = ['height', 'normal', 'albedo', 'roughness', 'ao'];
@@ -12,17 +12,17 @@ const VIEW = { type: 'view', size: [256, 256], maps: ['height'], region: null, n
 const NOISE = 'dapple = 1\nname = "swells"\nseed = 7\n\n[nodes.swells.noise]\nfrequency = 9\noctaves = 5\n\n[material]\nheight = "swells"\n';
 
 describe('the studio in WebAssembly', { skip: skipStatic, timeout: 240_000 }, () => {
-  let door;
-  before(async () => (door = await Door.load(join(STATIC, 'dapple.wasm'))));
+  let studio;
+  before(async () => (studio = await WasmStudio.load(join(STATIC, 'dapple.wasm'))));
 
   const opened = (what) => {
-    door.send({ ...VIEW, paused: true });
-    door.send({ type: 'open', ...what });
-    return door.finish().find(({ type }) => type === 'document').text;
+    studio.send({ ...VIEW, paused: true });
+    studio.send({ type: 'open', ...what });
+    return studio.finish().find(({ type }) => type === 'document').text;
   };
 
   test('it says what there is, in the mode without a server', () => {
-    const [hello] = door.made();
+    const [hello] = studio.made();
     assert.equal(hello.type, 'hello');
     assert.equal(hello.mode, 'static');
     assert.deepEqual(hello.presets, []);
@@ -34,8 +34,8 @@ describe('the studio in WebAssembly', { skip: skipStatic, timeout: 240_000 }, ()
       const recipe = join(folder, `${name}.toml`);
       writeFileSync(recipe, opened(what));
       for (const format of ['npy', 'png16', 'png8']) {
-        door.send({ type: 'export', size: [256, 256], maps: MAPS, format });
-        const [exported, ...files] = door.finish().filter(({ type }) => type !== 'picture');
+        studio.send({ type: 'export', size: [256, 256], maps: MAPS, format });
+        const [exported, ...files] = studio.finish().filter(({ type }) => type !== 'picture');
         assert.equal(exported.type, 'exported', exported.message);
         assert.equal(files.length, MAPS.length);
         dapple('bake', recipe, '--size', '256', '--maps', MAPS.join(','), '--format', format, '-o', `${folder}/${format}/`);
@@ -48,8 +48,8 @@ describe('the studio in WebAssembly', { skip: skipStatic, timeout: 240_000 }, ()
 
   test('pictures come after a draft, each once', () => {
     opened({ builtin: 'flagstone' });
-    door.send({ ...VIEW, size: [512, 512], maps: ['height', 'albedo'] });
-    const made = door.finish();
+    studio.send({ ...VIEW, size: [512, 512], maps: ['height', 'albedo'] });
+    const made = studio.finish();
     const kinds = made.map(({ type }) => type);
     assert.equal(kinds.filter((type) => type === 'began').length, 1);
     assert.deepEqual(made.filter(({ type }) => type === 'rendered').map(({ draft }) => draft), [true, false]);
@@ -57,17 +57,17 @@ describe('the studio in WebAssembly', { skip: skipStatic, timeout: 240_000 }, ()
     assert.deepEqual(pictures.map(({ map, last }) => [map, last]), [[0, true], [4, true]]);
     const whole = Buffer.concat(pictures.filter(({ map }) => map === 0).map(({ pixels }) => pixels));
     assert.equal(whole.length, 512 * 512 * 4);
-    door.send({ ...VIEW, size: [512, 512], node: 'grain' });
-    const node = door.finish().filter(({ type, draft }) => type === 'picture' && !draft);
+    studio.send({ ...VIEW, size: [512, 512], node: 'grain' });
+    const node = studio.finish().filter(({ type, draft }) => type === 'picture' && !draft);
     assert.equal(node.length, 1);
   });
 
   test('the newest change wins', () => {
     opened({ builtin: 'giraffe' });
-    door.send({ ...VIEW, size: [1024, 1024] });
-    door.step();
-    door.send({ type: 'view', ...VIEW, size: [64, 64] });
-    const rendered = door.finish().filter(({ type, draft }) => type === 'rendered' && !draft);
+    studio.send({ ...VIEW, size: [1024, 1024] });
+    studio.step();
+    studio.send({ type: 'view', ...VIEW, size: [64, 64] });
+    const rendered = studio.finish().filter(({ type, draft }) => type === 'rendered' && !draft);
     assert.equal(rendered.length, 1);
   });
 
@@ -81,8 +81,8 @@ describe('the studio in WebAssembly', { skip: skipStatic, timeout: 240_000 }, ()
       { type: 'export', size: [1e6, 64], maps: ['height'] },
       { type: 'nonsense' },
     ]) {
-      door.send(message);
-      const [refused] = door.finish();
+      studio.send(message);
+      const [refused] = studio.finish();
       assert.equal(refused.type, 'refused', JSON.stringify(message));
       assert.ok(refused.message.length > 10);
     }

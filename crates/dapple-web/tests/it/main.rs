@@ -1,7 +1,7 @@
-//! The page without a server, through its public doors, on this machine.
+//! The page without a server, through its public functions, on this machine.
 
-use dapple_recipe::{Bake, BakeOptions, Images, MapKind, MapRows, Memory, Plan, Recipe};
-use dapple_studio::{Output, Renderer, Session, StudioError, View, World};
+use dapple_recipe::{Bake, BakeOptions, Images, MapKind, MapRows, Plan, PlanCache, Recipe};
+use dapple_studio::{Output, RenderHost, Renderer, Session, StudioError, View};
 use dapple_web::{Made, Page};
 use serde_json::{Value, json};
 use std::cell::RefCell;
@@ -18,13 +18,13 @@ fn page() -> Page {
 }
 
 fn hear(page: &mut Page, message: &Value) {
-    page.hear(message.to_string().as_bytes());
+    page.receive(message.to_string().as_bytes());
 }
 
 /// Does all that is to be done, and gives all that was made.
 fn made(page: &mut Page) -> Vec<Made> {
     while page.step() {}
-    core::iter::from_fn(|| page.take()).collect()
+    core::iter::from_fn(|| page.poll()).collect()
 }
 
 fn messages(made: &[Made]) -> Vec<Value> {
@@ -57,7 +57,7 @@ fn view(side: u32, maps: &[&str]) -> Value {
 /// Keeps the pixels of what is drawn at once.
 struct AtOnce(RefCell<Vec<u8>>);
 
-impl World for AtOnce {
+impl RenderHost for AtOnce {
     fn images(&self, _: &Recipe) -> Result<Images, StudioError> {
         Ok(Images::new())
     }
@@ -111,7 +111,7 @@ fn pieces_make_the_picture_that_is_drawn_at_once_after_a_draft() {
         paused: false,
         ..View::default()
     };
-    Renderer::new(&Memory::new(0)).draw(&job, &world);
+    Renderer::new(&PlanCache::new(0)).draw(&job, &world);
     assert_eq!(joined, world.0.into_inner());
 }
 

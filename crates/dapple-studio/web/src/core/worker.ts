@@ -1,18 +1,18 @@
-// The worker of the page without a server: the studio in WebAssembly, which hears messages and works between them.
+// The worker of the page without a server: the studio in WebAssembly. It processes messages and works between them.
 //
-// It is told the address of the program first, then messages. It sends messages and pictures; files of an export come with
+// It receives the address of the program first, then messages. It sends messages and pictures; files of an export come with
 // the message that names them. Where the program fails, a new one begins, and the page goes on with its own text.
 import type { Reply, Request } from './protocol';
 
-/** What the program gives and takes: see crates/dapple-web/src/door.rs. */
-interface Door {
+/** The exports of the WebAssembly module: see crates/dapple-web/src/abi.rs. */
+interface Module {
   memory: WebAssembly.Memory;
-  room(length: number): number;
-  hear(): void;
+  alloc(length: number): number;
+  receive(): void;
   step(): number;
-  take(): number;
-  taken(): number;
-  taken_length(): number;
+  poll(): number;
+  reply(): number;
+  reply_length(): number;
 }
 
 /** Milliseconds within which a second failure ends it. */
@@ -20,7 +20,7 @@ const AGAIN = 5000;
 const [MESSAGE, PICTURE] = [1, 2];
 
 let program: WebAssembly.Module | null = null;
-let door: Door | null = null;
+let module: Module | null = null;
 let failed = -Infinity;
 const waiting: Request[] = [];
 // A message to itself comes after those of the page that came before.
@@ -43,39 +43,39 @@ async function load(address: string): Promise<void> {
 async function begin(): Promise<void> {
   if (!program) return;
   const instance = await WebAssembly.instantiate(program, { worker: { now: () => performance.now() } });
-  door = instance.exports as unknown as Door;
-  give(door);
-  for (const message of waiting.splice(0)) hear(door, message);
+  module = instance.exports as unknown as Module;
+  give(module);
+  for (const message of waiting.splice(0)) send(module, message);
   ring();
 }
 
-function hear(door: Door, message: Request): void {
+function send(module: Module, message: Request): void {
   const bytes = new TextEncoder().encode(JSON.stringify(message));
-  const place = door.room(bytes.length);
-  new Uint8Array(door.memory.buffer, place, bytes.length).set(bytes);
-  door.hear();
+  const place = module.alloc(bytes.length);
+  new Uint8Array(module.memory.buffer, place, bytes.length).set(bytes);
+  module.receive();
 }
 
 /** Gives the page what was made. */
-function give(door: Door): void {
-  const taken = () => door.memory.buffer.slice(door.taken(), door.taken() + door.taken_length()) as ArrayBuffer;
-  for (let kind = door.take(); kind !== 0; kind = door.take()) {
-    const bytes = taken();
+function give(module: Module): void {
+  const bytesOfReply = () => module.memory.buffer.slice(module.reply(), module.reply() + module.reply_length()) as ArrayBuffer;
+  for (let kind = module.poll(); kind !== 0; kind = module.poll()) {
+    const bytes = bytesOfReply();
     if (kind === PICTURE) postMessage(bytes, { transfer: [bytes] });
     if (kind !== MESSAGE) continue;
     const reply = JSON.parse(new TextDecoder().decode(bytes)) as Reply;
-    const files = reply.type !== 'exported' ? [] : reply.files.map(() => (door.take(), taken()));
+    const files = reply.type !== 'exported' ? [] : reply.files.map(() => (module.poll(), bytesOfReply()));
     postMessage({ reply, files }, { transfer: files });
   }
 }
 
 /** Runs a part of the program; after a failure another one begins. */
-function attempt(part: (door: Door) => void): void {
-  if (!door) return;
+function attempt(part: (module: Module) => void): void {
+  if (!module) return;
   try {
-    part(door);
+    part(module);
   } catch (error) {
-    door = null;
+    module = null;
     console.error(error);
     const often = performance.now() - failed < AGAIN;
     failed = performance.now();
@@ -88,9 +88,9 @@ function attempt(part: (door: Door) => void): void {
 
 bell.onmessage = () => {
   rung = false;
-  attempt((door) => {
-    const more = door.step() !== 0;
-    give(door);
+  attempt((module) => {
+    const more = module.step() !== 0;
+    give(module);
     if (more) ring();
   });
 };
@@ -98,10 +98,10 @@ bell.onmessage = () => {
 onmessage = ({ data }: MessageEvent<Request | string>) => {
   if (typeof data === 'string') {
     load(data).catch((error: unknown) => postMessage({ failed: String(error) }));
-  } else if (door) {
-    attempt((door) => {
-      hear(door, data);
-      give(door);
+  } else if (module) {
+    attempt((module) => {
+      send(module, data);
+      give(module);
       ring();
     });
   } else waiting.push(data);
