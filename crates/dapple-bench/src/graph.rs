@@ -20,7 +20,7 @@ pub(crate) fn run(bench: &mut Bench) -> Result<()> {
 #[cfg(feature = "peers")]
 mod beside_spade {
     use crate::harness::{Bench, Done, Side};
-    use crate::row::{Case, Must, Unit};
+    use crate::row::{Case, Goal, Unit};
     use crate::{peers, sets};
     use anyhow::{Result, ensure};
     use dapple_graph::{Graph, delaunay};
@@ -30,13 +30,13 @@ mod beside_spade {
         case: "periodic Delaunay, 700 points",
         peer: "spade bulk_load, not periodic",
         unit: Unit::NsPerPoint,
-        must: Must::CostAtMost(1.4),
+        must: Goal::CostAtMost(1.4),
         note: "",
     };
 
     const PERIODIC_1M: Case = Case {
         case: "periodic Delaunay, 1 M points",
-        must: Must::CostAtMost(1.5),
+        must: Goal::CostAtMost(1.5),
         ..PERIODIC_700
     };
 

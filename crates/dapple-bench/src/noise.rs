@@ -4,7 +4,7 @@
 
 use crate::harness::{Bench, Done, Side};
 use crate::peers::noise;
-use crate::row::{Case, Must, Unit};
+use crate::row::{Case, Goal, Unit};
 use crate::sets::{SEED, positions_in};
 use anyhow::{Result, ensure};
 use dapple_noise::{GradientNoise2, GradientNoise3};
@@ -16,13 +16,13 @@ const COARSE: Case = Case {
     case: "gradient noise, 2-D, 1024×1024, 64 px per cell",
     peer: "simdnoise simplex, one octave",
     unit: Unit::NsPerPixel,
-    must: Must::Faster(10.0),
+    must: Goal::Faster(10.0),
     note: "the fastest grid of one octave of Perlin or simplex noise that was found",
 };
 
 const FINE: Case = Case {
     case: "gradient noise, 2-D, 1024×1024, 8 px per cell",
-    must: Must::Faster(4.0),
+    must: Goal::Faster(4.0),
     ..COARSE
 };
 
@@ -31,7 +31,7 @@ const ONE_POSITION: Case = Case {
     case: "gradient noise, 2-D, one position",
     peer: "noise-functions Perlin, one octave, one position",
     unit: Unit::NsPerPosition,
-    must: Must::CostAtMost(2.0),
+    must: Goal::CostAtMost(2.0),
     note: "ours takes positions of 64 bits and repeats nowhere; the peer takes 32 bits",
 };
 
@@ -42,7 +42,7 @@ const ONE_POSITION_IN_SPACE: Case = Case {
 
 const MANY_POSITIONS: Case = Case {
     case: "gradient noise, 2-D, many scattered positions",
-    must: Must::CostAtMost(0.5),
+    must: Goal::CostAtMost(0.5),
     note: "`sample_many` beside the peer's only function, which takes one position",
     ..ONE_POSITION
 };
@@ -57,7 +57,7 @@ const TERRAIN: Case = Case {
     case: "terrain chunk 65×65: six octaves and five ridged ones, warped",
     peer: "noise-functions Perlin, the same sums, position by position",
     unit: Unit::NsPerPosition,
-    must: Must::CostAtMost(0.6),
+    must: Goal::CostAtMost(0.6),
     note: "one thread; the warp moves positions by up to half a cell along each axis",
 };
 

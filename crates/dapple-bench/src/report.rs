@@ -157,14 +157,14 @@ pub(crate) fn write(path: &Path, text: &str) -> std::io::Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::row::{Case, Must, Unit};
+    use crate::row::{Case, Goal, Unit};
 
     const CASE: Case = Case {
         group: "graph",
         case: "periodic, 700 points",
         peer: "spade",
         unit: Unit::NsPerPoint,
-        must: Must::CostAtMost(1.4),
+        must: Goal::CostAtMost(1.4),
         note: "",
     };
 
@@ -174,7 +174,7 @@ mod tests {
             CASE.row(1e-7, 1e-7),
             CASE.row(123.4, 0.5),
             Case {
-                must: Must::Faster(65.0),
+                must: Goal::Faster(65.0),
                 ..CASE
             }
             .row(1.0, 2.0),
@@ -190,7 +190,7 @@ mod tests {
     #[test]
     fn table_shows_bar_and_verdict() {
         let faster = Case {
-            must: Must::Faster(65.0),
+            must: Goal::Faster(65.0),
             ..CASE
         };
         let rows = [

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 /// The direction of a ratio, and the bar that it must reach.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Must {
+pub(crate) enum Goal {
     /// The time of the other side divided by ours must be at least this: we are that many times faster.
     Faster(f64),
     /// Our time divided by the time of the other side must be at most this.
@@ -13,7 +13,7 @@ pub(crate) enum Must {
     AtLeast(f64),
 }
 
-impl Must {
+impl Goal {
     /// Returns the ratio of two times in this direction.
     pub(crate) fn ratio(self, ours: f64, theirs: f64) -> f64 {
         match self {
@@ -43,7 +43,7 @@ pub(crate) struct Case {
     /// The unit of both times, see [`Unit`].
     pub(crate) unit: Unit,
     /// The bar.
-    pub(crate) must: Must,
+    pub(crate) must: Goal,
     /// A note that a reader needs to understand the row; empty if there is none.
     pub(crate) note: &'static str,
 }
@@ -68,8 +68,8 @@ impl Case {
     pub(crate) fn row(&self, ours: f64, theirs: f64) -> Row {
         let ratio = self.must.ratio(ours, theirs);
         let (must, at) = match self.must {
-            Must::Faster(bar) | Must::AtLeast(bar) => (bar, "least"),
-            Must::CostAtMost(bar) => (bar, "most"),
+            Goal::Faster(bar) | Goal::AtLeast(bar) => (bar, "least"),
+            Goal::CostAtMost(bar) => (bar, "most"),
         };
         Row {
             group: self.group,
@@ -183,7 +183,7 @@ mod tests {
         case: "raster of 700 points",
         peer: "spade",
         unit: Unit::NsPerPixel,
-        must: Must::Faster(10.0),
+        must: Goal::Faster(10.0),
         note: "",
     };
 
@@ -202,7 +202,7 @@ mod tests {
     #[test]
     fn cost_divides_ours_by_theirs_and_needs_at_most_the_bar() {
         let case = Case {
-            must: Must::CostAtMost(1.5),
+            must: Goal::CostAtMost(1.5),
             ..CASE
         };
         let row = case.row(3.0, 2.0);
@@ -218,7 +218,7 @@ mod tests {
     #[test]
     fn at_least_divides_ours_by_theirs_and_needs_at_least_the_bar() {
         let case = Case {
-            must: Must::AtLeast(0.5),
+            must: Goal::AtLeast(0.5),
             ..CASE
         };
         let row = case.row(1.0, 2.0);
@@ -229,9 +229,9 @@ mod tests {
 
     #[test]
     fn ratio_that_is_not_a_number_holds_no_bar() {
-        assert!(!Must::Faster(1.0).holds(f64::NAN), "0 / 0 is not fast");
-        assert!(!Must::CostAtMost(1.0).holds(f64::NAN), "0 / 0 is not cheap");
-        assert!(!Must::AtLeast(1.0).holds(f64::NAN), "0 / 0 is not much");
+        assert!(!Goal::Faster(1.0).holds(f64::NAN), "0 / 0 is not fast");
+        assert!(!Goal::CostAtMost(1.0).holds(f64::NAN), "0 / 0 is not cheap");
+        assert!(!Goal::AtLeast(1.0).holds(f64::NAN), "0 / 0 is not much");
     }
 
     #[test]

@@ -7,7 +7,7 @@
 mod beside_peers;
 
 use crate::harness::{Bench, Done, Side};
-use crate::row::{Case, Must, Unit};
+use crate::row::{Case, Goal, Unit};
 use crate::sets::SEED;
 use anyhow::{Result, ensure};
 use dapple_color::LinearRgb;
@@ -29,7 +29,7 @@ const FEATURES: Case = Case {
     case: "blend map 4096×4096 from a tile of 128×128",
     peer: "ours, the feature map of a texture, per pixel",
     unit: Unit::NsPerPixel,
-    must: Must::Faster(10.0),
+    must: Goal::Faster(10.0),
     note: MEMORY,
 };
 

@@ -2,7 +2,7 @@
 
 use super::two_threads::LEAST_JOB_S;
 use super::*;
-use crate::row::{Must, Unit};
+use crate::row::{Goal, Unit};
 use anyhow::bail;
 use std::time::Duration;
 
@@ -11,7 +11,7 @@ const CASE: Case = Case {
     case: "sum",
     peer: "itself",
     unit: Unit::NsPerPoint,
-    must: Must::Faster(1.0),
+    must: Goal::Faster(1.0),
     note: "",
 };
 

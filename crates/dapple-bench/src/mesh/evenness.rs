@@ -3,7 +3,7 @@
 //! The points are the default hierarchy on the procedural animal, 262,144 points. The worst of the levels counts.
 
 use crate::harness::Bench;
-use crate::row::{Case, Must, Unit};
+use crate::row::{Case, Goal, Unit};
 use anyhow::{Result, ensure};
 use dapple_mesh::Surface;
 use dapple_models as models;
@@ -14,13 +14,13 @@ const MEAN: Case = Case {
     case: "repelled points, mean distance to the nearest",
     peer: "a hexagonal lattice",
     unit: Unit::Thousandths,
-    must: Must::AtLeast(0.88),
+    must: Goal::AtLeast(0.88),
     note: "262,144 points on a procedural animal, 3 levels of which the worst counts",
 };
 
 const LEAST: Case = Case {
     case: "repelled points, least distance to the nearest",
-    must: Must::AtLeast(0.5),
+    must: Goal::AtLeast(0.5),
     ..MEAN
 };
 

@@ -9,7 +9,7 @@
 //! There our side connects sites by a rule of its own, and these sites are not compared.
 
 use crate::harness::{Bench, Done, Side};
-use crate::row::{Case, Must, Unit};
+use crate::row::{Case, Goal, Unit};
 use anyhow::{Result, ensure};
 use dapple_mesh::Surface;
 use dapple_models as models;
@@ -25,7 +25,7 @@ const STARS: Case = Case {
     case: "star Delaunay, 65,536 sites",
     peer: "spade bulk_load, one for each site",
     unit: Unit::NsPerPoint,
-    must: Must::CostAtMost(0.3),
+    must: Goal::CostAtMost(0.3),
     note: "both look the sites around each site up with our grid, project them, and join the stars to a graph",
 };
 

@@ -2,7 +2,7 @@
 
 use super::{confirm, confirm_maximal};
 use crate::harness::{Bench, Done, Side};
-use crate::row::{Case, Must, Unit};
+use crate::row::{Case, Goal, Unit};
 use crate::sets::{self, SEED, UNIT_TORUS};
 use anyhow::{Context as _, Result};
 use dapple_points::glam::DVec2;
@@ -18,7 +18,7 @@ const VARIABLE: Case = Case {
     case: "variable radius, 100 k points",
     peer: "ours, fixed radius",
     unit: Unit::NsPerPoint,
-    must: Must::CostAtMost(3.0),
+    must: Goal::CostAtMost(3.0),
     note: "average rule; from left to right, the radius becomes four times as large",
 };
 
@@ -26,7 +26,7 @@ const TWO_THREADS: Case = Case {
     case: "maximal Poisson disk on two threads, 1 M points",
     peer: "ours, one thread",
     unit: Unit::Ms,
-    must: Must::Faster(1.75),
+    must: Goal::Faster(1.75),
     note: "",
     ..VARIABLE
 };
@@ -34,7 +34,7 @@ const TWO_THREADS: Case = Case {
 const ENDLESS: Case = Case {
     case: "endless Poisson disk, 100 k points",
     peer: "ours, maximal",
-    must: Must::CostAtMost(6.0),
+    must: Goal::CostAtMost(6.0),
     note: "a window of the endless plane, with 0.92 of the points of a maximal set",
     ..VARIABLE
 };

@@ -4,7 +4,7 @@ use super::alone::maximal;
 use super::{confirm, confirm_maximal};
 use crate::harness::{Bench, Done, Side};
 use crate::peers;
-use crate::row::{Case, Must, Unit};
+use crate::row::{Case, Goal, Unit};
 use crate::sets::{self, SEED, UNIT_TORUS};
 use anyhow::{Context as _, Result};
 use dapple_points::glam::DVec2;
@@ -16,7 +16,7 @@ const BLUENOISE_100K: Case = Case {
     case: "maximal Poisson disk, 100 k points",
     peer: "bluenoise, wrapping, k = 10",
     unit: Unit::NsPerPoint,
-    must: Must::Faster(4.0),
+    must: Goal::Faster(4.0),
     note: "",
 };
 
@@ -27,7 +27,7 @@ const BLUENOISE_1M: Case = Case {
 
 const DISKUS_100K: Case = Case {
     peer: "poisson-diskus, periodic",
-    must: Must::Faster(15.0),
+    must: Goal::Faster(15.0),
     ..BLUENOISE_100K
 };
 
@@ -38,13 +38,13 @@ const DISKUS_1M: Case = Case {
 
 const FAST_POISSON_100K: Case = Case {
     peer: "fast_poisson, not periodic",
-    must: Must::Faster(30.0),
+    must: Goal::Faster(30.0),
     ..BLUENOISE_100K
 };
 
 const FAST_POISSON_1M: Case = Case {
     case: BLUENOISE_1M.case,
-    must: Must::Faster(100.0),
+    must: Goal::Faster(100.0),
     note: "one run of the peer, which takes more than a minute",
     ..FAST_POISSON_100K
 };

@@ -2,7 +2,7 @@
 
 use super::{SIDE, Scene, image, window};
 use crate::harness::{Bench, Done, Side};
-use crate::row::{Case, Must, Unit};
+use crate::row::{Case, Goal, Unit};
 use crate::sets;
 use anyhow::{Result, ensure};
 use dapple_hash::{hash1, unit_f64};
@@ -16,28 +16,28 @@ const NAIVE: Case = Case {
     case: "raster, 700 points",
     peer: "naive: all points at all pixels",
     unit: Unit::NsPerPixel,
-    must: Must::Faster(900.0),
+    must: Goal::Faster(900.0),
     note: "the naive side is measured on 40 of the 1000 rows, spread evenly",
 };
 
 const POINTS_10K: Case = Case {
     case: "raster, 10 k points",
     peer: "ours, 1 k points",
-    must: Must::CostAtMost(2.0),
+    must: Goal::CostAtMost(2.0),
     note: "",
     ..NAIVE
 };
 
 const POINTS_100K: Case = Case {
     case: "raster, 100 k points",
-    must: Must::CostAtMost(5.0),
+    must: Goal::CostAtMost(5.0),
     ..POINTS_10K
 };
 
 const ORIENTED: Case = Case {
     case: "raster with orientations, 700 points",
     peer: "ours, without",
-    must: Must::CostAtMost(2.5),
+    must: Goal::CostAtMost(2.5),
     note: "equation 4 with ε = 0.5 and a random orientation for each point",
     ..NAIVE
 };
@@ -46,7 +46,7 @@ const TWO_THREADS: Case = Case {
     case: "raster 8192×8192 on two threads, 10 k points",
     peer: "ours, one thread",
     unit: Unit::Ms,
-    must: Must::Faster(1.75),
+    must: Goal::Faster(1.75),
     note: "",
     ..NAIVE
 };

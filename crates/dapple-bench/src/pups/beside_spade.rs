@@ -4,7 +4,7 @@ use super::alone::raster;
 use super::{SIDE, Scene, image, window};
 use crate::harness::{Bench, Done, Side};
 use crate::peers::{ScanlineSpade, ScatteredSpade};
-use crate::row::{Case, Must, Unit};
+use crate::row::{Case, Goal, Unit};
 use crate::sets;
 use anyhow::{Context as _, Result, ensure};
 use dapple_graph::delaunay;
@@ -18,20 +18,20 @@ const NATURAL_NEIGHBOR: Case = Case {
     case: "raster, 700 points",
     peer: "spade natural neighbor",
     unit: Unit::NsPerPixel,
-    must: Must::Faster(65.0),
+    must: Goal::Faster(65.0),
     note: "",
 };
 
 const BARYCENTRIC: Case = Case {
     peer: "spade barycentric",
-    must: Must::Faster(17.0),
+    must: Goal::Faster(17.0),
     ..NATURAL_NEIGHBOR
 };
 
 const WHOLE_CHAIN: Case = Case {
     case: "seed to image, 700 points",
     peer: "spade natural neighbor, image alone",
-    must: Must::Faster(50.0),
+    must: Goal::Faster(50.0),
     note: "ours makes points, values, graph, net and image",
     ..NATURAL_NEIGHBOR
 };
@@ -39,13 +39,13 @@ const WHOLE_CHAIN: Case = Case {
 const POSITIONS_700: Case = Case {
     case: "one position at a time, 700 points",
     unit: Unit::NsPerPosition,
-    must: Must::Faster(5.0),
+    must: Goal::Faster(5.0),
     ..NATURAL_NEIGHBOR
 };
 
 const POSITIONS_40K: Case = Case {
     case: "one position at a time, 40 k points",
-    must: Must::Faster(12.0),
+    must: Goal::Faster(12.0),
     ..POSITIONS_700
 };
 

@@ -5,7 +5,7 @@
 
 use super::{SIDE, image, window};
 use crate::harness::{Bench, Done, Side};
-use crate::row::{Case, Must, Unit};
+use crate::row::{Case, Goal, Unit};
 use crate::sets;
 use anyhow::{Result, ensure};
 use dapple_hash::{hash1, unit_f64};
@@ -21,13 +21,13 @@ const EDIT_40K: Case = Case {
     case: "edit and what it changes, 40 k points",
     peer: "ours, all anew",
     unit: Unit::Ms,
-    must: Must::Faster(50.0),
+    must: Goal::Faster(50.0),
     note: "points moved, added and removed in turn; the image has 1000×1000 pixels",
 };
 
 const EDIT_700: Case = Case {
     case: "edit and what it changes, 700 points",
-    must: Must::Faster(5.0),
+    must: Goal::Faster(5.0),
     ..EDIT_40K
 };
 

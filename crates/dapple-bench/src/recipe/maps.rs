@@ -3,7 +3,7 @@
 //! A part can cost more than the whole only if it takes a separate path; the two rows have the costliest parts.
 
 use crate::harness::Bench;
-use crate::row::{Case, Must, Unit};
+use crate::row::{Case, Goal, Unit};
 use anyhow::{Context as _, Result};
 use dapple_raster::Field as _;
 use dapple_recipe::{
@@ -15,7 +15,7 @@ const ALONE: Case = Case {
     case: "256×256, one map of a built-in recipe",
     peer: "ours, all maps of it",
     unit: Unit::Ms,
-    must: Must::CostAtMost(1.3),
+    must: Goal::CostAtMost(1.3),
     note: "",
 };
 

@@ -1,7 +1,7 @@
 //! Nodes at frequencies that are not powers of two, and nodes under a warp.
 
 use crate::harness::{Bench, Done, Side};
-use crate::row::{Case, Must, Unit};
+use crate::row::{Case, Goal, Unit};
 use anyhow::{Context as _, Result, ensure};
 use dapple_hash::Seed;
 use dapple_raster::{Field, FieldExt as _, Raster};
@@ -14,7 +14,7 @@ const WORLEY: Case = Case {
     case: "node `worley` of frequency 12, F2 − F1",
     peer: "ours, frequency 8",
     unit: Unit::NsPerPixel,
-    must: Must::CostAtMost(1.3),
+    must: Goal::CostAtMost(1.3),
     note: "",
 };
 

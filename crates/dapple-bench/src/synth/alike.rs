@@ -9,7 +9,7 @@ use super::drawings::{self, Drawing};
 use super::scene::{Picture, picture};
 use crate::harness::Bench;
 use crate::peers::flat;
-use crate::row::{Case, Must, Unit};
+use crate::row::{Case, Goal, Unit};
 use anyhow::Result;
 use core::ops::ControlFlow;
 use dapple_color::LinearRgb;
@@ -21,7 +21,7 @@ const COLORS: Case = Case {
     case: "likeness of colors, bricks",
     peer: "texture-synthesis",
     unit: Unit::Thousandths,
-    must: Must::CostAtMost(0.7),
+    must: Goal::CostAtMost(0.7),
     note: "",
 };
 

@@ -6,7 +6,7 @@ use super::scene::{self, N_SITES, SIDE, endless, exact, leaves, model, synthesiz
 use super::whole;
 use crate::harness::{Bench, median};
 use crate::peers::flat;
-use crate::row::{Case, Must, Unit};
+use crate::row::{Case, Goal, Unit};
 use anyhow::{Result, ensure};
 use dapple_synth::{Edges, Exemplar, Options, PlaneTexture, synthesize_plane};
 
@@ -15,7 +15,7 @@ const EXACT: Case = Case {
     case: "synthesis, 262,144 sites, 3 levels, 64² exemplar, exact search",
     peer: "texture-synthesis, flat 512×512",
     unit: Unit::S,
-    must: Must::CostAtMost(0.4),
+    must: Goal::CostAtMost(0.4),
     note: "",
 };
 
@@ -26,13 +26,13 @@ const DEFAULT: Case = Case {
 
 const WHOLE: Case = Case {
     case: "whole run, 262,144 sites, 3 levels, 64² exemplar, exact search, map 2048×2048",
-    must: Must::CostAtMost(0.9),
+    must: Goal::CostAtMost(0.9),
     ..EXACT
 };
 
 const PLANE: Case = Case {
     case: "plane 512×512, 3 levels, 64² exemplar, default options",
-    must: Must::CostAtMost(0.35),
+    must: Goal::CostAtMost(0.35),
     ..EXACT
 };
 
@@ -43,27 +43,27 @@ const PLANE_EXACT: Case = Case {
 
 const ENDLESS: Case = Case {
     case: "endless texture, 512×512, 64² exemplar",
-    must: Must::CostAtMost(0.1),
+    must: Goal::CostAtMost(0.1),
     ..EXACT
 };
 
 /// The peer is our older method, on the same exemplar.
 const ENDLESS_BESIDE_SWEEP: Case = Case {
     peer: "plane 512×512, default options",
-    must: Must::CostAtMost(1.2),
+    must: Goal::CostAtMost(1.2),
     ..ENDLESS
 };
 
 const LARGE: Case = Case {
     case: "synthesis, 262,144 sites, 4 levels, 256² exemplar, default options",
-    must: Must::CostAtMost(1.0),
+    must: Goal::CostAtMost(1.0),
     ..EXACT
 };
 
 /// The bar is the result of a prototype with the same search.
 const LARGE_EXACT: Case = Case {
     case: "synthesis, 262,144 sites, 4 levels, 256² exemplar, exact search",
-    must: Must::CostAtMost(1.3),
+    must: Goal::CostAtMost(1.3),
     ..EXACT
 };
 

@@ -7,7 +7,7 @@
 use super::drawings::{bricks, draw, scales};
 use crate::harness::{Bench, median};
 use crate::peers::flat;
-use crate::row::{Case, Must, Unit};
+use crate::row::{Case, Goal, Unit};
 use anyhow::{Result, ensure};
 use core::ops::ControlFlow;
 use dapple_color::LinearRgb;
@@ -23,7 +23,7 @@ const SEVERAL: Case = Case {
     case: "two examples, 192×192",
     peer: "texture-synthesis",
     unit: Unit::S,
-    must: Must::CostAtMost(0.4),
+    must: Goal::CostAtMost(0.4),
     note: "",
 };
 

@@ -3,7 +3,7 @@
 
 use super::scene::{Picture, leaves};
 use crate::harness::Bench;
-use crate::row::{Case, Must, Unit};
+use crate::row::{Case, Goal, Unit};
 use anyhow::Result;
 use dapple_color::LinearRgb;
 use dapple_mesh::{Mesh, Surface};
@@ -19,14 +19,14 @@ const CHARTS: Case = Case {
     case: "synthesis and bake with charts, 100,000 triangles, map 2048×2048",
     peer: "ours, triangles by area",
     unit: Unit::S,
-    must: Must::CostAtMost(2.5),
+    must: Goal::CostAtMost(2.5),
     note: "wall time on two threads, 65,536 sites; the model is a procedural animal",
 };
 
 const LOOSE: Case = Case {
     case: "synthesis and bake of 40,344 loose squares, map 2048×2048",
     peer: "ours, as in the paper",
-    must: Must::CostAtMost(3.0),
+    must: Goal::CostAtMost(3.0),
     note: "wall time on two threads, 65,536 sites; the squares cover a cube",
     ..CHARTS
 };

@@ -13,7 +13,7 @@ mod brute_force;
 use self::brute_force::BruteForce;
 use super::scene::{Picture, exact, leaves};
 use crate::harness::{Bench, Done, Side};
-use crate::row::{Case, Must, Unit};
+use crate::row::{Case, Goal, Unit};
 use anyhow::{Context as _, Result, ensure};
 use dapple_synth::{
     Candidates, CoarserCenter, Edges, Exemplar, Matcher, MatcherMemory, Options, Pass, Schedule,
@@ -26,7 +26,7 @@ const PLAIN_SMALL: Case = Case {
     case: "matcher, 3.4 k candidates",
     peer: "plain loop",
     unit: Unit::UsPerQuery,
-    must: Must::Faster(60.0),
+    must: Goal::Faster(60.0),
     note: "102,400 queries, all with the same row as by brute force; the loop is timed on 512 of them",
 };
 

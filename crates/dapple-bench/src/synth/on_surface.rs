@@ -10,7 +10,7 @@
 
 use super::scene::{N_SITES, model, synthesizer};
 use crate::harness::{Bench, median};
-use crate::row::{Case, Must, Unit};
+use crate::row::{Case, Goal, Unit};
 use anyhow::{Context as _, Result, ensure};
 use dapple_color::LinearRgb;
 use dapple_mesh::{FaceEdge, FaceIdx};
@@ -23,7 +23,7 @@ const ORIENTATION: Case = Case {
     case: "orientation of features, median turn from the field",
     peer: "the limit of 5 degrees",
     unit: Unit::Degrees,
-    must: Must::CostAtMost(1.0),
+    must: Goal::CostAtMost(1.0),
     note: "",
 };
 

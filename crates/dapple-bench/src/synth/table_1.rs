@@ -8,7 +8,7 @@ use super::drawings::{self, Drawing, draw};
 use super::scene::{count, exact};
 use crate::harness::Bench;
 use crate::report::three_digits;
-use crate::row::{Case, Must, Unit};
+use crate::row::{Case, Goal, Unit};
 use anyhow::{Result, ensure};
 use dapple_mesh::{Mesh, Surface};
 use dapple_models::{self as models, ModelError};
@@ -33,7 +33,7 @@ const CASE: Case = Case {
     case: "table 1: ray, 64,000 sites, 3 levels, 64² exemplar",
     peer: "the paper's 7 minutes",
     unit: Unit::S,
-    must: Must::Faster(300.0),
+    must: Goal::Faster(300.0),
     note: "",
 };
 

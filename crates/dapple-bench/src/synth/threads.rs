@@ -3,7 +3,7 @@
 use super::scene::{N_SITES, endless, exact, leaves, model, synthesizer};
 use super::whole;
 use crate::harness::Bench;
-use crate::row::{Case, Must, Unit};
+use crate::row::{Case, Goal, Unit};
 use anyhow::{Context as _, Result};
 use std::time::Duration;
 
@@ -12,19 +12,19 @@ const SYNTHESIS: Case = Case {
     case: "synthesis on two threads, 262,144 sites",
     peer: "ours, one thread",
     unit: Unit::S,
-    must: Must::Faster(1.75),
+    must: Goal::Faster(1.75),
     note: "",
 };
 
 const WHOLE: Case = Case {
     case: "whole run on two threads, 262,144 sites, map 2048×2048",
-    must: Must::Faster(1.6),
+    must: Goal::Faster(1.6),
     ..SYNTHESIS
 };
 
 const ENDLESS: Case = Case {
     case: "endless texture on two threads, 512×512",
-    must: Must::Faster(1.85),
+    must: Goal::Faster(1.85),
     ..SYNTHESIS
 };
 

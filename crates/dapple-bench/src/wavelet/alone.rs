@@ -3,7 +3,7 @@
 use super::straight::Straight;
 use super::{SIDE, confirm_equal, down_and_up, white_noise};
 use crate::harness::{Bench, Done, Side};
-use crate::row::{Case, Must, Unit};
+use crate::row::{Case, Goal, Unit};
 use anyhow::Result;
 
 const STRAIGHT: Case = Case {
@@ -11,14 +11,14 @@ const STRAIGHT: Case = Case {
     case: "down and up, 2048×2048",
     peer: "straight convolution with 32 taps",
     unit: Unit::NsPerPixel,
-    must: Must::Faster(1.0),
+    must: Goal::Faster(1.0),
     note: "ours has no taps to leave out: it is exact; times are per pixel of the fine raster",
 };
 
 const SIZE: Case = Case {
     case: "down and up, 8192×8192",
     peer: "ours, 256×256",
-    must: Must::CostAtMost(1.5),
+    must: Goal::CostAtMost(1.5),
     note: "",
     ..STRAIGHT
 };

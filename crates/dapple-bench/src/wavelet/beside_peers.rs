@@ -5,7 +5,7 @@ use crate::harness::{Bench, Done, Side};
 use crate::noise::{beside_perlin, confirm_spread, one_by_one};
 use crate::peers::fourier::FourierProjection;
 use crate::peers::noise::noise_functions_perlin_2;
-use crate::row::{Case, Must, Unit};
+use crate::row::{Case, Goal, Unit};
 use crate::sets::SEED;
 use anyhow::Result;
 use dapple_wavelet::WaveletNoise;
@@ -15,7 +15,7 @@ const FOURIER: Case = Case {
     case: "down and up, 2048×2048",
     peer: "rustfft, the same projection",
     unit: Unit::NsPerPixel,
-    must: Must::Faster(1.0),
+    must: Goal::Faster(1.0),
     note: "the peer leaves the raster projected, and no half-size raster",
 };
 
@@ -24,7 +24,7 @@ const NOISE: Case = Case {
     case: "wavelet noise, 2-D, one position",
     peer: "noise-functions Perlin, one octave",
     unit: Unit::NsPerPosition,
-    must: Must::CostAtMost(3.0),
+    must: Goal::CostAtMost(3.0),
     note: "positions anywhere in a tile of 128×128 cells, in random order",
 };
 

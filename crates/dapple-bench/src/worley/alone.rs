@@ -2,7 +2,7 @@
 
 use super::{F2_MINUS_F1, F2_MINUS_F1_IN_SPACE, Grid, Known, PLANE, SPACE};
 use crate::harness::{Bench, Done};
-use crate::row::{Case, Must, Unit};
+use crate::row::{Case, Goal, Unit};
 use crate::sets::SEED;
 use anyhow::Result;
 use dapple_raster::Raster;
@@ -14,14 +14,14 @@ const MANHATTAN: Case = Case {
     case: "2-D, 64 px per cell, F2 − F1, Manhattan",
     peer: "ours, Euclidean",
     unit: Unit::NsPerPixel,
-    must: Must::CostAtMost(1.3),
+    must: Goal::CostAtMost(1.3),
     note: "",
 };
 
 const FOUR_AXES: Case = Case {
     case: "4-D, 16 px per cell, F2 − F1",
     peer: "ours, 3-D",
-    must: Must::CostAtMost(6.0),
+    must: Goal::CostAtMost(6.0),
     ..MANHATTAN
 };
 
@@ -29,7 +29,7 @@ const TWO_THREADS: Case = Case {
     case: "2-D, 4 px per cell, F2 − F1, 8192×8192 on two threads",
     peer: "ours, one thread",
     unit: Unit::Ms,
-    must: Must::Faster(1.75),
+    must: Goal::Faster(1.75),
     ..MANHATTAN
 };
 

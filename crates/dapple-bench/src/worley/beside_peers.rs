@@ -3,7 +3,7 @@
 use super::{F1, F2_MINUS_F1, F2_MINUS_F1_IN_SPACE, Grid, PLANE, SPACE};
 use crate::harness::{Bench, Done, Side};
 use crate::peers::noise;
-use crate::row::{Case, Must, Unit};
+use crate::row::{Case, Goal, Unit};
 use anyhow::{Result, ensure};
 use dapple_worley::{Dimensions, Space};
 use std::ops::RangeInclusive;
@@ -13,59 +13,59 @@ const F1_64: Case = Case {
     case: "2-D, 64 px per cell, F1",
     peer: "simdnoise cellular_2d",
     unit: Unit::NsPerPixel,
-    must: Must::Faster(7.5),
+    must: Goal::Faster(7.5),
     note: "the peer has one feature point per cell, ours three on average, and its distances are squared",
 };
 
 const F2_MINUS_F1_64: Case = Case {
     case: "2-D, 64 px per cell, F2 − F1",
     peer: "simdnoise cellular2_2d",
-    must: Must::Faster(5.5),
+    must: Goal::Faster(5.5),
     ..F1_64
 };
 
 const F2_MINUS_F1_16: Case = Case {
     case: "2-D, 16 px per cell, F2 − F1",
-    must: Must::Faster(2.2),
+    must: Goal::Faster(2.2),
     ..F2_MINUS_F1_64
 };
 
 const F2_MINUS_F1_4: Case = Case {
     case: "2-D, 4 px per cell, F2 − F1",
-    must: Must::Faster(1.1),
+    must: Goal::Faster(1.1),
     ..F2_MINUS_F1_64
 };
 
 const SPACE_64: Case = Case {
     case: "3-D, 64 px per cell, F2 − F1",
     peer: "simdnoise cellular2_3d",
-    must: Must::Faster(19.0),
+    must: Goal::Faster(19.0),
     note: "as in the plane; the peer looks at 18 of the 27 places next to a position, see `src/peers/noise.rs`",
     ..F2_MINUS_F1_64
 };
 
 const SPACE_32: Case = Case {
     case: "3-D, 32 px per cell, F2 − F1",
-    must: Must::Faster(11.0),
+    must: Goal::Faster(11.0),
     ..SPACE_64
 };
 
 const SPACE_4: Case = Case {
     case: "3-D, 4 px per cell, F2 − F1",
-    must: Must::Faster(1.5),
+    must: Goal::Faster(1.5),
     ..SPACE_64
 };
 
 const BESIDE_SIMPLEX: Case = Case {
     peer: "simdnoise simplex, one octave",
-    must: Must::CostAtMost(0.3),
+    must: Goal::CostAtMost(0.3),
     note: "the fastest grid of one octave of Perlin or simplex noise that was found; 64 px per cell on both sides",
     ..F2_MINUS_F1_64
 };
 
 const BESIDE_SIMPLEX_IN_SPACE: Case = Case {
     case: SPACE_64.case,
-    must: Must::CostAtMost(0.5),
+    must: Goal::CostAtMost(0.5),
     ..BESIDE_SIMPLEX
 };
 
@@ -149,8 +149,8 @@ where
     .prepared(|made| made.0 = Vec::new());
     // As many runs of ours per turn as take about the time of the peer's run.
     let times = match case.must {
-        Must::Faster(bar) | Must::AtLeast(bar) => bar,
-        Must::CostAtMost(bar) => 1.0 / bar,
+        Goal::Faster(bar) | Goal::AtLeast(bar) => bar,
+        Goal::CostAtMost(bar) => 1.0 / bar,
     };
     let ours = grid.side()?.times(times.ceil() as u32);
     bench.beside(

@@ -2,7 +2,7 @@
 
 use super::{F2_MINUS_F1, Grid, PLANE};
 use crate::harness::{Bench, Done, Side};
-use crate::row::{Case, Must, Unit};
+use crate::row::{Case, Goal, Unit};
 use crate::sets::SEED;
 use anyhow::{Result, ensure};
 use dapple_raster::{Field as _, Raster};
@@ -13,7 +13,7 @@ const AT_64: Case = Case {
     case: "2-D, 64 px per cell, distance to the edge",
     peer: "ours, F2 − F1",
     unit: Unit::NsPerPixel,
-    must: Must::CostAtMost(6.0),
+    must: Goal::CostAtMost(6.0),
     note: "",
 };
 

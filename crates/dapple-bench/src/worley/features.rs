@@ -3,7 +3,7 @@
 //! The band is small enough to stay in the cache, so that the search is measured and not the memory.
 
 use crate::harness::{Bench, Done, Side};
-use crate::row::{Case, Must, Unit};
+use crate::row::{Case, Goal, Unit};
 use crate::sets::SEED;
 use anyhow::{Result, ensure};
 use dapple_raster::{Field as _, Raster, Window};
@@ -15,7 +15,7 @@ const FOUR: Case = Case {
     case: "2-D, 64 px per cell, band of 256×32, F1 to F4 with vectors and ids",
     peer: "ours, F1 and F2",
     unit: Unit::NsPerPixel,
-    must: Must::CostAtMost(5.0),
+    must: Goal::CostAtMost(5.0),
     note: "the two are textures, rendered one after the other, which is the fastest way to them; 80 bytes for each pixel \
            beside 8",
 };

@@ -6,7 +6,7 @@
 
 use crate::harness::{Bench, Done, Side};
 use crate::peers::noise;
-use crate::row::{Case, Must, Unit};
+use crate::row::{Case, Goal, Unit};
 use crate::sets::{SEED, positions_in};
 use anyhow::{Result, ensure};
 use dapple_worley::{Dimensions, Feature, Scatter, Space, Vector, Worley};
@@ -16,7 +16,7 @@ const F1_AND_F2: Case = Case {
     case: "2-D, scattered positions, F1 and F2 with vectors and ids",
     peer: "noise-functions CellDistance, F1 alone",
     unit: Unit::NsPerPosition,
-    must: Must::CostAtMost(2.0),
+    must: Goal::CostAtMost(2.0),
     note: "positions anywhere in 1000 cells along each axis, in random order; the peer has one feature point per cell, \
            ours three on average",
 };
@@ -28,7 +28,7 @@ const F1_AND_F2_IN_SPACE: Case = Case {
 
 const JITTERED: Case = Case {
     case: "2-D, scattered positions, one jittered point per cell, F1",
-    must: Must::Faster(1.2),
+    must: Goal::Faster(1.2),
     note: "positions anywhere in 1000 cells along each axis, in random order; both sides have one feature point per cell",
     ..F1_AND_F2
 };
@@ -41,7 +41,7 @@ const JITTERED_IN_SPACE: Case = Case {
 const ONE_POSITION: Case = Case {
     case: "2-D, one position, one jittered point per cell, F1",
     peer: "noise-functions CellDistance, one position",
-    must: Must::CostAtMost(2.5),
+    must: Goal::CostAtMost(2.5),
     note: "positions anywhere in 1000 cells along each axis, in random order; the peer looks at 9 cells and takes 32 bits, \
            ours is exact",
     ..F1_AND_F2
@@ -56,13 +56,13 @@ const ONE_POSITION_IN_SPACE: Case = Case {
 
 const ONE_POSITION_F2: Case = Case {
     case: "2-D, one position, one jittered point per cell, F1 and F2",
-    must: Must::CostAtMost(3.0),
+    must: Goal::CostAtMost(3.0),
     ..ONE_POSITION
 };
 
 const ONE_POSITION_F2_IN_SPACE: Case = Case {
     case: "3-D, one position, one jittered point per cell, F1 and F2",
-    must: Must::CostAtMost(3.0),
+    must: Goal::CostAtMost(3.0),
     ..ONE_POSITION_IN_SPACE
 };
 

@@ -7,7 +7,7 @@
 use super::digest::digest;
 use super::{F2_MINUS_F1, Grid, PLANE};
 use crate::harness::{Bench, median};
-use crate::row::{Case, Must, Unit};
+use crate::row::{Case, Goal, Unit};
 use crate::sets::SEED;
 use anyhow::{Context as _, Result, bail, ensure};
 use std::env;
@@ -19,7 +19,7 @@ const DEFAULT_64: Case = Case {
     case: "2-D, 64 px per cell, F2 − F1, built for any processor",
     peer: "ours, built with target-cpu=native",
     unit: Unit::NsPerPixel,
-    must: Must::CostAtMost(1.15),
+    must: Goal::CostAtMost(1.15),
     note: "two programs, run in turns",
 };
 

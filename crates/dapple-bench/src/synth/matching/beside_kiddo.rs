@@ -3,11 +3,11 @@
 use super::{PLAIN_SMALL, Recorded, Setting};
 use crate::harness::{Bench, Side};
 use crate::peers::kd_tree::{Directions, KdTree};
-use crate::row::{Case, Must};
+use crate::row::{Case, Goal};
 use anyhow::{Result, ensure};
 
 const KIDDO: Case = Case {
-    must: Must::Faster(3.0),
+    must: Goal::Faster(3.0),
     note: "the peer searches in 8 or 16 principal directions, filters there, and compares what is left",
     ..PLAIN_SMALL
 };
