@@ -27,7 +27,8 @@ pub use indexmap;
 pub use input::Input;
 pub use nodes::*;
 pub use plan::{
-    ImageSource, Images, Memory, NodeColors, NodeField, Picture, Plan, PlanLimits, Samples, Whole,
+    ImageSource, Images, NodeColors, NodeField, Picture, Plan, PlanCache, PlanLimits, Samples,
+    Whole,
 };
 pub use recipe::{Material, Recipe, SCHEMA};
 pub use text::{MAX_TEXT, read_options};

@@ -5,9 +5,9 @@
 //! that depend on the whole tile, which are evaluated beforehand for a whole picture: see [`Plan::whole`].
 
 mod builder;
+mod cache;
 mod evaluate;
 mod field;
-mod memory;
 mod order;
 mod samples;
 mod step;
@@ -16,14 +16,14 @@ mod whole;
 mod work;
 
 pub(crate) use builder::{Builder, FREQUENCY};
+pub use cache::PlanCache;
+use cache::StepId;
 pub(crate) use evaluate::Known;
 pub use field::{NodeColors, NodeField};
-pub use memory::Memory;
-use memory::StepId;
 pub(crate) use order::order;
 pub use samples::Samples;
 pub(crate) use samples::TileSamples;
-pub(crate) use step::{Laid, Step};
+pub(crate) use step::{Step, StretchedImage};
 pub(crate) use watch::{OF_NODE, Pass, Watch};
 pub use whole::Whole;
 pub use work::PlanLimits;
@@ -118,7 +118,7 @@ pub struct Plan {
     channels: Channels,
     material: Material,
     limits: PlanLimits,
-    memory: Option<Memory>,
+    memory: Option<PlanCache>,
     watch: Watch,
     /// Whether a node changes with time.
     moves: bool,
@@ -218,24 +218,24 @@ impl Plan {
     /// # Examples
     ///
     /// ```
-    /// use dapple_recipe::{Images, Memory, Plan, PlanLimits, Recipe};
+    /// use dapple_recipe::{Images, PlanCache, Plan, PlanLimits, Recipe};
     ///
-    /// let (images, limits, memory) = (Images::new(), PlanLimits::default(), Memory::new(1 << 26));
+    /// let (images, limits, memory) = (Images::new(), PlanLimits::default(), PlanCache::new(1 << 26));
     /// let mut recipe = Recipe::builtin("flagstone")?;
-    /// let plan = Plan::new_with_memory(&recipe, &images, 0.0, &limits, &memory)?;
+    /// let plan = Plan::new_with_cache(&recipe, &images, 0.0, &limits, &memory)?;
     /// let grain = plan.node_picture("grain", [64, 64], None)?;
     ///
     /// recipe.material.relief = 0.5;
-    /// let plan = Plan::new_with_memory(&recipe, &images, 0.0, &limits, &memory)?;
+    /// let plan = Plan::new_with_cache(&recipe, &images, 0.0, &limits, &memory)?;
     /// assert_eq!(plan.node_picture("grain", [64, 64], None)?, grain);
     /// # Ok::<(), dapple_recipe::RecipeError>(())
     /// ```
-    pub fn new_with_memory(
+    pub fn new_with_cache(
         recipe: &Recipe,
         images: &Images,
         time: f64,
         limits: &PlanLimits,
-        memory: &Memory,
+        memory: &PlanCache,
     ) -> Result<Self, RecipeError> {
         Self::make(recipe, images, time, limits, Some(memory), Watch::default())
     }
@@ -276,7 +276,7 @@ impl Plan {
         images: &Images,
         time: f64,
         limits: &PlanLimits,
-        memory: Option<&Memory>,
+        memory: Option<&PlanCache>,
         progress: impl Fn(Progress) -> ControlFlow<()> + Send + Sync + 'static,
     ) -> Result<Self, RecipeError> {
         Self::make(recipe, images, time, limits, memory, Watch::by(progress))
@@ -287,7 +287,7 @@ impl Plan {
         images: &Images,
         time: f64,
         limits: &PlanLimits,
-        memory: Option<&Memory>,
+        memory: Option<&PlanCache>,
         watch: Watch,
     ) -> Result<Self, RecipeError> {
         RecipeError::check_in(TIME, "time", time)?;
@@ -481,7 +481,7 @@ impl Plan {
     /// The values of steps, from the memory as far as it has them; others are added to it.
     fn values_with(
         &self,
-        memory: &Memory,
+        memory: &PlanCache,
         whole: &Whole,
         window: &Window,
         wanted: &[usize],

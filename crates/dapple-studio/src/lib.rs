@@ -50,7 +50,7 @@ pub use message::{
 };
 pub use patch::{Op, Part, apply};
 pub use picture::{Picture, Shown, rgba};
-pub use render::{Job, Lit, MAX_SIDE, Renderer, World, map_kinds};
+pub use render::{Job, Lit, MAX_SIDE, RenderHost, Renderer, map_kinds};
 pub use sample::sample;
 #[cfg(feature = "server")]
 pub use server::{ExportedFile, Host, ServeOptions, has_page, page_licenses, serve};

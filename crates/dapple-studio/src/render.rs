@@ -6,7 +6,7 @@ use crate::{Document, Graph, Picture, Shown, StudioError, rgba};
 use dapple::color::LinearRgb;
 use dapple::raster::Raster;
 use dapple::recipe::{
-    Bake, BakeOptions, Images, MapKind, Memory, Picture as Values, Plan, PlanLimits, Recipe,
+    Bake, BakeOptions, Images, MapKind, Picture as Values, Plan, PlanCache, PlanLimits, Recipe,
     RecipeError, Region,
 };
 use std::sync::Arc;
@@ -68,7 +68,7 @@ pub struct Lit<'a> {
 }
 
 /// The surroundings of a renderer: images, a clock, and a receiver of what is drawn.
-pub trait World {
+pub trait RenderHost {
     /// The images that a recipe names.
     ///
     /// # Errors
@@ -99,7 +99,7 @@ pub trait World {
 /// Draws jobs, and keeps what the next one may need again.
 #[derive(Debug)]
 pub struct Renderer {
-    pub(crate) memory: Memory,
+    pub(crate) memory: PlanCache,
     planned: Option<Planned>,
     /// The longest side of the next draft, in pixels.
     draft_side: u32,
@@ -113,7 +113,7 @@ const MEMORY: usize = 1 << 29;
 impl Renderer {
     /// A renderer that keeps what it made in a memory, which others may use, too.
     #[must_use]
-    pub fn new(memory: &Memory) -> Self {
+    pub fn new(memory: &PlanCache) -> Self {
         Self {
             memory: memory.clone(),
             planned: None,
@@ -125,8 +125,8 @@ impl Renderer {
 
     /// An empty memory for one or several renderers.
     #[must_use]
-    pub fn memory() -> Memory {
-        Memory::new(MEMORY)
+    pub fn memory() -> PlanCache {
+        PlanCache::new(MEMORY)
     }
 }
 
@@ -170,7 +170,7 @@ impl From<StudioError> for Stop {
 
 impl Renderer {
     /// Draws a job, as far as it is wanted.
-    pub fn draw(&mut self, job: &Job, world: &dyn World) {
+    pub fn draw(&mut self, job: &Job, world: &dyn RenderHost) {
         let Ok(recipe) = job.document.recipe() else {
             return;
         };
@@ -190,7 +190,7 @@ impl Renderer {
         }
     }
 
-    fn draw_all(&mut self, job: &Job, recipe: &Recipe, world: &dyn World) -> Result<(), Stop> {
+    fn draw_all(&mut self, job: &Job, recipe: &Recipe, world: &dyn RenderHost) -> Result<(), Stop> {
         let start = world.now();
         let plan = match self.plan(job, recipe, world) {
             Ok(plan) => plan,
@@ -226,7 +226,12 @@ impl Renderer {
     }
 
     /// The plan of a job.
-    fn plan(&mut self, job: &Job, recipe: &Recipe, world: &dyn World) -> Result<Arc<Plan>, Stop> {
+    fn plan(
+        &mut self,
+        job: &Job,
+        recipe: &Recipe,
+        world: &dyn RenderHost,
+    ) -> Result<Arc<Plan>, Stop> {
         let time = job.view.time;
         let images = world.images(recipe)?;
         if let Some(planned) = &self.planned
@@ -237,7 +242,7 @@ impl Renderer {
             return Ok(planned.plan.clone());
         }
         self.planned = None;
-        let plan = Arc::new(Plan::new_with_memory(
+        let plan = Arc::new(Plan::new_with_cache(
             recipe,
             &images,
             time,
@@ -274,7 +279,7 @@ pub(crate) fn planned(recipe: &Recipe, images: &Images, time: f64) -> Result<Pla
 }
 
 /// Sends the graph of a job.
-fn put_graph(job: &Job, plan: Option<&Plan>, world: &dyn World) {
+fn put_graph(job: &Job, plan: Option<&Plan>, world: &dyn RenderHost) {
     if let Some(graph) = Graph::new(&job.document, plan) {
         world.put(
             Reply::Graph {
@@ -289,7 +294,7 @@ fn put_graph(job: &Job, plan: Option<&Plan>, world: &dyn World) {
 /// One drawing of a job.
 struct Pass<'a> {
     job: &'a Job,
-    world: &'a dyn World,
+    world: &'a dyn RenderHost,
     plan: &'a Plan,
     start: f64,
     draft_side: u32,

@@ -22,7 +22,7 @@ use axum::response::{IntoResponse as _, Response};
 use browser::Way;
 use dapple::color::LinearRgb;
 use dapple::raster::Raster;
-use dapple::recipe::{Images, Memory, Recipe};
+use dapple::recipe::{Images, PlanCache, Recipe};
 use exports::Exports;
 use files::Folder;
 use gallery::Gallery;
@@ -106,7 +106,7 @@ struct Shared {
     folder: Folder,
     exports: Exports,
     /// Values of nodes that were drawn for any page.
-    memory: Memory,
+    memory: PlanCache,
     /// Small pictures of recipes, by their texts and sides.
     gallery: Gallery,
     /// The places of pages that are not taken.

@@ -2,7 +2,9 @@
 
 use crate::picture::of_values;
 use crate::render::{LIMITS, size_of};
-use crate::{Document, Op, Output, Picture, Renderer, Shown, StudioError, World, apply, sample};
+use crate::{
+    Document, Op, Output, Picture, RenderHost, Renderer, Shown, StudioError, apply, sample,
+};
 use dapple::recipe::Plan;
 use std::sync::Arc;
 
@@ -30,7 +32,7 @@ pub struct Variant {
 
 impl Renderer {
     /// Draws a picture of a strip. Changes that the recipe refuses have no picture.
-    pub fn draw_variant(&self, variant: &Variant, world: &dyn World) {
+    pub fn draw_variant(&self, variant: &Variant, world: &dyn RenderHost) {
         if let Ok((size, pixels)) = self.pixels(variant, world) {
             let shown = Shown::Strip(variant.index);
             world.put(Output::Picture(Picture::whole(shown, size, pixels)));
@@ -40,7 +42,7 @@ impl Renderer {
     fn pixels(
         &self,
         variant: &Variant,
-        world: &dyn World,
+        world: &dyn RenderHost,
     ) -> Result<([u32; 2], Vec<u8>), StudioError> {
         let document = Document::new(apply(variant.document.text(), &variant.changes)?);
         let recipe = document.recipe().map_err(Clone::clone)?;
@@ -49,7 +51,7 @@ impl Renderer {
         let Some(node) = &variant.node else {
             return sample::lit(recipe, &images, side);
         };
-        let plan = Plan::new_with_memory(recipe, &images, variant.time, &LIMITS, &self.memory)?;
+        let plan = Plan::new_with_cache(recipe, &images, variant.time, &LIMITS, &self.memory)?;
         let size = size_of(recipe.extent, side);
         let (pixels, _) = of_values(&plan.node_picture(node, size, None)?);
         Ok((size, pixels))

@@ -2,7 +2,7 @@
 
 use super::{ImageAlpha, NodeKind};
 use crate::RecipeError;
-use crate::plan::{Builder, Laid, Step};
+use crate::plan::{Builder, Step, StretchedImage};
 use serde::{Deserialize, Serialize};
 
 /// An image, laid over the tile and interpolated between its pixels, or averaged over each pixel of a smaller bake; past its
@@ -36,7 +36,7 @@ impl NodeKind for ImageNode {
     }
 
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
-        Ok(Step::Image(Laid {
+        Ok(Step::Image(StretchedImage {
             picture: plan.layer_of(&self.file, self.layer())?.clone(),
             origin: plan.domain().origin,
             extent: plan.domain().size,

@@ -2,7 +2,7 @@
 
 use super::{ImageAlpha, NodeKind, NodeSeed};
 use crate::RecipeError;
-use crate::plan::{Builder, Laid, OF_NODE, Picture, Step, Watch, Work};
+use crate::plan::{Builder, OF_NODE, Picture, Step, StretchedImage, Watch, Work};
 use core::ops::ControlFlow;
 use dapple_pups::{Range, range};
 use dapple_synth::{Edges, Endless, EndlessOptions, Exemplar, PlaneTexture};
@@ -113,7 +113,7 @@ impl NodeKind for SynthNode {
             }
             Picture::Colors(colors) => Picture::Colors(Arc::new(grown.texture.transfer(colors)?)),
         };
-        Ok(Step::Image(Laid {
+        Ok(Step::Image(StretchedImage {
             picture,
             origin: plan.domain().origin,
             extent: plan.domain().size,

@@ -1,6 +1,6 @@
 //! The builder of steps, which provides the tile, the seed and the inputs to nodes.
 
-use super::memory::{Memory, StepId};
+use super::cache::{PlanCache, StepId};
 use super::step::{Global, Local, Step, Tile};
 use super::work::{Work, WorkSum};
 use super::{ImageSource, Images, Picture, PlanLimits, Watch, not_a_number, order};
@@ -23,7 +23,7 @@ pub(crate) struct Builder<'a> {
     /// The name of the current node.
     node: &'a str,
     work: WorkSum<'a>,
-    memory: Option<&'a Memory>,
+    memory: Option<&'a PlanCache>,
     watch: &'a Watch,
     /// Parts of steps of this plan, and of earlier ones, if there is a memory.
     shared_parts: Parts,
@@ -46,7 +46,7 @@ impl<'a> Builder<'a> {
         images: &'a Images,
         time: f64,
         limits: &'a PlanLimits,
-        memory: Option<&'a Memory>,
+        memory: Option<&'a PlanCache>,
         watch: &'a Watch,
     ) -> Self {
         Self {
@@ -98,7 +98,7 @@ impl<'a> Builder<'a> {
 
     /// The number of the description from which the values of the node follow, and whether it is known to include the
     /// time; `None` if there is no description.
-    fn id_in(&self, memory: &Memory, node: &Node) -> Option<(StepId, bool)> {
+    fn id_in(&self, memory: &PlanCache, node: &Node) -> Option<(StepId, bool)> {
         // Options that cannot be written as data, such as functions, cannot be compared.
         if !is_data(node) {
             return None;

@@ -14,11 +14,11 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// Values and steps of plans, for reuse in later plans: see [`Plan::new_with_memory`](super::Plan::new_with_memory).
+/// Values and steps of plans, for reuse in later plans: see [`Plan::new_with_cache`](super::Plan::new_with_cache).
 ///
 /// Clones share the same memory.
 #[derive(Clone)]
-pub struct Memory {
+pub struct PlanCache {
     kept: Arc<Mutex<Kept>>,
     /// Parts of steps without inputs.
     parts: Parts,
@@ -70,7 +70,7 @@ const MAX_AGE: u64 = 4;
 /// The largest number of images that are recognized.
 const MAX_PICTURES: usize = 64;
 
-impl Memory {
+impl PlanCache {
     /// A memory for values of at most `max_bytes` bytes.
     #[must_use]
     pub fn new(max_bytes: usize) -> Self {
@@ -220,10 +220,10 @@ impl Memory {
     }
 }
 
-impl fmt::Debug for Memory {
+impl fmt::Debug for PlanCache {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let kept = self.lock();
-        f.debug_struct("Memory")
+        f.debug_struct("PlanCache")
             .field("values", &kept.values.len())
             .field("bytes", &kept.bytes)
             .finish()

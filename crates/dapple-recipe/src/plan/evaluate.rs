@@ -1,6 +1,6 @@
 //! Evaluation of steps at many positions.
 
-use super::step::{Laid, Step, needed};
+use super::step::{Step, StretchedImage, needed};
 use super::{Picture, Values, Whole};
 use crate::{RecipeError, RecipeErrorKind};
 use dapple_color::LinearRgb;
@@ -263,7 +263,7 @@ fn shifted(mut positions: Vec<DVec2>, x: &Values, y: &Values, amount: f64) -> Ve
     positions
 }
 
-impl Laid {
+impl StretchedImage {
     /// The values of the image at places of the plane: the mean of its pixels over the area of each.
     pub(super) fn at(&self, places: Places<'_>) -> Values {
         match &self.picture {

@@ -16,7 +16,7 @@ pub(crate) enum Step {
     Color(LinearRgb),
     Field(Arc<dyn Field>),
     Colors(Arc<VectorTexture<3>>),
-    Image(Laid),
+    Image(StretchedImage),
     Local(Local),
     Warp {
         input: usize,
@@ -60,7 +60,7 @@ pub(crate) struct Tile<'a> {
 
 /// An image that covers the tile.
 #[derive(Clone, Debug)]
-pub(crate) struct Laid {
+pub(crate) struct StretchedImage {
     pub(crate) picture: Picture,
     /// The corner of its first pixel.
     pub(crate) origin: DVec2,

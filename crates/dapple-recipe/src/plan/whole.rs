@@ -2,7 +2,7 @@
 
 use super::builder::wrap;
 use super::evaluate::{At, Places};
-use super::step::{Global, Laid, Step, Tile, ancestors};
+use super::step::{Global, Step, StretchedImage, Tile, ancestors};
 use super::{OF_NODE, Pass, Picture, Plan, Samples, TileSamples, Watch};
 use crate::{RecipeError, RecipeErrorKind, Region, Values};
 use dapple_raster::{Raster, Window, Wrap};
@@ -230,7 +230,7 @@ impl Whole {
                 })
             }
             _ => {
-                let laid = Laid {
+                let laid = StretchedImage {
                     picture: picture.clone(),
                     origin: tile.origin.into(),
                     extent: self.extent,

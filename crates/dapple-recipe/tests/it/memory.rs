@@ -1,7 +1,7 @@
 //! Plans that reuse values from a memory.
 
 use dapple_recipe::{
-    Bake, BakeOptions, Images, MapKind, MapRows, Memory, Plan, PlanLimits, Recipe,
+    Bake, BakeOptions, Images, MapKind, MapRows, Plan, PlanCache, PlanLimits, Recipe,
 };
 
 fn baked(plan: &Plan, band_pixels: u32) -> Vec<(MapKind, MapRows)> {
@@ -14,8 +14,8 @@ fn baked(plan: &Plan, band_pixels: u32) -> Vec<(MapKind, MapRows)> {
     Bake::new(plan, &options).unwrap().whole_maps().unwrap()
 }
 
-fn with(recipe: &Recipe, time: f64, memory: &Memory) -> Plan {
-    Plan::new_with_memory(recipe, &Images::new(), time, &PlanLimits::default(), memory).unwrap()
+fn with(recipe: &Recipe, time: f64, memory: &PlanCache) -> Plan {
+    Plan::new_with_cache(recipe, &Images::new(), time, &PlanLimits::default(), memory).unwrap()
 }
 
 /// The recipe, with a different number in one of its nodes each time.
@@ -41,7 +41,7 @@ fn changed(text: &str) -> Vec<Recipe> {
 
 #[test]
 fn bits_are_those_of_a_plan_without_a_memory() {
-    let memory = Memory::new(1 << 24);
+    let memory = PlanCache::new(1 << 24);
     for name in Recipe::builtin_names() {
         for recipe in changed(Recipe::builtin_text(name).unwrap()) {
             for (time, bands) in [(0.0, &[1 << 20, 1 << 9][..]), (0.25, &[1 << 20])] {
@@ -61,7 +61,7 @@ fn bits_are_those_of_a_plan_without_a_memory() {
 fn what_moves_is_made_anew_and_what_does_not_is_not() {
     let text = "dapple = 1\nextent = [4.0, 4.0]\n[nodes.still.worley]\n[nodes.moving.worley]\nmotion = { cells = 1 }\n[material]\n";
     let recipe = Recipe::from_toml(text).unwrap();
-    let memory = Memory::new(1 << 20);
+    let memory = PlanCache::new(1 << 20);
     let picture = |node: &str, time: f64| {
         let before = memory.bytes();
         let picture = with(&recipe, time, &memory)
@@ -86,7 +86,7 @@ fn a_full_memory_forgets_what_was_used_longest_ago() {
     let text = "dapple = 1\n[nodes.a.worley]\nfrequency = 4\n[nodes.b.worley]\nfrequency = 4\n[material]\n";
     let recipe = Recipe::from_toml(text).unwrap();
     let bytes = 16 * 16 * 4;
-    let memory = Memory::new(6 * bytes);
+    let memory = PlanCache::new(6 * bytes);
     let plan = with(&recipe, 0.0, &memory);
     for side in [16, 12, 10, 8, 14, 15, 13, 11, 9] {
         plan.node_picture("a", [side, 16], None).unwrap();
@@ -100,7 +100,7 @@ fn a_full_memory_forgets_what_was_used_longest_ago() {
 
 #[test]
 fn textures_with_other_options_have_the_bits_of_a_plan_without_a_memory() {
-    let memory = Memory::new(1 << 20);
+    let memory = PlanCache::new(1 << 20);
     let changes = [
         "cells]\nspacing = 0.3",
         "cells]\nspacing = 0.3\npoints_per_cell = [2, 3]",
@@ -139,7 +139,7 @@ fn textures_with_other_options_have_the_bits_of_a_plan_without_a_memory() {
 
 #[test]
 fn wavelets_with_other_weights_have_the_bits_of_a_plan_without_a_memory() {
-    let memory = Memory::new(1 << 20);
+    let memory = PlanCache::new(1 << 20);
     for weights in ["[1.0]", "[1.0, 0.5]", "[0.25]"] {
         let text = format!("dapple = 1\n[nodes.a.wavelet]\nweights = {weights}\n[material]\n");
         let recipe = Recipe::from_toml(&text).unwrap();

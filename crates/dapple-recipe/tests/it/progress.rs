@@ -4,7 +4,7 @@ use core::ops::ControlFlow;
 use core::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use dapple_raster::{Raster, parallel};
 use dapple_recipe::{
-    Bake, BakeOptions, Images, MapKind, MapRows, Memory, Picture, Plan, PlanLimits, Progress,
+    Bake, BakeOptions, Images, MapKind, MapRows, Picture, Plan, PlanCache, PlanLimits, Progress,
     Recipe, RecipeError, RecipeErrorKind,
 };
 use std::sync::{Arc, Mutex};
@@ -39,7 +39,7 @@ fn recipe() -> (Recipe, Images) {
 
 /// Plans and bakes with a callback.
 fn made(
-    memory: Option<&Memory>,
+    memory: Option<&PlanCache>,
     progress: impl Fn(Progress) -> ControlFlow<()> + Send + Sync + 'static,
 ) -> Result<Vec<(MapKind, MapRows)>, RecipeError> {
     let (recipe, images) = recipe();
@@ -62,7 +62,7 @@ fn made(
 /// What is made with a callback that stops the work at a call, and the number of calls.
 fn stopped_at(
     last: usize,
-    memory: Option<&Memory>,
+    memory: Option<&PlanCache>,
 ) -> (Result<Vec<(MapKind, MapRows)>, RecipeError>, usize) {
     let n_calls = Arc::new(AtomicUsize::new(0));
     let calls = n_calls.clone();
@@ -78,7 +78,7 @@ fn work_can_be_stopped_at_every_call_and_leaves_nothing_behind() {
     let (plain, n_calls) = stopped_at(usize::MAX, None);
     let plain = plain.unwrap();
     for last in (0..6).chain((6..n_calls).step_by(n_calls / 16)) {
-        let memory = Memory::new(1 << 26);
+        let memory = PlanCache::new(1 << 26);
         let (stopped, n_calls) = stopped_at(last, Some(&memory));
         let error = stopped.unwrap_err();
         assert_eq!(

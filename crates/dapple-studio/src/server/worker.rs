@@ -3,7 +3,7 @@
 
 use super::Shared;
 use crate::message::{Export, Output, Reply};
-use crate::render::{Job, Renderer, World};
+use crate::render::{Job, RenderHost, Renderer};
 use crate::{Lit, Shown, StudioError, Task, Variant};
 use dapple::color::LinearRgb;
 use dapple::image::FileStamp;
@@ -120,7 +120,7 @@ impl Worker {
 
     /// The images of a recipe.
     pub(super) fn images(&self, recipe: &Recipe) -> Result<Images, StudioError> {
-        World::images(&*self.inside, recipe)
+        RenderHost::images(&*self.inside, recipe)
     }
 
     /// Does this as well.
@@ -298,7 +298,7 @@ impl Inside {
     }
 }
 
-impl World for Inside {
+impl RenderHost for Inside {
     fn images(&self, recipe: &Recipe) -> Result<Images, StudioError> {
         if recipe.image_files().is_empty() {
             return Ok(Images::new());

@@ -1,6 +1,6 @@
 //! What a session draws.
 
-use crate::world::{Page, TestWorld, of_type, split};
+use crate::render_host::{Page, TestWorld, of_type, split};
 use dapple::image::{Depth, Encoding, Image, Limits, PngPixels, RowWriter, decode_image};
 use dapple::recipe::{Bake, BakeOptions, Images, MapKind, Plan, Recipe};
 use dapple_studio::{Picture, Request, Shown};

@@ -12,6 +12,6 @@ mod connections;
 mod drawing;
 mod messages;
 mod points;
+mod render_host;
 #[cfg(feature = "server")]
 mod server;
-mod world;

@@ -1,6 +1,6 @@
 //! What a session answers.
 
-use crate::world::{Page, of_type};
+use crate::render_host::{Page, of_type};
 use serde_json::{Value, json};
 
 /// Texts that JavaScript has of positions in UTF-16.

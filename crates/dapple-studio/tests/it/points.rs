@@ -1,6 +1,6 @@
 //! Control points that are edited on the page.
 
-use crate::world::Page;
+use crate::render_host::Page;
 use serde_json::{Value, json};
 use std::time::Instant;
 

@@ -1,7 +1,7 @@
 //! A world in which sessions are tested.
 
 use dapple::recipe::{Images, Recipe};
-use dapple_studio::{Output, Picture, Renderer, Reply, Request, Session, StudioError, World};
+use dapple_studio::{Output, Picture, RenderHost, Renderer, Reply, Request, Session, StudioError};
 use serde_json::{Value, json};
 use std::cell::{Cell, RefCell};
 
@@ -17,7 +17,7 @@ pub(crate) struct TestWorld {
     time: Cell<f64>,
 }
 
-impl World for TestWorld {
+impl RenderHost for TestWorld {
     fn images(&self, _: &Recipe) -> Result<Images, StudioError> {
         Ok(Images::new())
     }
