@@ -24,7 +24,7 @@ use crate::encode::Format;
 use crate::error::{Hint, usage};
 use crate::output::Target;
 use crate::progress::Style;
-use crate::words::Word;
+use crate::words::NamedValueParser;
 use anyhow::Result;
 use clap::Args;
 use dapple::color::Palette;
@@ -45,7 +45,7 @@ pub(crate) struct Common {
 
     /// How progress is shown on standard error: as a bar on a terminal and as lines elsewhere, or always as lines, or
     /// as lines of JSON.
-    #[arg(long, global = true, value_name = "STYLE", value_parser = Word::<Style>::all(), default_value_t = Style::Auto)]
+    #[arg(long, global = true, value_name = "STYLE", value_parser = NamedValueParser::<Style>::all(), default_value_t = Style::Auto)]
     pub(crate) progress: Style,
 
     /// Print only errors and requested reports.
@@ -95,7 +95,7 @@ pub(crate) struct ImageArgs {
     /// The format. By default by the ending of the output: EXR for `.exr`, a NumPy array for `.npy`, raw heights for `.r16`; for
     /// `.png` 8 bits for color and 16 bits for data (gray images and normals), and 16 bits for color, too, if the input is
     /// deeper than 8.
-    #[arg(long, value_name = "FORMAT", value_parser = Word::<Format>::all())]
+    #[arg(long, value_name = "FORMAT", value_parser = NamedValueParser::<Format>::all())]
     pub(crate) format: Option<Format>,
 
     #[arg(long, value_name = "COLORS", help = ramp_help())]
@@ -127,8 +127,8 @@ dapple::raster::named! {
 
 impl Axes {
     /// Parses one or both axes, for options where `none` has no meaning.
-    pub(crate) fn some() -> Word<Self> {
-        Word::some(&[Self::X, Self::Y, Self::Both])
+    pub(crate) fn some() -> NamedValueParser<Self> {
+        NamedValueParser::some(&[Self::X, Self::Y, Self::Both])
     }
 
     /// Whether x and y repeat.

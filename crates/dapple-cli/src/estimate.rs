@@ -21,7 +21,7 @@ const PROBE: [u32; 2] = [256; 2];
 /// # Errors
 ///
 /// If there are more than [`MOST_PIXELS`] and the bake is not banded, or if the recipe fails.
-pub(crate) fn foresee(
+pub(crate) fn print_estimate(
     plan: &Plan,
     options: &BakeOptions,
     images: &[Image],

@@ -4,12 +4,12 @@ use crate::args::{Axes, Frame, ImageArgs, Region, SamplesArgs, Size, Targets, se
 use crate::baking::{self, MapFile, advise, report};
 use crate::encode::{Format, ramped_recipe};
 use crate::error::{Exit, Hint, usage};
-use crate::foresight::foresee;
+use crate::estimate::print_estimate;
 use crate::job::{Context, Job, put_text};
 use crate::layers::{Image, Layers};
 use crate::output::Target;
 use crate::progress::Progress;
-use crate::words::Word;
+use crate::words::NamedValueParser;
 use anyhow::{Error, Result};
 use dapple::hash::Seed;
 use dapple::recipe::{
@@ -34,7 +34,7 @@ pub(crate) struct FieldArgs {
     pub(crate) samples: SamplesArgs,
 
     /// The axes along which the picture repeats.
-    #[arg(long, value_parser = Word::<Axes>::all(), default_value_t = Axes::Both)]
+    #[arg(long, value_parser = NamedValueParser::<Axes>::all(), default_value_t = Axes::Both)]
     pub(crate) wrap: Axes,
 
     /// Make only this part of the picture, in pixels: bit for bit the crop of the whole.
@@ -165,17 +165,17 @@ pub(crate) fn draw(
         let time = frame.map_or(0.0, Frame::time);
         let plan = Plan::new(&recipe, &field.images, time).map_err(refused)?;
         if index == 0 {
-            foresee(&plan, &bake, &vec![image_of_map; files.len()], &job)?;
+            print_estimate(&plan, &bake, &vec![image_of_map; files.len()], &job)?;
         }
         let bake = Bake::new(&plan, &bake).map_err(refused)?;
         baking::write(&mut job, bake, std::slice::from_ref(file), &progress)?;
     }
     drop(progress);
-    let told = Told {
+    let sidecar = FieldSidecar {
         options,
         recipe: &recipe,
     };
-    job.finish(&told, report(&recipe))?;
+    job.finish(&sidecar, report(&recipe))?;
     Ok(Exit::Done)
 }
 
@@ -199,7 +199,7 @@ fn refused(error: RecipeError) -> Error {
 
 /// The options and the recipe, for the JSON file.
 #[derive(Serialize)]
-struct Told<'a, T> {
+struct FieldSidecar<'a, T> {
     #[serde(flatten)]
     options: &'a T,
     #[serde(rename = "baked")]

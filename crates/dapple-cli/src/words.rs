@@ -40,9 +40,9 @@ pub(crate) fn slip<'a>(
 
 /// A parser of a value by its name, which lists the names in the help.
 #[derive(Clone, Debug)]
-pub(crate) struct Word<T>(Vec<(PossibleValue, T)>);
+pub(crate) struct NamedValueParser<T>(Vec<(PossibleValue, T)>);
 
-impl<T: Named> Word<T> {
+impl<T: Named> NamedValueParser<T> {
     /// A parser of all values of a kind. The help of each is the first sentence of its documentation.
     pub(crate) fn all() -> Self {
         Self::some(T::ALL)
@@ -62,13 +62,13 @@ impl<T: Named> Word<T> {
     }
 
     /// A parser of other values, each of which is made from one of these.
-    pub(crate) fn map<U>(self, change: fn(T) -> U) -> Word<U> {
+    pub(crate) fn map<U>(self, change: fn(T) -> U) -> NamedValueParser<U> {
         let changed = |(name, value)| (name, change(value));
-        Word(self.0.into_iter().map(changed).collect())
+        NamedValueParser(self.0.into_iter().map(changed).collect())
     }
 }
 
-impl<T> Word<T> {
+impl<T> NamedValueParser<T> {
     /// A parser of these values.
     pub(crate) fn of(values: impl IntoIterator<Item = (&'static str, T)>) -> Self {
         let values = values.into_iter();
@@ -91,7 +91,7 @@ impl<T> Word<T> {
     }
 }
 
-impl<T: Clone + Send + Sync + 'static> TypedValueParser for Word<T> {
+impl<T: Clone + Send + Sync + 'static> TypedValueParser for NamedValueParser<T> {
     type Value = T;
 
     fn parse_ref(&self, command: &Command, arg: Option<&Arg>, text: &OsStr) -> Result<T, Error> {

@@ -1,6 +1,6 @@
 //! The options of reading images: the layer, and numbers that are not finite.
 
-use crate::words::Word;
+use crate::words::NamedValueParser;
 use dapple::raster::Named as _;
 use serde::Serialize;
 
@@ -29,7 +29,7 @@ pub(crate) struct ReadArgs {
 pub(crate) struct FiniteArgs {
     /// What becomes of numbers of OpenEXR images that are NaN or infinite: an error, the mean of the finite pixels
     /// around, or zero.
-    #[arg(long, value_name = "HOW", value_parser = Word::<NonFinite>::all(), default_value_t = NonFinite::Error)]
+    #[arg(long, value_name = "HOW", value_parser = NamedValueParser::<NonFinite>::all(), default_value_t = NonFinite::Error)]
     pub(crate) nonfinite: NonFinite,
 }
 

@@ -2,7 +2,7 @@
 
 use super::Size;
 use crate::error::{Hint, usage};
-use crate::words::Word;
+use crate::words::NamedValueParser;
 use anyhow::Result;
 use dapple::raster::Named;
 use dapple::recipe::Samples;
@@ -14,7 +14,7 @@ use serde::Serialize;
 pub(crate) struct SamplesArgs {
     /// The positions of the samples: the centers of pixels, or the corners of a grid that reaches the sides of the tile, as
     /// heights of terrains have them. On corners the last column and row equal the first ones where the tile repeats.
-    #[arg(long, value_name = "WHERE", value_parser = Word::<Samples>::all(), default_value_t = Samples::Centers)]
+    #[arg(long, value_name = "WHERE", value_parser = NamedValueParser::<Samples>::all(), default_value_t = Samples::Centers)]
     pub(crate) samples: Samples,
 }
 

@@ -13,17 +13,17 @@ use crate::args::{Frame, OutputArgs, Region, Shard, Size};
 use crate::baking::{STILL, advise, advise_shard, read_images, read_recipe, report};
 use crate::encode::Format;
 use crate::error::{Exit, Hint, usage};
-use crate::foresight::foresee;
+use crate::estimate::print_estimate;
 use crate::job::{Context, Job};
 use crate::preview::{self, Thing};
 use crate::progress::Progress;
 use crate::shards::{List, Wanted};
-use crate::words::Word;
+use crate::words::NamedValueParser;
 use anyhow::Result;
 use batch::Batch;
 use claim::claim;
 use dapple::recipe::{
-    Bake, BakeMemory, BakeOptions, Images, MapKind, Memory, Plan, PlanLimits, Recipe, Samples,
+    Bake, BakeMemory, BakeOptions, Images, MapKind, Plan, PlanCache, PlanLimits, Recipe, Samples,
 };
 use dapple::tile::Map;
 pub(super) use material::MaterialArgs;
@@ -108,11 +108,11 @@ pub(crate) struct Args {
     sheet: bool,
 
     /// Write a lit preview of the material, too, as `NAME_preview.png`: on a plane of 2 x 2 tiles, a sphere or a torus.
-    #[arg(long, value_name = "THING", value_parser = Word::<Thing>::all(), num_args = 0..=1, require_equals = true, default_missing_value = "plane", help_heading = "Output")]
+    #[arg(long, value_name = "THING", value_parser = NamedValueParser::<Thing>::all(), num_args = 0..=1, require_equals = true, default_missing_value = "plane", help_heading = "Output")]
     preview: Option<Thing>,
 
     /// The format; by default PNG with 16 bits, or by the ending of the output: EXR, a NumPy array, or raw heights.
-    #[arg(long, value_name = "FORMAT", value_parser = Word::<Format>::all(), help_heading = "Output")]
+    #[arg(long, value_name = "FORMAT", value_parser = NamedValueParser::<Format>::all(), help_heading = "Output")]
     format: Option<Format>,
 
     #[command(flatten)]
@@ -218,7 +218,7 @@ struct Made {
     /// The images of the recipe, as soon as a picture has needed them.
     images: Option<Images>,
     /// The values of nodes; none for a single picture.
-    memory: Option<Memory>,
+    memory: Option<PlanCache>,
 }
 
 /// The most bytes of values that are kept from one picture of a loop to the next.
@@ -255,7 +255,7 @@ impl Work {
     ) -> Result<()> {
         let mut made = Made {
             images: None,
-            memory: args.frames.map(|_| Memory::new(MEMORY)),
+            memory: args.frames.map(|_| PlanCache::new(MEMORY)),
         };
         for args in args.pictures() {
             let job = Job::new(context, "bake", files);
@@ -295,7 +295,7 @@ impl Work {
             job.note_work(STILL);
         }
         let options = args.options(claimed.map_kinds())?;
-        foresee(&plan, &options, &claimed.images, &job)?;
+        print_estimate(&plan, &options, &claimed.images, &job)?;
         let refused = match args.shard {
             Some(_) => advise_shard,
             None => advise,
@@ -308,13 +308,13 @@ impl Work {
             let picture = preview::picture(recipe, images, time, thing)?;
             job.write_map(output, &Map::Color(picture), format)?;
         }
-        job.finish(&Told { args, recipe }, report(recipe))
+        job.finish(&BakeSidecar { args, recipe }, report(recipe))
     }
 }
 
 /// The options and the recipe that they were used with, for the JSON file.
 #[derive(Serialize)]
-struct Told<'a> {
+struct BakeSidecar<'a> {
     #[serde(flatten)]
     args: &'a Args,
     #[serde(rename = "baked")]

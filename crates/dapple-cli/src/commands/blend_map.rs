@@ -5,7 +5,7 @@ use crate::error::{Exit, Hint};
 use crate::input::{self, ALPHA_HINT, Kind};
 use crate::job::{Context, Job};
 use crate::progress::Progress;
-use crate::words::Word;
+use crate::words::NamedValueParser;
 use anyhow::{Result, anyhow};
 use dapple::raster::Wrap;
 use dapple::recipe::ImageAlpha;
@@ -54,7 +54,7 @@ pub(crate) struct Args {
     contrast: f64,
 
     /// The axes along which the texture and its map repeat. Along others the texture is mirrored at its edges.
-    #[arg(long, value_parser = Word::<Axes>::all(), default_value_t = Axes::Both)]
+    #[arg(long, value_parser = NamedValueParser::<Axes>::all(), default_value_t = Axes::Both)]
     wrap: Axes,
 
     /// Keep the values; by default each becomes its rank, from 0 to 1.

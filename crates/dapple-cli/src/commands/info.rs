@@ -8,7 +8,7 @@ use crate::error::{Exit, Hint, printable};
 use crate::input;
 use crate::job::{Context, Job};
 use crate::output::Target;
-use crate::words::Word;
+use crate::words::NamedValueParser;
 use anyhow::{Context as _, Error, Result};
 use channels::{Channel, channels, format};
 use dapple::image::{ImageHeader, read_header};
@@ -46,7 +46,7 @@ pub(crate) struct Args {
     region: Option<Region>,
 
     /// The axes along which images should repeat; `none` leaves out the seam report.
-    #[arg(long, value_name = "AXES", value_parser = Word::<Axes>::all(), default_value_t = Axes::Both)]
+    #[arg(long, value_name = "AXES", value_parser = NamedValueParser::<Axes>::all(), default_value_t = Axes::Both)]
     wrap: Axes,
 
     /// Compare the seam only with every n-th boundary of pixels.
@@ -58,7 +58,7 @@ pub(crate) struct Args {
     check: bool,
 
     /// The format of the findings: text for people, or JSON for programs; by default by the ending of the output.
-    #[arg(long, value_name = "FORMAT", value_parser = Word::<Format>::all(), help_heading = "Output")]
+    #[arg(long, value_name = "FORMAT", value_parser = NamedValueParser::<Format>::all(), help_heading = "Output")]
     format: Option<Format>,
 
     #[command(flatten)]

@@ -9,7 +9,7 @@ use crate::layers::LayerRows;
 use crate::output::{OutputIdx, Sink, Target, cannot_be_written};
 use crate::progress::Progress;
 use crate::shards::{List, Task};
-use crate::words::Word;
+use crate::words::NamedValueParser;
 use anyhow::{Context as _, Result, anyhow};
 use dapple::color::LinearRgb;
 use dapple::image::{Content, ExrImage, RowWriter};
@@ -44,7 +44,7 @@ pub(crate) struct Args {
     folder: PathBuf,
 
     /// The format; by default that of the ending of the output, or EXR in a folder.
-    #[arg(long, value_name = "FORMAT", value_parser = Word::<Format>::all(), help_heading = "Output")]
+    #[arg(long, value_name = "FORMAT", value_parser = NamedValueParser::<Format>::all(), help_heading = "Output")]
     format: Option<Format>,
 
     #[command(flatten)]

@@ -9,7 +9,7 @@ use crate::error::{Exit, Hint, usage};
 use crate::job::{Context, Job};
 use crate::output::Target;
 use crate::progress::Progress;
-use crate::words::Word;
+use crate::words::NamedValueParser;
 use anyhow::Result;
 use dapple::points::PointSet;
 use dapple::raster::Named;
@@ -51,7 +51,7 @@ pub(crate) struct Args {
     report: bool,
 
     /// csv, json or png (a picture); by default by the ending of the output, and csv on standard output.
-    #[arg(long, value_name = "FORMAT", value_parser = Word::<Format>::all(), help_heading = "Output")]
+    #[arg(long, value_name = "FORMAT", value_parser = NamedValueParser::<Format>::all(), help_heading = "Output")]
     format: Option<Format>,
 
     /// The size of the picture, in pixels: a single number is its longer side.

@@ -8,7 +8,7 @@ use crate::error::{Exit, Hint, usage};
 use crate::field::{Field, FieldArgs, draw, extent_of};
 use crate::input::ALPHA_HINT;
 use crate::job::Context;
-use crate::words::{Word, with_dashes};
+use crate::words::{NamedValueParser, with_dashes};
 use anyhow::{Error, Result};
 use clap::ValueEnum;
 use clap::builder::PossibleValue;
@@ -107,11 +107,11 @@ pub(crate) struct Args {
     axis_scale: Option<f64>,
 
     /// How weights fall off along an axis: by the cubic of the paper, or by a quintic with a continuous second derivative.
-    #[arg(long, value_name = "CURVE", value_parser = Word::of([("cubic", AxialWeight::Cubic), ("quintic", AxialWeight::Quintic)]), help_heading = "Weights")]
+    #[arg(long, value_name = "CURVE", value_parser = NamedValueParser::of([("cubic", AxialWeight::Cubic), ("quintic", AxialWeight::Quintic)]), help_heading = "Weights")]
     weight: Option<AxialWeight>,
 
     /// Whether control points have orientations; by default as the texture has it.
-    #[arg(long, value_name = "WHICH", value_parser = Word::of([("none", Orientations::None), ("random", Orientations::Random)]), help_heading = "Weights")]
+    #[arg(long, value_name = "WHICH", value_parser = NamedValueParser::of([("none", Orientations::None), ("random", Orientations::Random)]), help_heading = "Weights")]
     orientations: Option<Orientations>,
 
     /// How strongly orientations shift weights, from 0 to below 1.

@@ -8,7 +8,7 @@ use crate::baking::{STILL, advise_shard, read_images, read_recipe};
 use crate::error::{Exit, Hint, usage};
 use crate::job::{Context, eprintln_if_possible};
 use crate::shards::{List, Task, Wanted};
-use crate::words::Word;
+use crate::words::NamedValueParser;
 use anyhow::Result;
 use dapple::recipe::{Bake, BakeMemory, BakeOptions, MapKind, Plan, Region};
 use serde::{Serialize, Serializer};
@@ -84,7 +84,7 @@ pub(crate) struct Args {
     frames: Option<u32>,
 
     /// The format of the printed list.
-    #[arg(long, value_name = "FORM", value_parser = Word::<ListFormat>::all(), default_value_t = ListFormat::Lines)]
+    #[arg(long, value_name = "FORM", value_parser = NamedValueParser::<ListFormat>::all(), default_value_t = ListFormat::Lines)]
     format: ListFormat,
 
     /// The folder of the shards, in which a file `shards.json` describes them.

@@ -4,7 +4,7 @@ use crate::args::{Extent, ImageArgs, Numbers};
 use crate::error::{Exit, Hint};
 use crate::field::{Field, FieldArgs, check_whole_cells, draw, extent_of};
 use crate::job::Context;
-use crate::words::{Word, unknown, with_underscores};
+use crate::words::{NamedValueParser, unknown, with_underscores};
 use anyhow::Result;
 use dapple::hash::Seed;
 use dapple::recipe::{Images, Motion, Node, WorleyNode, WorleyValue};
@@ -64,7 +64,7 @@ pub(crate) struct Args {
     period: Option<Extent>,
 
     /// The metric: how distances are measured.
-    #[arg(long, value_name = "METRIC", default_value = "euclidean", value_parser = Word::of(Metric::NAMED), help_heading = "Texture")]
+    #[arg(long, value_name = "METRIC", default_value = "euclidean", value_parser = NamedValueParser::of(Metric::NAMED), help_heading = "Texture")]
     metric: Metric,
 
     /// The exponent of the Minkowski metric, from 1 to 10; replaces --metric.
@@ -109,7 +109,7 @@ pub(crate) struct Args {
         long,
         value_name = "SEEDS",
         default_value = "own",
-        value_parser = Word::of([("own", OctaveSeeds::Own), ("same", OctaveSeeds::Same)]),
+        value_parser = NamedValueParser::of([("own", OctaveSeeds::Own), ("same", OctaveSeeds::Same)]),
         requires = "octaves",
         help_heading = "Texture"
     )]

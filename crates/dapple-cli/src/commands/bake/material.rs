@@ -4,7 +4,7 @@ use super::maps::Maps;
 use crate::args::{FiniteArgs, SamplesArgs, Size, seed};
 use crate::baking::advise;
 use crate::error::Hint;
-use crate::words::Word;
+use crate::words::NamedValueParser;
 use anyhow::Error;
 use dapple::color::NormalY;
 use dapple::hash::Seed;
@@ -41,7 +41,7 @@ pub(in crate::commands) struct MaterialArgs {
     seed: Option<u64>,
 
     /// Where green points in normal maps. By default as the preset or the recipe says, or else up (opengl).
-    #[arg(long, value_name = "WAY", value_parser = Word::<NormalY>::all())]
+    #[arg(long, value_name = "WAY", value_parser = NamedValueParser::<NormalY>::all())]
     pub(super) normal_y: Option<NormalY>,
 
     /// How many units of the plane a height of 1 stands for, from -1e6 to 1e6, instead of what the recipe says.

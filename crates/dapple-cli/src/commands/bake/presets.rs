@@ -4,7 +4,7 @@
 
 use crate::encode::Format;
 use crate::layers::{Channel, Image, Layers};
-use crate::words::Word;
+use crate::words::NamedValueParser;
 use dapple::color::NormalY;
 use dapple::recipe::MapKind;
 use serde::{Serialize, Serializer};
@@ -198,9 +198,9 @@ impl Preset {
     }
 
     /// Reads a preset by its name.
-    pub(super) fn parser() -> Word<&'static Self> {
+    pub(super) fn parser() -> NamedValueParser<&'static Self> {
         let presets = PRESETS.iter();
-        presets.fold(Word::none(), |words, preset| {
+        presets.fold(NamedValueParser::none(), |words, preset| {
             words.or(preset.name, preset.about, preset)
         })
     }

@@ -2,7 +2,7 @@
 
 use crate::args::Axes;
 use crate::error::{Hint, usage};
-use crate::words::Word;
+use crate::words::NamedValueParser;
 use anyhow::Result;
 use dapple::tile::{Blend, Mixing, Pyramid, Weighting};
 use dapple::wavelet::Border;
@@ -37,7 +37,7 @@ dapple::raster::named! {
 #[command(next_help_heading = "Weighting and mixing")]
 pub(super) struct MixingArgs {
     /// How weights are used; the default is described below.
-    #[arg(long, value_name = "HOW", value_parser = Word::<WeightingName>::all())]
+    #[arg(long, value_name = "HOW", value_parser = NamedValueParser::<WeightingName>::all())]
     weighting: Option<WeightingName>,
 
     /// height: the difference of heights over which layers mix, above 0: 0.1 is crisp, 0.3 soft; by default 0.2.
@@ -50,7 +50,7 @@ pub(super) struct MixingArgs {
     gain: Option<f64>,
 
     /// How layers are mixed.
-    #[arg(long, value_parser = Word::<MixingName>::all(), default_value_t = MixingName::Linear)]
+    #[arg(long, value_parser = NamedValueParser::<MixingName>::all(), default_value_t = MixingName::Linear)]
     mixing: MixingName,
 
     /// pyramid: the number of bands, at most 30; by default 4.
@@ -63,7 +63,7 @@ pub(super) struct MixingArgs {
 
     /// pyramid: the axes along which the images and their blend repeat; by default none, with mirror images past the
     /// edges.
-    #[arg(long, value_name = "AXES", value_parser = Word::<Axes>::all())]
+    #[arg(long, value_name = "AXES", value_parser = NamedValueParser::<Axes>::all())]
     wrap: Option<Axes>,
 }
 

@@ -1,7 +1,7 @@
 //! The methods of `dapple copies`, and the options that each of them takes.
 
 use crate::error::{Hint, usage};
-use crate::words::Word;
+use crate::words::NamedValueParser;
 use anyhow::Result;
 use dapple::hash::Seed;
 use dapple::tile::{BorderSource, CornerTiles, Disturbance, Map, MatchBorders, TileError};
@@ -28,7 +28,7 @@ dapple::raster::named! {
 #[command(next_help_heading = "Method")]
 pub(super) struct MethodArgs {
     /// The method; by default chosen by the number of tiles.
-    #[arg(long, value_parser = Word::<Name>::all())]
+    #[arg(long, value_parser = NamedValueParser::<Name>::all())]
     method: Option<Name>,
 
     /// disturb: the number of unchanged pixels along the borders of a tile; by default 4, or an eighth of the shorter
@@ -48,7 +48,7 @@ pub(super) struct MethodArgs {
 
     /// borders: the source of all borders: the border of the first tile, or its middle, if it does not repeat; by
     /// default the border.
-    #[arg(long, value_name = "WHICH", value_parser = Word::<BorderSource>::all())]
+    #[arg(long, value_name = "WHICH", value_parser = NamedValueParser::<BorderSource>::all())]
     source: Option<BorderSource>,
 
     /// corners: the share of the shorter side that cuts may take, above 0 and at most 1; the larger, the less the

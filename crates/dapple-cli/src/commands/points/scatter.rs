@@ -3,7 +3,7 @@
 use crate::args::{Axes, Extent, Numbers, ReadArgs, Size, image_alpha, seed};
 use crate::error::{Hint, usage};
 use crate::input::{self, ALPHA_HINT, Kind as ImageKind};
-use crate::words::Word;
+use crate::words::NamedValueParser;
 use anyhow::{Context as _, Error, Result};
 use dapple::hash::Seed;
 use dapple::points::glam::DVec2;
@@ -41,7 +41,7 @@ dapple::raster::named! {
 #[command(next_help_heading = "Points")]
 pub(super) struct ScatterArgs {
     /// The kind of points, described below.
-    #[arg(value_parser = Word::<Kind>::all(), default_value_t = Kind::Poisson, hide_possible_values = true, help_heading = None::<&str>)]
+    #[arg(value_parser = NamedValueParser::<Kind>::all(), default_value_t = Kind::Poisson, hide_possible_values = true, help_heading = None::<&str>)]
     kind: Kind,
 
     /// The seed of all random choices: any whole number from 0 to 2^64 - 1.
@@ -88,7 +88,7 @@ pub(super) struct ScatterArgs {
     invert: bool,
 
     /// variable: the distance of points with different radii; by default the mean of their radii.
-    #[arg(long, value_name = "RULE", value_parser = Word::<DiskRule>::all())]
+    #[arg(long, value_name = "RULE", value_parser = NamedValueParser::<DiskRule>::all())]
     rule: Option<DiskRule>,
 
     /// jittered: columns and rows of the grid; by default square cells for the count.
@@ -114,7 +114,7 @@ pub(super) struct ScatterArgs {
     origin: Numbers<f64, 2>,
 
     /// The axes along which the domain wraps: the points then repeat without a seam.
-    #[arg(long, value_parser = Word::<Axes>::all(), default_value_t = Axes::Both, help_heading = "Domain")]
+    #[arg(long, value_parser = NamedValueParser::<Axes>::all(), default_value_t = Axes::Both, help_heading = "Domain")]
     wrap: Axes,
 }
 

@@ -8,7 +8,7 @@ use super::reading::{gray, lightness};
 use crate::args::{Numbers, Region};
 use crate::error::Hint;
 use crate::input::{self, Kind, Loaded};
-use crate::words::Word;
+use crate::words::NamedValueParser;
 use anyhow::{Result, anyhow};
 use dapple::mesh::{Model, Repair, SurfacePoint};
 use dapple::points::glam::DVec2;
@@ -29,7 +29,7 @@ pub(super) struct GuideArgs {
 
     /// Also take all examples mirrored or turned, with their maps and guides (normals have green up): for things that lie in
     /// any direction, such as leaves and gravel.
-    #[arg(long, value_name = "HOW", value_parser = Word::<Turned>::all(), default_value_t, conflicts_with = "detail")]
+    #[arg(long, value_name = "HOW", value_parser = NamedValueParser::<Turned>::all(), default_value_t, conflicts_with = "detail")]
     pub(super) turned: Turned,
 
     /// Which example goes where: black is the first, white the last, and grays are those between. A texture in the plane has

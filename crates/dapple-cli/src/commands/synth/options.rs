@@ -3,7 +3,7 @@
 use crate::args::{Axes, Numbers, Size, seed};
 use crate::error::{Hint, usage};
 use crate::input::{Loaded, mesh_endings};
-use crate::words::Word;
+use crate::words::NamedValueParser;
 use anyhow::Result;
 use dapple::color::Code as _;
 use dapple::hash::Seed;
@@ -84,12 +84,12 @@ pub(super) struct PlaneArgs {
     pub(super) size: Option<Size>,
 
     /// Which sides of the texture fit together: both makes a tile; by default none.
-    #[arg(long, value_parser = Word::<Axes>::all())]
+    #[arg(long, value_parser = NamedValueParser::<Axes>::all())]
     pub(super) wrap: Option<Axes>,
 
     /// How the texture is grown. By default endless, but sweep with options that need it, and where the size along a side that
     /// wraps is no multiple of 2^LEVELS.
-    #[arg(long, value_parser = Word::<MethodName>::all(), conflicts_with_all = ["repair", "replay"])]
+    #[arg(long, value_parser = NamedValueParser::<MethodName>::all(), conflicts_with_all = ["repair", "replay"])]
     pub(super) method: Option<MethodName>,
 
     /// The column and the row of an endless texture at which the image begins, each from -2^52 to 2^52: windows beside each
@@ -107,7 +107,7 @@ pub(super) struct PlaneArgs {
 
     /// Make those pixels of the example again at which this channel of it is less than half, such as the transparent ones:
     /// with `a` the result is opaque.
-    #[arg(long, value_name = "CHANNEL", value_parser = Word::<Channel>::all(), conflicts_with_all = ["repair", "replay", "method", "at", "size", "wrap", "evenness", "paper", "which", "guide"])]
+    #[arg(long, value_name = "CHANNEL", value_parser = NamedValueParser::<Channel>::all(), conflicts_with_all = ["repair", "replay", "method", "at", "size", "wrap", "evenness", "paper", "which", "guide"])]
     pub(super) repair_channel: Option<Channel>,
 
     /// Also write where in the example each pixel is from: an OpenEXR image, red the column and green the row.
@@ -161,7 +161,7 @@ pub(super) struct SurfaceArgs {
 
     /// How many directions at a place are as good as each other: 2 for examples that look alike upside down, such as bricks, and
     /// 4 for those that look alike lying on their side, such as a checker. The texture then has fewer tears. By default 1.
-    #[arg(long, value_name = "N", value_parser = Word::<Symmetry>::all())]
+    #[arg(long, value_name = "N", value_parser = NamedValueParser::<Symmetry>::all())]
     pub(super) symmetry: Option<Symmetry>,
 
     /// Number of times that the example repeats across the mesh, along the longest side of its bounding box: above 0, up to
@@ -178,7 +178,7 @@ pub(super) struct SurfaceArgs {
     texture_size: Option<u32>,
 
     /// How faces are laid out in the texture; by default in charts.
-    #[arg(long, value_name = "HOW", value_parser = Word::<AtlasName>::all())]
+    #[arg(long, value_name = "HOW", value_parser = NamedValueParser::<AtlasName>::all())]
     atlas: Option<AtlasName>,
 
     /// Pixels around each piece of the texture that continue it, 1 to 1024: 2^k for k mipmap levels of triangles, 3 * 2^k
@@ -198,12 +198,12 @@ pub(super) struct SurfaceArgs {
     pub(super) displace: Option<f64>,
 
     /// Which way neighborhoods go on over the surface; by default followed.
-    #[arg(long, value_name = "HOW", value_parser = Word::<FieldAxes>::all())]
+    #[arg(long, value_name = "HOW", value_parser = NamedValueParser::<FieldAxes>::all())]
     axes: Option<FieldAxes>,
 
     /// The values that are compared; by default appearance, or colors with --paper. Colors are compared all the same where
     /// the example is a mesh.
-    #[arg(long, value_name = "WHAT", value_parser = Word::<Matching>::all())]
+    #[arg(long, value_name = "WHAT", value_parser = NamedValueParser::<Matching>::all())]
     matching: Option<Matching>,
 }
 
@@ -216,7 +216,7 @@ pub(super) struct MatchArgs {
     seed: u64,
 
     /// What lies past the edges of the example.
-    #[arg(long, value_parser = Word::<Edges>::all(), default_value_t = Edges::Cut)]
+    #[arg(long, value_parser = NamedValueParser::<Edges>::all(), default_value_t = Edges::Cut)]
     pub(super) edges: Edges,
 
     /// How many levels there are, each with a quarter of the points of the finer one, 1 to 16: more for larger features. By

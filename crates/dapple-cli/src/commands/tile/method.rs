@@ -2,7 +2,7 @@
 
 use crate::args::seed;
 use crate::error::{Hint, usage};
-use crate::words::Word;
+use crate::words::NamedValueParser;
 use anyhow::Result;
 use dapple::hash::Seed;
 use dapple::tile::{
@@ -107,8 +107,8 @@ const AUTO: &str = "auto";
 const PROJECT_OPTIONS: &[&str] = &["levels", "basis", "phase", "pixels"];
 
 /// Parses the name of a method.
-fn method() -> Word<&'static str> {
-    let auto = Word::none().or(
+fn method() -> NamedValueParser<&'static str> {
+    let auto = NamedValueParser::none().or(
         AUTO,
         "Tries the others and keeps the best by the report: synth only if none of them passes, and neither mirror nor feather without a margin, which show two pictures in one",
         AUTO,
@@ -149,8 +149,8 @@ impl Candidate {
 }
 
 /// Parses the basis functions of a tile.
-fn basis() -> Word<Basis> {
-    let splines = Word::<Degree>::all().map(Basis::Spline);
+fn basis() -> NamedValueParser<Basis> {
+    let splines = NamedValueParser::<Degree>::all().map(Basis::Spline);
     splines.or("sines", "Sines and cosines", Basis::Sines)
 }
 
@@ -180,7 +180,7 @@ pub(super) struct MethodArgs {
     half_width: Option<f32>,
 
     /// soft-cut, feather with a margin: how the sides are mixed; by default the variance is kept.
-    #[arg(long, value_name = "HOW", value_parser = Word::<Crossfade>::all())]
+    #[arg(long, value_name = "HOW", value_parser = NamedValueParser::<Crossfade>::all())]
     crossfade: Option<Crossfade>,
 
     /// synth: where the randomness comes from, any whole number from 0 to 2^64 - 1; by default 0.
@@ -188,7 +188,7 @@ pub(super) struct MethodArgs {
     seed: Option<u64>,
 
     /// poisson: the gradient across the wrap; by default zero.
-    #[arg(long, value_name = "WHICH", value_parser = Word::<WrapGradient>::all())]
+    #[arg(long, value_name = "WHICH", value_parser = NamedValueParser::<WrapGradient>::all())]
     wrap_gradient: Option<WrapGradient>,
 
     /// spline, periodic-spline: the number of times the image is halved and doubled, from 0 to 32; by default 1.
@@ -200,11 +200,11 @@ pub(super) struct MethodArgs {
     basis: Option<Basis>,
 
     /// spline, periodic-spline: the position of the coarse coefficients; by default centered.
-    #[arg(long, value_name = "WHERE", value_parser = Word::<Phase>::all())]
+    #[arg(long, value_name = "WHERE", value_parser = NamedValueParser::<Phase>::all())]
     phase: Option<Phase>,
 
     /// spline, periodic-spline: how pixels determine the spline; by default they are its coefficients, as in the paper.
-    #[arg(long, value_name = "WHAT", value_parser = Word::<Pixels>::all())]
+    #[arg(long, value_name = "WHAT", value_parser = NamedValueParser::<Pixels>::all())]
     pixels: Option<Pixels>,
 }
 
