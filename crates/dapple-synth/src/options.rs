@@ -120,8 +120,8 @@ dapple_raster::named! {
         Colors = "colors",
         /// What the exemplar looks like in windows around pixels, after Lefebvre and Hoppe (2006), but in the first pass: all
         /// sites of a level are corrected a few times by what is around them. It takes a quarter of the time, strands break
-        /// off a quarter less often, and letters are more often whole. Where [`Options::schedule`] is given or sizes vary,
-        /// colors are compared all the same.
+        /// off a quarter less often, and letters are more often whole. Where [`Options::schedule`] is given, colors are
+        /// compared all the same.
         ///
         /// Measured on flat textures of 65,536 sites: windows of 11 × 11 pixels are nearer to those of the exemplar by 25 %
         /// for hooks (4 levels), 15 % for text (4), 10 % for leaves, 9 % for grass and 8 % for puzzle pieces.

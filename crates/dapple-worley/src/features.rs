@@ -96,7 +96,7 @@ where
             assert!(
                 K >= 1 && K <= MAX_NEAREST,
                 "F1 to F4 are there to be asked for"
-            )
+            );
         };
         for view in &views {
             let sizes = [

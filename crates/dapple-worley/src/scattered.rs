@@ -40,7 +40,7 @@ where
             assert!(
                 K >= 1 && K <= MAX_NEAREST,
                 "F1 to F4 are there to be asked for"
-            )
+            );
         };
         WorleyError::check_length(features.len(), positions.len())?;
         // Three are hardly faster than four, but take as long to compile.

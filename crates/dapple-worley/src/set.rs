@@ -145,7 +145,7 @@ where
             assert!(
                 K >= 1 && K <= MAX_NEAREST,
                 "F1 to F4 are there to be asked for"
-            )
+            );
         };
         let position: [f64; N] = position.into();
         if position.iter().any(|part| !part.is_finite()) {

@@ -260,7 +260,7 @@ where
             assert!(
                 K >= 1 && K <= MAX_NEAREST,
                 "F1 to F4 are there to be asked for"
-            )
+            );
         };
         let mut features = [Feature {
             distance: f32::NAN,

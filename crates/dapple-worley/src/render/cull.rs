@@ -91,7 +91,7 @@ pub(super) struct Points<'a> {
 /// The criterion for candidates.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Keep {
-    /// The points that can be among the given number of nearest ones; bounds are multiplied by the rounding_slack.
+    /// The points that can be among the given number of nearest ones; bounds are multiplied by the rounding slack.
     Nearest(usize, f32),
     /// The points whose smallest key is at most this.
     Within(f32),
