@@ -9,6 +9,7 @@ use serde_json::Value;
 
 mod content;
 mod refusal;
+mod set;
 
 /// The largest number of bytes of a recipe.
 pub const MAX_TEXT: usize = 1 << 22;

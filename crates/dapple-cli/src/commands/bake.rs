@@ -26,7 +26,7 @@ use dapple::recipe::{
     Bake, BakeMemory, BakeOptions, Images, MapKind, Plan, PlanCache, PlanLimits, Recipe, Samples,
 };
 use dapple::tile::Map;
-pub(super) use material::MaterialArgs;
+pub(super) use material::{MaterialArgs, Setting};
 use presets::Preset;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -43,6 +43,7 @@ Examples:
   dapple bake clouds --maps height --size 4096 --region 0,0,512,512 -o part.exr
   dapple bake craters --maps height --size 4096x256 --banded -o wide.exr
   dapple bake rock ice marble -o all/ --size 256 --preview
+  dapple bake flagstone --set joint.seed=5 --set material.relief=0.6 -o deep/
   dapple bake 'my-*.toml' --keep-going --maps albedo --sheet -o mine/
   dapple bake rock --preset unity -o Assets/Rock/
   dapple bake rock -o rock.glb
@@ -193,7 +194,7 @@ pub(super) fn bake_with(
     args.check_document()?;
     args.check_samples()?;
     let mut recipe = recipe.clone();
-    args.change(&mut recipe);
+    args.change(&mut recipe)?;
     let (folder, list) = (folder.to_owned(), None);
     let work = Work {
         recipe,
@@ -227,7 +228,7 @@ const MEMORY: usize = 1 << 28;
 impl Work {
     fn read(name: &str, args: &Args) -> Result<Self> {
         let (mut recipe, folder) = read_recipe(name)?;
-        args.change(&mut recipe);
+        args.change(&mut recipe)?;
         let wanted = args.shard.map(|shard| Wanted {
             size: args.material.size,
             samples: args.material.samples,
@@ -443,9 +444,9 @@ impl Args {
     }
 
     /// Puts what the command line says into the recipe.
-    fn change(&self, recipe: &mut Recipe) {
+    fn change(&self, recipe: &mut Recipe) -> Result<()> {
         let preset = self.preset().map(|preset| preset.normal_y);
-        self.material.change(recipe, preset);
+        self.material.change(recipe, preset)
     }
 
     fn options(&self, maps: Vec<MapKind>) -> Result<BakeOptions> {

@@ -1,5 +1,6 @@
 //! `dapple recipe`: lists, checks and prints recipes.
 
+use super::bake::Setting;
 use crate::args::{FiniteArgs, OutputArgs, seed};
 use crate::baking::{advise, is_json, read_images, read_recipe};
 use crate::error::Exit;
@@ -51,6 +52,10 @@ pub(crate) struct Args {
     #[arg(long = "as", value_enum, value_name = "FORMAT")]
     to: Option<Text>,
 
+    /// Replaces a value of the recipe: an option of a node, or a value such as `material.relief`. Repeatable.
+    #[arg(long, value_name = "NODE.OPTION=VALUE")]
+    set: Vec<Setting>,
+
     /// A seed in place of that of the recipe.
     #[arg(long, value_name = "N", value_parser = seed)]
     seed: Option<u64>,
@@ -99,6 +104,9 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
         };
     };
     let (mut recipe, folder) = read_recipe(name)?;
+    for setting in &args.set {
+        setting.apply(&mut recipe)?;
+    }
     if args.check {
         let images = read_images(&recipe, folder, args.finite)?;
         Plan::new(&recipe, &images, 0.0).map_err(advise)?;
@@ -108,7 +116,8 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
         ))?;
         return Ok(Exit::Done);
     }
-    let is_as_written = !args.rust && args.format().is_none() && args.seed.is_none();
+    let is_as_written =
+        !args.rust && args.format().is_none() && args.seed.is_none() && args.set.is_empty();
     if let Some(seed) = args.seed {
         recipe.seed = Seed(seed);
     }

@@ -1,10 +1,10 @@
 //! Names of options, values and files.
 
-use crate::support::{Folder, assert_done, stderr};
+use crate::support::{Folder, assert_done, assert_refused, stderr, stdout};
 use std::fs;
 
 /// Two ways to type the same command.
-const SAME: [[&str; 2]; 9] = [
+const SAME: [[&str; 2]; 10] = [
     ["worley --value f2_minus_f1", "worley --Value F2-Minus-F1"],
     ["worley --metric manhattan", "worley --metric Manhattan"],
     [
@@ -28,6 +28,10 @@ const SAME: [[&str; 2]; 9] = [
     [
         "bake wood-grain --maps albedo",
         "bake Wood_Grain --maps BaseColor",
+    ],
+    [
+        "bake flagstone --maps height --seed 9 --relief 0.5",
+        "bake flagstone --maps height --set seed=9 --set material.relief=0.5",
     ],
 ];
 
@@ -135,4 +139,56 @@ fn several_files_are_named_after_a_file_or_lie_in_a_folder() {
         names(&folder, "grown"),
         ["checker.png", "checker_normal.png"]
     );
+}
+
+#[test]
+fn set_changes_a_recipe_as_its_text_would_and_refuses_the_rest() {
+    let folder = Folder::new("set");
+    let set = ["--set", "joint.scatter={ jittered = { jitter = 0.3 } }"];
+    let run = |words: &[&str], set: &[&str]| folder.run(&[words, set].concat());
+    let written = run(&["recipe", "flagstone", "-o", "mine.toml"], &set);
+    assert_done(&written, "a recipe is written");
+    let bake = |recipe: &str, file: &str, set: &[&str]| {
+        let words = [
+            "bake", recipe, "--maps", "height", "--size", "48", "-o", file,
+        ];
+        assert_done(&run(&words, set), file);
+        fs::read(folder.path(file)).expect("it is written")
+    };
+    let changed = bake("flagstone", "set.png", &set);
+    assert_eq!(changed, bake("mine.toml", "text.png", &[]));
+    assert_ne!(changed, bake("flagstone", "plain.png", &[]));
+
+    let listed = run(
+        &[
+            "shards",
+            "flagstone",
+            "--size",
+            "64",
+            "--shard",
+            "32",
+            "-o",
+            "parts/",
+        ],
+        &set,
+    );
+    assert_done(&listed, "shards");
+    let words = "'--set=joint.scatter={ jittered = { jitter = 0.3 } }'";
+    assert!(
+        stdout(&listed).lines().all(|line| line.contains(words)),
+        "{}",
+        stdout(&listed)
+    );
+
+    for (value, part) in [
+        ("jiont.seed=5", "did you mean `joint`?"),
+        ("joint.sed=5", "did you mean `seed`?"),
+        ("joint=5", "name one of its options"),
+        ("material.relief=high", "expected a number"),
+        ("relief", "NODE.OPTION=VALUE"),
+        ("=5", "NODE.OPTION=VALUE"),
+    ] {
+        let refused = run(&["bake", "flagstone", "-o", "out/", "--set"], &[value]);
+        assert_refused(&refused, 2, part, value);
+    }
 }

@@ -218,3 +218,66 @@ fn a_text_past_the_limit_is_refused() {
         "{error}"
     );
 }
+
+#[test]
+fn set_equals_the_text_with_another_value() {
+    let text = |jitter: &str, from: &str, seed: &str| {
+        format!(
+            r#"
+            dapple = 1
+            seed = {seed}
+            [nodes.cells.worley]
+            scatter = {{ jittered = {{ jitter = {jitter} }} }}
+            [nodes.stones.levels]
+            input = "cells"
+            from = {from}
+            curve = "smooth"
+            [material]
+            height = "stones"
+            "#
+        )
+    };
+    let read = |text: &str| Recipe::from_toml(text).expect("it is valid");
+    let mut recipe = read(&text("0.8", "[0.0, 0.3]", "7"));
+    for (path, value) in [
+        ("cells.scatter.jittered.jitter", "0.25"),
+        ("stones.from", "[0.1, 0.4]"),
+        ("stones.curve", "linear"),
+        ("seed", "9"),
+        ("material.relief", "2"),
+        ("extent", "[4, 4.5]"),
+    ] {
+        recipe.set(path, value).expect("it is valid");
+    }
+    let mut expected = read(&text("0.25", "[0.1, 0.4]", "9").replace("smooth", "linear"));
+    expected.material.relief = 2.0;
+    expected.extent = [4.0, 4.5];
+    assert_eq!(
+        recipe.to_json().expect("data"),
+        expected.to_json().expect("data")
+    );
+}
+
+#[test]
+fn set_refuses_what_recipes_do_not_have_and_changes_nothing() {
+    let mut recipe = Recipe::builtin("flagstone").expect("it is built in");
+    let before = recipe.to_json().expect("data");
+    let node = recipe.nodes.keys().next().expect("it has nodes").clone();
+    for (path, value, nearest) in [
+        ("matreial.relief", "1", Some("material")),
+        ("material.releif", "1", Some("relief")),
+        ("material.relief", "high", None),
+        ("material.relief", "1\nheight = 2", None),
+        ("material.relief", "nan", None),
+        ("seed", "-1", None),
+        ("nodes", "{}", None),
+        ("", "1", None),
+        (node.as_str(), "1", None),
+        (&format!("{node}."), "1", None),
+        (&format!("{node}.no.such.option"), "1", None),
+    ] {
+        let error = recipe.set(path, value).expect_err(path);
+        assert_eq!(error.nearest(), nearest, "{path} = {value}: {error}");
+        assert_eq!(recipe.to_json().expect("data"), before, "{path}");
+    }
+}

@@ -3,14 +3,16 @@
 use super::maps::Maps;
 use crate::args::{FiniteArgs, SamplesArgs, Size, seed};
 use crate::baking::advise;
-use crate::error::Hint;
+use crate::error::{Hint, usage};
 use crate::words::NamedValueParser;
-use anyhow::Error;
+use anyhow::{Error, Result};
 use dapple::color::NormalY;
 use dapple::hash::Seed;
 use dapple::raster::Named;
 use dapple::recipe::{MapKind, Recipe, RecipeError, RecipeErrorKind};
 use serde::Serialize;
+use std::fmt;
+use std::str::FromStr;
 
 /// The default maps.
 const USUAL: [MapKind; 5] = [
@@ -20,6 +22,58 @@ const USUAL: [MapKind; 5] = [
     MapKind::Albedo,
     MapKind::Roughness,
 ];
+
+/// A value of a recipe and its replacement, as `PATH=VALUE`.
+#[derive(Clone, Debug, Serialize)]
+#[serde(into = "String")]
+pub(in crate::commands) struct Setting {
+    path: String,
+    value: String,
+}
+
+impl Setting {
+    /// Replaces the value in a recipe.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Recipe::set`], as wrong usage.
+    pub(in crate::commands) fn apply(&self, recipe: &mut Recipe) -> Result<()> {
+        recipe.set(&self.path, &self.value).map_err(|error| {
+            let nearest = error.nearest().map(str::to_owned);
+            let refused = usage(format!("--set {self}: {error}"));
+            match nearest {
+                Some(_) => refused,
+                None => refused.hint("`dapple recipe --reference` lists the options of all nodes"),
+            }
+        })
+    }
+}
+
+impl FromStr for Setting {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text.split_once('=') {
+            Some((path, value)) if !path.is_empty() => Ok(Self {
+                path: path.trim().to_owned(),
+                value: value.trim().to_owned(),
+            }),
+            _ => Err("it has the form NODE.OPTION=VALUE, as in stones.from=[0,0.3]".to_owned()),
+        }
+    }
+}
+
+impl fmt::Display for Setting {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}={}", self.path, self.value)
+    }
+}
+
+impl From<Setting> for String {
+    fn from(setting: Setting) -> Self {
+        setting.to_string()
+    }
+}
 
 /// The size, the maps, and what replaces settings of the recipe.
 #[derive(clap::Args, Clone, Debug, Serialize)]
@@ -35,6 +89,10 @@ pub(in crate::commands) struct MaterialArgs {
     /// The maps, with commas between them, or all. By default height, normal, ao, albedo and roughness.
     #[arg(long, value_name = "MAPS")]
     pub(super) maps: Option<Maps>,
+
+    /// Replaces a value of the recipe: an option of a node, or a value such as `material.relief`. Repeatable.
+    #[arg(long, value_name = "NODE.OPTION=VALUE")]
+    set: Vec<Setting>,
 
     /// The seed, instead of that of the recipe.
     #[arg(long, value_name = "N", value_parser = seed)]
@@ -60,7 +118,18 @@ impl MaterialArgs {
     }
 
     /// Puts what the command line says into the recipe; `normal_y` is what a preset says.
-    pub(in crate::commands) fn change(&self, recipe: &mut Recipe, normal_y: Option<NormalY>) {
+    ///
+    /// # Errors
+    ///
+    /// If `--set` names a value that the recipe does not have, or a form that the value cannot have.
+    pub(in crate::commands) fn change(
+        &self,
+        recipe: &mut Recipe,
+        normal_y: Option<NormalY>,
+    ) -> Result<()> {
+        for setting in &self.set {
+            setting.apply(recipe)?;
+        }
         if let Some(seed) = self.seed {
             recipe.seed = Seed(seed);
         }
@@ -70,6 +139,7 @@ impl MaterialArgs {
         if let Some(normal_y) = self.normal_y.or(normal_y) {
             recipe.material.normal_y = normal_y;
         }
+        Ok(())
     }
 
     /// The refusal of a plan, as wrong usage if it is about the relief that was typed.
@@ -88,6 +158,7 @@ impl MaterialArgs {
     pub(in crate::commands) fn words(&self) -> Vec<String> {
         let maps = self.map_kinds().iter().map(|kind| kind.name());
         let maps = maps.collect::<Vec<_>>().join(",");
+        let set = self.set.iter().map(|setting| format!("--set={setting}"));
         let options = [
             Some(format!("--size={}", self.size)),
             self.samples.word(),
@@ -98,6 +169,6 @@ impl MaterialArgs {
             self.relief.map(|relief| format!("--relief={relief}")),
             self.finite.word(),
         ];
-        options.into_iter().flatten().collect()
+        options.into_iter().flatten().chain(set).collect()
     }
 }
