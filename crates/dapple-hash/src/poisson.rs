@@ -5,6 +5,7 @@
 //! the table holds the cumulative probabilities as 32-bit integers, so that drawing compares integers and rounds
 //! nothing.
 
+use alloc::vec::Vec;
 use core::fmt;
 
 /// The largest mean that the table accepts.
