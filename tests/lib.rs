@@ -18,6 +18,7 @@ readmes! {
     top: "../README.md",
     dapple: "../crates/dapple/README.md",
     hash: "../crates/dapple-hash/README.md",
+    noise: "../crates/dapple-noise/README.md",
     points: "../crates/dapple-points/README.md",
     pups: "../crates/dapple-pups/README.md",
     raster: "../crates/dapple-raster/README.md",

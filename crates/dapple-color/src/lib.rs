@@ -1,24 +1,70 @@
-//! sRGB and linear color, color ramps, and maps from heights: normals, ambient occlusion, curvature.
-//!
-//! Inside of dapple color is linear light in `f32` ([`LinearRgb`]); it becomes sRGB only in a file with 8 or 16 bits
-//! per channel, by tables that equal exact arithmetic. Data (heights, masks, normals) is linear everywhere. [`Code`]
-//! converts both to and from the numbers in a file.
-//!
-//! Maps from heights are normals ([`normal_map`]), the visible part of the sky ([`ambient_occlusion`]) and the bend of
-//! the surface ([`curvature`]). Lengths are in units of the plane, so that the resolution does not change the maps:
+//! Colors for textures: sRGB and linear light, color ramps, bytes for a GPU, and maps from heights: normals, ambient
+//! occlusion, curvature.
 //!
 //! ```
-//! use dapple_color::{HeightPlane, OcclusionOptions, ambient_occlusion};
+//! use dapple_color::{HeightPlane, Palette, TextureRaster, ambient_occlusion, curvature, normal_map};
 //! use dapple_raster::{Raster, Window, Wrap};
 //!
-//! // A groove along the middle of the unit square, with walls of 45 degrees.
-//! let window = Window::unit([64, 64])?;
-//! let height = Raster::from_window(&window, |at| (at.x - 0.5).abs() as f32)?;
-//! let options = OcclusionOptions { radius: 0.5, ..HeightPlane::for_window(&window, [Wrap::Clamp; 2]).into() };
-//! let seen = ambient_occlusion(&height, &options)?;
-//! assert!((0.5..0.6).contains(&seen.row(32)[33]), "half of the sky, but for the end of the walls");
+//! // A hill on the unit square, and its color.
+//! let window = Window::unit([256, 256])?;
+//! let height = Raster::from_window(&window, |at| (at.x * (1.0 - at.x)) as f32)?;
+//! let color = Palette::Lagoon.ramp().apply(&height);
+//!
+//! // Its normal map, the visible part of the sky, and the bend of its surface.
+//! let plane = HeightPlane::for_window(&window, [Wrap::Clamp; 2]);
+//! let normals = normal_map(&height, &plane.into())?;
+//! let seen = ambient_occlusion(&height, &plane.into())?;
+//! let bent = curvature(&height, &plane.into())?;
+//!
+//! // Bytes for a GPU: `Rgba8UnormSrgb` for color, `Rgba8Unorm` for normals.
+//! let (albedo, normal) = (color.to_rgba8_srgb(), normals.to_rgba8());
+//! # assert_eq!((albedo.len(), normal.len()), (256 * 256 * 4, 256 * 256 * 4));
+//! # assert!(seen.row(9)[9] <= 1.0 && bent.row(128)[128] > 0.0);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+//!
+//! # Ways to use it
+//!
+//! | to get | from a raster | from a field in a window | from a part of a raster | cost |
+//! |---|---|---|---|---|
+//! | normals | [`normal_map`] | [`normal_map_of_field`] | [`normal_map_of_part`] | reads one pixel around |
+//! | exact normals | [`normal_map_from_gradient`] | | | no neighbors |
+//! | ambient occlusion | [`ambient_occlusion`] | [`ambient_occlusion_of_field`] | [`ambient_occlusion_of_part`] | grows with the logarithm of the radius above 16 pixels |
+//! | curvature | [`curvature`] | [`curvature_of_field`] | [`curvature_of_part`] | reads [`CurvatureOptions::halo`] pixels around |
+//!
+//! Use the `_of_field` functions for chunks of a terrain: they read the field past the sides of the window, so that
+//! chunks fit. The `_of_part` functions need a margin around the part, and give the bits of the whole.
+//!
+//! | to | use |
+//! |---|---|
+//! | color values | [`ColorRamp::apply`], [`ColorRamp::at`]; [`Palette`] has ready-made ramps |
+//! | make bytes and mip levels for a GPU | [`TextureRaster`] |
+//! | convert to and from file codes of 8 or 16 bits | [`Code`], [`LinearRgb::to_srgb`], [`LinearRgb::from_srgb`] |
+//! | extend colors into transparent pixels | [`bleed_color`] |
+//!
+//! # Features
+//!
+//! | feature | default | what it does |
+//! |---|---|---|
+//! | `rayon` | on | makes maps and converts rasters on all cores; the bits do not change |
+//! | `serde` | off | reads and writes colors, ramps and options as data |
+//!
+//! # Limits
+//!
+//! * Color in memory is linear light in `f32`. It becomes sRGB only in codes of 8 or 16 bits. Heights, masks and
+//!   normals are linear everywhere.
+//! * The sRGB curve is exact for 8 and 16 bits: each code is that of exact arithmetic.
+//! * Ramps mix in Oklab by default, where equal steps look equal, or in sRGB codes or linear light ([`RampSpace`]).
+//! * Lengths are in units of the plane, so that the resolution does not change the maps.
+//! * Green of a normal points up by default, as in OpenGL. [`NormalY`] turns it over for DirectX.
+//! * The radius of occlusion and of curvature is at most 16,384 pixels.
+//! * There is no tone mapping. Files, and the conversion of their color spaces, are in `dapple-image`.
+//! * Results have the same bits on every platform and any number of threads.
+//!
+//! # Without std
+//!
+//! Not possible today. `dapple-raster` needs std, the tables of the sRGB curve are in a `LazyLock` of std, and `floor`
+//! and `sqrt` are methods of std.
 
 #![forbid(unsafe_code)]
 

@@ -1,21 +1,67 @@
-//! Pixels in memory: rasters, windows of the plane, wrapping, and the [`Field`] trait.
+//! Pixels in memory for procedural textures: rasters, windows of the plane, wrapping, and fields that compose.
 //!
-//! A [`Raster`] owns its pixels; a [`RasterView`] borrows a rectangle of them, a [`RasterViewMut`] borrows it for
-//! writing. A [`Window`] says where pixels lie in the plane, so that part of a picture has, to the last bit, the
-//! positions that it has in the whole. A [`Field`] is anything that has a value at every position and can fill a
-//! window with them, and [`FieldExt`] composes fields.
+//! A [`Field`] is a function with a value at every position, such as noise. A [`Window`] says which positions the
+//! pixels of a [`Raster`] have. [`FieldExt`] composes fields: frequency, offset, rotation, domain warp, arithmetic,
+//! fractal sums ([`Fractal`]).
 //!
 //! ```
-//! use dapple_raster::{Raster, Window};
+//! use dapple_raster::{field_fn, prelude::*};
 //!
-//! let window = Window::unit([4, 4])?;
-//! let raster = Raster::from_window(&window, |position| position.x as f32)?;
-//! assert_eq!(raster.row(0), [0.125, 0.375, 0.625, 0.875]);
+//! // Waves along x and y, bent by other waves, and with small ones on top.
+//! let wave = |at: f64| (at - at.floor() - 0.5).abs() as f32;
+//! let waves = field_fn(move |[x, y]: [f64; 2]| wave(x) + wave(y));
+//! let bend = field_fn(move |[x, y]: [f64; 2]| wave(x + y) + wave(x - y));
+//! let field = waves.warp((&bend, &bend), 0.25).add((&bend).frequency(8.0).mul(0.1));
+//!
+//! // 512 × 512 pixels on the square from 0 to 8, and a part of them with the same bits.
+//! let window = Window::new([0.0; 2], [8.0; 2], [512, 512])?;
+//! let whole = field.to_raster(&window)?;
+//! let part = field.to_raster(&window.crop([100, 50], [64, 64])?)?;
+//! assert_eq!(part, whole.crop([100, 50], [64, 64])?);
 //! # Ok::<(), dapple_raster::RasterError>(())
 //! ```
 //!
-//! Row 0 is the top; x goes right, y goes down. Positions are `f64`, values are whatever the raster holds. The crate
-//! knows no file format and touches no file.
+//! # Ways to sample
+//!
+//! All ways give the same bits at the same position.
+//!
+//! | positions | call | cost |
+//! |---|---|---|
+//! | one | [`FieldExt::sample`] | one evaluation |
+//! | one, with its derivatives | [`FieldExt::sample_with_gradient`] | exact, by the chain rule; for fields with a [`Gradient`] |
+//! | many scattered | [`FieldExt::sample_many`], [`Field::values`] | less per position than `sample` for most generators |
+//! | a window of the plane | [`Field::to_raster`], [`Field::render`] into your memory | least per pixel: generators share work between neighbors |
+//! | one period | [`Field::tile_raster`] | as a window; the raster tiles exactly |
+//! | a plane of a 3-D or 4-D field | [`FieldExt::slice`], then a window | as a window |
+//! | planes of a volume | [`Field::render_stack`] | less than plane by plane where planes share work |
+//!
+//! Pixels of a raster are read by [`Raster::at`] with a [`Wrap`] per axis, between pixels by
+//! [`Raster::sample_bilinear`], and averaged over an area by [`Raster::sample_area`]. A [`Varying`] is a number that
+//! may depend on the position, for options of generators.
+//!
+//! # Features
+//!
+//! | feature | default | what it does |
+//! |---|---|---|
+//! | `rayon` | on | fills rasters on all cores; the bits do not change |
+//! | `simd` | off | detects the SIMD level of the processor for crates that fill rasters; generators turn it on |
+//! | `serde` | off | reads and writes windows and options as data |
+//!
+//! # Limits
+//!
+//! * A raster or a window has at most 2^31 pixels. A larger one is a [`RasterError`] with the size.
+//! * Positions are `f64` and field values `f32`. Raster pixels are of any type.
+//! * Row 0 is the top; x goes right and y goes down.
+//! * A fractal sum has 1 to 32 octaves.
+//! * A composed field repeats where all its parts do. [`Field::period`] is `None` along an axis without a known period.
+//! * The crate reads and writes no files. `dapple-image` does.
+//! * Results have the same bits on every platform and any number of threads. Only closures of your own can change that.
+//!
+//! # Without std
+//!
+//! Not possible today. Shared buffers are behind a `Mutex` of std, with and without `rayon`. With `simd`, the detection
+//! of the processor's features and the `OnceLock` that holds the result are std's. `floor` and `sqrt` of `f64` are
+//! methods of std.
 
 #![forbid(unsafe_code)]
 

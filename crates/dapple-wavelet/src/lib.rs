@@ -1,8 +1,4 @@
-//! Spline wavelets on rasters: exact down- and upsampling, periodic or mirrored, and wavelet noise.
-//!
-//! Du Jin-Lian, Wang Song and Meng Xianhai, "Wavelet and Blend maps for texture synthesis", turn a tile into one that
-//! repeats better by halving it and doubling it again. The filters are those of Robert L. Cook and Tony DeRose,
-//! "Wavelet Noise", ACM Transactions on Graphics 24(3) (SIGGRAPH 2005), <https://doi.org/10.1145/1073204.1073264>.
+//! Band-limited wavelet noise, and spline wavelets that halve and double rasters exactly.
 //!
 //! A [`SplineFilter`] reads pixels as the coefficients of a B-spline. It finds the nearest spline with half as many
 //! coefficients ([`down`](SplineFilter::down)), and writes a spline exactly with twice as many
@@ -10,28 +6,74 @@
 //! detail that a half-size picture can show, and removes all other detail.
 //!
 //! ```
-//! use dapple_wavelet::{Border, SplineFilter, raster::Raster};
+//! use dapple_wavelet::{Border, SplineFilter, WaveletNoise2, hash::Seed, raster::Raster};
 //!
+//! // The nearest picture of half the size, and the same function on all pixels again.
 //! let picture = Raster::from_fn([64, 48], |x, y| (x * y % 7) as f32)?;
-//! let filter = SplineFilter::default();
-//! let periodic = [Border::Periodic; 2];
+//! let (filter, borders) = (SplineFilter::default(), [Border::Periodic; 2]);
+//! let half = filter.down(&picture, borders)?;
+//! let smooth = filter.up(&half, picture.size(), borders)?;
 //!
-//! let half = filter.down(&picture, periodic)?;
-//! assert_eq!(half.size(), [32, 24]);
-//! let smooth = filter.up(&half, [64, 48], periodic)?;
+//! // Three bands of detail and a coarse rest, and the picture back from them.
+//! let bands = filter.analyze(&picture, 3, borders)?;
+//! let again = filter.synthesize(&bands, borders)?;
 //!
-//! // The details that are lost, and how to get the picture back.
-//! let bands = filter.analyze(&picture, 1, periodic)?;
-//! let again = filter.synthesize(&bands, periodic)?;
+//! // Noise that repeats after 64 cells, in three bands.
+//! let noise = WaveletNoise2::new(64, Seed(7))?.with_weights(&[1.0, 0.5, 0.25])?;
+//! assert!(noise.sample([0.3, 1e6]).abs() <= noise.bound());
 //! # let gap = |a: &Raster<f32>, b: &Raster<f32>| a.pixels().iter().zip(b.pixels()).fold(0.0, |m: f32, (a, b)| m.max((a - b).abs()));
 //! # assert!(gap(&again, &picture) < 1e-5 && gap(&smooth, &picture) > 1.0);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Lines are `f64`. Rasters and volumes are `f32`, filtered in `f64` and rounded after each axis. All results have the same
-//! bits on every platform and on any number of threads.
+//! # Ways to use it
 //!
-//! # The paper's equations
+//! | to | call | cost |
+//! |---|---|---|
+//! | sample noise at one position | [`WaveletNoise::sample`](WaveletNoise2::sample) | 8.84 ns in 2-D for one band |
+//! | sample it with its gradient | [`WaveletNoise::sample_with_gradient`](WaveletNoise2::sample_with_gradient) | |
+//! | fill a window with noise | [`to_raster`](dapple_raster::Field::to_raster), [`render`](dapple_raster::Field::render) | |
+//! | make a seamless tile of noise | [`wavelet_tile`] | |
+//! | halve or double a raster | [`down`](SplineFilter::down), [`up`](SplineFilter::up) | 2.04 ns/pixel for both at 2048 × 2048 |
+//! | reuse memory | [`down_into`](SplineFilter::down_into), [`up_into`](SplineFilter::up_into) with a [`FilterMemory`] | |
+//! | split into bands and back | [`analyze`](SplineFilter::analyze), [`synthesize`](SplineFilter::synthesize) | |
+//! | filter a line | [`down_line`](SplineFilter::down_line), [`up_line`](SplineFilter::up_line) | linear time |
+//! | filter a volume | [`down_volume`](SplineFilter::down_volume), [`up_volume`](SplineFilter::up_volume), [`project_volume`](SplineFilter::project_volume) | |
+//! | convert samples to coefficients and back | [`coefficients`](SplineFilter::coefficients), [`samples`](SplineFilter::samples) | |
+//!
+//! Times are from one thread of a server processor (AMD EPYC).
+//!
+//! # Features
+//!
+//! | feature | default | what it does |
+//! |---|---|---|
+//! | `rayon` | on | filters rasters on all cores; the bits do not change |
+//! | `serde` | off | reads and writes the options as data |
+//!
+//! # Limits
+//!
+//! * A noise tile has at least 4 cells along each axis, an even number, and at most 2^27 in all. A 2-D tile of `size`
+//!   cells takes `4 (size + 2)²` bytes.
+//! * A noise has 1 to 16 bands. Its values are nearly normal, with variance 1 for one band of weight 1, and never
+//!   exceed [`bound`](WaveletNoise::bound).
+//! * Noise is in 2-D and 3-D, and always repeats.
+//! * A periodic side must be even to be halved. A mirrored side may have any length from 3 on.
+//! * Pixels must be finite.
+//! * Lines are `f64`. Rasters and volumes are `f32`, filtered in `f64` and rounded after each axis.
+//! * Results have the same bits on every platform and any number of threads.
+//!
+//! # Without std
+//!
+//! Not possible today. `floor` and `sqrt` of `f64` are methods of std, and `dapple-raster` has threads, locks and the
+//! detection of SIMD levels of std.
+//!
+//! # The filters
+//!
+//! Du Jin-Lian, Wang Song and Meng Xianhai, "Wavelet and Blend maps for texture synthesis", turn a tile into one that
+//! repeats better by halving it and doubling it again. The filters are those of Robert L. Cook and Tony DeRose,
+//! "Wavelet Noise", ACM Transactions on Graphics 24(3) (SIGGRAPH 2005), <https://doi.org/10.1145/1073204.1073264>.
+//!
+//! ## The paper's equations
 //!
 //! | equation | what it says | here |
 //! |---|---|---|
@@ -48,12 +90,12 @@
 //! The versions for volumes are [`SplineFilter::down_volume`], [`SplineFilter::up_volume`] and
 //! [`SplineFilter::project_volume`].
 //!
-//! # What the paper leaves open
+//! ## What the paper leaves open
 //!
-//! * The filter of equation 7 has no end. Cook and DeRose cut it off after 32 taps, with an rms error of 1.2e-3 on white noise
-//!   of variance 1; here it is exact, as a recursion, in linear time.
-//! * Its indices wrap ([`Border::Periodic`]). The whole effect on the seam of a tile comes from that; [`Border::Mirror`] is
-//!   for pictures that do not repeat.
+//! * The filter of equation 7 has no end. Cook and DeRose cut it off after 32 taps, with an rms error of 1.2e-3 on
+//!   white noise of variance 1; here it is exact, as a recursion, in linear time.
+//! * Its indices wrap ([`Border::Periodic`]). The whole effect on the seam of a tile comes from that;
+//!   [`Border::Mirror`] is for pictures that do not repeat.
 //! * Where the coarse coefficients lie is [`Phase`], which spline is [`Degree`], and what nearest means is [`Fit`].
 //! * Pixels are coefficients and not values of the function, as in the paper; [`SplineFilter::coefficients`] and
 //!   [`SplineFilter::samples`] are the way from one to the other.
@@ -63,16 +105,6 @@
 //! The detail that white noise loses by halving is noise of one octave. [`WaveletNoise2`] and [`WaveletNoise3`]
 //! evaluate this noise at any position, in one band or several, with its gradient and with a period. [`wavelet_tile`]
 //! sums bands of it, each made at its own size, to a raster that repeats without a seam.
-//!
-//! ```
-//! use dapple_wavelet::{WaveletNoise2, hash::Seed, raster::Field, raster::Window, raster::glam::DVec2};
-//!
-//! let noise = WaveletNoise2::new(64, Seed(7))?;
-//! let window = Window::new(DVec2::ZERO, DVec2::splat(64.0), [256, 256])?;
-//! let raster = noise.to_raster(&window)?;
-//! assert!(raster.pixels().iter().all(|value| value.abs() <= noise.bound()));
-//! # Ok::<(), Box<dyn std::error::Error>>(())
-//! ```
 
 #![forbid(unsafe_code)]
 
