@@ -1,33 +1,69 @@
-//! Image files: PNG with 8 or 16 bits, OpenEXR and JPEG, with typed errors and limits.
+//! Image files for textures: PNG with 8 or 16 bits, OpenEXR, and JPEG (reading), with typed errors and limits. Images
+//! larger than memory are written row by row.
 //!
-//! This is the only crate of dapple that knows image formats. Data (heights, masks, normals) is written unchanged;
-//! color is linear inside of dapple and in OpenEXR, and sRGB in PNG and JPEG. A file is written under a temporary name
-//! and then renamed, so that half a file is never visible. Any bytes can be read: the result is an image or an
-//! [`ImageError`], within the [`Limits`].
+//! ```no_run
+//! use dapple_image::{Depth, Limits, color::Palette, read_image, write_color_png, write_gray_png};
+//!
+//! // A height from a PNG, JPEG or OpenEXR file, as the numbers that the file has.
+//! let height = read_image("height.exr", &Limits::default())?.gray()?;
+//!
+//! // The height with 16 bits, and colors for it with 8, which are written as sRGB.
+//! write_gray_png("height.png", &height, Depth::Sixteen)?;
+//! write_color_png("colors.png", &Palette::Terrain.ramp().apply(&height), Depth::Eight)?;
+//!
+//! // What a file contains, and its colors in linear light.
+//! let photo = read_image("photo.jpg", &Limits::default())?;
+//! println!("{}: {:?} pixels, {} bits", photo.format(), photo.size(), photo.bits());
+//! let colors = photo.color()?;
+//! # Ok::<(), dapple_image::ImageError>(())
+//! ```
+//!
+//! # Ways to use it
 //!
 //! | to write | in one call | with more choice |
 //! |---|---|---|
 //! | data from 0 to 1 | [`write_gray_png`], [`write_normal_png`] | [`write_png`], [`encode_png`] |
 //! | color | [`write_color_png`], [`write_color_alpha_png`] | [`write_png`], [`encode_png`] |
 //! | any numbers | [`write_gray_exr`], [`write_color_exr`], [`write_color_alpha_exr`] | [`write_exr`], [`encode_exr`] |
+//! | row by row, what is too large for memory | [`RowWriter`] | PNG, OpenEXR in tiles, NumPy arrays, raw 16-bit heights |
 //!
-//! An image that is too large for memory is written row by row with a [`RowWriter`], as PNG, as OpenEXR in tiles, as a
-//! NumPy array or as raw heights, according to its [`Content`] and its [`Encoding`].
+//! A [`RowWriter`] takes two MiB of memory for each thread as PNG, and 64 rows as OpenEXR.
 //!
-//! [`read_image`] reads images back, including JPEG:
+//! | to read | call |
+//! |---|---|
+//! | a file, or bytes | [`read_image`], [`decode_image`] |
+//! | size and format without pixels | [`read_header`] |
+//! | a rectangle | [`decode_png_region`], [`decode_exr_region`] |
+//! | pixels as data, colors, normals | [`Image::gray`], [`Image::color`], [`Image::color_alpha`], [`Image::normals`] |
+//! | a layer of an OpenEXR file | [`Image::layer`] |
+//! | NumPy arrays, raw heights | [`decode_npy`], [`decode_r16`] |
 //!
-//! ```no_run
-//! use dapple_image::{Depth, Limits, read_image, write_gray_png};
+//! # Features
 //!
-//! let height = read_image("height.exr", &Limits::default())?.gray()?;
-//! write_gray_png("height.png", &height, Depth::Sixteen)?;
-//! # Ok::<(), dapple_image::ImageError>(())
-//! ```
+//! | feature | default | what it does |
+//! |---|---|---|
+//! | `png` | on | reads and writes PNG |
+//! | `exr` | on | reads and writes OpenEXR |
+//! | `jpeg` | on | reads JPEG |
+//! | `rayon` | on | compresses and converts on all cores; the bits do not change |
 //!
-//! Each format is a feature of its own (`png`, `exr`, `jpeg`, all on by default) and adds its codec; other formats are
-//! then errors that name the format.
+//! Each format adds its codec. Without it, files of this format are errors that name the format.
 //!
-//! [`Image::format`], [`Image::channels`], [`Image::bits`] and [`Image::size`] describe the content of a file.
+//! # Limits
+//!
+//! * By default [`Limits`] allow 2^28 pixels and 4 GiB. They are checked before memory for pixels is taken.
+//! * Any bytes can be read. Damaged, cut off and empty files are an [`ImageError`].
+//! * Data (heights, masks, normals) is written as it is, and read without any transfer curve.
+//! * Color is linear in memory and in OpenEXR, and sRGB in PNG. It is converted from the color space that a file
+//!   declares: `cICP`, `iCCP`, `sRGB`, `gAMA` and `cHRM` of PNG, the ICC profile or the Exif color space of JPEG, the
+//!   chromaticities of OpenEXR. Profiles with lookup tables, PQ and HLG are errors.
+//! * JPEG is read baseline and progressive, gray and color, upright as its Exif data says. It is not written.
+//! * OpenEXR is read with the pixels of its display window, and written with `f32`.
+//! * A file is written under a temporary name and then renamed, so that half a file is never visible.
+//!
+//! # Without std
+//!
+//! Not possible: the crate reads and writes files.
 
 #![forbid(unsafe_code)]
 #![cfg_attr(

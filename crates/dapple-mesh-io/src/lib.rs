@@ -1,32 +1,70 @@
-//! Files of triangle meshes: OBJ with MTL, PLY, glTF and GLB, OFF, STL.
+//! Files of triangle meshes: reads OBJ with MTL, PLY, glTF, GLB, OFF and STL, and writes OBJ, PLY, GLB and STL.
 //!
-//! [`read_model`] and [`write_model`] take a path, whose ending determines the format. All other functions work on
-//! bytes: each format is a module with its functions, and an entry of [`FORMATS`], from which paths, errors and help
-//! texts take the names and endings of all formats.
+//! ```no_run
+//! use dapple_mesh_io::{MeshFormat, read_model, write_model};
 //!
-//! ```
-//! use dapple_mesh::{Mesh, Model, glam::DVec3};
-//! use dapple_mesh_io::{MeshFormat, ply};
+//! // The ending of a path determines the format.
+//! let model = read_model("fish.obj")?;
+//! println!("{} faces", model.mesh.faces().len());
+//! for part in &model.left_out {
+//!     println!("left out: {part}");
+//! }
+//! write_model("fish.glb", &model)?;
 //!
-//! let mesh = Mesh::new(vec![DVec3::ZERO, DVec3::X, DVec3::Y], &[[0, 1, 2]])?;
-//! let bytes = ply::write(&Model::from(mesh.clone()))?;
-//! assert_eq!(ply::read(&bytes)?.mesh, mesh);
-//!
-//! let format = MeshFormat::of_path("fish.PLY").ok_or("no format has this ending")?;
-//! assert_eq!(format.name(), "PLY");
+//! // The bytes of a file that is in memory; the closure returns the files beside it, such as buffers and textures.
+//! let format = MeshFormat::of_path("fish.GLB").ok_or("no format has this ending")?;
+//! let model = format.read(&std::fs::read("fish.glb")?, &mut |_name| None)?;
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
+//! # Ways to use it
+//!
+//! | to | from and to paths | from and to bytes |
+//! |---|---|---|
+//! | read | [`read_model`] | [`MeshFormat::read`], [`obj::read`], [`ply::read`], [`gltf`](mod@gltf), [`off::read`], [`stl::read`] |
+//! | write | [`write_model`] | [`MeshFormat::write`], [`obj`](mod@obj), [`ply`](mod@ply), [`stl::write`] |
+//! | exchange images and change nothing else | [`replace_images`] | [`MeshFormat::replace_images`] |
+//! | list formats and endings | [`FORMATS`] | |
+//!
+//! | format | reads | writes | numbers in a file |
+//! |---|---|---|---|
+//! | OBJ | text, with its MTL and textures | the same | shortest digits that read back as the same `f64` |
+//! | PLY | text, binary of both byte orders | text and binary, little-endian | `f32` if that loses nothing, else `f64` |
+//! | glTF | glTF, GLB | GLB | `f32`, from an `f64` origin where the mesh is far from zero |
+//! | OFF | text | | |
+//! | STL | binary and text | binary; text where the mesh is far from zero | `f32`; in text as OBJ |
+//!
+//! A [`Model`](dapple_mesh::Model) is what a file holds: the mesh, linear colors of vertices, texture coordinates of
+//! corners (v down), normals, and a material whose textures stay encoded bytes.
+//!
+//! # Features
+//!
+//! | feature | default | what it does |
+//! |---|---|---|
+//! | `gltf` | on | reads glTF and GLB files, and writes GLB files, with `serde` and `serde_json` |
+//!
+//! The other formats need no further crate and are always there.
+//!
+//! # Limits
+//!
+//! * A reader takes at most 256 bytes of memory for each byte of the file and of what it is given beside it, and 1 GiB
+//!   more, whatever the file says about its counts. A file on disk, and all files beside it, have at most 4 GiB.
+//! * No file makes a reader panic. A damaged file is a [`MeshIoError`].
+//! * Files beside a file are read from its folder and the folders in it, never from outside of it.
+//! * What a reader leaves out is in [`Model::left_out`](dapple_mesh::Model::left_out): missing textures, further
+//!   materials, animations, polygons that cross themselves. Skins, morph targets and maps of texture coordinates are
+//!   applied.
+//! * A convex polygon becomes a fan of triangles around its first corner, and a concave one the triangles of ear
+//!   clipping in its plane. One that crosses itself stays a fan. One with fewer than three corners is left out.
 //! * Colors of vertices are coded as sRGB in OBJ, PLY and OFF, in whole numbers and in fractions alike, and linear in
 //!   glTF.
-//! * A convex polygon becomes a fan of triangles around its first corner, and a concave one the triangles of ear clipping
-//!   in its plane. One that crosses itself stays a fan, and is listed in [`Model::left_out`](dapple_mesh::Model::left_out).
-//!   One with fewer than three corners is left out.
-//! * No file makes a reader panic. A reader takes at most 256 bytes of memory for each byte of the file, and of what
-//!   it is given beside it, and 1 GiB more, whatever the file says about its counts.
+//! * An OBJ with `<UDIM>` or `<UVTILE>` in the name of its texture has one texture for each unit square. glTF has no
+//!   such names, and its writer refuses them.
+//! * A file that is written is the old one or the whole new one.
 //!
-//! The feature `gltf`, on by default, needs `serde` and `serde_json`; the other formats have no dependencies and are
-//! always available.
+//! # Without std
+//!
+//! Not possible: the crate reads and writes files.
 
 #![forbid(unsafe_code)]
 

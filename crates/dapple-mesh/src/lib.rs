@@ -1,33 +1,64 @@
-//! Triangle meshes for textures: validity, repair, walking over the surface, nearest points and rays.
+//! Triangle meshes for textures: defects counted and repaired, straight walks over the surface, nearest points and
+//! rays.
 //!
 //! A [`Mesh`] is positions and faces, whatever they are. [`Mesh::report`] counts what is wrong with it, and
 //! [`Mesh::repair`] mends what can be mended. A mesh whose faces have an area and a consistent side becomes a
-//! [`Surface`]: every face laid out flat, so that a [`SurfacePoint`] can [walk](Surface::walk) straight on over edges and
-//! carry a direction along. It need not be closed, in one piece or manifold: an edge of one face, or of three, is a border.
+//! [`Surface`]: every face laid out flat, so that a [`SurfacePoint`] can [walk](Surface::walk) straight on over edges
+//! and carry a direction along.
 //!
 //! ```
-//! use dapple_mesh::{FaceIdx, Mesh, Surface, glam::{DVec2, DVec3}};
+//! use dapple_mesh::{Bvh, FaceIdx, Mesh, Surface, glam::{DVec2, DVec3}};
 //!
 //! // A roof of two squares, of which the second rises where the first ends.
 //! let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0], [2.0, 0.0, 1.0], [2.0, 1.0, 1.0]];
 //! let faces = [[0, 1, 2], [0, 2, 3], [1, 4, 5], [1, 5, 2]];
-//! let mesh = Mesh::new(corners.map(DVec3::from).to_vec(), &faces)?;
-//! assert_eq!(mesh.report().boundary_edges, 6);
+//! let (mesh, repair) = Mesh::new(corners.map(DVec3::from).to_vec(), &faces)?.repair();
+//! assert_eq!(repair.before.boundary_edges, 6);
 //!
-//! // Straight on along x: up the slope, until there is no more roof.
+//! // Straight on along x: up the slope.
 //! let surface = Surface::new(mesh)?;
 //! let start = surface.project(FaceIdx(0), DVec3::new(0.5, 0.25, 0.0));
 //! let walk = surface.walk(start, DVec2::X, 1.0);
 //! assert!(surface.position(walk.point).z > 0.3);
-//! assert!(surface.walk(start, DVec2::X, 9.0).left > 7.0);
+//!
+//! // The point of the mesh that is nearest to a position above the roof.
+//! let nearest = Bvh::new(surface.mesh()).nearest_point(DVec3::new(0.5, 0.5, 2.0));
+//! assert!(nearest.is_some_and(|nearest| nearest.distance_sq < 4.0));
 //! # Ok::<(), dapple_mesh::MeshError>(())
 //! ```
 //!
-//! A [`Bvh`] finds nearest points and first hits of rays. A [`Model`] is a mesh with colors, normals, texture coordinates and
-//! a material, which is what files hold: the crate `dapple-mesh-io` reads and writes them. The crate `dapple-synth` covers
-//! meshes with textures.
+//! # Ways to use it
 //!
-//! Positions are `f64`, in whatever unit the caller likes, up to 1e30. All results have the same bits on every machine.
+//! | to | use | cost |
+//! |---|---|---|
+//! | count defects | [`Mesh::report`] | |
+//! | repair them | [`Mesh::repair`] | |
+//! | find neighbors over edges | [`Adjacency`] | |
+//! | follow a straight path | [`Surface::walk`] | one step for each edge that is crossed, at most 65,536 |
+//! | find the nearest point, or the first hit of a ray | [`Bvh`] | a search in a hierarchy of boxes, built once |
+//! | shade creases | [`Mesh::corner_normals`], [`Mesh::vertex_normals`] | |
+//! | hold what a file holds | [`Model`] | textures stay encoded bytes |
+//!
+//! `dapple-mesh-io` reads and writes files. `dapple-synth` covers meshes with textures.
+//!
+//! # Features
+//!
+//! There are none. The crate starts no threads of its own and turns on no feature of its dependencies.
+//!
+//! # Limits
+//!
+//! * Parts of a position are at most 1e30 in absolute value. Units are yours.
+//! * A mesh has at most 2^31 vertices and as many faces, which are triangles.
+//! * A surface need not be closed, in one piece or manifold. An edge of one face, or of three, is a border, and ends a
+//!   path.
+//! * Repair merges vertices at one position, drops degenerate and duplicate faces, and makes the winding consistent. It
+//!   fills no holes and removes no self-intersections.
+//! * Positions are `f64`. All results have the same bits on every machine.
+//!
+//! # Without std
+//!
+//! Not possible today. `dapple-color`, `dapple-raster` and `glam` are used with std, and `floor` of `f64` is a method
+//! of std.
 
 #![forbid(unsafe_code)]
 

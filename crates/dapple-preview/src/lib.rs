@@ -1,10 +1,8 @@
-//! Lit previews on the CPU: procedural textures on objects.
+//! Lit previews on the CPU: pictures of procedural textures on bump-mapped planes, spheres, cut tori and meshes.
 //!
 //! A [`Scene`] holds a [`Camera`], [`Object`]s, [`Light`]s and an [`Environment`], and renders to a raster of linear
 //! colors. An object is a [`Shape`] and a closure. For a [`Surface`], the point where a ray met the shape, the closure
-//! returns a [`Material`] of a color, the gradient of a bump, highlights and a mirror. The crate knows no textures. A
-//! solid texture is sampled at the position in the space of the object, so that it moves with the object and goes
-//! through it, as the flat face of a [`Cut`] shows.
+//! returns a [`Material`] of a color, the gradient of a bump, highlights and a mirror.
 //!
 //! ```
 //! use dapple_color::LinearRgb;
@@ -27,21 +25,45 @@
 //! # Ok::<(), dapple_preview::PreviewError>(())
 //! ```
 //!
-//! The world is right-handed with y up; a camera on the positive z axis sees x to the right. Lengths are in units of
-//! the world, or of the object where the text says so, and angles in radians. Row 0 of a picture is the top. Colors are
-//! linear and not tone mapped; the caller may clamp values above 1.
+//! # Ways to use it
+//!
+//! | to | use |
+//! |---|---|
+//! | texture an object in space | [`Surface::position`]: the texture moves with the object and goes through it, as the flat face of a [`Cut`] shows |
+//! | texture it by coordinates | [`Surface::uv`] |
+//! | bump it | [`Material::with_bump`]: the gradient tilts the normal |
+//! | show a mesh | [`Mesh::from_mesh`], [`Mesh::smooth`], [`Mesh::flat`], with [`Shape::mesh`] |
+//! | light it | [`Light::directional`], [`Light::point`], [`Scene::with_ambient`], [`Environment`] |
+//! | smooth edges | [`Supersampling`]: its square is the number of rays per pixel |
+//!
+//! # Features
+//!
+//! | feature | default | what it does |
+//! |---|---|---|
+//! | `rayon` | on | renders the rows of a picture on all cores; the bits do not change |
+//!
+//! # Limits
+//!
+//! * Supersampling is from 1 to 64, and a ray has at most 16 mirror reflections.
+//! * Light between surfaces is not simulated, since the previews are for textures. Shadows are.
+//! * Spheres and tori can be cut open. Planes and meshes cannot.
+//! * The world is right-handed with y up; a camera on the positive z axis sees x to the right. Lengths are in units of
+//!   the world, or of the object where the text says so, and angles in radians. Row 0 of a picture is the top.
+//! * Colors are linear and not tone mapped. Clamp values above 1 yourself.
+//! * The crate knows no textures and touches no file. It does not use the GPU.
+//! * Values are computed with `+ − × ÷ sqrt floor` and `libm` only. A picture has the same bits on every platform and
+//!   any number of threads if the closures do.
+//!
+//! # Without std
+//!
+//! Not possible today. `floor` and `sqrt` of `f64` are methods of std, and `dapple-raster`, `dapple-color` and
+//! `dapple-mesh` need std.
 //!
 //! # How it works
 //!
 //! One ray per sample of a regular grid finds the nearest shape: planes and spheres by a formula, tori by the roots of
 //! their quartic, meshes by a hierarchy of boxes. A texture's gradient tilts the normal (Blinn 1978), shadow rays test
-//! the lights, and a mirror sends a ray that sees the other objects and the environment. Light between surfaces is not
-//! simulated, since the previews are for textures.
-//!
-//! # Reproducibility
-//!
-//! A picture is a function of the scene: the same bits on every number of threads. Values are computed with `+ − × ÷
-//! sqrt floor` and `libm` only, so that a picture has the same bits on every platform if the closures do.
+//! the lights, and a mirror sends a ray that sees the other objects and the environment.
 
 #![forbid(unsafe_code)]
 

@@ -1,17 +1,73 @@
-//! Partition-of-unity parametrics for texture synthesis: values, orientations, labels and the texture recipes.
-//!
-//! Reference: Jack Caron and David Mould, "Partition of Unity Parametrics for Texture Synthesis", Graphics Interface
-//! 2013.
+//! Textures from control points: noise, turbulence, cells, and the coats of cows and giraffes; smooth, tileable,
+//! editable point by point.
 //!
 //! Control points lie in the plane and are connected by a graph. The edges at a control point are its axes; a position
 //! is projected onto each of them, every projection gives an axial weight, and their product is the weight of the
 //! control point. [`Pups`] holds such a net. [`Texture`] gives the control points values and interpolates them;
 //! [`Pups::strongest`] gives every position the label of its strongest control point.
 //!
-//! The textures of the paper are recipes on top of that, such as [`noise`], [`octaves`], [`cells`] and [`cow`]: each is
-//! one call with options and a seed. For textures of your own, place points, give them attributes ([`random_values`],
-//! [`biased_labels`], [`grouped_labels`], [`random_orientations`] and others), and make a texture of them. To change control
-//! points one by one, as an editor does, use [`EditablePups`].
+//! ```
+//! use dapple_pups::hash::Seed;
+//! use dapple_pups::raster::{Field, Window};
+//! use dapple_pups::{NoiseOptions, SpaceGiraffeOptions, noise, space_giraffe};
+//!
+//! // Noise from 0 to 1 that repeats after two units, and one period of it as a picture.
+//! let options = NoiseOptions { spacing: 0.1.into(), ..NoiseOptions::default() };
+//! let window = Window::new(options.domain.origin, options.domain.size, [256, 256])?;
+//! let picture = noise(&options, Seed(7))?.to_raster(&window)?;
+//! assert!(picture.statistics().max <= 1.0 + 1e-5);
+//!
+//! // The coat of a giraffe: 1 on the spots, 0 between them.
+//! let coat = space_giraffe(&SpaceGiraffeOptions::default(), Seed(7))?.label_raster(&window)?;
+//! assert!(coat.pixels().contains(&1));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # Ways to use it
+//!
+//! | to make | call |
+//! |---|---|
+//! | noise, octaves, turbulence | [`noise`], [`octaves`], [`turbulence`] |
+//! | cells, cellular noise, colors | [`cells`], [`cellular_noise`], [`color_noise`] |
+//! | animal coats | [`cow`], [`space_giraffe`] |
+//! | a progression from left to right | [`cow_progression`], [`giraffe_progression`], [`label_ramp`] |
+//! | cells after a reference image | [`reference_texture`], [`iterated_reference`] |
+//! | from control points of yours | [`control_points`] |
+//! | a texture of your own | [`Pups::delaunay`], then [`Pups::texture`]; attributes by [`random_values`], [`biased_labels`], [`grouped_labels`], [`random_orientations`] and others |
+//! | a loop in time | [`NetOptions::motion`], without jumps with [`NetOptions::fade`] |
+//!
+//! | positions | call | cost with 700 points |
+//! |---|---|---|
+//! | one | [`sample`](dapple_raster::FieldExt::sample) | 42.0 ns |
+//! | a window | [`to_raster`](dapple_raster::Field::to_raster), [`render`](dapple_raster::Field::render) | 1.67 ns/pixel, 3.37 with orientations |
+//! | what an edit changed | [`EditablePups::windows`], then [`EditablePups::render`] | 0.13 ms in a picture of 1000 × 1000 pixels |
+//!
+//! Times are from one thread of a server processor (AMD EPYC). With 10,000 points a raster takes 3.79 ns/pixel.
+//!
+//! # Features
+//!
+//! | feature | default | what it does |
+//! |---|---|---|
+//! | `rayon` | on | fills rasters and point sets on all cores; the bits do not change |
+//! | `serde` | off | reads and writes the options as data |
+//! | `schema` | off | describes the options as JSON Schema; includes `serde` |
+//!
+//! # Limits
+//!
+//! * Textures are in the plane. They repeat exactly along each axis on which their domain wraps.
+//! * The progressions do not repeat from left to right.
+//! * Control points are at least 1e-9 of the domain's larger side apart. A domain is from 1e-18 to 1e18 large.
+//! * Positions are `f64`, values `f32`.
+//! * The bits are the same on every machine, for every SIMD level and any number of threads.
+//!
+//! # Without std
+//!
+//! Not possible today. Parts of a net that are made on demand are in a `OnceLock` of std, `floor` and `sqrt` of `f64`
+//! are methods of std, and `dapple-graph`, `dapple-points` and `dapple-raster` need std.
+//!
+//! # Reference
+//!
+//! Jack Caron and David Mould, "Partition of Unity Parametrics for Texture Synthesis", Graphics Interface 2013.
 
 #![forbid(unsafe_code)]
 
