@@ -44,7 +44,7 @@
 //!
 //! # Features
 //!
-//! | feature | default | what it does |
+//! | feature | default | effect |
 //! |---|---|---|
 //! | `rayon` | on | makes maps and converts rasters on all cores; the bits do not change |
 //! | `serde` | off | reads and writes colors, ramps and options as data |
@@ -58,7 +58,7 @@
 //! * Lengths are in units of the plane, so that the resolution does not change the maps.
 //! * Green of a normal points up by default, as in OpenGL. [`NormalY`] turns it over for DirectX.
 //! * The radius of occlusion and of curvature is at most 16,384 pixels.
-//! * There is no tone mapping. Files, and the conversion of their color spaces, are in `dapple-image`.
+//! * Tone mapping is left to the caller. Files, and the conversion of their color spaces, are in `dapple-image`.
 //! * Results have the same bits on every platform and any number of threads.
 //!
 //! # Without std

@@ -41,12 +41,12 @@
 //! | edges with empty circles | [`gabriel`] | |
 //! | a graph of your own | [`Graph::from_adjacency`] | |
 //!
-//! Times are from one thread of a server processor (AMD EPYC). Functions ending in `_cancellable` take a callback that
+//! Times are from one thread of a server processor (AMD EPYC). Functions named `…_cancellable` take a callback that
 //! stops them.
 //!
 //! # Features
 //!
-//! | feature | default | what it does |
+//! | feature | default | effect |
 //! |---|---|---|
 //! | `rayon` | on | builds large graphs on all cores; the bits do not change |
 //! | `serde` | off | reads and writes options and graphs as data; reading checks them |

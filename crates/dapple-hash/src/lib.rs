@@ -42,7 +42,7 @@
 //!
 //! # Features
 //!
-//! | feature | default | what it does |
+//! | feature | default | effect |
 //! |---|---|---|
 //! | `serde` | off | reads and writes a [`Seed`] as a plain number |
 //! | `simd` | off | adds `CellHashes` and lattice hashes of sixteen lanes, with `fearless_simd` |

@@ -11,7 +11,7 @@
 //! write_gray_png("height.png", &height, Depth::Sixteen)?;
 //! write_color_png("colors.png", &Palette::Terrain.ramp().apply(&height), Depth::Eight)?;
 //!
-//! // What a file contains, and its colors in linear light.
+//! // The content of a file, and its colors in linear light.
 //! let photo = read_image("photo.jpg", &Limits::default())?;
 //! println!("{}: {:?} pixels, {} bits", photo.format(), photo.size(), photo.bits());
 //! let colors = photo.color()?;
@@ -25,7 +25,7 @@
 //! | data from 0 to 1 | [`write_gray_png`], [`write_normal_png`] | [`write_png`], [`encode_png`] |
 //! | color | [`write_color_png`], [`write_color_alpha_png`] | [`write_png`], [`encode_png`] |
 //! | any numbers | [`write_gray_exr`], [`write_color_exr`], [`write_color_alpha_exr`] | [`write_exr`], [`encode_exr`] |
-//! | row by row, what is too large for memory | [`RowWriter`] | PNG, OpenEXR in tiles, NumPy arrays, raw 16-bit heights |
+//! | row by row, for images larger than memory | [`RowWriter`] | PNG, OpenEXR in tiles, NumPy arrays, raw 16-bit heights |
 //!
 //! A [`RowWriter`] takes two MiB of memory for each thread as PNG, and 64 rows as OpenEXR.
 //!
@@ -40,7 +40,7 @@
 //!
 //! # Features
 //!
-//! | feature | default | what it does |
+//! | feature | default | effect |
 //! |---|---|---|
 //! | `png` | on | reads and writes PNG |
 //! | `exr` | on | reads and writes OpenEXR |

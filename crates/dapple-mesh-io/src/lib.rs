@@ -3,7 +3,7 @@
 //! ```no_run
 //! use dapple_mesh_io::{MeshFormat, read_model, write_model};
 //!
-//! // The ending of a path determines the format.
+//! // The extension of a path determines the format.
 //! let model = read_model("fish.obj")?;
 //! println!("{} faces", model.mesh.faces().len());
 //! for part in &model.left_out {
@@ -11,8 +11,8 @@
 //! }
 //! write_model("fish.glb", &model)?;
 //!
-//! // The bytes of a file that is in memory; the closure returns the files beside it, such as buffers and textures.
-//! let format = MeshFormat::of_path("fish.GLB").ok_or("no format has this ending")?;
+//! // The bytes of a file that is in memory; the closure returns the files that it refers to.
+//! let format = MeshFormat::of_path("fish.GLB").ok_or("no format has this extension")?;
 //! let model = format.read(&std::fs::read("fish.glb")?, &mut |_name| None)?;
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -24,7 +24,7 @@
 //! | read | [`read_model`] | [`MeshFormat::read`], [`obj::read`], [`ply::read`], [`gltf`](mod@gltf), [`off::read`], [`stl::read`] |
 //! | write | [`write_model`] | [`MeshFormat::write`], [`obj`](mod@obj), [`ply`](mod@ply), [`stl::write`] |
 //! | exchange images and change nothing else | [`replace_images`] | [`MeshFormat::replace_images`] |
-//! | list formats and endings | [`FORMATS`] | |
+//! | list formats and file extensions | [`FORMATS`] | |
 //!
 //! | format | reads | writes | numbers in a file |
 //! |---|---|---|---|
@@ -34,12 +34,12 @@
 //! | OFF | text | | |
 //! | STL | binary and text | binary; text where the mesh is far from zero | `f32`; in text as OBJ |
 //!
-//! A [`Model`](dapple_mesh::Model) is what a file holds: the mesh, linear colors of vertices, texture coordinates of
-//! corners (v down), normals, and a material whose textures stay encoded bytes.
+//! A [`Model`](dapple_mesh::Model) holds the content of a file: the mesh, linear colors of vertices, texture
+//! coordinates of corners (v down), normals, and a material whose textures stay encoded bytes.
 //!
 //! # Features
 //!
-//! | feature | default | what it does |
+//! | feature | default | effect |
 //! |---|---|---|
 //! | `gltf` | on | reads glTF and GLB files, and writes GLB files, with `serde` and `serde_json` |
 //!
@@ -47,11 +47,11 @@
 //!
 //! # Limits
 //!
-//! * A reader takes at most 256 bytes of memory for each byte of the file and of what it is given beside it, and 1 GiB
-//!   more, whatever the file says about its counts. A file on disk, and all files beside it, have at most 4 GiB.
+//! * A reader takes at most 256 bytes of memory for each byte of the file and of the files that it refers to, and 1 GiB
+//!   more, whatever counts the file states. A file on disk, and all files that it refers to, have at most 4 GiB.
 //! * No file makes a reader panic. A damaged file is a [`MeshIoError`].
-//! * Files beside a file are read from its folder and the folders in it, never from outside of it.
-//! * What a reader leaves out is in [`Model::left_out`](dapple_mesh::Model::left_out): missing textures, further
+//! * Buffers, materials and textures are read from the folder of the file and its subfolders only.
+//! * Omitted parts are listed in [`Model::left_out`](dapple_mesh::Model::left_out): missing textures, further
 //!   materials, animations, polygons that cross themselves. Skins, morph targets and maps of texture coordinates are
 //!   applied.
 //! * A convex polygon becomes a fan of triangles around its first corner, and a concave one the triangles of ear

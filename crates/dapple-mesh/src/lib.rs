@@ -9,7 +9,7 @@
 //! ```
 //! use dapple_mesh::{Bvh, FaceIdx, Mesh, Surface, glam::{DVec2, DVec3}};
 //!
-//! // A roof of two squares, of which the second rises where the first ends.
+//! // A roof of two squares. The second one rises from the end of the first.
 //! let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0], [2.0, 0.0, 1.0], [2.0, 1.0, 1.0]];
 //! let faces = [[0, 1, 2], [0, 2, 3], [1, 4, 5], [1, 5, 2]];
 //! let (mesh, repair) = Mesh::new(corners.map(DVec3::from).to_vec(), &faces)?.repair();
@@ -37,13 +37,13 @@
 //! | follow a straight path | [`Surface::walk`] | one step for each edge that is crossed, at most 65,536 |
 //! | find the nearest point, or the first hit of a ray | [`Bvh`] | a search in a hierarchy of boxes, built once |
 //! | shade creases | [`Mesh::corner_normals`], [`Mesh::vertex_normals`] | |
-//! | hold what a file holds | [`Model`] | textures stay encoded bytes |
+//! | hold the content of a mesh file | [`Model`] | textures stay encoded bytes |
 //!
 //! `dapple-mesh-io` reads and writes files. `dapple-synth` covers meshes with textures.
 //!
 //! # Features
 //!
-//! There are none. The crate starts no threads of its own and turns on no feature of its dependencies.
+//! There are none. The crate starts no threads, and turns on no feature of its dependencies.
 //!
 //! # Limits
 //!

@@ -40,7 +40,7 @@
 //!
 //! # Features
 //!
-//! | feature | default | what it does |
+//! | feature | default | effect |
 //! |---|---|---|
 //! | `rayon` | on | fills windows on all cores; the bits do not change |
 //! | `simd` | on | uses the widest vector instructions of the processor at hand; the bits do not change |

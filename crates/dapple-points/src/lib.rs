@@ -34,7 +34,7 @@
 //! | one in each cell of a grid | [`jittered_grid`] | |
 //! | independent, uniform | [`white_noise`] | |
 //!
-//! Times are from one thread of a server processor (AMD EPYC). Functions ending in `_cancellable` take a callback that
+//! Times are from one thread of a server processor (AMD EPYC). Functions named `…_cancellable` take a callback that
 //! stops them.
 //!
 //! To measure a [`PointSet`]: [`PointSet::minimum_distance`], [`PointSet::largest_empty_circle`] and [`spectrum`]. For
@@ -42,7 +42,7 @@
 //!
 //! # Features
 //!
-//! | feature | default | what it does |
+//! | feature | default | effect |
 //! |---|---|---|
 //! | `poisson-disk` | on | makes all Poisson-disk sets; without it `fearless_simd` is not a dependency |
 //! | `rayon` | on | makes points on all cores; the bits do not change |

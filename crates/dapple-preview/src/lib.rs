@@ -1,4 +1,4 @@
-//! Lit previews on the CPU: pictures of procedural textures on bump-mapped planes, spheres, cut tori and meshes.
+//! Lit previews on the CPU: images of procedural textures on bump-mapped planes, spheres, cut tori and meshes.
 //!
 //! A [`Scene`] holds a [`Camera`], [`Object`]s, [`Light`]s and an [`Environment`], and renders to a raster of linear
 //! colors. An object is a [`Shape`] and a closure. For a [`Surface`], the point where a ray met the shape, the closure
@@ -20,8 +20,8 @@
 //!     .with_object(Object::new(Shape::torus(1.0, 0.4), boards).at(DVec3::new(0.0, 0.4, 0.0)))
 //!     .with_light(Light::directional(DVec3::new(1.0, 2.0, 1.0), LinearRgb::WHITE))
 //!     .with_ambient(LinearRgb::gray(0.1));
-//! let picture = scene.render([160, 120], Supersampling(2))?;
-//! assert_eq!(picture.size(), [160, 120]);
+//! let image = scene.render([160, 120], Supersampling(2))?;
+//! assert_eq!(image.size(), [160, 120]);
 //! # Ok::<(), dapple_preview::PreviewError>(())
 //! ```
 //!
@@ -38,9 +38,9 @@
 //!
 //! # Features
 //!
-//! | feature | default | what it does |
+//! | feature | default | effect |
 //! |---|---|---|
-//! | `rayon` | on | renders the rows of a picture on all cores; the bits do not change |
+//! | `rayon` | on | renders the rows of an image on all cores; the bits do not change |
 //!
 //! # Limits
 //!
@@ -48,10 +48,10 @@
 //! * Light between surfaces is not simulated, since the previews are for textures. Shadows are.
 //! * Spheres and tori can be cut open. Planes and meshes cannot.
 //! * The world is right-handed with y up; a camera on the positive z axis sees x to the right. Lengths are in units of
-//!   the world, or of the object where the text says so, and angles in radians. Row 0 of a picture is the top.
+//!   the world, or of the object where the text says so, and angles in radians. Row 0 of an image is the top.
 //! * Colors are linear and not tone mapped. Clamp values above 1 yourself.
 //! * The crate knows no textures and touches no file. It does not use the GPU.
-//! * Values are computed with `+ − × ÷ sqrt floor` and `libm` only. A picture has the same bits on every platform and
+//! * Values are computed with `+ − × ÷ sqrt floor` and `libm` only. An image has the same bits on every platform and
 //!   any number of threads if the closures do.
 //!
 //! # Without std

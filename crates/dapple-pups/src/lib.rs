@@ -11,11 +11,11 @@
 //! use dapple_pups::raster::{Field, Window};
 //! use dapple_pups::{NoiseOptions, SpaceGiraffeOptions, noise, space_giraffe};
 //!
-//! // Noise from 0 to 1 that repeats after two units, and one period of it as a picture.
+//! // Noise from 0 to 1 that repeats after two units, and one period of it as an image.
 //! let options = NoiseOptions { spacing: 0.1.into(), ..NoiseOptions::default() };
 //! let window = Window::new(options.domain.origin, options.domain.size, [256, 256])?;
-//! let picture = noise(&options, Seed(7))?.to_raster(&window)?;
-//! assert!(picture.statistics().max <= 1.0 + 1e-5);
+//! let image = noise(&options, Seed(7))?.to_raster(&window)?;
+//! assert!(image.statistics().max <= 1.0 + 1e-5);
 //!
 //! // The coat of a giraffe: 1 on the spots, 0 between them.
 //! let coat = space_giraffe(&SpaceGiraffeOptions::default(), Seed(7))?.label_raster(&window)?;
@@ -40,13 +40,13 @@
 //! |---|---|---|
 //! | one | [`sample`](dapple_raster::FieldExt::sample) | 42.0 ns |
 //! | a window | [`to_raster`](dapple_raster::Field::to_raster), [`render`](dapple_raster::Field::render) | 1.67 ns/pixel, 3.37 with orientations |
-//! | what an edit changed | [`EditablePups::windows`], then [`EditablePups::render`] | 0.13 ms in a picture of 1000 × 1000 pixels |
+//! | what an edit changed | [`EditablePups::windows`], then [`EditablePups::render`] | 0.13 ms in an image of 1000 × 1000 pixels |
 //!
 //! Times are from one thread of a server processor (AMD EPYC). With 10,000 points a raster takes 3.79 ns/pixel.
 //!
 //! # Features
 //!
-//! | feature | default | what it does |
+//! | feature | default | effect |
 //! |---|---|---|
 //! | `rayon` | on | fills rasters and point sets on all cores; the bits do not change |
 //! | `serde` | off | reads and writes the options as data |

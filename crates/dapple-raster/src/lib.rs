@@ -41,7 +41,7 @@
 //!
 //! # Features
 //!
-//! | feature | default | what it does |
+//! | feature | default | effect |
 //! |---|---|---|
 //! | `rayon` | on | fills rasters on all cores; the bits do not change |
 //! | `simd` | off | detects the SIMD level of the processor for crates that fill rasters; generators turn it on |

@@ -1,4 +1,91 @@
-//! Recipes and materials as data: textures in TOML or JSON, and the maps that are baked from them.
+//! Materials as data: a recipe in TOML or JSON is a graph of named nodes, and its maps (height, normal, occlusion,
+//! albedo, roughness and more) are baked from it at any size.
+//!
+//! The format is described for writers of recipes in the README of this crate, `crates/dapple-recipe/README.md`. All
+//! options are in its `docs/reference.md`, and in the output of `dapple recipe --reference`.
+//!
+//! ```
+//! use dapple_recipe::{Bake, BakeOptions, Images, MapKind, Plan, Recipe};
+//!
+//! let recipe = Recipe::from_toml(
+//!     r##"
+//!     dapple = 1
+//!     seed = 7
+//!     extent = [8.0, 8.0]
+//!
+//!     [nodes.joint.worley]
+//!     value = "f2_minus_f1"
+//!
+//!     [nodes.stones.levels]
+//!     input = "joint"
+//!     from = [0.04, 0.4]
+//!     curve = "smooth"
+//!
+//!     [nodes.color.ramp]
+//!     input = "stones"
+//!     colors = ["#8a7450", "#8c857a"]
+//!
+//!     [material]
+//!     height = "stones"
+//!     albedo = "color"
+//!     "##,
+//! )?;
+//! let plan = Plan::new(&recipe, &Images::new(), 0.0)?;
+//! let maps = vec![MapKind::Height, MapKind::Normal, MapKind::Albedo];
+//! let options = BakeOptions { size: [256, 256], maps, ..BakeOptions::default() };
+//! for (kind, map) in Bake::new(&plan, &options)?.whole_maps()? {
+//!     println!("{}: {:?} pixels, {} bytes for a GPU", kind.name(), map.size(), map.to_rgba8().len());
+//! }
+//! # Ok::<(), dapple_recipe::RecipeError>(())
+//! ```
+//!
+//! [`Recipe`] is the data, [`Plan`] has everything checked and made, and [`Bake`] gives the maps in bands.
+//! [`Recipe::builtin`] has recipes that are built in, and [`Recipe::to_rust`] writes a program that bakes a recipe.
+//!
+//! # Ways to use it
+//!
+//! A window, a band and the whole image have the same bits.
+//!
+//! | to get | call | cost |
+//! |---|---|---|
+//! | all maps, whole | [`Bake::whole_maps`] | memory for all pixels |
+//! | all maps, band by band | [`Bake`] as an iterator | memory for a band, where no node sees the whole tile |
+//! | a part of an image | [`BakeOptions::region`] | |
+//! | an image in parts, on any number of machines | [`Shards`] | no memory for the list |
+//! | one node at any position, or in a window | [`Plan::field`], [`Plan::colors`], [`Plan::height`] | not for nodes that see the whole tile |
+//! | an image of one node | [`Plan::node_picture`] | |
+//! | bytes and mip levels for a GPU | [`MapRows::to_rgba8`], [`MapRows::mip_levels`] | |
+//! | progress, and a way to stop | [`Plan::new_with_progress`] | |
+//! | redraw a recipe as it changes | [`Plan::new_with_memory`] with a [`Memory`] | only what changed |
+//!
+//! All maps of the built-in recipe `mountains` take 54.1 ms at 256 × 256 pixels, on one thread of a server processor
+//! (AMD EPYC). Nodes that grow a texture (`synth`) do their work in [`Plan::new`], and nodes that see the whole tile in
+//! [`Bake::new`].
+//!
+//! # Features
+//!
+//! | feature | default | effect |
+//! |---|---|---|
+//! | `rayon` | on | renders on all cores; the bits do not change |
+//! | `schema` | off | describes recipes as JSON Schema (`Recipe::schema`) and as a reference of all options (`Recipe::reference`) |
+//! | `image` | off | writes baked rows to files with the `RowWriter` of `dapple-image` |
+//!
+//! # Limits
+//!
+//! * A recipe has at most 1024 nodes and 4 MiB ([`MAX_TEXT`]). No text makes the reader panic.
+//! * A recipe may ask for any amount of work. [`PlanLimits`] bound it. Past a limit, [`Plan::new`] returns an error
+//!   that names the node, before the work is done.
+//! * Nodes that see the whole tile (`tile`, `disturb`, `match_borders`, `corner_tiles`, `blend_map`, most `blend`s)
+//!   cannot be baked under [`BakeMemory::Banded`], and have no value at a single position.
+//! * The crate opens no files. Read images yourself, and pass them by name as [`Images`].
+//! * Another version of the format than [`SCHEMA`] is an error.
+//! * An error has the line and the column, or the node, and the nearest valid word.
+//! * Maps have the same bits on every machine and any number of threads.
+//!
+//! # Without std
+//!
+//! Not possible today. A [`Memory`] is behind a `Mutex` of std, and the crates of the nodes need std.
+
 #![forbid(unsafe_code)]
 
 mod bake;

@@ -29,7 +29,7 @@
 //! | to | use | cost |
 //! |---|---|---|
 //! | make one raster repeat | [`Seamless::apply`] | depends on the [`Method`], below |
-//! | make a color picture repeat | [`Seamless::apply_color`] | all channels together |
+//! | make a color image repeat | [`Seamless::apply_color`] | all channels together |
 //! | make all maps of a material repeat | [`Seamless::apply_maps`] | one cut for all maps |
 //! | measure a seam | [`SeamReport`], [`SeamReports`] for all channels | |
 //! | fill any size | [`repeat`], [`repeat_into`] | 0.18 ns/pixel from a tile of 128 × 128 |
@@ -57,7 +57,7 @@
 //!
 //! # Features
 //!
-//! | feature | default | what it does |
+//! | feature | default | effect |
 //! |---|---|---|
 //! | `rayon` | on | works on all cores; the bits do not change |
 //! | `serde` | off | reads and writes options and reports as data |

@@ -3,26 +3,26 @@
 //! A [`SplineFilter`] reads pixels as the coefficients of a B-spline. It finds the nearest spline with half as many
 //! coefficients ([`down`](SplineFilter::down)), and writes a spline exactly with twice as many
 //! ([`up`](SplineFilter::up)). Both in turn are a projection ([`project`](SplineFilter::project)), which keeps the
-//! detail that a half-size picture can show, and removes all other detail.
+//! detail that a half-size image can show, and removes all other detail.
 //!
 //! ```
 //! use dapple_wavelet::{Border, SplineFilter, WaveletNoise2, hash::Seed, raster::Raster};
 //!
-//! // The nearest picture of half the size, and the same function on all pixels again.
-//! let picture = Raster::from_fn([64, 48], |x, y| (x * y % 7) as f32)?;
+//! // The nearest image of half the size, and the same function on all pixels again.
+//! let image = Raster::from_fn([64, 48], |x, y| (x * y % 7) as f32)?;
 //! let (filter, borders) = (SplineFilter::default(), [Border::Periodic; 2]);
-//! let half = filter.down(&picture, borders)?;
-//! let smooth = filter.up(&half, picture.size(), borders)?;
+//! let half = filter.down(&image, borders)?;
+//! let smooth = filter.up(&half, image.size(), borders)?;
 //!
-//! // Three bands of detail and a coarse rest, and the picture back from them.
-//! let bands = filter.analyze(&picture, 3, borders)?;
+//! // Three bands of detail and a coarse rest, and the image back from them.
+//! let bands = filter.analyze(&image, 3, borders)?;
 //! let again = filter.synthesize(&bands, borders)?;
 //!
 //! // Noise that repeats after 64 cells, in three bands.
 //! let noise = WaveletNoise2::new(64, Seed(7))?.with_weights(&[1.0, 0.5, 0.25])?;
 //! assert!(noise.sample([0.3, 1e6]).abs() <= noise.bound());
 //! # let gap = |a: &Raster<f32>, b: &Raster<f32>| a.pixels().iter().zip(b.pixels()).fold(0.0, |m: f32, (a, b)| m.max((a - b).abs()));
-//! # assert!(gap(&again, &picture) < 1e-5 && gap(&smooth, &picture) > 1.0);
+//! # assert!(gap(&again, &image) < 1e-5 && gap(&smooth, &image) > 1.0);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
@@ -45,7 +45,7 @@
 //!
 //! # Features
 //!
-//! | feature | default | what it does |
+//! | feature | default | effect |
 //! |---|---|---|
 //! | `rayon` | on | filters rasters on all cores; the bits do not change |
 //! | `serde` | off | reads and writes the options as data |
@@ -95,7 +95,7 @@
 //! * The filter of equation 7 has no end. Cook and DeRose cut it off after 32 taps, with an rms error of 1.2e-3 on
 //!   white noise of variance 1; here it is exact, as a recursion, in linear time.
 //! * Its indices wrap ([`Border::Periodic`]). The whole effect on the seam of a tile comes from that;
-//!   [`Border::Mirror`] is for pictures that do not repeat.
+//!   [`Border::Mirror`] is for images that do not repeat.
 //! * Where the coarse coefficients lie is [`Phase`], which spline is [`Degree`], and what nearest means is [`Fit`].
 //! * Pixels are coefficients and not values of the function, as in the paper; [`SplineFilter::coefficients`] and
 //!   [`SplineFilter::samples`] are the way from one to the other.

@@ -15,11 +15,11 @@
 //! let [nearest, second] = worley.sample([0.25, 0.75]);
 //! assert!(nearest.distance <= second.distance);
 //!
-//! // A picture that tiles: cracks between cells, from 0 to 1.
+//! // An image that tiles: cracks between cells, from 0 to 1.
 //! let cracks = worley.combine(Combination::F2_MINUS_F1).normalized()?;
 //! let window = Window::new([0.0; 2], [8.0; 2], [512, 512])?;
-//! let picture = cracks.to_raster(&window)?;
-//! assert_eq!(picture.row(3)[5], cracks.value(window.position(5, 3)));
+//! let image = cracks.to_raster(&window)?;
+//! assert_eq!(image.row(3)[5], cracks.value(window.position(5, 3)));
 //!
 //! // Right angles, in place of round cells.
 //! let hull = worley.with_metric(Metric::Manhattan)?.combine(Combination::F1);
@@ -52,7 +52,7 @@
 //!
 //! # Features
 //!
-//! | feature | default | what it does |
+//! | feature | default | effect |
 //! |---|---|---|
 //! | `rayon` | on | fills rasters on all cores; the bits do not change |
 //! | `serde` | off | reads and writes the options as data |
