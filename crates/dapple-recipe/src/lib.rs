@@ -56,7 +56,7 @@
 //! | an image of one node | [`Plan::node_picture`] | |
 //! | bytes and mip levels for a GPU | [`MapRows::to_rgba8`], [`MapRows::mip_levels`] | |
 //! | progress, and a way to stop | [`Plan::new_with_progress`] | |
-//! | redraw a recipe as it changes | [`Plan::new_with_memory`] with a [`Memory`] | only what changed |
+//! | redraw a recipe as it changes | [`Plan::new_with_cache`] with a [`PlanCache`] | only what changed |
 //!
 //! All maps of the built-in recipe `mountains` take 54.1 ms at 256 × 256 pixels, on one thread of a server processor
 //! (AMD EPYC). Nodes that grow a texture (`synth`) do their work in [`Plan::new`], and nodes that see the whole tile in
@@ -84,7 +84,7 @@
 //!
 //! # Without std
 //!
-//! Not possible today. A [`Memory`] is behind a `Mutex` of std, and the crates of the nodes need std.
+//! Not possible today. A [`PlanCache`] is behind a `Mutex` of std, and the crates of the nodes need std.
 
 #![forbid(unsafe_code)]
 

@@ -33,7 +33,7 @@ macro_rules! simd_dispatch {
     }};
 }
 
-/// Runs an operation with AVX-512, or what is there for the other levels.
+/// Runs an operation with AVX-512, or the code of the next level.
 #[doc(hidden)]
 #[cfg(all(target_arch = "x86_64", any(not(debug_assertions), all_simd_levels)))]
 #[macro_export]
@@ -50,7 +50,7 @@ macro_rules! simd_avx512 {
     };
 }
 
-/// Runs what is there for the other levels, since AVX-512 is not compiled.
+/// Runs the code of the next level, since AVX-512 is not compiled.
 #[doc(hidden)]
 #[cfg(all(target_arch = "x86_64", debug_assertions, not(all_simd_levels)))]
 #[macro_export]
@@ -115,7 +115,7 @@ pub fn level() -> Level {
     }
 }
 
-/// The levels that this machine has and [`dispatch`] is compiled for, from the least to the best, looked up once.
+/// The levels that this machine has and [`dispatch`] is compiled for, from the lowest to the highest, looked up once.
 #[cold]
 fn levels() -> &'static [Level] {
     static LEVELS: OnceLock<Vec<Level>> = OnceLock::new();
@@ -134,14 +134,14 @@ fn levels() -> &'static [Level] {
     })
 }
 
-/// Calls `check` for every level that this machine has and [`dispatch`] is compiled for, from the least to the best, for
+/// Calls `check` for every level that this machine has and [`dispatch`] is compiled for, from the lowest to the highest, for
 /// tests that all give the same bits.
 ///
 /// Meanwhile [`level`] returns that level in all threads, so that code without a level as an argument is checked as
 /// well. Calls from several threads wait for each other; `check` must not call this function.
 pub fn for_every_level(mut check: impl FnMut(Level)) {
     static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
-    // After a check that failed, the next one begins anew.
+    // After a check that failed, the next one starts from scratch.
     let _alone = ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner);
     for (index, &level) in levels().iter().enumerate() {
         CHOSEN.store(index, Ordering::Relaxed);

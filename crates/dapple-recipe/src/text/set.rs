@@ -5,7 +5,7 @@ use crate::{Recipe, RecipeError, RecipeErrorKind};
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;
 
-/// The values of a recipe beside its nodes.
+/// Values of a recipe that are not nodes.
 const TOP: [&str; 6] = ["name", "about", "seed", "extent", "wrap", "material"];
 
 impl Recipe {
