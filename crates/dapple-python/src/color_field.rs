@@ -77,6 +77,8 @@ impl ColorField {
     ///     The corner of the first pixel, x first.
     /// window : tuple of slice or None, default None
     ///     The part to compute, a slice for each axis of `size`.
+    /// samples : str, default "centers"
+    ///     The positions of the samples, "centers" or "corners", as in `Field.render`.
     /// out : numpy.ndarray of float32 or None, default None
     ///     Memory for the values, an array in C order; a new one by default.
     ///
@@ -90,7 +92,8 @@ impl ColorField {
     /// DappleError
     ///     If `size`, `extent`, `origin` or `window` is out of range or of another number of axes, or `out` has another
     ///     shape.
-    #[pyo3(signature = (size, *, extent = None, origin = None, window = None, out = None))]
+    #[pyo3(signature = (size, *, extent = None, origin = None, window = None, samples = None, out = None),
+        text_signature = "(self, size, *, extent=None, origin=None, window=None, samples='centers', out=None)")]
     #[expect(clippy::too_many_arguments, reason = "they are keywords")]
     fn render<'py>(
         &self,
@@ -99,6 +102,7 @@ impl ColorField {
         extent: Option<&Bound<'py, PyAny>>,
         origin: Option<&Bound<'py, PyAny>>,
         window: Option<&Bound<'py, PyAny>>,
+        samples: Option<&str>,
         out: Option<Bound<'py, PyAny>>,
     ) -> Result<Bound<'py, PyAny>> {
         let arguments = GridArguments {
@@ -106,12 +110,15 @@ impl ColorField {
             extent,
             origin,
             window,
+            samples,
         };
-        let grid = Grid::new(&arguments, &self._default_extent())?;
+        let grid = Grid::new(&arguments, &self.vectors.period(), &[1.0; 2])?;
         grid.n_values()?;
-        let shape = [&grid.shape()[..], &[self.vectors.n_channels()]].concat();
+        let n_channels = self.vectors.n_channels();
+        let shape = [&grid.shape()[..], &[n_channels]].concat();
         let window = grid.plane();
-        let row = window.size[0] as usize * self.vectors.n_channels();
+        let width = window.size[0] as usize;
+        let row = width * n_channels;
         let first = FIRST / row.max(1);
         arrays::filled(py, &shape, out, |values, stop| {
             watch::in_parts(stop, window.size[1] as usize, first, |rows| {
@@ -119,7 +126,13 @@ impl ColorField {
                 let part = window.crop([0, rows.start as i64], size)?;
                 let values = &mut values[rows.start * row..rows.end * row];
                 Ok(self.vectors.render(&part, values)?)
-            })
+            })?;
+            for copies in grid.copies() {
+                let mut part = vec![0.0; copies.window.n_pixels() * n_channels];
+                self.vectors.render(&copies.window, &mut part)?;
+                copies.write(&part, values, width, n_channels);
+            }
+            Ok(())
         })
     }
 

@@ -54,6 +54,12 @@ impl Field {
         self.function.period()
     }
 
+    /// The extent that is shown along each of four axes without a period.
+    fn shown(&self) -> [f64; 4] {
+        let shown = self.made.made().shown();
+        [shown[0], shown[1], shown[0], shown[0]]
+    }
+
     /// Writes the values at the pixels of a grid into memory of the right length.
     fn fill(&self, grid: &Grid, values: &mut [f32], stop: &Stop) -> Result<()> {
         match &self.function {
@@ -172,8 +178,7 @@ impl Field {
 
     /// The extent of a picture for which none is given.
     fn _default_extent(&self) -> Vec<f64> {
-        let shown = self.made.made().shown();
-        default_extent(&self.periods(), &[shown[0], shown[1], shown[0], shown[0]])
+        default_extent(&self.periods(), &self.shown())
     }
 
     /// The values at the pixels of an array, float32.
@@ -191,6 +196,10 @@ impl Field {
     /// window : tuple of slice or None, default None
     ///     The part to compute, such as `np.s_[100:150, 33:94]`, a slice for each axis of `size`: bit for bit the crop
     ///     of the whole. It may lie outside: negative numbers are before the array, and not at its end as in NumPy.
+    /// samples : str, default "centers"
+    ///     The positions of the samples: "centers" of pixels, or "corners" of a grid that reaches the sides of the extent, as
+    ///     in `Plan.bake`. On corners, along an axis whose extent is a whole number of periods, the last index is a copy of
+    ///     the first.
     /// out : numpy.ndarray of float32 or None, default None
     ///     Memory for the values, a float32 array in C order; a new array by default.
     ///
@@ -206,7 +215,9 @@ impl Field {
     ///     shape.
     /// TypeError
     ///     If `out` is no array of float32.
-    #[pyo3(signature = (size, *, extent = None, origin = None, window = None, out = None))]
+    #[pyo3(signature = (size, *, extent = None, origin = None, window = None, samples = None, out = None),
+        text_signature = "(self, size, *, extent=None, origin=None, window=None, samples='centers', out=None)")]
+    #[expect(clippy::too_many_arguments, reason = "they are keywords")]
     fn render<'py>(
         &self,
         py: Python<'py>,
@@ -214,6 +225,7 @@ impl Field {
         extent: Option<&Bound<'py, PyAny>>,
         origin: Option<&Bound<'py, PyAny>>,
         window: Option<&Bound<'py, PyAny>>,
+        samples: Option<&str>,
         out: Option<Bound<'py, PyAny>>,
     ) -> Result<Bound<'py, PyAny>> {
         let grid = Grid::new(
@@ -222,8 +234,10 @@ impl Field {
                 extent,
                 origin,
                 window,
+                samples,
             },
-            &self._default_extent(),
+            &self.periods(),
+            &self.shown(),
         )?;
         grid.n_values()?;
         arrays::filled(py, &grid.shape(), out, |values, stop| {
@@ -706,15 +720,38 @@ fn fill_planes<const N: usize>(
     values: &mut [f32],
     stop: &Stop,
 ) -> Result<()> {
-    let window = grid.plane();
+    let plane = grid.plane();
+    let planes = grid.planes();
+    let in_space = |window: &Window, rest: &[f64]| -> Window<N> {
+        let mut origin = [0.0; N];
+        origin[2..].copy_from_slice(rest);
+        window.in_space(origin)
+    };
+    let windows: Vec<_> = planes.iter().map(|rest| in_space(&plane, rest)).collect();
+    fill_windows(field, &windows, values, stop)?;
+    let width = plane.size[0] as usize;
+    for copies in grid.copies() {
+        let first = copies.at[1] * width + copies.at[0];
+        for (rest, values) in planes.iter().zip(values.chunks_mut(plane.n_pixels())) {
+            stop.check()?;
+            let view = RasterViewMut::new(&mut values[first..], width, copies.window.size)?;
+            field.render(&in_space(&copies.window, rest), view)?;
+        }
+    }
+    Ok(())
+}
+
+/// Writes the values at the pixels of windows of one size, one after the other.
+fn fill_windows<const N: usize>(
+    field: &dyn dapple::raster::Field<N>,
+    windows: &[Window<N>],
+    values: &mut [f32],
+    stop: &Stop,
+) -> Result<()> {
+    let Some(window) = windows.first() else {
+        return Ok(());
+    };
     let n_pixels = window.n_pixels();
-    let windows: Vec<Window<N>> = (grid.planes().iter())
-        .map(|rest| {
-            let mut origin = [0.0; N];
-            origin[2..].copy_from_slice(rest);
-            window.in_space(origin)
-        })
-        .collect();
     // Small planes are rendered together.
     if windows.len() > 1 && n_pixels <= FIRST {
         return watch::in_parts(stop, windows.len(), FIRST / n_pixels.max(1), |part| {

@@ -1,7 +1,9 @@
-//! Pixel grids of arrays: the size, the rectangle, and the part to compute.
+//! Pixel grids of arrays: the size, the rectangle, the positions of the samples, and the part to compute.
 
+use crate::data::named;
 use crate::error::{Error, Result};
 use dapple::raster::{Window, glam::DVec2};
+use dapple::recipe::Samples;
 use pyo3::conversion::FromPyObjectOwned;
 use pyo3::prelude::*;
 use pyo3::types::{PySlice, PyTuple};
@@ -12,14 +14,26 @@ pub(crate) struct Grid {
     axes: Vec<Axis>,
 }
 
-/// The pixels along an axis: the center of pixel `i` is at `origin + (first + i + ½) · extent / whole`.
+/// The pixels along an axis: the center of pixel `i` is at `origin + (first + i + ½) · pixel`. On corners the origin lies half
+/// a pixel before that of the caller.
 #[derive(Clone, Copy, Debug)]
 struct Axis {
     origin: f64,
-    extent: f64,
+    pixel: f64,
     whole: u32,
     first: i64,
     size: u32,
+    /// The index of the corner that is a copy of corner 0, if there is one.
+    copy: Option<i64>,
+}
+
+/// Pixels of an array that are copies of others: columns and rows on the side where a tile ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Copies {
+    /// The pixels to evaluate.
+    pub(crate) window: Window,
+    /// The column and row of the array at which they are written.
+    pub(crate) at: [usize; 2],
 }
 
 /// The arguments of a grid in the form of the caller: sizes and windows in NumPy's order (the last axis is x), extents
@@ -29,15 +43,21 @@ pub(crate) struct GridArguments<'a, 'py> {
     pub(crate) extent: Option<&'a Bound<'py, PyAny>>,
     pub(crate) origin: Option<&'a Bound<'py, PyAny>>,
     pub(crate) window: Option<&'a Bound<'py, PyAny>>,
+    pub(crate) samples: Option<&'a str>,
 }
 
 impl Grid {
-    /// Makes the grid for the arguments, with an extent that [`default_extent`] returns.
-    pub(crate) fn new(arguments: &GridArguments<'_, '_>, extent: &[f64]) -> Result<Self> {
-        let n_axes = extent.len();
+    /// Makes the grid for the arguments and the periods of what is drawn. The default extent is [`default_extent`].
+    pub(crate) fn new(
+        arguments: &GridArguments<'_, '_>,
+        period: &[Option<f64>],
+        shown: &[f64],
+    ) -> Result<Self> {
+        let n_axes = period.len();
         let sizes = sizes(arguments.size, n_axes)?;
+        let samples = samples(arguments.samples)?;
         let extents = match arguments.extent {
-            None => extent.to_vec(),
+            None => default_extent(period, shown),
             Some(extent) => numbers("extent", extent, n_axes)?,
         };
         let origins = match arguments.origin {
@@ -54,12 +74,9 @@ impl Grid {
                 return Err(Error::new("not_finite", message));
             }
             let whole = sizes[n_axes - 1 - axis];
-            axes.push(Axis {
-                origin,
-                extent,
-                whole,
-                first: 0,
-                size: whole,
+            axes.push(match samples {
+                Samples::Corners => Axis::on_corners(origin, extent, whole, period[axis])?,
+                _ => Axis::on_centers(origin, extent, whole),
             });
         }
         if let Some(window) = arguments.window {
@@ -96,11 +113,35 @@ impl Grid {
         let [x, y] = [self.axes[0], self.axes[1]];
         Window {
             origin: [x.origin, y.origin],
-            pixel: [x, y].map(|axis| axis.extent / f64::from(axis.whole)),
+            pixel: [x.pixel, y.pixel],
             first: [x.first, y.first],
             size: [x.size, y.size],
             scale: [1.0; 2],
         }
+    }
+
+    /// The pixels of each plane to evaluate after those of [`plane`](Self::plane), and to write over them in this order: the
+    /// last column, row and pixel of a tile on corners, which have the bits of the first ones.
+    pub(crate) fn copies(&self) -> Vec<Copies> {
+        let plane = self.plane();
+        let [column, row] = [0, 1].map(|axis| self.axes[axis].copied());
+        let mut copies = Vec::new();
+        for (at_column, at_row) in [(column, None), (None, row), (column, row)] {
+            let mut part = Copies {
+                window: plane,
+                at: [0; 2],
+            };
+            for (axis, at) in [at_column, at_row].into_iter().enumerate() {
+                if let Some(at) = at {
+                    (part.window.first[axis], part.window.size[axis]) = (0, 1);
+                    part.at[axis] = at;
+                }
+            }
+            if part.window.size != plane.size || part.window.first != plane.first {
+                copies.push(part);
+            }
+        }
+        copies
     }
 
     /// The further coordinates of each plane, one plane after the other in the order of the array.
@@ -120,12 +161,75 @@ impl Grid {
     }
 }
 
+impl Copies {
+    /// Writes these pixels into an array of rows of `width` pixels with `n_channels` values each.
+    pub(crate) fn write<T: Copy>(
+        &self,
+        part: &[T],
+        values: &mut [T],
+        width: usize,
+        n_channels: usize,
+    ) {
+        let row = self.window.size[0] as usize * n_channels;
+        for (index, part) in part.chunks_exact(row).enumerate() {
+            let first = ((self.at[1] + index) * width + self.at[0]) * n_channels;
+            values[first..first + row].copy_from_slice(part);
+        }
+    }
+}
+
 impl Axis {
+    fn on_centers(origin: f64, extent: f64, whole: u32) -> Self {
+        Self {
+            origin,
+            pixel: extent / f64::from(whole),
+            whole,
+            first: 0,
+            size: whole,
+            copy: None,
+        }
+    }
+
+    /// The corners from one side of the extent to the other. The last one is a copy of the first where the extent is a
+    /// whole number of periods.
+    fn on_corners(origin: f64, extent: f64, whole: u32, period: Option<f64>) -> Result<Self> {
+        if whole < 2 {
+            let message =
+                format!("the number of corners along a side is {whole}, but it must be at least 2");
+            return Err(Error::new("range", message));
+        }
+        let spaces = whole - 1;
+        let pixel = extent / f64::from(spaces);
+        let repeats =
+            period.is_some_and(|period| period == 0.0 || (extent / period).fract() == 0.0);
+        Ok(Self {
+            // The centers of pixels become corners. For an origin of 0 the first one is exact.
+            origin: origin - 0.5 * pixel,
+            pixel,
+            whole,
+            first: 0,
+            size: whole,
+            copy: repeats.then(|| spaces.into()),
+        })
+    }
+
+    /// The place of the copy of corner 0 in the part to compute, if it is in there.
+    fn copied(&self) -> Option<usize> {
+        let at = usize::try_from(self.copy? - self.first).ok()?;
+        (at < self.size as usize).then_some(at)
+    }
+
     /// The center of a pixel, computed as windows of the plane compute it.
     fn center(&self, index: u32) -> f64 {
-        let pixel = self.extent / f64::from(self.whole);
-        self.origin + ((self.first + i64::from(index)) as f64 + 0.5) * pixel
+        let index = self.first + i64::from(index);
+        let index = if self.copy == Some(index) { 0 } else { index };
+        self.origin + (index as f64 + 0.5) * self.pixel
     }
+}
+
+/// The positions of samples by their name: the centers of pixels by default.
+pub(crate) fn samples(name: Option<&str>) -> Result<Samples> {
+    name.map_or(Ok(Samples::default()), |name| named("samples", name))
 }
 
 /// The number of cells that are shown along an axis without a period.

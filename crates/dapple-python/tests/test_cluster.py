@@ -52,6 +52,15 @@ def pids(client):
     return list(client.run(os.getpid).values())
 
 
+def test_samples_on_corners_are_those_of_a_plan(tmp_path):
+    corners = RECIPE.plan().bake((65, 33), PLANES, samples="corners")
+    lazy = bake(RECIPE, (65, 33), "normal", chunks=20, samples="corners")
+    assert np.array_equal(lazy.compute(), corners["normal"])
+    with cluster(1) as workers, Client(workers):
+        report = bake_to_zarr(RECIPE, (65, 33), PLANES, tmp_path / "a.zarr", shard=20, samples="corners")
+    assert_whole(report.job, corners)
+
+
 @pytest.mark.parametrize("chunks", [256, (333, 1200)])
 def test_lazy_arrays_are_the_whole(whole, chunks):
     with cluster(2) as workers, Client(workers):

@@ -111,6 +111,85 @@ def test_volumes_are_stacks_of_their_slices(name):
     assert np.array_equal(plane, volume[index])
 
 
+def corners(size, extent, origin=(0.0,) * 4):
+    """Corners of a grid that reaches the sides (…, axes), x first, computed as windows compute them."""
+    axes = [
+        (start - 0.5 * (length / (side - 1))) + (np.arange(side) + 0.5) * (length / (side - 1))
+        for side, length, start in zip(reversed(size), extent, origin)
+    ]
+    grids = np.meshgrid(*reversed(axes), indexing="ij")
+    return np.stack(list(reversed(grids)), axis=-1)
+
+
+@pytest.mark.parametrize("name", FIELDS)
+def test_samples_on_corners_are_values_at_corners(name):
+    field = FIELDS[name]
+    extent = field._default_extent()
+    # A step of 1/30 or 1/40 of the extent is inexact, so that a side without a copy would differ in the last bits.
+    picture = field.render((41, 31), samples="corners")
+    assert np.array_equal(picture[:-1, :-1], field.sample(corners((41, 31), extent))[:-1, :-1])
+    assert picture[0, 0] == field.sample((0.0, 0.0))
+    x, y = field.period
+    assert y is None or np.array_equal(picture[-1], picture[0])
+    assert x is None or np.array_equal(picture[:, -1], picture[:, 0])
+    # Beyond the sides there are positions, and no copies.
+    beyond = field.render((41, 31), samples="corners", window=np.s_[-2:44, -3:35])
+    assert np.array_equal(beyond[2:43, 3:34], picture)
+    for window in (np.s_[7:41, 5:31], np.s_[40:41, 30:31], np.s_[0:3, 30:31], np.s_[40:41, 0:7]):
+        assert np.array_equal(field.render((41, 31), samples="corners", window=window), picture[window])
+
+
+@pytest.mark.parametrize("name", VOLUMES)
+def test_volumes_on_corners_are_values_at_corners(name):
+    field = VOLUMES[name]
+    shape = (3, 4, 12, 10)[4 - field.ndim :]
+    volume = field.render(shape, samples="corners")
+    inside = (slice(0, -1),) * field.ndim
+    assert np.array_equal(volume[inside], field.sample(corners(shape, field._default_extent()))[inside])
+    for axis, period in enumerate(reversed(field.period)):
+        if period is not None:
+            assert np.array_equal(volume.take(-1, axis), volume.take(0, axis))
+
+
+def test_samples_on_corners_have_the_bits_of_a_bake():
+    plan = dp.Recipe.builtin("flagstone").plan()
+    field = plan.field()
+    # The field of a node knows no period, so its last row and column are values and no copies.
+    assert field.period == [None, None]
+    picture = field.render((33, 65), extent=plan.recipe.extent, samples="corners")
+    baked = plan.bake((33, 65), samples="corners")["height"]
+    assert np.array_equal(picture[:-1, :-1], baked[:-1, :-1])
+    assert np.allclose(picture, baked, atol=1e-4)
+
+
+def test_copies_on_corners_follow_the_extent():
+    field = dp.gradient_noise(seed=3, period=(3, None)).frequency(3)
+    # The extent is 3 / 7 of 21 periods along x; its last column is a copy though no step is exact.
+    wide = field.render((5, 8), extent=(3.0, 1.0), samples="corners")
+    assert np.array_equal(wide[:, -1], wide[:, 0]) and not np.array_equal(wide[-1], wide[0])
+    half = field.render((5, 8), extent=(1.5, 1.0), samples="corners")
+    assert not np.array_equal(half[:, -1], half[:, 0])
+    assert np.array_equal(field.render((5, 8), samples="centers"), field.render((5, 8)))
+
+
+def test_feature_points_on_corners_are_those_of_positions():
+    field = dp.worley(seed=7, period=(4, 3))
+    drawn = field.render_features((31, 41), count=2, samples="corners")
+    found = field.features(corners((31, 41), (4, 3)), count=2)
+    assert np.array_equal(drawn.distance[:, :-1, :-1], np.moveaxis(found.distance, -1, 0)[:, :-1, :-1])
+    for plane in (drawn.distance, drawn.vector, drawn.id):
+        assert np.array_equal(plane[:, -1], plane[:, 0]) and np.array_equal(plane[:, :, -1], plane[:, :, 0])
+
+
+def test_samples_that_are_no_grid_are_refused():
+    with pytest.raises(dp.DappleError, match="the number of corners along a side is 1, but it must be at least 2") as caught:
+        FIELDS["f1"].render((1, 5), samples="corners")
+    assert caught.value.kind == "range"
+    with pytest.raises(dp.DappleError, match="centers, corners") as caught:
+        FIELDS["f1"].render(5, samples="corner")
+    assert (caught.value.kind, caught.value.hint) == ("name", "corners")
+
+
 def test_periods_are_exact():
     field = FIELDS["cracks"]
     assert field.period == [8.0, 8.0]

@@ -273,3 +273,47 @@ def test_stores_have_coordinates_and_attributes(tmp_path):
     assert field.x[0] == 1.5 and field.y[0] == 2.5 and field.z[0] == 3.5
     jobs.create(recipe, (4, 2, 2), "height", tmp_path / "c.zarr", shard=2)
     assert np.array_equal(xarray.open_zarr(tmp_path / "c.zarr").t, [0, 0.25, 0.5, 0.75])
+
+
+def test_samples_on_corners_have_the_bits_of_a_bake(tmp_path):
+    whole = RECIPE.plan().bake((65, 33), PLANES, samples="corners")
+    job = jobs.create(RECIPE, (65, 33), PLANES, tmp_path / "a.zarr", shard=16, samples="corners")
+    assert all(record.hashes for record in job.bake_all())
+    assert_whole(jobs.Job(tmp_path / "a.zarr"), whole)
+    loop = jobs.create(RECIPE, (2, 65, 33), "height", tmp_path / "b.zarr", shard=40, samples="corners")
+    assert all(record.hashes for record in loop.bake_all())
+    assert np.array_equal(loop.array("height")[0], whole["height"])
+    field = dp.gradient_noise(seed=1, dims=3, period=4)
+    volume = jobs.create(field, (5, 9, 7), "value", tmp_path / "c.zarr", shard=4, samples="corners")
+    assert all(record.hashes for record in volume.bake_all())
+    assert np.array_equal(volume.array("value")[:], field.render((5, 9, 7), samples="corners"))
+
+
+def test_samples_belong_to_the_job(tmp_path):
+    xarray = pytest.importorskip("xarray")
+    place = tmp_path / "a.zarr"
+    jobs.create(RECIPE, (5, 9), "height", place, shard=4, samples="corners")
+    width, height = RECIPE.extent
+    data = xarray.open_zarr(place)
+    assert np.array_equal(data.x, np.arange(9) * (width / 8)) and np.array_equal(data.y, np.arange(5) * (height / 4))
+    with pytest.raises(dp.DappleError, match="holds another job"):
+        jobs.create(RECIPE, (5, 9), "height", place, shard=4)
+    # The description of centers lacks the samples, as it did before there was a choice.
+    centers = jobs.create(RECIPE, (5, 9), "height", tmp_path / "b.zarr", shard=4, samples="centers")
+    assert "samples" not in centers.source.to_data()
+    for what in (RECIPE, dp.worley()):
+        with pytest.raises(dp.DappleError, match="at least 2 samples") as caught:
+            jobs.create(what, (1, 9), "height", tmp_path / "c.zarr", samples="corners")
+        assert caught.value.kind == "range"
+        with pytest.raises(dp.DappleError, match="centers, corners"):
+            jobs.create(what, (5, 9), "height", tmp_path / "c.zarr", samples="corner")
+    assert not (tmp_path / "c.zarr").exists()
+
+
+def test_the_command_bakes_on_corners(tmp_path):
+    place = tmp_path / "a.zarr"
+    made = run("create", place, "flagstone", "--size", "33x65", "--samples", "corners", "--shard", 64)
+    assert made.returncode == 0, made.stderr
+    assert run("bake", place).returncode == 0
+    whole = RECIPE.plan().bake((65, 33), samples="corners")
+    assert np.array_equal(jobs.Job(place).array("height")[:], whole["height"])

@@ -251,3 +251,18 @@ def test_threads_do_not_change_fields(points: dp.Points, values: np.ndarray) -> 
         assert all(np.array_equal(one, two) for one, two in zip(*pictures, strict=True))
     finally:
         dp.set_threads(before)
+
+
+def test_samples_on_corners_are_values_at_corners(points: dp.Points, values: np.ndarray) -> None:
+    ys, xs = np.mgrid[:30, :70]
+    places = np.stack([-0.5 * (2 / 70) + (xs + 0.5) * (2 / 70), -0.5 * (1 / 30) + (ys + 0.5) * (1 / 30)], axis=-1)
+    color = dp.pups(points, values)
+    picture = color.render((31, 71), samples="corners")
+    assert np.array_equal(picture[:-1, :-1], color.sample(places))
+    assert np.array_equal(picture[-1], picture[0]) and np.array_equal(picture[:, -1], picture[:, 0])
+    assert np.array_equal(color.render((31, 71), samples="corners", window=np.s_[9:31, 70:71]), picture[9:31, 70:71])
+    partition = dp.Partition(points, orientations="random", seed=3)
+    strongest = partition.strongest((31, 71), samples="corners")
+    cells = partition.field(values, labels=range(len(points))).render((31, 71), samples="corners")
+    assert np.array_equal(cells, values.astype(np.float32)[strongest])
+    assert np.array_equal(strongest[-1], strongest[0]) and np.array_equal(strongest[:, -1], strongest[:, 0])

@@ -22,6 +22,7 @@ _Pair: TypeAlias = _Number | Sequence[_Number] | npt.NDArray[np.floating]
 _Number: TypeAlias = float | np.floating | np.integer
 _Size: TypeAlias = SupportsIndex | Sequence[SupportsIndex] | npt.NDArray[np.integer]
 _Window: TypeAlias = tuple[slice, ...]
+_Samples: TypeAlias = Literal["centers", "corners"]
 _Periods: TypeAlias = SupportsIndex | Sequence[SupportsIndex | None]
 #: An image, or a dictionary of maps.
 _Maps: TypeAlias = Mapping[str, npt.ArrayLike]
@@ -65,6 +66,7 @@ class Field:
         extent: _Pair | None = None,
         origin: _Pair | None = None,
         window: _Window | None = None,
+        samples: _Samples = "centers",
         out: _F32 | None = None,
     ) -> _F32: ...
     def sample(self, positions: npt.ArrayLike) -> _F32: ...
@@ -112,6 +114,7 @@ class Worley(Field):
         extent: _Pair | None = None,
         origin: _Pair | None = None,
         window: _Window | None = None,
+        samples: _Samples = "centers",
         at: Sequence[float] | None = None,
     ) -> Features: ...
     def gradient(self, positions: npt.ArrayLike) -> _F64: ...
@@ -193,7 +196,7 @@ class Plan:
         maps: str | Iterable[str] = "height",
         *,
         window: _Window | None = None,
-        samples: Literal["centers", "corners"] = "centers",
+        samples: _Samples = "centers",
         as_xarray: Literal[False] = False,
     ) -> dict[str, _F32]: ...
     @overload
@@ -203,7 +206,7 @@ class Plan:
         maps: str | Iterable[str] = "height",
         *,
         window: _Window | None = None,
-        samples: Literal["centers", "corners"] = "centers",
+        samples: _Samples = "centers",
         as_xarray: Literal[True],
     ) -> xarray.Dataset: ...
     @property
@@ -261,6 +264,7 @@ class ColorField:
         extent: _Pair | None = None,
         origin: _Pair | None = None,
         window: _Window | None = None,
+        samples: _Samples = "centers",
         out: npt.NDArray[np.float32] | None = None,
     ) -> npt.NDArray[np.float32]: ...
     def sample(self, positions: npt.ArrayLike) -> npt.NDArray[np.float32]: ...
@@ -347,6 +351,7 @@ class Partition:
         extent: _Pair | None = None,
         origin: _Pair | None = None,
         window: _Window | None = None,
+        samples: _Samples = "centers",
     ) -> npt.NDArray[np.uint32]: ...
     def __len__(self) -> int: ...
     def __eq__(self, other: object, /) -> bool: ...

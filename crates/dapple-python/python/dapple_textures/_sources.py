@@ -8,7 +8,7 @@ import operator
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any, Protocol
+from typing import Any, Literal, Protocol, TypeAlias, get_args
 
 import numpy as np
 import numpy.typing as npt
@@ -30,6 +30,9 @@ Image = npt.NDArray[np.float32]
 #: The number of prepared recipes and fields that a process keeps, for the frames it works on. Each holds its images.
 _READY = 4
 
+
+#: The positions of the samples of an array.
+Samples: TypeAlias = Literal["centers", "corners"]
 
 #: Images as names, shapes and bytes, so that they are hashable.
 Packed = tuple[tuple[str, tuple[int, ...], bytes], ...]
@@ -73,12 +76,13 @@ class RecipeSource:
     recipe: str
     images: Packed
     time: float
+    samples: Samples = "centers"
 
     @classmethod
-    def of(cls, plan: Plan) -> RecipeSource:
+    def of(cls, plan: Plan, samples: Samples) -> RecipeSource:
         plan.check_local()
         _, (recipe, images, time) = plan.__reduce__()
-        return cls(recipe, _packed(images), time)
+        return cls(recipe, _packed(images), time, samples)
 
     def channels(self, plane: str) -> int:
         info = _map_info()
@@ -95,11 +99,14 @@ class RecipeSource:
     ) -> dict[str, Image]:
         *frames, rows, columns = window
         size = (shape[-2], shape[-1])
+
+        def bake(time: float) -> dict[str, Image]:
+            return self.plan(time).bake(size, list(planes), window=(rows, columns), samples=self.samples)
+
         if not frames:
-            return self.plan(self.time).bake(size, list(planes), window=(rows, columns))
+            return bake(self.time)
         pictures = [
-            self.plan((self.time + frame / shape[0]) % 1.0).bake(size, list(planes), window=(rows, columns))
-            for frame in range(frames[0].start, frames[0].stop)
+            bake((self.time + frame / shape[0]) % 1.0) for frame in range(frames[0].start, frames[0].stop)
         ]
         return {plane: np.stack([picture[plane] for picture in pictures]) for plane in planes}
 
@@ -107,10 +114,16 @@ class RecipeSource:
         if len(shape) not in (2, 3):
             message = f"the shape is {shape}, but a recipe has (rows, columns) or (frames, rows, columns)"
             raise refusal("shape", message)
+        _check_corners(shape[-2:], self.samples)
 
     def to_data(self) -> dict[str, Any]:
         images = [{"name": name, "hash": hashed} for (name, _, _), hashed in zip(self.images, self._hashes())]
-        return {"recipe": json.loads(self.recipe), "images": images, "time": self.time}
+        return {
+            "recipe": json.loads(self.recipe),
+            "images": images,
+            "time": self.time,
+            **_samples_data(self.samples),
+        }
 
     def images_by_hash(self) -> dict[str, Image]:
         arrays = (np.frombuffer(data, np.float32).reshape(shape) for _, shape, data in self.images)
@@ -126,7 +139,10 @@ class RecipeSource:
 
     def coordinates(self, shape: tuple[int, ...]) -> list[Coordinate]:
         width, height = Recipe.from_json(self.recipe).extent
-        plane = [_centers("y", 0.0, height, shape[-2]), _centers("x", 0.0, width, shape[-1])]
+        plane = [
+            _coordinate("y", 0.0, height, shape[-2], self.samples),
+            _coordinate("x", 0.0, width, shape[-1], self.samples),
+        ]
         if len(shape) == 2:
             return plane
         return [("elapsed part of the loop", lambda frame: (self.time + frame / shape[0]) % 1.0), *plane]
@@ -142,6 +158,7 @@ class FieldSource:
     description: str
     extent: tuple[float, ...]
     origin: tuple[float, ...]
+    samples: Samples = "centers"
 
     def channels(self, plane: str) -> int:
         if plane != "value":
@@ -153,7 +170,9 @@ class FieldSource:
         self, shape: tuple[int, ...], planes: Sequence[str], window: tuple[slice, ...]
     ) -> dict[str, Image]:
         field = _field(self.description)
-        values = field.render(shape, extent=self.extent, origin=self.origin, window=window)
+        values = field.render(
+            shape, extent=self.extent, origin=self.origin, window=window, samples=self.samples
+        )
         if values.shape[len(shape) :] == (1,):
             # A map of one channel has no axis for channels.
             values = values[..., 0]
@@ -162,9 +181,15 @@ class FieldSource:
     def check(self, shape: tuple[int, ...]) -> None:
         if len(shape) != len(self.extent):
             raise refusal("shape", f"the shape is {shape}, but the field has {len(self.extent)} axes")
+        _check_corners(shape, self.samples)
 
     def to_data(self) -> dict[str, Any]:
-        return {"field": self.description, "extent": list(self.extent), "origin": list(self.origin)}
+        return {
+            "field": self.description,
+            "extent": list(self.extent),
+            "origin": list(self.origin),
+            **_samples_data(self.samples),
+        }
 
     def images_by_hash(self) -> dict[str, Image]:
         return {}
@@ -174,7 +199,7 @@ class FieldSource:
 
     def coordinates(self, shape: tuple[int, ...]) -> list[Coordinate]:
         axes = zip("xyzw", self.origin, self.extent, reversed(shape))
-        return [_centers(*axis) for axis in axes][::-1]
+        return [_coordinate(*axis, self.samples) for axis in axes][::-1]
 
 
 def source(
@@ -182,38 +207,57 @@ def source(
     *,
     extent: float | Sequence[float] | None = None,
     origin: float | Sequence[float] | None = None,
+    samples: Samples = "centers",
 ) -> RecipeSource | FieldSource:
     """Returns the source of a recipe, a plan or a field, which can be baked in parts.
 
-    `extent` and `origin` are for fields only, with the same meaning as in `Field.render`. A recipe with a node that needs
+    `extent` and `origin` are for fields only. They and `samples` have the same meaning as in `Field.render`. A recipe with a node that needs
     the whole tile is refused, with a hint at the way out.
     """
+    if samples not in get_args(Samples):
+        raise _unknown("samples", samples, get_args(Samples))
     if isinstance(what, Recipe):
         what = what.plan()
     if isinstance(what, Plan):
         if extent is not None or origin is not None:
             raise refusal("conflict", "a recipe has an extent of its own: leave `extent` and `origin` out")
-        return RecipeSource.of(what)
+        return RecipeSource.of(what, samples)
     if not isinstance(what, Field | ColorField):
         raise TypeError(f"a Recipe, a Plan or a Field is needed, not {type(what).__name__}")
     if extent is None:
         extent = what._default_extent()
     _, (description,) = what.__reduce__()
     axes = what.ndim
-    return FieldSource(description, _numbers("extent", extent, axes), _numbers("origin", 0.0 if origin is None else origin, axes))
+    extents = _numbers("extent", extent, axes)
+    return FieldSource(description, extents, _numbers("origin", 0.0 if origin is None else origin, axes), samples)
 
 
 def from_data(data: dict[str, Any], images: dict[str, Image]) -> RecipeSource | FieldSource:
     """Rebuilds a source from its data and its images, given by their SHA-256."""
+    samples: Samples = data.get("samples", "centers")
     if "field" in data:
-        return FieldSource(data["field"], tuple(data["extent"]), tuple(data["origin"]))
+        return FieldSource(data["field"], tuple(data["extent"]), tuple(data["origin"]), samples)
     named = {image["name"]: images[image["hash"]] for image in data["images"]}
-    return RecipeSource(json.dumps(data["recipe"]), _packed(named), data["time"])
+    return RecipeSource(json.dumps(data["recipe"]), _packed(named), data["time"], samples)
 
 
-def _centers(name: str, origin: float, extent: float, side: int) -> Coordinate:
-    """Returns the coordinates of the centers of pixels, in units of the plane."""
-    return f"{name} in units of the plane", lambda pixel: origin + (pixel + 0.5) * (extent / side)
+def _coordinate(name: str, origin: float, extent: float, side: int, samples: Samples) -> Coordinate:
+    """Returns the coordinates of the samples along an axis, in units of the plane."""
+    what = f"{name} in units of the plane"
+    if samples == "corners":
+        return what, lambda corner: origin + corner * (extent / (side - 1))
+    return what, lambda pixel: origin + (pixel + 0.5) * (extent / side)
+
+
+def _check_corners(shape: tuple[int, ...], samples: Samples) -> None:
+    """Raises an error for samples on corners along a side that has a single one."""
+    if samples == "corners" and min(shape) < 2:
+        raise refusal("range", f"the shape is {shape}, but corners need at least 2 samples along each side")
+
+
+def _samples_data(samples: Samples) -> dict[str, str]:
+    """Returns the samples as data. The default is left out, so that the data of centers stay what they were."""
+    return {} if samples == "centers" else {"samples": samples}
 
 
 def _packed(images: dict[str, Image]) -> Packed:

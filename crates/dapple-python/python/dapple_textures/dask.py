@@ -43,6 +43,7 @@ def bake(
     chunks: Any = 2048,
     extent: float | Sequence[float] | None = None,
     origin: float | Sequence[float] | None = None,
+    samples: _sources.Samples = "centers",
 ) -> da.Array:
     """Returns a lazy array of any size: a map of a recipe, or the values of a field.
 
@@ -62,6 +63,9 @@ def bake(
         As in `Field.render`, for fields only.
     origin : float, sequence of float or None, default None
         As in `Field.render`, for fields only.
+    samples : {"centers", "corners"}, default "centers"
+        The positions of the samples, as in `Plan.bake` and `Field.render`: with "corners" the last row and column are
+        copies of the first ones where the tile repeats. It does not change the times of a loop.
 
     Returns
     -------
@@ -73,7 +77,7 @@ def bake(
     DappleError
         If `chunks` names an axis that the array lacks, a plane is unknown, or the shape does not fit the source.
     """
-    source = _sources.source(what, extent=extent, origin=origin)
+    source = _sources.source(what, extent=extent, origin=origin, samples=samples)
     plane = plane or ("value" if isinstance(source, _sources.FieldSource) else "height")
     shape = _sources.sides(shape)
     source.check(shape)
@@ -135,6 +139,7 @@ def bake_to_zarr(
     compressors: Any = "auto",
     extent: float | Sequence[float] | None = None,
     origin: float | Sequence[float] | None = None,
+    samples: _sources.Samples = "centers",
     resume: bool = True,
     client: Client | None = None,
 ) -> Report:
@@ -148,7 +153,16 @@ def bake_to_zarr(
     client = client or get_client()
     jobs.check_shared(store)
     job = jobs.create(
-        what, shape, planes, store, shard=shard, chunk=chunk, compressors=compressors, extent=extent, origin=origin
+        what,
+        shape,
+        planes,
+        store,
+        shard=shard,
+        chunk=chunk,
+        compressors=compressors,
+        extent=extent,
+        origin=origin,
+        samples=samples,
     )
     missing = job.missing()
     if not resume and len(missing) < len(job):

@@ -23,7 +23,7 @@ import warnings
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 import zarr
@@ -226,6 +226,7 @@ def create(
     compressors: Any = "auto",
     extent: float | Sequence[float] | None = None,
     origin: float | Sequence[float] | None = None,
+    samples: _sources.Samples = "centers",
 ) -> Job:
     """Makes the arrays of a job in a store, or opens the job if the store already holds the same one.
 
@@ -251,6 +252,9 @@ def create(
         As in `Field.render`, for fields only.
     origin : float, sequence of float or None, default None
         As in `Field.render`, for fields only.
+    samples : {"centers", "corners"}, default "centers"
+        The positions of the samples, as in `Plan.bake` and `Field.render`: with "corners" the last row and column are
+        copies of the first ones where the tile repeats. It does not change the times of a loop.
 
     Returns
     -------
@@ -263,7 +267,7 @@ def create(
         If there is no plane or one twice, a side is below 1, a chunk does not divide a shard, or the store holds
         something else.
     """
-    source = _sources.source(what, extent=extent, origin=origin)
+    source = _sources.source(what, extent=extent, origin=origin, samples=samples)
     planes = (planes,) if isinstance(planes, str) else tuple(planes)
     shape = _sources.sides(shape)
     source.check(shape)
@@ -319,7 +323,7 @@ def create(
 
 
 def _describe(group: zarr.Group, source: _sources.RecipeSource | _sources.FieldSource, shape: tuple[int, ...]) -> None:
-    """Adds coordinates of the centers of pixels to a group, and gathers its metadata in one file.
+    """Adds coordinates of the samples to a group, and gathers its metadata in one file.
 
     xarray reads both. Sides that are longer than 2**24 have no coordinates.
     """
@@ -435,6 +439,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     make.add_argument("--size", required=True, help="size of the whole as COLUMNSxROWS, or one number for both")
     make.add_argument("--maps", default="height", help="names of maps, separated by commas (height)")
     make.add_argument("--frames", type=int, help="number of pictures of a loop in time")
+    make.add_argument(
+        "--samples",
+        choices=get_args(_sources.Samples),
+        default="centers",
+        help="positions of the samples: centers of pixels, or corners of a grid that reaches the sides of the tile",
+    )
     make.add_argument("--shard", type=int, default=2048)
     make.add_argument("--chunk", type=int)
     bake = commands.add_parser("bake", help="bake shards that are missing")
@@ -474,7 +484,13 @@ def _create(options: argparse.Namespace) -> Job:
     recipe = read_recipe(options.recipe)
     plan = recipe.plan(images=read_recipe_images(recipe, Path(options.recipe).parent))
     return create(
-        plan, shape, options.maps.split(","), options.store, shard=options.shard, chunk=options.chunk
+        plan,
+        shape,
+        options.maps.split(","),
+        options.store,
+        shard=options.shard,
+        chunk=options.chunk,
+        samples=options.samples,
     )
 
 

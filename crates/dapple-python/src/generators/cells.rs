@@ -9,7 +9,7 @@ use crate::data;
 use crate::error::{Error, Result};
 use crate::field::Field;
 use crate::function::{Function, Made};
-use crate::grid::{CELLS, Grid, GridArguments, default_extent};
+use crate::grid::{CELLS, Grid, GridArguments};
 use crate::seed::SeedArgument;
 use crate::watch;
 use dapple::hash::Seed;
@@ -326,6 +326,8 @@ impl Worley {
     ///     The corner of the first pixel, x first.
     /// window : tuple of slice or None, default None
     ///     The part to compute, a slice for each axis of `size`.
+    /// samples : str, default "centers"
+    ///     The positions of the samples, "centers" or "corners", as in `Field.render`.
     /// at : sequence of float or None, default None
     ///     The further coordinates of a field of more than two axes; 0 by default.
     ///
@@ -338,8 +340,8 @@ impl Worley {
     /// ------
     /// DappleError
     ///     If `count`, `size`, `extent`, `origin` or `window` is out of range.
-    #[pyo3(signature = (size, *, count = 1, outputs = None, extent = None, origin = None, window = None, at = None),
-        text_signature = "(self, size, *, count=1, outputs=('distance', 'vector', 'id'), extent=None, origin=None, window=None, at=None)")]
+    #[pyo3(signature = (size, *, count = 1, outputs = None, extent = None, origin = None, window = None, samples = None, at = None),
+        text_signature = "(self, size, *, count=1, outputs=('distance', 'vector', 'id'), extent=None, origin=None, window=None, samples='centers', at=None)")]
     #[expect(clippy::too_many_arguments, reason = "they are keywords")]
     fn render_features<'py>(
         &self,
@@ -350,6 +352,7 @@ impl Worley {
         extent: Option<&Bound<'py, PyAny>>,
         origin: Option<&Bound<'py, PyAny>>,
         window: Option<&Bound<'py, PyAny>>,
+        samples: Option<&str>,
         at: Option<Vec<f64>>,
     ) -> Result<Bound<'py, PyAny>> {
         check_count(count)?;
@@ -364,8 +367,10 @@ impl Worley {
                 extent,
                 origin,
                 window,
+                samples,
             },
-            &default_extent(&period, &[CELLS; 2]),
+            &period,
+            &[CELLS; 2],
         )?;
         let rest = at.unwrap_or_else(|| vec![0.0; dims - 2]);
         if rest.len() != dims - 2 {
@@ -382,15 +387,10 @@ impl Worley {
         }
         let wanted = OUTPUTS.map(|output| names.iter().any(|name| name == output));
         let shape = [&[count][..], &grid.shape()].concat();
-        let n_values = grid.n_values()?;
-        let window = grid.plane();
+        grid.n_values()?;
         let made = self.made.clone();
         let drawn = watch::run(py, None, move |_, stop| {
-            with_counts!(
-                dims,
-                count,
-                draw(&made, &window, &rest, wanted, n_values, stop)
-            )
+            with_counts!(dims, count, draw(&made, &grid, &rest, wanted, stop))
         })??;
         let vectors = [&shape[..], &[dims]].concat();
         let arrays = (

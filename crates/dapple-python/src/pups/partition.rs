@@ -6,7 +6,7 @@ use crate::color_field;
 use crate::data;
 use crate::error::{Error, Result};
 use crate::function::Made;
-use crate::grid::{Grid, GridArguments, default_extent};
+use crate::grid::{Grid, GridArguments};
 use crate::points::{Domain, Graph, GraphMade, Points};
 use crate::seed::SeedArgument;
 use crate::shared::{Build, Shared};
@@ -344,6 +344,8 @@ impl Partition {
     ///     The corner of the first pixel, x first.
     /// window : tuple of slice or None, default None
     ///     The part to compute, a slice for each axis of `size`.
+    /// samples : str, default "centers"
+    ///     The positions of the samples, "centers" or "corners", as in `Field.render`.
     ///
     /// Returns
     /// -------
@@ -354,7 +356,8 @@ impl Partition {
     /// ------
     /// DappleError
     ///     If `size`, `extent`, `origin` or `window` is out of range.
-    #[pyo3(signature = (size, *, extent = None, origin = None, window = None))]
+    #[pyo3(signature = (size, *, extent = None, origin = None, window = None, samples = None),
+        text_signature = "(self, size, *, extent=None, origin=None, window=None, samples='centers')")]
     fn strongest<'py>(
         &self,
         py: Python<'py>,
@@ -362,21 +365,29 @@ impl Partition {
         extent: Option<&Bound<'py, PyAny>>,
         origin: Option<&Bound<'py, PyAny>>,
         window: Option<&Bound<'py, PyAny>>,
+        samples: Option<&str>,
     ) -> Result<Bound<'py, PyAny>> {
         let arguments = GridArguments {
             size,
             extent,
             origin,
             window,
+            samples,
         };
-        let extent = default_extent(&self.pups.domain().period(), &[1.0; 2]);
-        let grid = Grid::new(&arguments, &extent)?;
+        let grid = Grid::new(&arguments, &self.pups.domain().period(), &[1.0; 2])?;
         let (n_values, window) = (grid.n_values()?, grid.plane());
-        let pups = self.pups.clone();
+        let (pups, copies) = (self.pups.clone(), grid.copies());
         let points = threads::run(py, move || -> Result<Vec<PointIdx>> {
             let mut points = vec![PointIdx(0); n_values];
-            let view = RasterViewMut::new(&mut points, window.size[0] as usize, window.size)?;
+            let width = window.size[0] as usize;
+            let view = RasterViewMut::new(&mut points, width, window.size)?;
             pups.render_strongest(&window, view)?;
+            for copies in copies {
+                let first = copies.at[1] * width + copies.at[0];
+                let size = copies.window.size;
+                let view = RasterViewMut::new(&mut points[first..], width, size)?;
+                pups.render_strongest(&copies.window, view)?;
+            }
             Ok(points)
         })??;
         let points: Vec<u32> = points.into_iter().map(|point| point.0).collect();

@@ -4,11 +4,10 @@ use super::maps::{_map_info, kind_of, maps};
 use super::node::plan;
 use super::{NodeMade, Recipe, sha256};
 use crate::arrays;
-use crate::data::named;
 use crate::error::{Error, Result};
 use crate::field::Field;
 use crate::function::Made;
-use crate::grid::{Grid, GridArguments, size as size_of};
+use crate::grid::{self, Grid, GridArguments, size as size_of};
 use crate::shared::Shared;
 use crate::watch::{self, Stop};
 use dapple::color::{LinearRgb, Normal};
@@ -137,8 +136,9 @@ fn region(size: &Bound<'_, PyAny>, window: &Bound<'_, PyAny>) -> Result<Region> 
         extent: None,
         origin: None,
         window: Some(window),
+        samples: None,
     };
-    let window = Grid::new(&arguments, &[1.0; 2])?.plane();
+    let window = Grid::new(&arguments, &[None; 2], &[1.0; 2])?.plane();
     let inside = |first: i64| {
         u32::try_from(first)
             .map_err(|_| Error::new("window", "the window begins before the picture"))
@@ -189,7 +189,7 @@ impl Plan {
         samples: Option<&str>,
         as_xarray: bool,
     ) -> Result<Bound<'py, PyAny>> {
-        let samples = samples.map_or(Ok(Samples::default()), |name| named("samples", name))?;
+        let samples = grid::samples(samples)?;
         let options = BakeOptions {
             size: size_of(size)?,
             samples,

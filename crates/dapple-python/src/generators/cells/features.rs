@@ -4,6 +4,7 @@ use super::CellsMade;
 use super::texture::{Texture, plane};
 use crate::error::{Error, Result};
 use crate::generators::array;
+use crate::grid::Grid;
 use crate::watch::{self, Stop};
 use dapple::raster::{RasterViewMut, Window};
 use dapple::worley::{Dimensions, FeatureView, MAX_NEAREST, Space, Vector};
@@ -67,45 +68,50 @@ pub(super) struct Drawn {
 
 pub(super) fn draw<const N: usize, const K: usize>(
     made: &CellsMade,
-    window: &Window,
+    grid: &Grid,
     rest: &[f64],
     wanted: [bool; 3],
-    n_values: usize,
     stop: &Stop,
 ) -> Result<Drawn>
 where
     Dimensions: Space<N>,
 {
     let basis = made.basis::<N>()?;
+    let window = grid.plane();
+    let (n_values, stride) = (window.n_pixels(), window.size[0] as usize);
     let mut distance = wanted[0].then(|| vec![0.0_f32; K * n_values]);
     let mut vector = wanted[1].then(|| vec![[0.0_f32; N]; K * n_values]);
     let mut id = wanted[2].then(|| vec![0_u64; K * n_values]);
-    let stride = window.size[0] as usize;
-    watch::in_parts(stop, window.size[1] as usize, PART / stride, |rows| {
-        let size = [window.size[0], rows.len() as u32];
-        let part = window.crop([0, rows.start as i64], size)?;
-        let pixels = rows.start * stride..rows.end * stride;
+    let mut put = |part: &Window, first: usize| -> Result<()> {
+        let size = part.size;
         let mut views: [FeatureView<'_, N>; K] = core::array::from_fn(|_| FeatureView::default());
         if let Some(values) = &mut distance {
             for (view, values) in views.iter_mut().zip(values.chunks_mut(n_values)) {
-                let values = &mut values[pixels.clone()];
-                view.distance = Some(RasterViewMut::new(values, stride, size)?);
+                view.distance = Some(RasterViewMut::new(&mut values[first..], stride, size)?);
             }
         }
         if let Some(values) = &mut vector {
             for (view, values) in views.iter_mut().zip(values.chunks_mut(n_values)) {
-                let values = &mut values[pixels.clone()];
-                view.vector = Some(RasterViewMut::new(values, stride, size)?);
+                view.vector = Some(RasterViewMut::new(&mut values[first..], stride, size)?);
             }
         }
         if let Some(values) = &mut id {
             for (view, values) in views.iter_mut().zip(values.chunks_mut(n_values)) {
-                let values = &mut values[pixels.clone()];
-                view.id = Some(RasterViewMut::new(values, stride, size)?);
+                view.id = Some(RasterViewMut::new(&mut values[first..], stride, size)?);
             }
         }
-        Ok(basis.render_features(&plane::<N>(rest), &part, views)?)
+        Ok(basis.render_features(&plane::<N>(rest), part, views)?)
+    };
+    watch::in_parts(stop, window.size[1] as usize, PART / stride, |rows| {
+        let size = [window.size[0], rows.len() as u32];
+        put(
+            &window.crop([0, rows.start as i64], size)?,
+            rows.start * stride,
+        )
     })?;
+    for copies in grid.copies() {
+        put(&copies.window, copies.at[1] * stride + copies.at[0])?;
+    }
     Ok(Drawn {
         distance,
         vector: vector.map(Vec::into_flattened),
