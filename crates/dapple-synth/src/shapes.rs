@@ -4,7 +4,7 @@ use crate::{
     Edges, Exemplar, Hierarchy, HierarchyOptions, Orientation, Sites, SurfaceTexture, Synthesizer,
     hexagonal_spacing,
 };
-use dapple_hash::{Seed, hash1, unit_f64};
+use dapple_hash::{Seed, hash1, hash2, unit_f64};
 use dapple_mesh::{FaceIdx, Mesh, Surface, SurfacePoint};
 use dapple_raster::Raster;
 use glam::DVec3;
@@ -46,6 +46,14 @@ fn joined(meshes: &[Mesh]) -> Mesh {
         );
     }
     Mesh::new(positions, &faces).unwrap()
+}
+
+/// Triangles whose corners are anywhere in the unit cube.
+pub(crate) fn tangle(n: u32) -> Mesh {
+    let part = |corner: u32, axis: i64| unit_f64(hash2(Seed(3), [corner.into(), axis], 0));
+    let corner = |corner: u32| DVec3::from([0, 1, 2].map(|axis| part(corner, axis)));
+    let faces: Vec<_> = (0..n).map(|face| [0, 1, 2].map(|i| 3 * face + i)).collect();
+    Mesh::new((0..3 * n).map(corner).collect(), &faces).unwrap()
 }
 
 /// The unit square in the plane z = 0.

@@ -5,6 +5,7 @@
 //! cell needs about two searches in the table. Sites are sorted into their cells by counting. Reference: our own.
 
 use crate::SiteIdx;
+use core::ops::Range;
 use glam::DVec3;
 
 /// Sites sorted into the cells of a cubic grid.
@@ -87,7 +88,17 @@ impl SiteGrid {
     /// The order is that of the bricks, then of the cells in a brick, x first and z last both times, then of the sites
     /// in a cell: it depends on the positions and the side only.
     #[inline]
-    pub fn visit(&self, center: DVec3, radius: f64, visit: impl FnMut(SiteIdx)) {
+    pub fn visit(&self, center: DVec3, radius: f64, mut visit: impl FnMut(SiteIdx)) {
+        self.visit_rows(center, radius, |row| {
+            for &site in &self.members[row] {
+                visit(site);
+            }
+        });
+    }
+
+    /// Calls `visit` with the ranges of [`members`](Self::members) that [`visit`](Self::visit) goes through.
+    #[inline]
+    pub(crate) fn visit_rows(&self, center: DVec3, radius: f64, visit: impl FnMut(Range<usize>)) {
         self.visit_between(
             self.cell(center - radius),
             self.cell(center + radius),
@@ -116,13 +127,17 @@ impl SiteGrid {
     }
 
     /// Calls `visit` with every site in the cells of a block, in the order of [`visit`](Self::visit).
-    pub(crate) fn visit_block(&self, block: Block, visit: impl FnMut(SiteIdx)) {
-        self.visit_between(block.low, block.high, visit);
+    pub(crate) fn visit_block(&self, block: Block, mut visit: impl FnMut(SiteIdx)) {
+        self.visit_between(block.low, block.high, |row| {
+            for &site in &self.members[row] {
+                visit(site);
+            }
+        });
     }
 
-    /// Visits the sites of the cells from a first to a last one along each axis.
+    /// Visits the sites of the cells from a first to a last one along each axis, row by row.
     #[inline]
-    fn visit_between(&self, low: [u32; 3], high: [u32; 3], mut visit: impl FnMut(SiteIdx)) {
+    fn visit_between(&self, low: [u32; 3], high: [u32; 3], mut visit: impl FnMut(Range<usize>)) {
         if (0..3).any(|axis| low[axis] > high[axis]) {
             return;
         }
@@ -276,14 +291,14 @@ impl SiteGrid {
         (mixed >> 32) as usize & (self.table.len() - 1)
     }
 
-    /// Visits the sites of the cells of one brick that lie between two cells.
+    /// Visits the rows of the cells of one brick that lie between two cells.
     #[inline]
     fn visit_brick(
         &self,
         brick: u32,
         at: [u32; 3],
         [low, high]: [[u32; 3]; 2],
-        visit: &mut impl FnMut(SiteIdx),
+        visit: &mut impl FnMut(Range<usize>),
     ) {
         let first = [0, 1, 2].map(|axis| low[axis].max(at[axis] << BRICK_BITS));
         let last = [0, 1, 2].map(|axis| high[axis].min(((at[axis] + 1) << BRICK_BITS) - 1));
@@ -291,16 +306,13 @@ impl SiteGrid {
             for y in first[1]..=last[1] {
                 let from = place(brick, [first[0], y, z]) as usize;
                 let until = from + (last[0] - first[0]) as usize + 1;
-                let run = self.starts[from] as usize..self.starts[until] as usize;
-                for &site in &self.members[run] {
-                    visit(site);
-                }
+                visit(self.starts[from] as usize..self.starts[until] as usize);
             }
         }
     }
 
     /// Visits the sites within a ball that meets more bricks than there are.
-    fn visit_all(&self, low: [u32; 3], high: [u32; 3], mut visit: impl FnMut(SiteIdx)) {
+    fn visit_all(&self, low: [u32; 3], high: [u32; 3], mut visit: impl FnMut(Range<usize>)) {
         let mask = (1 << BITS) - 1;
         for (brick, &key) in (0..).zip(&self.bricks) {
             let at = [0, BITS, 2 * BITS].map(|shift| (key >> shift & mask) as u32);

@@ -271,21 +271,12 @@ impl Level {
 mod tests {
     use super::{Hierarchy, HierarchyOptions};
     use crate::SynthErrorKind;
-    use dapple_hash::{Seed, hash2, unit_f64};
-    use dapple_mesh::{Mesh, Surface};
-    use glam::DVec3;
-
-    /// Triangles whose corners are anywhere in the unit cube.
-    fn tangle(n: u32) -> Surface {
-        let part = |corner: u32, axis: i64| unit_f64(hash2(Seed(3), [corner.into(), axis], 0));
-        let corner = |corner: u32| DVec3::from([0, 1, 2].map(|axis| part(corner, axis)));
-        let faces: Vec<_> = (0..n).map(|face| [0, 1, 2].map(|i| 3 * face + i)).collect();
-        let positions = (0..3 * n).map(corner).collect();
-        Surface::new(Mesh::new(positions, &faces).unwrap()).unwrap()
-    }
+    use crate::shapes::tangle;
+    use dapple_mesh::Surface;
 
     #[test]
     fn surface_that_crosses_itself_too_often_is_refused() {
+        let tangle = |n| Surface::new(tangle(n)).unwrap();
         let options = HierarchyOptions::default();
         let error = Hierarchy::new(&tangle(5000), &options).unwrap_err();
         let SynthErrorKind::Range { what, value, .. } = error.kind() else {

@@ -10,6 +10,9 @@ pub(crate) const CHUNK: usize = 1024;
 /// The most neighbors that a list holds, the nearest ones. On a sheet of even points there are about twenty within
 /// reach, and a heap of sheets must not fill the memory.
 const CROWD_MAX: usize = 48;
+/// The ball that is searched first in a crowd, in distances of the farthest neighbor of the last full list: it has about twice
+/// as many sites as a list.
+const SPARE: f64 = 1.25;
 
 /// Positions of points in space, and their normals.
 #[derive(Debug, Default)]
@@ -40,6 +43,21 @@ impl Places {
     }
 }
 
+/// Positions in the order of the members of a grid, so that those of a row of cells are contiguous.
+struct Sorted {
+    grid: SiteGrid,
+    positions: Vec<DVec3>,
+}
+
+/// Sites within reach of a site; kept from site to site.
+#[derive(Debug, Default)]
+struct Found {
+    /// Sites with their squared distances.
+    sites: Vec<(f64, SiteIdx)>,
+    /// The distance of the farthest site of the last list that was full.
+    last_full: Option<f64>,
+}
+
 impl Near {
     /// Lists the neighbors of all sites from `first` on: those nearer than `reach` whose normals have a product with
     /// the site's own of at least `facing`.
@@ -48,15 +66,21 @@ impl Near {
     /// nearest first.
     pub(crate) fn new(places: &Places, first: usize, reach: f64, facing: f64) -> Self {
         let grid = SiteGrid::new(&places.positions, reach);
+        let positions = |&site: &SiteIdx| places.positions[site.index()];
+        let sorted = Sorted {
+            positions: grid.members().iter().map(positions).collect(),
+            grid,
+        };
         let n_sites = places.positions.len();
         let chunks = parallel::map(n_sites.saturating_sub(first).div_ceil(CHUNK), |chunk| {
             let first = first + chunk * CHUNK;
+            let mut found = Found::default();
             let mut rows = Rows {
                 starts: vec![0],
                 others: Vec::new(),
             };
             for site in first..n_sites.min(first + CHUNK) {
-                rows.add(places, &grid, site, [reach, facing]);
+                rows.add(found.list(places, &sorted, site, [reach, facing]));
             }
             rows.others.shrink_to_fit();
             rows
@@ -78,26 +102,116 @@ impl Rows {
         &self.others[self.starts[site] as usize..self.starts[site + 1] as usize]
     }
 
-    fn add(&mut self, places: &Places, grid: &SiteGrid, site: usize, [reach, facing]: [f64; 2]) {
+    fn add(&mut self, found: &[(f64, SiteIdx)]) {
+        self.others.extend(found.iter().map(|&(_, other)| other));
+        self.starts.push(self.others.len() as u32);
+    }
+}
+
+impl Found {
+    /// Lists the neighbors of a site.
+    fn list(
+        &mut self,
+        places: &Places,
+        sorted: &Sorted,
+        site: usize,
+        [reach, facing]: [f64; 2],
+    ) -> &[(f64, SiteIdx)] {
+        // In a crowd the nearest neighbors are all that count: if a smaller ball has enough of them, so does the list.
+        let smaller = self.last_full.map(|far| SPARE * far);
+        let smaller = smaller.filter(|&smaller| smaller < reach);
+        let mut n_found = 0;
+        for reach in smaller.into_iter().chain([reach]) {
+            n_found = self.gather(places, sorted, site, [reach, facing]);
+            if n_found > CROWD_MAX {
+                break;
+            }
+        }
+        if n_found <= CROWD_MAX {
+            return &self.sites[..n_found];
+        }
+        let nearest_first =
+            |a: &(f64, SiteIdx), b: &(f64, SiteIdx)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
+        self.sites[..n_found].select_nth_unstable_by(CROWD_MAX, nearest_first);
+        let nearest = &mut self.sites[..CROWD_MAX];
+        nearest.sort_unstable_by(nearest_first);
+        self.last_full = nearest.last().map(|(distance_sq, _)| distance_sq.sqrt());
+        nearest
+    }
+
+    /// Writes all neighbors of a site within reach to the front of `sites`, in the order of the grid. Returns their number.
+    fn gather(
+        &mut self,
+        places: &Places,
+        sorted: &Sorted,
+        site: usize,
+        [reach, facing]: [f64; 2],
+    ) -> usize {
         let (position, normal) = (places.positions[site], places.normals[site]);
         let reach_sq = reach * reach;
-        let first = self.others.len();
-        let distance_sq =
-            |other: SiteIdx| (places.positions[other.index()] - position).length_squared();
-        grid.visit(position, reach, |other| {
-            if distance_sq(other) < reach_sq
-                && normal.dot(places.normals[other.index()]) >= facing
-                && other.index() != site
-            {
-                self.others.push(other);
+        let found = &mut self.sites;
+        let mut n_found = 0;
+        sorted.grid.visit_rows(position, reach, |row| {
+            // Room for all. Every site is written, and those that do not count are written over: about a sixth of the sites
+            // are within reach where sheets cross, in no order, and branches would be guessed wrong.
+            if found.len() < n_found + row.len() {
+                found.resize(n_found + row.len(), (0.0, SiteIdx(0)));
+            }
+            let members = &sorted.grid.members()[row.clone()];
+            for (&other, &at) in members.iter().zip(&sorted.positions[row]) {
+                let distance_sq = (at - position).length_squared();
+                found[n_found] = (distance_sq, other);
+                n_found += usize::from(distance_sq < reach_sq);
             }
         });
-        if self.others.len() - first > CROWD_MAX {
-            self.others[first..].sort_unstable_by(|&a, &b| {
-                distance_sq(a).total_cmp(&distance_sq(b)).then(a.cmp(&b))
-            });
-            self.others.truncate(first + CROWD_MAX);
+        // Then those on another sheet are dropped, and the site itself.
+        let mut n_kept = 0;
+        for at in 0..n_found {
+            let (_, other) = found[at];
+            let faces = normal.dot(places.normals[other.index()]) >= facing;
+            found[n_kept] = found[at];
+            n_kept += usize::from(faces & (other.index() != site));
         }
-        self.starts.push(self.others.len() as u32);
+        n_kept
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{CROWD_MAX, Near, Places};
+    use crate::scatter;
+    use crate::shapes::tangle;
+    use dapple_hash::Seed;
+    use dapple_mesh::Surface;
+
+    #[test]
+    fn neighbors_are_those_of_a_plain_loop_where_sheets_cross() {
+        let surface = Surface::new(tangle(30)).unwrap();
+        let points = scatter(&surface, 1500, Seed(5));
+        let places = Places::new(&surface, &points);
+        // Around 20 neighbors in the mean, and far more in the middle, where most triangles cross.
+        let (reach, facing, first) = (0.18, -0.5, 100);
+        let near = Near::new(&places, first, reach, facing);
+        let mut n_crowded = 0;
+        for site in first..points.len() {
+            let place = places.positions[site];
+            let distance_sq = |other: usize| (places.positions[other] - place).length_squared();
+            let mut expected: Vec<usize> = (0..points.len())
+                .filter(|&other| distance_sq(other) < reach * reach && other != site)
+                .filter(|&other| places.normals[site].dot(places.normals[other]) >= facing)
+                .collect();
+            expected.sort_by(|&a, &b| distance_sq(a).total_cmp(&distance_sq(b)).then(a.cmp(&b)));
+            let row = (site - first) % super::CHUNK;
+            let list = near.chunk((site - first) / super::CHUNK).row(row);
+            let mut list: Vec<usize> = list.iter().map(|other| other.index()).collect();
+            if expected.len() > CROWD_MAX {
+                n_crowded += 1;
+                expected.truncate(CROWD_MAX);
+            } else {
+                list.sort_by(|&a, &b| distance_sq(a).total_cmp(&distance_sq(b)).then(a.cmp(&b)));
+            }
+            assert_eq!(list, expected, "of site {site}");
+        }
+        assert!((100..1300).contains(&n_crowded), "{n_crowded} crowds");
     }
 }

@@ -121,7 +121,14 @@ impl Crowd {
         seed: Seed,
     ) -> Option<(usize, SurfacePoint)> {
         let room = |crowd: &Self, position, normal| {
-            crowd.nearest(position, normal, 2.0 * crowd.spacing, |other| other != site)
+            let within = |reach| crowd.nearest(position, normal, reach, |other| other != site);
+            // Most places have a point close by, which makes it unnecessary to look at all others around.
+            let close = 0.5 * crowd.spacing;
+            let distance = within(close);
+            if distance < close {
+                return distance;
+            }
+            within(2.0 * crowd.spacing)
         };
         let mut most = room(self, self.places.positions[site], self.places.normals[site]);
         let mut best = None;
