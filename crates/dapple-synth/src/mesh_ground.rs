@@ -22,7 +22,7 @@ use turning::Turning;
 
 pub(crate) use interpolate::{Interpolation, interpolate};
 pub(crate) use lattice::Lattice;
-pub(crate) use nearby::{Around, Nearby};
+pub(crate) use nearby::{Around, Nearby, Record};
 pub(crate) use turning::turn_rates;
 
 /// How much farther than on a plane sites may lie from a sample's site and still count, in spacings.

@@ -1,7 +1,7 @@
 //! The sites that have a say at texels, found for all texels of a face at once.
 
 use crate::bake::Group;
-use crate::mesh_ground::Around;
+use crate::mesh_ground::{Around, Record};
 use crate::sites::weights;
 use dapple_raster::simd::dispatch;
 use fearless_simd::{Level, f32x8, prelude::*};
@@ -46,6 +46,39 @@ struct Found {
     weights: Vec<f32>,
 }
 
+/// Positions that may be within reach of some points of a face: between two planes on both sides of it.
+///
+/// All sites in a ball around the points come from the grid. Where sheets cross, most of them are above or below the face.
+#[derive(Clone, Copy, Debug)]
+struct Slab {
+    normal: Vec3,
+    low: f32,
+    high: f32,
+}
+
+impl Slab {
+    fn around(points: &[[Vec3; 2]], normal: Vec3, radius: f32) -> Self {
+        let heights = || points.iter().map(|[at, _]| at.dot(normal));
+        let far = points
+            .iter()
+            .map(|[at, _]| at.length())
+            .fold(radius, f32::max);
+        // Rounding of coordinates, of the normal, and of products: a few times 2^-24 of the largest coordinate.
+        let reach = radius + 1e-5 * far;
+        Self {
+            normal,
+            low: heights().fold(f32::INFINITY, f32::min) - reach,
+            high: heights().fold(f32::NEG_INFINITY, f32::max) + reach,
+        }
+    }
+
+    fn holds(&self, position: [f32; 3]) -> bool {
+        let height = Vec3::from(position).dot(self.normal);
+        // Holds for a normal that is NaN.
+        !(height < self.low || height > self.high)
+    }
+}
+
 impl Reach {
     /// Finds the sites of a group that are less than a radius from its points.
     pub(super) fn find(&mut self, level: Level, group: &Group<'_>, radius: f32) {
@@ -56,7 +89,12 @@ impl Reach {
         }));
         self.sites.clear();
         self.columns.iter_mut().for_each(Vec::clear);
+        let face_normal = group.surface.face_normal(group.face).as_vec3();
+        let slab = Slab::around(&self.points, face_normal, radius);
         for record in group.sites.sites() {
+            if !slab.holds(record.position) {
+                continue;
+            }
             self.sites.push(record.site);
             let parts = record.position.into_iter().chain(record.normal);
             for (column, part) in self.columns.iter_mut().zip(parts) {
@@ -104,9 +142,7 @@ impl Reach {
                 self.reaching[start + rank] = reaching(number, self.found.weights[found]);
             }
             if n_found == 0 {
-                let nearest = nearest([at, normal], around).into_iter();
-                self.reaching
-                    .extend(nearest.map(|number| reaching(number, 1.0)));
+                self.reaching.extend(nearest([at, normal], around));
             }
             self.ends.push(self.reaching.len());
         }
@@ -180,18 +216,22 @@ impl Found {
     }
 }
 
-/// Which site is nearest to a point, the first of several: of those on the same sheet, if there are any.
+/// The site nearest to a point, the first of several: of those on the same sheet, if there are any.
 #[cold]
-fn nearest([at, normal]: [Vec3; 2], around: Around<'_>) -> Option<usize> {
-    let far = around.sites().map(|record| {
+fn nearest([at, normal]: [Vec3; 2], around: Around<'_>) -> Option<Reaching> {
+    let far = |record: &Record| {
         let is_opposed = Vec3::from(record.normal).dot(normal) < 0.0;
         (is_opposed, at.distance_squared(Vec3::from(record.position)))
-    });
-    let nearest = far.enumerate().min_by(|(_, a), (_, b)| {
-        let by_distance = a.1.total_cmp(&b.1);
-        a.0.cmp(&b.0).then(by_distance)
-    });
-    nearest.map(|(number, _)| number)
+    };
+    let nearest = around.sites().min_by(|a, b| {
+        let (a, b) = (far(a), far(b));
+        a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
+    })?;
+    Some(Reaching {
+        site: nearest.site,
+        way: at - Vec3::from(nearest.position),
+        weight: 1.0,
+    })
 }
 
 #[cfg(test)]
@@ -199,10 +239,10 @@ mod tests {
     use super::{Found, LANES, MOST, Reach};
     use crate::bake::Group;
     use crate::mesh_ground::Nearby;
-    use crate::shapes::{cap, synthesizer};
+    use crate::shapes::{cap, synthesizer, tangle};
     use crate::sites::weights;
     use dapple_mesh::FaceIdx;
-    use dapple_raster::simd::{dispatch, for_every_level};
+    use dapple_raster::simd::{self, dispatch, for_every_level};
     use fearless_simd::{Level, f32x8, prelude::*};
     use glam::{DVec3, Vec3};
 
@@ -256,6 +296,36 @@ mod tests {
             assert_eq!(kept.collect::<Vec<_>>(), order, "of {n_found}");
             let expected: Vec<f32> = order.iter().map(|&at| weights[at]).collect();
             assert_eq!(found.weights[..n_kept], expected, "of {n_found}");
+        }
+    }
+
+    #[test]
+    fn sites_far_from_the_plane_of_a_face_are_not_searched() {
+        let tangle = synthesizer(tangle(60), 4000, |_, _| DVec3::NEG_Y);
+        let (surface, hierarchy) = (tangle.surface(), tangle.hierarchy());
+        let spacing = hierarchy.levels()[0].spacing();
+        let radius = (1.5 * spacing) as f32;
+        for face in (0..60).map(FaceIdx) {
+            let point = surface.point(face, [0.4, 0.3, 0.3]);
+            let center = surface.position(point);
+            let mut nearby = Nearby::default();
+            let sites = nearby.collect_ball(hierarchy, 0, center, 6.0 * spacing);
+            let group = Group {
+                surface,
+                face,
+                points: &[point],
+                center,
+                sites,
+            };
+            let mut reach = Reach::default();
+            reach.find(simd::level(), &group, radius);
+            let normal = surface.face_normal(face).as_vec3();
+            let height = |position| Vec3::from(position).dot(normal).abs();
+            let n_near = sites
+                .sites()
+                .filter(|site| height(site.position) < radius)
+                .count();
+            assert_eq!(reach.sites.len(), n_near, "of {} at {face:?}", sites.len());
         }
     }
 
