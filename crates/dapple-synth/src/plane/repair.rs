@@ -27,6 +27,10 @@ const DITHER: [[u8; STRIDE as usize]; STRIDE as usize] =
 /// How far around a hole pixels are compared to find what it begins with: as far as a neighborhood reaches.
 const RING: i64 = 3;
 
+/// How many times the squared differences of a piece count that lacks some of its surroundings. At half of the deviation it is
+/// taken: by chance a part of the surroundings is rarely that much more alike than all of them.
+const PARTIAL: f64 = 4.0;
+
 impl PlaneTexture {
     /// The exemplar itself: every pixel is from where it is.
     ///
@@ -211,6 +215,10 @@ fn square([column, row]: [i64; 2], reach: i64) -> impl Iterator<Item = [i64; 2]>
 impl Hole {
     /// Gives the sites the piece of the exemplar whose surroundings are most like theirs; nothing if none is as large. Of
     /// several the first row by row.
+    ///
+    /// On the coarsest level of a small image pieces may lack some of their surroundings, which reach past a side or into the
+    /// hole. Those that have at least half of them are compared by what is there, but their differences count
+    /// [`PARTIAL`] times.
     fn fill(&self, start: &mut Start, ground: &PlaneGround, level: usize, exemplar: &Exemplar) {
         let pixel_of = |place: [i64; 2]| {
             let pixel = exemplar.pixel_at(place);
@@ -237,31 +245,44 @@ impl Hole {
             .collect();
         let [width, height] = exemplar.size.map(i64::from);
         let [column, row] = self.sites[0];
-        let mut best = (f64::INFINITY, None);
-        for offset in (0..height).flat_map(|y| (0..width).map(move |x| [x - column, y - row])) {
+        let n_least = painted.len().div_ceil(2);
+        // The sum of squared differences of the surroundings of a piece, if it is below a limit.
+        let difference = |offset: [i64; 2], limit: f64| {
             let moved = |[column, row]: [i64; 2]| pixel_of([column + offset[0], row + offset[1]]);
             let area = moved([column, row]).and_then(&area_of);
             let moved = |place| moved(place).filter(|&pixel| area_of(pixel) == area);
             if !self.sites.iter().all(|&site| moved(site).is_some()) {
-                continue;
+                return None;
             }
-            let mut distance = 0.0;
+            let (mut sum, mut n_there) = (0.0, painted.len());
             for (place, color) in &painted {
                 let Some(pixel) = moved(*place) else {
-                    distance = f64::INFINITY;
-                    break;
+                    n_there -= 1;
+                    if n_there < n_least {
+                        return None;
+                    }
+                    continue;
                 };
                 let other = colors.of(pixel).iter();
                 let squares = other
                     .zip(*color)
                     .map(|(a, b)| f64::from(a - b) * f64::from(a - b));
-                distance += squares.sum::<f64>();
-                if distance >= best.0 {
-                    break;
+                sum += squares.sum::<f64>();
+                if sum >= limit {
+                    return None;
                 }
             }
-            if distance < best.0 {
-                best = (distance, Some(offset));
+            if n_there < painted.len() {
+                sum *= PARTIAL * painted.len() as f64 / n_there as f64;
+                // A piece that has all of its surroundings wins where nothing differs.
+                sum += f64::MIN_POSITIVE;
+            }
+            (sum < limit).then_some(sum)
+        };
+        let mut best = (f64::INFINITY, None);
+        for offset in (0..height).flat_map(|y| (0..width).map(move |x| [x - column, y - row])) {
+            if let Some(sum) = difference(offset, best.0) {
+                best = (sum, Some(offset));
             }
         }
         let Some([x, y]) = best.1 else { return };
