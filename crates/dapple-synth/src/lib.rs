@@ -87,54 +87,38 @@
 //!
 //! # How it works
 //!
-//! Even points, the *sites*, are scattered over the surface on several levels, each four times as dense as the next
-//! coarser one; they are the pixels of the texture ([`Hierarchy`]). The directions are interpolated to a unit vector at
-//! every site ([`Orientation`]), which is the "down" of the texture there, and sites are put in an order that runs
-//! along it ([`Sweep`]). Then, from the coarsest level to the finest, every site looks at the colors around it, as they
-//! lie to the right of it and below it, and takes the color of that pixel of the exemplar around which it looks most
-//! alike ([`Schedule`], [`Matcher`]). A [`SurfaceTexture`] has the color and, more than that, the pixel that each site
-//! took.
+//! 1. **Sites.** Evenly spaced points, the *sites*, cover the surface on several levels; each level has four times the
+//!    sites of the next coarser one ([`Hierarchy`]). Sites are the pixels of the texture.
+//! 2. **Orientation.** The given directions are interpolated to a unit tangent at every site ([`Orientation`]): the
+//!    texture's "down". Fields with two or four directions ([`Orientation::symmetric`]) have fewer and weaker
+//!    singularities; they suit examples that look alike when turned, such as bricks or checkers.
+//! 3. **Matching.** The coarsest level follows the paper ([`Matching::Colors`]): sites are visited along the orientation
+//!    ([`Sweep`]), and each takes the exemplar pixel with the most similar neighborhood ([`Schedule`], [`Matcher`]).
+//! 4. **Correction.** By default ([`Matching::Appearance`]) every level is then corrected by appearance, after Lefebvre and
+//!    Hoppe (2006): a site is compared with windows of the exemplar around its neighbors' pixels. This takes a quarter of
+//!    the time of full matching and keeps strands and letters connected more often.
+//! 5. **Baking.** A [`SurfaceTexture`] stores for each site its exemplar pixel, not only a color. Other maps of the exemplar
+//!    (height, roughness, normals) therefore follow: [`bake_colors`], [`bake_values`] and [`bake_normals`] write texture
+//!    maps with one [`Atlas`]. [`displaced_sites`] moves the mesh itself.
 //!
-//! That is the paper's way, [`Matching::Colors`]. By default only the coarsest level is made so
-//! ([`Matching::Appearance`]). On all levels the sites are then corrected by what the exemplar looks like around the
-//! pixels that the sites around them took. It takes a quarter of the time, and what is connected in the exemplar, as
-//! strands and letters are, is more often whole.
+//! [`Synthesizer`] keeps sites and orientation for reuse with other exemplars.
 //!
-//! So other maps of the exemplar can follow: [`bake_values`] and [`bake_normals`] write heights, roughness and normals
-//! to texture maps with the same [`Atlas`] as [`bake_colors`] does colors. What is to be matched and what only follows
-//! is the caller's choice: see [`Exemplar::from_planes`], [`Exemplar::with_channels`] and the example of
-//! [`bake_values`]. [`textured_model`] and [`site_model`] make what file formats take, [`displaced_sites`] moves the
-//! mesh itself.
+//! Channels decide what is matched and what follows: see [`Exemplar::from_planes`] and [`Exemplar::with_channels`].
+//! Guides ([`Exemplar::with_guides`]) steer which part of the exemplar goes where, by brightness or by the index of one of several
+//! examples ([`SideBySide`], [`Turned`]).
 //!
-//! [`Synthesizer`] keeps all that does not depend on the exemplar; it can be used again, reports its progress and can
-//! be stopped. The same passes on pixels, for plain images and for tiles, are [`synthesize_plane`];
-//! [`PlaneTexture::repair`] makes a part of an image again, and [`tile_plane`] a tile of a photograph that does not
-//! repeat.
+//! Where directions diverge, new rows of features begin; where they converge, rows end. With
+//! [`Synthesizer::with_conformal_scales`] the features grow and shrink instead.
 //!
-//! [`Endless`] textures are made in the plane in another way, after Lefebvre and Hoppe: all pixels of a level at once,
-//! from what is near them. So any window of a texture without ends can be made on its own, in a tenth of the time, and
-//! what is large or regular in an exemplar, such as courses of bricks, goes on.
-//!
-//! The example may be another textured surface ([`MeshExemplar`]): [`Synthesizer::lift`] puts its texture and relief
-//! onto this one, and [`MeshExemplar::repair`] makes a part of its own texture again.
-//!
-//! Bricks look alike upside down, and a checker lying on its side. Fields of two or four directions
-//! ([`Orientation::symmetric`]) turn around fewer and gentler singularities, and textures go on across the places at
-//! which they turn. In the plane, [`synthesize_plane_along`] takes directions and sizes of features from images.
-//!
-//! Where directions spread, rows of features of one size begin, and where they meet, rows end. Features may grow and
-//! shrink there instead: [`Synthesizer::with_conformal_scales`] finds the sizes with which they go on.
-//!
-//! Guides ([`Exemplar::with_guides`]) say where in a texture which part of the exemplar goes: how light it is, so that
-//! the texture shows an image; or which of several images, which lie [`SideBySide`]. There each may lie [`Turned`],
-//! too.
+//! [`Endless`] textures run the correction on a plane without bounds. Any window can be made on its own, in a tenth of the time
+//! of [`synthesize_plane`], and large or regular features, such as courses of bricks, stay intact.
 //!
 //! # The paper's sections
 //!
 //! | section | what it says | here |
 //! |---|---|---|
 //! | 3.1 | points on several levels, by repulsion, and their neighbors | [`Hierarchy`] |
-//! | 3.2 | interpolation, low-pass filter, down- and upsampling | [`Hierarchy::interpolate`] and beside it |
+//! | 3.2 | interpolation, low-pass filter, down- and upsampling | [`Hierarchy::interpolate`] and its siblings |
 //! | 4.1 | vector fields from a few directions, by pull and push | [`Orientation`], [`Direction`] |
 //! | 4.2, eq. 4, 5 | how far downstream a site is, and the order | [`Sweep`] |
 //! | 5.1 | one level | [`Schedule::single_level`] |
@@ -146,39 +130,37 @@
 //!
 //! # What the paper leaves open
 //!
-//! [`Options::paper`] takes the paper at its word, and says where even it departs; the default takes what turned out
-//! better:
+//! [`Options::paper`] follows the paper literally and documents its departures. The defaults differ where another choice
+//! measured better:
 //!
 //! * The neighborhood on the coarser level is centered at exactly half of the coordinates ([`CoarserCenter`]). Rounded
-//!   down, four pixels have the same one, and the first of them always wins.
-//! * A match may be worse if it goes on with what a neighbor took ([`Coherence`]). The least difference alone tends to
-//!   repeat smooth parts of the exemplar and to blur away structure like bricks.
-//! * Pixels that were used cost more on the coarsest level, and those near an edge of the exemplar are used, too
-//!   ([`Options::evenness`]). The least difference alone leaves out a third of the exemplar and most colors that are
-//!   rare.
-//! * Sites are from places between the pixels of the exemplar, and texels read the exemplar there ([`Sources`]). Means
-//!   of the colors of sites are softer than it, and edges in them are as jagged as the sites lie. A larger version of
-//!   the exemplar, such as the photograph that it was made from, can be read instead, and gives all its detail.
-//! * On surfaces, where neighborhoods are read between sites, the exemplar is blurred as much before it is compared.
-//!   Otherwise smooth parts of it match best.
-//! * The rows and columns of a neighborhood turn as the field around its site does ([`Axes`]). Straight on, features
-//!   that bend seem to come from one side: stripes around a torus are then off by 3.7 degrees instead of 1.5.
+//!   down, four pixels share a center, and the first of them always wins.
+//! * A worse match is accepted if it continues a neighbor's piece ([`Coherence`]). The smallest difference alone repeats
+//!   smooth parts of the exemplar and blurs structure such as bricks.
+//! * On the coarsest level, pixels that were used before cost more, and pixels near an edge of the exemplar are candidates,
+//!   too ([`Options::evenness`]). The smallest difference alone never uses a third of the exemplar, nor most rare colors.
+//! * Sites store positions between pixels, and texels read the exemplar there ([`Sources`]). Averages of site colors are
+//!   softer than the exemplar, with edges as jagged as the sites. A larger version of the exemplar can be read for detail.
+//! * On surfaces the exemplar is blurred as much as interpolated neighborhoods are before both are compared. Otherwise
+//!   smooth parts match best.
+//! * The rows and columns of a neighborhood turn with the field around its site ([`Axes`]). With straight axes, stripes
+//!   around a torus are off by 3.7 degrees instead of 1.5.
 //!
-//! For both:
+//! Both share these choices:
 //!
-//! * P = n × O points to the right, so that nothing is mirrored. Neighborhoods are laid out by walking over the faces
-//!   of the input, with both directions carried along over its edges, and not over the graph of sites.
-//! * Sites farther than 1.1 spacings have no part in a color between sites, and neither have those on another sheet,
-//!   whose normals are more than a right angle apart. At 2 spacings colors blur away.
-//! * H(n, 0) has the rows above the center only ([`Shape::Half`]); the row of the center is half random at that time.
-//! * Neighborhoods that cross an edge of the exemplar are left out as long as enough remain; it wraps if it says so.
-//! * A pass changes colors in place, in the order of the sweep. Of equally good pixels the first wins.
-//! * Colors are compared in their sRGB codes, and the pyramid is not rounded to codes.
-//! * Where no direction is given, texture runs down an axis. Every piece of the surface has an anchor of its own.
-//! * Where the field turns around a point, or order and field do not fit, the texture has a tear; no method has none.
+//! * P = n × O points to the right, so that nothing is mirrored. Neighborhoods are laid out by walking over the input's
+//!   faces, with both directions transported over its edges, and not over the graph of sites.
+//! * Only sites within 1.1 spacings contribute to an interpolated color. Sites on another sheet, with normals more than a
+//!   right angle apart, do not. At 2 spacings colors blur.
+//! * H(n, 0) has only the rows above the center ([`Shape::Half`]), since half of the center's row is still random.
+//! * Neighborhoods that cross an edge of the exemplar are excluded while enough others remain; exemplars may wrap.
+//! * A pass changes colors in place, in the order of the sweep. Among equally good pixels the first wins.
+//! * Colors are compared as sRGB codes; the pyramid is not rounded to codes.
+//! * Without a given direction, texture runs down an axis. Every piece of the surface has an anchor.
+//! * The texture has a tear where the field turns around a point, or where order and field conflict. No method avoids
+//!   this.
 //!
-//! Sites are worked on at the same time only if they do not read each other, so that the number of threads changes
-//! nothing.
+//! Sites run in parallel only if they do not read each other, so the number of threads does not change the result.
 
 #![forbid(unsafe_code)]
 
