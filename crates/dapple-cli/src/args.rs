@@ -43,8 +43,9 @@ pub(crate) struct Common {
     #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     pub(crate) max_pixels: Option<u64>,
 
-    /// How progress is shown on standard error: as a bar on a terminal and as lines elsewhere, or always as lines, or
-    /// as lines of JSON.
+    /// Progress display on standard error.
+    ///
+    /// `auto` is a bar on a terminal and lines elsewhere.
     #[arg(long, global = true, value_name = "STYLE", value_parser = NamedValueParser::<Style>::all(), default_value_t = Style::Auto)]
     pub(crate) progress: Style,
 
@@ -57,8 +58,10 @@ pub(crate) struct Common {
 #[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Output")]
 pub(crate) struct OutputArgs {
-    /// The output: a file, a folder, or `-` for standard output. An existing folder and a path that ends with a slash
-    /// are folders; for several files, so is a path without an ending. Missing folders are created.
+    /// Output file, directory, or `-` for standard output.
+    ///
+    /// An existing directory or a trailing slash means a directory; for several files, so does a path without an
+    /// extension. Missing directories are created.
     #[arg(short, long, value_name = "FILE|DIR/")]
     pub(crate) output: Option<PathBuf>,
 
@@ -92,9 +95,10 @@ pub(crate) struct ImageArgs {
     #[command(flatten)]
     pub(crate) files: OutputArgs,
 
-    /// The format. By default by the ending of the output: EXR for `.exr`, a NumPy array for `.npy`, raw heights for `.r16`; for
-    /// `.png` 8 bits for color and 16 bits for data (gray images and normals), and 16 bits for color, too, if the input is
-    /// deeper than 8.
+    /// File format [default: by the extension of the output].
+    ///
+    /// `.exr` is OpenEXR, `.npy` a NumPy array, `.r16` raw heights. `.png` has 8 bits for color and 16 bits for data
+    /// (gray images and normals), and 16 bits for color, too, if the input is deeper than 8.
     #[arg(long, value_name = "FORMAT", value_parser = NamedValueParser::<Format>::all())]
     pub(crate) format: Option<Format>,
 

@@ -107,4 +107,23 @@ mod tests {
             "values of libraries have help, too: {n_sentences}"
         );
     }
+
+    #[test]
+    fn short_help_has_few_words_and_synth_few_options() {
+        let command = command();
+        for subcommand in command.get_subcommands() {
+            let name = subcommand.get_name();
+            for arg in subcommand.get_arguments() {
+                let help = arg.get_help().map(ToString::to_string).unwrap_or_default();
+                let n_words = help.split_whitespace().count();
+                assert!(n_words <= 25, "{name} {}: {n_words} words", arg.get_id());
+            }
+        }
+        let synth = command.find_subcommand("synth").expect("it is there");
+        let shown = synth.get_arguments().filter(|arg| {
+            !arg.is_hide_short_help_set() && arg.get_help_heading() != Some("Output")
+        });
+        let names: Vec<_> = shown.filter_map(|arg| arg.get_long()).collect();
+        assert!(names.len() <= 20, "{names:?}");
+    }
 }

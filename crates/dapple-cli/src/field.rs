@@ -41,8 +41,9 @@ pub(crate) struct FieldArgs {
     #[arg(long, value_name = "X,Y,W,H")]
     pub(crate) region: Option<Region>,
 
-    /// Which values become black and white: `LO,HI`, or `raw` for the values as they are. By default what the subcommand
-    /// says for PNG and raw heights, and `raw` for EXR and NumPy arrays.
+    /// Values that become black and white: `LO,HI`, or `raw` for the values as they are.
+    ///
+    /// By default the range of the subcommand for PNG and raw heights, and `raw` for EXR and NumPy arrays.
     #[arg(long, value_name = "LO,HI|raw", allow_hyphen_values = true)]
     pub(crate) range: Option<RangeArg>,
 

@@ -8,8 +8,7 @@ use std::str::FromStr;
 /// The option of subcommands that make images from images.
 #[derive(clap::Args, Clone, Copy, Debug, Serialize)]
 pub(crate) struct AlphaArgs {
-    /// How transparency is handled: `keep` treats it like another channel, `drop` shows the colors without it, and
-    /// `over:COLOR` composites the image over a color, such as `over:#888`.
+    /// Handling of transparency: keep it as a channel, drop it, or composite over a color such as `over:#888`.
     #[arg(long, value_name = "keep|drop|over:COLOR", default_value = "keep")]
     pub(crate) alpha: Alpha,
 }

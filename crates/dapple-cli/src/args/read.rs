@@ -7,9 +7,10 @@ use serde::Serialize;
 /// The options of subcommands that read images.
 #[derive(clap::Args, Clone, Debug, Default, Serialize)]
 pub(crate) struct ReadArgs {
-    /// The layer to read of OpenEXR images with several, such as `ViewLayer.DiffCol`. By default the one without a
-    /// name, `Combined`, `rgba` or `beauty`, and of several views the first.
-    #[arg(long, value_name = "NAME")]
+    /// Layer to read from OpenEXR images with several, such as `ViewLayer.DiffCol`.
+    ///
+    /// By default the one without a name, `Combined`, `rgba` or `beauty`; of several views the first.
+    #[arg(long, value_name = "NAME", hide_short_help = true)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) layer: Option<String>,
 
@@ -27,9 +28,8 @@ pub(crate) struct ReadArgs {
 #[derive(clap::Args, Clone, Copy, Debug, Default, Serialize)]
 #[group(skip)]
 pub(crate) struct FiniteArgs {
-    /// What becomes of numbers of OpenEXR images that are NaN or infinite: an error, the mean of the finite pixels
-    /// around, or zero.
-    #[arg(long, value_name = "HOW", value_parser = NamedValueParser::<NonFinite>::all(), default_value_t = NonFinite::Error)]
+    /// Handling of OpenEXR numbers that are NaN or infinite.
+    #[arg(long, value_name = "HOW", hide_short_help = true, value_parser = NamedValueParser::<NonFinite>::all(), default_value_t = NonFinite::Error)]
     pub(crate) nonfinite: NonFinite,
 }
 

@@ -12,8 +12,9 @@ use serde::Serialize;
 #[derive(clap::Args, Clone, Copy, Debug, Default, Serialize)]
 #[group(skip)]
 pub(crate) struct SamplesArgs {
-    /// The positions of the samples: the centers of pixels, or the corners of a grid that reaches the sides of the tile, as
-    /// heights of terrains have them. On corners the last column and row equal the first ones where the tile repeats.
+    /// Sample positions: pixel centers, or corners that reach the sides of the tile, as for terrain.
+    ///
+    /// On corners the last column and row equal the first ones where the tile repeats.
     #[arg(long, value_name = "WHERE", value_parser = NamedValueParser::<Samples>::all(), default_value_t = Samples::Centers)]
     pub(crate) samples: Samples,
 }

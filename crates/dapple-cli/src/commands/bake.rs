@@ -64,8 +64,9 @@ NumPy arrays, and everything else is linear in all. For programs that know meter
 #[derive(clap::Args, Clone, Debug, Serialize)]
 #[command(after_help = EXAMPLES, after_long_help = format!("{EXAMPLES}\n\n{}", presets::table()))]
 pub(crate) struct Args {
-    /// Built-in recipes, or files in TOML or JSON; `-` is standard input. A pattern such as 'rocks/*.toml' stands for the files
-    /// that it matches, or for built-in recipes if there are none.
+    /// Built-in recipes, or files in TOML or JSON; `-` is standard input.
+    ///
+    /// A pattern such as 'rocks/*.toml' selects the files that it matches, or built-in recipes if there are none.
     #[arg(value_name = "RECIPE", required = true)]
     recipes: Vec<String>,
 
@@ -81,8 +82,10 @@ pub(crate) struct Args {
     #[arg(long, value_name = "X,Y,W,H")]
     region: Option<Region>,
 
-    /// Make only this shard, as `dapple shards` lists it: its column and row, from 0, and the size of all shards, with
-    /// their overlap. It goes into a folder of its list in the output, as EXR, and is not made again if it is there.
+    /// Bake only this shard, as `dapple shards` lists it.
+    ///
+    /// These are its column and row, from 0, and the size of all shards, with their overlap. It is written to a
+    /// directory of its list in the output, as EXR, and not baked again if it is there.
     #[arg(long, value_name = "COLUMN,ROW,WxH[+OVERLAP]", conflicts_with_all = ["region", "preset", "sheet", "preview", "format", "name", "json"])]
     shard: Option<Shard>,
 
@@ -90,13 +93,16 @@ pub(crate) struct Args {
     #[arg(long, value_name = "K/N")]
     frame: Option<Frame>,
 
-    /// Make all pictures of a loop, N of them: the files that `--frame 1/N` to `--frame N/N` make in a folder, whose names end
-    /// in 001 and so on. What does not move is made once.
+    /// Bake all N frames of a loop.
+    ///
+    /// The files are those of `--frame 1/N` to `--frame N/N`, in a directory, with names that end in 001 and so on.
+    /// Parts that do not move are computed once.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000), conflicts_with_all = ["frame", "shard"])]
     frames: Option<u32>,
 
-    /// Keep only a band of rows in memory, for large tiles. Refused where a node sees the whole tile, and needed past
-    /// 32768 × 32768 pixels.
+    /// Keep only a band of rows in memory; required past 32768 × 32768 pixels.
+    ///
+    /// Refused where a node sees the whole tile.
     #[arg(long)]
     banded: bool,
 

@@ -36,8 +36,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "X,Y,W,H")]
     region: Option<Region>,
 
-    /// How transparency is handled, which is an error by default: `drop` shows the colors without it, and `over:COLOR`
-    /// composites the image over a color, such as `over:#888`.
+    /// Handling of transparency, an error by default: drop it, or composite over a color such as `over:#888`.
     #[arg(long, value_name = "drop|over:COLOR", value_parser = image_alpha)]
     alpha: Option<ImageAlpha>,
 

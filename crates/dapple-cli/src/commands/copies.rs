@@ -70,9 +70,10 @@ pub(crate) struct Args {
     #[command(flatten)]
     method: MethodArgs,
 
-    /// Write the tiles themselves, for a program that lays them out: those of borders with their number from 1 on, as
-    /// `NAME_1`; those of corners with the tiles at their corners (top left and right, bottom left and right), as
-    /// `NAME_1221`.
+    /// Write the tiles themselves, for a program that lays them out.
+    ///
+    /// Tiles with matched borders have a number starting at 1, as in `NAME_1`. Corner tiles have the colors of their
+    /// corners (top left and right, bottom left and right), as in `NAME_1221`.
     #[arg(long, help_heading = "Output")]
     tiles: bool,
 

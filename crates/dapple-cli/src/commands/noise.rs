@@ -22,8 +22,9 @@ basis `gradient`; domain warps and ridges are made of it there.";
 #[derive(clap::Args, Debug, Serialize)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Args {
-    /// The number of cells across the shorter side of the picture, in the coarsest octave. It must be a whole number
-    /// along each axis on which the picture repeats.
+    /// Number of cells across the shorter side, in the coarsest octave.
+    ///
+    /// It must be a whole number along each axis on which the image repeats.
     #[arg(
         long,
         value_name = "N",

@@ -67,8 +67,9 @@ pub(crate) struct Args {
     #[arg(long, value_name = "PX", help_heading = "Output")]
     dot: Option<f64>,
 
-    /// The colors of the picture, in steps: the background, and the dots of each level. By default black on white, or
-    /// several colors on white for several levels.
+    /// Colors: the background, then the dots of each level [default: black on white].
+    ///
+    /// By default several levels have several colors.
     #[arg(long, value_name = "COLORS", help_heading = "Output")]
     ramp: Option<RampArg>,
 

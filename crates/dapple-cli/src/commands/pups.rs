@@ -89,8 +89,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FILE", help_heading = "Texture")]
     reference: Option<PathBuf>,
 
-    /// What becomes of the transparency of that image, which is refused otherwise: `drop` takes the colors without it, and
-    /// `over:COLOR` lays the image over a color, such as `over:black`.
+    /// Handling of that image's transparency, an error by default: `drop`, or `over:COLOR` such as `over:black`.
     #[arg(long, value_name = "drop|over:COLOR", value_parser = image_alpha, requires = "reference")]
     alpha: Option<ImageAlpha>,
 
@@ -122,8 +121,10 @@ pub(crate) struct Args {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000), help_heading = "Loop")]
     frames: Option<u32>,
 
-    /// The radius of the largest circles, as a part of the mean distance of a point to its neighbors, above 0 and at most 1.
-    /// By default 0.25 with --frames; without either, the points do not move.
+    /// Largest radius of moving points, relative to the mean distance of neighbors, above 0 up to 1 [default: 0.25 with
+    /// --frames].
+    ///
+    /// Without either option the points do not move.
     #[arg(long, value_name = "PART", help_heading = "Loop")]
     motion: Option<f64>,
 

@@ -69,34 +69,38 @@ On a mesh directions are lines x,y,z,dx,dy,dz (CSV) or [{\"at\": [x,y,z], \"vect
 (JSON): at a place on the mesh, where the down of the example points. One or a few are
 enough; in between they are interpolated.";
 
-/// Grow a texture from an example: an image or a tile of any size, or one that covers a mesh (Turk 2001).
+/// Grow a texture from an example image: an image or tile of any size, or a texture that covers a mesh (Turk 2001).
 #[derive(clap::Args, Debug, Serialize)]
 #[command(after_help = format!("{EXAMPLES}\n\n{}", surface::endings()))]
 pub(crate) struct Args {
-    /// The example. PNG and JPEG are sRGB unless they declare another color space, and OpenEXR is linear. Color is matched
-    /// in sRGB, gray as it is. Or another mesh with a texture or with colors of its vertices, whose texture and material
-    /// --mesh then gets; maps of it are at its texture coordinates.
+    /// Example image, or a textured or vertex-colored mesh whose texture --mesh gets.
+    ///
+    /// PNG and JPEG are sRGB unless they declare another color space; OpenEXR is linear. Color is matched in sRGB, gray as
+    /// it is. Maps of an example mesh are at its texture coordinates; its material goes to --mesh, too.
     #[arg(value_name = "IMAGE|MESH")]
     exemplar: PathBuf,
 
-    /// Another map of the example that follows it, such as normal=FILE or roughness=FILE; may be given several times. It is
-    /// written beside the output as `NAME_MAP`. Into the material of a mesh go normal, and in GLB also roughness, metallic
-    /// and ao.
+    /// Another map of the example that follows it, such as normal=FILE or roughness=FILE; repeatable.
+    ///
+    /// It is written next to the output as `NAME_MAP`. The material of a mesh takes `normal`, and in GLB also `roughness`,
+    /// `metallic` and `ao`.
     #[arg(long, value_name = "NAME=IMAGE")]
     map: Vec<MapArg>,
 
-    /// A larger version of the example, such as the photograph that it was made from: a whole number of times as large. The
-    /// texture shows it instead, with all its detail, and is as much larger in the plane; maps have its size.
+    /// Larger version of the example, such as the original photograph, whose detail the texture shows.
+    ///
+    /// Its size is a whole multiple of the example's. A texture in the plane becomes as much larger; maps have its size.
     #[arg(long, value_name = "IMAGE", conflicts_with = "region")]
     detail: Option<PathBuf>,
 
     /// Use only this part of the example, in pixels.
-    #[arg(long, value_name = "X,Y,W,H")]
+    #[arg(long, value_name = "X,Y,W,H", hide_short_help = true)]
     region: Option<Region>,
 
-    /// Use only those pixels of the example at which this image, of its size, is white. Neighborhoods with other pixels are
-    /// not used either. Of several examples, give one for each, in their order.
-    #[arg(long, value_name = "IMAGE")]
+    /// Use only the pixels of the example where this mask (same size) is white.
+    ///
+    /// Neighborhoods that contain other pixels are excluded. With several examples, give one mask for each, in order.
+    #[arg(long, value_name = "IMAGE", hide_short_help = true)]
     mask: Vec<PathBuf>,
 
     #[command(flatten)]

@@ -65,8 +65,10 @@ pub(crate) struct Args {
     #[arg(long, help_heading = "Quality")]
     report: bool,
 
-    /// Exit with 3 if a tile does not pass, in any of its channels: if the seam is visible, a band has gone soft,
-    /// contrast was lost, the seam is unlike the source, copies mirror each other, or samples are clipped.
+    /// Exit with 3 if a tile does not pass the seam report in any channel.
+    ///
+    /// A tile fails if the seam is visible, a band is blurred, contrast is lost, the seam is unlike the source, copies
+    /// mirror each other, or samples are clipped.
     #[arg(long, help_heading = "Quality")]
     check: bool,
 

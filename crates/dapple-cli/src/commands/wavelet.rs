@@ -23,8 +23,9 @@ white in PNG; several bands have the range that goes with the sum of their varia
 #[derive(clap::Args, Debug, Serialize)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Args {
-    /// The number of cells across the shorter side of the picture, in the coarsest band. It must be an even number,
-    /// from 4 on, along each axis on which the picture repeats.
+    /// Number of cells across the shorter side, in the coarsest band.
+    ///
+    /// It must be an even number, at least 4, along each axis on which the image repeats.
     #[arg(
         long,
         value_name = "N",

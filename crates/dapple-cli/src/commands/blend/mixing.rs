@@ -44,8 +44,9 @@ pub(super) struct MixingArgs {
     #[arg(long, value_name = "N")]
     depth: Option<f64>,
 
-    /// mask: one over the width of transitions, in values of the tile, above 0 and at most 1e9: 1 is soft, 1e9 makes
-    /// hard edges; by default 8.
+    /// mask: sharpness of transitions, above 0 up to 1e9: 1 is soft, 1e9 is hard [default: 8].
+    ///
+    /// It is one over the width of transitions, in values of the tile.
     #[arg(long, value_name = "N")]
     gain: Option<f64>,
 

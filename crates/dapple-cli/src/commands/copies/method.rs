@@ -31,18 +31,18 @@ pub(super) struct MethodArgs {
     #[arg(long, value_parser = NamedValueParser::<Name>::all())]
     method: Option<Name>,
 
-    /// disturb: the number of unchanged pixels along the borders of a tile; by default 4, or an eighth of the shorter
-    /// side if that is less.
+    /// disturb: number of unchanged pixels along the borders of a tile [default: 4, or an eighth of the shorter side].
     #[arg(long, value_name = "PX")]
     frozen: Option<u32>,
 
-    /// disturb: the number of further pixels in which the cut may lie, together with the frozen ones at most half of a
-    /// side; by default a quarter of the shorter side.
+    /// disturb: number of further pixels in which the cut may lie [default: a quarter of the shorter side].
+    ///
+    /// Together with the frozen pixels it is at most half of a side.
     #[arg(long, value_name = "PX")]
     margin: Option<u32>,
 
-    /// borders: the width of the changed borders of a tile, in pixels, from 1 to half of a side; by default a quarter
-    /// of the shorter side.
+    /// borders: width of the changed borders in pixels, from 1 to half of a side [default: a quarter of the shorter
+    /// side].
     #[arg(long, value_name = "PX")]
     width: Option<u32>,
 
@@ -51,8 +51,9 @@ pub(super) struct MethodArgs {
     #[arg(long, value_name = "WHICH", value_parser = NamedValueParser::<BorderSource>::all())]
     source: Option<BorderSource>,
 
-    /// corners: the share of the shorter side that cuts may take, above 0 and at most 1; the larger, the less the
-    /// pieces look like squares; by default 0.75.
+    /// corners: share of the shorter side that cuts may take, above 0 up to 1 [default: 0.75].
+    ///
+    /// The larger, the less the pieces look like squares.
     #[arg(long, value_name = "PART")]
     share: Option<f64>,
 }

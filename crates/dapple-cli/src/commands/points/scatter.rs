@@ -69,13 +69,14 @@ pub(super) struct ScatterArgs {
     #[arg(long, value_name = "N", conflicts_with = "radii", value_parser = clap::value_parser!(u32).range(1..=16))]
     levels: Option<u32>,
 
-    /// variable: the density of points: an image, with more points in brighter parts; or A:B, a ramp from left to
-    /// right, with points in the ratio of A to B at its ends.
+    /// variable: density as an image with more points in brighter parts, or A:B, a ramp from left to right.
+    ///
+    /// A to B is the ratio of the densities at both ends.
     #[arg(long, value_name = "IMAGE|A:B")]
     density: Option<Density>,
 
-    /// variable: how the transparency of the image is handled, which is an error by default: `drop` uses the colors
-    /// without it, and `over:COLOR` composites the image over a color, such as `over:black`.
+    /// variable: handling of the image's transparency, an error by default: `drop`, or `over:COLOR` such as
+    /// `over:black`.
     #[arg(long, value_name = "drop|over:COLOR", value_parser = image_alpha, requires = "density")]
     alpha: Option<ImageAlpha>,
 

@@ -22,52 +22,66 @@ use std::path::{Path, PathBuf};
 #[derive(clap::Args, Clone, Debug, Serialize)]
 #[command(next_help_heading = "Guides")]
 pub(super) struct GuideArgs {
-    /// Another example beside the first; may be given several times. Every `--map` is then given once for each example, in the
-    /// same order.
+    /// Another example image; repeatable.
+    ///
+    /// Every `--map` is then given once for each example, in the same order.
     #[arg(long = "example", value_name = "IMAGE", conflicts_with_all = ["detail", "region"])]
     pub(super) examples: Vec<PathBuf>,
 
-    /// Also take all examples mirrored or turned, with their maps and guides (normals have green up): for things that lie in
-    /// any direction, such as leaves and gravel.
+    /// Also use mirrored or rotated copies of the examples, for features in any direction, such as leaves or gravel.
+    ///
+    /// Maps and guides turn with them; normals have green up.
     #[arg(long, value_name = "HOW", value_parser = NamedValueParser::<Turned>::all(), default_value_t, conflicts_with = "detail")]
     pub(super) turned: Turned,
 
-    /// Which example goes where: black is the first, white the last, and grays are those between. A texture in the plane has
-    /// the size of this image; on a mesh it is read at the mesh's own texture coordinates, or it is the mesh with colors of its
-    /// vertices.
+    /// Which example goes where: black is the first, white the last.
+    ///
+    /// Grays select the examples between. A texture in the plane has the size of this image. On a mesh it is read at
+    /// the mesh's own texture coordinates, or it is the mesh with vertex colors.
     #[arg(long, value_name = "IMAGE|MESH", requires = "examples", conflicts_with_all = ["size", "repair", "replay"])]
     which: Option<PathBuf>,
 
-    /// A picture that the texture is to look like from afar: light pixels of the example go where it is light. A texture in
-    /// the plane has its size; on a mesh it is read at the mesh's own texture coordinates, or it is the mesh with colors of
-    /// its vertices.
+    /// Image that the texture resembles from afar: bright pixels of the example go where it is bright.
+    ///
+    /// A texture in the plane has its size. On a mesh it is read at the mesh's own texture coordinates, or it is the
+    /// mesh with vertex colors.
     #[arg(long, value_name = "IMAGE|MESH", conflicts_with_all = ["size", "repair", "replay"])]
     guide: Option<PathBuf>,
 
-    /// Where in the example there is what --guide says, such as heights in both: an image for each example. By default it is
-    /// how light the example is, and --guide is made as light and as rich in contrast.
-    #[arg(long, value_name = "IMAGE", requires = "guide")]
+    /// Values of the example that correspond to --guide, such as heights; one image per example [default: brightness].
+    ///
+    /// By default the brightness and contrast of --guide are matched to those of the example.
+    #[arg(long, hide_short_help = true, value_name = "IMAGE", requires = "guide")]
     guide_of: Vec<PathBuf>,
 
-    /// How far around a pixel it is averaged how light example and --guide are, in pixels: less follows finer lines, and loses
-    /// more of the example. By default 2, or 0 with --guide-of.
-    #[arg(long, value_name = "PX", requires = "guide", value_parser = blur_range)]
+    /// Radius in pixels for averaging brightness; smaller follows finer lines and loses more of the example [default:
+    /// 2, or 0 with --guide-of].
+    #[arg(long, hide_short_help = true, value_name = "PX", requires = "guide", value_parser = blur_range)]
     guide_blur: Option<f64>,
 
-    /// How much --guide counts beside one channel of the colors around a pixel.
-    #[arg(long, value_name = "N", requires = "guide", default_value_t = 1.0)]
+    /// Weight of --guide relative to one color channel.
+    #[arg(
+        long,
+        hide_short_help = true,
+        value_name = "N",
+        requires = "guide",
+        default_value_t = 1.0
+    )]
     guide_weight: f32,
 
-    /// How large a pixel of the example is: an image, black where it is small and white where it is large. A texture in the
-    /// plane has its size; on a mesh it is read at the mesh's own texture coordinates, or it is the mesh with colors of its
-    /// vertices.
+    /// Feature size as an image: black is small, white is large.
+    ///
+    /// A texture in the plane has its size. On a mesh it is read at the mesh's own texture coordinates, or it is the
+    /// mesh with vertex colors.
     #[arg(long, value_name = "IMAGE|MESH")]
     pub(super) scale: Option<PathBuf>,
 
-    /// The sizes at black and at white of --scale, from 1/8 to 8, in pixels of the texture or distances of points of a mesh; by
-    /// default 1,2. Without --scale sizes follow the directions, and these are the least and the largest: features grow
-    /// where directions spread and shrink where they meet, and so they go on in place of beginning and ending there.
-    #[arg(long, value_name = "A,B")]
+    /// Feature sizes at black and at white of --scale, from 1/8 to 8 [default: 1,2].
+    ///
+    /// Units are pixels of the texture, or distances of sites on a mesh. Without --scale, sizes follow the directions
+    /// within these bounds: features grow where directions diverge and shrink where they converge, so that no rows
+    /// begin or end.
+    #[arg(long, hide_short_help = true, value_name = "A,B")]
     pub(super) scales: Option<Numbers<f32, 2>>,
 }
 

@@ -79,58 +79,66 @@ dapple::raster::named! {
 #[derive(clap::Args, Clone, Debug, Serialize)]
 #[command(next_help_heading = "In the plane")]
 pub(super) struct PlaneArgs {
-    /// How large the texture is, in pixels: at most 2^26 in all; by default 512.
+    /// Output size in pixels, at most 2^26 in total [default: 512].
     #[arg(long, value_name = "WxH")]
     pub(super) size: Option<Size>,
 
-    /// Which sides of the texture fit together: both makes a tile; by default none.
+    /// Sides that join seamlessly; `both` makes a tile [default: none].
     #[arg(long, value_parser = NamedValueParser::<Axes>::all())]
     pub(super) wrap: Option<Axes>,
 
-    /// How the texture is grown. By default endless, but sweep with options that need it, and where the size along a side that
-    /// wraps is no multiple of 2^LEVELS.
-    #[arg(long, value_parser = NamedValueParser::<MethodName>::all(), conflicts_with_all = ["repair", "replay"])]
+    /// Synthesis method in the plane [default: endless where possible].
+    ///
+    /// Options that need it select `sweep`, and so does a side that wraps and is not a multiple of 2^LEVELS.
+    #[arg(long, hide_short_help = true, value_parser = NamedValueParser::<MethodName>::all(), conflicts_with_all = ["repair", "replay"])]
     pub(super) method: Option<MethodName>,
 
-    /// The column and the row of an endless texture at which the image begins, each from -2^52 to 2^52: windows beside each
-    /// other fit together. By default 0,0.
-    #[arg(long, value_name = "X,Y", allow_hyphen_values = true, conflicts_with_all = ["repair", "replay"])]
+    /// Column and row of an endless texture at which the image begins, each from -2^52 to 2^52 [default: 0,0].
+    ///
+    /// Adjacent windows fit together.
+    #[arg(long, hide_short_help = true, value_name = "X,Y", allow_hyphen_values = true, conflicts_with_all = ["repair", "replay"])]
     pub(super) at: Option<Numbers<i64, 2>>,
 
-    /// Make only those pixels of the example again at which this image, of its size, is white, such as a scratch or a thing
-    /// that does not belong there. All others stay as they are. Of an example that is a mesh, those of its texture and of the
-    /// maps in its material, from what is around them on the mesh. A repaired glTF file stays the same document, with other
-    /// images. If each unit square has a texture (UDIM), there is a mask for each, as in `mask.<UDIM>.png`, and an output
+    /// Re-synthesize only the pixels where this mask (same size) is white.
+    ///
+    /// All other pixels keep their values. For an example mesh the mask applies to its texture and to the maps in its
+    /// material, and is filled from the surrounding surface. A repaired glTF file stays the same document with other
+    /// images. With one texture per unit square (UDIM), give a mask for each, as in `mask.<UDIM>.png`, and an output
     /// NAME.1001.png.
     #[arg(long, value_name = "IMAGE", conflicts_with_all = ["size", "wrap", "evenness", "paper"])]
     pub(super) repair: Option<PathBuf>,
 
-    /// Make those pixels of the example again at which this channel of it is less than half, such as the transparent ones:
-    /// with `a` the result is opaque.
-    #[arg(long, value_name = "CHANNEL", value_parser = NamedValueParser::<Channel>::all(), conflicts_with_all = ["repair", "replay", "method", "at", "size", "wrap", "evenness", "paper", "which", "guide"])]
+    /// Re-synthesize the pixels where this channel of the example is below half; with `a` the result is opaque.
+    #[arg(long, hide_short_help = true, value_name = "CHANNEL", value_parser = NamedValueParser::<Channel>::all(), conflicts_with_all = ["repair", "replay", "method", "at", "size", "wrap", "evenness", "paper", "which", "guide"])]
     pub(super) repair_channel: Option<Channel>,
 
-    /// Also write where in the example each pixel is from: an OpenEXR image, red the column and green the row.
-    #[arg(long, value_name = "FILE.exr")]
+    /// Also write the source position of each pixel as OpenEXR: red is the column, green the row.
+    #[arg(long, hide_short_help = true, value_name = "FILE.exr")]
     pub(super) sources: Option<PathBuf>,
 
-    /// Also write an image in which every piece that is copied as a whole has a color of its own.
-    #[arg(long, value_name = "FILE")]
+    /// Also write an image that gives each contiguously copied piece a color.
+    #[arg(long, hide_short_help = true, value_name = "FILE")]
     pub(super) pieces: Option<PathBuf>,
 
-    /// Also write an image of how unlike the texture around each pixel and the example around its source are: black where
-    /// the example goes on, the lighter the more a border of pieces can be seen, and white for a quarter of the range.
-    #[arg(long, value_name = "FILE")]
+    /// Also write an image of the mismatch between each pixel's neighborhood and that of its source.
+    ///
+    /// Black continues the example perfectly; white is a quarter of the value range.
+    #[arg(long, hide_short_help = true, value_name = "FILE")]
     pub(super) differences: Option<PathBuf>,
 
-    /// Also write an image of which of several examples each pixel is from, as --which has them: black the first, white the
-    /// last.
-    #[arg(long, value_name = "FILE", requires = "examples")]
+    /// Also write an image of the example that each pixel comes from: black is the first, white the last.
+    #[arg(
+        long,
+        hide_short_help = true,
+        value_name = "FILE",
+        requires = "examples"
+    )]
     pub(super) origins: Option<PathBuf>,
 
-    /// Take pixels of the example from where these sources of another texture say, and match nothing: another example of
-    /// the same size, or its maps, laid out in the same way.
-    #[arg(long, value_name = "FILE.exr", conflicts_with_all = ["size", "repair", "mask", "paper", "coherence", "evenness"])]
+    /// Take each pixel from the position stored in this --sources image, without matching.
+    ///
+    /// This lays out another example of the same size, or its maps, in the same way.
+    #[arg(long, hide_short_help = true, value_name = "FILE.exr", conflicts_with_all = ["size", "repair", "mask", "paper", "coherence", "evenness"])]
     pub(super) replay: Option<PathBuf>,
 }
 
@@ -139,71 +147,77 @@ pub(super) struct PlaneArgs {
 #[command(next_help_heading = "On a mesh")]
 pub(super) struct SurfaceArgs {
     #[arg(long, value_name = "FILE", help = format!(
-        "The mesh to cover ({}). Faults of it are repaired",
+        "Mesh to cover ({}); its faults are repaired",
         mesh_endings()
     ))]
     pub(super) mesh: Option<PathBuf>,
 
-    /// Which way the texture runs: on a mesh a file of directions, .csv or .json; in the plane an image of the texture's size, in
-    /// which black is down, gray of a quarter of white is to the right, and so on around to white, which is down again. By default
-    /// the down of the example points down.
+    /// Texture directions: a .csv or .json file for a mesh, an image in the plane [default: down].
+    ///
+    /// The image has the texture's size, and its gray is an angle: black is down, a quarter of white is to the right,
+    /// and so on around to white, which is down again.
     #[arg(long, value_name = "FILE")]
     pub(super) directions: Option<PathBuf>,
 
-    /// Which way the texture of an example that is a mesh runs: a file of directions on it. By default down.
-    #[arg(long, value_name = "FILE")]
+    /// Texture directions on an example mesh, as a file [default: down].
+    #[arg(long, hide_short_help = true, value_name = "FILE")]
     pub(super) example_directions: Option<PathBuf>,
 
-    /// The number of points of an example that is a mesh: more make its features larger. By default as many as --sites, with
-    /// which features have the same part of both surfaces.
-    #[arg(long, value_name = "N")]
+    /// Number of sample points on an example mesh; more make its features larger [default: as --sites].
+    ///
+    /// With the default, features cover the same fraction of both surfaces.
+    #[arg(long, hide_short_help = true, value_name = "N")]
     example_sites: Option<usize>,
 
-    /// How many directions at a place are as good as each other: 2 for examples that look alike upside down, such as bricks, and
-    /// 4 for those that look alike lying on their side, such as a checker. The texture then has fewer tears. By default 1.
+    /// Number of equivalent directions: 2 for bricks, 4 for checkers [default: 1].
+    ///
+    /// Choose 2 for examples that look the same upside down, and 4 for those that also look the same after a quarter
+    /// turn. The texture then has fewer tears.
     #[arg(long, value_name = "N", value_parser = NamedValueParser::<Symmetry>::all())]
     pub(super) symmetry: Option<Symmetry>,
 
-    /// Number of times that the example repeats across the mesh, along the longest side of its bounding box: above 0, up to
-    /// 10000. A smaller number makes its features larger. It sets the number of sites.
+    /// Number of times that the example repeats along the mesh's longest side, above 0 up to 10000.
+    ///
+    /// The side is that of the bounding box. A smaller number makes larger features. It sets the number of sites.
     #[arg(long, value_name = "N", conflicts_with = "sites")]
     pub(super) repeat: Option<f64>,
 
-    /// The number of points of the surface that get a color, like pixels on the mesh: 1 to 2^28; by default 65536.
-    #[arg(long, value_name = "N")]
+    /// Number of sample points on the mesh, 1 to 2^28; more make smaller features [default: 65536].
+    #[arg(long, hide_short_help = true, value_name = "N")]
     sites: Option<usize>,
 
-    /// The side of the square texture, in pixels, up to 16384; by default 1024.
+    /// Side of the square texture in pixels, up to 16384 [default: 1024].
     #[arg(long, value_name = "PX", value_parser = clap::value_parser!(u32).range(1..=16384))]
     texture_size: Option<u32>,
 
-    /// How faces are laid out in the texture; by default in charts.
-    #[arg(long, value_name = "HOW", value_parser = NamedValueParser::<AtlasName>::all())]
+    /// Texture layout of the faces [default: charts].
+    #[arg(long, hide_short_help = true, value_name = "HOW", value_parser = NamedValueParser::<AtlasName>::all())]
     atlas: Option<AtlasName>,
 
-    /// Pixels around each piece of the texture that continue it, 1 to 1024: 2^k for k mipmap levels of triangles, 3 * 2^k
-    /// for k + 2 of charts. By default 2 in charts, or a 1024th of the texture's side, up to a 16th of the room for two
-    /// faces in triangles, and all that is free with uv.
-    #[arg(long, value_name = "PX", value_parser = clap::value_parser!(u32).range(1..=1024))]
+    /// Pixels around each piece of the texture that continue it, 1 to 1024.
+    ///
+    /// Triangles need 2^k for k mip levels, charts 3 * 2^k for k + 2. The default is 2 for charts; for triangles a
+    /// 1024th of the texture's side, up to a 16th of the room for two faces; and all that is free with `uv`.
+    #[arg(long, hide_short_help = true, value_name = "PX", value_parser = clap::value_parser!(u32).range(1..=1024))]
     padding: Option<u32>,
 
-    /// The angle of an edge, in degrees, above which it is a crease: 0 shades every face flat, 180 everything smooth. By
-    /// default the normals of the mesh, or 30 where it has none.
-    #[arg(long, value_name = "DEGREES", value_parser = angle)]
+    /// Edge angle in degrees above which shading is sharp: 0 is flat, 180 smooth [default: the mesh's normals, or 30].
+    #[arg(long, hide_short_help = true, value_name = "DEGREES", value_parser = angle)]
     crease: Option<f64>,
 
-    /// Move the surface along its normals by the map height times this length, in units of the mesh; inward if it is negative.
-    /// GLB and OBJ move the vertices of the mesh, and show what is coarser than its faces; PLY moves all sites.
+    /// Displace the surface along its normals by the map `height` times this length; negative is inward.
+    ///
+    /// The length is in units of the mesh. GLB and OBJ move the vertices of the mesh, and show only detail coarser than
+    /// its faces; PLY moves all sites.
     #[arg(long, value_name = "LENGTH", value_parser = length, allow_negative_numbers = true)]
     pub(super) displace: Option<f64>,
 
-    /// Which way neighborhoods go on over the surface; by default followed.
-    #[arg(long, value_name = "HOW", value_parser = NamedValueParser::<FieldAxes>::all())]
+    /// How neighborhoods extend over the surface [default: followed].
+    #[arg(long, hide_short_help = true, value_name = "HOW", value_parser = NamedValueParser::<FieldAxes>::all())]
     axes: Option<FieldAxes>,
 
-    /// The values that are compared; by default appearance, or colors with --paper. Colors are compared all the same where
-    /// the example is a mesh.
-    #[arg(long, value_name = "WHAT", value_parser = NamedValueParser::<Matching>::all())]
+    /// Values that are compared [default: appearance; colors with --paper or an example mesh].
+    #[arg(long, hide_short_help = true, value_name = "WHAT", value_parser = NamedValueParser::<Matching>::all())]
     matching: Option<Matching>,
 }
 
@@ -211,7 +225,7 @@ pub(super) struct SurfaceArgs {
 #[derive(clap::Args, Clone, Debug, Serialize)]
 #[command(next_help_heading = "Matching")]
 pub(super) struct MatchArgs {
-    /// Where the randomness comes from: any whole number from 0 to 2^64 - 1.
+    /// Random seed, any whole number from 0 to 2^64 - 1.
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = seed)]
     seed: u64,
 
@@ -219,33 +233,40 @@ pub(super) struct MatchArgs {
     #[arg(long, value_parser = NamedValueParser::<Edges>::all(), default_value_t = Edges::Cut)]
     pub(super) edges: Edges,
 
-    /// How many levels there are, each with a quarter of the points of the finer one, 1 to 16: more for larger features. By
-    /// default 3, or in endless textures as many as the example has room for.
-    #[arg(long, value_name = "N")]
+    /// Number of resolution levels, 1 to 16; more for larger features [default: 3, or all that fit in endless
+    /// textures].
+    ///
+    /// Each level has a quarter of the points of the next finer one.
+    #[arg(long, hide_short_help = true, value_name = "N")]
     levels: Option<u32>,
 
-    /// How much a map counts in the match beside one channel of the example, such as height=0.5; once for each map. By default
-    /// 0: a map only follows.
+    /// Weight of a map in matching, relative to one color channel, such as height=0.5; repeatable [default: 0].
+    ///
+    /// A map of weight 0 only follows.
     #[arg(
         long,
+        hide_short_help = true,
         value_name = "NAME=N",
         requires = "map",
         conflicts_with = "replay"
     )]
     weight: Vec<WeightArg>,
 
-    /// How much worse a match may be that continues what lies beside it, at least 0: higher copies larger pieces. By
-    /// default auto, which is 2, or 0 on finer levels where the example is a regular image; 0 with --paper.
-    #[arg(long, value_name = "auto|N")]
+    /// Preference for continuing adjacent pieces, at least 0; higher copies larger pieces [default: auto].
+    ///
+    /// `auto` is 2, or 0 on finer levels where the example is a regular image; it is 0 with --paper.
+    #[arg(long, hide_short_help = true, value_name = "auto|N")]
     coherence: Option<Coherence>,
 
-    /// How evenly the example is used, 0 to 1000; by default 1, or 0 with --paper.
-    #[arg(long, value_name = "N")]
+    /// How evenly the example is used, 0 to 1000 [default: 1, or 0 with --paper].
+    #[arg(long, hide_short_help = true, value_name = "N")]
     evenness: Option<f32>,
 
-    /// Match as in Turk's paper: the least difference wins, and neighborhoods go straight on; textures of meshes mix the
-    /// colors of sites, and are softer than the example.
-    #[arg(long)]
+    /// Match as in Turk (2001).
+    ///
+    /// The smallest difference wins, and neighborhoods extend straight. Textures of meshes average the colors of sites,
+    /// and are softer than the example.
+    #[arg(long, hide_short_help = true)]
     pub(super) paper: bool,
 }
 

@@ -168,14 +168,16 @@ pub(super) struct MethodArgs {
     #[arg(long, value_parser = method(), default_value = SOFT_CUT)]
     method: &'static str,
 
-    /// soft-cut, feather: the width of the overlap of the two sides, in pixels, from 1 to half of the side. By default
-    /// 32 for soft-cut, or a quarter of the shorter side if that is less; without it, feather mixes the image with
-    /// itself moved by half. synth: the width of the strip that is made; by default 3/16 of the shorter side.
+    /// soft-cut, feather: width in pixels of the overlap of both sides; synth: width of the new strip.
+    ///
+    /// From 1 to half of the side. The default for soft-cut is 32, or a quarter of the shorter side if that is less;
+    /// without it, feather mixes the image with itself moved by half. For synth it is 3/16 of the shorter side.
     #[arg(long, value_name = "PX")]
     margin: Option<u32>,
 
-    /// soft-cut: half of the width over which the cut is softened, in pixels, from 0 to half of the margin; by default 4,
-    /// or half of the margin if that is less.
+    /// soft-cut: half of the blend width along the cut, in pixels, up to half of the margin [default: 4].
+    ///
+    /// The default is half of the margin where that is less.
     #[arg(long, value_name = "PX")]
     half_width: Option<f32>,
 

@@ -107,7 +107,7 @@ fn order_is_the_same_through_the_table_and_through_all_bricks() {
     let [low, high] = [0.3, 0.6].map(|part| grid.cell(DVec3::splat(part)));
     let mut all = Vec::new();
     grid.visit_all(low, high, |row| {
-        all.extend(grid.members[row].iter().map(|site| site.0))
+        all.extend(grid.members[row].iter().map(|site| site.0));
     });
     let ball = visited(&grid, DVec3::splat(0.45), 0.15);
     assert!(ball.len() > 20, "{} sites", ball.len());
