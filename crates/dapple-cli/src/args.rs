@@ -35,11 +35,11 @@ use std::path::{Path, PathBuf};
 #[derive(Args, Clone, Debug)]
 #[command(next_help_heading = "Common")]
 pub(crate) struct Common {
-    /// The number of threads; 0 is one for each core. The results have the same bits.
+    /// Number of threads; 0 means one per core. Results do not depend on it.
     #[arg(long, global = true, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=1024))]
     pub(crate) threads: u16,
 
-    /// The largest number of pixels of an image that is read [default: 2^28, which is 16384 x 16384].
+    /// Maximum number of pixels of an input image [default: 2^28, which is 16384 x 16384].
     #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     pub(crate) max_pixels: Option<u64>,
 
@@ -65,16 +65,16 @@ pub(crate) struct OutputArgs {
     #[arg(short, long, value_name = "FILE|DIR/")]
     pub(crate) output: Option<PathBuf>,
 
-    /// The name of the files in a folder: `NAME.EXT`, or `NAME_MAP.EXT`. By default that of the recipe, input or subcommand.
+    /// File name in a directory: `NAME.EXT` or `NAME_MAP.EXT` [default: the recipe, input or subcommand].
     #[arg(long, value_name = "NAME", value_parser = plain_name)]
     pub(crate) name: Option<String>,
 
-    /// Replace existing files. Without it no file is overwritten.
+    /// Overwrite existing files.
     #[arg(long)]
     pub(crate) force: bool,
 
-    /// Write a JSON file beside the output: the options, the version, and size, range and SHA-256 of each file. Raw heights
-    /// always have one.
+    /// Also write a JSON sidecar: options, version, and the size, range and SHA-256 of each file. Raw heights always
+    /// have one.
     #[arg(long, value_name = "FILE", num_args = 0..=1, require_equals = true)]
     pub(crate) json: Option<Option<PathBuf>>,
 }

@@ -21,11 +21,11 @@ use serde::Serialize;
 /// Options of subcommands that draw a field.
 #[derive(clap::Args, Clone, Debug, Serialize)]
 pub(crate) struct FieldArgs {
-    /// The seed of all random choices.
+    /// Random seed.
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = seed)]
     pub(crate) seed: u64,
 
-    /// The columns and rows, in pixels.
+    /// Image size in pixels.
     #[arg(long, value_name = "WxH", default_value = "512")]
     pub(crate) size: Size,
 
@@ -33,11 +33,11 @@ pub(crate) struct FieldArgs {
     #[serde(flatten)]
     pub(crate) samples: SamplesArgs,
 
-    /// The axes along which the picture repeats.
+    /// Axes along which the image repeats.
     #[arg(long, value_parser = NamedValueParser::<Axes>::all(), default_value_t = Axes::Both)]
     pub(crate) wrap: Axes,
 
-    /// Make only this part of the picture, in pixels: bit for bit the crop of the whole.
+    /// Draw only this region, in pixels: bit for bit a crop of the whole.
     #[arg(long, value_name = "X,Y,W,H")]
     pub(crate) region: Option<Region>,
 
@@ -47,7 +47,7 @@ pub(crate) struct FieldArgs {
     #[arg(long, value_name = "LO,HI|raw", allow_hyphen_values = true)]
     pub(crate) range: Option<RangeArg>,
 
-    /// Write the recipe of the picture as TOML, for `dapple bake`, without drawing it; without -o it is printed.
+    /// Write the recipe as TOML for `dapple bake` instead of drawing it; printed without -o.
     #[arg(long)]
     pub(crate) recipe: bool,
 }
@@ -90,7 +90,7 @@ pub(crate) struct Field {
     pub(crate) node: Node,
     /// Whether the field has colors.
     pub(crate) is_color: bool,
-    /// The width and height of the picture in units of the plane.
+    /// Width and height of the image in units of the plane.
     pub(crate) extent: [f64; 2],
     /// The values that become black and white in files with whole numbers.
     pub(crate) range: [f32; 2],

@@ -74,11 +74,11 @@ pub(crate) struct Args {
     #[serde(flatten)]
     material: MaterialArgs,
 
-    /// The images of a program: their names, what their channels hold, their bits, and where green points in normal maps.
+    /// Write the files that a program expects: names, channel packing, bit depth and normal direction.
     #[arg(long, value_name = "PROGRAM", value_parser = Preset::parser(), conflicts_with_all = ["maps", "format"])]
     preset: Option<&'static Preset>,
 
-    /// Make only this part of the tile, in pixels: bit for bit the crop of the whole.
+    /// Bake only this region, in pixels: bit for bit a crop of the whole.
     #[arg(long, value_name = "X,Y,W,H")]
     region: Option<Region>,
 
@@ -89,7 +89,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "COLUMN,ROW,WxH[+OVERLAP]", conflicts_with_all = ["region", "preset", "sheet", "preview", "format", "name", "json"])]
     shard: Option<Shard>,
 
-    /// The picture of a loop that is made: its number, from 1, and how many there are. By default the first.
+    /// Frame K of a loop of N, from 1 [default: the first].
     #[arg(long, value_name = "K/N")]
     frame: Option<Frame>,
 
@@ -106,19 +106,19 @@ pub(crate) struct Args {
     #[arg(long)]
     banded: bool,
 
-    /// Go on with the other recipes if one cannot be baked.
+    /// Continue with the other recipes if one fails.
     #[arg(long)]
     keep_going: bool,
 
-    /// Write 2 x 2 copies of each map, too, as `NAME_MAP_2x2`.
+    /// Also write 2 x 2 copies of each map, as `NAME_MAP_2x2`.
     #[arg(long, help_heading = "Output")]
     sheet: bool,
 
-    /// Write a lit preview of the material, too, as `NAME_preview.png`: on a plane of 2 x 2 tiles, a sphere or a torus.
+    /// Also write a lit preview, `NAME_preview.png`, on a plane of 2 x 2 tiles, a sphere or a torus.
     #[arg(long, value_name = "THING", value_parser = NamedValueParser::<Thing>::all(), num_args = 0..=1, require_equals = true, default_missing_value = "plane", help_heading = "Output")]
     preview: Option<Thing>,
 
-    /// The format; by default PNG with 16 bits, or by the ending of the output: EXR, a NumPy array, or raw heights.
+    /// File format [default: by the extension of the output, else PNG with 16 bits].
     #[arg(long, value_name = "FORMAT", value_parser = NamedValueParser::<Format>::all(), help_heading = "Output")]
     format: Option<Format>,
 

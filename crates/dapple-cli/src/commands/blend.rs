@@ -61,7 +61,9 @@ pub(crate) struct Args {
     #[arg(long, value_name = "IMAGE")]
     tile: Option<PathBuf>,
 
-    /// Use the values of the tile unchanged, from 0 to 1. By default they are spread evenly, so that weights are areas.
+    /// Use the values of the tile unchanged, without equalizing their distribution.
+    ///
+    /// By default they are equalized, so that weights are areas.
     #[arg(long, requires = "tile")]
     plain_tile: bool,
 
@@ -76,8 +78,9 @@ pub(crate) struct Args {
     #[command(flatten)]
     mixing: MixingArgs,
 
-    /// The size of the blend, in pixels. Images that are smaller are repeated, larger ones cropped. By default all
-    /// images must have the same size.
+    /// Output size in pixels; smaller images repeat, larger ones are cropped [default: the common size].
+    ///
+    /// Without it all images must have the same size.
     #[arg(long, value_name = "WxH")]
     size: Option<Size>,
 

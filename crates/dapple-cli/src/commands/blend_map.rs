@@ -44,19 +44,19 @@ pub(crate) struct Args {
     #[serde(flatten)]
     read: ReadArgs,
 
-    /// The size of the features, such as the diameter of the stones, in pixels, from 1 to 4096.
+    /// Feature size in pixels, such as the diameter of stones, from 1 to 4096.
     #[arg(long, value_name = "PX", default_value_t = 32.0)]
     feature_size: f64,
 
-    /// The steepness of the map around its median, at least 0; at 100 it is almost black and white.
+    /// Contrast of the map around its median, at least 0; 100 is almost black and white.
     #[arg(long, value_name = "N", default_value_t = 1.0)]
     contrast: f64,
 
-    /// The axes along which the texture and its map repeat. Along others the texture is mirrored at its edges.
+    /// Axes along which texture and map repeat; along others the texture is mirrored.
     #[arg(long, value_parser = NamedValueParser::<Axes>::all(), default_value_t = Axes::Both)]
     wrap: Axes,
 
-    /// Keep the values; by default each becomes its rank, from 0 to 1.
+    /// Keep the values instead of replacing each by its rank, from 0 to 1.
     #[arg(long)]
     plain: bool,
 

@@ -46,7 +46,7 @@ pub(crate) struct Args {
     #[arg(value_name = "IMAGE[,KEY=FILE...]", required = true)]
     images: Vec<LayerArg>,
 
-    /// The size of the map, in pixels.
+    /// Output size in pixels.
     #[arg(
         long,
         value_name = "WxH",
@@ -55,7 +55,7 @@ pub(crate) struct Args {
     )]
     size: Option<Size>,
 
-    /// The seed of all random choices: any whole number from 0 to 2^64 - 1.
+    /// Random seed, any whole number from 0 to 2^64 - 1.
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = seed, conflicts_with = "tiles")]
     seed: u64,
 

@@ -45,19 +45,19 @@ pub(crate) struct Args {
     #[arg(long, value_name = "X,Y,W,H")]
     region: Option<Region>,
 
-    /// The axes along which images should repeat; `none` leaves out the seam report.
+    /// Axes along which images should repeat; `none` omits the seam report.
     #[arg(long, value_name = "AXES", value_parser = NamedValueParser::<Axes>::all(), default_value_t = Axes::Both)]
     wrap: Axes,
 
-    /// Compare the seam only with every n-th boundary of pixels.
+    /// Compare the seam with every n-th pixel boundary only.
     #[arg(long, value_name = "N[xN]", default_value_t = Size([1, 1]))]
     lattice: Size,
 
-    /// Exit with 3 if an image does not repeat well, has pixels that are NaN or infinite, or a mesh needs repair.
+    /// Exit with 3 if an image does not tile well or has non-finite pixels, or a mesh needs repair.
     #[arg(long)]
     check: bool,
 
-    /// The format of the findings: text for people, or JSON for programs; by default by the ending of the output.
+    /// Report format, text or JSON [default: by the extension of the output].
     #[arg(long, value_name = "FORMAT", value_parser = NamedValueParser::<Format>::all(), help_heading = "Output")]
     format: Option<Format>,
 

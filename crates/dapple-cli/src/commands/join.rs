@@ -39,11 +39,11 @@ const NAMED: usize = 5;
 #[derive(clap::Args, Debug, Serialize)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Args {
-    /// The folder in the list of `dapple shards`, with all shards in it.
+    /// Directory with all shards, as in the list of `dapple shards`.
     #[arg(value_name = "DIR")]
     folder: PathBuf,
 
-    /// The format; by default that of the ending of the output, or EXR in a folder.
+    /// File format [default: by the extension of the output, EXR in a directory].
     #[arg(long, value_name = "FORMAT", value_parser = NamedValueParser::<Format>::all(), help_heading = "Output")]
     format: Option<Format>,
 

@@ -20,7 +20,7 @@ Examples:
 #[derive(clap::Args, Debug)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Args {
-    /// The folder for all pages, `dapple.1`, `dapple-tile.1` and so on; created if missing.
+    /// Directory for all pages, `dapple.1`, `dapple-tile.1` and so on; created if missing.
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
 

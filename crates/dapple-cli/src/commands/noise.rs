@@ -33,11 +33,11 @@ pub(crate) struct Args {
     )]
     cells: f64,
 
-    /// The number of octaves, each twice as fine as the one before, from 1 to 16.
+    /// Number of octaves, each twice as fine as the previous one, from 1 to 16.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=16), help_heading = "Texture")]
     octaves: u32,
 
-    /// The amplitude of an octave relative to the one before, above 0 and at most 1.
+    /// Amplitude of an octave relative to the previous one, above 0 up to 1.
     #[arg(
         long,
         alias = "persistence",

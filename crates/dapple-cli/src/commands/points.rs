@@ -50,11 +50,11 @@ pub(crate) struct Args {
     #[arg(long, help_heading = "Output")]
     report: bool,
 
-    /// csv, json or png (a picture); by default by the ending of the output, and csv on standard output.
+    /// csv, json, or png for an image [default: by the extension of the output, else csv].
     #[arg(long, value_name = "FORMAT", value_parser = NamedValueParser::<Format>::all(), help_heading = "Output")]
     format: Option<Format>,
 
-    /// The size of the picture, in pixels: a single number is its longer side.
+    /// Image size in pixels; a single number is the longer side.
     #[arg(
         long,
         value_name = "WxH",
@@ -63,7 +63,7 @@ pub(crate) struct Args {
     )]
     size: Size,
 
-    /// The radius of the dots of the picture, in pixels; by default a quarter of the mean distance.
+    /// Radius of the dots in pixels [default: a quarter of the mean distance].
     #[arg(long, value_name = "PX", help_heading = "Output")]
     dot: Option<f64>,
 

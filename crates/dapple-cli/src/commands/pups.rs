@@ -44,23 +44,23 @@ pub(crate) struct Args {
     #[arg(value_enum, value_name = "KIND")]
     kind: Kind,
 
-    /// The smallest distance of control points, in units of the plane; by default that of the texture.
+    /// Minimum distance of control points in units of the plane [default: the texture's].
     #[arg(long, value_name = "UNITS", help_heading = "Texture")]
     spacing: Option<f64>,
 
-    /// The smallest distances at the left and at the right, for the progressions.
+    /// Minimum distances at the left and at the right, for the progressions.
     #[arg(long, value_name = "LEFT,RIGHT", help_heading = "Texture")]
     spacings: Option<Numbers<f64, 2>>,
 
-    /// The width and height of the picture in units of the plane.
+    /// Width and height of the image in units of the plane.
     #[arg(long, value_name = "W[xH]", alias = "period", help_heading = "Texture")]
     extent: Option<Extent>,
 
-    /// How many octaves, layers or rounds, for octaves, turbulence, cellular-noise and iterated-reference.
+    /// Number of octaves, layers or rounds, for octaves, turbulence, cellular-noise and iterated-reference.
     #[arg(long, value_name = "N", help_heading = "Texture")]
     octaves: Option<u32>,
 
-    /// How high an octave is beside the one before.
+    /// Amplitude of an octave relative to the previous one.
     #[arg(
         long,
         alias = "persistence",
@@ -69,23 +69,23 @@ pub(crate) struct Args {
     )]
     gain: Option<f64>,
 
-    /// How many control points a cell has, from the least to the most, for cells and cellular-noise.
+    /// Minimum and maximum number of control points per cell, for cells and cellular-noise.
     #[arg(long, value_name = "MIN,MAX", help_heading = "Texture")]
     points_per_cell: Option<Numbers<u32, 2>>,
 
-    /// How probable white patches are, from 0 to 1, for cow.
+    /// Probability of white patches, from 0 to 1, for cow.
     #[arg(long, value_name = "PART", help_heading = "Texture")]
     probability: Option<f64>,
 
-    /// Draw each radius of a spot on its own, as the paper's recipe does, for giraffe: spots break into pieces.
+    /// Choose each radius of a spot independently, as in the paper, for giraffe: spots break into pieces.
     #[arg(long, help_heading = "Texture")]
     literal: bool,
 
-    /// The control points, for control: CSV or JSON.
+    /// Control points as CSV or JSON, for control.
     #[arg(long, value_name = "FILE", help_heading = "Texture")]
     points: Option<PathBuf>,
 
-    /// The image that cells follow, for reference and iterated-reference: gray, or color by its luminance.
+    /// Image that cells follow, for reference and iterated-reference; color is read as luminance.
     #[arg(long, value_name = "FILE", help_heading = "Texture")]
     reference: Option<PathBuf>,
 
@@ -97,27 +97,27 @@ pub(crate) struct Args {
     #[serde(flatten)]
     read: ReadArgs,
 
-    /// Give each place the value of its strongest point alone, for control.
+    /// Assign each position the value of its strongest point alone, for control.
     #[arg(long, help_heading = "Texture")]
     hard: bool,
 
-    /// The length of axes as a multiple of their edges, above 0.5 and at most 16.
+    /// Length of axes relative to their edges, above 0.5 up to 16.
     #[arg(long, value_name = "N", help_heading = "Weights")]
     axis_scale: Option<f64>,
 
-    /// How weights fall off along an axis: by the cubic of the paper, or by a quintic with a continuous second derivative.
+    /// Falloff of weights along an axis: the paper's cubic, or a quintic with a continuous second derivative.
     #[arg(long, value_name = "CURVE", value_parser = NamedValueParser::of([("cubic", AxialWeight::Cubic), ("quintic", AxialWeight::Quintic)]), help_heading = "Weights")]
     weight: Option<AxialWeight>,
 
-    /// Whether control points have orientations; by default as the texture has it.
+    /// Orientations of control points [default: the texture's].
     #[arg(long, value_name = "WHICH", value_parser = NamedValueParser::of([("none", Orientations::None), ("random", Orientations::Random)]), help_heading = "Weights")]
     orientations: Option<Orientations>,
 
-    /// How strongly orientations shift weights, from 0 to below 1.
+    /// Strength of orientations, from 0 to below 1.
     #[arg(long, value_name = "PART", help_heading = "Weights")]
     strength: Option<f64>,
 
-    /// The number of pictures of a loop, in which the control points move on circles.
+    /// Number of frames of a loop in which the control points move on circles.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000), help_heading = "Loop")]
     frames: Option<u32>,
 

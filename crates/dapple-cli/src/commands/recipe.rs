@@ -48,15 +48,15 @@ pub(crate) struct Args {
     #[arg(long, conflicts_with = "to")]
     rust: bool,
 
-    /// Rewrite the recipe in this format; by default in JSON if the output ends in .json.
+    /// Rewrite the recipe in this format [default: by the extension of the output].
     #[arg(long = "as", value_enum, value_name = "FORMAT")]
     to: Option<Text>,
 
-    /// Replaces a value of the recipe: an option of a node, or a value such as `material.relief`. Repeatable.
+    /// Replace a value of the recipe: an option of a node, or a value such as `material.relief`; repeatable.
     #[arg(long, value_name = "NODE.OPTION=VALUE")]
     set: Vec<Setting>,
 
-    /// A seed in place of that of the recipe.
+    /// Random seed [default: the recipe's].
     #[arg(long, value_name = "N", value_parser = seed)]
     seed: Option<u64>,
 

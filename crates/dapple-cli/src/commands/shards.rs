@@ -71,27 +71,27 @@ pub(crate) struct Args {
     #[command(flatten)]
     material: MaterialArgs,
 
-    /// The columns and rows of a shard, in pixels; those at the right and at the bottom may have fewer.
+    /// Size of a shard in pixels; shards at the right and at the bottom may be smaller.
     #[arg(long, value_name = "WxH")]
     shard: Size,
 
-    /// The columns and rows that neighboring shards share, as a part of their size: 1 for terrain tiles, whose borders are equal.
+    /// Columns and rows shared by neighboring shards, included in their size; 1 for terrain tiles with equal borders.
     #[arg(long, value_name = "PX", default_value_t = 0)]
     overlap: u32,
 
-    /// The number of frames of a loop, each of them in shards.
+    /// Number of frames of a loop, each in shards.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     frames: Option<u32>,
 
-    /// The format of the printed list.
+    /// Format of the printed list.
     #[arg(long, value_name = "FORM", value_parser = NamedValueParser::<ListFormat>::all(), default_value_t = ListFormat::Lines)]
     format: ListFormat,
 
-    /// The folder of the shards, in which a file `shards.json` describes them.
+    /// Directory of the shards; its file `shards.json` describes them.
     #[arg(short, long, value_name = "DIR", default_value = "shards")]
     output: PathBuf,
 
-    /// Replace the `shards.json` of other shards. Their files stay, and are not confused with these.
+    /// Overwrite the `shards.json` of other shards; their files stay and remain distinct.
     #[arg(long)]
     force: bool,
 }

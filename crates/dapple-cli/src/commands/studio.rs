@@ -42,7 +42,7 @@ const NO_PAGE: &str = "warning: this program was built without the page: `cargo 
 #[derive(clap::Args, Debug)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Args {
-    /// A built-in recipe, or a file in TOML; by default a choice of all.
+    /// Built-in recipe, or a TOML file [default: choose on the page].
     #[arg(value_name = "RECIPE")]
     recipe: Option<String>,
 
@@ -57,7 +57,7 @@ pub(crate) struct Args {
 #[derive(clap::Args, Clone, Debug)]
 #[group(skip)]
 pub(crate) struct PageArgs {
-    /// The port; by default any free one.
+    /// Port [default: any free one].
     #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true)]
     port: u16,
 
@@ -67,15 +67,15 @@ pub(crate) struct PageArgs {
     #[arg(long, value_name = "URL")]
     public_url: Option<String>,
 
-    /// Open no browser, only print the address.
+    /// Print the address without opening a browser.
     #[arg(long)]
     no_open: bool,
 
-    /// End when the last page is closed.
+    /// Exit when the last page is closed.
     #[arg(long)]
     once: bool,
 
-    /// A folder with another page, for those who work on the page.
+    /// Directory of another build of the page, for its developers.
     #[arg(long, value_name = "FOLDER", hide = true)]
     dist: Option<PathBuf>,
 }

@@ -34,11 +34,11 @@ To make a tile of another size or from an example, see `dapple synth`.";
 #[derive(clap::Args, Debug, Serialize)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Args {
-    /// The images. Gray images are plain values; color is processed in linear light. `-` is standard input.
+    /// Images; `-` is standard input. Gray is plain values, color is processed in linear light.
     #[arg(value_name = "IMAGE")]
     images: Vec<PathBuf>,
 
-    /// A normal map of the same material; may be given several times.
+    /// Normal map of the same material; repeatable.
     #[arg(long, value_name = "IMAGE")]
     normal: Vec<PathBuf>,
 
@@ -57,11 +57,11 @@ pub(crate) struct Args {
     #[command(flatten)]
     method: MethodArgs,
 
-    /// The axes along which the images repeat.
+    /// Axes along which the images repeat.
     #[arg(long, value_name = "AXES", default_value = "both", value_parser = Axes::some())]
     wrap: Axes,
 
-    /// Print a report: how well source and tile repeat, and how much of the source was kept.
+    /// Print how well source and tile repeat, and how much of the source is kept.
     #[arg(long, help_heading = "Quality")]
     report: bool,
 
@@ -72,7 +72,7 @@ pub(crate) struct Args {
     #[arg(long, help_heading = "Quality")]
     check: bool,
 
-    /// Compare the seam only with every n-th boundary of pixels; by default 2^levels for spline, else 1.
+    /// Compare the seam with every n-th pixel boundary only [default: 2^levels for spline, else 1].
     #[arg(long, value_name = "N[xN]", help_heading = "Quality")]
     lattice: Option<Size>,
 

@@ -34,11 +34,11 @@ pub(crate) struct Args {
     )]
     cells: f64,
 
-    /// The number of bands, each twice as fine as the one before, from 1 to 16.
+    /// Number of bands, each twice as fine as the previous one, from 1 to 16.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=16), help_heading = "Texture")]
     octaves: u32,
 
-    /// The amplitude of a band relative to the one before.
+    /// Amplitude of a band relative to the previous one.
     #[arg(
         long,
         alias = "persistence",
@@ -48,7 +48,7 @@ pub(crate) struct Args {
     )]
     gain: f64,
 
-    /// The weight of each band, coarsest first; replaces --octaves and --gain.
+    /// Weight of each band, coarsest first; replaces --octaves and --gain.
     #[arg(long, value_name = "W,W,…", value_delimiter = ',', allow_hyphen_values = true, conflicts_with_all = ["octaves", "gain"], help_heading = "Texture")]
     weights: Vec<f32>,
 

@@ -39,7 +39,7 @@ pub(crate) struct Args {
         help = VALUE, value_parser = value, help_heading = "Texture")]
     value: WorleyValue,
 
-    /// The coefficients of F1 to F4, instead of --value.
+    /// Coefficients of F1 to F4, instead of --value.
     #[arg(
         long,
         value_name = "C1,C2,C3,C4",
@@ -49,7 +49,7 @@ pub(crate) struct Args {
     )]
     coefficients: Option<Numbers<f32, 4>>,
 
-    /// The number of cells across the shorter side of the picture.
+    /// Number of cells across the shorter side of the image.
     #[arg(
         long,
         value_name = "N",
@@ -59,15 +59,15 @@ pub(crate) struct Args {
     )]
     cells: f64,
 
-    /// The number of cells across the picture, after which it repeats, such as 8 or 12x6; replaces --cells.
+    /// Period in cells, such as 8 or 12x6; the image shows one period. Replaces --cells.
     #[arg(long, value_name = "N[xM]", help_heading = "Texture")]
     period: Option<Extent>,
 
-    /// The metric: how distances are measured.
+    /// Distance metric.
     #[arg(long, value_name = "METRIC", default_value = "euclidean", value_parser = NamedValueParser::of(Metric::NAMED), help_heading = "Texture")]
     metric: Metric,
 
-    /// The exponent of the Minkowski metric, from 1 to 10; replaces --metric.
+    /// Exponent of the Minkowski metric, from 1 to 10; replaces --metric.
     #[arg(
         long,
         value_name = "P",
@@ -76,11 +76,11 @@ pub(crate) struct Args {
     )]
     minkowski: Option<f32>,
 
-    /// Feature points per cell on average, from 1/64 to 64.
+    /// Mean number of feature points per cell, from 1/64 to 64.
     #[arg(long, value_name = "N", default_value_t = Scatter::DENSITY, help_heading = "Texture")]
     density: f64,
 
-    /// One point in each cell, at this distance from its middle: 0, a grid, to 1, anywhere. Replaces --density.
+    /// One feature point per cell, jittered from 0 (a grid) to 1 (anywhere); replaces --density.
     #[arg(
         long,
         value_name = "PART",
@@ -89,12 +89,11 @@ pub(crate) struct Args {
     )]
     jitter: Option<f64>,
 
-    /// The number of octaves that are summed, from 1 to 32.
+    /// Number of octaves to sum, from 1 to 32.
     #[arg(long, value_name = "N", help_heading = "Texture")]
     octaves: Option<u32>,
 
-    /// The ratio of the frequencies of an octave and the one before, from 1 to 16; a whole number if the picture
-    /// repeats.
+    /// Frequency ratio of successive octaves, from 1 to 16; a whole number if the image repeats.
     #[arg(
         long,
         value_name = "N",
@@ -104,7 +103,7 @@ pub(crate) struct Args {
     )]
     lacunarity: f64,
 
-    /// Whether octaves have feature points of their own, or share them as in Worley's paper.
+    /// Feature points of octaves: separate, or shared as in Worley's paper.
     #[arg(
         long,
         value_name = "SEEDS",
@@ -115,7 +114,7 @@ pub(crate) struct Args {
     )]
     octave_seeds: OctaveSeeds,
 
-    /// The amplitude of an octave relative to the one before, from -1 to 1.
+    /// Amplitude of an octave relative to the previous one, from -1 to 1.
     #[arg(
         long,
         visible_alias = "persistence",
@@ -127,11 +126,11 @@ pub(crate) struct Args {
     )]
     gain: f64,
 
-    /// The number of pictures of a loop, which is a slice through cells of four dimensions.
+    /// Number of frames of a loop, a moving slice through 4-D cells.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000), help_heading = "Loop")]
     frames: Option<u32>,
 
-    /// The number of cells that a loop passes: more is faster.
+    /// Number of cells that a loop passes; more is faster.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..), requires = "frames", help_heading = "Loop")]
     loop_cells: u32,
 

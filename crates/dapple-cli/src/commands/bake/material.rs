@@ -78,7 +78,7 @@ impl From<Setting> for String {
 /// The size, the maps, and what replaces settings of the recipe.
 #[derive(clap::Args, Clone, Debug, Serialize)]
 pub(in crate::commands) struct MaterialArgs {
-    /// Columns and rows of the tile, in pixels.
+    /// Size of the tile in pixels.
     #[arg(long, value_name = "WxH", default_value = "1024")]
     pub(in crate::commands) size: Size,
 
@@ -86,23 +86,23 @@ pub(in crate::commands) struct MaterialArgs {
     #[serde(flatten)]
     pub(in crate::commands) samples: SamplesArgs,
 
-    /// The maps, with commas between them, or all. By default height, normal, ao, albedo and roughness.
+    /// Comma-separated maps, or `all` [default: height,normal,ao,albedo,roughness].
     #[arg(long, value_name = "MAPS")]
     pub(super) maps: Option<Maps>,
 
-    /// Replaces a value of the recipe: an option of a node, or a value such as `material.relief`. Repeatable.
+    /// Replace a value of the recipe: an option of a node, or a value such as `material.relief`; repeatable.
     #[arg(long, value_name = "NODE.OPTION=VALUE")]
     set: Vec<Setting>,
 
-    /// The seed, instead of that of the recipe.
+    /// Random seed [default: the recipe's].
     #[arg(long, value_name = "N", value_parser = seed)]
     seed: Option<u64>,
 
-    /// Where green points in normal maps. By default as the preset or the recipe says, or else up (opengl).
+    /// Direction of green in normal maps [default: the preset's, the recipe's, or opengl].
     #[arg(long, value_name = "WAY", value_parser = NamedValueParser::<NormalY>::all())]
     pub(super) normal_y: Option<NormalY>,
 
-    /// How many units of the plane a height of 1 stands for, from -1e6 to 1e6, instead of what the recipe says.
+    /// Height of the value 1 in units of the plane, from -1e6 to 1e6 [default: the recipe's].
     #[arg(long, value_name = "UNITS")]
     relief: Option<f64>,
 

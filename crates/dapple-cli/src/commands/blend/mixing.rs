@@ -36,11 +36,11 @@ dapple::raster::named! {
 #[derive(clap::Args, Clone, Debug, Serialize)]
 #[command(next_help_heading = "Weighting and mixing")]
 pub(super) struct MixingArgs {
-    /// How weights are used; the default is described below.
+    /// Use of the weights; the default is described below.
     #[arg(long, value_name = "HOW", value_parser = NamedValueParser::<WeightingName>::all())]
     weighting: Option<WeightingName>,
 
-    /// height: the difference of heights over which layers mix, above 0: 0.1 is crisp, 0.3 soft; by default 0.2.
+    /// height: height difference over which layers mix, above 0: 0.1 is crisp, 0.3 soft [default: 0.2].
     #[arg(long, value_name = "N")]
     depth: Option<f64>,
 
@@ -50,20 +50,19 @@ pub(super) struct MixingArgs {
     #[arg(long, value_name = "N")]
     gain: Option<f64>,
 
-    /// How layers are mixed.
+    /// Mixing of the layers.
     #[arg(long, value_parser = NamedValueParser::<MixingName>::all(), default_value_t = MixingName::Linear)]
     mixing: MixingName,
 
-    /// pyramid: the number of bands, at most 30; by default 4.
+    /// pyramid: number of bands, at most 30 [default: 4].
     #[arg(long, value_name = "N")]
     levels: Option<u32>,
 
-    /// pyramid: the sharpness of the transitions of the finest band, at least 0; by default 8.
+    /// pyramid: transition sharpness of the finest band, at least 0 [default: 8].
     #[arg(long, value_name = "N")]
     sharpness: Option<f64>,
 
-    /// pyramid: the axes along which the images and their blend repeat; by default none, with mirror images past the
-    /// edges.
+    /// pyramid: axes along which images and result repeat [default: none, mirrored past the edges].
     #[arg(long, value_name = "AXES", value_parser = NamedValueParser::<Axes>::all())]
     wrap: Option<Axes>,
 }

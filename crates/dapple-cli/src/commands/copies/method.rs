@@ -27,7 +27,7 @@ dapple::raster::named! {
 #[derive(clap::Args, Clone, Debug, Serialize)]
 #[command(next_help_heading = "Method")]
 pub(super) struct MethodArgs {
-    /// The method; by default chosen by the number of tiles.
+    /// Method [default: by the number of tiles].
     #[arg(long, value_parser = NamedValueParser::<Name>::all())]
     method: Option<Name>,
 
@@ -46,8 +46,7 @@ pub(super) struct MethodArgs {
     #[arg(long, value_name = "PX")]
     width: Option<u32>,
 
-    /// borders: the source of all borders: the border of the first tile, or its middle, if it does not repeat; by
-    /// default the border.
+    /// borders: source of all borders: the first tile's border, or its middle if it does not repeat [default: border].
     #[arg(long, value_name = "WHICH", value_parser = NamedValueParser::<BorderSource>::all())]
     source: Option<BorderSource>,
 

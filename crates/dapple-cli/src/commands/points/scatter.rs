@@ -44,19 +44,19 @@ pub(super) struct ScatterArgs {
     #[arg(value_parser = NamedValueParser::<Kind>::all(), default_value_t = Kind::Poisson, hide_possible_values = true, help_heading = None::<&str>)]
     kind: Kind,
 
-    /// The seed of all random choices: any whole number from 0 to 2^64 - 1.
+    /// Random seed, any whole number from 0 to 2^64 - 1.
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = seed)]
     pub(super) seed: u64,
 
-    /// The approximate number of points, at least 1; by default 1000.
+    /// Approximate number of points, at least 1 [default: 1000].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     count: Option<u32>,
 
-    /// poisson: the smallest distance, in units of the domain, above 0.
+    /// poisson: minimum distance in units of the domain, above 0.
     #[arg(long, value_name = "R", conflicts_with = "count")]
     radius: Option<f64>,
 
-    /// nested: the smallest distances of the levels, the coarsest first.
+    /// nested: minimum distance of each level, coarsest first.
     #[arg(
         long,
         value_name = "R,R,...",
@@ -65,7 +65,7 @@ pub(super) struct ScatterArgs {
     )]
     radii: Vec<f64>,
 
-    /// nested: the number of levels, 1 to 16, each with about four times the points of the one before; by default 3.
+    /// nested: number of levels, 1 to 16, each with about four times the points of the previous one [default: 3].
     #[arg(long, value_name = "N", conflicts_with = "radii", value_parser = clap::value_parser!(u32).range(1..=16))]
     levels: Option<u32>,
 
@@ -88,23 +88,23 @@ pub(super) struct ScatterArgs {
     #[arg(long)]
     invert: bool,
 
-    /// variable: the distance of points with different radii; by default the mean of their radii.
+    /// variable: minimum distance of points with different radii [default: the mean of their radii].
     #[arg(long, value_name = "RULE", value_parser = NamedValueParser::<DiskRule>::all())]
     rule: Option<DiskRule>,
 
-    /// jittered: columns and rows of the grid; by default square cells for the count.
+    /// jittered: columns and rows of the grid [default: square cells for the count].
     #[arg(long, value_name = "NxM", conflicts_with = "count")]
     cells: Option<Size>,
 
-    /// jittered: the distance from the center of the cell, from 0 to 1, anywhere in it; by default 1.
+    /// jittered: jitter, from 0 (cell centers) to 1 (anywhere in the cell) [default: 1].
     #[arg(long, value_name = "PART")]
     jitter: Option<f64>,
 
-    /// The width and height of the domain.
+    /// Width and height of the domain.
     #[arg(long, value_name = "WxH", default_value = "1", help_heading = "Domain")]
     domain: Extent,
 
-    /// The corner of the domain with the smallest coordinates.
+    /// Corner of the domain with the smallest coordinates.
     #[arg(
         long,
         value_name = "X,Y",
@@ -114,7 +114,7 @@ pub(super) struct ScatterArgs {
     )]
     origin: Numbers<f64, 2>,
 
-    /// The axes along which the domain wraps: the points then repeat without a seam.
+    /// Axes along which the domain wraps, so that the points tile.
     #[arg(long, value_parser = NamedValueParser::<Axes>::all(), default_value_t = Axes::Both, help_heading = "Domain")]
     wrap: Axes,
 }

@@ -181,31 +181,31 @@ pub(super) struct MethodArgs {
     #[arg(long, value_name = "PX")]
     half_width: Option<f32>,
 
-    /// soft-cut, feather with a margin: how the sides are mixed; by default the variance is kept.
+    /// soft-cut, feather with a margin: blend of both sides [default: keep-variance].
     #[arg(long, value_name = "HOW", value_parser = NamedValueParser::<Crossfade>::all())]
     crossfade: Option<Crossfade>,
 
-    /// synth: where the randomness comes from, any whole number from 0 to 2^64 - 1; by default 0.
+    /// synth: random seed, any whole number from 0 to 2^64 - 1 [default: 0].
     #[arg(long, value_name = "N", value_parser = seed)]
     seed: Option<u64>,
 
-    /// poisson: the gradient across the wrap; by default zero.
+    /// poisson: gradient across the wrap [default: zero].
     #[arg(long, value_name = "WHICH", value_parser = NamedValueParser::<WrapGradient>::all())]
     wrap_gradient: Option<WrapGradient>,
 
-    /// spline, periodic-spline: the number of times the image is halved and doubled, from 0 to 32; by default 1.
+    /// spline, periodic-spline: number of times the image is halved and doubled, from 0 to 32 [default: 1].
     #[arg(long, value_name = "N")]
     levels: Option<u32>,
 
-    /// spline, periodic-spline: the basis functions of the tile; by default quadratic splines.
+    /// spline, periodic-spline: basis functions of the tile [default: quadratic].
     #[arg(long, value_name = "WHAT", value_parser = basis())]
     basis: Option<Basis>,
 
-    /// spline, periodic-spline: the position of the coarse coefficients; by default centered.
+    /// spline, periodic-spline: position of the coarse coefficients [default: centered].
     #[arg(long, value_name = "WHERE", value_parser = NamedValueParser::<Phase>::all())]
     phase: Option<Phase>,
 
-    /// spline, periodic-spline: how pixels determine the spline; by default they are its coefficients, as in the paper.
+    /// spline, periodic-spline: meaning of the pixels [default: coefficients of the spline, as in the paper].
     #[arg(long, value_name = "WHAT", value_parser = NamedValueParser::<Pixels>::all())]
     pixels: Option<Pixels>,
 }
