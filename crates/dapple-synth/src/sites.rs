@@ -1,10 +1,11 @@
-//! The sites of a surface, which are to its texture what pixels are to an image: even points on several levels, their
-//! neighbors, and the operations on columns of values.
+//! Sites on a surface: evenly spaced sample points on several levels, their neighbor graphs, and operations on columns
+//! of values per site. Sites play the role that pixels play in an image.
 //!
-//! [`scatter`] throws points with one density everywhere, [`repel`] lets them push each other apart, [`nested_points`] does
-//! both for sets of n, 4n, 16n … points in which the coarse points stay. A [`Hierarchy`] connects the sites of each level with
-//! their neighbors ([`SiteGraph`]) and has the operations on columns: [interpolation](Hierarchy::interpolate), a [`LowPass`]
-//! filter, [down](Hierarchy::downsample)- and [upsampling](Hierarchy::upsample). Level 0 is the finest.
+//! [`scatter`] draws random points of uniform density, and [`repel`] makes them push each other apart.
+//! [`nested_points`] does both for sets of n, 4n, 16n … points, where each set contains the coarser ones. A
+//! [`Hierarchy`] connects the sites of each level with their neighbors ([`SiteGraph`]). It has the operations on
+//! columns: [interpolation](Hierarchy::interpolate), a [`LowPass`] filter, [down](Hierarchy::downsample)- and
+//! [upsampling](Hierarchy::upsample). Level 0 is the finest.
 //!
 //! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, doi 10.1145/383259.383297, section 3.
 

@@ -1,9 +1,10 @@
-//! New points between those of an even set, which make it four times as dense and almost as even.
+//! Midpoints of the Delaunay edges of an evenly spaced point set. Adding them makes the set four times as dense and
+//! almost as even.
 //!
-//! A triangulation has about three edges for each point, so with the middles of its edges there are four times as many
-//! points, and a hexagonal lattice becomes a hexagonal lattice. The edges are those of Delaunay's triangulation in the
-//! plane of a point's face: two points have one if some circle through both has no other point inside. This is our own
-//! choice: Turk starts with random points.
+//! A triangulation has about three edges per point, so points and midpoints together are four times as many, and a
+//! hexagonal lattice becomes a finer hexagonal lattice. Delaunay edges are found in the plane of a point's face: two
+//! points have an edge if some circle through both has no other point inside. This refinement is our own choice; Turk
+//! starts with random points.
 
 use super::evenness::hexagonal_spacing;
 use super::near::{CHUNK, Near, Places};
@@ -12,15 +13,16 @@ use dapple_mesh::{Surface, SurfacePoint};
 use dapple_raster::parallel;
 use glam::DVec2;
 
-/// The largest distance of two points with an edge, in spacings.
+/// Maximum length of an edge, in spacings.
 const REACH: f64 = 2.2;
-/// The largest distance of the center of an empty circle from the middle of its edge, in spacings, so that no long edges
-/// lie along borders.
+/// Maximum distance from the center of an empty circle to the midpoint of its edge, in spacings. The limit excludes
+/// long edges along borders.
 const CENTER_REACH: f64 = 1.2;
-/// The distance of middles, in spacings, below which their edges cross: only one of them is kept.
+/// Distance between midpoints, in spacings, below which two edges count as crossing. Only one of them is kept.
 const CLASH: f64 = 0.3;
 
-/// An edge between two points, and the way from one to the other.
+/// An edge between two points, as a walk over the surface: start, direction in the plane of the start's face, and
+/// length in units of the mesh.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Edge {
     from: SurfacePoint,
@@ -30,7 +32,7 @@ pub(crate) struct Edge {
 }
 
 impl Edge {
-    /// Two points that split the edge in three.
+    /// The two points that divide the edge into thirds.
     pub(crate) fn thirds(&self, surface: &Surface) -> [SurfacePoint; 2] {
         [1.0, 2.0].map(|third| {
             surface
@@ -40,11 +42,12 @@ impl Edge {
     }
 }
 
-/// The edges between points that are near each other, in the order of the points.
+/// Returns the Delaunay edges between nearby points, in the order of the points.
 pub(crate) fn edges(surface: &Surface, points: &[SurfacePoint]) -> Vec<Edge> {
     let spacing = hexagonal_spacing(surface.area(), points.len());
     let places = Places::new(surface, points);
     let near = Near::new(&places, 0, REACH * spacing, 0.0);
+    // Find the edges of each point with its later neighbors.
     let chunks = parallel::map(points.len().div_ceil(CHUNK), |chunk| {
         let mut edges = Vec::with_capacity(3 * CHUNK);
         let mut star = Star::default();
@@ -56,17 +59,20 @@ pub(crate) fn edges(surface: &Surface, points: &[SurfacePoint]) -> Vec<Edge> {
         edges
     });
     let mut edges = chunks.into_iter().flatten().collect();
+    // Drop edges that cross earlier ones: stars of nearby points can disagree.
     remove_clashes(surface, &mut edges, CLASH * spacing);
     edges
 }
 
-/// The neighbors of a site, laid out in the plane of its face.
+/// A site with its neighbors, mapped to the plane of the site's face.
 #[derive(Debug, Default)]
 struct Star {
     site: u32,
     arms: Vec<Arm>,
 }
 
+/// A neighbor of the site of a star: its index, its distance in space, and its position in the plane relative to the
+/// site.
 #[derive(Clone, Copy, Debug)]
 struct Arm {
     other: u32,
@@ -75,7 +81,7 @@ struct Arm {
 }
 
 impl Star {
-    /// Maps the neighbors into the plane around the site, the nearest first, with their distances in space kept.
+    /// Maps the neighbors to the plane around the site, sorted by distance. Each keeps its distance in space.
     fn lay_out(
         &mut self,
         surface: &Surface,
@@ -99,7 +105,7 @@ impl Star {
             .sort_unstable_by(|a, b| a.length.total_cmp(&b.length).then(a.other.cmp(&b.other)));
     }
 
-    /// Adds the edges to those neighbors that have a higher number, so that each edge is found once.
+    /// Appends the edges to neighbors with a higher index. Each edge is thus found once.
     fn add_edges(
         &self,
         surface: &Surface,
@@ -121,9 +127,10 @@ impl Star {
         }
     }
 
-    /// Whether some circle through the site and the end of an arm has no other neighbor inside.
+    /// Whether some circle through the site and the neighbor of an arm has no other neighbor inside.
     ///
-    /// Its center is at `flat / 2 + t perp(flat)`; every neighbor bounds t from one side.
+    /// The center of such a circle is `flat / 2 + t perp(flat)`. Every other neighbor bounds t from one side, and the
+    /// circle exists if the interval of t is not empty.
     fn has_empty_circle(&self, arm: &Arm, reach: f64) -> bool {
         if arm.flat == DVec2::ZERO {
             return false;
@@ -151,7 +158,7 @@ impl Star {
     }
 }
 
-/// Removes the later ones of edges whose middles are nearer to each other than `clash` on the same sheet.
+/// Removes every edge whose midpoint is nearer than `clash` to the midpoint of an earlier kept edge on the same sheet.
 fn remove_clashes(surface: &Surface, edges: &mut Vec<Edge>, clash: f64) {
     let middles: Vec<SurfacePoint> = edges.iter().map(|edge| edge.middle).collect();
     let places = Places::new(surface, &middles);

@@ -1,4 +1,4 @@
-//! Values that the operations on a hierarchy can mix.
+//! Value types that the operations on a hierarchy can mix.
 
 use glam::{DVec2, DVec3};
 
@@ -16,7 +16,7 @@ pub trait Blend: Copy + Send + Sync {
     /// The zero of the vector space.
     const ZERO: Self;
 
-    /// The sum of this value and a part of another one.
+    /// Returns `self + weight * other`.
     #[must_use]
     fn add_scaled(self, other: Self, weight: f64) -> Self;
 }

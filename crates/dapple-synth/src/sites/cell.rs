@@ -1,40 +1,42 @@
-//! The Voronoi cell of the origin of a plane, found by clipping it with the bisectors of points, one by one.
+//! Voronoi cell of the origin of a plane, found by clipping with the bisectors of points, one by one.
 //!
-//! The points whose bisectors remain are the neighbors of the origin in the Delaunay triangulation of them all. Only
-//! its corners are kept, as the pairs of neighbors that make them, so nothing adds up: a bisector cuts off a corner if
-//! its point lies in the circle through the origin and the two, and that is decided for the points as they were given.
-//! Where the rounding of the quick answer could matter, the exact one is taken.
+//! The points whose bisectors remain are the neighbors of the origin in the Delaunay triangulation of all points. A
+//! corner of the cell is stored as the pair of neighbors that makes it, so rounding errors do not accumulate. A
+//! bisector cuts off a corner if its point lies in the circle through the origin and the two neighbors. This is decided
+//! for the points as they were given: a fast floating-point test first, and an exact predicate where rounding could
+//! change the answer.
 //!
 //! Reference: Jonathan Richard Shewchuk, "Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric
-//! Predicates", Discrete & Computational Geometry 18, 1997, doi 10.1007/PL00009321, for the exact answers.
+//! Predicates", Discrete & Computational Geometry 18, 1997, doi 10.1007/PL00009321, for the exact predicates.
 //!
-//! Where several points lie on an empty circle through the origin, any diagonal between them would do; none is taken,
-//! so the cell does not depend on the order of the points. Units: those of the points.
+//! Where several points lie on one empty circle through the origin, any diagonal between them would complete the
+//! triangulation. No diagonal is taken, so that the cell does not depend on the order of the points. Units: the units
+//! of the points.
 
 use core::cmp::Ordering;
 use glam::DVec2;
 use robust::{Coord, incircle, orient2d};
 
-/// 2^-50: eight units of rounding, for a sum of two products of two coordinates.
+/// 2^-50, which is eight rounding units (2^-53): relative error bound of a sum of two products of two coordinates.
 ///
-/// It takes part in what follows with room to spare. The cross product of a and b is off by at most 2 units times
-/// `|a| |b|`; the quick answer for c, which is farther away than both, by at most 20 units times `|a| |b| |c|²`, where 32
-/// are taken.
+/// The bounds below are generous. The cross product of a and b is off by at most 2 units times `|a| |b|`, and 8 are
+/// allowed. The fast incircle test of c, which is farther away than both, is off by at most 20 units times
+/// `|a| |b| |c|²`, and 32 are allowed.
 const ROUNDING: f64 = 8.881_784_197_001_252e-16;
 
 /// The Voronoi cell of the origin.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Cell {
-    /// Counterclockwise.
+    /// The neighbors, counterclockwise, each with the corner after it.
     sides: Vec<Side>,
-    /// The side that came last.
+    /// Index in `sides` of the neighbor inserted last.
     newest: usize,
-    /// The squared diameter of the largest circle through the origin and two neighbors in a row; infinite while the cell
+    /// Squared diameter of the largest circle through the origin and two consecutive neighbors; infinite while the cell
     /// is open.
     diameter_sq: f64,
 }
 
-/// A neighbor, and the corner of the cell between it and the next one, counterclockwise.
+/// A side of the cell: a neighbor, and the corner between its bisector and the next one counterclockwise.
 #[derive(Clone, Copy, Debug)]
 struct Side {
     at: DVec2,
@@ -43,40 +45,40 @@ struct Side {
     corner: Corner,
 }
 
-/// Where the bisectors of two neighbors a and b meet: the center of the circle through them and the origin.
+/// Intersection of the bisectors of two neighbors a and b: the center of the circle through a, b and the origin.
 #[derive(Clone, Copy, Debug)]
 struct Corner {
-    /// Whether the next neighbor is at least half a turn away, so that the bisectors do not meet.
+    /// Whether the next neighbor is at least half a turn away. The bisectors then do not meet on this side.
     is_open: bool,
     /// `|b|² a - |a|² b`.
     lean: DVec2,
     /// `a × b`.
     turn: f64,
-    /// The largest error of the quick answer over the squared length of the point asked for.
+    /// Error bound of the fast incircle test, divided by the squared length of the tested point.
     slack: f64,
-    /// Not less than the true one; infinite for an open corner.
+    /// Upper bound of the circle's squared diameter; infinite for an open corner.
     diameter_sq: f64,
 }
 
-/// A neighbor of the origin.
+/// A neighbor of the origin, as returned by [`Cell::neighbors`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Neighbor {
     /// The tag that was given with the point.
     pub(crate) tag: u32,
-    /// Whether it makes a triangle with the origin and the next neighbor, counterclockwise.
+    /// Whether the origin, this neighbor and the next one counterclockwise form a triangle.
     pub(crate) joined: bool,
 }
 
 impl Cell {
-    /// Makes the cell the whole plane again.
+    /// Resets the cell to the whole plane.
     pub(crate) fn clear(&mut self) {
         self.sides.clear();
         self.newest = 0;
         self.diameter_sq = f64::INFINITY;
     }
 
-    /// Not less than the squared diameter of the largest circle through the origin and two neighbors in a row: a point
-    /// farther away does not change the cell. Infinite while the cell is open.
+    /// Upper bound of the squared diameter of the largest circle through the origin and two consecutive neighbors;
+    /// infinite while the cell is open. A point farther away than this diameter does not change the cell.
     #[inline]
     pub(crate) fn diameter_sq(&self) -> f64 {
         self.diameter_sq
@@ -84,7 +86,8 @@ impl Cell {
 
     /// Clips the cell by the bisector of a point, which must not be the origin.
     ///
-    /// Points must come nearest first, up to a millionth of their distance: the bounds of rounding are made for that.
+    /// Points must come nearest first, with a tolerance of a millionth of their distance. The error bounds assume this
+    /// order.
     #[inline]
     pub(crate) fn clip(&mut self, at: DVec2, tag: u32) {
         let length_sq = at.length_squared();
@@ -101,12 +104,12 @@ impl Cell {
         }
     }
 
-    /// The neighbors, counterclockwise, that lie on an empty circle through the origin whose squared diameter is at
-    /// most `limit_sq`.
+    /// Iterates counterclockwise over the neighbors that lie on an empty circle through the origin with a squared
+    /// diameter of at most `limit_sq`.
     pub(crate) fn neighbors(&self, limit_sq: f64) -> impl Iterator<Item = Neighbor> + '_ {
         let all = self.diameter_sq <= limit_sq;
         let is_kept = move |index: usize| all || self.is_within(index, limit_sq);
-        // The one before the newest is the first.
+        // Start with the neighbor before the one inserted last.
         let first = self
             .newest
             .wrapping_sub(1)
@@ -126,13 +129,13 @@ impl Cell {
             })
     }
 
-    /// A corner that the bisector of a point cuts off.
+    /// Index of the first corner that the bisector of a point cuts off, if any.
     #[inline]
     fn first_cut(&self, new: &Side) -> Option<usize> {
         for (index, side) in self.sides.iter().enumerate() {
             let corner = &side.corner;
             let excess = corner.excess(new);
-            // An open corner has an infinite slack.
+            // An open corner has an infinite slack and always takes the exact test.
             let slack = corner.slack * new.length_sq;
             if excess > slack || (excess >= -slack && self.cuts(index, new).is_gt()) {
                 return Some(index);
@@ -141,10 +144,11 @@ impl Cell {
         None
     }
 
-    /// Whether the bisector of a point cuts off a corner (greater), goes through it (equal), or passes by.
+    /// Whether the bisector of a point cuts off a corner (greater), passes through it (equal), or misses it (less).
     fn cuts(&self, index: usize, new: &Side) -> Ordering {
         let a = &self.sides[index];
         let b = &self.sides[self.after(index)];
+        // An open corner, at infinity, is cut off by any point in the angle between its two neighbors.
         if a.corner.is_open {
             let opposite =
                 self.sides.len() == 1 && turns(a.at, new.at).is_eq() && a.at.dot(new.at) < 0.0;
@@ -155,10 +159,12 @@ impl Cell {
                 Ordering::Less
             };
         }
+        // Fast incircle test.
         let excess = a.corner.excess(new);
         if excess.abs() > a.corner.slack * new.length_sq {
             return order(excess);
         }
+        // Exact incircle test.
         order(incircle(
             coord(DVec2::ZERO),
             coord(a.at),
@@ -167,9 +173,10 @@ impl Cell {
         ))
     }
 
-    /// Puts a neighbor in the place of the corners that its bisector cuts off or goes through, all in a row with `cut`.
+    /// Inserts a neighbor in place of the run of corners around `cut` that its bisector cuts off or passes through.
     fn insert(&mut self, cut: usize, new: Side) {
         let n = self.sides.len();
+        // Extend the run of removed corners clockwise, then counterclockwise.
         let (mut first, mut last, mut count) = (cut, cut, 1);
         while count < n && self.hides(first, self.before(first), &new) {
             first = self.before(first);
@@ -179,9 +186,10 @@ impl Cell {
             last = self.after(last);
             count += 1;
         }
-        // The neighbors between these corners go.
+        // Remove the neighbors between these corners.
         let at = self.replace(first, last, count - 1, new);
         let (before, after) = (self.before(at), self.after(at));
+        // Compute the two new corners.
         self.sides[before].corner = Corner::new(&self.sides[before], &self.sides[at]);
         self.sides[at].corner = Corner::new(&self.sides[at], &self.sides[after]);
         self.newest = at;
@@ -193,11 +201,11 @@ impl Cell {
         }
     }
 
-    /// Puts a neighbor in the place of `count` others, those after `first` up to `last`; gives where it is then.
+    /// Replaces the `count` neighbors after `first` up to `last` by a new one. Returns the index of the new one.
     #[inline]
     fn replace(&mut self, first: usize, last: usize, count: usize, new: Side) -> usize {
         if last < first {
-            // They go on at the beginning.
+            // The replaced neighbors wrap around the end of the list.
             self.sides.truncate(first + 1);
             self.sides.drain(..=last);
             self.sides.push(new);
@@ -215,8 +223,8 @@ impl Cell {
         at
     }
 
-    /// Whether the bisector of a point leaves nothing of a neighbor's side of the cell, of which it is known to cut off
-    /// or go through the one corner, and `corner` is the other one.
+    /// Whether the bisector of a point removes the whole side of a neighbor. The bisector is known to cut off or pass
+    /// through one end of the side; `corner` is the other end.
     #[inline]
     fn hides(&self, neighbor: usize, corner: usize, new: &Side) -> bool {
         let other = &self.sides[corner].corner;
@@ -224,20 +232,20 @@ impl Cell {
             return false;
         }
         let [before, after] = [self.before(neighbor), neighbor].map(|index| &self.sides[index]);
-        // Where the corner is open the side is a ray, whose far end has to be cut off.
+        // At an open corner the side is a ray, whose far end must be cut off.
         self.cuts(corner, new).is_ge()
             && (!before.corner.is_open || turns(new.at, after.at).is_gt())
             && (!after.corner.is_open || turns(after.at, new.at).is_gt())
     }
 
-    /// Whether a neighbor lies on an empty circle through the origin with at most this squared diameter.
+    /// Whether a neighbor lies on an empty circle through the origin with a squared diameter of at most `limit_sq`.
     ///
-    /// The centers of its empty circles are its side of the cell. The smallest circle is in the middle between it and
-    /// the origin if that is on the side, and otherwise at the nearer corner.
+    /// The centers of its empty circles form its side of the cell. The smallest circle is centered halfway between the
+    /// neighbor and the origin if that point is on the side, and at the nearer corner otherwise.
     fn is_within(&self, index: usize, limit_sq: f64) -> bool {
         let side = &self.sides[index];
         let [before, after] = [&self.sides[self.before(index)].corner, &side.corner];
-        // A center is half of `lean`, turned by a quarter, over `turn`.
+        // The center is `lean / (2 turn)`, rotated by a quarter turn.
         let is_left = after.is_open || after.lean.dot(side.at) >= 0.0;
         let is_right = before.is_open || before.lean.dot(side.at) <= 0.0;
         let at_corner = before.diameter_sq.min(after.diameter_sq);
@@ -249,6 +257,7 @@ impl Cell {
         least <= limit_sq
     }
 
+    /// Index of the next side counterclockwise.
     #[inline]
     fn after(&self, index: usize) -> usize {
         if index + 1 == self.sides.len() {
@@ -258,6 +267,7 @@ impl Cell {
         }
     }
 
+    /// Index of the next side clockwise.
     #[inline]
     fn before(&self, index: usize) -> usize {
         if index == 0 {
@@ -269,7 +279,7 @@ impl Cell {
 }
 
 impl Corner {
-    /// A corner at infinity; the infinite slack sends every question to the exact answer.
+    /// A corner at infinity. Its infinite slack makes every test take the exact branch.
     const OPEN: Self = Self {
         is_open: true,
         lean: DVec2::ZERO,
@@ -278,13 +288,14 @@ impl Corner {
         diameter_sq: f64::INFINITY,
     };
 
-    /// Above zero if a point lies in the circle through the neighbors and the origin, up to rounding; zero for an open
-    /// corner.
+    /// Fast incircle test: positive if a point lies in the circle through the two neighbors and the origin, up to
+    /// rounding; zero for an open corner.
     #[inline]
     fn excess(&self, new: &Side) -> f64 {
         self.lean.perp_dot(new.at) - new.length_sq * self.turn
     }
 
+    /// The corner between a neighbor `a` and the next one `b`, counterclockwise.
     #[inline]
     fn new(a: &Side, b: &Side) -> Self {
         if turns(a.at, b.at).is_le() {
@@ -308,7 +319,8 @@ impl Corner {
     }
 }
 
-/// Whether it is less than half a turn, counterclockwise, from a to b (greater), or more (less); exact.
+/// Exact sign of the cross product of a and b: greater if b is less than half a turn counterclockwise from a, less if
+/// it is more than half a turn.
 #[inline]
 fn turns(a: DVec2, b: DVec2) -> Ordering {
     let (left, right) = (a.x * b.y, a.y * b.x);
@@ -319,6 +331,7 @@ fn turns(a: DVec2, b: DVec2) -> Ordering {
     order(orient2d(coord(DVec2::ZERO), coord(a), coord(b)))
 }
 
+/// Sign of a value as an ordering; NaN counts as less.
 #[inline]
 fn order(value: f64) -> Ordering {
     value.partial_cmp(&0.0).unwrap_or(Ordering::Less)

@@ -1,7 +1,8 @@
-//! Connects sites: all stars, and the graph of what any of two sites takes for an edge.
+//! Neighbor graph of sites, from the stars of all sites: two sites are connected if at least one has the other in its
+//! star.
 //!
-//! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, doi 10.1145/383259.383297, section 3.1: two
-//! sites that disagree whether they are connected are connected. So the graph is no triangulation.
+//! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, doi 10.1145/383259.383297, section 3.1: sites
+//! that disagree about an edge are connected. Edges can therefore cross, and the graph need not be a triangulation.
 
 use super::oriented::Oriented;
 use super::star::{Spoke, StarFinder};
@@ -9,25 +10,25 @@ use crate::{SiteGraph, SiteGrid, SiteIdx, SynthError, SynthErrorKind};
 use dapple_raster::parallel;
 use glam::DVec3;
 
-/// The stars that one thread makes at a time.
+/// Number of stars that one task computes.
 const CHUNK: usize = 1024;
-/// The side of the cells of the grid, in spacings: most stars then look into two or three cells along each axis.
+/// Side of the grid cells, in spacings. With this side most stars read two or three cells along each axis.
 const GRID_SIDE: f64 = 2.0;
 
-/// Sites that are connected where either of the two has the other in its star.
+/// Graph of the sites of which at least one has the other in its star.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Connected {
-    /// Which sites are connected.
+    /// Edges between the sites.
     pub graph: SiteGraph,
-    /// The number of edges that are in the star of only one of their sites.
+    /// Number of edges that are in the star of only one of their two sites.
     pub one_sided: usize,
 }
 
 impl Connected {
     /// Connects sites by the Delaunay triangulations in their tangent planes.
     ///
-    /// `normals` are unit vectors; `spacing` is the distance of neighbors that is expected. Sites at the same place are
-    /// not connected to each other, but any of them may be to what is around.
+    /// `normals` are unit vectors; `spacing` is the expected distance between neighbors. Sites at the same position are
+    /// not connected to each other, but each of them may be connected to the sites around.
     ///
     /// # Errors
     ///
@@ -42,7 +43,7 @@ impl Connected {
     ///
     /// let corners = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::new(1.0, 1.0, 0.0)];
     /// let square = Connected::new(&corners, &[DVec3::Z; 4], 1.0)?;
-    /// // Either diagonal would do, so there is none.
+    /// // Both diagonals are equally good, so neither is taken.
     /// assert_eq!(square.graph.neighbors(SiteIdx(0)), [SiteIdx(1), SiteIdx(2)]);
     /// # Ok::<(), dapple_synth::SynthError>(())
     /// ```
@@ -70,21 +71,21 @@ impl Connected {
         }))
     }
 
-    /// The connections of sites whose columns and grid are known to fit.
+    /// Connects sites whose columns and grid are known to match.
     pub(crate) fn among(sites: &Oriented<'_>) -> Self {
         Stars::new(sites).union()
     }
 }
 
-/// The stars of all sites.
+/// Stars of all sites.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Stars {
-    /// Where the star of each site begins and ends.
+    /// For each site, the range of its star in `spokes`.
     spans: Vec<[u32; 2]>,
     spokes: Vec<Spoke>,
 }
 
-/// The stars of some sites, one after the other.
+/// Stars of a run of sites, concatenated.
 #[derive(Debug, Default)]
 struct Part {
     ends: Vec<u32>,
@@ -94,7 +95,7 @@ struct Part {
 impl Stars {
     /// Finds the stars of all sites, on all cores where the feature `rayon` is on.
     pub(crate) fn new(sites: &Oriented<'_>) -> Self {
-        // In the order of the grid, so that those which follow each other are near each other.
+        // Process sites in grid order: consecutive sites are then near each other and share grid lookups.
         let members = sites.grid.members();
         let n_sites = members.len();
         let mut stars = Self {
@@ -108,6 +109,7 @@ impl Stars {
             )
         };
         let parts = parallel::map(n_sites.div_ceil(CHUNK), part);
+        // Concatenate the parts, and record the range of each star.
         for (part, members) in parts.into_iter().zip(members.chunks(CHUNK)) {
             let before = stars.spokes.len() as u32;
             let mut from = before;
@@ -120,7 +122,7 @@ impl Stars {
         stars
     }
 
-    /// The number of sites.
+    /// Number of sites.
     pub(crate) fn len(&self) -> usize {
         self.spans.len()
     }
@@ -132,7 +134,7 @@ impl Stars {
         &self.spokes[from..to]
     }
 
-    /// The graph of the edges of all stars.
+    /// Builds the graph of the edges that are in at least one star.
     pub(crate) fn union(&self) -> Connected {
         let one_sided = self.one_sided();
         let n_neighbors = self.spokes.len() + one_sided.len();
@@ -147,7 +149,7 @@ impl Stars {
         Connected { graph, one_sided }
     }
 
-    /// The edges that are in the star of their second site only, in ascending order.
+    /// Returns the edges that are in the star of their second site only, in ascending order.
     fn one_sided(&self) -> Vec<[SiteIdx; 2]> {
         let mut found = Vec::new();
         for site in (0..self.len() as u32).map(SiteIdx) {

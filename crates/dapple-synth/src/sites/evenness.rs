@@ -1,24 +1,24 @@
-//! How even points are on a surface: the distances to nearest neighbors.
+//! Evenness of points on a surface, measured by nearest-neighbor distances.
 
 use crate::{SiteGrid, SiteIdx, Sites};
 use dapple_mesh::Surface;
 use dapple_raster::parallel;
 
-/// How far from their nearest neighbors points are, in units of the distance that a hexagonal lattice with as many
-/// points on the same area would have.
+/// Nearest-neighbor distances, relative to the spacing of a hexagonal lattice with the same number of points on the
+/// same area.
 ///
 /// Random points have a mean of 0.465 and a minimum near zero; in a hexagonal lattice both are 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Evenness {
-    /// The mean over all points.
+    /// Mean over all points.
     pub mean: f64,
-    /// The least of all points.
+    /// Minimum over all points.
     pub min: f64,
 }
 
-/// The distance of neighbors in a hexagonal lattice of `n` points on an area: the paper's r, `sqrt(2 A / (sqrt(3) n))`.
+/// Spacing of a hexagonal lattice of `n` points on an area: the paper's r, `sqrt(2 A / (sqrt(3) n))`.
 ///
-/// Zero without points.
+/// Returns 0 if `n` is 0.
 #[must_use]
 pub fn hexagonal_spacing(area: f64, n: usize) -> f64 {
     if n == 0 {
@@ -29,9 +29,9 @@ pub fn hexagonal_spacing(area: f64, n: usize) -> f64 {
 
 /// Measures how even the first `n` sites are.
 ///
-/// A neighbor whose normal is more than a right angle from a site's own is on another sheet and does not count. A site
-/// without a neighbor within four hexagonal distances counts as if it had one there. Without sites both numbers are
-/// zero.
+/// A neighbor whose normal is more than 90 degrees from the site's normal is on another sheet and does not count. A
+/// site without a neighbor within four hexagonal spacings counts as having one at that distance. Without sites, mean
+/// and minimum are 0.
 ///
 /// # Examples
 ///
@@ -66,13 +66,13 @@ pub fn evenness(surface: &Surface, sites: &Sites, n: usize) -> Evenness {
     }
 }
 
-/// The distance to the nearest neighbor on the same sheet, at most four spacings.
+/// Distance to the nearest neighbor on the same sheet, clamped to four spacings.
 fn nearest(sites: &Sites, grid: &SiteGrid, site: SiteIdx, spacing: f64) -> f64 {
     let (position, normal) = (
         sites.positions()[site.index()],
         sites.normals()[site.index()],
     );
-    // Most sites have a neighbor within one and a half spacings, so the wide ball is rarely needed.
+    // Most sites have a neighbor within 1.5 spacings, so the large radius is rarely needed.
     for reach in [1.5 * spacing, 4.0 * spacing] {
         let mut least = reach;
         grid.visit(position, reach, |other| {

@@ -1,8 +1,8 @@
-//! Which sites are connected.
+//! Neighbor graph of sites.
 
 use crate::SiteIdx;
 
-/// A symmetric graph of sites in compressed rows; the paper's mesh `M_k`, of which only the edges are used.
+/// A symmetric graph of sites in compressed rows: the edges of the paper's mesh `M_k`. Its triangles are not stored.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct SiteGraph {
     offsets: Vec<u32>,
@@ -10,9 +10,9 @@ pub struct SiteGraph {
 }
 
 impl SiteGraph {
-    /// The graph with these edges, in any order and either direction, once or more often.
+    /// Builds a graph from edges in any order and either direction; duplicates are merged.
     ///
-    /// An edge from a site to itself, or with a site that there is not, is left out.
+    /// Self-loops and edges with an index of `n_sites` or more are dropped.
     ///
     /// # Examples
     ///
@@ -26,7 +26,7 @@ impl SiteGraph {
     pub fn from_edges(n_sites: usize, edges: impl IntoIterator<Item = [SiteIdx; 2]>) -> Self {
         let is_edge = |&[a, b]: &[SiteIdx; 2]| a != b && a.index().max(b.index()) < n_sites;
         let edges: Vec<[SiteIdx; 2]> = edges.into_iter().filter(is_edge).collect();
-        // Where the row of each site begins; while they are filled, where its next neighbor goes.
+        // Start of each row by counting. While the rows are filled, the position of the next neighbor.
         let mut next = vec![0_u32; n_sites + 1];
         for [a, b] in &edges {
             next[a.index() + 1] += 1;
@@ -44,15 +44,15 @@ impl SiteGraph {
         }
         let mut from = 0;
         Self::from_rows(n_sites, ends.len(), |site, row| {
-            // Every row now ends where the next one began.
+            // After filling, `next` holds the end of each row.
             let end = next[site.index()] as usize;
             row.extend(&ends[from..end]);
             from = end;
         })
     }
 
-    /// The graph of the rows that `add` appends to what it is given, one after the other; each is sorted, and a site in
-    /// it is kept once. They must be symmetric, and have about `n_neighbors` sites altogether.
+    /// Builds a graph row by row: `add` appends the neighbors of a site to the given list. Each row is then sorted, and
+    /// duplicates are removed. The rows must be symmetric; `n_neighbors` is the expected total number of neighbors.
     pub(crate) fn from_rows(
         n_sites: usize,
         n_neighbors: usize,
@@ -74,7 +74,7 @@ impl SiteGraph {
         Self { offsets, neighbors }
     }
 
-    /// The number of sites.
+    /// Number of sites.
     #[must_use]
     pub fn len(&self) -> usize {
         self.offsets.len().saturating_sub(1)
@@ -86,24 +86,24 @@ impl SiteGraph {
         self.len() == 0
     }
 
-    /// The sites that a site is connected to, lowest first.
+    /// Neighbors of a site, in ascending order.
     ///
     /// # Panics
     ///
-    /// If there is no such site.
+    /// If the graph does not have the site.
     #[inline]
     #[must_use]
     pub fn neighbors(&self, site: SiteIdx) -> &[SiteIdx] {
         &self.neighbors[self.row(site)]
     }
 
-    /// Where the neighbors of a site are among those of all sites.
+    /// Range of a site's neighbors in the concatenated rows of all sites.
     #[inline]
     pub(crate) fn row(&self, site: SiteIdx) -> core::ops::Range<usize> {
         self.offsets[site.index()] as usize..self.offsets[site.index() + 1] as usize
     }
 
-    /// The number of edges, each counted once.
+    /// Number of edges, each counted once.
     #[must_use]
     pub fn n_edges(&self) -> usize {
         self.neighbors.len() / 2

@@ -1,8 +1,9 @@
-//! Which sites are near a position: cells of a cubic grid, in bricks of which only those with sites are kept.
+//! Spatial index of sites: a cubic grid of cells, stored sparsely in bricks of cells.
 //!
-//! A surface meets few of the cells of its bounding box. Bricks of 8x8x8 cells are found by an open-addressed table;
-//! the cells of a brick are laid out densely, so that a row of cells is one run of sites, and a ball of the size of a
-//! cell needs about two searches in the table. Sites are sorted into their cells by counting. Reference: our own.
+//! A surface meets only a few cells of its bounding box, so only bricks of 8x8x8 cells that contain sites are stored.
+//! An open-addressed hash table finds them. The cells of a brick are laid out densely: a row of cells is one contiguous
+//! run of sites, and a ball the size of a cell needs about two table lookups. Sites are sorted into cells by counting
+//! sort. Reference: our own.
 
 use crate::SiteIdx;
 use core::ops::Range;
@@ -11,56 +12,58 @@ use glam::DVec3;
 /// Sites sorted into the cells of a cubic grid.
 #[derive(Clone, Debug)]
 pub struct SiteGrid {
-    /// Where the first cell begins.
+    /// Lower corner of the first cell.
     low: DVec3,
-    /// One over the side of a cell.
+    /// Inverse of the side of a cell.
     scale: f64,
-    /// The last cell along each axis.
+    /// Index of the last cell along each axis.
     last: [u32; 3],
-    /// The keys of the bricks, ascending; they are numbered in this order.
+    /// Keys of the bricks in ascending order. The index of a brick is its position here.
     bricks: Vec<u64>,
-    /// An open-addressed table of the bricks.
+    /// Open-addressed hash table from brick key to brick index.
     table: Vec<Slot>,
-    /// Where in `members` each cell of each brick begins, and the end.
+    /// Start of each cell in `members`, brick by brick, and the end of the last one.
     starts: Vec<u32>,
+    /// Sites sorted by cell.
     members: Vec<SiteIdx>,
 }
 
-/// A place of the table: a brick, or [`EMPTY`].
+/// A slot of the table: a brick with its key, or the key [`EMPTY`].
 #[derive(Clone, Copy, Debug)]
 struct Slot {
     key: u64,
     brick: u32,
 }
 
-/// Cells from a first to a last one along each axis.
+/// A box of cells, with the first and the last cell along each axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Block {
     low: [u32; 3],
     high: [u32; 3],
 }
 
+/// Key of an empty slot.
 const EMPTY: u64 = u64::MAX;
-/// The bits of a cell's number along one axis: three of them fit 64 bits.
+/// Bits of a cell coordinate. Three coordinates fit into 64 bits.
 const BITS: u32 = 21;
-/// The bits of a cell's number in its brick along one axis.
+/// Bits of a cell coordinate within its brick.
 const BRICK_BITS: u32 = 3;
-/// The cells of a brick.
+/// Number of cells in a brick.
 const BRICK_CELLS: usize = 1 << (3 * BRICK_BITS);
-/// The least mean number of sites in a brick; below it cells are widened, which bounds the memory to 64 bytes for each
-/// site.
+/// Minimum mean number of sites per brick. Below it cells are widened, which bounds the memory to 64 bytes per site.
 const SITES_PER_BRICK: usize = 32;
-/// The number of bricks that is always granted.
+/// Number of bricks that is always allowed, however few the sites.
 const BRICKS_LEAST: usize = 64;
-/// The most bricks, whose cells can still be numbered in 32 bits.
+/// Maximum number of bricks: their cells still have 32-bit indices.
 const BRICKS_MOST: usize = (1 << 23) - 1;
 
 impl SiteGrid {
-    /// Sorts positions into cells of the given side; the sites are numbered in the order of `positions`.
+    /// Sorts positions into cells of the given side, in units of the positions. Site indices follow the order of
+    /// `positions`.
     ///
-    /// The side is in units of the positions. It is widened where it is so small that more than 2^21 cells would lie
-    /// along an axis or most bricks of cells would hold very few sites. Takes time in proportion to the number of
-    /// sites, which must be below 2^32; a position that is not finite lands in some cell.
+    /// The side is widened where it is so small that more than 2^21 cells would lie along an axis, or that the mean
+    /// number of sites per brick would fall below 32. Time is linear in the number of sites, which must be below 2^32.
+    /// A position that is not finite is put into some cell.
     #[must_use]
     pub fn new(positions: &[DVec3], side: f64) -> Self {
         let low = positions.iter().copied().fold(DVec3::INFINITY, DVec3::min);
@@ -72,6 +75,7 @@ impl SiteGrid {
         let least = (widest / f64::from((1_u32 << BITS) - 2)).max(f64::MIN_POSITIVE);
         let mut side = if side > least { side } else { least };
         let most = (positions.len() / SITES_PER_BRICK).clamp(BRICKS_LEAST, BRICKS_MOST);
+        // Double the side until the number of bricks is within the limit.
         loop {
             let mut grid = Self::empty(low, high, side);
             if let Some(places) = grid.find_bricks(positions, most) {
@@ -82,11 +86,11 @@ impl SiteGrid {
         }
     }
 
-    /// Calls `visit` with every site in the cells that a ball meets: all sites in the ball, and some around it. A ball
-    /// with a negative radius has none.
+    /// Calls `visit` with every site in the cells that the ball's bounding box meets: all sites in the ball, and some
+    /// around it. A ball with a negative radius has no sites.
     ///
-    /// The order is that of the bricks, then of the cells in a brick, x first and z last both times, then of the sites
-    /// in a cell: it depends on the positions and the side only.
+    /// The order depends on the positions and the side alone: by brick, then by cell in the brick (x fastest and z
+    /// slowest for both), then by site index in the cell.
     #[inline]
     pub fn visit(&self, center: DVec3, radius: f64, mut visit: impl FnMut(SiteIdx)) {
         self.visit_rows(center, radius, |row| {
@@ -96,7 +100,7 @@ impl SiteGrid {
         });
     }
 
-    /// Calls `visit` with the ranges of [`members`](Self::members) that [`visit`](Self::visit) goes through.
+    /// Calls `visit` with the ranges of [`members`](Self::members) whose sites [`visit`](Self::visit) visits.
     #[inline]
     pub(crate) fn visit_rows(&self, center: DVec3, radius: f64, visit: impl FnMut(Range<usize>)) {
         self.visit_between(
@@ -106,15 +110,15 @@ impl SiteGrid {
         );
     }
 
-    /// All sites, in the order of their cells.
+    /// All sites, sorted by cell.
     pub(crate) fn members(&self) -> &[SiteIdx] {
         &self.members
     }
 
-    /// The cells that a ball can meet whose center is in the same cell as a position.
+    /// The cells that any ball of this radius can meet if its center is in the cell of `position`.
     #[inline]
     pub(crate) fn block(&self, position: DVec3, radius: f64) -> Block {
-        // One cell more than is needed where the radius is a whole number of cells: there, rounding could matter.
+        // One cell more than needed if the radius is a whole number of cells, since rounding could matter there.
         let away = (radius * self.scale) as u32;
         let cell = self.cell(position);
         Block {
@@ -135,7 +139,7 @@ impl SiteGrid {
         });
     }
 
-    /// Visits the sites of the cells from a first to a last one along each axis, row by row.
+    /// Visits the sites of the cells from `low` to `high` along each axis, row by row.
     #[inline]
     fn visit_between(&self, low: [u32; 3], high: [u32; 3], mut visit: impl FnMut(Range<usize>)) {
         if (0..3).any(|axis| low[axis] > high[axis]) {
@@ -143,6 +147,7 @@ impl SiteGrid {
         }
         let (first, last) = (low.map(brick_of), high.map(brick_of));
         let spans = [0, 1, 2].map(|axis| u64::from(last[axis] - first[axis]) + 1);
+        // If the box has more bricks than the grid, scan all bricks instead of looking each one up.
         if spans[0] * spans[1] * spans[2] > self.bricks.len() as u64 {
             return self.visit_all(low, high, visit);
         }
@@ -157,6 +162,7 @@ impl SiteGrid {
         }
     }
 
+    /// A grid without sites or bricks over a bounding box.
     fn empty(low: DVec3, high: DVec3, side: f64) -> Self {
         let mut grid = Self {
             low,
@@ -171,8 +177,8 @@ impl SiteGrid {
         grid
     }
 
-    /// Fills the table and gives, for each site, the number of its cell among all cells of all bricks; nothing if there
-    /// are more bricks than `most`.
+    /// Fills the table, and returns for each site the index of its cell among the cells of all bricks. Returns `None`
+    /// if there are more than `most` bricks.
     fn find_bricks(&mut self, positions: &[DVec3], most: usize) -> Option<Vec<u32>> {
         let slots = (2 * most.min(positions.len()) + 2).next_power_of_two();
         self.table = vec![
@@ -190,7 +196,7 @@ impl SiteGrid {
         for &position in positions {
             let cell = self.cell(position);
             let key = key(cell.map(brick_of));
-            // Sites that follow each other are mostly near each other.
+            // Consecutive sites are mostly in the same brick, so try the previous one first.
             if key != before.key {
                 before = self.find_or_add(key);
                 if self.bricks.len() > most {
@@ -203,6 +209,7 @@ impl SiteGrid {
         Some(places)
     }
 
+    /// Returns the slot of a brick; adds the brick if it is new.
     fn find_or_add(&mut self, key: u64) -> Slot {
         let mut at = self.slot(key);
         while self.table[at].key != key {
@@ -217,7 +224,7 @@ impl SiteGrid {
         self.table[at]
     }
 
-    /// Numbers the bricks by their keys instead of by which site came first.
+    /// Renumbers the bricks from order of insertion to order of keys.
     fn number_by_key(&mut self, places: &mut [u32]) {
         let found = core::mem::take(&mut self.bricks);
         self.bricks.clone_from(&found);
@@ -235,9 +242,10 @@ impl SiteGrid {
         }
     }
 
-    /// Sorts the sites by their cells.
+    /// Sorts the sites by cell with a counting sort.
     fn sort(&mut self, places: &[u32]) {
         let mut starts = vec![0_u32; self.bricks.len() * BRICK_CELLS + 1];
+        // Count the sites of each cell, then sum up the counts to the end of each cell.
         for &place in places {
             starts[place as usize] += 1;
         }
@@ -247,7 +255,8 @@ impl SiteGrid {
             *start = end;
         }
         self.members = vec![SiteIdx(0); places.len()];
-        // From the last to the first, so that those of a cell stay in order and its start ends where it belongs.
+        // Fill each cell from its end, last site first: sites keep their order, and each end becomes the start of its
+        // cell.
         for (site, &place) in places.iter().enumerate().rev() {
             let start = &mut starts[place as usize];
             *start -= 1;
@@ -256,11 +265,11 @@ impl SiteGrid {
         self.starts = starts;
     }
 
-    /// The cell of a position; outside of the grid, the nearest one.
+    /// Cell of a position; the nearest cell if the position is outside of the grid.
     #[inline]
     fn cell(&self, position: DVec3) -> [u32; 3] {
         let cell = (position - self.low) * self.scale;
-        // A conversion of a float saturates, and gives zero for NaN.
+        // Conversion from float saturates, and maps NaN to zero.
         [
             (cell.x as u32).min(self.last[0]),
             (cell.y as u32).min(self.last[1]),
@@ -268,6 +277,7 @@ impl SiteGrid {
         ]
     }
 
+    /// Index of the brick with a key, if the grid has it.
     #[inline]
     fn find(&self, key: u64) -> Option<u32> {
         let mut at = self.slot(key);
@@ -283,7 +293,7 @@ impl SiteGrid {
         }
     }
 
-    /// Where the search for a brick begins.
+    /// Slot at which the search for a key begins.
     #[inline]
     fn slot(&self, key: u64) -> usize {
         // Fibonacci hashing: the upper bits of the product with 2^64 over the golden ratio.
@@ -291,7 +301,7 @@ impl SiteGrid {
         (mixed >> 32) as usize & (self.table.len() - 1)
     }
 
-    /// Visits the rows of the cells of one brick that lie between two cells.
+    /// Visits the rows of cells of one brick that lie in the box from `low` to `high`.
     #[inline]
     fn visit_brick(
         &self,
@@ -311,7 +321,7 @@ impl SiteGrid {
         }
     }
 
-    /// Visits the sites within a ball that meets more bricks than there are.
+    /// Visits a box by scanning all bricks of the grid; for boxes with more bricks than the grid has.
     fn visit_all(&self, low: [u32; 3], high: [u32; 3], mut visit: impl FnMut(Range<usize>)) {
         let mask = (1 << BITS) - 1;
         for (brick, &key) in (0..).zip(&self.bricks) {
@@ -325,18 +335,19 @@ impl SiteGrid {
     }
 }
 
+/// Coordinate of the brick of a cell along one axis.
 #[inline]
 fn brick_of(cell: u32) -> u32 {
     cell >> BRICK_BITS
 }
 
-/// A brick in one number, which sorts by z, then y, then x.
+/// Packs the coordinates of a brick into one number that sorts by z, then y, then x.
 #[inline]
 fn key([x, y, z]: [u32; 3]) -> u64 {
     u64::from(x) | u64::from(y) << BITS | u64::from(z) << (2 * BITS)
 }
 
-/// The number of a cell of a brick among all.
+/// Index of a cell among the cells of all bricks.
 #[inline]
 fn place(brick: u32, cell: [u32; 3]) -> u32 {
     let [x, y, z] = cell.map(|part| part & ((1 << BRICK_BITS) - 1));

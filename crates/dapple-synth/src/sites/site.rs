@@ -1,14 +1,14 @@
-//! Even points on a surface, in columns.
+//! Sample points on a surface, stored in columns.
 
 use dapple_mesh::{Surface, SurfacePoint};
 use glam::DVec3;
 
-/// The number of a site of a hierarchy, from 0; the sites of the coarsest level come first.
+/// Index of a site in a hierarchy, from 0. The sites of the coarsest level come first.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct SiteIdx(pub u32);
 
 impl SiteIdx {
-    /// The number as an index into a column.
+    /// Returns the index as a `usize`, for indexing a column.
     #[inline]
     #[must_use]
     pub const fn index(self) -> usize {
@@ -16,7 +16,7 @@ impl SiteIdx {
     }
 }
 
-/// Points on a surface that a texture gives colors to: columns indexed by [`SiteIdx`].
+/// Points of a surface that synthesis assigns colors to, as columns indexed by [`SiteIdx`].
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Sites {
     points: Vec<SurfacePoint>,
@@ -25,11 +25,11 @@ pub struct Sites {
 }
 
 impl Sites {
-    /// The columns of some points of a surface.
+    /// Computes the positions and normals of points of a surface.
     ///
     /// # Panics
     ///
-    /// If a point names a face that the surface does not have.
+    /// If a point refers to a face that the surface does not have.
     #[must_use]
     pub fn new(surface: &Surface, points: Vec<SurfacePoint>) -> Self {
         Self {
@@ -42,37 +42,37 @@ impl Sites {
         }
     }
 
-    /// The number of sites.
+    /// Number of sites.
     #[must_use]
     pub fn len(&self) -> usize {
         self.points.len()
     }
 
-    /// Whether there are none.
+    /// Whether there are no sites.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.points.is_empty()
     }
 
-    /// Where the sites are on the surface.
+    /// Surface points of the sites: face and position in the face.
     #[must_use]
     pub fn points(&self) -> &[SurfacePoint] {
         &self.points
     }
 
-    /// Where the sites are in space.
+    /// Positions of the sites in space, in units of the mesh.
     #[must_use]
     pub fn positions(&self) -> &[DVec3] {
         &self.positions
     }
 
-    /// The unit normals of the smooth surface at the sites.
+    /// Unit normals of the smooth surface at the sites.
     #[must_use]
     pub fn normals(&self) -> &[DVec3] {
         &self.normals
     }
 
-    /// All sites, in order.
+    /// Iterates over all sites in ascending order.
     pub fn iter(&self) -> impl Iterator<Item = SiteIdx> + use<> {
         (0..self.points.len() as u32).map(SiteIdx)
     }
