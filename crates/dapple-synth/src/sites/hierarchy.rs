@@ -1,4 +1,4 @@
-//! Nested sets of even points on a surface, connected on every level: the paper's mesh hierarchy.
+//! Nested sets of evenly spaced sites on a surface, with a neighbor graph on every level: the paper's mesh hierarchy.
 
 use super::oriented::Oriented;
 use crate::{
@@ -9,33 +9,34 @@ use dapple_hash::Seed;
 use dapple_mesh::Surface;
 use glam::DVec3;
 
-/// The most sites.
+/// Maximum number of sites of the finest level.
 const SITES_MAX: usize = 1 << 28;
-/// The memory for a site and its lists of neighbors while sites repel each other, as measured.
+/// Memory per site during repulsion, neighbor lists included, in bytes; measured.
 const BYTES_PER_SITE: usize = 220;
-/// The most levels; even of the most sites, the coarsest of 15 has only one.
+/// Maximum number of levels. With 2^28 sites, the 15th level already has a single site.
 const LEVELS_MAX: usize = 16;
-/// The most iterations, so that a mistaken number does not take forever.
+/// Maximum number of iterations: a larger number is taken for a mistake, since it would run almost forever.
 const ITERATIONS_MAX: usize = 10_000;
 
-/// The most sites that there may be within two spacings of a site, on the mean over the surface; one sheet has about 15.
+/// Maximum mean number of sites within two spacings of a site. A single sheet has about 15.
 const NEAR_MAX: f64 = 512.0;
 /// Number of random points among which crossings are counted.
 const POINTS: usize = 1 << 16;
-/// Number of points around which they are counted.
+/// Number of points around which neighbors are counted.
 const SAMPLE: usize = 256;
 
 /// Options of a hierarchy.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HierarchyOptions {
-    /// The number of sites of the finest level; by default 65 536. Each coarser level has a quarter, rounded up.
+    /// Number of sites of the finest level, from 1 to 2^28; by default 65,536. Each coarser level has a quarter,
+    /// rounded up.
     pub n_sites: usize,
-    /// The number of levels; by default 3.
+    /// Number of levels, from 1 to 16; by default 3.
     pub n_levels: usize,
-    /// Where the sites begin.
+    /// Seed of the random points that the sites start from; by default `Seed(0)`.
     pub seed: Seed,
-    /// How often the new sites of a level push each other apart; by default 6. Those of the coarsest level do so four
-    /// times as often. More than 40 change next to nothing.
+    /// Number of repulsion steps for the new sites of each level, at most 10,000; by default 6. The coarsest level
+    /// takes four times as many. More than 40 have almost no effect.
     pub iterations: usize,
 }
 
@@ -51,17 +52,17 @@ impl Default for HierarchyOptions {
 }
 
 impl HierarchyOptions {
-    /// Refuses what [`Hierarchy::new`] refuses, in a small part of its time.
+    /// Checks the options and the surface as [`Hierarchy::new`] does, in a fraction of its time.
     ///
     /// # Errors
     ///
-    /// The errors of [`Hierarchy::new`].
+    /// Returns the errors of [`Hierarchy::new`].
     pub fn check(&self, surface: &Surface) -> Result<(), SynthError> {
         let counts = self.counts()?;
         check_crossings(surface, counts[0], self.seed)
     }
 
-    /// The number of sites of each level, the finest first.
+    /// Checks the options, and returns the number of sites of each level, finest first.
     fn counts(&self) -> Result<Vec<usize>, SynthError> {
         let refuse = |what, count, needed| {
             Err(SynthError::new(SynthErrorKind::Count {
@@ -80,7 +81,7 @@ impl HierarchyOptions {
             return refuse("iterations", self.iterations, "at most 10000");
         }
         let coarser = |&count: &usize| Some(count.div_ceil(4));
-        // Asked for and given back at once, so that too many sites are an error and no abort.
+        // Reserve the memory and release it at once: too many sites then give an error instead of an abort.
         let bytes = self.n_sites.saturating_mul(BYTES_PER_SITE);
         if Vec::<u8>::new().try_reserve_exact(bytes).is_err() {
             return refuse("sites", self.n_sites, "as few as fit into the memory");
@@ -91,14 +92,14 @@ impl HierarchyOptions {
     }
 }
 
-/// The sites of all levels, those of the coarsest first, and what is known of every level.
+/// Sites of all levels, coarsest level first, with the neighbor graph and the grid of every level.
 #[derive(Clone, Debug)]
 pub struct Hierarchy {
     sites: Sites,
     levels: Vec<Level>,
 }
 
-/// One level of a hierarchy: its sites are the first `n_sites` of all.
+/// One level of a hierarchy. Its sites are the first `n_sites` sites of the hierarchy.
 #[derive(Clone, Debug)]
 pub struct Level {
     n_sites: usize,
@@ -112,9 +113,9 @@ impl Hierarchy {
     ///
     /// # Errors
     ///
-    /// [`SynthErrorKind::Count`] unless there are 1 to 2^28 sites, which fit into the memory, 1 to 16 levels and at most
-    /// 10,000 iterations, and [`SynthErrorKind::Range`] for a surface that crosses itself in so many places that a site has
-    /// more than 512 others within two spacings, where a single sheet has 15.
+    /// Returns [`SynthErrorKind::Count`] unless there are 1 to 2^28 sites, 1 to 16 levels and at most 10,000
+    /// iterations, or if the sites do not fit into memory. Returns [`SynthErrorKind::Range`] for a surface that crosses
+    /// itself so often that a site has on average more than 512 other sites within two spacings; a single sheet has 15.
     pub fn new(surface: &Surface, options: &HierarchyOptions) -> Result<Self, SynthError> {
         options.check(surface)?;
         let counts = options.counts()?;
@@ -144,32 +145,32 @@ impl Hierarchy {
         Ok(Self { sites, levels })
     }
 
-    /// The sites of the finest level; those of the coarser levels are the first of them.
+    /// Sites of the finest level. The sites of each coarser level are the first of them.
     #[must_use]
     pub fn sites(&self) -> &Sites {
         &self.sites
     }
 
-    /// The levels, the finest first: `levels()[0]` is the paper's `M_1`.
+    /// Levels, finest first: `levels()[0]` is the paper's `M_1`.
     #[must_use]
     pub fn levels(&self) -> &[Level] {
         &self.levels
     }
 }
 
-/// Number of sites with which an image of a size in pixels repeats about `repeats` times across a surface, along the longest side
-/// of its bounding box: neighboring sites are then as far apart as the pixels of the image.
+/// Number of sites for which an image of `size` pixels repeats about `repeats` times along the longest side of the
+/// surface's bounding box. Neighboring sites are then as far apart as the pixels of the image.
 ///
-/// At least 1. See [`repeats_of_sites`] for the opposite.
+/// The result is at least 1. See [`repeats_of_sites`] for the inverse.
 ///
 /// # Errors
 ///
-/// [`SynthErrorKind::Range`] for a number of repeats that is not above 0 and at most 10,000.
+/// Returns [`SynthErrorKind::Range`] unless the number of repeats is above 0 and at most 10,000.
 ///
 /// # Examples
 ///
-/// A square of two triangles, on which an image of 100 × 100 pixels lies five times beside itself, needs 500 sites along each
-/// side: in a hexagonal lattice 2 / sqrt(3) times as many as in a square one.
+/// On a square of two triangles, an image of 100 × 100 pixels that repeats five times along each side needs 500 sites
+/// along each side. A hexagonal lattice has 2 / sqrt(3) times as many sites as a square one of that spacing.
 ///
 /// ```
 /// use dapple_synth::mesh::{Mesh, Surface, glam::DVec3};
@@ -194,8 +195,8 @@ pub fn sites_for_repeats(
     Ok((ratio * ratio).round().clamp(1.0, (1_u64 << 53) as f64) as usize)
 }
 
-/// How often an image of a size in pixels repeats across a surface of a number of sites, along the longest side of its bounding
-/// box: the opposite of [`sites_for_repeats`].
+/// Number of times that an image of `size` pixels repeats along the longest side of the surface's bounding box, for a
+/// number of sites. Inverse of [`sites_for_repeats`].
 #[must_use]
 pub fn repeats_of_sites(surface: &Surface, size: [u32; 2], n_sites: usize) -> f64 {
     let positions = surface.mesh().positions().iter().copied();
@@ -206,10 +207,11 @@ pub fn repeats_of_sites(surface: &Surface, size: [u32; 2], n_sites: usize) -> f6
     (high - low).max_element() / side
 }
 
-/// Refuses a surface of many sheets that cross each other: each site would have to be compared with all others around it in
-/// space, and time would grow with the square of their number.
+/// Returns an error for a surface of many sheets that cross each other. Each site would be compared with all sites
+/// around it in space, and time would grow with the square of their number.
 ///
-/// Random points are counted within two spacings of a sample of them, before the sites are spread.
+/// The number of sites is estimated before any site is placed: random points are counted within two spacings of a
+/// sample of them.
 fn check_crossings(surface: &Surface, n_sites: usize, seed: Seed) -> Result<(), SynthError> {
     let n_points = n_sites.min(POINTS);
     let spacing = hexagonal_spacing(surface.area(), n_sites);
@@ -220,6 +222,7 @@ fn check_crossings(surface: &Surface, n_sites: usize, seed: Seed) -> Result<(), 
         .collect();
     let grid = SiteGrid::new(&positions, 2.0 * spacing);
     let sample = &positions[..n_points.min(SAMPLE)];
+    // Count the random points around each point of the sample.
     let mut n_near = 0_usize;
     for &center in sample {
         grid.visit(center, 2.0 * spacing, |site| {
@@ -228,6 +231,7 @@ fn check_crossings(surface: &Surface, n_sites: usize, seed: Seed) -> Result<(), 
             n_near += usize::from(is_near);
         });
     }
+    // Scale the count from the random points to all sites.
     let mean = n_near as f64 / sample.len().max(1) as f64 * (n_sites as f64 / n_points as f64);
     let holds = mean <= NEAR_MAX;
     let what =
@@ -236,31 +240,32 @@ fn check_crossings(surface: &Surface, n_sites: usize, seed: Seed) -> Result<(), 
 }
 
 impl Level {
-    /// The number of sites: those with an index below it.
+    /// Number of sites. The sites of this level are those with a lower index.
     #[must_use]
     pub fn n_sites(&self) -> usize {
         self.n_sites
     }
 
-    /// The paper's r: the distance of neighbors if the sites were a hexagonal lattice, `sqrt(2 A / (sqrt(3) n))`.
+    /// The paper's r, in units of the mesh: spacing of a hexagonal lattice with as many sites, `sqrt(2 A / (sqrt(3)
+    /// n))`.
     #[must_use]
     pub fn spacing(&self) -> f64 {
         self.spacing
     }
 
-    /// Which sites are connected.
+    /// Neighbor graph of the sites.
     #[must_use]
     pub fn graph(&self) -> &SiteGraph {
         &self.connected.graph
     }
 
-    /// The number of edges that only one of their two sites asked for: the paper's disagreements.
+    /// Number of edges that are in the star of only one of their two sites: the paper's disagreements.
     #[must_use]
     pub fn one_sided_edges(&self) -> usize {
         self.connected.one_sided
     }
 
-    /// Which sites are near a position.
+    /// Spatial index that finds the sites near a position.
     #[must_use]
     pub fn grid(&self) -> &SiteGrid {
         &self.grid
@@ -283,8 +288,8 @@ mod tests {
             panic!("{error}");
         };
         assert!(what.contains("crosses itself"), "{error}");
-        // In a ball of two spacings in the middle of the cube, sites are as dense as in all of it. The sheets thin out towards
-        // its sides, so that there are up to several times as many.
+        // In a ball of two spacings in the middle of the cube, sites are as dense as in the whole cube. The sheets thin
+        // out toward its sides, so there can be several times as many.
         let spacing = crate::hexagonal_spacing(tangle(5000).area(), options.n_sites);
         let ball = 4.0 / 3.0 * core::f64::consts::PI * 8.0 * spacing * spacing * spacing;
         let expected = ball.min(1.0) * options.n_sites as f64;
@@ -292,7 +297,7 @@ mod tests {
             (expected / 2.0..expected * 5.0).contains(value),
             "{value}, not {expected}"
         );
-        // A few sheets that cross are no reason.
+        // A few crossing sheets are accepted.
         let few = HierarchyOptions {
             n_sites: 2000,
             ..options

@@ -1,35 +1,35 @@
-//! The value between sites: equation 1.
+//! Interpolation between sites: equation 1.
 //!
 //! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, doi 10.1145/383259.383297, section 3.2, with
-//! the weights `w(x) = 2x³ - 3x² + 1` of the distances over the radius. The paper states neither the radius nor what
-//! holds where no site is in reach; see [`INTERPOLATION_RADIUS`] and
+//! the weights `w(x) = 2x³ - 3x² + 1`, where x is the distance over the radius. The paper states neither the radius nor
+//! the value where no site is in reach; see [`INTERPOLATION_RADIUS`] and
 //! [`Hierarchy::interpolate`](crate::Hierarchy::interpolate).
 //!
-//! The sum is that of the differences to the first site in reach, so that a constant column gives just that
-//! constant. Sites are taken in the order of [`SiteGrid::visit`](crate::SiteGrid::visit). Units: those of the mesh.
+//! Differences to the value of the first site in reach are summed, so that a constant column gives exactly that
+//! constant. Sites are visited in the order of [`SiteGrid::visit`](crate::SiteGrid::visit). Units: units of the mesh.
 
 use super::oriented::Oriented;
 use crate::{Blend, SiteIdx};
 use fearless_simd::{f32x8, prelude::*};
 use glam::DVec3;
 
-/// The radius of interpolation in spacings of the level.
+/// Radius of interpolation, in spacings of the level.
 ///
-/// The paper does not say. At 1.0 most positions have three or four sites in reach; at 2.0 colors blur away.
+/// The paper does not give a radius. At 1.0 most positions have three or four sites in reach; at 2.0 colors blur.
 pub const INTERPOLATION_RADIUS: f64 = 1.1;
 
-/// Weights that sum to less than this are those of sites at the very rim, and say nothing.
+/// Minimum sum of weights. A smaller sum comes from sites at the rim of the ball only, and the nearest site is used.
 const WEIGHTS_LEAST: f64 = 1e-9;
-/// How far to look for the nearest site, in radii of interpolation, if none is in reach.
+/// Search radii for the nearest site if no site is in reach, in radii of interpolation.
 const NEAREST_REACHES: [f64; 4] = [1.0, 2.0, 4.0, 8.0];
 
-/// The weight of a site in equation 1, `w(x) = 2x³ - 3x² + 1`, at a distance of `x` radii, which is at most 1.
+/// Weight of a site in equation 1, `w(x) = 2x³ - 3x² + 1`, at a distance of `x` radii, from 0 to 1.
 #[inline]
 pub(crate) fn weight(x: f64) -> f64 {
     (2.0 * x - 3.0) * x * x + 1.0
 }
 
-/// The weights of a site in equation 1 for eight positions, from the squares of the distances in radii; 0 from a radius on.
+/// Weights of a site in equation 1 for eight positions, from squared distances in radii; 0 at one radius or more.
 #[inline(always)]
 pub(crate) fn weights<S: Simd>(simd: S, x_sq: f32x8<S>) -> f32x8<S> {
     let weights = (x_sq.sqrt() * 2.0 - 3.0) * x_sq + 1.0;
@@ -37,7 +37,7 @@ pub(crate) fn weights<S: Simd>(simd: S, x_sq: f32x8<S>) -> f32x8<S> {
 }
 
 impl Oriented<'_> {
-    /// The value at a position: the weighted mean, or the value of the nearest site up to 8 radii away.
+    /// Value at a position: the weighted mean, or the value of the nearest site up to 8 radii away.
     ///
     /// `column` has a value for each site.
     #[inline]
@@ -67,8 +67,8 @@ impl Oriented<'_> {
         }
     }
 
-    /// The nearest site on a side of the surface, the lowest of equally near ones; none if all are more than 8 radii of
-    /// interpolation away.
+    /// Nearest site on the side of the surface that `normal` points to; ties go to the lowest index. `None` if all are
+    /// more than 8 radii of interpolation away.
     #[cold]
     fn nearest(&self, position: DVec3, normal: DVec3) -> Option<SiteIdx> {
         for reach in NEAREST_REACHES {
@@ -86,7 +86,7 @@ impl Oriented<'_> {
         None
     }
 
-    /// The nearest of all sites, on whatever side; none if there are no sites.
+    /// Nearest of all sites, on either side of the surface. `None` if there are no sites.
     #[cold]
     pub(crate) fn nearest_of_all(&self, position: DVec3) -> Option<SiteIdx> {
         let mut nearest = Nearest::within(f64::INFINITY);
@@ -96,20 +96,21 @@ impl Oriented<'_> {
         nearest.site
     }
 
-    /// Whether the normal of a site is at most a right angle from another one.
+    /// Whether the normal of a site is at most 90 degrees from another normal.
     #[inline]
     fn is_on_side(&self, site: SiteIdx, normal: DVec3) -> bool {
         self.normals[site.index()].dot(normal) >= 0.0
     }
 }
 
-/// The nearest of the sites offered.
+/// Nearest site seen so far, and its distance.
 struct Nearest {
     site: Option<SiteIdx>,
     distance: f64,
 }
 
 impl Nearest {
+    /// An empty search that accepts sites nearer than `distance`.
     fn within(distance: f64) -> Self {
         Self {
             site: None,
@@ -117,6 +118,7 @@ impl Nearest {
         }
     }
 
+    /// Takes a site if it is nearer, or as near with a lower index.
     #[inline]
     fn offer(&mut self, site: SiteIdx, distance: f64) {
         let is_first = self.site.is_none_or(|nearest| site < nearest);

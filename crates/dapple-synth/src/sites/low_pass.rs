@@ -1,26 +1,26 @@
-//! Low-pass filtering of values at sites: equations 2 to 4.
+//! Low-pass filter for columns of values at sites: equations 2 to 4.
 //!
-//! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, doi 10.1145/383259.383297, section 3.2; the
-//! smoothing is that of Gabriel Taubin, "A Signal Processing Approach to Fair Surface Design", SIGGRAPH 1995, doi
-//! 10.1145/218380.218473. Each step moves the value of a site by a part t toward the mean of its neighbors, whose
-//! weights are the inverse lengths of the edges over their sum:
+//! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, doi 10.1145/383259.383297, section 3.2. The
+//! smoothing is from Gabriel Taubin, "A Signal Processing Approach to Fair Surface Design", SIGGRAPH 1995, doi
+//! 10.1145/218380.218473. Each step moves the value of a site by a fraction t toward the weighted mean of its
+//! neighbors. The weights are the inverse lengths of the edges over their sum:
 //!
 //! `C' = C + t Σ wᵢ (Cᵢ - C)`
 //!
-//! All sites move at once (Jacobi), from the values before the step. The sum is over differences, in the order of the
-//! neighbors, so that a constant column does not change in a single bit. On even sites a step adds `t r² / 2` to the
-//! variance of a spot along each axis, with r the spacing.
+//! All sites move at once, from the values before the step (Jacobi iteration). Differences are summed in the order of
+//! the neighbors, so that a constant column does not change in a single bit. On evenly spaced sites a step adds
+//! `t r² / 2` to the variance of a spot along each axis, with r the spacing.
 
 use crate::{Blend, SiteGraph, SiteIdx, SynthError, SynthErrorKind};
 use dapple_raster::parallel;
 use glam::DVec3;
 
-/// The sites that one thread works on at a time.
+/// Number of sites in one parallel task.
 const CHUNK: usize = 2048;
 
 /// A low-pass filter for columns of values at the sites of a graph.
 ///
-/// It keeps the weights, so that many columns can be filtered. A site without neighbors keeps its value.
+/// The weights are computed once and reused for any number of columns. A site without neighbors keeps its value.
 ///
 /// # Examples
 ///
@@ -38,19 +38,19 @@ const CHUNK: usize = 2048;
 #[derive(Clone, Debug)]
 pub struct LowPass<'a> {
     graph: &'a SiteGraph,
-    /// The weights of the neighbors of all sites, row by row.
+    /// Weights of the neighbors of all sites, in the rows of the graph.
     weights: Vec<f64>,
 }
 
 impl<'a> LowPass<'a> {
-    /// The filter for a graph of sites at these positions.
+    /// Creates the filter for a graph of sites at `positions`.
     ///
-    /// An edge counts as at least a millionth of the longest one of its site, so that sites at the same place have
-    /// weights.
+    /// Edge lengths are clamped to at least a millionth of the longest edge of the site, so that weights stay finite
+    /// where sites coincide.
     ///
     /// # Errors
     ///
-    /// [`SynthErrorKind::Count`] if there is not one position for each site.
+    /// Returns [`SynthErrorKind::Count`] if there is not one position for each site.
     pub fn new(graph: &'a SiteGraph, positions: &[DVec3]) -> Result<Self, SynthError> {
         check_length("positions", positions.len(), graph.len())?;
         let chunk = |index: usize| {
@@ -65,26 +65,26 @@ impl<'a> LowPass<'a> {
         Ok(Self { graph, weights })
     }
 
-    /// The weights of the neighbors of a site, in their order; they sum to 1 up to rounding.
+    /// Weights of the neighbors of a site, in the order of the neighbors. They sum to 1 up to rounding.
     ///
     /// # Panics
     ///
-    /// If there is no such site.
+    /// If the graph does not have the site.
     #[inline]
     #[must_use]
     pub fn weights(&self, site: SiteIdx) -> &[f64] {
         &self.weights[self.graph.row(site)]
     }
 
-    /// Filters a column `steps` times, each with the part `t`; equation 3. The paper takes 0.1 for `t`.
+    /// Filters a column in `steps` steps of strength `t`, from 0 to 1; equation 3. The paper uses a `t` of 0.1.
     ///
-    /// As long as `t` is at most 0.99, no value leaves the range of the values of the site and its neighbors, not even
-    /// by rounding.
+    /// If `t` is at most 0.99, no value leaves the range of the values of the site and its neighbors, not even by
+    /// rounding.
     ///
     /// # Errors
     ///
-    /// [`SynthErrorKind::Count`] if there is not one value for each site, [`SynthErrorKind::Range`] for a `t` that is not
-    /// from 0 to 1.
+    /// Returns [`SynthErrorKind::Count`] if there is not one value for each site, and [`SynthErrorKind::Range`] for a
+    /// `t` outside of 0 to 1.
     pub fn apply<T: Blend>(
         &self,
         column: &mut [T],
@@ -107,11 +107,11 @@ impl<'a> LowPass<'a> {
         Ok(())
     }
 
-    /// Filters a column once into another one, for what has to be done between the steps.
+    /// Applies one step from one column to another, for callers that change values between steps.
     ///
     /// # Errors
     ///
-    /// Those of [`apply`](Self::apply).
+    /// Returns the errors of [`apply`](Self::apply).
     pub fn step<T: Blend>(&self, from: &[T], to: &mut [T], t: f64) -> Result<(), SynthError> {
         for column in [from.len(), to.len()] {
             check_length("values", column, self.graph.len())?;
@@ -140,7 +140,7 @@ impl<'a> LowPass<'a> {
     }
 }
 
-/// Refuses a column of another length than the number of sites.
+/// Returns an error if a column's length differs from the number of sites.
 pub(crate) fn check_length(
     what: &'static str,
     count: usize,
@@ -166,7 +166,7 @@ fn push_weights(graph: &SiteGraph, positions: &[DVec3], site: SiteIdx, weights: 
     let longest = weights[first..].iter().copied().fold(0.0, f64::max);
     let mut sum = 0.0;
     for weight in &mut weights[first..] {
-        // If all lengths are zero this is the larger one of what is not a number and a millionth, which is a millionth.
+        // If all lengths are zero, the ratio is NaN, and `max` returns the other operand, 1e-6.
         *weight = 1.0 / (*weight / longest).max(1e-6);
         sum += *weight;
     }

@@ -1,33 +1,33 @@
-//! The neighbors of sites in lists, made once and read often.
+//! Neighbor lists of sites: built once, read many times.
 
 use crate::{SiteGrid, SiteIdx};
 use dapple_mesh::{Surface, SurfacePoint};
 use dapple_raster::parallel;
 use glam::DVec3;
 
-/// Sites whose lists are made and kept together.
+/// Number of sites whose lists are built and stored together.
 pub(crate) const CHUNK: usize = 1024;
-/// The most neighbors that a list holds, the nearest ones. On a sheet of even points there are about twenty within
-/// reach, and a heap of sheets must not fill the memory.
+/// Maximum length of a list; longer lists keep the nearest neighbors. A sheet of evenly spaced points has about twenty
+/// in reach. The limit bounds the memory where many sheets overlap.
 const CROWD_MAX: usize = 48;
-/// The ball that is searched first in a crowd, in distances of the farthest neighbor of the last full list: it has about twice
-/// as many sites as a list.
+/// Radius of the first search in a crowd, relative to the distance of the farthest neighbor in the last full list. The
+/// ball has about twice as many sites as a list.
 const SPARE: f64 = 1.25;
 
-/// Positions of points in space, and their normals.
+/// Positions and normals of points in space.
 #[derive(Debug, Default)]
 pub(crate) struct Places {
     pub(crate) positions: Vec<DVec3>,
     pub(crate) normals: Vec<DVec3>,
 }
 
-/// For each site from some number on, the other sites within reach that are on the same sheet.
+/// Neighbor lists of the sites from a first index on: other sites in reach on the same sheet.
 #[derive(Debug)]
 pub(crate) struct Near {
     chunks: Vec<Rows>,
 }
 
-/// The lists of the sites of a chunk, one after the other.
+/// Neighbor lists of the sites of a chunk, in compressed rows.
 #[derive(Debug)]
 pub(crate) struct Rows {
     starts: Vec<u32>,
@@ -43,26 +43,26 @@ impl Places {
     }
 }
 
-/// Positions in the order of the members of a grid, so that those of a row of cells are contiguous.
+/// Positions in the order of a grid's members: the positions of a row of cells are contiguous.
 struct Sorted {
     grid: SiteGrid,
     positions: Vec<DVec3>,
 }
 
-/// Sites within reach of a site; kept from site to site.
+/// Scratch memory for the sites in reach of a site, reused from site to site.
 #[derive(Debug, Default)]
 struct Found {
-    /// Sites with their squared distances.
+    /// Squared distances and sites.
     sites: Vec<(f64, SiteIdx)>,
-    /// The distance of the farthest site of the last list that was full.
+    /// Distance of the farthest site in the last list that was full.
     last_full: Option<f64>,
 }
 
 impl Near {
-    /// Lists the neighbors of all sites from `first` on: those nearer than `reach` whose normals have a product with
-    /// the site's own of at least `facing`.
+    /// Lists the neighbors of all sites with index `first` or more. A neighbor is nearer than `reach`, and the dot
+    /// product of the two normals is at least `facing`.
     ///
-    /// Their order is that of [`SiteGrid::visit`]; where there are more than [`CROWD_MAX`], the nearest ones come,
+    /// Lists are in the order of [`SiteGrid::visit`]. A list of more than [`CROWD_MAX`] keeps the nearest neighbors,
     /// nearest first.
     pub(crate) fn new(places: &Places, first: usize, reach: f64, facing: f64) -> Self {
         let grid = SiteGrid::new(&places.positions, reach);
@@ -88,7 +88,7 @@ impl Near {
         Self { chunks }
     }
 
-    /// The lists of the sites of a chunk, counted from the first site that has one.
+    /// Lists of the sites of a chunk. Chunks are counted from the first site that has a list.
     #[inline]
     pub(crate) fn chunk(&self, chunk: usize) -> &Rows {
         &self.chunks[chunk]
@@ -96,7 +96,7 @@ impl Near {
 }
 
 impl Rows {
-    /// The list of a site of the chunk.
+    /// List of a site, by its index in the chunk.
     #[inline]
     pub(crate) fn row(&self, site: usize) -> &[SiteIdx] {
         &self.others[self.starts[site] as usize..self.starts[site + 1] as usize]
@@ -117,7 +117,7 @@ impl Found {
         site: usize,
         [reach, facing]: [f64; 2],
     ) -> &[(f64, SiteIdx)] {
-        // In a crowd the nearest neighbors are all that count: if a smaller ball has enough of them, so does the list.
+        // In a crowd only the nearest neighbors matter: try a smaller ball first, and accept it if it fills the list.
         let smaller = self.last_full.map(|far| SPARE * far);
         let smaller = smaller.filter(|&smaller| smaller < reach);
         let mut n_found = 0;
@@ -132,6 +132,7 @@ impl Found {
         }
         let nearest_first =
             |a: &(f64, SiteIdx), b: &(f64, SiteIdx)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
+        // Keep the nearest neighbors, sorted.
         self.sites[..n_found].select_nth_unstable_by(CROWD_MAX, nearest_first);
         let nearest = &mut self.sites[..CROWD_MAX];
         nearest.sort_unstable_by(nearest_first);
@@ -139,7 +140,7 @@ impl Found {
         nearest
     }
 
-    /// Writes all neighbors of a site within reach to the front of `sites`, in the order of the grid. Returns their number.
+    /// Writes all neighbors of a site in reach to the front of `sites`, in the order of the grid. Returns their number.
     fn gather(
         &mut self,
         places: &Places,
@@ -152,8 +153,8 @@ impl Found {
         let found = &mut self.sites;
         let mut n_found = 0;
         sorted.grid.visit_rows(position, reach, |row| {
-            // Room for all. Every site is written, and those that do not count are written over: about a sixth of the sites
-            // are within reach where sheets cross, in no order, and branches would be guessed wrong.
+            // Every site is written, and sites out of reach are then overwritten. This avoids branches, which would be
+            // mispredicted: where sheets cross, about a sixth of the sites are in reach, in no order.
             if found.len() < n_found + row.len() {
                 found.resize(n_found + row.len(), (0.0, SiteIdx(0)));
             }
@@ -164,7 +165,7 @@ impl Found {
                 n_found += usize::from(distance_sq < reach_sq);
             }
         });
-        // Then those on another sheet are dropped, and the site itself.
+        // Drop sites on other sheets, and the site itself.
         let mut n_kept = 0;
         for at in 0..n_found {
             let (_, other) = found[at];
@@ -189,7 +190,7 @@ mod tests {
         let surface = Surface::new(tangle(30)).unwrap();
         let points = scatter(&surface, 1500, Seed(5));
         let places = Places::new(&surface, &points);
-        // Around 20 neighbors in the mean, and far more in the middle, where most triangles cross.
+        // About 20 neighbors on average, and far more in the middle, where most triangles cross.
         let (reach, facing, first) = (0.18, -0.5, 100);
         let near = Near::new(&places, first, reach, facing);
         let mut n_crowded = 0;

@@ -1,13 +1,13 @@
-//! Nested sets of even points on a surface, each with about four times as many as the one before.
+//! Nested sets of evenly spaced points on a surface. Each set has about four times as many points as the one before.
 //!
-//! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, doi 10.1145/383259.383297, section 3.1: the
-//! coarsest points are repelled, then stay; new ones are added and repelled by all. The paper begins with random points
-//! at every level. Here a level begins with the middles of the edges between the points before it, which is nearly even
-//! from the start; and since the coarsest level is free to move, it is itself made from still coarser ones in this way.
-//! The pieces of the surface get their shares by area.
+//! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, doi 10.1145/383259.383297, section 3.1. The
+//! coarsest points repel each other and are then fixed; new points are added and repelled by all points. In the paper
+//! every level starts from random points. Here a level starts from the midpoints of the edges between the points of the
+//! previous level, which are nearly even from the start. The coarsest level is free to move, and is itself built from
+//! still coarser ones in this way. Each piece of the surface gets a share of the points in proportion to its area.
 //!
 //! The new points of a level are in Morton order (G. M. Morton, "A Computer Oriented Geodetic Data Base", IBM, 1966):
-//! points near each other are mostly near each other in memory.
+//! points that are near each other in space are mostly near each other in memory.
 
 use super::between::{Edge, edges};
 use super::near::Places;
@@ -20,21 +20,22 @@ use dapple_mesh::{Surface, SurfacePoint};
 use dapple_raster::parallel;
 use glam::DVec3;
 
-/// The most points that begin at random.
+/// Maximum number of points that start at random positions.
 const RANDOM_MOST: usize = 256;
-/// Iterations for random points, which cost nothing, for there are few of them.
+/// Repulsion steps for random points. They are few, so the cost is negligible.
 const ITERATIONS_RANDOM: usize = 40;
-/// The points of the coarsest count and of those before it, which are few as well, get this many times the iterations.
+/// Factor on the number of repulsion steps for the coarsest set and the hidden sets before it, which are small as well.
 const ITERATIONS_HIDDEN: usize = 4;
 /// Bits of a position along one axis in Morton order.
 const MORTON_BITS: u32 = 21;
 
-/// Even points on a surface for each of `counts`, which ascend: the first `counts[0]` points are even by themselves, so
-/// are the first `counts[1]`, and so on.
+/// Returns nested sets of evenly spaced points, one for each of the ascending `counts`: the first `counts[0]` points
+/// are evenly spaced on their own, the first `counts[1]` are too, and so on.
 ///
-/// Each count is best four times the one before; one that is less adds no points. `iterations` is how often the new
-/// points of a count push each other, of which six are enough; those of the first count do so four times as often. A
-/// piece of the surface with less than about half of the area of a point has none.
+/// A ratio of four between counts gives the best spacing. A count below the previous one adds no points. `iterations`
+/// is the number of repulsion steps for the new points of each count; 6 are enough. The points of the first count take
+/// four times as many steps, or 40 steps where there are at most 256 of them. A piece of the surface smaller than about
+/// half of the mean area per point gets none.
 ///
 /// # Examples
 ///
@@ -65,6 +66,7 @@ pub fn nested_points(
         points: Vec::new(),
     };
     let seed = seed.child("nested points", 0);
+    // Build the coarsest set from hidden ones; all points are free to move.
     for (level, &count) in hidden_counts(coarsest).iter().rev().enumerate() {
         let iterations = if level == 0 {
             ITERATIONS_RANDOM
@@ -78,6 +80,7 @@ pub fn nested_points(
             seed.child("hidden level", level as u64),
         );
     }
+    // Refine level by level; the points of coarser levels are fixed.
     for (level, &count) in counts.iter().enumerate().skip(1) {
         let n_fixed = nest.points.len();
         nest.add_level(
@@ -90,7 +93,7 @@ pub fn nested_points(
     nest.points
 }
 
-/// The coarsest count, and a quarter of it, and so on, until there are few enough to begin at random.
+/// Returns the coarsest count, a quarter of it, and so on, down to a number of points that start at random positions.
 fn hidden_counts(coarsest: usize) -> Vec<usize> {
     let mut counts = vec![coarsest];
     let mut count = coarsest;
@@ -101,7 +104,7 @@ fn hidden_counts(coarsest: usize) -> Vec<usize> {
     counts
 }
 
-/// Points that become more from level to level.
+/// A point set that grows from level to level.
 struct Nest<'a> {
     surface: &'a Surface,
     pieces: Pieces,
@@ -109,29 +112,32 @@ struct Nest<'a> {
 }
 
 impl Nest<'_> {
-    /// Adds points until there are `count`, and makes those from `n_fixed` on even.
+    /// Adds points up to `count`, and relaxes the points with index `n_fixed` or more.
     fn add_level(&mut self, count: usize, n_fixed: usize, iterations: usize, seed: Seed) {
         self.grow(count, seed);
-        // Before the repulsion, which reads neighbors all the time, and after it, for the steps that follow.
+        // Sort before repulsion, which reads neighbors in every step, and again after it, for the later stages.
         sort(self.surface, &mut self.points[n_fixed..]);
         self.relax(n_fixed, iterations, seed.child("stuck", 0));
         sort(self.surface, &mut self.points[n_fixed..]);
     }
 
-    /// Adds points until there are `count`, on each piece its share.
+    /// Adds points up to `count`; each piece gets its share.
     fn grow(&mut self, count: usize, seed: Seed) {
         let (surface, pieces) = (self.surface, &self.pieces);
         let piece_of = |point: SurfacePoint| pieces.of_face[point.face.index()] as usize;
+        // Number of points that each piece still needs.
         let mut missing = pieces.shares(count);
         for &point in &self.points {
             let missing = &mut missing[piece_of(point)];
             *missing = missing.saturating_sub(1);
         }
+        // Group the edges by piece, longest first.
         let mut split = vec![Vec::new(); missing.len()];
         let edges = edges(surface, &self.points);
         for edge in longest_first(&edges) {
             split[piece_of(edges[edge as usize].middle)].push(edge);
         }
+        // Place new points on edges. If edges do not suffice, place the rest at random.
         for (piece, (missing, split)) in missing.into_iter().zip(split).enumerate() {
             let left = missing.saturating_sub(2 * split.len()) as u64;
             let split = split.iter().map(|&edge| &edges[edge as usize]);
@@ -145,7 +151,7 @@ impl Nest<'_> {
         }
     }
 
-    /// Repels the points from `n_fixed` on, and halfway moves those that are stuck.
+    /// Repels the points with index `n_fixed` or more. After half of the steps, stuck points are moved elsewhere.
     fn relax(&mut self, n_fixed: usize, iterations: usize, seed: Seed) {
         let (surface, points) = (self.surface, &mut self.points);
         repel(surface, points, n_fixed, iterations / 2);
@@ -156,14 +162,14 @@ impl Nest<'_> {
     }
 }
 
-/// The numbers of edges, sorted by length, for long ones have the most room in their middle.
+/// Indices of edges, longest first: the midpoints of long edges are farthest from other points.
 fn longest_first(edges: &[Edge]) -> Vec<u32> {
-    // The bits of positive numbers are in the order of the numbers.
+    // The bits of positive floats sort like their values; the complement reverses the order.
     sorted(edges.iter().map(|edge| !edge.length.to_bits()))
 }
 
-/// Adds `missing` points on edges, the longest of which come first: one in the middle, or two on the first edges if
-/// there are too few.
+/// Adds `missing` points on edges, which come longest first: one at the midpoint of each edge. If there are too few
+/// edges, the first ones get two points, at their thirds.
 fn split_edges<'a>(
     surface: &Surface,
     mut edges: impl ExactSizeIterator<Item = &'a Edge>,
@@ -178,7 +184,7 @@ fn split_edges<'a>(
     points.extend(edges.take(n_halves).map(|edge| edge.middle));
 }
 
-/// Sorts points along Morton's curve through their bounding box.
+/// Sorts points along the Morton curve of their bounding box.
 fn sort(surface: &Surface, points: &mut [SurfacePoint]) {
     let positions = Places::new(surface, points).positions;
     let low = positions.iter().copied().fold(DVec3::INFINITY, DVec3::min);
@@ -196,7 +202,7 @@ fn sort(surface: &Surface, points: &mut [SurfacePoint]) {
     points.copy_from_slice(&sorted);
 }
 
-/// The numbers of keys in the order of the keys, and those of equal keys in the order of the numbers.
+/// Indices of the keys, sorted by key; equal keys keep their order.
 fn sorted(keys: impl Iterator<Item = u64>) -> Vec<u32> {
     let mut numbered: Vec<u128> = (0..)
         .zip(keys)
@@ -206,7 +212,7 @@ fn sorted(keys: impl Iterator<Item = u64>) -> Vec<u32> {
     numbered.into_iter().map(|key| key as u32).collect()
 }
 
-/// The bits of the three coordinates in turn.
+/// Morton code: interleaves the bits of the three coordinates.
 fn morton(cell: DVec3) -> u64 {
     spread(cell.x as u64) | spread(cell.y as u64) << 1 | spread(cell.z as u64) << 2
 }

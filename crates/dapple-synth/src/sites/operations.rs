@@ -1,8 +1,8 @@
-//! The four operations on a mesh hierarchy: interpolation, low-pass, down- and upsampling of columns of values.
+//! The four operations on a mesh hierarchy: interpolation, low-pass filter, down- and upsampling of columns of values.
 //!
 //! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, doi 10.1145/383259.383297, section 3.2. A
-//! column holds a value for each site of a level. How strongly to blur before downsampling is not in the paper: here
-//! until a spot has the variance of Burt and Adelson's kernel 1-4-6-4-1 on pixels of one spacing.
+//! column holds one value for each site of a level. The paper does not say how much to blur before downsampling. Here a
+//! spot is blurred to the variance of Burt and Adelson's kernel 1-4-6-4-1 on pixels of one spacing.
 
 use super::low_pass::check_length;
 use super::oriented::Oriented;
@@ -10,26 +10,27 @@ use crate::{Blend, Hierarchy, LowPass, SiteTriangles, SynthError};
 use dapple_raster::parallel;
 use glam::DVec3;
 
-/// The part t of the steps of [`Hierarchy::downsample`], which is the paper's example.
+/// Strength t of each low-pass step of [`Hierarchy::downsample`]: the value of the paper's example.
 pub const DOWNSAMPLE_T: f64 = 0.1;
-/// The number of steps of [`Hierarchy::downsample`]: each adds half of t to the variance, in squared spacings, and 1 is
-/// wanted.
+/// Number of low-pass steps of [`Hierarchy::downsample`]. Each adds t / 2 to the variance, in squared spacings, and the
+/// target is 1.
 pub const DOWNSAMPLE_STEPS: usize = 20;
 
-/// The sites that one thread works on at a time.
+/// Number of sites in one parallel task.
 const CHUNK: usize = 1024;
 
 impl Hierarchy {
-    /// The value at a position of the surface: equation 1, with `w(x) = 2x³ - 3x² + 1` and the radius
+    /// Interpolates a column at a position of the surface: equation 1, with `w(x) = 2x³ - 3x² + 1` and a radius of
     /// [`INTERPOLATION_RADIUS`](crate::INTERPOLATION_RADIUS) spacings of the level.
     ///
-    /// Sites whose normal is more than a right angle from `normal` are on another sheet and do not count. Where no site
-    /// is in reach, the nearest one of a wider ball counts alone; there is no value where none is within 8 radii.
+    /// Sites whose normal is more than 90 degrees from `normal` are on another sheet and do not count. Where no site is
+    /// in reach, the result is the value of the nearest site up to 8 radii away, or `None`.
     ///
     /// # Errors
     ///
-    /// [`SynthErrorKind::Range`](crate::SynthErrorKind::Range) if there is no such level,
-    /// [`SynthErrorKind::Count`](crate::SynthErrorKind::Count) if `column` does not have a value for each site of it.
+    /// Returns [`SynthErrorKind::Range`](crate::SynthErrorKind::Range) if the level does not exist, and
+    /// [`SynthErrorKind::Count`](crate::SynthErrorKind::Count) if `column` does not have one value for each site of the
+    /// level.
     #[inline]
     pub fn interpolate<T: Blend>(
         &self,
@@ -43,22 +44,23 @@ impl Hierarchy {
         Ok(sites.interpolate(column, position, normal))
     }
 
-    /// The filter for columns of a level.
+    /// Returns the low-pass filter for columns of a level.
     ///
     /// # Errors
     ///
-    /// [`SynthErrorKind::Range`](crate::SynthErrorKind::Range) if there is no such level.
+    /// Returns [`SynthErrorKind::Range`](crate::SynthErrorKind::Range) if the level does not exist.
     pub fn low_pass(&self, level: usize) -> Result<LowPass<'_>, SynthError> {
         let sites = self.oriented(level)?;
         LowPass::new(self.levels()[level].graph(), sites.positions)
     }
 
-    /// The column of the next coarser level: the values of a level, blurred, at the sites that both have.
+    /// Returns the column of the next coarser level: the blurred values of a level at the sites that both levels share.
     ///
     /// # Errors
     ///
-    /// [`SynthErrorKind::Range`](crate::SynthErrorKind::Range) if there is no such level or none below it,
-    /// [`SynthErrorKind::Count`](crate::SynthErrorKind::Count) if `column` does not have a value for each site of it.
+    /// Returns [`SynthErrorKind::Range`](crate::SynthErrorKind::Range) if the level or the next coarser one does not
+    /// exist, and [`SynthErrorKind::Count`](crate::SynthErrorKind::Count) if `column` does not have one value for each
+    /// site of the level.
     pub fn downsample<T: Blend>(&self, level: usize, column: &[T]) -> Result<Vec<T>, SynthError> {
         let n_sites = self.oriented(level.saturating_add(1))?.positions.len();
         let mut column = column.to_vec();
@@ -68,11 +70,11 @@ impl Hierarchy {
         Ok(column)
     }
 
-    /// The column of the next finer level: the values of a level, interpolated at all sites of the finer one.
+    /// Returns the column of the next finer level: the values of a level, interpolated at all sites of the finer level.
     ///
     /// # Errors
     ///
-    /// Those of [`upsample_into`](Self::upsample_into).
+    /// Returns the errors of [`upsample_into`](Self::upsample_into).
     pub fn upsample<T: Blend>(&self, level: usize, column: &[T]) -> Result<Vec<T>, SynthError> {
         let n_sites = self.finer(level)?.positions.len();
         let mut finer = vec![T::ZERO; n_sites];
@@ -80,16 +82,16 @@ impl Hierarchy {
         Ok(finer)
     }
 
-    /// Interpolates, as [`upsample`](Self::upsample) does, into a column that there is.
+    /// Interpolates like [`upsample`](Self::upsample) into an existing column.
     ///
-    /// Where interpolation finds no value, as on a small piece of the surface that has no site of the coarser level,
-    /// that of the nearest site anywhere is taken.
+    /// Where interpolation finds no value, the value of the nearest site of the whole surface is used. This happens on
+    /// a small piece of the surface that has no site on the coarser level.
     ///
     /// # Errors
     ///
-    /// [`SynthErrorKind::Range`](crate::SynthErrorKind::Range) if there is no such level or none above it,
-    /// [`SynthErrorKind::Count`](crate::SynthErrorKind::Count) if a column does not have a value for each site of its
-    /// level.
+    /// Returns [`SynthErrorKind::Range`](crate::SynthErrorKind::Range) if the level or the next finer one does not
+    /// exist, and [`SynthErrorKind::Count`](crate::SynthErrorKind::Count) if a column does not have one value for each
+    /// site of its level.
     pub fn upsample_into<T: Blend>(
         &self,
         level: usize,
@@ -115,16 +117,17 @@ impl Hierarchy {
         Ok(())
     }
 
-    /// The sites of a level as the vertices of a triangle mesh, for export: see [`SiteTriangles`] for what is repaired.
+    /// Returns the sites of a level as the vertices of a triangle mesh, for export. See [`SiteTriangles`] for the
+    /// repairs.
     ///
     /// # Errors
     ///
-    /// [`SynthErrorKind::Range`](crate::SynthErrorKind::Range) if there is no such level.
+    /// Returns [`SynthErrorKind::Range`](crate::SynthErrorKind::Range) if the level does not exist.
     pub fn triangles(&self, level: usize) -> Result<SiteTriangles, SynthError> {
         SiteTriangles::new(&self.oriented(level)?)
     }
 
-    /// The sites of a level.
+    /// Returns the sites of a level.
     fn oriented(&self, level: usize) -> Result<Oriented<'_>, SynthError> {
         let exists = level < self.levels().len();
         SynthError::check(
@@ -142,7 +145,7 @@ impl Hierarchy {
         })
     }
 
-    /// The sites of the level above one.
+    /// Returns the sites of the next finer level.
     fn finer(&self, level: usize) -> Result<Oriented<'_>, SynthError> {
         SynthError::check(
             level > 0,

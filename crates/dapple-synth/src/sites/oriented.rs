@@ -1,17 +1,17 @@
-//! The sites of one level, as what stars and interpolation need of them.
+//! Sites of one level: the columns that stars and interpolation read.
 
 use crate::SiteGrid;
 use glam::DVec3;
 
-/// Sites on a surface: columns of one length, and a grid of that many sites.
+/// Sites on a surface: columns of equal length, and a grid of the same sites.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Oriented<'a> {
-    /// Where the sites are.
+    /// Positions in space, in units of the mesh.
     pub(crate) positions: &'a [DVec3],
-    /// Unit vectors out of the surface.
+    /// Unit normals that point out of the surface.
     pub(crate) normals: &'a [DVec3],
-    /// The sites near a position.
+    /// Spatial index of the sites.
     pub(crate) grid: &'a SiteGrid,
-    /// The distance of neighbors that is expected; above zero.
+    /// Expected distance between neighbors, in units of the mesh; above zero.
     pub(crate) spacing: f64,
 }

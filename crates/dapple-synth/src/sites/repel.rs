@@ -1,20 +1,20 @@
-//! Points on a surface that push each other apart until they lie evenly.
+//! Repulsion of points on a surface until they are evenly spaced.
 //!
 //! Reference: Greg Turk, "Generating Textures on Arbitrary Surfaces Using Reaction-Diffusion", SIGGRAPH 1991, doi
-//! 10.1145/127719.122749, section 3.1: a point is pushed away from the neighbors within a radius, mapped into the
-//! plane of its face with their distances in space kept, and walks over the surface as far as it is pushed. Where this
-//! departs or the paper is silent:
+//! 10.1145/127719.122749, section 3.1. A point is pushed away from its neighbors within a radius. The neighbors are
+//! mapped to the plane of its face, and keep their distances in space. The point then walks over the surface by the sum
+//! of the pushes. Where this departs from the paper, or the paper is silent:
 //!
 //! * the radius is `2 sqrt(A / n)`, as in Turk's "Re-Tiling Polygonal Surfaces", SIGGRAPH 1992, doi
 //!   10.1145/133994.134008;
 //! * the push falls off to zero at the radius, nearly linearly, as `1 - (d / r)^2`, and is divided by `(d / r)^2`, so
-//!   that no pressure brings two points together: with a linear push points pile up at borders, and the mean distance
-//!   of nearest neighbors is 4 % less;
-//! * all points move at once, so that the number of threads does not matter, and by less from step to step;
+//!   that no pressure brings two points together. With a linear push points pile up at borders, and the mean
+//!   nearest-neighbor distance is 4 % smaller;
+//! * all points move at once, so that the number of threads does not matter, and the gain decreases from step to step;
 //! * neighbors that face away by more than 120 degrees are on another sheet and do not push;
-//! * at a border a point goes on along it.
+//! * at a border a point slides along it.
 //!
-//! Neighbors are listed with a margin, and no point moves further than half of it before the lists are made anew.
+//! Neighbors are listed with a margin, and no point moves by more than half of the margin before the lists are rebuilt.
 
 use super::near::{CHUNK, Near, Places};
 use crate::SiteIdx;
@@ -23,32 +23,32 @@ use dapple_mesh::{FaceEdge, FaceIdx, Surface, SurfacePoint};
 use dapple_raster::parallel;
 use glam::{DVec2, DVec3};
 
-/// A point moves by this part of the push at first; with a quarter an even lattice was seen to swing.
+/// Gain of the first step: fraction of the push that a point moves by. At 0.25 an even lattice was seen to oscillate.
 const GAIN_FIRST: f64 = 0.15;
-/// A point moves by this part of the push at last.
+/// Gain of the last step.
 const GAIN_LAST: f64 = 0.045;
-/// Neighbors are listed as far as this part of the radius beyond it.
+/// Margin of the neighbor lists beyond the radius, as a fraction of the radius.
 const MARGIN: f64 = 0.2;
-/// Lists are made anew when more than one point in this number of points wanted to leave its margin.
+/// Lists are rebuilt when more than one in this many free points was limited by its margin.
 const LIMITED_MOST: usize = 100;
-/// The least product of the normals of neighbors. Neighbors count as such from a right angle on; those a little past it
-/// push too, or else they could come together where the surface bends.
+/// Minimum dot product of the normals of neighbors: at most 120 degrees. Sites count as neighbors up to 90 degrees;
+/// points a little beyond push too, since they could otherwise come together where the surface bends.
 const FACING: f64 = -0.5;
-/// Points nearer than this part of the radius are taken to be in the same place.
+/// Distance along the face, as a fraction of the radius, up to which points count as coincident.
 const SAME_PLACE: f64 = 1e-6;
-/// The weights of the corners of a face that give each corner.
+/// Barycentric weights of the three corners of a face.
 const CORNERS: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-/// The inward part of the way of a point that goes along a border, so that rounding does not end its way.
+/// Inward slope of a walk along a border, so that rounding does not end the walk at the border.
 const LEAN: f64 = 1.0 / (1 << 20) as f64;
 
-/// Moves the points from number `n_fixed` on apart; those before it push, but stay.
+/// Moves the points with index `n_fixed` or more apart. The points before them push, but stay fixed.
 ///
-/// With forty iterations random points become about as even as they ever will. Runs on all cores where the feature
-/// `rayon` is on, with the same bits on any number of them.
+/// After 40 iterations random points are about as evenly spaced as repulsion makes them. Runs on all cores with the
+/// feature `rayon`, with the same bits on any number of cores.
 ///
 /// # Panics
 ///
-/// If a point names a face that the surface does not have.
+/// If a point refers to a face that the surface does not have.
 ///
 /// # Examples
 ///
@@ -79,14 +79,14 @@ pub fn repel(surface: &Surface, points: &mut [SurfacePoint], n_fixed: usize, ite
     }
 }
 
-/// Points that push each other, and what they need to know between two makings of the lists.
+/// Points that push each other, with neighbor lists that are valid for some steps.
 struct Crowd<'a> {
     surface: &'a Surface,
     n_fixed: usize,
     radius: f64,
     near: Near,
     positions: Vec<DVec3>,
-    /// Where the free points were when the lists were made.
+    /// Positions of the free points when the lists were built.
     listed: Vec<DVec3>,
 }
 
@@ -103,14 +103,16 @@ impl<'a> Crowd<'a> {
         }
     }
 
-    /// Moves all free points once, and counts those that wanted to go further than their lists hold.
+    /// Moves all free points once. Returns the number of points whose step was limited by the margin of the lists.
     fn step(&mut self, points: &mut [SurfacePoint], gain: f64) -> usize {
         let n_limited = AtomicUsize::new(0);
         let crowd = &*self;
+        // Move the points, reading the positions before the step.
         parallel::for_each_chunk(&mut points[self.n_fixed..], CHUNK, |chunk, points| {
             n_limited.fetch_add(crowd.step_chunk(chunk, points, gain), Ordering::Relaxed);
         });
         let (surface, points) = (self.surface, &points[self.n_fixed..]);
+        // Update the positions.
         parallel::for_each_chunk(
             &mut self.positions[self.n_fixed..],
             CHUNK,
@@ -123,6 +125,7 @@ impl<'a> Crowd<'a> {
         n_limited.into_inner()
     }
 
+    /// Moves the free points of a chunk once. Returns the number of limited points.
     fn step_chunk(&self, chunk: usize, points: &mut [SurfacePoint], gain: f64) -> usize {
         let rows = self.near.chunk(chunk);
         let mut n_limited = 0;
@@ -131,6 +134,7 @@ impl<'a> Crowd<'a> {
             let site = self.n_fixed + free;
             let push = self.push(point.face, site, rows.row(row));
             let step = self.surface.flatten(point.face, push) * gain;
+            // Distance that the point may still move before its list becomes invalid.
             let moved = self.positions[site].distance(self.listed[free]);
             let room = (0.5 * MARGIN * self.radius - moved).max(0.0);
             n_limited += usize::from(step.length_squared() > room * room);
@@ -139,8 +143,8 @@ impl<'a> Crowd<'a> {
         n_limited
     }
 
-    /// The sum of the pushes of other points on one in a face, in units of length. Its part along the normal of the face
-    /// has no meaning.
+    /// Sum of the pushes of other points on a point in a face, in units of length. The component along the normal of
+    /// the face is meaningless and must be projected out.
     #[inline]
     fn push(&self, face: FaceIdx, site: usize, others: &[SiteIdx]) -> DVec3 {
         let normal = self.surface.face_normal(face);
@@ -154,10 +158,11 @@ impl<'a> Crowd<'a> {
             let up = from.dot(normal);
             let along_sq = distance_sq - up * up;
             if along_sq > same_sq {
-                // Without a branch: about a quarter of the listed points are past the radius, in no order.
+                // No branch here: about a quarter of the listed points are beyond the radius, in no order.
                 let inside = (radius_sq - distance_sq).max(0.0);
                 sum += from * (inside / (distance_sq * along_sq.sqrt()));
             } else if distance_sq < radius_sq {
+                // Coincident points have no direction: push them apart along the first axis of the face, by index.
                 let length = if site < other.index() { 8.0 } else { -8.0 };
                 sum += self.surface.lift(face, DVec2::X) * length;
             }
@@ -166,11 +171,11 @@ impl<'a> Crowd<'a> {
     }
 }
 
-/// Goes a step over the surface, but not further than `room`, and at a border along it.
+/// Walks a step over the surface, by at most `room`, and slides along a border.
 #[inline]
 fn go(surface: &Surface, from: SurfacePoint, step: DVec2, room: f64) -> SurfacePoint {
     let length = step.length();
-    // Not true for NaN either.
+    // Also stops at NaN.
     if !(length > 0.0 && length.is_finite()) {
         return from;
     }
@@ -182,11 +187,12 @@ fn go(surface: &Surface, from: SurfacePoint, step: DVec2, room: f64) -> SurfaceP
     }
 }
 
-/// Goes on from a point on a border along it, as far as the rest of the step reaches that way.
+/// Slides from a point on a border along it, by the component of the rest of the step along the border.
 fn slide(surface: &Surface, from: SurfacePoint, rest: DVec2) -> SurfacePoint {
     let corners = CORNERS.map(|weights| surface.point(from.face, weights).flat);
     let mut nearest = f64::INFINITY;
     let mut border = DVec2::ZERO;
+    // Find the border edge of the face that is nearest to the point.
     for edge in 0..3 {
         let face_edge = FaceEdge {
             face: from.face,

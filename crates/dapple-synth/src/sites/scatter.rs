@@ -1,15 +1,16 @@
-//! Random points on a surface, each place as likely as any other.
+//! Random points on a surface, uniformly distributed by area.
 //!
-//! A point first falls on a face with a chance in proportion to its area, then anywhere in it: with two uniform numbers
-//! s and t the weights of the corners are `1 - sqrt(s)`, `sqrt(s) (1 - t)` and `sqrt(s) t` (Reference: Greg Turk, "Generating
+//! A face is chosen with a probability in proportion to its area, then a position in it. With two uniform numbers s and
+//! t the weights of the corners are `1 - sqrt(s)`, `sqrt(s) (1 - t)` and `sqrt(s) t` (Reference: Greg Turk, "Generating
 //! Random Points in Triangles", in Graphics Gems, 1990).
 
 use dapple_hash::{CellHash, Seed, unit_f64};
 use dapple_mesh::{FaceIdx, Surface, SurfacePoint};
 
-/// Scatters `n` points over a surface, independently of each other and evenly by area.
+/// Scatters `n` independent random points over a surface, uniformly by area.
 ///
-/// The point with number `i` depends on the surface, the seed and `i` only: fewer points are the first of more points.
+/// Point `i` depends on the surface, the seed and `i` alone, so a smaller `n` gives a prefix of the points of a larger
+/// one.
 ///
 /// # Examples
 ///
@@ -33,11 +34,11 @@ pub fn scatter(surface: &Surface, n: usize, seed: Seed) -> Vec<SurfacePoint> {
         .collect()
 }
 
-/// Some faces of a surface, ready for points to fall on them.
+/// Sampler of random points on some faces of a surface.
 #[derive(Debug)]
 pub(crate) struct Scatter {
     faces: Vec<FaceIdx>,
-    /// The area of each face and all before it.
+    /// Cumulative area up to and including each face.
     ends: Vec<f64>,
 }
 
@@ -52,18 +53,18 @@ impl Scatter {
         Self { faces, ends }
     }
 
-    /// The area of all these faces.
+    /// Total area of the faces.
     pub(crate) fn area(&self) -> f64 {
         self.ends.last().copied().unwrap_or(0.0)
     }
 
-    /// A random point on these faces; nothing if there are none.
+    /// Random point on the faces, by seed and number. `None` if there are no faces.
     pub(crate) fn point(&self, surface: &Surface, seed: Seed, number: u64) -> Option<SurfacePoint> {
         let hash = CellHash::new(seed, [number.cast_signed()]);
         let [place, s, t] = [0, 1, 2].map(|counter| unit_f64(hash.at(counter)));
         let place = place * self.area();
         let face = self.ends.partition_point(|&end| end <= place);
-        // Rounding may put the place at the very end.
+        // By rounding, the position may be the end of the last face.
         let face = *self.faces.get(face).or(self.faces.last())?;
         let root = s.sqrt();
         let weights = [1.0 - root, root * (1.0 - t), root * t];

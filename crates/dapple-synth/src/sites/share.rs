@@ -1,14 +1,14 @@
-//! The pieces of a surface, and how many of the sites each gets.
+//! Connected pieces of a surface, and the number of sites on each.
 
 use dapple_mesh::{FaceIdx, Surface};
 use std::collections::BinaryHeap;
 
-/// The pieces of a surface: faces that can be reached from each other across edges.
+/// Pieces of a surface: sets of faces that are connected across edges.
 #[derive(Debug)]
 pub(crate) struct Pieces {
-    /// The piece of each face.
+    /// Index of the piece of each face.
     pub(crate) of_face: Vec<u32>,
-    /// The faces of each piece, lowest first; the pieces are in the order of their lowest face.
+    /// Faces of each piece in ascending order. Pieces are in the order of their lowest face.
     pub(crate) faces: Vec<Vec<FaceIdx>>,
     areas: Vec<f64>,
 }
@@ -27,17 +27,19 @@ impl Pieces {
         }
     }
 
-    /// How many of `n` sites each piece gets: in proportion to the areas, by Webster's method.
+    /// Distributes `n` sites over the pieces in proportion to their areas, by Webster's method.
     ///
-    /// With more sites no piece gets fewer, so that shares of nested sets are nested. A piece with less than about half
-    /// of the area of a site may get none.
+    /// With a larger `n` no piece gets fewer sites, so the shares of nested sets are nested. A piece smaller than about
+    /// half of the mean area per site may get none.
     pub(crate) fn shares(&self, n: usize) -> Vec<usize> {
         let total: f64 = self.areas.iter().sum();
-        // Rounding half up gives each piece at most half a site more than its part, so this many are surely due.
+        // Start with rounded shares of `sure` sites. Rounding adds at most half a site per piece, so at most n are
+        // given away.
         let sure = (n as f64 - 0.5 * self.areas.len() as f64).max(0.0);
         let round = |area: &f64| (area / total * sure + 0.5) as usize;
         let mut shares: Vec<usize> = self.areas.iter().map(round).collect();
         let mut left = n.saturating_sub(shares.iter().sum());
+        // Give the remaining sites one at a time to the piece with the strongest claim.
         let claim = |piece: usize, share: usize| Claim {
             weight: self.areas[piece] / (2 * share + 1) as f64,
             piece,
@@ -58,7 +60,7 @@ impl Pieces {
     }
 }
 
-/// How strongly a piece claims one more site; of equal claims the first piece's is the strongest.
+/// Claim of a piece to one more site. Of equal claims, the lower piece wins.
 #[derive(Debug, PartialEq)]
 struct Claim {
     weight: f64,

@@ -1,16 +1,16 @@
-//! The neighbors of a site: its star in the Delaunay triangulation of the sites around it in its tangent plane.
+//! Star of a site: its neighbors in the Delaunay triangulation of the sites around it, in its tangent plane.
 //!
 //! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, doi 10.1145/383259.383297, section 3.1, which
-//! projects nearby points to a tangent plane and triangulates them there. Here
+//! projects nearby points to a tangent plane and triangulates them there. This implementation differs as follows:
 //!
-//! * a site keeps its distance in space and the direction of its projection, so that a steep slope does not bring far
-//!   sites near, as a plain projection does;
-//! * a site whose normal is more than a right angle from that of the center is on another sheet, and left out;
-//! * the star is found by clipping the Voronoi cell of the center, nearest site first, and no triangle away from the
-//!   center is made;
+//! * a site keeps the direction of its projection and its distance in space. A plain projection would bring far sites
+//!   near on a steep slope;
+//! * a site whose normal is more than 90 degrees from the normal of the center is on another sheet and is ignored;
+//! * the star is found by clipping the Voronoi cell of the center, nearest site first. Triangles that do not touch the
+//!   center are never computed;
 //! * two sites are neighbors only if there is an empty circle through them with a radius of at most [`STAR_RADIUS`]
-//!   spacings. Without that limit all sites along a border would have to see all of the others, and be connected across
-//!   bays of any width.
+//!   spacings. Without this limit, every site along a border would have to search all other sites, and would be
+//!   connected across bays of any width.
 //!
 //! Units: the tangent plane is measured in spacings.
 
@@ -20,51 +20,51 @@ use super::oriented::Oriented;
 use crate::SiteIdx;
 use glam::{DVec2, DVec3};
 
-/// The largest radius, in spacings of the level, of the empty circle that makes two sites neighbors.
+/// Maximum radius of the empty circle through two neighbors, in spacings of the level.
 ///
-/// Even sites leave no empty circles of more than 1 spacing except at borders, and random ones hardly any of more than
-/// 2.
+/// Evenly spaced sites have no empty circles of more than 1 spacing except at borders, and random sites rarely have any
+/// of more than 2.
 pub const STAR_RADIUS: f64 = 2.0;
 
-/// How far to look for neighbors, in spacings: as far as the diameter of the empty circles of even sites, then of
-/// uneven ones, then of the largest that count.
+/// Search radii for neighbors, in spacings: diameters of the empty circles of evenly spaced sites, of unevenly spaced
+/// sites, and of the largest circles that count.
 const REACHES: [f64; 3] = [1.8, 2.8, 2.0 * STAR_RADIUS];
 
 /// A neighbor in a star.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Spoke {
-    /// The neighbor.
+    /// Index of the neighbor.
     pub(crate) to: SiteIdx,
-    /// Whether the center, it, and the next neighbor counterclockwise are a triangle.
+    /// Whether the center, this neighbor, and the next neighbor counterclockwise form a triangle.
     pub(crate) joined: bool,
 }
 
-/// Finds stars among the same sites, one after the other. Those of sites in one cell of the grid share what is looked up.
+/// Finds the stars of sites, one site at a time. Consecutive sites in the same grid cell share the grid lookups.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct StarFinder {
     cell: Cell,
-    /// One for each of [`REACHES`].
+    /// Cached lookups, one for each of [`REACHES`].
     windows: [Window; REACHES.len()],
-    /// The squared distances of some sites of a window, as the bits of an `f32`, above their indices.
+    /// Sort keys of some sites of a window: squared distance as the bits of an `f32`, then the index in the window.
     order: Vec<u64>,
 }
 
-/// All sites in a block of cells.
+/// Sites in a block of grid cells.
 #[derive(Clone, Debug, Default)]
 struct Window {
     block: Option<Block>,
     sites: Vec<SiteIdx>,
-    /// Their positions along each axis.
+    /// Positions of the sites along each axis.
     columns: [Vec<f64>; 3],
-    /// Their squared distances from some position.
+    /// Squared distances of the sites from the current center, in spacings.
     distances_sq: Vec<f64>,
 }
 
-/// The tangent plane of a site.
+/// Tangent plane of a site, in units of the spacing.
 struct Tangent {
     position: DVec3,
     normal: DVec3,
-    /// Orthogonal, and as long as one over the spacing.
+    /// Orthogonal axes of the plane, with a length of one over the spacing.
     axes: [DVec3; 2],
     scale_sq: f64,
 }
@@ -72,11 +72,12 @@ struct Tangent {
 impl StarFinder {
     /// Appends the star of a site, counterclockwise as seen from outside.
     ///
-    /// A site that lies where another one does is never its neighbor.
+    /// Sites at the same position are never neighbors.
     pub(crate) fn find(&mut self, sites: &Oriented<'_>, center: SiteIdx, star: &mut Vec<Spoke>) {
         let tangent = Tangent::new(sites, center);
         self.cell.clear();
         let mut seen_sq = 0.0;
+        // Search rings of growing radius, until no site farther away can change the cell.
         for (window, reach) in REACHES.into_iter().enumerate() {
             let reach_sq = reach * reach;
             self.look(sites, &tangent, window, [seen_sq, reach_sq]);
@@ -95,7 +96,7 @@ impl StarFinder {
         });
     }
 
-    /// Lists the sites with squared distances above the first and up to the second of two limits, nearest first.
+    /// Lists in `order` the sites with squared distances above the first limit and up to the second one, nearest first.
     #[inline]
     fn look(
         &mut self,
@@ -107,7 +108,7 @@ impl StarFinder {
         let window = &mut self.windows[window];
         window.move_to(sites, tangent.position, up_to.sqrt() * sites.spacing);
         let distances_sq = window.distances_sq(tangent);
-        // Every site is written, and those that do not count are written over: branches would be guessed wrong.
+        // Every site is written, and sites outside of the limits are then overwritten: branches would be mispredicted.
         self.order.resize(distances_sq.len(), 0);
         let mut n_listed = 0;
         for (index, &distance_sq) in distances_sq.iter().enumerate() {
@@ -118,12 +119,12 @@ impl StarFinder {
         self.order.sort_unstable();
     }
 
-    /// Clips the cell by the sites listed that are on the same sheet, until they are too far away to matter.
+    /// Clips the cell by the listed sites on the same sheet, until the rest is too far away to change the cell.
     #[inline]
     fn clip(&mut self, sites: &Oriented<'_>, tangent: &Tangent, window: usize) {
         let window = &self.windows[window];
         for &key in &self.order {
-            // The order is that of rounded distances.
+            // The keys are rounded distances, so allow for the rounding.
             if f64::from(f32::from_bits((key >> 32) as u32)) > self.cell.diameter_sq() * 1.000_001 {
                 return;
             }
@@ -141,7 +142,7 @@ impl StarFinder {
 }
 
 impl Window {
-    /// Looks up the sites that are in reach of a position, unless they are at hand.
+    /// Looks up the sites in reach of a position, unless the window already holds them.
     #[inline]
     fn move_to(&mut self, sites: &Oriented<'_>, position: DVec3, radius: f64) {
         let block = sites.grid.block(position, radius);
@@ -151,6 +152,7 @@ impl Window {
         }
     }
 
+    /// Reads the sites of a block and their positions.
     fn fill(&mut self, sites: &Oriented<'_>, block: Block) {
         self.sites.clear();
         sites.grid.visit_block(block, |site| self.sites.push(site));
@@ -164,7 +166,7 @@ impl Window {
         z.extend(positions().map(|position| position.z));
     }
 
-    /// The squared distances of all sites from one, in spacings.
+    /// Squared distances of all sites of the window from the center, in spacings.
     #[inline]
     fn distances_sq(&mut self, from: &Tangent) -> &[f64] {
         let n = self.sites.len();
@@ -197,7 +199,7 @@ impl Tangent {
         }
     }
 
-    /// Where a site at a vector from the center is in the plane, if it is not straight above or below.
+    /// Position in the plane of a site at the vector `away` from the center. `None` if it is straight above or below.
     #[inline]
     fn map(&self, away: DVec3, distance_sq: f64) -> Option<DVec2> {
         let projected = DVec2::new(away.dot(self.axes[0]), away.dot(self.axes[1]));

@@ -1,19 +1,20 @@
-//! Triangles of the sites of a level, for export.
+//! Triangle mesh of the sites of a level, for export.
 //!
-//! The paper's `M_k` is a graph: stars that disagree about an edge do not fit together, and forcing the edge makes no
-//! triangles. (Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, doi 10.1145/383259.383297, section
-//! 3.1.) This is a repair of it that synthesis does not need:
+//! The paper's `M_k` is a graph: stars that disagree about an edge do not fit together, and adding the edge to both
+//! makes no triangles. (Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, doi
+//! 10.1145/383259.383297, section 3.1.) Synthesis needs only the graph. For a mesh, the graph is repaired:
 //!
-//! * only edges that are in the stars of both of their sites are kept; where four sites have both diagonals, only the
-//!   shorter one;
-//! * the faces between them are found by going around: from site to site, always taking the edge next to the one just
-//!   come by, in the order of the star;
-//! * a triangle in the stars of all its three sites is such a face. A larger face without a gap in the stars is a hole,
-//!   left where stars disagree or where sites lie on one circle, and is filled by cutting off its corners, first the
-//!   one with the shortest diagonal;
-//! * so is a small face with a gap, which sharp edges leave, and real holes of a few spacings. The others are borders.
+//! * only edges that are in the stars of both of their sites are kept. Where four sites have both diagonals, the longer
+//!   one is dropped;
+//! * faces are found by walking from site to site: at each site the walk continues along the edge next to the one it
+//!   came by, in the order of the star;
+//! * a triangle in the stars of all of its three sites is such a face. A larger face without a gap in the stars is a
+//!   hole. Holes form where stars disagree or where sites lie on one circle. They are filled by cutting off corners,
+//!   shortest diagonal first;
+//! * a small face with a gap, as sharp edges leave, is filled too, and so are real holes of a few spacings. Other faces
+//!   with a gap are borders.
 //!
-//! Each edge is then in at most two triangles, which go around it in opposite directions.
+//! Each edge is then in at most two triangles, which traverse it in opposite directions.
 
 use super::connect::Stars;
 use super::oriented::Oriented;
@@ -22,30 +23,32 @@ use dapple_mesh::Mesh;
 use glam::DVec3;
 use std::collections::BTreeSet;
 
-/// Larger holes are left open: the sites around them say little of what is inside.
+/// Maximum number of edges of a hole that is filled. The sites around a larger hole say little about the surface
+/// inside.
 const HOLE_MAX: usize = 32;
-/// Faces with gaps in their stars are borders of the surface if they have more edges than this.
+/// Maximum number of edges of a face with gaps that is filled. Larger ones are borders of the surface.
 const GAP_MAX: usize = 8;
 
-/// The triangles of the sites of a level, and how they came about.
+/// Triangle mesh of the sites of a level, with counts of its triangles by origin.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SiteTriangles {
-    /// The triangles; the vertices are the sites of the level, in their order.
+    /// Mesh whose vertices are the sites of the level, in the same order.
     pub mesh: Mesh,
-    /// The number of triangles that are in the stars of all of their three sites.
+    /// Number of triangles that are in the stars of all of their three sites.
     pub agreed: usize,
-    /// The number of triangles that fill holes.
+    /// Number of triangles that fill holes.
     pub filled: usize,
-    /// The number of holes that could not be filled.
+    /// Number of holes that could not be filled.
     pub holes: usize,
-    /// The number of loops of edges along borders of the surface, and where stars found nothing on a side.
+    /// Number of edge loops along borders of the surface, and around places where stars found no neighbor on one side.
     pub borders: usize,
 }
 
 impl SiteTriangles {
-    /// The triangles of sites.
+    /// Triangulates the sites of a level.
     pub(crate) fn new(sites: &Oriented<'_>) -> Result<Self, SynthError> {
         let stars = Stars::new(sites);
+        // Drop the longer one of two crossing diagonals.
         let crossed = Edges::new(&stars, &BTreeSet::new()).crossed(sites.positions);
         let edges = Edges::new(&stars, &crossed);
         let mut filler = Filler {
@@ -54,6 +57,7 @@ impl SiteTriangles {
             diagonals: BTreeSet::new(),
         };
         let (mut triangles, mut agreed, mut holes, mut borders) = (Vec::new(), 0, 0, 0);
+        // Take over triangles that all stars agree on, and fill the holes between them.
         edges.visit_faces(|face, is_closed, is_agreed| {
             let is_hole = is_closed || face.len() <= GAP_MAX;
             if let (&[a, b, c], true) = (face, is_agreed) {
@@ -77,24 +81,24 @@ impl SiteTriangles {
     }
 }
 
-/// The edges that both stars have, seen from either end: compressed rows, counterclockwise.
+/// Edges that are in the stars of both of their sites, stored for both ends: compressed rows, counterclockwise.
 struct Edges {
     offsets: Vec<usize>,
     rows: Vec<Edge>,
 }
 
-/// An edge, and the corner between it and the next one, counterclockwise.
+/// An edge of a site, and the corner between it and the next edge counterclockwise.
 #[derive(Clone, Copy)]
 struct Edge {
     to: u32,
-    /// Whether the star of the site has triangles all over the corner.
+    /// Whether triangles of the site's star cover the whole corner.
     is_closed: bool,
-    /// Whether it has one triangle there, and no edge between.
+    /// Whether the corner is a single triangle of the site's star, without a dropped edge in between.
     is_agreed: bool,
 }
 
 impl Edges {
-    /// The edges that both stars have, except those to leave out, which have the lower site first.
+    /// Collects the edges that are in both stars, except the edges in `left_out` (pairs with the lower site first).
     fn new(stars: &Stars, left_out: &BTreeSet<[u32; 2]>) -> Self {
         let mut edges = Self {
             offsets: vec![0],
@@ -108,7 +112,7 @@ impl Edges {
             };
             let kept: Vec<usize> = (0..star.len()).filter(|&at| is_kept(star[at].to)).collect();
             for (index, &at) in kept.iter().enumerate() {
-                // How many spokes on the next one that is kept is, perhaps once around.
+                // Index of the next kept spoke; past the end of the star where it wraps around.
                 let next = kept.get(index + 1).copied().unwrap_or(star.len() + kept[0]);
                 let is_closed = (at..next).all(|spoke| star[spoke % star.len()].joined);
                 edges.rows.push(Edge {
@@ -122,6 +126,7 @@ impl Edges {
         edges
     }
 
+    /// Edges of a site, counterclockwise.
     fn row(&self, site: u32) -> &[Edge] {
         &self.rows[self.offsets[site as usize]..self.offsets[site as usize + 1]]
     }
@@ -130,13 +135,14 @@ impl Edges {
         self.row(a).iter().any(|edge| edge.to == b)
     }
 
-    /// The longer diagonal of each four sites that have both.
+    /// Returns the longer diagonal of each quadrangle of sites with both diagonals.
     fn crossed(&self, positions: &[DVec3]) -> BTreeSet<[u32; 2]> {
         let mut crossed = BTreeSet::new();
         for site in 0..self.offsets.len() as u32 - 1 {
             let row = self.row(site);
             for at in 0..row.len() {
-                // The sites of a quadrangle, counterclockwise, with the diagonal that is an edge of this site.
+                // Three consecutive neighbors, which form a quadrangle with this site: the edge to the middle one is a
+                // diagonal.
                 let [left, across, right] = [at, at + 1, at + 2].map(|at| row[at % row.len()].to);
                 if self.are_in_a_row(left, [across, right, site]) {
                     let length = |[a, b]: [u32; 2]| {
@@ -154,7 +160,7 @@ impl Edges {
         crossed
     }
 
-    /// Whether a site has these neighbors one after the other.
+    /// Whether these neighbors are consecutive in the row of a site.
     fn are_in_a_row(&self, site: u32, neighbors: [u32; 3]) -> bool {
         let row = self.row(site);
         let begins =
@@ -162,13 +168,14 @@ impl Edges {
         (0..row.len()).any(begins)
     }
 
-    /// Calls `visit` with the sites around each face, counterclockwise, and whether all of its corners are closed, and
-    /// are agreed on.
+    /// Calls `visit` with the sites around each face, counterclockwise, and two flags: whether all of its corners are
+    /// closed, and whether all are agreed on.
     fn visit_faces(&self, mut visit: impl FnMut(&[u32], bool, bool)) {
         let mut is_done = vec![false; self.rows.len()];
         let mut face = Vec::new();
         for site in 0..self.offsets.len() as u32 - 1 {
             for first in self.offsets[site as usize]..self.offsets[site as usize + 1] {
+                // Walk around the face to the left of each edge that no face has used yet.
                 let (mut from, mut edge) = (site, first);
                 let (mut is_closed, mut is_agreed) = (true, true);
                 face.clear();
@@ -187,7 +194,7 @@ impl Edges {
         }
     }
 
-    /// The edge that follows the one from a site around the face to its left: at the other end, the next one clockwise.
+    /// Returns the next edge around the face to the left of an edge: at the far end, the next edge clockwise.
     fn next_around(&self, from: u32, edge: usize) -> usize {
         let there = self.rows[edge].to;
         let row = self.row(there);
@@ -197,16 +204,17 @@ impl Edges {
     }
 }
 
-/// Fills holes.
+/// Fills holes with triangles.
 struct Filler<'a> {
     sites: &'a Oriented<'a>,
     edges: &'a Edges,
-    /// The edges that were cut so far, the lower site first.
+    /// Diagonals added so far, as pairs with the lower site first.
     diagonals: BTreeSet<[u32; 2]>,
 }
 
 impl Filler<'_> {
-    /// Cuts a face into triangles that face outward; nothing if that is not possible or the face meets itself.
+    /// Divides a face into triangles that face outward. `None` if that is not possible, if the face meets itself, or if
+    /// it has more than [`HOLE_MAX`] edges.
     fn fill(&mut self, face: &[u32]) -> Option<Vec<[u32; 3]>> {
         let is_simple = || (1..face.len()).all(|at| !face[..at].contains(&face[at]));
         if !(3..=HOLE_MAX).contains(&face.len()) || !is_simple() {
@@ -214,6 +222,7 @@ impl Filler<'_> {
         }
         let mut ring = face.to_vec();
         let mut triangles = Vec::new();
+        // Cut off corners until a triangle is left.
         while ring.len() > 3 {
             let at = self.best_corner(&ring)?;
             triangles.push(corner(&ring, at));
@@ -223,14 +232,15 @@ impl Filler<'_> {
         if !self.is_outward([ring[0], ring[1], ring[2]]) {
             return None;
         }
-        // All but the last triangle were cut off along a diagonal.
+        // Record the diagonals: every triangle but the last was cut off along one.
         let cuts = &triangles[..triangles.len() - 1];
         let diagonals = cuts.iter().map(|&[a, _, b]| lower_first(a, b));
         self.diagonals.extend(diagonals);
         Some(triangles)
     }
 
-    /// The corner with the shortest diagonal of those that point outward and whose diagonal is not an edge yet.
+    /// Index of the corner with the shortest diagonal, among corners that face outward and whose diagonal is not an
+    /// edge yet.
     fn best_corner(&self, ring: &[u32]) -> Option<usize> {
         let length = |at: usize| {
             let [a, _, b] = corner(ring, at);
@@ -246,7 +256,7 @@ impl Filler<'_> {
         corners.min_by(|&a, &b| length(a).total_cmp(&length(b)))
     }
 
-    /// Whether a triangle faces to where the normal of its second site points.
+    /// Whether a triangle faces the same way as the normal of its second site.
     fn is_outward(&self, [a, middle, b]: [u32; 3]) -> bool {
         let up = (self.at(middle) - self.at(a)).cross(self.at(b) - self.at(middle));
         up.dot(self.sites.normals[middle as usize]) > 0.0
@@ -261,7 +271,7 @@ fn lower_first(a: u32, b: u32) -> [u32; 2] {
     [a.min(b), a.max(b)]
 }
 
-/// A site of a ring between the ones before and after it.
+/// A site of a ring, with the sites before and after it.
 fn corner(ring: &[u32], at: usize) -> [u32; 3] {
     let n = ring.len();
     [ring[(at + n - 1) % n], ring[at], ring[(at + 1) % n]]

@@ -1,9 +1,9 @@
-//! Points that are stuck between fixed ones are moved to where there is room.
+//! Moves points that are stuck between fixed points to an emptier place.
 //!
-//! Where the fixed points leave room for one new point and there are two, no push gets the second one out. There are a
-//! few such places on any curved surface. They are found by the distance to the nearest neighbor, and the point goes to
-//! the emptiest of some random places: Mitchell's best candidate (Don P. Mitchell, "Spectrally Optimal Sampling for
-//! Distribution Ray Tracing", SIGGRAPH 1991, doi 10.1145/122718.122736).
+//! If the fixed points leave room for one new point and two are there, repulsion cannot push the second one out. Any
+//! curved surface has a few such places. Stuck points are found by the distance to their nearest neighbor, and are
+//! moved to the emptiest of some random places: Mitchell's best candidate (Don P. Mitchell, "Spectrally Optimal
+//! Sampling for Distribution Ray Tracing", SIGGRAPH 1991, doi 10.1145/122718.122736).
 
 use super::evenness::hexagonal_spacing;
 use super::near::{CHUNK, Places};
@@ -15,14 +15,14 @@ use dapple_mesh::{Surface, SurfacePoint};
 use dapple_raster::parallel;
 use glam::DVec3;
 
-/// The distance to the nearest neighbor, in spacings, below which a point is stuck.
+/// Distance to the nearest neighbor, in spacings, below which a point counts as stuck.
 const STUCK: f64 = 0.72;
-/// The random places that are tried.
+/// Number of random candidates per stuck point.
 const N_PLACES: u64 = 256;
-/// The most points that are moved; where there are more, the surface itself is crowded.
+/// Maximum number of points that are moved. If more are stuck, the surface itself is crowded.
 const MOVED_MOST: usize = 512;
 
-/// Moves those of the points from `n_fixed` on that are stuck to an emptier place of the same piece, if there is one.
+/// Moves each stuck point with index `n_fixed` or more to an emptier place of the same piece, if there is one.
 pub(crate) fn unstick(
     surface: &Surface,
     pieces: &Pieces,
@@ -34,7 +34,7 @@ pub(crate) fn unstick(
     let mut crowd = Crowd::new(Places::new(surface, points), spacing);
     let mut stuck = crowd.stuck_from(n_fixed);
     stuck.truncate(MOVED_MOST);
-    // Points that follow each other are mostly on the same piece.
+    // Consecutive points are mostly on the same piece and share a sampler.
     let piece_of = |site: &usize| pieces.of_face[points[*site].face.index()];
     let mut moves = Vec::new();
     for group in stuck.chunk_by(|a, b| piece_of(a) == piece_of(b)) {
@@ -48,12 +48,12 @@ pub(crate) fn unstick(
     }
 }
 
-/// Positions of points while some of them are moved.
+/// Positions of points, with an index of neighbors that stays valid while points are moved.
 struct Crowd {
     places: Places,
     spacing: f64,
     grid: SiteGrid,
-    /// The points that were moved since the grid was made.
+    /// Points that were moved since the grid was built.
     moved: Vec<usize>,
 }
 
@@ -67,7 +67,8 @@ impl Crowd {
         }
     }
 
-    /// The points from `first` on that are stuck; of two free ones, the later.
+    /// Returns the stuck points with index `first` or more. Of two free points that are too close, only the later one
+    /// counts.
     fn stuck_from(&self, first: usize) -> Vec<usize> {
         let n_sites = self.places.positions.len();
         let chunks = parallel::map(n_sites.saturating_sub(first).div_ceil(CHUNK), |chunk| {
@@ -84,7 +85,7 @@ impl Crowd {
         chunks.concat()
     }
 
-    /// The distance to the nearest point on the same sheet among those that count, at most `reach`.
+    /// Distance to the nearest point on the same sheet for which `counts` holds, clamped to `reach`.
     #[inline]
     fn nearest(
         &self,
@@ -105,14 +106,14 @@ impl Crowd {
         };
         self.grid
             .visit(position, reach, |other| look_at(other.index()));
-        // The grid has these at their old places, where they are no more.
+        // The grid has moved points in the cells of their old positions, so check them all.
         for &other in &self.moved {
             look_at(other);
         }
         least_sq.sqrt()
     }
 
-    /// Moves a point to the emptiest of some random places, if that is emptier than its own.
+    /// Moves a point to the emptiest of some random places, if that is emptier than its current one.
     fn find_room(
         &mut self,
         surface: &Surface,
@@ -122,7 +123,7 @@ impl Crowd {
     ) -> Option<(usize, SurfacePoint)> {
         let room = |crowd: &Self, position, normal| {
             let within = |reach| crowd.nearest(position, normal, reach, |other| other != site);
-            // Most places have a point close by, which makes it unnecessary to look at all others around.
+            // Most places have a point nearby, so a small radius is searched first.
             let close = 0.5 * crowd.spacing;
             let distance = within(close);
             if distance < close {
