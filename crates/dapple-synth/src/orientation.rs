@@ -1,24 +1,26 @@
-//! Which way the texture runs: a tangent vector at every site from a few directions of the user.
+//! Orientation field: a unit tangent vector at every site, interpolated from a few directions of the user.
 //!
-//! Source: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, section 4.1,
-//! <https://doi.org/10.1145/383259.383297>; after the pull-push of Steven Gortler, Radek Grzeszczuk, Richard Szeliski and
-//! Michael Cohen, "The Lumigraph", SIGGRAPH 1996, <https://doi.org/10.1145/237170.237200>.
+//! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, section 4.1,
+//! <https://doi.org/10.1145/383259.383297>; after the pull-push of Steven Gortler, Radek Grzeszczuk, Richard Szeliski
+//! and Michael Cohen, "The Lumigraph", SIGGRAPH 1996, <https://doi.org/10.1145/237170.237200>.
 //!
-//! All of the method: directions go to their nearest sites and are pulled up to the coarsest level, diffused there with
-//! the known ones held fixed, and pushed down to the finest. Where the paper is silent or slow:
+//! Directions are assigned to their nearest sites and pulled up to the coarsest level. There they are diffused, with
+//! the known directions held fixed, and then pushed down to the finest level. Where the paper is silent or slow:
 //!
-//! * a weight travels with every pulled vector, as in the Lumigraph; a coarse site is known where it is at least 0.01,
-//!   and on the way down each level mixes the known vectors in by their weights, so that a site with a direction gets
-//!   just that direction;
-//! * the diffusion on the coarsest level is filled in breadth first and then solved, not repeated until it settles, as
-//!   that takes as many steps as the square of the number of sites across the surface;
-//! * the way down ends, on every level, with a few sweeps of equation 4, which take out the facets of interpolation;
-//! * a connected part of the surface without any direction runs along a fixed axis.
+//! * every pulled vector has a weight, as in the Lumigraph. A coarse site is known if its weight is at least 0.01. On
+//!   the way down each level mixes in the known vectors by their weights, so that a site with a direction gets exactly
+//!   that direction;
+//! * the diffusion on the coarsest level is initialized breadth first and then solved by conjugate gradients. Repeating
+//!   the averages until they converge takes as many steps as the square of the number of sites across the surface;
+//! * on every finer level a few sweeps of equation 4 remove the facets of interpolation;
+//! * a connected component of the surface without any direction is oriented along a fixed axis.
 //!
-//! Fields with a [`Symmetry`] are the smoothest ones on the coarsest level (`smooth.rs`). Of the turns at a place one is stored,
-//! that of most neighbors (`comb.rs`), and on the way down means are those of the nearest turns.
+//! Fields with a [`Symmetry`] of two or four have equivalent directions at each site. On the coarsest level they are
+//! the smoothest field (`smooth.rs`). One direction per site is stored, chosen to agree with most neighbors
+//! (`comb.rs`). On the way down, each vector is rotated to the equivalent direction nearest to the others before a mean
+//! is taken.
 //!
-//! Positions are in units of the mesh; the vectors of the result have unit length.
+//! Positions are in units of the mesh; the resulting vectors have unit length.
 
 mod comb;
 mod pull;
@@ -35,20 +37,21 @@ pub(crate) use symmetry::{offset_after, offset_before, turned};
 use crate::{Hierarchy, SynthError, SynthErrorKind, columns};
 use glam::DVec3;
 
-/// Shorter squared parts of unit vectors in a tangent plane count as none: a thousandth of a radian off the normal.
+/// Minimum squared length of the tangential part of a unit vector. Vectors within a thousandth of a radian of the
+/// normal have no direction in the tangent plane.
 const LEAST_TANGENT_SQ: f64 = 1e-6;
 
-/// A direction that the texture is to have near a position.
+/// A direction of the texture near a position, given by the user.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Direction {
-    /// A position; the nearest site gets the direction.
+    /// Position in space, in units of the mesh. The nearest site gets the direction.
     pub at: DVec3,
-    /// Any vector; the direction of its part in the tangent plane counts.
+    /// Vector of any length. The direction of its projection to the tangent plane is used.
     pub vector: DVec3,
 }
 
-/// A unit tangent vector O at every site: the texture's "down".
+/// Orientation field: a unit tangent vector O at every site, the "down" of the texture.
 ///
 /// # Examples
 ///
@@ -72,30 +75,31 @@ pub struct Orientation {
 }
 
 impl Orientation {
-    /// The axis of parts of the surface without a direction: down in files, in which y points up.
+    /// Axis of connected components without a direction: down in files with y up.
     pub const AXIS: DVec3 = DVec3::NEG_Y;
 
-    /// Interpolates directions over the surface; connected parts without any run along [`AXIS`](Self::AXIS).
+    /// Interpolates directions over the surface. Connected components without any direction are oriented along
+    /// [`AXIS`](Self::AXIS).
     ///
-    /// Sites that are nearest to a direction get its part in their tangent plane. Of several directions at one site the
-    /// mean counts; if they cancel, it is as if none were given there.
+    /// Each direction is projected to the tangent plane of its nearest site. Several directions at one site are
+    /// averaged; if they cancel, the site counts as having none.
     ///
     /// # Errors
     ///
-    /// [`SynthErrorKind::Direction`] if a position or a vector is not finite, or if a vector is zero or within a
-    /// thousandth of a radian of the normal of its site.
+    /// Returns [`SynthErrorKind::Direction`] if a position or a vector is not finite, or if a vector is zero or within
+    /// a thousandth of a radian of the normal of its site.
     pub fn new(hierarchy: &Hierarchy, directions: &[Direction]) -> Result<Self, SynthError> {
         Self::with_axis(hierarchy, directions, Self::AXIS)
     }
 
-    /// Interpolates directions over the surface; connected parts without any run along an axis of the caller's.
+    /// Interpolates directions over the surface. Connected components without any direction are oriented along `axis`.
     ///
-    /// The axis is projected to the tangent planes; where it is normal to the surface, a vector at a right angle to it
-    /// is.
+    /// The axis is projected to the tangent planes. Where it is normal to the surface, a vector perpendicular to it is
+    /// used instead.
     ///
     /// # Errors
     ///
-    /// Those of [`new`](Self::new), and [`SynthErrorKind::Range`] if the axis is zero or not finite.
+    /// Returns the errors of [`new`](Self::new), and [`SynthErrorKind::Range`] if the axis is zero or not finite.
     pub fn with_axis(
         hierarchy: &Hierarchy,
         directions: &[Direction],
@@ -112,16 +116,17 @@ impl Orientation {
         })
     }
 
-    /// The smoothest field of a symmetry that has these directions or turns of them; with [`Symmetry::One`] that of
-    /// [`with_axis`](Self::with_axis).
+    /// Computes the smoothest field of a symmetry that has the given directions or rotations of them. With
+    /// [`Symmetry::One`] this is the field of [`with_axis`](Self::with_axis).
     ///
-    /// It has few singularities, which lie where the surface is most curved: a field of one direction turns around a point
-    /// by whole turns, one of two or four also by half or quarter turns, and so less sharply. Connected parts without
-    /// directions lie along the axis as a whole as well as they can, and not at every place.
+    /// It has few singularities, and they lie where the surface is most curved. Around a singularity, a field of one
+    /// direction rotates by full turns. A field of two or four directions can rotate by half or quarter turns, and so
+    /// bends less sharply. A connected component without directions is rotated as a whole to fit the axis best on
+    /// average.
     ///
     /// # Errors
     ///
-    /// Those of [`with_axis`](Self::with_axis).
+    /// Returns the errors of [`with_axis`](Self::with_axis).
     pub fn symmetric(
         hierarchy: &Hierarchy,
         directions: &[Direction],
@@ -140,9 +145,9 @@ impl Orientation {
         })
     }
 
-    /// The field of a function of the position and the unit normal of a site, projected to the tangent planes.
+    /// Evaluates a function of the position and the unit normal of each site, and projects it to the tangent planes.
     ///
-    /// Where the vector is zero, not finite or normal to the surface, [`AXIS`](Self::AXIS) takes its place.
+    /// Where the vector is zero, not finite or normal to the surface, [`AXIS`](Self::AXIS) is used instead.
     pub fn from_fn(hierarchy: &Hierarchy, field: impl Fn(DVec3, DVec3) -> DVec3 + Sync) -> Self {
         let sites = hierarchy.sites();
         let vectors = columns::column(sites.len(), |site| {
@@ -155,20 +160,21 @@ impl Orientation {
         }
     }
 
-    /// How many directions at a place are as good as the one that is stored.
+    /// Symmetry of the field: the number of equivalent directions at each site, of which one is stored.
     #[must_use]
     pub fn symmetry(&self) -> Symmetry {
         self.symmetry
     }
 
-    /// The turn of the direction of a site that is nearest to a vector.
+    /// Among the equivalent directions of a site, the one nearest to a vector.
     #[inline]
     pub(crate) fn nearest(&self, normals: &[DVec3], site: usize, vector: DVec3) -> DVec3 {
         self.symmetry
             .nearest(self.vectors[site], normals[site], vector)
     }
 
-    /// How many quarter turns take the direction of a site nearest to the direction of another one after some quarter turns.
+    /// Number of quarter turns that rotate the direction of `site` nearest to the direction of `other`, which is itself
+    /// rotated by `quarters`.
     #[inline]
     pub(crate) fn quarters_toward(
         &self,
@@ -185,15 +191,15 @@ impl Orientation {
             .quarters_toward(self.vectors[site], normals[site], other)
     }
 
-    /// The unit vectors at the sites, in the order of [`SiteIdx`](crate::SiteIdx); those of a coarser level are the
-    /// first of them.
+    /// Unit vectors at the sites, in the order of [`SiteIdx`](crate::SiteIdx). The sites of a coarser level
+    /// come first.
     #[must_use]
     pub fn vectors(&self) -> &[DVec3] {
         &self.vectors
     }
 }
 
-/// The unit vector along an axis.
+/// Unit vector along an axis; an error if the axis is zero or not finite.
 fn checked(axis: DVec3) -> Result<DVec3, SynthError> {
     unit(axis).ok_or_else(|| {
         SynthError::new(SynthErrorKind::Range {
@@ -204,20 +210,20 @@ fn checked(axis: DVec3) -> Result<DVec3, SynthError> {
     })
 }
 
-/// The part of a vector in the plane with this unit normal.
+/// Component of a vector in the plane with this unit normal.
 #[inline]
 fn flat_part(vector: DVec3, normal: DVec3) -> DVec3 {
     vector - normal * vector.dot(normal)
 }
 
-/// The unit vector in the plane with this unit normal that is nearest to a vector's direction, where there is one.
+/// Unit vector in the plane with this unit normal along the projection of a vector. `None` if the vector is normal to
+/// the plane, zero or not finite.
 fn tangent(vector: DVec3, normal: DVec3) -> Option<DVec3> {
     let part = flat_part(unit(vector)?, normal);
     (part.length_squared() > LEAST_TANGENT_SQ).then(|| part.normalize())
 }
 
-/// The unit tangent along a unit axis, or where that is normal to the plane along another one, so that there always is
-/// one.
+/// Unit tangent along a unit axis; along a perpendicular axis where the plane is normal to the first one. Never fails.
 fn axis_tangent(axis: DVec3, normal: DVec3) -> DVec3 {
     let across = axis.any_orthonormal_vector();
     tangent(axis, normal)
@@ -225,7 +231,7 @@ fn axis_tangent(axis: DVec3, normal: DVec3) -> DVec3 {
         .unwrap_or(across)
 }
 
-/// The unit vector of any finite vector but zero, without overflow.
+/// Unit vector along a vector, computed without overflow. `None` if the vector is zero or not finite.
 fn unit(vector: DVec3) -> Option<DVec3> {
     let most = vector.abs().max_element();
     (vector.is_finite() && most > 0.0).then(|| (vector / most).normalize())

@@ -1,13 +1,13 @@
-//! Which of its turns each direction of a field is: turns that neighbors agree on, but for cuts between singularities.
+//! Combing: chooses one of the equivalent directions at each site, so that neighbors agree except across cuts.
 //!
-//! A field of a symmetry says at every place one of several directions, and matching wants to know which: the rows above a
-//! pixel were made before it. Around a singularity no choice fits everywhere. Here choices spread from site to site over
-//! edges along which the field bends least first (a minimum spanning tree, by Prim's method). What remains are cuts, along
-//! which neighbors are off by a turn: they lie where the field bends most, the shortest ways between singularities, and
-//! around handles.
+//! A field with a symmetry has several equivalent directions at each site. Matching needs a single one: it reads the
+//! rows above a pixel, which are synthesized before it. Around a singularity no choice fits everywhere. Choices spread
+//! from site to site along the edges at which the field bends least (a minimum spanning tree, by Prim's method). The
+//! remaining disagreements are cuts, across which neighbors differ by a rotation. Cuts run where the field bends most,
+//! along the shortest paths between singularities, and around handles.
 //!
-//! Reference: R. C. Prim, "Shortest Connection Networks and Some Generalizations", Bell System Technical Journal 36, 1957,
-//! DOI 10.1002/j.1538-7305.1957.tb01515.x.
+//! Reference: R. C. Prim, "Shortest Connection Networks and Some Generalizations", Bell System Technical Journal 36,
+//! 1957, DOI 10.1002/j.1538-7305.1957.tb01515.x.
 
 use super::push::Field;
 use crate::columns;
@@ -15,11 +15,12 @@ use core::cmp::Reverse;
 use glam::DVec3;
 use std::collections::BinaryHeap;
 
-/// Turns the directions of a level, so that those of most neighbors are the nearest of their turns.
+/// Rotates the directions of a level to equivalent ones, so that most neighbors agree.
 pub(super) fn comb(field: &Field<'_>, vectors: &mut [DVec3]) {
     let bends = columns::column(vectors.len(), |site| bend(field, site, vectors));
     let mut is_combed = vec![false; vectors.len()];
     let mut edges = BinaryHeap::new();
+    // Grow a spanning tree from the lowest site of each component.
     for start in 0..vectors.len() {
         let mut next = (!is_combed[start]).then_some(start);
         while let Some(site) = next {
@@ -31,12 +32,13 @@ pub(super) fn comb(field: &Field<'_>, vectors: &mut [DVec3]) {
                 .map(|other| other.index())
             {
                 if !is_combed[other] {
-                    // The bits of numbers of at least zero rise with them.
+                    // The bits of nonnegative floats sort like their values.
                     let bend = bends[site].max(bends[other]).to_bits();
                     edges.push(Reverse((bend, other, site)));
                 }
             }
             next = None;
+            // Take the edge of least bend to a new site, and rotate its direction to agree with the near end.
             while let Some(Reverse((_, other, from))) = edges.pop() {
                 if !is_combed[other] {
                     let turned =
@@ -52,7 +54,8 @@ pub(super) fn comb(field: &Field<'_>, vectors: &mut [DVec3]) {
     }
 }
 
-/// How much the field bends around a site: the mean square of how far neighbors' nearest turns are from its direction.
+/// Bend of the field around a site: weighted mean squared distance between its direction and the nearest equivalent
+/// directions of its neighbors.
 fn bend(field: &Field<'_>, site: usize, vectors: &[DVec3]) -> f64 {
     let links = field.links;
     let mut sum = 0.0;

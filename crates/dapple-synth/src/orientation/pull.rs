@@ -1,37 +1,40 @@
-//! From the user's directions up to the coarsest level.
+//! Pull: assigns the user's directions to sites, and downsamples them to the coarsest level.
 
 use super::{flat_part, tangent};
 use crate::links::LEAST_LENGTH;
 use crate::{Direction, Hierarchy, Level, SiteIdx, Symmetry, SynthError, SynthErrorKind, columns};
 use glam::DVec3;
 
-/// Low-pass steps before a level is thinned, and their strength t of equation 3: together the spread of the filter
-/// 1-4-6-4-1 that image pyramids use.
+/// Number of low-pass steps before a level is downsampled. Together they have the variance of the filter 1-4-6-4-1 of
+/// image pyramids.
 const BLUR_STEPS: usize = 20;
+/// Strength t of a low-pass step, equation 3.
 const BLUR_STRENGTH: f64 = 0.1;
-/// How many edges away from a known site the blur is followed: less than 1e-7 of it would go farther.
+/// Extent of the blur around a known site, in edges. Less than 1e-7 of the weight would spread farther.
 const BLUR_RINGS: usize = 8;
-/// The least weight of a known site. The blur leaves a coarse site within its spacing of a direction at least 0.05.
+/// Minimum weight of a known site. After the blur, a coarse site within its spacing of a direction has a weight of at
+/// least 0.05.
 const LEAST_WEIGHT: f64 = 0.01;
-/// A coarser level has a quarter of the sites, so weights are four times as large there to sum to the same.
+/// Factor on the weights when a level is downsampled. The coarser level has a quarter of the sites, so the sum of
+/// weights stays the same.
 const THINNING: f64 = 4.0;
-/// Directions that leave less than this part of their length cancel.
+/// Minimum length of a sum of directions relative to the sum of their weights. Shorter sums count as canceled.
 const LEAST_PART: f64 = 1e-3;
 
-/// How far the grid is searched for the site nearest to a direction, in spacings.
+/// Radius of the grid search for the site nearest to a direction, in spacings.
 const SEARCH_RADIUS: f64 = 4.0;
 
-/// The mean of the directions at a site, and its weight.
+/// Known direction of a site: mean of the directions there, and its weight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Known {
     pub(super) site: usize,
     /// A unit tangent vector.
     pub(super) vector: DVec3,
-    /// How much it counts: from 0 to 1, which is where a direction was given.
+    /// Weight, from 0 to 1; 1 where a direction was given.
     pub(super) weight: f64,
 }
 
-/// The sites of the finest level that are nearest to the directions, lowest first.
+/// Assigns directions to the nearest sites of the finest level. Returns them in ascending order of the site.
 pub(super) fn known(
     hierarchy: &Hierarchy,
     directions: &[Direction],
@@ -55,9 +58,9 @@ pub(super) fn known(
     Ok(means(given, sites.normals(), symmetry))
 }
 
-/// The mean of the directions at each site, lowest site first; none where they cancel.
+/// Averages the directions at each site, in ascending order of the site. Sites whose directions cancel are dropped.
 fn means(mut given: Vec<(usize, DVec3)>, normals: &[DVec3], symmetry: Symmetry) -> Vec<Known> {
-    // Stable, so that those of one site are added in the order of the caller.
+    // Stable sort: the directions of one site are added in the order of the caller.
     given.sort_by_key(|&(site, _)| site);
     let mean = |group: &[(usize, DVec3)]| {
         let (site, first) = group[0];
@@ -69,7 +72,7 @@ fn means(mut given: Vec<(usize, DVec3)>, normals: &[DVec3], symmetry: Symmetry) 
     given.chunk_by(|a, b| a.0 == b.0).filter_map(mean).collect()
 }
 
-/// The known vectors of every level, the finest first.
+/// Known directions of every level, finest first, by repeated downsampling.
 pub(super) fn pull(hierarchy: &Hierarchy, finest: Vec<Known>) -> Vec<Vec<Known>> {
     let mut levels = vec![finest];
     for pair in hierarchy.levels().windows(2) {
@@ -79,8 +82,8 @@ pub(super) fn pull(hierarchy: &Hierarchy, finest: Vec<Known>) -> Vec<Vec<Known>>
     levels
 }
 
-/// The known directions of a symmetry on every level, the finest first: on a coarser level those of the sites nearest to
-/// them, with the whole weight, since means of turns are not blurred.
+/// Known directions of a field with a symmetry on every level, finest first. On a coarser level each direction moves to
+/// the nearest site and keeps its full weight, since directions up to rotation cannot be blurred.
 pub(super) fn pull_nearest(
     hierarchy: &Hierarchy,
     finest: Vec<Known>,
@@ -101,7 +104,7 @@ pub(super) fn pull_nearest(
     levels
 }
 
-/// The known site of a sum of vectors and of their weights, unless they cancel.
+/// Known direction of a site from a sum of vectors and the sum of their weights. `None` if the vectors cancel.
 fn summed(site: usize, sum: DVec3, weight: f64) -> Option<Known> {
     let length = sum.length();
     (length > LEAST_PART * weight).then(|| Known {
@@ -111,7 +114,7 @@ fn summed(site: usize, sum: DVec3, weight: f64) -> Option<Known> {
     })
 }
 
-/// Downsampling: blurs what is known and keeps what the sites of the coarser level have of it.
+/// Downsampling: blurs the known directions of a level, and keeps the result at sites of the coarser level.
 fn down(hierarchy: &Hierarchy, [finer, coarser]: [&Level; 2], known: &[Known]) -> Vec<Known> {
     let near = Near::new(hierarchy, finer, known);
     let mut kept: Vec<Known> = Vec::new();
@@ -126,11 +129,11 @@ fn down(hierarchy: &Hierarchy, [finer, coarser]: [&Level; 2], known: &[Known]) -
     kept
 }
 
-/// The sites around the known ones and their edges: the part of a level that a blur changes.
+/// Subgraph of the sites around the known ones: the part of a level that the blur changes.
 struct Near {
-    /// The sites, the known ones first.
+    /// Indices of the sites; known sites come first.
     sites: Vec<usize>,
-    /// For each of them its neighbors, as places in `sites`, and the part that each contributes to an average.
+    /// For each site, its neighbors as positions in `sites`, with normalized weights.
     edges: Vec<Vec<(usize, f64)>>,
 }
 
@@ -144,6 +147,7 @@ impl Near {
             places[site] = place;
         }
         let mut ring = 0;
+        // Add rings of neighbors breadth first.
         for _ in 0..BLUR_RINGS {
             let end = sites.len();
             for at in ring..end {
@@ -166,7 +170,7 @@ impl Near {
                     .max(least)
             };
             let sum: f64 = neighbors.iter().map(weigh).sum();
-            // What is farther away has no part in the blur, but its weights count.
+            // Sites outside of the subgraph contribute nothing, but their weights count in the normalization.
             let place = |other: &SiteIdx| (places[other.index()], weigh(other) / sum);
             neighbors
                 .iter()
@@ -180,7 +184,7 @@ impl Near {
         }
     }
 
-    /// The sums of vectors and of weights after all steps of equation 3.
+    /// Sums of vectors and of weights after all steps of equation 3.
     fn blur(&self, known: &[Known]) -> Vec<(DVec3, f64)> {
         let mut values: Vec<(DVec3, f64)> = known
             .iter()
@@ -194,7 +198,7 @@ impl Near {
     }
 }
 
-/// Equation 3 for one site.
+/// One step of equation 3 for one site.
 fn step(values: &[(DVec3, f64)], at: usize, edges: &[(usize, f64)]) -> (DVec3, f64) {
     if edges.is_empty() {
         return values[at];
@@ -211,7 +215,7 @@ fn step(values: &[(DVec3, f64)], at: usize, edges: &[(usize, f64)]) -> (DVec3, f
     )
 }
 
-/// The site of a level nearest to a position, and of several the lowest; none only if there are no sites.
+/// Site of a level nearest to a position; ties go to the lowest index. `None` only if there are no sites.
 fn nearest_site(hierarchy: &Hierarchy, level: usize, at: DVec3) -> Option<usize> {
     let level = hierarchy.levels().get(level)?;
     let positions = &hierarchy.sites().positions()[..level.n_sites()];
@@ -225,7 +229,7 @@ fn nearest_site(hierarchy: &Hierarchy, level: usize, at: DVec3) -> Option<usize>
     let radius = SEARCH_RADIUS * level.spacing();
     level.grid().visit(at, radius, &mut visit);
     if nearest.0 > radius {
-        // A position far off the surface.
+        // The position is far from the surface: search all sites.
         nearest = (f64::INFINITY, u32::MAX);
         for (site, position) in (0..).zip(positions) {
             let found = (position.distance(at), site);
@@ -282,7 +286,7 @@ mod tests {
             wanted
         );
         for known in found {
-            // What is cut off beyond the eighth ring.
+            // The difference is the weight that is cut off beyond the eighth ring.
             let off = known.weight - (weights[known.site] * THINNING).min(1.0);
             assert!(off.abs() < 1e-6, "site {}: weight off by {off}", known.site);
             let vector = tangent(vectors[known.site], normals[known.site]).unwrap();

@@ -1,4 +1,4 @@
-//! From what is known on every level to a field on the finest: diffusion on the coarsest level and the way down.
+//! Push: diffuses the known directions on the coarsest level, and refines the field down to the finest level.
 
 use super::comb::comb;
 use super::pull::Known;
@@ -10,15 +10,16 @@ use crate::solve::{System, conjugate_gradients};
 use crate::{Hierarchy, SiteIdx, columns};
 use glam::DVec3;
 
-/// The diffusion ends where averaging once more would turn no vector by more than this, in radians, ...
+/// Tolerance of the diffusion, in radians: it ends when averaging once more would rotate no vector by more.
 const TOLERANCE: f64 = 1e-5;
-/// The most steps, which bounds the time that a large coarsest level takes.
+/// Maximum number of solver steps; bounds the time for a large coarsest level.
 const STEPS_MAX: usize = 500;
-/// Sweeps of equation 4 on every finer level, and the part of the average in each.
+/// Number of sweeps of equation 4 on every finer level.
 const SWEEPS: usize = 4;
+/// Weight of the neighbors' average in a sweep, from 0 to 1.
 const SWEEP_STRENGTH: f64 = 0.8;
 
-/// A unit tangent vector for every site, from what is known on every level.
+/// Computes a unit tangent vector for every site from the known directions of every level.
 pub(super) fn push(
     hierarchy: &Hierarchy,
     pulled: &[Vec<Known>],
@@ -43,7 +44,7 @@ pub(super) fn push(
             vectors = field.refine(hierarchy, level, &vectors, known);
         }
     }
-    // Parts without a direction are still zero.
+    // Orient components without a direction along the axis; their vectors are still zero.
     let normals = hierarchy.sites().normals();
     columns::update(&mut vectors, |site, vector| {
         if *vector == DVec3::ZERO {
@@ -53,7 +54,7 @@ pub(super) fn push(
     vectors
 }
 
-/// The links of a level and the planes that vectors are projected to.
+/// Context of a level: weighted edges, normals of the tangent planes, axis and symmetry.
 pub(super) struct Field<'a> {
     pub(super) links: &'a Links<'a>,
     pub(super) normals: &'a [DVec3],
@@ -62,7 +63,7 @@ pub(super) struct Field<'a> {
 }
 
 impl Field<'_> {
-    /// Unit vectors for all sites of the coarsest level that are connected to a known one; zero for the others.
+    /// Unit vectors on the coarsest level for the sites that are connected to a known one; zero for the others.
     fn diffuse(&self, known: &[Known]) -> Vec<DVec3> {
         let n_sites = self.links.len();
         let mut vectors = vec![DVec3::ZERO; n_sites];
@@ -72,8 +73,9 @@ impl Field<'_> {
             is_fixed[known.site] = true;
         }
         let mut assigned = is_fixed.clone();
+        // Initialize breadth first from the known sites.
         self.fill(&mut assigned, &mut vectors);
-        // Parts without a direction stay out of it.
+        // Exclude components without a direction from the system.
         for (fixed, assigned) in is_fixed.iter_mut().zip(&assigned) {
             *fixed |= !assigned;
         }
@@ -82,6 +84,7 @@ impl Field<'_> {
             is_fixed,
         };
         conjugate_gradients(&system, &mut vectors, STEPS_MAX);
+        // Normalize the solution.
         columns::update(&mut vectors, |site, vector| {
             if assigned[site] {
                 *vector = self.unit(site, *vector);
@@ -90,14 +93,14 @@ impl Field<'_> {
         vectors
     }
 
-    /// The smoothest field of the symmetry with what is known, on the coarsest level.
+    /// Smoothest field of the symmetry on the coarsest level with the known directions, combed.
     fn smoothest(&self, components: &[u32], known: &[Known]) -> Vec<DVec3> {
         let mut vectors = smoothest(self, components, known);
         comb(self, &mut vectors);
         vectors
     }
 
-    /// Upsampling: unit vectors for all sites of a finer level that are connected to a known one.
+    /// Upsampling: unit vectors on a finer level for the sites that are connected to a known one.
     fn refine(
         &self,
         hierarchy: &Hierarchy,
@@ -105,6 +108,7 @@ impl Field<'_> {
         coarser: &[DVec3],
         known: &[Known],
     ) -> Vec<DVec3> {
+        // Copy the vectors of shared sites, and interpolate the others.
         let mut vectors = columns::column(self.links.len(), |site| {
             coarser
                 .get(site)
@@ -118,6 +122,7 @@ impl Field<'_> {
             .collect();
         self.fill(&mut assigned, &mut vectors);
         let mut before = vectors.clone();
+        // Smooth with sweeps of equation 4, and mix in the known directions after each.
         for _ in 0..SWEEPS {
             core::mem::swap(&mut before, &mut vectors);
             columns::update(&mut vectors, |site, vector| {
@@ -132,7 +137,7 @@ impl Field<'_> {
         vectors
     }
 
-    /// The unit vector that the coarser sites around a site have on the average; zero where they have none.
+    /// Weighted mean direction of the coarser sites around a site, as a unit vector; zero if they have none.
     fn inherit(
         &self,
         hierarchy: &Hierarchy,
@@ -145,7 +150,7 @@ impl Field<'_> {
         flat_part(sum, self.normals[site]).normalize_or_zero()
     }
 
-    /// Assigns the sites that are connected to assigned ones.
+    /// Assigns a direction to every site that is connected to an assigned one, breadth first.
     fn fill(&self, assigned: &mut [bool], vectors: &mut [DVec3]) {
         self.links
             .fill(assigned, vectors, |site, assigned, vectors| {
@@ -154,7 +159,7 @@ impl Field<'_> {
             });
     }
 
-    /// Equation 4 for vectors, projected and normalized.
+    /// One sweep of equation 4 for a site: relaxed average of vectors, projected and normalized.
     #[inline]
     fn sweep(&self, site: usize, vectors: &[DVec3]) -> DVec3 {
         let sum = self.links.sums()[site];
@@ -165,7 +170,7 @@ impl Field<'_> {
         self.unit(site, vectors[site] * (1.0 - SWEEP_STRENGTH) + average)
     }
 
-    /// The sum of the neighbors' vectors with their weights, each turned toward that of the site.
+    /// Weighted sum of the neighbors' vectors, each rotated to the equivalent direction nearest to the site's vector.
     #[inline]
     fn average(&self, site: usize, vectors: &[DVec3]) -> DVec3 {
         let mut sum = DVec3::ZERO;
@@ -179,7 +184,7 @@ impl Field<'_> {
         sum
     }
 
-    /// The sum of vectors with weights, each turned toward the one with the most weight.
+    /// Weighted sum of vectors, each rotated to the equivalent direction nearest to the vector of the largest weight.
     fn sum(&self, near: impl Iterator<Item = (usize, f64)> + Clone, vectors: &[DVec3]) -> DVec3 {
         let (mut leader, mut most) = (DVec3::ZERO, 0.0);
         for (other, weight) in near.clone() {
@@ -197,7 +202,7 @@ impl Field<'_> {
         sum
     }
 
-    /// The neighbors of a site and their weights.
+    /// Neighbors of a site with their weights.
     #[inline]
     fn near(&self, site: usize) -> impl Iterator<Item = (usize, f64)> + Clone {
         let neighbors = self.links.neighbors(site).iter();
@@ -205,7 +210,7 @@ impl Field<'_> {
         neighbors.map(|other| other.index()).zip(weights)
     }
 
-    /// The unit tangent vector of a sum, or if that cancels the tangent along the axis.
+    /// Unit tangent vector along a sum of vectors; the tangent along the axis if the sum cancels.
     #[inline]
     pub(super) fn unit(&self, site: usize, vector: DVec3) -> DVec3 {
         let normal = self.normals[site];
@@ -214,7 +219,7 @@ impl Field<'_> {
             .unwrap_or_else(|| axis_tangent(self.axis, normal))
     }
 
-    /// Mixes what is known in by its weights; where the weight is 1, the known vector replaces the other.
+    /// Mixes in the known directions by their weights. At a weight of 1 the known direction replaces the vector.
     fn mix(&self, vectors: &mut [DVec3], known: &[Known]) {
         for known in known {
             let vector = vectors[known.site];
@@ -227,7 +232,7 @@ impl Field<'_> {
     }
 }
 
-/// Every vector is the average of its neighbors, projected, but for the fixed ones.
+/// Linear system of the diffusion: every free vector equals the projected average of its neighbors; fixed vectors stay.
 struct Diffusion<'a> {
     field: &'a Field<'a>,
     is_fixed: Vec<bool>,

@@ -1,17 +1,19 @@
-//! How large the texture is from place to place, so that what runs along the field need neither begin nor end.
+//! Conformal scales: local sizes of the texture for which features that run along the field neither begin nor end.
 //!
-//! Where directions spread, rows of features of one size leave room for more, and where they meet, some have to end. Not so
-//! where features grow as directions spread: a direction and a size at every place are the derivative of a conformal map to the
-//! exemplar if the logarithm u of the size grows across the field by as much as that turns. Its derivative along P is minus the
-//! rate at which O turns toward P along O, and that along O is the rate along P.
+//! Where directions diverge, rows of features of constant size leave gaps, and where they converge, some rows must end.
+//! This does not happen if features grow as directions diverge. The direction and the size at every position are the
+//! derivative of a conformal map to the exemplar if the logarithm u of the size grows across the field at the rate at
+//! which the field rotates. The derivative of u along P is minus the rate at which O rotates toward P along O. The
+//! derivative of u along O is the rate at which O rotates toward P along P.
 //!
-//! Most fields ask for no such size everywhere. This one comes nearest: of all u it has the least sum
-//! `Σ w_ij (u_j - u_i - g_ij)²` over the edges of the coarsest level, where `g_ij` is what its ends ask for on the average.
-//! Around a singularity it falls or rises without end. So in each connected part all of u is moved until as many sites as can be
-//! lie within the bounds, and ends there.
+//! For most fields no size satisfies this everywhere, so a least-squares solution is computed. It minimizes
+//! `Σ w_ij (u_j - u_i - g_ij)²` over the edges of the coarsest level, where `g_ij` is the mean of the differences that
+//! the two ends ask for. Near a singularity u is unbounded. In each connected component a constant is therefore added
+//! to u that brings as many sites as possible within the bounds, and u is clamped to them.
 //!
-//! Reference: our own, after the correction of curl of Nicolas Ray, Wan Chiu Li, Bruno Lévy, Alla Sheffer, Pierre Alliez,
-//! "Periodic Global Parameterization", ACM Transactions on Graphics 25 (4), 2006, <https://doi.org/10.1145/1183287.1183297>.
+//! Reference: our own, after the correction of curl of Nicolas Ray, Wan Chiu Li, Bruno Lévy, Alla Sheffer, Pierre
+//! Alliez, "Periodic Global Parameterization", ACM Transactions on Graphics 25 (4), 2006,
+//! <https://doi.org/10.1145/1183287.1183297>.
 
 use super::Orientation;
 use crate::links::{Links, components};
@@ -20,14 +22,14 @@ use crate::solve::{System, conjugate_gradients};
 use crate::{Hierarchy, SiteIdx, SynthError, columns};
 use glam::DVec3;
 
-/// The most steps, which bounds the time that a large coarsest level takes.
+/// Maximum number of solver steps; bounds the time for a large coarsest level.
 const STEPS_MAX: usize = 500;
 
-/// Averaging once more would change no size by more than this part of it.
+/// Tolerance of the solver, relative to the size: it ends when averaging once more would change no size by more.
 const TOLERANCE: f64 = 1e-3;
 
 impl Orientation {
-    /// A size for every site within bounds, the lower one first, both above 0.
+    /// Computes a scale for every site within `bounds`: lower and upper bound, both above 0.
     pub(crate) fn conformal_scales(
         &self,
         hierarchy: &Hierarchy,
@@ -51,7 +53,7 @@ impl Orientation {
         Ok(logs.into_iter().map(size).collect())
     }
 
-    /// The logarithm of the conformal factor at the sites of a level; in each connected component plus some constant.
+    /// Logarithm of the conformal factor at the sites of a level, up to a constant in each connected component.
     fn growth(&self, hierarchy: &Hierarchy, level: usize) -> Vec<f64> {
         let system = Growth::new(hierarchy, self, level);
         let mut logs = vec![0.0; system.links.len()];
@@ -60,7 +62,7 @@ impl Orientation {
     }
 }
 
-/// What is to be added to the values of each component, so that as many as can be lie within bounds.
+/// Offset to add to the values of each component, so that as many values as possible lie within the bounds.
 fn shifts(components: &[u32], values: &[f64], [least, most]: [f64; 2]) -> Vec<f64> {
     let n_components = components.iter().max().map_or(0, |&last| last as usize + 1);
     let mut of_components = vec![Vec::new(); n_components];
@@ -69,7 +71,7 @@ fn shifts(components: &[u32], values: &[f64], [least, most]: [f64; 2]) -> Vec<f6
     }
     let shift = |mut values: Vec<f64>| {
         values.sort_unstable_by(f64::total_cmp);
-        // Of the runs of sorted values that fit within the bounds, the longest.
+        // Find the longest run of sorted values that fits within the bounds, and center it.
         let (mut longest, mut middle, mut end) = (0, 0.0, 0);
         for (start, &first) in values.iter().enumerate() {
             while end < values.len() && values[end] - first <= most - least {
@@ -84,10 +86,10 @@ fn shifts(components: &[u32], values: &[f64], [least, most]: [f64; 2]) -> Vec<f6
     of_components.into_iter().map(shift).collect()
 }
 
-/// Every value is the average of what its neighbors ask for.
+/// Linear system of the least-squares problem: every value is the weighted average of the values its neighbors ask for.
 struct Growth<'a> {
     links: Links<'a>,
-    /// For each link how much larger the value at its far end is to be.
+    /// For each link, the wanted difference of the value at the far end from the value at the near end.
     steps: Vec<f64>,
 }
 

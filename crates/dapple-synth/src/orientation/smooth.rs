@@ -1,17 +1,19 @@
-//! The smoothest field of a symmetry on the coarsest level.
+//! Smoothest field of a symmetry on the coarsest level: a globally optimal direction field.
 //!
-//! Source: Felix Knöppel, Keenan Crane, Ulrich Pinkall, Peter Schröder, "Globally Optimal Direction Fields", SIGGRAPH 2013,
-//! <https://doi.org/10.1145/2461912.2462005>.
+//! Reference: Felix Knöppel, Keenan Crane, Ulrich Pinkall, Peter Schröder, "Globally Optimal Direction Fields",
+//! SIGGRAPH 2013, <https://doi.org/10.1145/2461912.2462005>.
 //!
-//! Directions that are n-ths of a turn from each other have the same n-th power as complex numbers in a frame of their
-//! tangent plane. The field whose powers change least from site to site, without being zero everywhere, is the lowest
-//! eigenvector of the connection Laplacian A: `(A u)_i = Σ_j w_ij (u_i - r_ij u_j)`, where `r_ij` is the n-th power of the turn
-//! that the frame of j has after it is carried to i the shortest way. The paper has it on the vertices of a triangulation,
-//! here the edges of the graph of sites are used, with inverse lengths for weights. It is found by inverse iteration, in
-//! each connected component on its own, and turned as a whole to lie along the axis as well as it can.
+//! Directions that differ by n-ths of a turn have the same n-th power as complex numbers in a frame of their tangent
+//! plane. The field whose powers change least from site to site, without being zero everywhere, is the lowest
+//! eigenvector of the connection Laplacian A: `(A u)_i = Σ_j w_ij (u_i - r_ij u_j)`. Here `r_ij` is the n-th power of
+//! the rotation from the frame of i to the frame of j, after the latter is transported to i by the smallest rotation
+//! between the normals. The paper works on the vertices of a triangulation. This module uses the edges of the graph of
+//! sites, weighted by inverse lengths. The eigenvector is found by inverse iteration, separately in each connected
+//! component, and rotated as a whole to fit the axis best.
 //!
-//! Given directions are held fixed: the paper's shifted system `(A - λ) u = 0`, with λ a little below the lowest eigenvalue,
-//! has the smoothest field with these values, which for one direction is nearly the eigenvector turned to it.
+//! Given directions are held fixed. The smoothest field with these values solves the paper's shifted system
+//! `(A - λ) u = 0`, with λ a little below the lowest eigenvalue. For one direction the solution is nearly the
+//! eigenvector, rotated to that direction.
 
 use super::pull::Known;
 use super::push::Field;
@@ -21,25 +23,28 @@ use crate::solve::{System, conjugate_gradients};
 use dapple_hash::{Seed, hash1, unit_f32};
 use glam::{DVec2, DVec3};
 
-/// The most inverse iterations, each of which brings the field nearer to the smoothest by the ratio of the lowest two
-/// eigenvalues, ...
+/// Maximum number of inverse iterations. Each reduces the error by the ratio of the two lowest eigenvalues.
 const ITERATIONS: usize = 12;
-/// ... and the most steps to solve one, or for the field with directions.
+/// Maximum number of solver steps in one inverse iteration.
 const STEPS_MAX: usize = 200;
+/// Maximum number of solver steps for a field with fixed directions.
 const STEPS_MAX_FIXED: usize = 500;
-/// A system is solved when averaging once more would change no number by more than this, where numbers are about 1.
+/// Tolerance of the solver: it ends when averaging once more would change no power by more. Powers are about 1.
 const TOLERANCE: f64 = 1e-7;
-/// The iteration ends when no eigenvalue falls by more than this part of it.
+/// Relative tolerance of the eigenvalues: the iteration ends when none falls by more.
 const EIGENVALUE_TOLERANCE: f64 = 1e-3;
-/// The part of a mean diagonal that is added to all of it, so that a field that is constant can be solved for.
+/// Shift of the diagonal, as a fraction of its mean. It makes the system regular where a constant field has eigenvalue
+/// 0.
 const SHIFT: f64 = 1e-6;
-/// The part of the lowest eigenvalue that is taken away with directions: at all of it one direction would leave nothing to
-/// solve.
+/// λ of the system with fixed directions, as a fraction of the lowest eigenvalue. At 1 the system would be nearly
+/// singular with a single direction.
 const TOWARD_EIGENVALUE: f64 = 0.9;
-/// How much of the first field is random, beside the axis: the smoothest one may have nothing in common with that.
+/// Amplitude of the noise in the initial field, relative to its part along the axis. Without noise, the initial field
+/// could be orthogonal to the smoothest one.
 const NOISE: f64 = 0.5;
 
-/// Unit tangent vectors at all sites of a level in these components; which of its turns each one is, is left to chance.
+/// Smoothest field of a level: unit tangent vectors at all sites. Each is an arbitrary one of the equivalent
+/// directions.
 pub(super) fn smoothest(field: &Field<'_>, components: &[u32], known: &[Known]) -> Vec<DVec3> {
     let mut smooth = Smooth::new(field, components);
     let (mut powers, eigenvalues) = smooth.lowest();
@@ -58,15 +63,16 @@ pub(super) fn smoothest(field: &Field<'_>, components: &[u32], known: &[Known]) 
     })
 }
 
-/// The connection Laplacian of a level with something on its diagonal, and right sides.
+/// Linear system of a level: connection Laplacian with a shifted diagonal, and the right-hand side.
 pub(super) struct Smooth<'a> {
     field: &'a Field<'a>,
     components: &'a [u32],
-    /// Two directions at each site: the tangent along the axis, and the one across it.
+    /// Frame of each site: the tangent along the axis, and the tangent perpendicular to it.
     frames: Vec<[DVec3; 2]>,
-    /// For each link the power of how the frame of its far end lies in that of the near one.
+    /// For each link, the n-th power of the rotation from the frame of the near end to the transported frame of the far
+    /// end.
     carried: Vec<DVec2>,
-    /// The numbers added to the diagonal, one for each site.
+    /// Shift of the diagonal at each site.
     shifts: Vec<f64>,
     right: Vec<DVec2>,
     is_fixed: Vec<bool>,
@@ -102,11 +108,12 @@ impl<'a> Smooth<'a> {
         }
     }
 
-    /// The lowest eigenvector in every component, of numbers of about 1, and the eigenvalues.
+    /// Lowest eigenvector of every component, scaled to a mean square of 1, and the eigenvalues.
     pub(super) fn lowest(&mut self) -> (Vec<DVec2>, Vec<f64>) {
         let n_sites = self.frames.len();
         let mut powers: Vec<DVec2> = (0..n_sites as i64).map(first).collect();
         let mut eigenvalues = self.normalize(&mut powers);
+        // Inverse iteration: solve A x = λ u, which keeps x at about the length of u.
         for _ in 0..ITERATIONS {
             for (site, right) in self.right.iter_mut().enumerate() {
                 *right = powers[site] * eigenvalues[self.components[site] as usize];
@@ -124,7 +131,7 @@ impl<'a> Smooth<'a> {
         (powers, eigenvalues)
     }
 
-    /// Scales the numbers of every component to a mean square of 1, and gives the Rayleigh quotients.
+    /// Scales the powers of every component to a mean square of 1. Returns the Rayleigh quotients.
     fn normalize(&self, powers: &mut [DVec2]) -> Vec<f64> {
         let images = columns::column(powers.len(), |site| {
             self.row(powers, site).dot(powers[site])
@@ -143,7 +150,7 @@ impl<'a> Smooth<'a> {
         energies.iter().zip(&squares).map(ratio).collect()
     }
 
-    /// Turns the field of every component as a whole to what is known there, or to the axis.
+    /// Rotates the field of every component as a whole to fit its known directions, or the axis if it has none.
     fn turn_to(&self, powers: &mut [DVec2], known: &[(usize, DVec2)]) {
         let n_components = self.by_component(|_| 0.0).len();
         let (mut of_known, mut of_axis) = (
@@ -166,7 +173,7 @@ impl<'a> Smooth<'a> {
         }
     }
 
-    /// Solves for the smoothest field that has the known values, in the components that have some.
+    /// Solves for the smoothest field with the known values, in the components that have known values.
     fn hold(&mut self, powers: &mut [DVec2], known: &[(usize, DVec2)], eigenvalues: &[f64]) {
         let mut is_known = vec![false; eigenvalues.len()];
         for &(site, power) in known {
@@ -183,7 +190,7 @@ impl<'a> Smooth<'a> {
         conjugate_gradients(self, powers, STEPS_MAX_FIXED);
     }
 
-    /// The power of a known direction.
+    /// The n-th power of a known direction in the frame of its site.
     fn power(&self, known: &Known) -> DVec2 {
         let [x, y] = self.frames[known.site].map(|axis| axis.dot(known.vector));
         self.field
@@ -191,7 +198,7 @@ impl<'a> Smooth<'a> {
             .power(DVec2::new(x, y).normalize_or(DVec2::X))
     }
 
-    /// The sum over the sites of each component.
+    /// Sums a value over the sites of each component.
     fn by_component(&self, value: impl Fn(usize) -> f64) -> Vec<f64> {
         let mut sums = Vec::new();
         for (site, &component) in self.components.iter().enumerate() {
@@ -242,7 +249,7 @@ impl System<DVec2> for Smooth<'_> {
     }
 }
 
-/// The first number of a site: that of the axis, and some noise.
+/// Initial power of a site: the power of the axis plus noise.
 fn first(site: i64) -> DVec2 {
     let part = |index| {
         f64::from(unit_f32(

@@ -1,6 +1,6 @@
-//! How many directions at a place are one: the symmetry of a field, and which of its turns is nearest to a direction.
+//! Rotational symmetry of an orientation field: the equivalent directions at a site, and the one nearest to a vector.
 //!
-//! A quarter turn takes down to right, and right to up; two of them take a direction to its opposite.
+//! A quarter turn rotates down to right, and right to up. Two quarter turns reverse a direction.
 
 use core::ops::Neg;
 use glam::{DVec2, DVec3};
@@ -20,7 +20,7 @@ dapple_raster::named! {
 }
 
 impl Symmetry {
-    /// The numbers of quarter turns that directions of the field are off by.
+    /// Rotations between equivalent directions, in quarter turns.
     pub(crate) fn quarters(self) -> &'static [u8] {
         match self {
             Self::One => &[0],
@@ -29,7 +29,8 @@ impl Symmetry {
         }
     }
 
-    /// How many quarter turns take a direction in the plane of a normal nearest to another direction; of several the least.
+    /// Number of quarter turns, allowed by the symmetry, that rotate a direction about a normal nearest to another
+    /// direction.
     #[inline]
     pub(crate) fn quarters_toward(self, direction: DVec3, normal: DVec3, other: DVec3) -> u8 {
         if self == Self::One {
@@ -39,7 +40,8 @@ impl Symmetry {
         self.quarters_to(DVec2::new(direction.dot(other), right.dot(other)))
     }
 
-    /// How many quarter turns take (1, 0) nearest to a vector, toward (0, 1) first.
+    /// Number of quarter turns, allowed by the symmetry, that rotate (1, 0) nearest to a vector. One quarter turn gives
+    /// (0, 1). Ties go to 0, then to 2.
     #[inline]
     pub(crate) fn quarters_to(self, DVec2 { x, y }: DVec2) -> u8 {
         match self {
@@ -50,7 +52,7 @@ impl Symmetry {
         }
     }
 
-    /// The turn of a direction in the plane of a normal that is nearest to another direction.
+    /// Among the directions equivalent to a direction in the plane of a normal, the one nearest to another direction.
     #[inline]
     pub(crate) fn nearest(self, direction: DVec3, normal: DVec3, other: DVec3) -> DVec3 {
         turned(
@@ -60,7 +62,8 @@ impl Symmetry {
         )
     }
 
-    /// The power of a unit complex number at which all turns are one.
+    /// The n-th power of a unit complex number, where n is the number of equivalent directions. They all have the same
+    /// power.
     pub(crate) fn power(self, number: DVec2) -> DVec2 {
         match self {
             Self::One => number,
@@ -69,7 +72,7 @@ impl Symmetry {
         }
     }
 
-    /// A unit complex number whose [`power`](Self::power) has the direction of a number; none of zero.
+    /// A unit complex number whose [`power`](Self::power) has the direction of `power`. `None` for zero.
     pub(crate) fn root(self, power: DVec2) -> Option<DVec2> {
         let unit = power.try_normalize()?;
         Some(match self {
@@ -80,9 +83,9 @@ impl Symmetry {
     }
 }
 
-/// The square root of a unit complex number with a real part of at least zero.
+/// Square root of a unit complex number, with a nonnegative real part.
 fn square_root(unit: DVec2) -> DVec2 {
-    // Of the two halves of an angle the one without cancellation, and the other from it.
+    // Half-angle formulas: compute the larger of cosine and sine, which has no cancellation, and derive the other.
     let [cos, sin] = [1.0 + unit.x, 1.0 - unit.x].map(|double| (0.5 * double.max(0.0)).sqrt());
     if cos >= sin {
         DVec2::new(cos, 0.5 * unit.y / cos)
@@ -91,7 +94,7 @@ fn square_root(unit: DVec2) -> DVec2 {
     }
 }
 
-/// A direction in the plane of a normal after some quarter turns.
+/// Rotates a direction in the plane of a normal by a number of quarter turns.
 #[inline]
 pub(crate) fn turned(direction: DVec3, normal: DVec3, quarters: u8) -> DVec3 {
     match quarters {
@@ -102,23 +105,24 @@ pub(crate) fn turned(direction: DVec3, normal: DVec3, quarters: u8) -> DVec3 {
     }
 }
 
-/// Where a sample of a square at an offset, to the right and down, lies in the square before these quarter turns.
+/// Offset, to the right and down, that a sample of a rotated square has in the square before the rotation by
+/// `quarters`.
 #[inline]
 pub(crate) fn offset_before<T: Copy + Neg<Output = T>>([i, j]: [T; 2], quarters: u8) -> [T; 2] {
     match quarters {
         0 => [i, j],
-        // Right became up, and down became right.
+        // Right was rotated to up, and down to right.
         1 => [j, -i],
         2 => [-i, -j],
         _ => [-j, i],
     }
 }
 
-/// Where a sample of a square at an offset, to the right and down, lies in the square after these quarter turns: the inverse
-/// of [`offset_before`].
+/// Offset, to the right and down, that a sample of a square has after the rotation by `quarters`. Inverse of
+/// [`offset_before`].
 #[inline]
 pub(crate) fn offset_after<T: Copy + Neg<Output = T>>(offset: [T; 2], quarters: u8) -> [T; 2] {
-    // As many quarter turns the other way.
+    // Rotate by the same angle in the opposite direction.
     offset_before(offset, (4 - quarters) % 4)
 }
 

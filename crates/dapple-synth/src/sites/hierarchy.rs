@@ -246,8 +246,8 @@ impl Level {
         self.n_sites
     }
 
-    /// The paper's r, in units of the mesh: spacing of a hexagonal lattice with as many sites, `sqrt(2 A / (sqrt(3)
-    /// n))`.
+    /// The paper's r, in units of the mesh: spacing of a hexagonal lattice with as many sites,
+    /// `sqrt(2 A / (sqrt(3) n))`.
     #[must_use]
     pub fn spacing(&self) -> f64 {
         self.spacing
