@@ -1,19 +1,22 @@
-//! Cells of a cubic grid, and which of them are near each other: what is needed to read many balls of one radius.
+//! Cells of a cubic grid with precomputed lists of nearby cells, for reading many balls of one radius.
 
 use core::ops::Range;
 use glam::DVec3;
 
-/// The cells that hold some sites, in the order of x, then y, then z.
+/// Cells that contain sites, sorted by x, then y, then z.
 #[derive(Clone, Debug)]
 pub(crate) struct Cells {
+    /// Cell of each site.
     of_site: Vec<u32>,
-    /// Where the ranges of each cell begin in `near`.
+    /// Start of the ranges of each cell in `near`, and the end.
     offsets: Vec<u32>,
+    /// Ranges of nearby cells, concatenated over the cells.
     near: Vec<Range<u32>>,
 }
 
 impl Cells {
-    /// The cells of some positions. Two cells are near if positions in them may be nearer than `reach`.
+    /// Sorts positions into cells of the given side. Two cells are near if positions in them can be nearer than
+    /// `reach`.
     pub(crate) fn new(positions: &[DVec3], side: f64, reach: f64) -> Self {
         let low = positions.iter().copied().fold(DVec3::INFINITY, DVec3::min);
         let cell_of = |position: &DVec3| {
@@ -22,6 +25,7 @@ impl Cells {
                 .map(|part| part.min(f64::from(i32::MAX / 2)) as i32)
         };
         let mut keyed: Vec<([i32; 3], u32)> = positions.iter().map(cell_of).zip(0..).collect();
+        // Sort the sites by cell, and number the distinct cells.
         keyed.sort_unstable();
         let mut cells: Vec<[i32; 3]> = Vec::new();
         let mut of_site = vec![0; positions.len()];
@@ -31,6 +35,7 @@ impl Cells {
             }
             of_site[site as usize] = cells.len() as u32 - 1;
         }
+        // List the cells near each cell.
         let (mut offsets, mut near) = (vec![0], Vec::new());
         for cell in &cells {
             add_near(&cells, *cell, reach / side, &mut near);
@@ -43,25 +48,25 @@ impl Cells {
         }
     }
 
-    /// The number of cells.
+    /// Number of cells.
     pub(crate) fn n_cells(&self) -> usize {
         self.offsets.len() - 1
     }
 
-    /// The cell of a site.
+    /// Cell of a site.
     #[inline]
     pub(crate) fn of_site(&self, site: u32) -> usize {
         self.of_site[site as usize] as usize
     }
 
-    /// The cells near a cell, itself among them, as ranges of their numbers.
+    /// Cells near a cell, including itself, as ranges of cell indices.
     #[inline]
     pub(crate) fn near(&self, cell: usize) -> &[Range<u32>] {
         &self.near[self.offsets[cell] as usize..self.offsets[cell + 1] as usize]
     }
 }
 
-/// Adds the ranges of the cells that are nearer than `reach` sides of a cell.
+/// Appends the ranges of the cells that are nearer than `reach` to a cell, in units of the side of a cell.
 fn add_near(cells: &[[i32; 3]], [x, y, z]: [i32; 3], reach: f64, near: &mut Vec<Range<u32>>) {
     let number = |cell: [i32; 3]| cells.partition_point(|other| *other < cell) as u32;
     let gap_sq = |step: i32| {
@@ -76,7 +81,7 @@ fn add_near(cells: &[[i32; 3]], [x, y, z]: [i32; 3], reach: f64, near: &mut Vec<
             if rest <= 0.0 {
                 continue;
             }
-            // Cells along z follow each other; the gap is one less than the number of steps.
+            // Cells along z are consecutive; the gap to a cell is one side less than the number of steps.
             let steps = rest.sqrt().ceil() as i32;
             let [from, until] = [z - steps, z + steps + 1].map(|z| number([x + dx, y + dy, z]));
             match near[first..].last_mut() {

@@ -1,22 +1,21 @@
-//! Columns computed row by row, on all cores where the feature `rayon` is on; the bits do not depend on the cores.
+//! Columns computed row by row, on all cores with the feature `rayon`. The bits do not depend on the number of cores.
 
 use dapple_raster::parallel;
 
-/// Rows that one task takes at least: less would not pay for handing it over. Also the length of the blocks in which
-/// [`sum`] adds.
+/// Minimum number of rows per task; smaller tasks would not pay for their overhead. Also the block length of [`sum`].
 const BLOCK: usize = 1024;
 
-/// The column whose rows are those of `row`.
+/// Computes a column with the value `row(i)` in row i.
 pub(crate) fn column<T: Send>(n_rows: usize, row: impl Fn(usize) -> T + Sync) -> Vec<T> {
     parallel::map_at_least(BLOCK, n_rows, row)
 }
 
-/// Changes every row of a column, given its number.
+/// Applies `change` to every row of a column, with the index of the row.
 pub(crate) fn update<T: Send>(column: &mut [T], change: impl Fn(usize, &mut T) + Sync) {
     parallel::for_each_mut_at_least(BLOCK, column, change);
 }
 
-/// Changes every row of a column, given its number, and gathers what `change` returns.
+/// Applies `change` to every row of a column, with the index of the row, and collects the returned values.
 pub(crate) fn map<T: Send, U: Send>(
     column: &mut [T],
     change: impl Fn(usize, &mut T) -> U + Sync,
@@ -24,7 +23,7 @@ pub(crate) fn map<T: Send, U: Send>(
     parallel::map_mut_at_least(BLOCK, column, change)
 }
 
-/// The sum of a number for every row, added within blocks and then block by block, whatever the number of cores.
+/// Sums a number over all rows: within blocks of fixed length, then over the blocks, on any number of cores.
 pub(crate) fn sum(n_rows: usize, row: impl Fn(usize) -> f64 + Sync) -> f64 {
     let block = |block: usize| {
         let mut sum = 0.0;
@@ -37,7 +36,7 @@ pub(crate) fn sum(n_rows: usize, row: impl Fn(usize) -> f64 + Sync) -> f64 {
     sums.into_iter().sum()
 }
 
-/// Whether something holds for every row.
+/// Whether a predicate holds for every row.
 pub(crate) fn all(n_rows: usize, row: impl Fn(usize) -> bool + Sync) -> bool {
     let holds = parallel::map(n_rows.div_ceil(BLOCK), |block| {
         (block * BLOCK..((block + 1) * BLOCK).min(n_rows)).all(&row)

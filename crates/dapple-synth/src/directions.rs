@@ -1,4 +1,4 @@
-//! Directions as text: lines of numbers (CSV), and JSON behind the feature `json`. No file is touched here.
+//! Directions as text: CSV, and JSON with the feature `json`. This module does not access files.
 
 #[cfg(feature = "json")]
 use crate::SynthErrorKind;
@@ -7,19 +7,19 @@ use crate::{Direction, SynthError, TableRow, parse_table};
 use dapple_raster::text::decode;
 use glam::DVec3;
 
-/// The columns of a table: a position and a vector.
+/// Column names of the CSV: a position and a vector.
 const COLUMNS: [&str; 6] = ["x", "y", "z", "dx", "dy", "dz"];
 
 impl Direction {
-    /// Reads directions from lines `x,y,z,dx,dy,dz`: a position and a vector.
+    /// Parses directions from lines `x,y,z,dx,dy,dz`: a position and a vector.
     ///
-    /// Blank lines and lines that begin with `#` are left out. If no field of the first other line is a number, it is a
-    /// header, whose names may be in another order.
+    /// Blank lines and lines that start with `#` are skipped. If no field of the first remaining line is a number, the
+    /// line is a header, and gives the order of the columns.
     ///
     /// # Errors
     ///
-    /// [`SynthErrorKind::Text`](crate::SynthErrorKind::Text) with the number of the line that is a wrong header or does not
-    /// have six finite numbers.
+    /// Returns [`SynthErrorKind::Text`](crate::SynthErrorKind::Text), with the line number, for a wrong header or a
+    /// line that does not have six finite numbers.
     ///
     /// # Examples
     ///
@@ -41,15 +41,15 @@ impl Direction {
                 vector: DVec3::new(dx, dy, dz),
             })
         };
-        // Every row of a table has the columns of its form.
+        // `parse_table` gives every row six numbers.
         Ok(rows.filter_map(direction).collect())
     }
 
-    /// Reads directions from a JSON array of objects such as `{"at": [0, 1, 2], "vector": [0, 0, -1]}`.
+    /// Parses directions from a JSON array of objects such as `{"at": [0, 1, 2], "vector": [0, 0, -1]}`.
     ///
     /// # Errors
     ///
-    /// [`SynthErrorKind::Text`](crate::SynthErrorKind::Text) with the number of the line that is not as it should be.
+    /// Returns [`SynthErrorKind::Text`](crate::SynthErrorKind::Text) with the number of the invalid line.
     #[cfg(feature = "json")]
     pub fn parse_json(text: &str) -> Result<Vec<Self>, SynthError> {
         let text = decode(text.as_bytes());

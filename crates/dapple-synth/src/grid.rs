@@ -1,16 +1,16 @@
-//! Reading squares of pixels from an image in the plane: of an exemplar, or of a texture that is being made.
+//! Reads squares of pixels from a planar image: an exemplar, or a texture during synthesis.
 //!
-//! Positions are in half pixels, so that the place of a pixel on the next coarser level, half of its coordinates, is a
-//! whole number. Between pixels values are interpolated; between two or four that is their mean.
+//! Positions are in half pixels, so that the position of a pixel on the next coarser level, half of its coordinates, is
+//! an integer. Values between pixels are interpolated; between two or four pixels this is their mean.
 
 use crate::ground::Colors;
 use core::ops::RangeInclusive;
 use dapple_raster::Wrap;
 
-/// The pixels of a side of the largest square that is read, and one more for the places between two pixels.
+/// Side of the largest square that is read, in pixels, plus one for positions between two pixels.
 pub(crate) const MAX_SIDE: usize = 16;
 
-/// Pixels row by row, and what lies past their edges.
+/// Pixels row by row, with the wrap mode past their edges for each axis.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Grid<C> {
     pub(crate) colors: C,
@@ -19,9 +19,10 @@ pub(crate) struct Grid<C> {
 }
 
 impl<C: Colors> Grid<C> {
-    /// Reads the square from `-half` to `half` around a position, `half` at most 7, row by row into `target`.
+    /// Reads the square from `-half` to `half` pixels around a position into `target`, row by row. `half` is at most 7,
+    /// and `halves` is the position in half pixels.
     ///
-    /// Only the given rows are written; those above them keep their place.
+    /// Only the given `rows` are written. Their offset in `target` is the same as if all rows were.
     #[inline]
     pub(crate) fn read(
         &self,
@@ -34,7 +35,7 @@ impl<C: Colors> Grid<C> {
         self.read_at(&places, halves, half, rows, target);
     }
 
-    /// Reads a square like [`read`](Self::read), whose [columns and rows](square) are known.
+    /// Reads a square like [`read`](Self::read), with precomputed [columns and rows](square).
     #[inline]
     pub(crate) fn read_at(
         &self,
@@ -67,17 +68,17 @@ impl<C: Colors> Grid<C> {
     }
 }
 
-/// The column and row on the finer level of one of the four pixels over a pixel, by whether they are odd; the pixel's level has
-/// as many columns as `width`.
+/// Column and row of one of the four finer pixels that a pixel covers. `[i, j]` (0 or 1 each) selects it, and `width`
+/// is the width of the pixel's level.
 #[inline]
 pub(crate) fn over(pixel: u32, width: u32, [i, j]: [i64; 2]) -> [i64; 2] {
     let [column, row] = [pixel % width, pixel / width].map(i64::from);
     [2 * column + i, 2 * row + j]
 }
 
-/// The columns and the rows of the pixels of a square, and one more of each for places between two pixels.
+/// Columns and rows of the pixels of a square, plus one more of each for positions between two pixels.
 ///
-/// The pixel of a place between two or four is the left and upper one.
+/// A position between two or four pixels belongs to the left and upper one.
 pub(crate) fn square(
     halves: [i64; 2],
     half: i32,
@@ -90,7 +91,7 @@ pub(crate) fn square(
         let first = halves[axis].div_euclid(2) - i64::from(half);
         for (place, at) in places[axis][..used].iter_mut().zip(first..) {
             let within = (0..i64::from(size[axis])).contains(&at);
-            // The remainder of a division costs more than all else here.
+            // Avoid the remainder of a division, which would dominate the cost, where the index is in bounds.
             *place = if within {
                 at as usize
             } else {

@@ -1,8 +1,9 @@
-//! Samples of the coarser level that the next pass needs again: the middle of the squares of the pass before.
+//! Cache of coarser-level samples between two passes: the central part of each site's square, which the next pass reads
+//! again.
 
 use crate::ground::{Samples, Square};
 
-/// The squares that a pass keeps: for every site one, `side` samples wide.
+/// Cached squares of a pass: one per site, `side` samples wide.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Kept {
     side: usize,
@@ -11,7 +12,7 @@ pub(crate) struct Kept {
     nearest: Vec<u32>,
 }
 
-/// The square of one site.
+/// Mutable cached square of one site.
 #[derive(Debug)]
 pub(crate) struct KeptSite<'a> {
     side: usize,
@@ -20,7 +21,7 @@ pub(crate) struct KeptSite<'a> {
 }
 
 impl Kept {
-    /// Room for the squares of all sites; none for a side of 0.
+    /// Allocates the squares of all sites. A side of 0 allocates nothing.
     pub(crate) fn new(n_sites: usize, side: usize, n_channels: usize) -> Self {
         let n_samples = n_sites * side * side;
         Self {
@@ -31,7 +32,7 @@ impl Kept {
         }
     }
 
-    /// The room of each site; nothing if nothing is kept.
+    /// Iterates over the squares of all sites; empty if the side is 0.
     pub(crate) fn sites(&mut self) -> impl Iterator<Item = KeptSite<'_>> {
         let side = self.side;
         let n_samples = (side * side).max(1);
@@ -46,7 +47,7 @@ impl Kept {
         })
     }
 
-    /// Puts what was kept of a site's square into samples; whether it was all of it.
+    /// Copies the cached square of a site into `samples` if it has the size of `square`. Returns whether it did.
     pub(crate) fn paste(&self, site: u32, square: &Square, samples: &mut Samples) -> bool {
         let n = self.side * self.side;
         if self.side != square.side() {
@@ -64,7 +65,7 @@ impl Kept {
 }
 
 impl KeptSite<'_> {
-    /// Keeps the middle of a square `from` samples wide.
+    /// Stores the central part of a square of samples that is `from` samples wide.
     pub(crate) fn copy(&mut self, samples: &Samples, from: usize) {
         let side = self.side;
         let n_channels = self.values.len() / self.nearest.len();

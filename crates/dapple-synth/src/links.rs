@@ -1,27 +1,27 @@
-//! The edges of a level with their weights: what equations 4 and 5 of the paper average over.
+//! Weighted edges of a level, over which equations 4 and 5 of the paper average.
 //!
-//! A weight is the inverse length of the edge (section 3.2). It is kept as it is, not divided by the sum of its site,
-//! so that the weights are symmetric and the averages are the fixed points of a symmetric system, which
+//! The weight of an edge is its inverse length (section 3.2). It is not divided by the sum of weights of the site, so
+//! the weights are symmetric. The averages are then the fixed points of a symmetric system, which
 //! [`conjugate_gradients`](crate::solve::conjugate_gradients) solves.
 
 use crate::{Hierarchy, SiteGraph, SiteIdx, columns};
 
-/// Edges shorter than this part of the spacing weigh as if they were so long, so that no site outvotes all others.
+/// Minimum edge length for weights, in spacings. Shorter edges are clamped, so that no neighbor outweighs all others.
 pub(crate) const LEAST_LENGTH: f64 = 1e-3;
 
-/// The graph of a level with a weight for every edge, seen from either end.
+/// Graph of a level with a weight for every edge, stored for both ends.
 #[derive(Debug)]
 pub(crate) struct Links<'a> {
     graph: &'a SiteGraph,
-    /// Where the weights of a site begin.
+    /// Start of each site's weights, and the end.
     offsets: Vec<u32>,
     weights: Vec<f64>,
-    /// For each site the sum of its weights.
+    /// Sum of the weights of each site.
     sums: Vec<f64>,
 }
 
 impl<'a> Links<'a> {
-    /// The links of a level.
+    /// Links of a level, weighted by inverse length.
     pub(crate) fn new(hierarchy: &'a Hierarchy, level: usize) -> Self {
         let level = &hierarchy.levels()[level];
         let graph = level.graph();
@@ -46,7 +46,7 @@ impl<'a> Links<'a> {
         links
     }
 
-    /// Changes the weights of every site, given its neighbors, and gathers what `change` returns for each.
+    /// Applies `change` to the weights of every site, with its neighbors, and collects the returned values.
     ///
     /// The weights must stay symmetric.
     pub(crate) fn reweigh<T: Send>(
@@ -55,6 +55,7 @@ impl<'a> Links<'a> {
     ) -> Vec<T> {
         let n_sites = self.len();
         let mut rows: Vec<&mut [f64]> = Vec::with_capacity(n_sites);
+        // Split the weights into one mutable row per site.
         let mut rest = self.weights.as_mut_slice();
         for ends in self.offsets.windows(2) {
             let (row, after) = rest.split_at_mut((ends[1] - ends[0]) as usize);
@@ -69,38 +70,39 @@ impl<'a> Links<'a> {
         found
     }
 
-    /// The number of sites.
+    /// Number of sites.
     #[inline]
     pub(crate) fn len(&self) -> usize {
         self.offsets.len() - 1
     }
 
-    /// The neighbors of a site.
+    /// Neighbors of a site.
     #[inline]
     pub(crate) fn neighbors(&self, site: usize) -> &[SiteIdx] {
         self.graph.neighbors(SiteIdx(site as u32))
     }
 
-    /// The weights of the edges to the neighbors of a site, in the same order.
+    /// Weights of the edges to the neighbors of a site, in the order of [`neighbors`](Self::neighbors).
     #[inline]
     pub(crate) fn weights(&self, site: usize) -> &[f64] {
         &self.weights[self.row(site)]
     }
 
-    /// Where the links of a site are among those of all sites.
+    /// Range of a site's links in the concatenated links of all sites.
     #[inline]
     pub(crate) fn row(&self, site: usize) -> core::ops::Range<usize> {
         self.offsets[site] as usize..self.offsets[site + 1] as usize
     }
 
-    /// The sums of the weights of the sites; 0 for a site without neighbors.
+    /// Sum of the weights of each site; 0 for a site without neighbors.
     #[inline]
     pub(crate) fn sums(&self) -> &[f64] {
         &self.sums
     }
 
-    /// Assigns values ring by ring, from the sites that have one on: those of a ring get what `opinion` makes of the
-    /// sites that were assigned before. Links without a weight are none. What is not connected to an assigned site stays as it is.
+    /// Assigns values breadth first, in rings around the assigned sites. `opinion` computes the value of a site from
+    /// the sites assigned in earlier rings. Links of weight 0 are ignored. Sites not connected to an assigned site stay
+    /// unchanged.
     pub(crate) fn fill<T: Copy>(
         &self,
         assigned: &mut [bool],
@@ -136,7 +138,7 @@ impl<'a> Links<'a> {
 }
 
 impl Links<'_> {
-    /// The neighbors of a site that are linked with a weight.
+    /// Neighbors of a site whose link has a positive weight.
     fn linked(&self, site: usize) -> impl Iterator<Item = usize> {
         let linked = self.neighbors(site).iter().zip(self.weights(site));
         let linked = linked.filter(|&(_, &weight)| weight > 0.0);
@@ -144,7 +146,7 @@ impl Links<'_> {
     }
 }
 
-/// For each site of a graph the number of its component; components are numbered in the order of their lowest sites.
+/// Connected component of each site of a graph. Components are numbered in the order of their lowest sites.
 pub(crate) fn components(graph: &SiteGraph) -> Vec<u32> {
     const NONE: u32 = u32::MAX;
     let mut components = vec![NONE; graph.len()];

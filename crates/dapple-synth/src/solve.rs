@@ -1,16 +1,17 @@
-//! Solving the averages of equations 4 and 5: conjugate gradients, as repeating the equations alone takes as many
-//! sweeps as the square of the number of edges across the surface.
+//! Conjugate gradients for the fixed points of the averages in equations 4 and 5. Repeating the equations instead takes
+//! as many sweeps as the square of the number of edges across the surface.
 //!
-//! Source: M. R. Hestenes, E. Stiefel, "Methods of Conjugate Gradients for Solving Linear Systems", Journal of Research
-//! of the National Bureau of Standards 49 (6), 1952, <https://doi.org/10.6028/jres.049.044>; with the diagonal as the
-//! preconditioner. Sums are added in a fixed order, so the bits do not depend on the cores.
+//! Reference: M. R. Hestenes, E. Stiefel, "Methods of Conjugate Gradients for Solving Linear Systems", Journal of
+//! Research of the National Bureau of Standards 49 (6), 1952, <https://doi.org/10.6028/jres.049.044>. The
+//! preconditioner is the diagonal (Jacobi). Sums are added in a fixed order, so the bits do not depend on the number of
+//! cores.
 
 use crate::{Blend, columns};
 use glam::{DVec2, DVec3};
 
-/// A value of a column that is solved for.
+/// Value type of the unknowns.
 pub(crate) trait Unknown: Blend + Send + Sync {
-    /// The product that sums to the length squared of a column.
+    /// Dot product of two values.
     fn dot(self, other: Self) -> f64;
 }
 
@@ -35,22 +36,22 @@ impl Unknown for DVec3 {
     }
 }
 
-/// A symmetric system A x = b without negative eigenvalues, by its rows.
+/// A symmetric positive semidefinite system A x = b, by rows.
 pub(crate) trait System<T>: Sync {
-    /// A row of A x.
+    /// Row `row` of A x, for x in `column`.
     fn row(&self, column: &[T], row: usize) -> T;
 
-    /// The right side b of a row.
+    /// Right-hand side b of a row.
     fn right(&self, row: usize) -> T;
 
-    /// The element of a row on the diagonal of A; 0 where the row is nothing but zeros.
+    /// Diagonal element of a row of A; 0 if the whole row is zero.
     fn diagonal(&self, row: usize) -> f64;
 
-    /// Whether a value is near enough if averaging once more would change it by `change`.
+    /// Whether a value has converged, if averaging once more would change it by `change`.
     fn is_near(&self, value: T, change: T) -> bool;
 }
 
-/// Improves x until every row is near enough or `n_most` steps are done, and says how many it took.
+/// Improves x until every row has converged, or for at most `n_most` steps. Returns the number of steps.
 pub(crate) fn conjugate_gradients<T: Unknown>(
     system: &impl System<T>,
     x: &mut [T],
@@ -61,6 +62,7 @@ pub(crate) fn conjugate_gradients<T: Unknown>(
         system.right(row).add_scaled(system.row(x, row), -1.0)
     });
     let change = |residual: &[T], row: usize| {
+        // Preconditioned residual: the change by one more averaging step.
         let diagonal = system.diagonal(row);
         if diagonal > 0.0 {
             T::ZERO.add_scaled(residual[row], 1.0 / diagonal)
@@ -76,11 +78,12 @@ pub(crate) fn conjugate_gradients<T: Unknown>(
         }
         let image: Vec<T> = columns::column(n_rows, |row| system.row(&direction, row));
         let curvature = columns::sum(n_rows, |row| direction[row].dot(image[row]));
-        // Rounding can leave a direction that the system does not see; NaN ends here too.
+        // By rounding, the direction can lie in the null space of A. This also stops at NaN.
         if !(curvature > 0.0 && energy > 0.0) {
             return step;
         }
         let length = energy / curvature;
+        // Step along the direction, and update the residual.
         columns::update(x, |row, value| {
             *value = value.add_scaled(direction[row], length);
         });
@@ -88,6 +91,7 @@ pub(crate) fn conjugate_gradients<T: Unknown>(
             *value = value.add_scaled(image[row], -length);
         });
         let next = columns::sum(n_rows, |row| residual[row].dot(change(&residual, row)));
+        // The next direction is conjugate to the previous ones.
         let keep = next / energy;
         columns::update(&mut direction, |row, value| {
             *value = change(&residual, row).add_scaled(*value, keep);

@@ -1,24 +1,24 @@
-//! How far downstream every site is: the order in which sites get their colors.
+//! Sweep distance: how far along the orientation field every site is. It defines the order in which sites get colors.
 //!
-//! Source: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, section 4.2,
+//! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, section 4.2,
 //! <https://doi.org/10.1145/383259.383297>.
 //!
-//! All of the method: from an anchor on, sites are assigned the distance along the field that their assigned neighbors
-//! believe in (equation 5), first on the coarsest level and then, from interpolated values, on every finer one. The
-//! consensus orientation of two sites lies in the plane of their mean normal, so that both believe in the same
-//! difference. Where the paper is silent or slow:
+//! Starting at an anchor, each site gets the distance along the field that its assigned neighbors predict (equation 5).
+//! The coarsest level comes first; every finer level starts from interpolated values. The consensus orientation of two
+//! sites lies in the plane of their mean normal, so that both predict the same difference. Where the paper is silent or
+//! slow:
 //!
-//! * the coarsest level is assigned breadth first and then solved, not repeated until it settles, as that takes as many
-//!   sweeps as the square of the number of sites across the surface;
-//! * interpolation adds how far the site is ahead of those it takes its value from, and 20 sweeps of equation 5 with
-//!   0.2 for α and 0.8 for the sum of the β do the rest;
-//! * where the field turns around a point or runs around a tube, no distance increases along it everywhere. The best mean
-//!   would not increase at all there, so neighbors count less that disagree by about a spacing or more (Cauchy's weights):
-//!   all the error gathers in a tear, a line along which the order jumps, and the distance increases everywhere else;
-//! * across the cuts of a field with a symmetry, where the next direction is another turn, sites believe nothing of each
-//!   other; the cuts join singularities, so that nearly all of a component is still reached;
-//! * every connected component of a level has an anchor of its own, and the order goes through one component after the
-//!   other.
+//! * the coarsest level is initialized breadth first and then solved by conjugate gradients. Repeating equation 5 until
+//!   it converges takes as many sweeps as the square of the number of sites across the surface;
+//! * interpolation adds the distance along the field from each coarser site to the new one. Then 20 sweeps of equation
+//!   5 follow, with 0.2 for α and 0.8 for the sum of the β;
+//! * where the field circles a point or a tube, no distance can increase along it everywhere. In a least-squares
+//!   solution it would not increase there at all. So predictions that are off by about a spacing or more get less
+//!   weight (Cauchy's weights). The error then gathers in a tear, a line across which the order jumps, and the distance
+//!   increases everywhere else;
+//! * edges that cross a cut of a field with a symmetry, where neighbors have different rotations, have weight 0. Cuts
+//!   join singularities, so nearly all of a component is still reached;
+//! * every connected component of a level has its own anchor, and the order takes one component at a time.
 //!
 //! Distances are in units of the mesh.
 
@@ -31,32 +31,33 @@ use crate::{Hierarchy, Orientation, SiteIdx, SynthError, SynthErrorKind};
 use dapple_raster::parallel;
 use level::LevelSweep;
 
-/// The sweep distance s at every site, for every level.
+/// Sweep distance s at every site, for every level.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sweep {
-    /// The finest level first.
+    /// Distances by level, finest first.
     levels: Vec<Distances>,
 }
 
-/// Sweep distances and components of the sites of a level.
+/// Sweep distances and connected components of the sites of a level.
 #[derive(Clone, Debug, PartialEq)]
 struct Distances {
-    /// The sweep distances.
+    /// Sweep distance of each site, in units of the mesh.
     distances: Vec<f64>,
-    /// The connected components, numbered in the order of their lowest sites.
+    /// Connected component of each site; components are numbered in the order of their lowest sites.
     components: Vec<u32>,
 }
 
 impl Sweep {
-    /// Measures from an anchor: the one given in its component, and the site with the lowest number in every other.
+    /// Computes sweep distances from the given anchor in its component, and from the lowest site in every other
+    /// component.
     ///
-    /// Sites are scattered at random, so that the lowest is as good as any; the anchor hardly matters but for where the
-    /// distance is zero.
+    /// Sites are scattered at random, so the lowest site is as suitable as any other. The anchor mainly determines
+    /// where the distance is zero.
     ///
     /// # Errors
     ///
-    /// [`SynthErrorKind::Range`] if there is no such site, and [`SynthErrorKind::Count`] if the orientation is not one of
-    /// this hierarchy.
+    /// Returns [`SynthErrorKind::Range`] if the anchor is not a site, and [`SynthErrorKind::Count`] if the orientation
+    /// does not have one vector for each site of the hierarchy.
     pub fn new(
         hierarchy: &Hierarchy,
         orientation: &Orientation,
@@ -94,24 +95,24 @@ impl Sweep {
         Ok(sweep)
     }
 
-    /// The distances of the sites of a level, in units of the mesh; 0 at the anchor.
+    /// Sweep distances of the sites of a level, in units of the mesh; 0 at the anchor.
     ///
-    /// Those of different components have nothing in common.
+    /// Distances in different components are not comparable.
     ///
     /// # Panics
     ///
-    /// If there is no such level.
+    /// If the level does not exist.
     #[must_use]
     pub fn distances(&self, level: usize) -> &[f64] {
         &self.levels[level].distances
     }
 
-    /// The sites of a level in the order of the sweep: component by component in the order of their lowest sites, in each
-    /// by distance, and of several at one distance the lowest first.
+    /// Sites of a level in the order of the sweep: by component, then by distance, then by index. Components are in the
+    /// order of their lowest sites.
     ///
     /// # Panics
     ///
-    /// If there is no such level.
+    /// If the level does not exist.
     #[must_use]
     pub fn order(&self, level: usize) -> Vec<SiteIdx> {
         let Distances {
@@ -129,12 +130,13 @@ impl Sweep {
         keys.into_iter().map(|key| SiteIdx(key as u32)).collect()
     }
 
-    /// Shifts every component so that its anchor on the finest level is at zero.
+    /// Shifts the distances of every component so that its anchor on the finest level is at 0.
     fn measure_from(&mut self, anchor: Option<SiteIdx>) {
         let Some(finest) = self.levels.first() else {
             return;
         };
         let mut zeros: Vec<f64> = Vec::new();
+        // Distance at the anchor of each component of the finest level; the lowest site by default.
         for (&component, &distance) in finest.components.iter().zip(&finest.distances) {
             if component as usize == zeros.len() {
                 zeros.push(distance);
@@ -145,7 +147,7 @@ impl Sweep {
         }
         let of_finest = finest.components.clone();
         for level in &mut self.levels {
-            // A component of a coarse level has one shift, that of its lowest site.
+            // Each component of a level has one shift: that of the fine component that contains its lowest site.
             let mut shifts: Vec<f64> = Vec::new();
             for (site, &component) in level.components.iter().enumerate() {
                 if component as usize == shifts.len() {
@@ -157,7 +159,8 @@ impl Sweep {
     }
 }
 
-/// The site of a level that stands for the anchor: the first that is found breadth first from it on the finest level.
+/// Anchor on a coarser level: the first site of that level in a breadth-first search from the anchor on the finest
+/// level.
 fn coarse_anchor(hierarchy: &Hierarchy, level: usize, anchor: Option<SiteIdx>) -> Option<SiteIdx> {
     let n_sites = hierarchy.levels()[level].n_sites();
     let graph = hierarchy.levels()[0].graph();
@@ -180,7 +183,7 @@ fn coarse_anchor(hierarchy: &Hierarchy, level: usize, anchor: Option<SiteIdx>) -
     None
 }
 
-/// A whole number that rises with the distance; the same for both zeros.
+/// Maps a distance to an integer of the same order; both zeros map to the same integer.
 fn rising(distance: f64) -> u64 {
     let bits = (distance + 0.0).to_bits();
     if bits >> 63 == 1 {

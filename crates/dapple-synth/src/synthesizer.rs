@@ -1,4 +1,4 @@
-//! The doors for surfaces: one call for all of it, and what can be used again.
+//! Entry points of synthesis on surfaces: a one-call function, and a reusable solver.
 
 use crate::appearance::Appearance;
 use crate::engine::{self, Callback, Progress};
@@ -13,22 +13,22 @@ use crate::{
 use core::ops::ControlFlow;
 use dapple_mesh::{Mesh, Surface};
 
-/// A surface with its sites, their directions and their order: all that does not depend on the exemplar.
+/// A surface with its sites, orientation field and sweep distances: everything that does not depend on the exemplar.
 #[derive(Clone, Debug)]
 pub struct Synthesizer {
     surface: Surface,
     hierarchy: Hierarchy,
     orientation: Orientation,
     sweep: Sweep,
-    /// How large a pixel of the exemplar is at each site, in spacings; nothing where all are 1.
+    /// Size of an exemplar pixel at each site, in spacings; empty if all are 1.
     scales: Vec<f32>,
 }
 
-/// Covers a mesh with a texture that looks like an exemplar: `directions` say which way its "down" runs.
+/// Covers a mesh with a texture that looks like an exemplar. `directions` orient the exemplar's "down" on the surface.
 ///
 /// # Errors
 ///
-/// Those of [`Synthesizer::new`] and [`Synthesizer::synthesize`].
+/// Returns the errors of [`Synthesizer::new`] and [`Synthesizer::synthesize`].
 pub fn synthesize(
     mesh: Mesh,
     exemplar: &Exemplar,
@@ -42,11 +42,11 @@ pub fn synthesize(
 }
 
 impl Synthesizer {
-    /// Scatters sites over a surface, interpolates the directions and measures the sweep distance.
+    /// Scatters sites over a surface, interpolates the directions and computes the sweep distances.
     ///
     /// # Errors
     ///
-    /// Those of [`Hierarchy::new`], [`Orientation::new`] and [`Sweep::new`].
+    /// Returns the errors of [`Hierarchy::new`], [`Orientation::new`] and [`Sweep::new`].
     pub fn new(
         surface: Surface,
         directions: &[Direction],
@@ -57,11 +57,13 @@ impl Synthesizer {
         Self::from_parts(surface, hierarchy, orientation, None)
     }
 
-    /// Uses sites and orientations that the caller made for this surface, and an anchor of the sweep if that is given.
+    /// Uses sites and an orientation field that the caller made for this surface, and optionally an anchor of the
+    /// sweep.
     ///
     /// # Errors
     ///
-    /// [`SynthErrorKind::Count`] if the columns do not belong together, and as [`Sweep::new`].
+    /// Returns [`SynthErrorKind::Count`] if the orientation does not have one vector per site, and the errors of
+    /// [`Sweep::new`].
     pub fn from_parts(
         surface: Surface,
         hierarchy: Hierarchy,
@@ -86,15 +88,14 @@ impl Synthesizer {
         })
     }
 
-    /// These sites with pixels of the exemplar of different sizes: for each site how large a pixel is there, in spacings, from
-    /// 1/8 to 8. Without scales all are 1.
+    /// Sets the size of an exemplar pixel at each site, in spacings, from 1/8 to 8. Without scales all are 1.
     ///
-    /// What is larger than 1 is smoother than the sites could be; what is smaller loses detail that more sites would show.
+    /// Above 1 the texture is smoother than the sites could show. Below 1 it loses detail that more sites would show.
     ///
     /// # Errors
     ///
-    /// [`SynthErrorKind::Count`] unless there is a scale for every site of [`hierarchy`](Self::hierarchy), and
-    /// [`SynthErrorKind::Range`] for a scale out of its range.
+    /// Returns [`SynthErrorKind::Count`] unless there is one scale for every site of [`hierarchy`](Self::hierarchy),
+    /// and [`SynthErrorKind::Range`] for a scale out of range.
     pub fn with_scales(self, scales: Vec<f32>) -> Result<Self, SynthError> {
         if scales.len() != self.hierarchy.sites().len() {
             return Err(SynthError::new(SynthErrorKind::Count {
@@ -109,15 +110,17 @@ impl Synthesizer {
         Ok(Self { scales, ..self })
     }
 
-    /// These sites with pixels as large as the directions ask for, within bounds, in spacings: larger where rows of features
-    /// spread, and smaller where they meet, so that they go on in place of beginning and ending there (Ray et al. 2006).
+    /// Scales the exemplar's pixels to fit the orientation field, within bounds in spacings: larger where directions
+    /// diverge, and smaller where they converge. Rows of features then continue instead of starting and ending there
+    /// (Ray et al. 2006).
     ///
-    /// As large a part as can be of each connected part of the surface lies between the bounds. Around the singularities of the
-    /// field, where sizes would have no end, they are at one of them, and features still meet.
+    /// In each connected component of the surface, as many sites as possible are within the bounds. Around
+    /// singularities of the field, where the size would be unbounded, it is clamped to a bound, and rows of features
+    /// still meet.
     ///
     /// # Errors
     ///
-    /// [`SynthErrorKind::Range`] for a bound outside of 1/8 to 8, and for a lower bound above the upper one.
+    /// Returns [`SynthErrorKind::Range`] for a bound outside of 1/8 to 8, and for a lower bound above the upper one.
     ///
     /// # Examples
     ///
@@ -128,7 +131,7 @@ impl Synthesizer {
     /// let corners = vec![DVec3::ZERO, DVec3::X, DVec3::ONE - DVec3::Z, DVec3::Y];
     /// let surface = Surface::new(Mesh::new(corners, &[[0, 1, 2], [0, 2, 3]])?)?;
     /// let hierarchy = Hierarchy::new(&surface, &HierarchyOptions { n_sites: 500, ..Default::default() })?;
-    /// // Rays from a point beside the square: features are as large as they are far from it.
+    /// // Rays from a point outside of the square: the size of features is proportional to the distance from it.
     /// let rays = Orientation::from_fn(&hierarchy, |at, _| at + DVec3::X);
     /// let synthesizer = Synthesizer::from_parts(surface, hierarchy, rays, None)?;
     /// let synthesizer = synthesizer.with_conformal_scales([0.5, 2.0])?;
@@ -143,12 +146,12 @@ impl Synthesizer {
         self.with_scales(scales)
     }
 
-    /// Gives every site a color.
+    /// Synthesizes a texture: assigns every site a color.
     ///
     /// # Errors
     ///
-    /// Typed errors for an exemplar that is too small, for options out of their ranges, and for more levels than the
-    /// sites have.
+    /// Returns an error for an exemplar that is too small, for options out of range, and for more levels than the
+    /// hierarchy of sites has.
     pub fn synthesize(
         &self,
         exemplar: &Exemplar,
@@ -157,12 +160,13 @@ impl Synthesizer {
         self.synthesize_with(exemplar, options, |_| ControlFlow::Continue(()))
     }
 
-    /// Synthesizes a texture like [`synthesize`](Self::synthesize), with a callback that hears of the progress and can
-    /// stop it.
+    /// Synthesizes a texture like [`synthesize`](Self::synthesize), with a callback that receives the progress and can
+    /// cancel.
     ///
     /// # Errors
     ///
-    /// Those of [`synthesize`](Self::synthesize), and [`SynthErrorKind::Cancelled`] if the callback breaks.
+    /// Returns the errors of [`synthesize`](Self::synthesize), and [`SynthErrorKind::Cancelled`] if the callback
+    /// breaks.
     pub fn synthesize_with(
         &self,
         exemplar: &Exemplar,
@@ -172,17 +176,17 @@ impl Synthesizer {
         self.synthesize_guided(exemplar, &[], options, callback)
     }
 
-    /// Synthesizes a texture like [`synthesize_with`](Self::synthesize_with), whose guides say where on the surface which
-    /// part of the exemplar goes: as many columns as the exemplar has [guides](Exemplar::with_guides), each with a value for
-    /// every site of [`hierarchy`](Self::hierarchy).
+    /// Synthesizes a texture like [`synthesize_with`](Self::synthesize_with), with guides that control which part of
+    /// the exemplar appears where on the surface. There are as many columns as the exemplar has
+    /// [guides](Exemplar::with_guides), each with one value for every site of [`hierarchy`](Self::hierarchy).
     ///
     /// With guides, [`Options::evenness`] has no effect.
     ///
     /// # Errors
     ///
-    /// Those of [`synthesize_with`](Self::synthesize_with), [`SynthErrorKind::Count`] for another number of guides than the
-    /// exemplar has and a column that has not as many values as there are sites, and [`SynthErrorKind::Range`] for a value
-    /// that is not finite.
+    /// Returns the errors of [`synthesize_with`](Self::synthesize_with). Returns [`SynthErrorKind::Count`] if the
+    /// number of guides differs from the exemplar's or a column does not have one value for each site, and
+    /// [`SynthErrorKind::Range`] for a value that is not finite.
     pub fn synthesize_guided(
         &self,
         exemplar: &Exemplar,
@@ -193,7 +197,7 @@ impl Synthesizer {
         self.grow(exemplar, guides, options, &mut callback)
     }
 
-    /// What [`synthesize_guided`](Self::synthesize_guided) does, compiled for all callbacks.
+    /// Implements [`synthesize_guided`](Self::synthesize_guided); compiled once for all callbacks.
     fn grow(
         &self,
         exemplar: &Exemplar,
@@ -229,7 +233,7 @@ impl Synthesizer {
         Ok(texture)
     }
 
-    /// Refuses more levels than the sites have.
+    /// Returns an error if the options have more levels than the sites.
     pub(crate) fn check_levels(&self, options: &Options) -> Result<(), SynthError> {
         if options.n_levels <= self.hierarchy.levels().len() {
             return Ok(());
@@ -241,8 +245,9 @@ impl Synthesizer {
         }))
     }
 
-    /// The pixels of the sites of each level, the finest first: of the first pass on the coarsest, and then corrected. And by
-    /// how many quarter turns the exemplar lies turned at the finest ones.
+    /// Synthesizes by appearance: the first pass runs on the coarsest level, then all levels are corrected. Returns the
+    /// pixels of the sites of each level, finest first, and the rotation of the exemplar at the finest sites, in
+    /// quarter turns.
     fn by_appearance(
         &self,
         ground: &MeshGround<'_>,
@@ -251,6 +256,7 @@ impl Synthesizer {
         options: &Options,
         callback: Callback<'_>,
     ) -> Result<(Vec<Vec<u32>>, Vec<u8>), SynthError> {
+        // Synthesize the coarsest level from colors.
         let exemplar = &pyramid.levels()[0];
         let passes = options.passes()?.passes;
         let mut first = |progress: Progress| {
@@ -262,8 +268,10 @@ impl Synthesizer {
         let mut levels = engine::run_passes(ground, pyramid, &passes[..1], options, &mut first)?;
         let coarsest = levels.split_off(options.n_levels - 1);
         let (sources, quarters) = ground::Sources::pixels_and_quarters(coarsest);
+        // Correct all levels by appearance.
         let mut appearance = Appearance::new(self, exemplar, targets, &quarters, options)?;
         let places = appearance.run(&sources.concat(), callback)?;
+        // Convert positions in the exemplar to pixels of each level.
         let pixels = |(level, places): (usize, Vec<[u32; 2]>)| {
             let width = pyramid.levels()[level].size[0];
             let pixel = |[column, row]: [u32; 2]| (row >> level) * width + (column >> level);
@@ -273,7 +281,7 @@ impl Synthesizer {
         Ok((pixels, appearance.quarters))
     }
 
-    /// The surface, its sites and their orientation, on which the texture grows.
+    /// Bundles the surface, its sites and their orientation for the engine.
     pub(crate) fn ground(&self, axes: Axes, is_blurred: bool) -> MeshGround<'_> {
         MeshGround {
             surface: &self.surface,
@@ -288,7 +296,7 @@ impl Synthesizer {
         }
     }
 
-    /// These sites, at which all pixels of the exemplar have the same size.
+    /// Resets all scales to 1.
     pub(crate) fn without_scales(self) -> Self {
         Self {
             scales: Vec::new(),
@@ -296,37 +304,37 @@ impl Synthesizer {
         }
     }
 
-    /// How large a pixel of the exemplar is at a site, in spacings.
+    /// Size of an exemplar pixel at a site, in spacings.
     pub(crate) fn scale(&self, site: usize) -> f32 {
         self.scales.get(site).copied().unwrap_or(1.0)
     }
 
-    /// The surface.
+    /// Surface that the texture covers.
     #[must_use]
     pub fn surface(&self) -> &Surface {
         &self.surface
     }
 
-    /// The sites and their levels.
+    /// Sites and their levels.
     #[must_use]
     pub fn hierarchy(&self) -> &Hierarchy {
         &self.hierarchy
     }
 
-    /// Which way the texture runs at every site.
+    /// Orientation field: direction of the texture's "down" at every site.
     #[must_use]
     pub fn orientation(&self) -> &Orientation {
         &self.orientation
     }
 
-    /// How far downstream every site is.
+    /// Sweep distances of the sites.
     #[must_use]
     pub fn sweep(&self) -> &Sweep {
         &self.sweep
     }
 }
 
-/// Refuses a size of a pixel out of the range of sizes.
+/// Returns an error for a pixel size outside of 1/8 to 8.
 fn check_scale(what: &'static str, scale: f32) -> Result<(), SynthError> {
     let holds = (0.125..=8.0).contains(&scale);
     SynthError::check(holds, what, scale.into(), "from 1/8 to 8")

@@ -1,30 +1,31 @@
-//! The order in which threads share the sites of a pass.
+//! Wavefront schedule: the order in which threads visit the sites of a pass.
 //!
-//! A site waits for all earlier sites of the sweep that it may read, and all later ones wait for it; what is left over is
-//! free. So the texture has the bits of the sites one after the other in the order of the sweep, on any number of
-//! threads.
+//! A site runs after every earlier site of the sweep that it may read, and before every later site that may read it.
+//! Independent sites run in parallel. The texture thus has the bits of a sequential sweep on any number of threads.
 //!
-//! Sites that wait for no other come first, then those that wait only for these, and so on. Threads take turns in this
-//! order, and each turn says how many of the turns before it must be over; seldom does one have to wait.
+//! Sites that wait for no other come first, then sites that wait only for these, and so on. Each position in this order
+//! is a turn. Threads take turns in order, and each turn states how many of the first turns must be over before it
+//! runs. Threads rarely have to wait.
 
 use crate::cells::Cells;
 use core::hint::spin_loop;
 use core::ops::Range;
 use core::sync::atomic::{AtomicUsize, Ordering};
 
-/// How often a thread looks again before it lets others use its core.
+/// Number of spins before a waiting thread yields its core.
 const LOOKS: u32 = 64;
 
-/// Sites in an order in which several threads may visit them.
+/// Wavefront schedule of sites for several threads.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Turns {
+    /// Site of each turn.
     sites: Vec<u32>,
-    /// For each turn, how many turns from the first one on must be over before it.
+    /// For each turn, the number of first turns that must be over before it.
     waits: Vec<u32>,
 }
 
 impl Turns {
-    /// The sites one after the other.
+    /// Sequential schedule: every turn waits for all turns before it.
     pub(crate) fn in_order(order: Vec<u32>) -> Self {
         Self {
             waits: (0..order.len() as u32).collect(),
@@ -32,10 +33,10 @@ impl Turns {
         }
     }
 
-    /// The sites of `order` with as little waiting as can be.
+    /// Schedules the sites of `order` with as little waiting as possible.
     ///
-    /// Every site has a place, of which there are `n_places`, and may read sites at places near its own. `latest` gives
-    /// the largest mark at the places near a site, its own among them: places are near each other, or both are not.
+    /// Every site has one of `n_places` places, and may read sites at nearby places. `latest` returns the largest mark
+    /// at the places near a site, its own place included. Nearness must be symmetric.
     pub(crate) fn new(
         order: &[u32],
         n_places: usize,
@@ -43,6 +44,7 @@ impl Turns {
         latest: impl Fn(u32, &[u32]) -> u32,
     ) -> Self {
         let mut marks = vec![0; n_places];
+        // Generation of each site: one more than the latest generation it waits for.
         let generations: Vec<u32> = order
             .iter()
             .map(|&site| {
@@ -52,6 +54,7 @@ impl Turns {
             })
             .collect();
         let sites = by_generation(order, &generations);
+        // In the new order, find the last turn that each site waits for.
         marks.fill(0);
         let waits = sites
             .iter()
@@ -65,7 +68,7 @@ impl Turns {
         Self { sites, waits }
     }
 
-    /// Turns of sites that wait for those of the same and of nearby cells.
+    /// Schedule in which a site waits for earlier sites in the same cell and in nearby cells.
     pub(crate) fn by_cells(order: &[u32], cells: &Cells) -> Self {
         let latest = |site, marks: &[u32]| {
             let near = cells.near(cells.of_site(site)).iter();
@@ -75,18 +78,18 @@ impl Turns {
         Self::new(order, cells.n_cells(), |site| cells.of_site(site), latest)
     }
 
-    /// The number of turns.
+    /// Number of turns.
     pub(crate) fn len(&self) -> usize {
         self.sites.len()
     }
 
-    /// The site of a turn, and how many turns from the first one on must be over before it.
+    /// Site of a turn, and the number of first turns that must be over before it.
     pub(crate) fn turn(&self, turn: usize) -> (u32, usize) {
         (self.sites[turn], self.waits[turn] as usize)
     }
 }
 
-/// The sites of `order`, those of the first generation first; each generation in the given order.
+/// Sorts the sites of `order` by generation with a stable counting sort.
 fn by_generation(order: &[u32], generations: &[u32]) -> Vec<u32> {
     let n_generations = generations
         .iter()
@@ -109,16 +112,17 @@ fn by_generation(order: &[u32], generations: &[u32]) -> Vec<u32> {
     sites
 }
 
-/// Where threads say which turns they have: some turns in a row, all turns before them being over.
+/// Shared state of a run: which thread has which turn of a range. All turns before the range are over.
 #[derive(Debug)]
 pub(crate) struct Board {
-    /// The first turn that no thread has.
+    /// First turn that no thread has taken.
     next: AtomicUsize,
     end: usize,
-    /// Each thread's turn; all that it had before is over. Of a thread that has none, the largest number.
+    /// Current turn of each thread; all earlier turns of the thread are over. `usize::MAX` for a thread without a turn.
     ///
-    /// All orderings are sequentially consistent: a thread that has no turn and takes one shows a number before it does,
-    /// so that a thread that had a turn earlier and did not see the number waits only for turns that are still earlier.
+    /// All accesses are sequentially consistent. Before a thread without a turn takes one, it publishes a lower bound
+    /// of it. A thread that took its turn earlier and did not see the bound therefore waits only for still earlier
+    /// turns.
     turns: Vec<AtomicUsize>,
 }
 
@@ -133,7 +137,7 @@ impl Board {
         }
     }
 
-    /// Ends the turn of a thread and takes its next one.
+    /// Ends the turn of a thread and takes the next one. `None` if no turn is left.
     pub(crate) fn take(&self, thread: usize) -> Option<usize> {
         let shown = &self.turns[thread];
         shown.store(self.next.load(Ordering::SeqCst), Ordering::SeqCst);
@@ -143,7 +147,7 @@ impl Board {
         (turn < usize::MAX).then_some(turn)
     }
 
-    /// Waits until the first turns are over.
+    /// Waits until the turns before `until` are over.
     pub(crate) fn wait(&self, until: usize) {
         for shown in &self.turns {
             let mut looks = 0;
@@ -164,7 +168,7 @@ mod tests {
     use super::{Board, Turns};
     use std::sync::Mutex;
 
-    /// Places on a line, of which those are near that are at most two apart.
+    /// Places on a line; two places are near if they are at most two apart.
     fn on_a_line(order: &[u32]) -> Turns {
         let latest = |site: u32, marks: &[u32]| {
             let last = marks.len().min(site as usize + 3);

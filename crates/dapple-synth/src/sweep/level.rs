@@ -1,4 +1,4 @@
-//! The sweep distances of one level.
+//! Sweep distances of one level.
 
 use super::Distances;
 use crate::links::Links;
@@ -7,26 +7,29 @@ use crate::solve::{System, conjugate_gradients};
 use crate::{Hierarchy, Orientation, SiteIdx, Symmetry, columns};
 use glam::DVec3;
 
-/// The coarsest level is solved until equation 5 would change no distance by more than this part of the spacing, ...
+/// Tolerance of the solver on the coarsest level, in spacings: it ends when equation 5 would change no distance by
+/// more.
 const TOLERANCE: f64 = 1e-6;
-/// The most steps, which bounds the time that a large coarsest level takes.
+/// Maximum number of solver steps; bounds the time for a large coarsest level.
 const STEPS_MAX: usize = 500;
-/// Sweeps of equation 5 on every finer level, and the sum of the β in it.
+/// Number of sweeps of equation 5 on every finer level.
 const SWEEPS: usize = 20;
+/// Sum of the β in equation 5; α is 1 minus this.
 const SWEEP_STRENGTH: f64 = 0.8;
 
-/// How often the coarsest level is solved, each time with the weights that the last result gives to the edges.
+/// Number of solves on the coarsest level: iteratively reweighted least squares. Each solve takes its edge weights from
+/// the previous solution.
 const ROUNDS: usize = 3;
 
-/// Equation 5 on a level.
+/// Linear system of equation 5 on a level.
 pub(super) struct LevelSweep<'a> {
     hierarchy: &'a Hierarchy,
     level: usize,
     orientation: &'a Orientation,
     links: Links<'a>,
-    /// For each site the sum of how far it is ahead of its neighbors, with their weights.
+    /// Right-hand side of the system: for each site, the weighted sum of its leads over its neighbors along the field.
     ahead: Vec<f64>,
-    /// The spacing of the level.
+    /// Spacing of the level, in units of the mesh.
     spacing: f64,
 }
 
@@ -46,10 +49,11 @@ impl<'a> LevelSweep<'a> {
         }
     }
 
-    /// The distances of the coarsest level.
+    /// Solves for the distances of the coarsest level.
     pub(super) fn solve(mut self, components: &[u32], anchor: Option<SiteIdx>) -> Vec<f64> {
         let mut distances = vec![0.0; self.links.len()];
         let mut assigned = vec![false; self.links.len()];
+        // Start at the anchor of each component: the given one, or the lowest site.
         let anchored = anchor.map(|site| (site.index(), components[site.index()]));
         for (site, component) in lowest_sites(components) {
             let site = anchored
@@ -58,6 +62,7 @@ impl<'a> LevelSweep<'a> {
             assigned[site] = true;
         }
         self.fill(&mut assigned, &mut distances);
+        // Solve, with edge weights from the previous distances.
         for round in 0..ROUNDS {
             if round > 0 {
                 self.links = links(self.hierarchy, self.orientation, self.level);
@@ -68,18 +73,20 @@ impl<'a> LevelSweep<'a> {
         distances
     }
 
-    /// The distances of a finer level.
+    /// Computes the distances of a finer level from the next coarser one.
     ///
-    /// Where the coarser level is in more pieces than this one, only the piece of the lowest site is inherited, as the
-    /// distances of the others have nothing in common with it.
+    /// If a component of this level consists of several components on the coarser level, only the coarser component of
+    /// its lowest site is inherited. The distances of the others are not comparable.
     pub(super) fn refine(mut self, components: &[u32], coarser: &Distances) -> Vec<f64> {
         let n_coarser = coarser.distances.len();
+        // For each component, the coarser component that it inherits.
         let pieces: Vec<Option<u32>> = lowest_sites(components)
             .map(|(site, _)| coarser.components.get(site).copied())
             .collect();
         let inherits =
             |site: usize| pieces[components[site] as usize] == Some(coarser.components[site]);
         let inherited: Vec<Option<f64>> = columns::column(self.links.len(), |site| {
+            // Copy the distances of shared sites, and interpolate the others.
             if site < n_coarser {
                 inherits(site).then(|| coarser.distances[site])
             } else {
@@ -91,6 +98,7 @@ impl<'a> LevelSweep<'a> {
             .into_iter()
             .map(Option::unwrap_or_default)
             .collect();
+        // A component without a coarser one starts at its lowest site, with distance 0.
         for (site, component) in lowest_sites(components) {
             if pieces[component as usize].is_none() {
                 assigned[site] = true;
@@ -99,6 +107,7 @@ impl<'a> LevelSweep<'a> {
         self.fill(&mut assigned, &mut distances);
         self.ease(&distances);
         let mut before = distances.clone();
+        // Relax with sweeps of equation 5.
         for _ in 0..SWEEPS {
             core::mem::swap(&mut before, &mut distances);
             columns::update(&mut distances, |site, distance| {
@@ -108,7 +117,7 @@ impl<'a> LevelSweep<'a> {
         distances
     }
 
-    /// The distance that the coarser sites around a site believe that it has.
+    /// Distance of a site as predicted by the coarser sites around it. `None` if no coarser site counts.
     fn inherit(
         &self,
         site: usize,
@@ -124,8 +133,8 @@ impl<'a> LevelSweep<'a> {
         self.consensus(site, believers, coarser)
     }
 
-    /// Assigns all sites that are connected to assigned ones: equation 5, in which only assigned sites contribute. What
-    /// cuts separate from them begins at 0.
+    /// Assigns all sites that are connected to assigned ones, breadth first, by equation 5 with assigned neighbors
+    /// only. Sites that cuts separate from all assigned sites start at 0.
     fn fill(&self, assigned: &mut [bool], distances: &mut [f64]) {
         let opinion = |site, assigned: &[bool], distances: &[f64]| {
             let neighbors = self.links.neighbors(site).iter();
@@ -149,8 +158,8 @@ impl<'a> LevelSweep<'a> {
         }
     }
 
-    /// The distance that others with weights believe that a site has: the mean, in which those count less that disagree
-    /// with the one of most weight.
+    /// Distance of a site as predicted by others: their weighted mean. Predictions that disagree with the prediction of
+    /// the largest weight count less.
     #[inline]
     fn consensus(
         &self,
@@ -180,7 +189,7 @@ impl<'a> LevelSweep<'a> {
         Some(first + sum / weights)
     }
 
-    /// Lowers the weights of edges whose ends disagree, and sums up how far sites are ahead of their neighbors.
+    /// Lowers the weights of edges whose ends disagree, and updates `ahead`.
     fn ease(&mut self, distances: &[f64]) {
         let (sites, vectors) = (self.hierarchy.sites(), self.orientation.vectors());
         let (positions, normals) = (sites.positions(), sites.normals());
@@ -202,7 +211,7 @@ impl<'a> LevelSweep<'a> {
         });
     }
 
-    /// Equation 5.
+    /// One sweep of equation 5 for a site.
     #[inline]
     fn sweep(&self, site: usize, distances: &[f64]) -> f64 {
         let sum = self.links.sums()[site];
@@ -213,7 +222,7 @@ impl<'a> LevelSweep<'a> {
         distances[site] * (1.0 - SWEEP_STRENGTH) + average * SWEEP_STRENGTH
     }
 
-    /// The sum of the neighbors' distances with their weights.
+    /// Weighted sum of the neighbors' distances.
     #[inline]
     fn neighbors_sum(&self, site: usize, distances: &[f64]) -> f64 {
         let mut sum = 0.0;
@@ -228,7 +237,8 @@ impl<'a> LevelSweep<'a> {
         sum
     }
 
-    /// The paper's Δ: how much further along the field a site is than another one. 0 where their orientations cancel.
+    /// The paper's Δ: lead of `site` over `other` along the field, in units of the mesh; 0 where their orientations
+    /// cancel.
     #[inline]
     fn step(&self, site: usize, other: usize) -> f64 {
         let vectors = self.orientation.vectors();
@@ -244,7 +254,7 @@ impl<'a> LevelSweep<'a> {
     }
 }
 
-/// The links of a level, without weight where they cross a cut of the field.
+/// Links of a level, with weight 0 where they cross a cut of the field.
 fn links<'a>(hierarchy: &'a Hierarchy, orientation: &Orientation, level: usize) -> Links<'a> {
     let mut links = Links::new(hierarchy, level);
     let normals = hierarchy.sites().normals();
@@ -253,7 +263,7 @@ fn links<'a>(hierarchy: &'a Hierarchy, orientation: &Orientation, level: usize) 
             for (weight, other) in weights.iter_mut().zip(neighbors) {
                 let there = orientation.quarters_toward(normals, other.index(), site, 0);
                 let here = orientation.quarters_toward(normals, site, other.index(), 0);
-                // From both ends, as weights are symmetric.
+                // Test from both ends, since weights must be symmetric.
                 if here != 0 || there != 0 {
                     *weight = 0.0;
                 }
@@ -263,14 +273,15 @@ fn links<'a>(hierarchy: &'a Hierarchy, orientation: &Orientation, level: usize) 
     links
 }
 
-/// How much an opinion counts that is off by `difference`: Cauchy's weights, of which half is left at a spacing.
+/// Cauchy weight of a prediction that is off by `difference`; 1/2 at one spacing.
 #[inline]
 fn trust(difference: f64, spacing: f64) -> f64 {
     let x = difference / spacing;
     1.0 / (1.0 + x * x)
 }
 
-/// The part of `way` along the direction of `sum` in the plane across `normal`; 0 where that direction has no length.
+/// Component of `way` along the projection of `sum` to the plane perpendicular to `normal`; 0 if the projection
+/// vanishes.
 #[inline]
 pub(super) fn step(way: DVec3, sum: DVec3, normal: DVec3) -> f64 {
     let up = normal.length_squared();
@@ -287,7 +298,7 @@ pub(super) fn step(way: DVec3, sum: DVec3, normal: DVec3) -> f64 {
     }
 }
 
-/// The lowest site of every component, in the order of the components.
+/// Lowest site of every component with the component, in the order of the components.
 fn lowest_sites(components: &[u32]) -> impl Iterator<Item = (usize, u32)> {
     let mut next = 0;
     components
