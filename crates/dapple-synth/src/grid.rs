@@ -54,10 +54,12 @@ impl<C: Colors> Grid<C> {
             let [above, below] = [row, row + odd_y].map(|row| lines[row] * width);
             for (at, target) in target.enumerate() {
                 let [left, right] = [columns[at], columns[at + odd_x]];
+                // On a pixel: copy its value.
                 if odd_x + odd_y == 0 {
                     target.copy_from_slice(self.colors.of(above + left));
                     continue;
                 }
+                // Between pixels: take the mean of four, of which two or four are distinct.
                 let [a, b] = [left, right].map(|column| self.colors.of(above + column));
                 let [c, d] = [left, right].map(|column| self.colors.of(below + column));
                 for (channel, value) in target.iter_mut().enumerate() {

@@ -70,6 +70,7 @@ impl KeptSite<'_> {
         let side = self.side;
         let n_channels = self.values.len() / self.nearest.len();
         let margin = (from - side) / 2;
+        // Copy the central rows and columns.
         for row in 0..side {
             let source = (row + margin) * from + margin;
             let target = row * side;

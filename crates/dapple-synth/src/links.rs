@@ -113,10 +113,12 @@ impl<'a> Links<'a> {
             let mut linked = self.linked(site);
             !assigned[site] && linked.any(|other| assigned[other])
         };
+        // The first ring: unassigned sites with an assigned neighbor.
         let mut ring: Vec<usize> = (0..self.len())
             .filter(|&site| touches(site, assigned))
             .collect();
         while !ring.is_empty() {
+            // Compute all values of the ring before any is assigned.
             let found: Vec<T> = ring
                 .iter()
                 .map(|&site| opinion(site, assigned, values))
@@ -125,6 +127,7 @@ impl<'a> Links<'a> {
                 values[site] = value;
                 assigned[site] = true;
             }
+            // The next ring: unassigned neighbors, in ascending order.
             let mut next: Vec<usize> = ring
                 .iter()
                 .flat_map(|&site| self.linked(site))
@@ -150,6 +153,7 @@ impl Links<'_> {
 pub(crate) fn components(graph: &SiteGraph) -> Vec<u32> {
     const NONE: u32 = u32::MAX;
     let mut components = vec![NONE; graph.len()];
+    // Depth-first search from the lowest site of each component.
     let mut found = Vec::new();
     let mut count = 0;
     for start in 0..graph.len() {

@@ -160,7 +160,7 @@ impl Orientation {
         }
     }
 
-    /// Symmetry of the field: the number of equivalent directions at each site, of which one is stored.
+    /// Symmetry of the field: the number of equivalent directions at each site. One of them is stored.
     #[must_use]
     pub fn symmetry(&self) -> Symmetry {
         self.symmetry

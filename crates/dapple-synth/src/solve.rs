@@ -58,6 +58,7 @@ pub(crate) fn conjugate_gradients<T: Unknown>(
     n_most: usize,
 ) -> usize {
     let n_rows = x.len();
+    // Residual b - A x.
     let mut residual: Vec<T> = columns::column(n_rows, |row| {
         system.right(row).add_scaled(system.row(x, row), -1.0)
     });

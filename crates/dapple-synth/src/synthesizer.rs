@@ -206,12 +206,14 @@ impl Synthesizer {
         callback: Callback<'_>,
     ) -> Result<SurfaceTexture, SynthError> {
         self.check_levels(options)?;
+        // Build the exemplar pyramid, and the guides of the surface.
         let pyramid = exemplar.pyramid(options.n_levels)?;
         let targets = Targets::of_surface(exemplar, guides, &self.hierarchy, options.n_levels)?;
         let ground = MeshGround {
             targets: Some(&targets),
             ..self.ground(options.axes, options.sources == Sources::SubPixel)
         };
+        // Assign a pixel of the exemplar to every site.
         let (sources, quarters) = match options.matching {
             Matching::Appearance if options.schedule.is_none() => {
                 self.by_appearance(&ground, &targets, &pyramid, options, callback)?
@@ -221,6 +223,7 @@ impl Synthesizer {
                 ground::Sources::pixels_and_quarters(levels)
             }
         };
+        // Refine the pixels of the finest sites to positions between pixels.
         let places = match options.sources {
             Sources::Pixel => None,
             Sources::SubPixel => sources.first().map(|sources| {

@@ -96,6 +96,7 @@ fn by_generation(order: &[u32], generations: &[u32]) -> Vec<u32> {
         .max()
         .map_or(0, |&last| last as usize + 1);
     let mut next = vec![0_usize; n_generations];
+    // Count the sites of each generation, then turn the counts into start positions.
     for &generation in generations {
         next[generation as usize] += 1;
     }
@@ -140,6 +141,7 @@ impl Board {
     /// Ends the turn of a thread and takes the next one. `None` if no turn is left.
     pub(crate) fn take(&self, thread: usize) -> Option<usize> {
         let shown = &self.turns[thread];
+        // Publish a lower bound before taking a turn.
         shown.store(self.next.load(Ordering::SeqCst), Ordering::SeqCst);
         let turn = self.next.fetch_add(1, Ordering::SeqCst);
         let turn = if turn < self.end { turn } else { usize::MAX };

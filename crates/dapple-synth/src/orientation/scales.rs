@@ -39,6 +39,7 @@ impl Orientation {
             return Ok(vec![bounds[0]; hierarchy.sites().len()]);
         }
         let coarsest = hierarchy.levels().len() - 1;
+        // Solve on the coarsest level, and shift each component into the bounds.
         let mut logs = self.growth(hierarchy, coarsest);
         let [least, most] = bounds.map(|bound| libm::log(bound.into()));
         let components = components(hierarchy.levels()[coarsest].graph());
@@ -46,6 +47,7 @@ impl Orientation {
         for (log, &component) in logs.iter_mut().zip(&components) {
             *log = (*log + shifts[component as usize]).clamp(least, most);
         }
+        // Interpolate down to the finest level.
         for level in (1..=coarsest).rev() {
             logs = hierarchy.upsample(level, &logs)?;
         }
@@ -97,6 +99,7 @@ impl<'a> Growth<'a> {
     fn new(hierarchy: &'a Hierarchy, orientation: &Orientation, level: usize) -> Self {
         let links = Links::new(hierarchy, level);
         let (positions, normals) = (hierarchy.sites().positions(), hierarchy.sites().normals());
+        // Gradient of u at each site, from the rates at which the field rotates.
         let gradients: Vec<DVec3> = columns::column(links.len(), |site| {
             let rates = turn_rates(hierarchy, orientation, SiteIdx(site as u32), level);
             let [along_right, along_down] = rates.unwrap_or_default();

@@ -47,17 +47,20 @@ const NOISE: f64 = 0.5;
 /// directions.
 pub(super) fn smoothest(field: &Field<'_>, components: &[u32], known: &[Known]) -> Vec<DVec3> {
     let mut smooth = Smooth::new(field, components);
+    // Solve for the powers of the smoothest field, and rotate it to the known directions or the axis.
     let (mut powers, eigenvalues) = smooth.lowest();
     let of_known: Vec<(usize, DVec2)> = known
         .iter()
         .map(|known| (known.site, smooth.power(known)))
         .collect();
     smooth.turn_to(&mut powers, &of_known);
+    // Solve once more with the known directions held fixed.
     if !known.is_empty() {
         smooth.hold(&mut powers, &of_known, &eigenvalues);
     }
     columns::column(powers.len(), |site| {
         let [x, y] = smooth.frames[site];
+        // Take an n-th root of the power, in the frame of the site.
         let root = field.symmetry.root(powers[site]).unwrap_or(DVec2::X);
         field.unit(site, x * root.x + y * root.y)
     })
@@ -87,6 +90,7 @@ impl<'a> Smooth<'a> {
             [along, normals[site].cross(along)]
         });
         let mut of_links = Vec::new();
+        // Transport the frame of each neighbor to the site, and take the power of its rotation.
         for site in 0..n_sites {
             let [x, y] = frames[site];
             of_links.extend(links.neighbors(site).iter().map(|other| {
@@ -158,6 +162,7 @@ impl<'a> Smooth<'a> {
             vec![DVec2::ZERO; n_components],
         );
         let conjugate = |number: DVec2| DVec2::new(number.x, -number.y);
+        // Sum up the rotations from the field to the known directions, and to the axis.
         for &(site, power) in known {
             of_known[self.components[site] as usize] += conjugate(powers[site]).rotate(power);
         }
@@ -176,11 +181,13 @@ impl<'a> Smooth<'a> {
     /// Solves for the smoothest field with the known values, in the components that have known values.
     fn hold(&mut self, powers: &mut [DVec2], known: &[(usize, DVec2)], eigenvalues: &[f64]) {
         let mut is_known = vec![false; eigenvalues.len()];
+        // Fix the known sites.
         for &(site, power) in known {
             powers[site] = power;
             self.is_fixed[site] = true;
             is_known[self.components[site] as usize] = true;
         }
+        // Fix components without known sites, and subtract λ from the diagonal.
         for (site, &component) in self.components.iter().enumerate() {
             let component = component as usize;
             self.is_fixed[site] |= !is_known[component];

@@ -15,7 +15,7 @@ const CHUNK: usize = 1024;
 /// Side of the grid cells, in spacings. With this side most stars read two or three cells along each axis.
 const GRID_SIDE: f64 = 2.0;
 
-/// Graph of the sites of which at least one has the other in its star.
+/// Graph in which two sites are connected if at least one of them has the other in its star.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Connected {
     /// Edges between the sites.

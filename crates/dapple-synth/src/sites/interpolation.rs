@@ -49,6 +49,7 @@ impl Oriented<'_> {
     ) -> Option<T> {
         let radius = INTERPOLATION_RADIUS * self.spacing;
         let (mut base, mut sum, mut weights) = (None, T::ZERO, 0.0);
+        // Sum up weighted differences to the value of the first site in reach.
         self.grid.visit(position, radius, |site| {
             let x = self.positions[site.index()].distance(position) / radius;
             if x < 1.0 && self.is_on_side(site, normal) {

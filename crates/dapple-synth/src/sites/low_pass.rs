@@ -91,6 +91,7 @@ impl<'a> LowPass<'a> {
         t: f64,
         steps: usize,
     ) -> Result<(), SynthError> {
+        // Alternate between the two columns.
         let mut other = column.to_vec();
         let mut from_column = true;
         for _ in 0..steps {
@@ -162,6 +163,7 @@ fn push_weights(graph: &SiteGraph, positions: &[DVec3], site: SiteIdx, weights: 
     let first = weights.len();
     let at = positions[site.index()];
     let length = |to: &SiteIdx| positions[to.index()].distance(at);
+    // Store the edge lengths, replace them by clamped inverses, and normalize these to a sum of 1.
     weights.extend(graph.neighbors(site).iter().map(length));
     let longest = weights[first..].iter().copied().fold(0.0, f64::max);
     let mut sum = 0.0;

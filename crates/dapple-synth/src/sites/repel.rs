@@ -34,7 +34,7 @@ const LIMITED_MOST: usize = 100;
 /// Minimum dot product of the normals of neighbors: at most 120 degrees. Sites count as neighbors up to 90 degrees;
 /// points a little beyond push too, since they could otherwise come together where the surface bends.
 const FACING: f64 = -0.5;
-/// Distance along the face, as a fraction of the radius, up to which points count as coincident.
+/// Maximum distance along the face of points that count as coincident, as a fraction of the radius.
 const SAME_PLACE: f64 = 1e-6;
 /// Barycentric weights of the three corners of a face.
 const CORNERS: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];

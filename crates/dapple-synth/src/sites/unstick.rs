@@ -31,6 +31,7 @@ pub(crate) fn unstick(
     seed: Seed,
 ) {
     let spacing = hexagonal_spacing(surface.area(), points.len());
+    // Find the stuck points.
     let mut crowd = Crowd::new(Places::new(surface, points), spacing);
     let mut stuck = crowd.stuck_from(n_fixed);
     stuck.truncate(MOVED_MOST);
@@ -133,6 +134,7 @@ impl Crowd {
         };
         let mut most = room(self, self.places.positions[site], self.places.normals[site]);
         let mut best = None;
+        // Try random candidates, and keep the one farthest from its nearest neighbor.
         for number in 0..N_PLACES {
             let number = site as u64 * N_PLACES + number;
             let Some(point) = scatter.point(surface, seed, number) else {
@@ -145,6 +147,7 @@ impl Crowd {
             }
         }
         let (point, position, normal) = best?;
+        // Record the move, so that later points see it.
         self.places.positions[site] = position;
         self.places.normals[site] = normal;
         self.moved.push(site);

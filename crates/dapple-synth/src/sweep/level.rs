@@ -168,6 +168,7 @@ impl<'a> LevelSweep<'a> {
         distances: &[f64],
     ) -> Option<f64> {
         let (mut leader, mut most) = (site, 0.0);
+        // Find the prediction of the largest weight.
         for (other, weight) in believers.clone() {
             if weight > most {
                 (leader, most) = (other, weight);
@@ -177,6 +178,7 @@ impl<'a> LevelSweep<'a> {
             return None;
         }
         let first = distances[leader] + self.step(site, leader);
+        // Average the differences to it, weighted down where they are large.
         let (mut sum, mut weights) = (0.0, most);
         for (other, weight) in believers {
             if other != leader {
@@ -285,6 +287,7 @@ fn trust(difference: f64, spacing: f64) -> f64 {
 #[inline]
 pub(super) fn step(way: DVec3, sum: DVec3, normal: DVec3) -> f64 {
     let up = normal.length_squared();
+    // Drop the component of the summed orientations along the normal.
     let consensus = if up > 0.0 {
         sum - normal * (sum.dot(normal) / up)
     } else {
