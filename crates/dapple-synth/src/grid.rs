@@ -59,7 +59,7 @@ impl<C: Colors> Grid<C> {
                     target.copy_from_slice(self.colors.of(above + left));
                     continue;
                 }
-                // Between pixels: take the mean of four, of which two or four are distinct.
+                // Between pixels: take the mean of four values. Between two pixels each of them counts twice.
                 let [a, b] = [left, right].map(|column| self.colors.of(above + column));
                 let [c, d] = [left, right].map(|column| self.colors.of(below + column));
                 for (channel, value) in target.iter_mut().enumerate() {

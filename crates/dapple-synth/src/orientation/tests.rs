@@ -1,4 +1,4 @@
-//! Fields of orientations on surfaces where they are known.
+//! Tests of orientation fields on surfaces with known fields.
 
 mod symmetric;
 
@@ -9,14 +9,14 @@ use crate::{Hierarchy, SiteIdx};
 use dapple_mesh::rotation;
 use proptest::prelude::*;
 
-/// Rounding of some hundred sums of unit vectors.
+/// Tolerance: rounding of some hundred sums of unit vectors.
 const ROUNDING: f64 = 1e-12;
 
 fn toward(at: DVec3, vector: DVec3) -> Direction {
     Direction { at, vector }
 }
 
-/// Fails unless every vector is a unit tangent.
+/// Asserts that every vector is a unit tangent vector.
 fn assert_tangent(hierarchy: &Hierarchy, orientation: &Orientation) {
     let normals = hierarchy.sites().normals();
     assert_eq!(orientation.vectors().len(), normals.len());
@@ -32,7 +32,7 @@ fn assert_tangent(hierarchy: &Hierarchy, orientation: &Orientation) {
     }
 }
 
-/// The site nearest to a position, by looking at all.
+/// Site nearest to a position, by a search through all sites.
 fn nearest(hierarchy: &Hierarchy, at: DVec3) -> usize {
     let positions = hierarchy.sites().positions();
     let key = |&site: &usize| (positions[site].distance(at), site);
@@ -52,7 +52,7 @@ fn orientation_is_constant_on_a_plane_with_one_direction() {
         let components = components(graph);
         let own = components[nearest(&hierarchy, direction.at)];
         for (site, vector) in orientation.vectors().iter().enumerate() {
-            // Sites that nothing connects to the direction run along the axis.
+            // Components without the direction are oriented along the axis.
             let wanted = if components[site] == own {
                 wanted
             } else {
@@ -87,8 +87,8 @@ fn orientation_turns_with_the_mesh_and_the_directions() {
     let turned = sites_on(moved(&sphere(), |position| turn * position), 1500, 3);
     let plain = Orientation::new(&hierarchy, &directions).unwrap();
     let field = Orientation::new(&turned, &turned_directions).unwrap();
-    // The sites may differ where rounding decides, so the fields are compared as fields: nearly all sites have the vector
-    // of the nearest site of the other one, within the turn of the field over a spacing.
+    // Rounding can move sites, so the fields are compared by position: at nearly all sites the vector equals the vector
+    // of the nearest site of the other field, within the change of the field over a spacing.
     let near = (0..hierarchy.sites().len()).filter(|&site| {
         let other = nearest(&turned, turn * hierarchy.sites().positions()[site]);
         (turn * plain.vectors()[site]).distance(field.vectors()[other]) < 0.1
@@ -113,7 +113,8 @@ fn orientation_follows_a_rotation_of_the_directions() {
     let field = Orientation::new(&hierarchy, &turned).unwrap();
     let components = components(hierarchy.levels()[0].graph());
     for (site, (a, b)) in plain.vectors().iter().zip(field.vectors()).enumerate() {
-        // The same arithmetic but for the rounding of the turn, which the solver may amplify up to its tolerance.
+        // The arithmetic is the same except for the rounding of the rotation, which the solver amplifies up to its
+        // tolerance.
         assert!(
             components[site] != 0 || (turn * *a).distance(*b) < 1e-3,
             "site {site}: {a} became {b}"
@@ -135,7 +136,7 @@ fn orientation_goes_through_the_directions_at_their_sites() {
     let hierarchy = sites_on(sphere(), 4000, 4);
     let directions: Vec<Direction> = (0..12)
         .map(|i| {
-            // A spiral of golden angles keeps them apart.
+            // A golden-angle spiral keeps the directions apart.
             let z = (f64::from(2 * i) - 11.0) / 12.0;
             let around = rotation(DVec3::Z, 2.4 * f64::from(i));
             let at = around * DVec3::new((1.0 - z * z).sqrt(), 0.0, z);
@@ -164,7 +165,7 @@ fn orientation_goes_through_the_directions_at_their_sites() {
 
 #[test]
 fn orientation_solves_the_averages_on_one_level() {
-    // Oracle: repeating equation 4 with projection until it settles, as the paper does.
+    // Oracle: equation 4 with projection, repeated until it converges, as in the paper.
     let hierarchy = sites_on(sphere(), 120, 1);
     let directions = [
         toward(DVec3::X, DVec3::Y),
@@ -192,7 +193,7 @@ fn orientation_solves_the_averages_on_one_level() {
         }
     }
     for (site, (found, wanted)) in orientation.vectors().iter().zip(vectors).enumerate() {
-        // The solver's tolerance of 1e-5, amplified by some hundred steps across the surface.
+        // Tolerance: the solver's 1e-5, amplified by some hundred steps across the surface.
         assert!(
             wanted == DVec3::ZERO || found.distance(wanted.normalize()) < 1e-3,
             "site {site}: {found} {wanted}"

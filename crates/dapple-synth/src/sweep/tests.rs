@@ -1,4 +1,4 @@
-//! Sweep distances on surfaces where they are known.
+//! Tests of sweep distances on surfaces with known distances.
 
 use super::level::step;
 use super::*;
@@ -13,8 +13,8 @@ fn along(hierarchy: &Hierarchy, vector: DVec3) -> Orientation {
     Orientation::from_fn(hierarchy, |_, _| vector)
 }
 
-/// The share of the edges of the finest level along which the distance rises as the field does, of those that are not
-/// across it.
+/// Fraction of the edges of the finest level along which the distance increases in the direction of the field. Edges
+/// across the field are not counted.
 fn rising_share(hierarchy: &Hierarchy, orientation: &Orientation, sweep: &Sweep) -> f64 {
     let (positions, normals) = (hierarchy.sites().positions(), hierarchy.sites().normals());
     let (mut rising, mut count) = (0, 0);
@@ -36,7 +36,7 @@ fn rising_share(hierarchy: &Hierarchy, orientation: &Orientation, sweep: &Sweep)
     f64::from(rising as u32) / f64::from(count)
 }
 
-/// The spread of the difference of two columns, after its mean is taken out: root mean square.
+/// Standard deviation of the difference of two columns.
 fn spread(a: &[f64], b: &[f64]) -> f64 {
     let n = a.len() as f64;
     let mean = a.iter().zip(b).map(|(a, b)| a - b).sum::<f64>() / n;
@@ -57,7 +57,7 @@ fn sweep_is_the_coordinate_on_a_plane() {
         for level in 0..n_levels {
             for (site, distance) in sweep.distances(level).iter().enumerate() {
                 let wanted = (positions[site] - positions[0]).dot(vector);
-                // Every step along the way is exact, so that only rounding and its growth in the solver remain.
+                // Tolerance: every Δ is exact, so the error is rounding and its growth in the solver.
                 assert!(
                     (distance - wanted).abs() < 1e-9,
                     "level {level} of {n_levels}, site {site}: {distance} instead of {wanted}"
@@ -128,7 +128,7 @@ fn sweep_turns_with_the_mesh_and_the_directions() {
     let found: Vec<f64> = (0..distances.len())
         .map(|site| turned[near(site)])
         .collect();
-    // Sites may differ where rounding decides, by less than a spacing of 0.03.
+    // Rounding can move sites, by less than a spacing of 0.03.
     assert!(
         spread(&found, &distances) < 0.01,
         "{}",
@@ -153,7 +153,7 @@ fn sweep_rises_along_smooth_fields() {
     let sweep = Sweep::new(&hierarchy, &orientation, None).unwrap();
     let share = rising_share(&hierarchy, &orientation, &sweep);
     assert!(share > 0.999, "{share} along a tube");
-    // A flat facet for the round wall makes edges shorter than they are around it, not along it.
+    // The facets of the tube shorten distances around it, but not along it.
     let heights: Vec<f64> = hierarchy
         .sites()
         .positions()
@@ -174,7 +174,7 @@ fn sweep_around_a_tube_tears_along_a_line_only() {
         let orientation = Orientation::from_fn(&hierarchy, |_, normal| DVec3::Z.cross(normal));
         let sweep = Sweep::new(&hierarchy, &orientation, None).unwrap();
         let share = rising_share(&hierarchy, &orientation, &sweep);
-        // The tear crosses one ring of edges out of some 70 around the tube.
+        // The tear takes one edge out of about 70 around the tube.
         assert!(share > 0.96, "{n_levels} levels: {share}");
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         for &distance in sweep.distances(0) {
@@ -216,7 +216,7 @@ fn anchor_shifts_the_distances() {
                 "the anchor is where s is zero"
             );
             for level in 0..n_levels {
-                // The weights of edges follow the distances, which start from the anchor.
+                // The edge weights depend on the distances, which start at the anchor.
                 let spread = spread(moved.distances(level), plain.distances(level));
                 assert!(
                     spread < 0.02 * hierarchy.levels()[level].spacing(),
@@ -229,7 +229,7 @@ fn anchor_shifts_the_distances() {
 
 #[test]
 fn sweep_solves_equation_5_on_one_level() {
-    // Oracle: repeating equation 5 until it settles, as the paper does, with weights as in the result.
+    // Oracle: equation 5, repeated until it converges, as in the paper, with the edge weights of the result.
     let hierarchy = sites_on(cap(), 150, 1);
     let orientation = Orientation::from_fn(&hierarchy, |at, _| DVec3::new(at.y + 1.0, at.x, 0.0));
     let sweep = Sweep::new(&hierarchy, &orientation, None).unwrap();
@@ -262,7 +262,7 @@ fn sweep_solves_equation_5_on_one_level() {
     }
     for (site, &distance) in sweep.distances(0).iter().enumerate() {
         let wanted = distances[site] - distances[0];
-        // The weights are those of three rounds, which is near but not at their end.
+        // Tolerance: after three rounds the edge weights have nearly, but not fully, converged.
         assert!(
             components[site] != 0 || (distance - wanted).abs() < 2e-3,
             "site {site}: {distance} {wanted}"
@@ -279,7 +279,7 @@ fn refined_levels_are_near_the_solution() {
     let finest = &hierarchy.levels()[0];
     let solved =
         LevelSweep::new(&hierarchy, &orientation, 0).solve(&components(finest.graph()), None);
-    // The sweeps leave the long waves of the error of the coarser level, which measures with longer edges.
+    // Sweeps remove only short waves of the error. The coarser level, with its longer edges, leaves long waves.
     let spread = spread(refined.distances(0), &solved) / finest.spacing();
     assert!(spread < 0.3, "{spread} spacings");
 }

@@ -1,11 +1,12 @@
-//! Fields whose conformal factor is known.
+//! Tests of conformal scales on fields with a known conformal factor.
 
 use super::shifts;
 use crate::shapes::{sites_on, sphere, square, torus, two_squares};
 use crate::{Hierarchy, HierarchyOptions, Orientation, SiteIdx, Symmetry};
 use glam::DVec3;
 
-/// Fails unless the sizes of sites that count are in proportion to `wanted`, up to `most` of it on the average.
+/// Asserts that the scales are proportional to `wanted` at the sites for which `counts` holds. `most` is the maximum
+/// relative error, as a root mean square.
 fn assert_in_proportion(
     hierarchy: &Hierarchy,
     orientation: &Orientation,
@@ -32,7 +33,7 @@ fn assert_in_proportion(
 
 #[test]
 fn sizes_grow_with_the_distance_from_the_middle_of_rays_and_circles() {
-    // The maps are logarithms, whose derivative is the inverse of the distance.
+    // The conformal maps are logarithms, whose derivative is the inverse of the distance.
     let middle = DVec3::new(-0.3, 0.5, 0.0);
     for n_levels in [1, 3] {
         let hierarchy = sites_on(square(), 2000, n_levels);
@@ -40,7 +41,8 @@ fn sizes_grow_with_the_distance_from_the_middle_of_rays_and_circles() {
         let circles = Orientation::from_fn(&hierarchy, |at, normal| normal.cross(at - middle));
         for orientation in [rays, circles] {
             let distance = |at: DVec3| at.distance(middle);
-            // First-order fits of the turn, and between the 130 sites of the coarsest level values are interpolated.
+            // Tolerance: rotation rates are first-order fits, and values are interpolated between the 130 sites of the
+            // coarsest level.
             assert_in_proportion(&hierarchy, &orientation, distance, |_| true, 0.03);
         }
     }
@@ -53,7 +55,7 @@ fn sizes_are_those_of_mercator_on_a_sphere_and_follow_the_rings_of_a_torus() {
         DVec3::Z - normal * normal.dot(DVec3::Z)
     });
     let from_axis = |at: DVec3| at.truncate().length();
-    // At the poles the size is 0.
+    // At the poles the scale is 0.
     let is_far = |at: DVec3| from_axis(at) > 0.3;
     assert_in_proportion(&hierarchy, &meridians, from_axis, is_far, 0.05);
 
@@ -72,10 +74,10 @@ fn sizes_are_alike_along_a_straight_field_and_along_turns_of_it() {
     let hierarchy = sites_on(square(), 2000, 2);
     let straight = Orientation::from_fn(&hierarchy, |_, _| DVec3::new(0.6, -0.8, 0.0));
     for scale in straight.conformal_scales(&hierarchy, [0.5, 1.0]).unwrap() {
-        // The middle of the bounds is their geometric mean.
+        // In logarithms, the center of the bounds is their geometric mean.
         assert!((scale - 0.5_f32.sqrt()).abs() < 1e-6, "{scale}");
     }
-    // Cuts run between eight singularities.
+    // This field has cuts between eight singularities.
     let hierarchy = sites_on(sphere(), 2000, 2);
     let (axis, symmetry) = (Orientation::AXIS, Symmetry::Four);
     let four = Orientation::symmetric(&hierarchy, &[], axis, symmetry).unwrap();
@@ -112,7 +114,7 @@ fn parts_that_are_not_connected_have_sizes_of_their_own() {
 #[test]
 fn shifts_take_the_longest_run_to_the_middle_of_the_bounds() {
     let values = [5.0, 0.0, 0.5, 9.0, 1.0, 9.25, 30.0];
-    // Of component 0: 0, 0.5 and 1 fit within a width of 1, and are centered.
+    // The values 0, 0.5 and 1 of component 0 are the longest run within a width of 1, and are centered.
     let found = shifts(&[0, 0, 0, 0, 0, 0, 1], &values, [2.0, 3.0]);
     assert_eq!(found, [2.0, -27.5]);
     assert!(shifts(&[], &[], [0.0, 1.0]).is_empty());

@@ -1,4 +1,4 @@
-//! Fields of two and four directions: their singularities, what is given, and which turns are chosen.
+//! Tests of fields with two and four directions: singularities, given directions, and combing.
 
 use super::*;
 use crate::bake_normals::turned as carried;
@@ -16,7 +16,7 @@ fn field(hierarchy: &Hierarchy, directions: &[Direction], symmetry: Symmetry) ->
     Orientation::symmetric(hierarchy, directions, Orientation::AXIS, symmetry).unwrap()
 }
 
-/// The quotient of two complex numbers of length 1.
+/// Quotient of two unit complex numbers.
 fn over(number: DVec2, other: DVec2) -> DVec2 {
     DVec2::new(other.x, -other.y).rotate(number)
 }
@@ -25,8 +25,8 @@ fn angle(number: DVec2) -> f64 {
     libm::atan2(number.y, number.x)
 }
 
-/// The index of the field in each triangle of sites, times the number of directions: how often the power of the field turns
-/// around it, without what a frame turns that is carried around. And the Euler characteristic of the triangles.
+/// Index of the field in each triangle of sites times the number of directions, and the Euler characteristic of the
+/// mesh. The index is the number of turns of the field's power around the triangle, minus the holonomy of the frame.
 fn indices(mesh: &Mesh, normals: &[DVec3], orientation: &Orientation) -> (Vec<f64>, i64) {
     let symmetry = orientation.symmetry();
     let n = symmetry.quarters().len() as f64;
@@ -65,7 +65,8 @@ fn indices(mesh: &Mesh, normals: &[DVec3], orientation: &Orientation) -> (Vec<f6
     )
 }
 
-/// The singularities of a field on the finest level, and what their indices sum to, in n-ths of a turn.
+/// Number of singularities of a field on the finest level, the sum of their indices in n-ths of a turn, and the Euler
+/// characteristic.
 fn singularities(hierarchy: &Hierarchy, orientation: &Orientation) -> (usize, f64, i64) {
     let mesh = hierarchy.triangles(0).unwrap().mesh;
     let (indices, euler) = indices(&mesh, hierarchy.sites().normals(), orientation);
@@ -111,8 +112,8 @@ fn indices_sum_to_the_euler_characteristic() {
                     (sum - n * euler as f64).abs() < 1e-6,
                     "{name} {symmetry}: {sum}"
                 );
-                // The least number there can be, each by one n-th of a turn. A field of four on this torus is
-                // smoother with some pairs of singularities inside than with none.
+                // The minimum number of singularities, each of index 1/n. On this torus, a field of four directions is
+                // smoother with some pairs of singularities inside than without any.
                 if directions.is_empty() && (euler > 0 || symmetry == Symmetry::Two) {
                     assert_eq!(count as f64, n * euler as f64, "{name} {symmetry}");
                 }
@@ -140,7 +141,7 @@ fn given_directions_are_turns_of_those_of_the_field() {
                 "{symmetry}: {found} {wanted}"
             );
         }
-        // Both ways are the same direction, and cancel no longer.
+        // Opposite vectors are equivalent directions, so they do not cancel.
         let ways = [toward(DVec3::X, DVec3::Y), toward(DVec3::X, DVec3::NEG_Y)];
         assert_eq!(
             field(&hierarchy, &ways, symmetry),
@@ -182,7 +183,7 @@ fn field_on_a_plane_is_constant() {
     }
 }
 
-/// The lowest eigenvalue of the matrix of a level, all of which is written down.
+/// Lowest eigenvalue of the system of a level, from its dense matrix.
 fn naive_eigenvalue(system: &smooth::Smooth<'_>, n_sites: usize) -> f64 {
     let size = 2 * n_sites;
     let mut matrix = vec![0.0; size * size];
@@ -245,7 +246,7 @@ fn cuts_are_few_and_only_between_singularities() {
             }
         }
         assert!(cut * 20 < all, "{symmetry}: {cut} of {all} edges are cut");
-        // Turns of a neighbor are undone by turns of the site.
+        // Any rotation of a neighbor is matched by a rotation of the site.
         for &quarters in symmetry.quarters() {
             let site = 17;
             let other = graph.neighbors(SiteIdx(17))[0].index();

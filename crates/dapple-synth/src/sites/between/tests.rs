@@ -1,4 +1,4 @@
-//! The middles of edges.
+//! Tests of edge midpoints, against a Delaunay triangulation by spade.
 
 use super::{CENTER_REACH, REACH, edges};
 use crate::shapes::{geodesic_sphere, plane};
@@ -21,7 +21,7 @@ impl HasPosition for Site {
     }
 }
 
-/// The middles of the edges of the triangulation that the limits allow, in order.
+/// Midpoints of the edges of a triangulation that the limits on length and circle center allow.
 fn middles_by_spade(positions: &[DVec2], spacing: f64) -> Vec<[f64; 2]> {
     let mut triangulation = DelaunayTriangulation::<Site>::new();
     for &position in positions {
@@ -31,7 +31,7 @@ fn middles_by_spade(positions: &[DVec2], spacing: f64) -> Vec<[f64; 2]> {
     for edge in triangulation.undirected_edges() {
         let [a, b] = edge.positions().map(|point| DVec2::new(point.x, point.y));
         let middle = 0.5 * (a + b);
-        // The nearest of the centers between those of the two triangles.
+        // Empty circles through both points are centered between the circumcenters of the two triangles.
         let across = (b - a).perp().normalize();
         let mut span = [f64::NEG_INFINITY, f64::INFINITY];
         let directed = edge.as_directed();
@@ -90,7 +90,7 @@ fn edges_are_those_of_the_triangulation() {
 fn a_closed_surface_has_three_edges_for_each_point() {
     let surface = geodesic_sphere(3);
     let n_edges = edges(&surface, &even(&surface, 2000)).len();
-    // Euler: 3 n - 6, up to a few that neighbors see differently.
+    // Euler: 3 n - 6 edges, except for a few that neighbors disagree about.
     assert!((5990..=6000).contains(&n_edges), "{n_edges} edges");
 }
 
@@ -118,7 +118,7 @@ fn thirds_lie_on_the_edge() {
     for edge in edges(&surface, &points) {
         let [a, b] = edge.thirds(&surface).map(|point| surface.position(point));
         let middle = surface.position(edge.middle);
-        // Rounding of walks over unit lengths.
+        // Tolerance: rounding of walks over unit lengths.
         assert!((0.5 * (a + b)).distance(middle) < 1e-12, "{edge:?}");
         assert!(
             (a.distance(b) * 3.0 - edge.length).abs() < 1e-12,

@@ -1,4 +1,4 @@
-//! Cells beside a search through all sites.
+//! Tests of Voronoi cells against a brute-force oracle and a triangulation by spade.
 
 use super::*;
 use dapple_hash::{Seed, hash1, unit_f64};
@@ -11,7 +11,7 @@ fn random(seed: u64, n: i64, counter: u32) -> Vec<DVec2> {
         .collect()
 }
 
-/// The neighbors of the origin, sorted, and whether all around are joined.
+/// Tags of the neighbors of the origin, sorted, and whether all of them are joined.
 fn star(points: &[DVec2]) -> (Vec<u32>, bool) {
     let mut sorted: Vec<(u32, DVec2)> = (0..).zip(points.iter().copied()).collect();
     sorted.sort_by(|a, b| a.1.length_squared().total_cmp(&b.1.length_squared()));
@@ -26,7 +26,7 @@ fn star(points: &[DVec2]) -> (Vec<u32>, bool) {
     (tags, all.iter().all(|neighbor| neighbor.joined))
 }
 
-/// The neighbors of the origin in a triangulation of it and the points.
+/// Neighbors of the origin in spade's triangulation of the origin and the points.
 fn spade_star(points: &[DVec2]) -> Vec<u32> {
     let mut triangulation = DelaunayTriangulation::<Point2<f64>>::new();
     let center = triangulation.insert(Point2::new(0.0, 0.0)).unwrap();
@@ -42,8 +42,8 @@ fn spade_star(points: &[DVec2]) -> Vec<u32> {
     star
 }
 
-/// Points that lie on an empty circle through the origin, by trying all circles: they, and nothing else, are neighbors.
-/// A neighbor has a side of positive length, or a ray, or a line.
+/// Neighbors of the origin by brute force: the points that lie on an empty circle through the origin. The side of a
+/// neighbor is a segment of positive length, a ray, or a line.
 fn naive_star(points: &[DVec2]) -> Vec<u32> {
     let in_circle = |a: DVec2, b: DVec2, c: DVec2| {
         order(incircle(coord(DVec2::ZERO), coord(a), coord(b), coord(c)))
@@ -57,8 +57,8 @@ fn naive_star(points: &[DVec2]) -> Vec<u32> {
                 .enumerate()
                 .filter(move |(other, _)| *other != tag as usize)
         };
-        // Circles through the origin and a: on the left the center may go as far as the first point allows, and on the
-        // right too. They are found as the points that no other one is inside of.
+        // Circles through the origin and a: on either side the first point hit bounds the position of the center. That
+        // point is the one whose circle has no other point of this side inside.
         let left = others().filter(|(_, b)| turns(a, *b).is_gt());
         let right = others().filter(|(_, b)| turns(a, *b).is_lt());
         let first_left = left.reduce(|b, c| if in_circle(a, b.1, c.1).is_gt() { c } else { b });
@@ -87,7 +87,7 @@ fn cell_has_the_neighbors_of_spade_for_random_points() {
 
 #[test]
 fn cell_has_the_neighbors_of_the_naive_rule_on_lattices() {
-    // Small whole numbers: most points are on a line or on a circle with others.
+    // With small integer coordinates, most points are on a line or a circle with others.
     for seed in 0..2000 {
         let size = 2.0 + (seed % 4) as f64;
         let mut points: Vec<DVec2> = random(seed, 3 + seed as i64 % 12, 0)
@@ -107,7 +107,7 @@ fn cell_has_the_neighbors_of_the_naive_rule_on_lattices() {
 
 #[test]
 fn cell_has_the_neighbors_of_the_naive_rule_nearly_on_a_circle() {
-    // Points of a circle that goes through the origin, off by few units of rounding.
+    // Points on a circle through the origin, off by a few rounding units.
     for seed in 0..500 {
         let center = random(seed, 1, 7)[0];
         let points: Vec<DVec2> = random(seed, 9, 0)
@@ -133,7 +133,7 @@ fn cell_has_the_neighbors_of_the_naive_rule_nearly_on_a_circle() {
 fn cell_takes_no_diagonal_of_a_square_and_of_an_octagon() {
     let square = [[1.0, 0.0], [0.0, 1.0], [1.0, 1.0]].map(DVec2::from);
     assert_eq!(star(&square).0, [0, 1], "the corner across is no neighbor");
-    // The corners of an octagon with whole coordinates, from one of them.
+    // Corners of an octagon with integer coordinates, relative to one of them.
     let octagon = [
         [2.0, 0.0],
         [3.0, 1.0],
@@ -144,7 +144,7 @@ fn cell_takes_no_diagonal_of_a_square_and_of_an_octagon() {
         [-1.0, 1.0],
     ];
     let octagon = octagon.map(DVec2::from);
-    // In this order the middle ones come first and must go again.
+    // All corners lie on one circle through the origin, so only the first ones on either side are neighbors.
     assert_eq!(star(&octagon).0, [0, 6], "only the corners beside it");
 }
 
@@ -170,7 +170,7 @@ fn cell_is_open_until_points_are_all_around() {
         cell.clip(at.into(), tag as u32);
         assert_eq!(joined(&cell), triangles, "after point {tag}");
     }
-    // The largest circle goes through the origin, [1, 0] and [0, -1.5].
+    // The largest circle passes through the origin, [1, 0] and [0, -1.5].
     assert!(
         (cell.diameter_sq() - 3.25).abs() < 1e-12,
         "the bound is tight but for rounding: {}",

@@ -1,4 +1,4 @@
-//! Graphs of sites beside the triangulation of the plane.
+//! Tests of site graphs, against a triangulation of the plane.
 
 use super::*;
 use crate::shapes::{even_sites, geodesic_sphere, random_sites, sheets, spacing, torus};
@@ -13,8 +13,8 @@ fn graph_of_a_sphere_is_nearly_a_triangulation() {
     let surface = geodesic_sphere(3);
     let sites = even_sites(&surface, 1000, 1);
     let connected = connect(&sites, spacing(&surface, 1000));
-    // Euler: a triangulated sphere has 3 n - 6 edges. Forced edges are few: the research counted up to 1.2 % at 1000
-    // sites.
+    // Euler: a triangulated sphere has 3 n - 6 edges. One-sided edges are few: our measurements found up to 1.2 % at
+    // 1000 sites.
     let expected = 3 * sites.len() - 6;
     let edges = connected.graph.n_edges();
     assert!(
@@ -169,7 +169,7 @@ fn value_stability_connected() {
             DVec3::new(part(0), part(1), part(2)).normalize()
         })
         .collect();
-    // That of 500 even sites on a sphere of radius 1.
+    // The spacing of 500 evenly spaced sites on a sphere of radius 1.
     let connected = Connected::new(&positions, &positions, 0.1704).unwrap();
     let ends = |site: u32| {
         connected

@@ -1,4 +1,4 @@
-//! The measure of evenness on points whose distances are known.
+//! Tests of the evenness measure on points with known distances.
 
 use super::{evenness, hexagonal_spacing};
 use crate::shapes::{plane, scraps, sheet};
@@ -44,7 +44,7 @@ fn evenness_of_random_points_is_low() {
     let surface = plane();
     let sites = Sites::new(&surface, scatter(&surface, 20_000, Seed(3)));
     let even = evenness(&surface, &sites, 20_000);
-    // Half over the square root of the density: 0.4653; borders add a little, and the standard error is 0.0017.
+    // Expected: 0.5 over the square root of the density, 0.4653. Borders add a little; the standard error is 0.0017.
     assert!((even.mean - 0.467).abs() < 0.007, "{even:?}");
     assert!(even.min < 0.02, "{even:?}");
 }
@@ -75,7 +75,7 @@ fn evenness_of_few_sites_is_finite() {
     let surface = scraps(2);
     let sites = Sites::new(&surface, scatter(&surface, 1, Seed(1)));
     assert_eq!(evenness(&surface, &sites, 0).mean, 0.0);
-    // Nothing within four spacings.
+    // A single site has no neighbor within four spacings.
     assert_eq!(evenness(&surface, &sites, 5).mean, 4.0);
     assert_eq!(hexagonal_spacing(1.0, 0), 0.0);
 }

@@ -1,4 +1,4 @@
-//! The grid beside a search through all sites.
+//! Tests of the grid against a search through all sites.
 
 use super::{BRICKS_LEAST, SITES_PER_BRICK, SiteGrid};
 use crate::SiteIdx;
@@ -19,7 +19,7 @@ fn visited(grid: &SiteGrid, center: DVec3, radius: f64) -> Vec<u32> {
     sites
 }
 
-/// The visited sites that are in the ball, lowest first.
+/// Visited sites that are in the ball, in ascending order.
 fn in_ball(grid: &SiteGrid, positions: &[DVec3], center: DVec3, radius: f64) -> Vec<u32> {
     let mut sites = visited(grid, center, radius);
     sites.retain(|&site| positions[site as usize].distance(center) < radius);
@@ -81,7 +81,7 @@ fn nothing_is_visited_in_a_ball_of_negative_radius() {
 
 #[test]
 fn order_depends_on_positions_and_not_on_numbers() {
-    // The radius of all of it takes the way through all bricks, that of a part of it the way through the table.
+    // The largest radius covers the whole grid and scans all bricks; a small one looks bricks up in the table.
     let positions = random(500, 7);
     let turned: Vec<DVec3> = positions.iter().rev().copied().collect();
     let [grid, other] = [&positions, &turned].map(|positions| SiteGrid::new(positions, 0.02));
@@ -111,7 +111,7 @@ fn order_is_the_same_through_the_table_and_through_all_bricks() {
     });
     let ball = visited(&grid, DVec3::splat(0.45), 0.15);
     assert!(ball.len() > 20, "{} sites", ball.len());
-    // The ball's cells are those between the same two, up to rounding of its ends.
+    // The ball's box of cells is the same as that of `visit_all`, up to rounding of its ends.
     let inside = |site: &u32| {
         positions[*site as usize].cmpgt(DVec3::splat(0.3)).all()
             && positions[*site as usize].cmplt(DVec3::splat(0.6)).all()

@@ -1,11 +1,11 @@
-//! Interpolation beside sums over all sites.
+//! Tests of interpolation against sums over all sites.
 
 use super::*;
 use crate::shapes::{even_sites, geodesic_sphere, sheets, spacing};
 use crate::{SiteGrid, Sites};
 use dapple_mesh::Surface;
 
-/// Calls `check` with about the given number of even sites of a surface.
+/// Calls `check` with about `n_sites` evenly spaced sites of a surface.
 fn with_sites(surface: &Surface, n_sites: usize, check: impl Fn(&Oriented<'_>)) {
     let sites: Sites = even_sites(surface, n_sites, 11);
     let spacing = spacing(surface, n_sites);
@@ -18,7 +18,7 @@ fn with_sites(surface: &Surface, n_sites: usize, check: impl Fn(&Oriented<'_>)) 
     });
 }
 
-/// Equation 1, over all sites.
+/// Equation 1, summed over all sites.
 fn naive(sites: &Oriented<'_>, column: &[f64], position: DVec3, normal: DVec3) -> Option<f64> {
     let near = |&site: &usize| sites.normals[site].dot(normal) >= 0.0;
     let x = |site: usize| sites.positions[site].distance(position) / (1.1 * sites.spacing);
@@ -50,14 +50,14 @@ fn interpolation_equals_the_naive_sum() {
             .iter()
             .zip(surface.mesh().vertex_normals())
         {
-            // On the surface, then where only the nearest site counts, then where there is none.
+            // On the surface, then where only the nearest site counts, then where no site is in reach.
             for scale in [1.0, 1.5, 4.0] {
                 let position = *at * scale;
                 let value = sites.interpolate(&column, position, normal);
                 let expected = naive(sites, &column, position, normal);
                 assert_eq!(value.is_some(), expected.is_some(), "at {position}");
                 let difference = value.unwrap_or(0.0) - expected.unwrap_or(0.0);
-                // Two orders of summation of values up to 4; tiny weights lose more.
+                // Tolerance: the orders of summation differ, for values up to 4; tiny weights lose more digits.
                 assert!(
                     difference.abs() < 1e-9,
                     "at {position}: {value:?}, not {expected:?}"
@@ -97,7 +97,7 @@ fn interpolation_stays_in_the_range_of_the_sites_in_reach() {
                 .collect();
             let [low, high] =
                 [f64::min, f64::max].map(|pick| near.iter().copied().reduce(pick).unwrap());
-            // Rounding of a few values up to 100.
+            // Tolerance: rounding of a few values up to 100.
             assert!(
                 value > low - 1e-12 && value < high + 1e-12,
                 "{value} at {at}"
@@ -121,12 +121,12 @@ fn interpolation_of_a_linear_function_is_near_it() {
             );
             let error =
                 (sites.interpolate(&column, at, DVec3::Z).unwrap() - 2.0 * at.x + at.y).abs();
-            // The mean of sites in a ball is in the ball.
+            // The weighted mean position of sites in a ball is in the ball.
             assert!(error < slope * 1.1 * sites.spacing, "{error} at {at}");
             let inside = at.x.min(at.y).min(1.0 - at.x).min(1.0 - at.y) > 1.1 * sites.spacing;
             if inside {
-                // Where a single site counts it is no farther away than the sites' least distance, or a dart would have
-                // fit.
+                // Where a single site counts, it is at most the minimum distance of sites away; otherwise another site
+                // would fit there.
                 assert!(
                     error < slope * 0.75 * sites.spacing,
                     "{error} inside, at {at}"
@@ -147,7 +147,7 @@ fn interpolation_at_a_site_far_from_others_is_its_value() {
     let surface = sheets(&[0.0]);
     with_sites(&surface, 400, |sites| {
         let column: Vec<f64> = sites.positions.iter().map(|at| at.x).collect();
-        // A position off the surface sees the nearest site alone.
+        // At a position off the surface only the nearest site counts.
         let at = sites.positions[17] + DVec3::Z * (1.2 * sites.spacing);
         assert_eq!(
             sites.interpolate(&column, at, DVec3::Z),

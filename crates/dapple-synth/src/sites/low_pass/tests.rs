@@ -1,11 +1,11 @@
-//! The low-pass filter beside dense sums, and what it keeps.
+//! Tests of the low-pass filter against dense sums, and of its invariants.
 
 use super::*;
 use crate::Connected;
 use crate::shapes::{even_sites, geodesic_sphere, spacing};
 use dapple_hash::{Seed, hash1, unit_f64};
 
-/// Even sites of a sphere, and their graph.
+/// Evenly spaced sites of a sphere, and their graph.
 fn even(n_sites: usize) -> (Vec<DVec3>, SiteGraph) {
     let surface = geodesic_sphere(3);
     let sites = even_sites(&surface, n_sites, 21);
@@ -14,7 +14,7 @@ fn even(n_sites: usize) -> (Vec<DVec3>, SiteGraph) {
     (sites.positions().to_vec(), connected.graph)
 }
 
-/// A hexagonal lattice with sites at a distance of 1, its graph, and the site in the middle.
+/// A hexagonal lattice of spacing 1, its graph, and its central site.
 fn hexagonal(half: i32) -> (Vec<DVec3>, SiteGraph, usize) {
     let side = 2 * half + 1;
     let height = 0.75_f64.sqrt();
@@ -56,7 +56,7 @@ fn step_equals_equation_3() {
             .sum::<f64>()
             / sum;
         let expected = 0.7 * column[site] + 0.3 * mean;
-        // Rounding of values below 1.
+        // Tolerance: rounding of values below 1.
         assert!((filtered[site] - expected).abs() < 1e-14, "site {site}");
     }
 }
@@ -78,7 +78,7 @@ fn values_stay_in_the_range_of_the_neighbors() {
     let (positions, graph) = even(400);
     let filter = LowPass::new(&graph, &positions).unwrap();
     for t in [1e-3, 0.1, 0.99] {
-        // Few different values, so that bounds are met and not only approached.
+        // Few distinct values, so that bounds are reached exactly.
         let mut column: Vec<f32> = noise(positions.len())
             .iter()
             .map(|value| (value * 3.0).floor() as f32 / 3.0)
@@ -128,7 +128,7 @@ fn step_adds_half_t_to_the_variance_in_squared_spacings() {
             .sum()
     };
     for axis in [0, 1] {
-        // Twenty steps of variance t / 2, exact on a lattice but for rounding, which also makes weights differ a
+        // Twenty steps of variance t / 2: exact on a lattice, except for rounding, which also makes weights differ a
         // little.
         assert!(
             (moment(axis) - 1.0).abs() < 1e-9,
@@ -150,9 +150,9 @@ fn linear_function_on_a_lattice_does_not_change_inside() {
         .apply(&mut column, 0.1, 5)
         .unwrap();
     for (at, value) in positions.iter().zip(&column) {
-        // Five steps carry the border's doing five sites inward.
+        // In five steps the effect of the border reaches five sites inward.
         if at.x.abs() < 4.0 && at.y.abs() < 3.5 {
-            // Neighbors in opposite directions cancel up to rounding of values up to 50.
+            // Neighbors in opposite directions cancel, up to rounding of values up to 50.
             assert!((value - linear(at)).abs() < 1e-12, "{value} at {at}");
         }
     }
@@ -165,7 +165,7 @@ fn site_without_neighbors_keeps_its_value() {
     let filter = LowPass::new(&graph, &positions).unwrap();
     let mut column = [1.0, 2.0, 5.0, 4.0];
     filter.apply(&mut column, 0.25, 1).unwrap();
-    // The sites that are connected are at the same place.
+    // The two connected sites are at the same position.
     assert_eq!(column, [2.0, 2.0, 4.0, 4.0], "only connected sites change");
     assert_eq!(
         filter.weights(SiteIdx(2)),

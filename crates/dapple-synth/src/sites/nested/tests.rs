@@ -1,4 +1,4 @@
-//! Nested points: even on every level, and the same bits everywhere.
+//! Tests of nested points: evenly spaced on every level, with the same bits on every machine.
 
 use super::{morton, nested_points};
 use crate::shapes::{geodesic_sphere, plane, real, scraps, torus};
@@ -17,7 +17,7 @@ fn assert_even(surface: &Surface, counts: &[usize], seed: u64) {
     let sites = Sites::new(surface, points);
     for &count in counts {
         let even = evenness(surface, &sites, count);
-        // The bars of the project; measured are 0.92 and 0.6.
+        // The required minimum; measured values are 0.92 and 0.6.
         assert!(
             even.mean >= 0.88 && even.min >= 0.5,
             "{count} points, seed {seed}: {even:?}"

@@ -1,4 +1,4 @@
-//! Down- and upsampling beside the plain operations.
+//! Tests of down- and upsampling against the operations they consist of.
 
 use super::*;
 use crate::shapes::{geodesic_sphere, sheets};
@@ -72,7 +72,7 @@ fn constant_columns_stay_constant_up_and_down() {
 
 #[test]
 fn upsampling_gives_a_value_to_sites_far_from_all_coarser_ones() {
-    // With so few sites the coarsest level may have none on some of the sheets.
+    // With so few sites, some sheets may have no site of the coarsest level.
     let heights: Vec<f64> = (0..20).map(|sheet| f64::from(sheet) * 100.0).collect();
     let hierarchy = hierarchy(&sheets(&heights), 160);
     let n_coarse = hierarchy.levels()[2].n_sites();

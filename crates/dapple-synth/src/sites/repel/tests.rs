@@ -1,4 +1,4 @@
-//! Repulsion beside forces from all points, and how even it makes them.
+//! Tests of repulsion against forces from all points, and of the resulting evenness.
 
 use super::{Crowd, FACING, GAIN_FIRST, MARGIN, repel};
 use crate::shapes::{geodesic_sphere, plane, scraps, sheet, torus};
@@ -8,7 +8,7 @@ use dapple_hash::Seed;
 use dapple_mesh::{FaceIdx, Surface, SurfacePoint};
 use glam::{DVec2, DVec3};
 
-/// The push on a site from all others, by the formula, in the plane of its face.
+/// Push on a site from all others by the formula, in the plane of its face.
 fn naive_push(surface: &Surface, sites: &Sites, site: usize, radius: f64) -> DVec2 {
     let face = sites.points()[site].face;
     let mut sum = DVec2::ZERO;
@@ -39,7 +39,7 @@ fn push_equals_that_of_all_pairs() {
             let pushed = crowd.push(face, site, row);
             let pushed = surface.flatten(face, pushed);
             let naive = naive_push(&surface, &sites, site, radius);
-            // The order of the sum differs, and random points nearly meet, which makes large terms.
+            // Tolerance: the order of the sum differs, and some random points nearly coincide, which makes large terms.
             let scale = naive.length().max(radius) * 1e-9;
             assert!(
                 (pushed - naive).length() < scale,
@@ -60,7 +60,7 @@ fn lists_hold_all_neighbors_for_as_long_as_they_are_used() {
     }
     for (site, position) in crowd.positions.iter().enumerate() {
         let moved = position.distance(crowd.listed[site]);
-        // Rounding of the walk.
+        // Tolerance: rounding of the walk.
         assert!(
             moved <= 0.5 * MARGIN * radius * (1.0 + 1e-9),
             "site {site} moved by {moved}"
@@ -111,14 +111,14 @@ fn points_stay_inside_of_borders() {
     repel(&surface, &mut points, 0, 40);
     for &point in &points {
         let least = surface.weights(point).into_iter().fold(1.0, f64::min);
-        // Rounding, and what a point leans when it goes along a border.
+        // Tolerance: rounding, and the inward slope of walks along borders.
         assert!(least > -1e-6, "{point:?} has a weight of {least}");
     }
 }
 
 #[test]
 fn points_slide_along_borders() {
-    // Two points on one border of a square of two faces, next to each other: they go to its ends.
+    // Two points near each other on one border of a square of two faces slide to the ends of the border.
     let square = sheet([1, 1], [true; 2], |u, v| DVec3::new(u, v, 0.0));
     let surface = Surface::new(square).unwrap();
     let on_border = |x: f64| surface.project(FaceIdx(0), DVec3::new(x, 0.0, 0.0));
@@ -132,7 +132,7 @@ fn points_slide_along_borders() {
 
 #[test]
 fn sheets_that_face_away_do_not_push() {
-    // A thin box without sides: the same square twice, the second from below.
+    // Two parallel triangles that face away from each other, like the top and bottom of a thin box.
     let corner = |x: f64, y: f64, z: f64| DVec3::new(x, y, z);
     let positions = [0.0, 1e-3].map(|z| {
         [

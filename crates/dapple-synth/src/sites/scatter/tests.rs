@@ -1,4 +1,4 @@
-//! Random points: as many on each face as its area says.
+//! Tests of random points: uniform by area, and uniform within each face.
 
 use super::scatter;
 use crate::shapes::{scraps, torus};
@@ -22,14 +22,14 @@ fn points_lie_inside_of_their_faces() {
     let torus = torus(48, 24);
     for point in scatter(&torus, 2000, Seed(5)) {
         let least = torus.weights(point).into_iter().fold(1.0, f64::min);
-        // Rounding in the plane of the face.
+        // Tolerance: rounding in the plane of the face.
         assert!(least >= -1e-12, "{point:?} has a weight of {least}");
     }
 }
 
 #[test]
 fn faces_get_points_by_area() {
-    // Areas 1, 1/4, 1/16, ... of the first one's.
+    // Areas relative to the first face: 1, 1/4, 1/16, ...
     let surface = scraps(4);
     let n = 100_000;
     let mut counts = [0_u32; 4];
@@ -46,7 +46,7 @@ fn faces_get_points_by_area() {
 
 #[test]
 fn points_are_even_inside_of_a_face() {
-    // The mean of the weights of uniform points is 1/3 each, and of their squares 1/6.
+    // The weights of uniform points have a mean of 1/3 each, and their squares a mean of 1/6.
     let surface = scraps(1);
     let n = 50_000;
     let points = scatter(&surface, n, Seed(9));
@@ -58,7 +58,7 @@ fn points_are_even_inside_of_a_face() {
                 .sum::<f64>()
                 / n as f64
         };
-        // Five standard errors, of 0.24 and 0.20 for one point.
+        // Tolerance: five standard errors; the standard deviations of one point are 0.24 and 0.20.
         assert!((mean(1) - 1.0 / 3.0).abs() < 0.0053, "mean {}", mean(1));
         assert!(
             (mean(2) - 1.0 / 6.0).abs() < 0.0045,

@@ -1,9 +1,9 @@
-//! How many points the pieces of a surface get.
+//! Tests of the distribution of sites over the pieces of a surface.
 
 use super::Pieces;
 use crate::shapes::{scraps, torus};
 
-/// Webster's method, one site after the other.
+/// Webster's method, one site at a time.
 fn one_by_one(areas: &[f64], n: usize) -> Vec<usize> {
     let mut shares = vec![0; areas.len()];
     for _ in 0..n {

@@ -1,4 +1,4 @@
-//! Stars beside those of another triangulation.
+//! Tests of stars against a triangulation by spade.
 
 use super::*;
 use crate::shapes::{even_sites, geodesic_sphere, random_sites, sheets, spacing, torus};
@@ -29,7 +29,7 @@ fn stars_equal_spade(surface: &Surface, sites: &Sites, n_sites: usize) -> usize 
     compared
 }
 
-/// The star by triangulating all sites that count; none where the limit of the radius of empty circles could matter.
+/// Star by triangulating all sites in reach on the same sheet. `None` where the limit on empty circles could matter.
 fn spade_star(sites: &Oriented<'_>, center: SiteIdx) -> Option<Vec<u32>> {
     let tangent = Tangent::new(sites, center);
     let mut triangulation = DelaunayTriangulation::<Point2<f64>>::new();
@@ -108,7 +108,7 @@ fn star_keeps_to_its_sheet() {
 #[test]
 fn star_of_a_site_alone_is_empty() {
     let far = 2.0 * STAR_RADIUS * 1.001;
-    // One is too far away, one straight above, and one at the same place.
+    // One site is too far away, one is straight above, and one is at the same position.
     let positions = [DVec3::ZERO, DVec3::X * far, DVec3::Z, DVec3::ZERO];
     let grid = SiteGrid::new(&positions, 2.0);
     let sites = Oriented {
@@ -124,7 +124,7 @@ fn star_of_a_site_alone_is_empty() {
 
 #[test]
 fn star_keeps_the_distance_of_sites_on_a_slope() {
-    // In a plain projection the site on the steep slope would be the nearest one and hide the one behind it.
+    // In a plain projection, the site on the steep slope would be nearest and hide the site behind it.
     let positions = [
         DVec3::ZERO,
         DVec3::new(0.3, 0.0, 1.4),

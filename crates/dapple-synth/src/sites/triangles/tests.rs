@@ -1,4 +1,4 @@
-//! Triangles of sites: whole on even surfaces, and what is counted elsewhere.
+//! Tests of triangle meshes of sites: complete for evenly spaced sites, and with correct counts elsewhere.
 
 use super::*;
 use crate::SiteGrid;
@@ -17,7 +17,7 @@ fn triangles(positions: &[DVec3], normals: &[DVec3], spacing: f64) -> SiteTriang
     .unwrap()
 }
 
-/// The edges that have one triangle only; proves that none has two on the same side.
+/// Number of edges with a single triangle. Asserts that no edge has two triangles on one side.
 fn open_edges(mesh: &Mesh) -> usize {
     let mut edges = BTreeSet::new();
     for face in mesh.faces() {
@@ -36,7 +36,7 @@ fn open_edges(mesh: &Mesh) -> usize {
         .count()
 }
 
-/// Corners minus edges plus triangles.
+/// Euler characteristic: vertices minus edges plus triangles.
 fn euler(mesh: &Mesh) -> i64 {
     let n_edges = (3 * mesh.faces().len() + open_edges(mesh)) / 2;
     mesh.positions().len() as i64 - n_edges as i64 + mesh.faces().len() as i64
@@ -111,7 +111,7 @@ fn triangles_of_a_patch_leave_its_border_open() {
 
 #[test]
 fn triangles_of_a_square_grid_are_halves_of_its_squares() {
-    // All four corners of each square lie on a circle, and no diagonal is in any star.
+    // The four corners of each square lie on a circle, so no diagonal is in any star.
     let positions: Vec<DVec3> = (0..100)
         .map(|site| DVec3::new(f64::from(site % 10), f64::from(site / 10), 0.0))
         .collect();

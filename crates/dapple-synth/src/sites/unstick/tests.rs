@@ -1,4 +1,4 @@
-//! Points that are wedged between others.
+//! Tests of moving points that are stuck between others.
 
 use super::unstick;
 use crate::shapes::{plane, scraps};
@@ -11,7 +11,7 @@ fn a_point_beside_another_goes_to_the_hole() {
     let surface = plane();
     let mut points = scatter(&surface, 300, Seed(3));
     repel(&surface, &mut points, 0, 60);
-    // The last point leaves a hole and lands beside the first one.
+    // Move the last point next to the first one, which leaves a hole.
     let hole = surface.position(points[299]);
     points[299] = points[0];
     points[299].flat += glam::DVec2::splat(1e-3);
