@@ -146,7 +146,7 @@ mod tests {
             let [left, up] = [(x + 2 * i).div_euclid(2), (y + 2 * j).div_euclid(2)];
             let [fx, fy] = [x, y].map(|at| at.rem_euclid(2) as f32 / 2.0);
             let value_at = |i, j| pixel(grid, left + i, up + j, at % 2);
-            // Whole numbers and halves: exact in whatever order.
+            // Sums of integers and halves are exact in any order.
             let expected = (value_at(0, 0) * (1.0 - fx) + value_at(1, 0) * fx) * (1.0 - fy)
                 + (value_at(0, 1) * (1.0 - fx) + value_at(1, 1) * fx) * fy;
             assert_eq!(value, expected, "{:?} {x} {y} {at}", grid.size);

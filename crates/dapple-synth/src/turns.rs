@@ -185,7 +185,7 @@ mod tests {
     #[test]
     fn sites_wait_for_the_latest_near_one() {
         let turns = on_a_line(&[0, 4, 1, 8, 5, 2, 3, 6, 7]);
-        // 0, 4 and 8 are free; 1 waits for 0, 5 for 4; 2 for 4, 0 and 1; 3 for all of these; and so on.
+        // Sites 0, 4 and 8 wait for no other; 1 waits for 0, 5 for 4; 2 for 4, 0 and 1; 3 for all of these; and so on.
         let sites: Vec<(u32, usize)> = (0..turns.len()).map(|turn| turns.turn(turn)).collect();
         let expected = [
             (0, 0),

@@ -168,7 +168,7 @@ mod tests {
                     (root.length() - 1.0).abs() < 1e-15,
                     "{symmetry} {degrees}: {root}"
                 );
-                // The turns of the number: times 1, i, -1 and -i.
+                // The number rotated by quarter turns: times 1, i, -1 and -i.
                 let turns = [DVec2::X, DVec2::Y, DVec2::NEG_X, DVec2::NEG_Y];
                 let quarters = symmetry.quarters().iter();
                 let off = quarters.map(|&at| turns[usize::from(at)].rotate(number).distance(root));

@@ -119,7 +119,7 @@ mod tests {
     #[test]
     fn graph_has_each_edge_once_in_both_rows() {
         for n_sites in [0_u32, 1, 2, 7, 50] {
-            // Some are loops, some are repeated, and some name a site that there is not.
+            // Random edges include self-loops, duplicates, and indices out of range.
             let end =
                 |edge, counter| SiteIdx(hash1(Seed(9), [edge], counter) as u32 % (n_sites + 2));
             let edges: Vec<[SiteIdx; 2]> =

@@ -36,7 +36,7 @@ pub struct HierarchyOptions {
     /// Seed of the random points that the sites start from; by default `Seed(0)`.
     pub seed: Seed,
     /// Number of repulsion steps for the new sites of each level, at most 10,000; by default 6. The coarsest level
-    /// takes four times as many. More than 40 have almost no effect.
+    /// takes four times as many. More than 40 change almost nothing.
     pub iterations: usize,
 }
 

@@ -21,7 +21,7 @@ pub(crate) struct Places {
     pub(crate) normals: Vec<DVec3>,
 }
 
-/// Neighbor lists of the sites from a first index on: other sites in reach on the same sheet.
+/// Neighbor lists of all sites from a first index to the last: other sites in reach on the same sheet.
 #[derive(Debug)]
 pub(crate) struct Near {
     chunks: Vec<Rows>,
