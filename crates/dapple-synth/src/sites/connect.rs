@@ -32,8 +32,8 @@ impl Connected {
     ///
     /// # Errors
     ///
-    /// Returns [`SynthErrorKind::Count`] if there is not one normal for each position, and [`SynthErrorKind::Range`] for a
-    /// spacing that is not above zero and finite.
+    /// Returns [`SynthErrorKind::Count`] if there is not one normal for each position, and [`SynthErrorKind::Range`]
+    /// for a spacing that is not above zero and finite.
     ///
     /// # Examples
     ///
