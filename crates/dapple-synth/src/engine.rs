@@ -1,6 +1,12 @@
-//! The passes: every site of a level takes the pixel whose neighborhood is most like its own.
+//! Synthesis by neighborhood matching: every site of a level takes the pixel whose neighborhood in the exemplar is most
+//! similar to its own.
 //!
 //! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, doi 10.1145/383259.383297, section 5.
+//!
+//! Input: a [`Ground`] (sites on several levels and how their neighborhoods are sampled), the [`Pyramid`] of the
+//! exemplar, and [`Options`] with the schedule of passes. Each pass visits all sites of one level; coarser levels come
+//! first. The work of one pass is in [`Visit`]. Output: [`Sources`] per level, the exemplar pixel and the rotation of
+//! each site.
 
 use crate::grid;
 use crate::ground::{Ground, Sources, UNKNOWN};
@@ -13,21 +19,21 @@ use core::ops::ControlFlow;
 use core::sync::atomic::{AtomicBool, AtomicU8, AtomicU32, Ordering};
 use dapple_hash::{Seed, hash1};
 
-/// The progress of a synthesis, or of other work in passes.
+/// Progress of a synthesis, or of other work done in passes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Progress {
-    /// The pass, from 0.
+    /// Index of the current pass, from 0.
     pub pass: usize,
-    /// The number of passes.
+    /// Number of passes.
     pub n_passes: usize,
-    /// The sites of this pass that have their color.
+    /// Number of sites finished in this pass.
     pub done: usize,
-    /// The sites of this pass.
+    /// Number of sites of this pass.
     pub n_sites: usize,
 }
 
 impl Progress {
-    /// The part of the work that is done, from 0 to 1, if all passes take the same time.
+    /// Returns the fraction of the work that is done, from 0 to 1, assuming that all passes take the same time.
     #[must_use]
     pub fn part(&self) -> f64 {
         let done = self.done as f64 / self.n_sites.max(1) as f64;
@@ -35,10 +41,10 @@ impl Progress {
     }
 }
 
-/// A callback for progress; it can stop the synthesis.
+/// Progress callback; [`ControlFlow::Break`] stops the synthesis.
 pub(crate) type Callback<'a> = &'a mut dyn FnMut(Progress) -> ControlFlow<()>;
 
-/// Reports progress to a callback, and fails if it stops the synthesis.
+/// Calls the progress callback, and fails with [`SynthErrorKind::Cancelled`] if it stops the synthesis.
 pub(crate) fn report(callback: Callback<'_>, progress: Progress) -> Result<(), SynthError> {
     match callback(progress) {
         ControlFlow::Continue(()) => Ok(()),
@@ -46,7 +52,7 @@ pub(crate) fn report(callback: Callback<'_>, progress: Progress) -> Result<(), S
     }
 }
 
-/// A request to stop the preparation of a synthesis, which is looked at on all threads.
+/// Cancellation token for the preparation of a synthesis, polled on all threads.
 pub(crate) struct Wanted<'a> {
     is_cancelled: &'a (dyn Fn() -> bool + Sync),
     is_over: AtomicBool,
@@ -60,7 +66,7 @@ impl<'a> Wanted<'a> {
         }
     }
 
-    /// Whether the caller has asked to stop. What is made then is thrown away, and may be anything.
+    /// Returns true once the caller has asked to stop. Results computed after that are discarded and may be arbitrary.
     pub(crate) fn is_over(&self) -> bool {
         if !self.is_over.load(Ordering::Relaxed) && (self.is_cancelled)() {
             self.is_over.store(true, Ordering::Relaxed);
@@ -68,7 +74,7 @@ impl<'a> Wanted<'a> {
         self.is_over.load(Ordering::Relaxed)
     }
 
-    /// Fails if the caller has asked to stop.
+    /// Fails with [`SynthErrorKind::Cancelled`] if the caller has asked to stop.
     pub(crate) fn check(&self) -> Result<(), SynthError> {
         match self.is_over() {
             true => Err(SynthError::new(SynthErrorKind::Cancelled)),
@@ -77,8 +83,8 @@ impl<'a> Wanted<'a> {
     }
 }
 
-/// Runs all passes. For each level, the finest first, the pixel that each site is from, as `row * width + column` of the
-/// same level of the pyramid; nothing for a level that no pass visited.
+/// Runs the passes of the options. Returns, for each level from the finest, the exemplar pixel of each site, as
+/// `row * width + column` of that level of the pyramid. Empty for a level that no pass visited.
 pub(crate) fn run<G: Ground>(
     ground: &G,
     pyramid: &Pyramid,
@@ -89,7 +95,7 @@ pub(crate) fn run<G: Ground>(
     Ok(Sources::pixels_and_quarters(levels).0)
 }
 
-/// Runs all passes like [`run`], and also says by how many quarter turns the exemplar lies turned at each site.
+/// Runs the passes of the options. Returns the pixel and the rotation (in quarter turns) of the exemplar at each site.
 pub(crate) fn run_turned<G: Ground>(
     ground: &G,
     pyramid: &Pyramid,
@@ -100,7 +106,7 @@ pub(crate) fn run_turned<G: Ground>(
     run_passes(ground, pyramid, &passes, options, callback)
 }
 
-/// Runs some passes, as [`run_turned`] does those of the options.
+/// Runs the given passes instead of those of the options; otherwise like [`run_turned`].
 pub(crate) fn run_passes<G: Ground>(
     ground: &G,
     pyramid: &Pyramid,
@@ -108,11 +114,13 @@ pub(crate) fn run_passes<G: Ground>(
     options: &Options,
     callback: Callback<'_>,
 ) -> Result<Vec<Sources>, SynthError> {
+    // Match with a pyramid that is blurred as much as the samples of the ground are.
     let seen = match ground.blur() {
         0.0 => None,
         blur => Some(pyramid.blurred(blur)),
     };
     let seen = seen.as_ref().unwrap_or(pyramid);
+    // Gather the candidates; a repair has its own rule for neighborhoods that reach past an edge.
     let candidates = |pass: &Pass| match ground.start(pass.level) {
         Some(_) => Candidates::of_repair(seen, pass, options.center),
         None => Candidates::for_options(seen, pass, options),
@@ -120,7 +128,7 @@ pub(crate) fn run_passes<G: Ground>(
     run_with(ground, pyramid, passes, &candidates, options, callback)
 }
 
-/// Runs some passes like [`run_passes`], with neighborhoods that the caller gathers for each.
+/// Runs the given passes like [`run_passes`], with candidates from the callback `candidates`.
 pub(crate) fn run_with<G: Ground>(
     ground: &G,
     pyramid: &Pyramid,
@@ -137,10 +145,11 @@ pub(crate) fn run_with<G: Ground>(
     let (mut kept, mut visit) = (Kept::default(), None);
     let n_passes = passes.len();
     for (index, pass) in passes.iter().enumerate() {
-        // A pass that comes again finds the same neighborhoods.
+        // Consecutive equal passes share their candidates.
         if index == 0 || passes[index - 1] != *pass {
-            // The one before is gone before the next one takes its memory.
+            // Free the previous candidates and matcher first: it lowers peak memory.
             drop(visit.take());
+            // Initialize the level before its first pass.
             let candidates = candidates(pass)?;
             if levels[pass.level].pixels.is_empty() {
                 let first = first_sources(ground, pyramid, pass, &candidates, options);
@@ -172,7 +181,7 @@ pub(crate) fn run_with<G: Ground>(
     Ok(levels)
 }
 
-/// What the sites of a level have before its first pass.
+/// Returns the initial sources of a level: known pixels in a repair, random pixels or zeros elsewhere.
 fn first_sources<G: Ground>(
     ground: &G,
     pyramid: &Pyramid,
@@ -186,9 +195,10 @@ fn first_sources<G: Ground>(
     let mut first = if reads_itself || start.is_some() {
         random_pixels(n_sites, pyramid, candidates, pass.level, options.seed)
     } else {
-        // Nobody reads them before all are visited.
+        // The pass reads only the coarser level, so these values are never read.
         vec![0; n_sites]
     };
+    // Overwrite with the known pixels of a repair.
     let known = start.map_or(&[][..], |start| &start.pixels);
     for (first, &known) in first.iter_mut().zip(known) {
         if known != UNKNOWN {
@@ -205,7 +215,8 @@ fn first_sources<G: Ground>(
     sources
 }
 
-/// Gives the sites of a level that are not kept what the coarser level goes on to, where sites lie over those of another.
+/// Initializes the sites of a repair that do not keep their pixel: each takes the pixel that continues its parent on
+/// the coarser level. Sites without a parent, or whose pixel is not usable, keep their initial value.
 fn go_on_with<G: Ground>(
     coarser: &Sources,
     sources: &Sources,
@@ -230,7 +241,8 @@ fn go_on_with<G: Ground>(
 }
 
 impl Sources {
-    /// The pixels of the sites of all levels, and by how many quarter turns the exemplar lies turned at the finest ones.
+    /// Returns the pixels of the sites of all levels, and the rotations (in quarter turns) of the sites of the finest
+    /// level.
     pub(crate) fn pixels_and_quarters(mut levels: Vec<Self>) -> (Vec<Vec<u32>>, Vec<u8>) {
         let finest = levels.first_mut().map(|level| &mut level.quarters);
         let quarters = finest.map(core::mem::take).unwrap_or_default();
@@ -243,7 +255,7 @@ impl Sources {
     }
 }
 
-/// A random pixel for every site of a level; of an exemplar with a mask, one of the candidates.
+/// Returns a random pixel for every site of a level. If the exemplar has a mask, only pixels of candidates are drawn.
 fn random_pixels(
     n_sites: usize,
     pyramid: &Pyramid,
@@ -257,7 +269,7 @@ fn random_pixels(
         among.len() as u64
     });
     let seed = seed.child("first colors", level as u64);
-    // The upper 32 bits of a product with a number below 2^32 are spread evenly over that number.
+    // Scale the upper 32 bits of the hash to 0..n_pixels: multiply and take the upper half of the product.
     let number = |site| (((hash1(seed, [site], 0) >> 32) * n_pixels) >> 32) as u32;
     let pixel = |number: u32| among.map_or(number, |among| among[number as usize]);
     (0..n_sites as i64)
@@ -265,8 +277,8 @@ fn random_pixels(
         .collect()
 }
 
-/// The side of the coarser square of the next pass, if that can be kept from this one: it is on the same level and no
-/// larger, and nothing that it reads changes in between.
+/// Returns the side of the coarser square to keep for the next pass, in samples, or 0. It is kept if the next pass is
+/// on the same level and its coarser square is not larger. The coarser level does not change between the two passes.
 fn side_to_keep(pass: &Pass, next: Option<&Pass>) -> u32 {
     let coarser_side = |pass: &Pass| {
         let coarser = |part: &&Part| part.reads == Reads::Coarser;

@@ -1,4 +1,15 @@
-//! One visit of all sites of a level.
+//! One pass of neighborhood matching: visits all sites of a level and assigns each the best candidate.
+//!
+//! Steps for a site (Turk 2001, section 5):
+//!
+//! - Sample its neighborhood, on its own level and on the next coarser one ([`Visit::read`]).
+//! - Form the query vector, and the coherent candidates: pixels that continue the source pixels of the neighbors
+//!   (Ashikhmin, "Synthesizing Natural Textures", I3D 2001).
+//! - Take the nearest candidate, or a coherent one that is not much farther ([`Visit::best_row`]).
+//! - If the orientation field has a symmetry, repeat this for each rotation found among the neighbors
+//!   ([`Visit::best_turned`]).
+//!
+//! A row is a candidate's index in [`Candidates`]. The order of the sites and the threads are in `visit/order.rs`.
 
 mod order;
 
@@ -13,10 +24,10 @@ use crate::orientation::offset_before;
 use crate::{Candidates, Exemplar, Matcher, MatcherMemory, Options, Pyramid, Symmetry};
 use core::sync::atomic::Ordering;
 
-/// No row.
+/// In place of a row: no candidate was chosen.
 const NOWHERE: u32 = u32::MAX;
 
-/// A pass with everything that it needs.
+/// A pass with its tables: candidates, matcher and sampling tables of the ground.
 pub(crate) struct Visit<'a, G: Ground> {
     ground: &'a G,
     prepared: G::Prepared,
@@ -26,42 +37,43 @@ pub(crate) struct Visit<'a, G: Ground> {
     pyramid: &'a [Exemplar],
     candidates: Candidates,
     matcher: Matcher,
-    /// Whether sites that go on with what is around them keep their pixels.
+    /// Whether a site keeps its pixel where its whole neighborhood continues one piece of the exemplar.
     is_repair: bool,
+    /// Preference for coherent rows: one wins if its squared distance is at most `1 + coherence` times the least.
     coherence: f32,
-    /// 0 where uses do not count.
+    /// [`Options::evenness`]; 0 in passes that do not count usage.
     evenness: f32,
-    /// The factor of guides in a query.
+    /// Factor of the guide values in a query.
     guide_scale: f32,
-    /// Where the values of a query come from.
+    /// The pixels of a neighborhood, in the order of the values of a query.
     terms: Vec<Term>,
-    /// The symmetry of directions, if squares have all samples that turned ones need.
+    /// Symmetry of the orientation field; [`Symmetry::One`] if a part is not a full square, which cannot be rotated.
     symmetry: Symmetry,
-    /// The squares that are read on the level itself and on the coarser one.
+    /// Squares that are sampled on the level itself and on the next coarser one.
     same: Option<Half>,
     coarser: Option<Half>,
 }
 
-/// A square of samples, without its place.
+/// Extent of a square of samples: from `-half` to `half`, and which rows are needed.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Half {
     pub(crate) half: i32,
     pub(crate) rows: Rows,
 }
 
-/// One pixel of a neighborhood.
+/// One pixel of a neighborhood, as an offset from its center.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Term {
     pub(crate) reads: Reads,
-    /// Its number in the square of samples, for each number of quarter turns that the exemplar lies turned.
+    /// Index of its sample in the square, for each rotation of the exemplar (0 to 3 quarter turns).
     pub(crate) samples: [usize; 4],
     offset: [i32; 2],
     root_weight: f32,
 }
 
-/// Memory of a thread.
+/// Scratch memory of a thread.
 struct Worker<M> {
-    /// By how many quarter turns the exemplar lies turned in `query` and `coherent`.
+    /// Rotation of the exemplar in `query` and `coherent`, in quarter turns.
     quarters: u8,
     same: Samples,
     coarser: Samples,
@@ -71,18 +83,18 @@ struct Worker<M> {
     ground: M,
 }
 
-/// The input of all threads; [`Painted`] of the level itself is also written.
+/// Shared input of all threads. The sources of `here` are also written.
 #[derive(Clone, Copy)]
 struct State<'a> {
     here: Painted<'a>,
     coarser: Option<Painted<'a>>,
     kept: &'a Kept,
-    /// The factors of the rows' squared distances.
+    /// Factor of the squared distance of each row; see [`Query::factors`].
     factors: Option<&'a [f32]>,
 }
 
 impl<'a, G: Ground> Visit<'a, G> {
-    /// Prepares a pass.
+    /// Prepares a pass: sampling tables, candidates' index, and the terms of a query.
     pub(crate) fn new(
         ground: &'a G,
         pyramid: &'a Pyramid,
@@ -93,7 +105,7 @@ impl<'a, G: Ground> Visit<'a, G> {
     ) -> Self {
         let exemplar = &pyramid.levels()[pass.level];
         let same = half_of(pass, Reads::Same);
-        // All of it, since its middle says which pixels continue the coarser level.
+        // Read all rows of the coarser square: the sample in its middle determines the coherent rows.
         let coarser = half_of(pass, Reads::Coarser).map(|half| Half {
             rows: Rows::All,
             ..half
@@ -103,7 +115,7 @@ impl<'a, G: Ground> Visit<'a, G> {
             [same, coarser].map(|half| half.map_or(0, |half| half.half)),
         );
         let (coherence, evenness) = match coarser {
-            // Where guides say which pixels there are, those are used unevenly.
+            // Guides determine which pixels are used, so usage cannot be even.
             None if exemplar.n_guides() > 0 => (coherence.initial, 0.0),
             None => (coherence.initial, options.evenness),
             Some(_) => (coherence.finer, 0.0),
@@ -131,7 +143,7 @@ impl<'a, G: Ground> Visit<'a, G> {
             is_repair: ground.start(pass.level).is_some(),
             symmetry: match pass.parts.iter().all(|part| part.shape == Shape::Full) {
                 true => ground.symmetry(),
-                // The rows above after a turn are not those that were made before.
+                // The rows above the center are not those visited earlier once the square is rotated.
                 false => Symmetry::One,
             },
             coherence,
@@ -143,10 +155,11 @@ impl<'a, G: Ground> Visit<'a, G> {
         }
     }
 
-    /// Gives a site the pixel of the row that matches, and tells which one that is.
+    /// Assigns a site the pixel of the best row, and returns this row.
     fn visit(&self, site: u32, worker: &mut Worker<G::Memory>, state: &State<'_>) -> u32 {
         self.read(site, worker, state);
         let sources = state.here.sources;
+        // In a repair, keep a pixel whose whole neighborhood continues one piece of the exemplar.
         if self.is_repair
             && let Some(pixel) = self.pixel_of_piece(site, worker, state)
         {
@@ -161,15 +174,15 @@ impl<'a, G: Ground> Visit<'a, G> {
             sources.quarters[site as usize].store(quarters, Ordering::Relaxed);
             best.row
         };
-        // Without any row, which finite values do not lead to, the site keeps what it has.
+        // No row is found only for values that are not finite. The site then keeps its pixel.
         if let Some(&pixel) = self.candidates.pixels.get(row as usize) {
-            // Turns of other threads that read it are ordered by the board.
+            // Relaxed is enough: the schedule orders this write before reads of other threads.
             sources.pixels[site as usize].store(pixel, Ordering::Relaxed);
         }
         row
     }
 
-    /// The best row of those that are the best with the exemplar turned as it lies at a neighbor, and how it lies there.
+    /// Returns the best row and rotation among the rotations of the neighbors.
     fn best_turned(
         &self,
         site: u32,
@@ -191,7 +204,8 @@ impl<'a, G: Ground> Visit<'a, G> {
         best
     }
 
-    /// How the exemplar lies at the eight neighbors of a site, and on the coarser level in its middle.
+    /// Returns which rotations (in quarter turns) occur at the eight neighbors of a site and at the middle of its
+    /// coarser square.
     fn quarters_around(
         &self,
         site: u32,
@@ -211,21 +225,22 @@ impl<'a, G: Ground> Visit<'a, G> {
         for term in self.terms.iter().filter(|term| term.is_beside()) {
             add(&state.here, worker.same.nearest[term.samples[0]]);
         }
-        // A site that is its own neighbor everywhere, or stands alone.
+        // No neighbor but the site itself: use its own rotation.
         if found == [false; 4] {
             found[usize::from(state.here.quarters(site as usize))] = true;
         }
         found
     }
 
-    /// By how many quarter turns the exemplar lies turned at a site that goes on with another one.
+    /// Rotation of the exemplar at `site`, in quarter turns, if it continues the rotation at `other`.
     #[inline]
     fn quarters_of(&self, site: u32, other: u32, painted: &Painted<'_>) -> u8 {
         let quarters = painted.quarters(other as usize);
         self.ground.quarters_toward(site, other, quarters)
     }
 
-    /// The pixel of a site all of whose neighborhood goes on with one piece of the exemplar: no other fits better.
+    /// Returns the pixel of a site if its whole neighborhood continues one piece of the exemplar: no candidate fits
+    /// better.
     fn pixel_of_piece(
         &self,
         site: u32,
@@ -237,6 +252,7 @@ impl<'a, G: Ground> Visit<'a, G> {
             None => (Reads::Coarser, &worker.coarser, state.coarser?),
         };
         let exemplar = &self.pyramid[self.level + reads.step()];
+        // All samples must predict the same pixel at the center.
         let mut piece = None;
         for term in self.terms.iter().filter(|term| term.reads == reads) {
             let nearest = samples.nearest[term.samples[0]];
@@ -252,6 +268,7 @@ impl<'a, G: Ground> Visit<'a, G> {
                 return None;
             }
         }
+        // On its own level the site must have this pixel already; else take the finer pixel below the coarser one.
         let piece = piece? as u32;
         if reads == Reads::Same {
             return (painted.source(site as usize) == piece).then_some(piece);
@@ -261,7 +278,7 @@ impl<'a, G: Ground> Visit<'a, G> {
         Some(self.pyramid[self.level].pixel_at(pixel)? as u32)
     }
 
-    /// Reads the neighborhood of a site.
+    /// Samples the neighborhood of a site on both levels; coarser samples kept from the previous pass are reused.
     fn read(&self, site: u32, worker: &mut Worker<G::Memory>, state: &State<'_>) {
         let Worker {
             same,
@@ -292,7 +309,7 @@ impl<'a, G: Ground> Visit<'a, G> {
         }
     }
 
-    /// Gathers the query of a neighborhood that was read, and the rows that continue its neighbors.
+    /// Forms the query from the samples, and the coherent rows, which continue the sources of the neighbors.
     fn gather(&self, site: u32, worker: &mut Worker<G::Memory>, state: &State<'_>) {
         let Worker {
             quarters,
@@ -306,6 +323,7 @@ impl<'a, G: Ground> Visit<'a, G> {
             site,
             quarters: *quarters,
         };
+        // Collect the coherent rows.
         coherent.clear();
         if self.same.is_some() {
             self.continue_same(center, same, &state.here, coherent);
@@ -313,6 +331,7 @@ impl<'a, G: Ground> Visit<'a, G> {
         if let (Some(half), Some(painted)) = (self.coarser, state.coarser) {
             self.continue_coarser(center, half, coarser, &painted, coherent);
         }
+        // Append the weighted samples, then the guides.
         query.clear();
         let squares = [&*same, &*coarser];
         push_terms(
@@ -328,7 +347,8 @@ impl<'a, G: Ground> Visit<'a, G> {
         }
     }
 
-    /// The rows of the pixels that lie beside the sources of the eight nearest samples, as this site lies beside them.
+    /// Adds the coherent rows of the level itself. Each of the eight neighboring samples predicts the pixel that lies,
+    /// relative to its source, where this site lies relative to it.
     fn continue_same(
         &self,
         center: Center,
@@ -350,7 +370,7 @@ impl<'a, G: Ground> Visit<'a, G> {
         }
     }
 
-    /// The rows of the four pixels under the source of the coarser sample in the middle.
+    /// Adds the coherent rows of the coarser level: the four pixels below the source of the middle sample.
     fn continue_coarser(
         &self,
         center: Center,
@@ -373,7 +393,7 @@ impl<'a, G: Ground> Visit<'a, G> {
         }
     }
 
-    /// The row that the site takes: the nearest one, or a coherent one that is not much farther.
+    /// Returns the nearest row, or a coherent one whose squared distance is at most `1 + coherence` times larger.
     fn best_row(&self, worker: &mut Worker<G::Memory>, factors: Option<&[f32]>) -> Best {
         let Worker {
             query,
@@ -381,6 +401,7 @@ impl<'a, G: Ground> Visit<'a, G> {
             matcher,
             ..
         } = worker;
+        // Find the nearest coherent row. If coherence counts, other rows have to be nearer by its factor.
         let all = Query {
             values: query,
             below: f32::INFINITY,
@@ -408,23 +429,23 @@ impl<'a, G: Ground> Visit<'a, G> {
     }
 }
 
-/// The row that a site takes.
+/// The best row of a query.
 #[derive(Clone, Copy, Debug)]
 struct Best {
     row: u32,
-    /// Its squared distance; of a row that goes on with a neighbor, what another one has to be below.
+    /// Squared distance of the row. For a coherent row it is divided by `1 + coherence`.
     distance_sq: f32,
 }
 
 impl Best {
-    /// No row.
+    /// No row was found.
     const NONE: Self = Self {
         row: NOWHERE,
         distance_sq: f32::INFINITY,
     };
 }
 
-/// A site in the middle of a neighborhood, and by how many quarter turns the exemplar lies turned there.
+/// The center of a neighborhood: its site, and the rotation of the exemplar there in quarter turns.
 #[derive(Clone, Copy, Debug)]
 struct Center {
     site: u32,
@@ -432,7 +453,7 @@ struct Center {
 }
 
 impl Term {
-    /// Whether the pixel is one of the eight neighbors on the level itself.
+    /// Returns whether the pixel is one of the eight neighbors on the level itself.
     fn is_beside(&self) -> bool {
         self.reads == Reads::Same && self.offset.iter().all(|at| at.abs() <= 1)
     }
@@ -452,7 +473,7 @@ impl<M: Default> Default for Worker<M> {
     }
 }
 
-/// Adds a row, if there is one and it is not yet there.
+/// Adds a row unless it is `None` or present.
 fn add_coherent(row: Option<u32>, coherent: &mut Vec<u32>) {
     if let Some(row) = row
         && !coherent.contains(&row)
@@ -461,8 +482,8 @@ fn add_coherent(row: Option<u32>, coherent: &mut Vec<u32>) {
     }
 }
 
-/// Appends the values of a neighborhood, from squares on the level itself and on the coarser one, with the exemplar turned by
-/// some quarter turns.
+/// Appends the values of a neighborhood to `target`, each times the root of its weight. `squares` are the samples of
+/// the level itself and of the coarser one; `quarters` is the rotation of the exemplar in quarter turns.
 pub(crate) fn push_terms(
     terms: &[Term],
     squares: [&Samples; 2],
@@ -477,7 +498,7 @@ pub(crate) fn push_terms(
     }
 }
 
-/// The square that holds all parts of a pass that read a level.
+/// Returns the smallest square that contains all parts of a pass that read a level, or `None` if no part reads it.
 pub(crate) fn half_of(pass: &Pass, reads: Reads) -> Option<Half> {
     let parts = || pass.parts.iter().filter(|part| part.reads == reads);
     let side = parts().map(|part| part.side).max()?;
@@ -492,7 +513,8 @@ pub(crate) fn half_of(pass: &Pass, reads: Reads) -> Option<Half> {
     })
 }
 
-/// Where the values of a query come from, in the order of the candidates' rows; `halves` are those of the squares.
+/// Returns the pixels of a neighborhood in the order of a candidate's values. `halves` are the half sides of the
+/// squares on the level itself and on the coarser one.
 pub(crate) fn terms_of(pass: &Pass, halves: [i32; 2]) -> Vec<Term> {
     let mut terms = Vec::new();
     for part in &pass.parts {

@@ -1,4 +1,11 @@
-//! In which order the sites of a pass are visited: by turns, freely, or one after the other.
+//! Order of the sites of a pass, and their distribution over threads.
+//!
+//! There are three cases:
+//!
+//! - A pass that reads only the coarser level visits sites in any order, on all threads ([`Visit::visit_freely`]).
+//! - A pass that reads its own level follows the sweep in a wavefront schedule ([`Turns`]): a site runs after every
+//!   earlier site that it reads. The result is that of a sequential sweep.
+//! - A pass that counts usage ([`Usage`]) is sequential, because each site depends on all earlier ones.
 
 use super::{State, Visit, Worker};
 use crate::SynthError;
@@ -10,14 +17,14 @@ use core::iter::repeat_with;
 use dapple_raster::parallel;
 use std::sync::{Mutex, PoisonError};
 
-/// The most sites between two calls of the callback.
+/// Maximum number of sites between two progress callbacks.
 const STRETCH: usize = 1 << 14;
-/// How many sites that do not wait a thread takes at once.
+/// Number of independent sites that a thread takes at once.
 const PIECE: usize = 64;
 
 impl<G: Ground> Visit<'_, G> {
-    /// Visits all sites, whose pixels are in `levels`. `kept` is what the pass before kept; the result is what this one keeps
-    /// of squares of the coarser level, `keep` samples wide.
+    /// Visits all sites of the level; `levels` holds their sources. `kept` are the coarser squares kept by the previous
+    /// pass. Returns the coarser squares that this pass keeps for the next one, `keep` samples wide.
     pub(crate) fn run(
         &self,
         levels: &[Sources],
@@ -48,7 +55,7 @@ impl<G: Ground> Visit<'_, G> {
         Ok(Kept::default())
     }
 
-    /// Visits sites one after the other, and counts what they use.
+    /// Visits sites sequentially and counts the usage of the pixels.
     fn visit_and_count(
         &self,
         state: State<'_>,
@@ -70,7 +77,7 @@ impl<G: Ground> Visit<'_, G> {
         Ok(())
     }
 
-    /// Visits sites that may read each other.
+    /// Visits sites that may read each other, in the wavefront schedule.
     fn visit_in_turns(
         &self,
         state: &State<'_>,
@@ -97,7 +104,7 @@ impl<G: Ground> Visit<'_, G> {
         Ok(())
     }
 
-    /// Visits sites that read only the coarser level: they do not wait for each other, and may be visited in any order.
+    /// Visits sites that read only the coarser level. They are independent, so any order gives the same result.
     fn visit_freely(
         &self,
         state: &State<'_>,
