@@ -1,11 +1,17 @@
-//! The row that is nearest to a query: exactly the one that comparing with all of them finds.
+//! Exact nearest-neighbor search: the row (vector of `f32`) nearest to a query, with the same result as a comparison
+//! with every row.
 //!
-//! Rows are turned to the directions in which they differ most (principal components; Reference: Hertzmann, Jacobs,
-//! Oliver, Curless and Salesin, Image Analogies, SIGGRAPH 2001, who search approximately in the first of them), and the
-//! first ones are kept, in sixteen bits. There a part of a distance is known after few numbers, and most rows can be
-//! skipped: whole leaves of a k-d tree by their boxes, sixteen rows at a time after every eighth number. What is left is
-//! compared as it is, by [`distance_sq`]. Bounds on all rounding ([`margin`]) make sure that nothing nearer is skipped,
-//! so that the result does not depend on the tree, the directions, or the machine.
+//! Method: rows are centered and rotated to their principal components, as in Hertzmann, Jacobs, Oliver, Curless and
+//! Salesin, "Image Analogies", SIGGRAPH 2001, who search approximately in the first components. The first components
+//! are stored as 16-bit integers, in the leaves of a k-d tree. There a few components give a lower bound of a distance,
+//! which rejects most rows: whole leaves by their bounding boxes, and sixteen rows at a time after every eighth
+//! component. The remaining rows are compared in full by [`distance_sq`].
+//!
+//! Proved bounds on all rounding errors ([`margin`]) ensure that no nearer row is rejected. So the result does not
+//! depend on the tree, the components, or the machine.
+//!
+//! Input: rows of `dims` values each, and a query of `dims` values. Output: [`Match`], the row and its squared
+//! distance.
 
 mod basis;
 mod distance;
@@ -32,24 +38,25 @@ use tree::{Pairs, Placed, STEP, Tree};
 
 pub use distance::distance_sq;
 
-/// Fewer rows than this are all compared.
+/// Minimum number of rows for an index; fewer are compared one by one.
 const FEW: usize = 64;
 
-/// Longer rows than this are all compared: the covariance grows with the square.
+/// Maximum number of values of a row for an index, since the covariance matrix grows with its square. Longer rows are
+/// compared one by one.
 const MOST_DIMS: usize = 1024;
 
-/// The nearest row that [`Matcher::nearest`] found.
+/// Result of a search: the nearest row and its distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Match {
-    /// The row.
+    /// Index of the row.
     pub row: u32,
-    /// Its distance: [`distance_sq`].
+    /// Squared distance of the row from the query, as [`distance_sq`] computes it.
     pub distance_sq: f32,
 }
 
-/// Rows prepared for finding the nearest one.
+/// Index over rows for exact nearest-neighbor search.
 ///
-/// Holds a copy of the rows and about 140 bytes more for each; up to 512 more while it is made.
+/// Memory: a copy of the rows and about 140 bytes more per row; up to 512 bytes more per row while it is built.
 #[derive(Clone, Debug)]
 pub struct Matcher {
     dims: usize,
@@ -57,7 +64,7 @@ pub struct Matcher {
     index: Option<Index>,
 }
 
-/// Memory that a search works in, kept between searches.
+/// Scratch memory of a search, reusable for any number of searches.
 #[derive(Clone, Debug, Default)]
 pub struct MatcherMemory {
     query: Vec<[f32; LANES]>,
@@ -68,19 +75,19 @@ pub struct MatcherMemory {
     order: Vec<u64>,
 }
 
-/// A row to find the nearest one of.
+/// A query, with a bound, a hint and factors.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Query<'a> {
     pub(crate) values: &'a [f32],
-    /// Only what is nearer is found.
+    /// Exclusive upper bound of the squared distance; infinity for no limit.
     pub(crate) below: f32,
-    /// A row that may be near.
+    /// A row that is likely near. It saves time and does not change the result.
     pub(crate) hint: Option<u32>,
-    /// The factor of the squared distance of each row, at least 1; it counts as the row's distance everywhere.
+    /// Factor of the squared distance of each row, at least 1. All comparisons, bounds and results use the product.
     pub(crate) factors: Option<&'a [f32]>,
 }
 
-/// All that skips rows.
+/// Search structure over the rows; all of it serves to reject rows early.
 #[derive(Clone, Debug)]
 struct Index {
     basis: Basis,
@@ -90,11 +97,12 @@ struct Index {
 }
 
 impl Matcher {
-    /// Prepares rows of `dims` numbers each, one after the other. What is left over at the end does not count, nor do
-    /// rows after the first 2³² - 1.
+    /// Builds an index over rows of `dims` values each, stored contiguously. An incomplete row at the end is ignored,
+    /// and so are rows after the first 2³² - 1.
     ///
-    /// Any numbers are good, but rows are found slowly, by comparing with all of them, if one is not finite or farther
-    /// than 10¹⁵ from the mean, or if they have more than 1024 numbers. A row that is not finite is never the nearest.
+    /// Any values are accepted. The search falls back to a comparison with every row, which is slow, if a value is not
+    /// finite, if a row is farther than 10¹⁵ from the mean, or if rows have more than 1024 values. A row with a value
+    /// that is not finite is never the nearest.
     ///
     /// # Examples
     ///
@@ -113,13 +121,14 @@ impl Matcher {
         Self::of(dims, rows, tree::distinct_rows(dims, rows))
     }
 
-    /// Prepares rows for queries with [`Query::factors`], in which equal rows may be at different distances.
+    /// Builds an index for queries with [`Query::factors`]. It holds duplicate rows too, since their factors may
+    /// differ.
     pub(crate) fn with_factors(dims: usize, rows: &[f32]) -> Self {
         let rows = whole_rows(dims, rows);
         Self::of(dims, rows, tree::every_row(dims, rows))
     }
 
-    /// Prepares rows, of which those in `order` are looked for.
+    /// Builds an index that searches only the rows in `order`.
     fn of(dims: usize, rows: &[f32], order: Vec<u32>) -> Self {
         Self {
             dims,
@@ -128,10 +137,12 @@ impl Matcher {
         }
     }
 
-    /// The row nearest to a query; of several at one distance the first. Nothing if none is nearer than `below`.
+    /// Returns the row nearest to a query, or `None` if no row is nearer than `below`. Of equally near rows the first
+    /// is returned.
     ///
-    /// `below` is a squared distance, infinity for no limit. `hint` is a row that may be near, which saves time and
-    /// changes nothing else. A query that is not finite or that has not as many numbers as the rows has no nearest row.
+    /// `below` is a squared distance; infinity means no limit. `hint` is a row that is likely near; it saves time and
+    /// does not change the result. Returns `None` for a query that is not finite or whose length is not that of the
+    /// rows.
     #[must_use]
     pub fn nearest(
         &self,
@@ -149,12 +160,12 @@ impl Matcher {
         self.find(query, memory)
     }
 
-    /// The row nearest to a query with factors; also nothing if there are less of them than rows.
+    /// Returns the row nearest to a query that may have factors, or `None` if there are fewer factors than rows.
     pub(crate) fn find(&self, query: Query<'_>, memory: &mut MatcherMemory) -> Option<Match> {
         self.find_at(simd::level(), query, memory)
     }
 
-    /// The nearest of some rows; `hint` is left out of account.
+    /// Returns the nearest of the given rows; `hint` is ignored.
     pub(crate) fn find_among(
         &self,
         query: Query<'_>,
@@ -171,7 +182,7 @@ impl Matcher {
         })
     }
 
-    /// Whether a query has as many numbers as the rows, and no less factors than there are rows.
+    /// Returns whether the query has the length of the rows, and at least one factor per row.
     fn can_find(&self, query: Query<'_>) -> bool {
         let enough = |factors: &[f32]| factors.len() >= self.rows.len();
         query.values.len() == self.dims && query.factors.is_none_or(enough)
@@ -189,7 +200,7 @@ impl Matcher {
         })
     }
 
-    /// The result by the index, if it can be used for this query.
+    /// Searches with the index. The outer `None` means that the index cannot be used for this query.
     #[inline(always)]
     fn search<S: Simd>(
         &self,
@@ -197,6 +208,7 @@ impl Matcher {
         query: Query<'_>,
         memory: &mut MatcherMemory,
     ) -> Option<Option<Match>> {
+        // Map the query to 16-bit components.
         let index = self.index.as_ref()?;
         let error = index.place(simd, query.values, memory)?;
         let mut search = Search {
@@ -212,6 +224,7 @@ impl Matcher {
             below: query.below,
             threshold: index.margin.threshold(query.below, error),
         };
+        // Compare with the hint first: a small first distance rejects more rows.
         let in_range = |hint: &u32| (*hint as usize) < self.rows.len();
         if let Some(hint) = query.hint.filter(in_range) {
             search.compare(hint);
@@ -220,7 +233,8 @@ impl Matcher {
         Some(search.best)
     }
 
-    /// The nearest of some rows: of several at one distance the one with the least number.
+    /// Returns the nearest of the given rows by comparing with each; of equally near rows the one with the lowest
+    /// index.
     #[inline(always)]
     fn compare<S: Simd>(
         &self,
@@ -245,7 +259,7 @@ impl Matcher {
     }
 }
 
-/// The rows without what is left over, and no more of them than can be numbered.
+/// Returns the complete rows, at most 2³² - 1.
 fn whole_rows(dims: usize, rows: &[f32]) -> &[f32] {
     let n_rows = rows.len().checked_div(dims).unwrap_or(0);
     &rows[..n_rows.min(u32::MAX as usize) * dims]
@@ -266,16 +280,18 @@ impl Index {
         })
     }
 
-    /// Finds the whole coordinates of a query, and [`Margin::error`]. Nothing if it is not finite or too long.
+    /// Maps a query to 16-bit components and returns [`Margin::error`]. Returns `None` if the query is not finite or
+    /// longer than [`margin::LONGEST`].
     #[inline(always)]
     fn place<S: Simd>(&self, simd: S, query: &[f32], memory: &mut MatcherMemory) -> Option<f64> {
         self.basis.center(query, &mut memory.centered);
         let length = margin::length(&memory.centered);
-        // This is not so for a length that is not a number.
+        // False for NaN.
         let is_short = length <= margin::LONGEST;
         if !is_short {
             return None;
         }
+        // Rotate to the principal components and round to integers.
         let n_directions = self.basis.n_directions();
         memory.rotated.resize(n_directions / LANES, [0.0; LANES]);
         self.basis
@@ -283,6 +299,7 @@ impl Index {
         memory.coordinates.resize(n_directions, 0);
         self.lattice
             .place(memory.rotated.as_flattened(), &mut memory.coordinates);
+        // Repeat each pair of components in all sixteen lanes.
         memory.placed.clear();
         let (steps, _) = memory.coordinates.as_chunks::<{ 2 * STEP }>();
         for step in steps {

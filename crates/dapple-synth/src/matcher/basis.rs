@@ -1,11 +1,11 @@
-//! The directions in which the rows differ most, and rows and queries seen along them.
+//! Principal components of the rows, and the rotation of rows and queries to them.
 //!
-//! The directions are the first principal components of a sample of the rows: the eigenvectors of the covariance with the
-//! largest eigenvalues, by orthogonal iteration with a Rayleigh-Ritz step (Golub and Van Loan, Matrix Computations, 4th
-//! edition, sections 8.2 and 8.5), all in `f64` and in a fixed order.
+//! The components are those of a sample of the rows: the eigenvectors of the covariance with the largest eigenvalues.
+//! They are computed by orthogonal iteration with a Rayleigh-Ritz step (Golub and Van Loan, Matrix Computations, 4th
+//! edition, sections 8.2 and 8.5), in `f64` and in a fixed order. Code and comments call a component a direction.
 //!
-//! The search does not rely on how good they are: any matrix gives the same nearest row, if its norm is known. It is
-//! measured, for the matrix as it is stored, in [`Basis::norm_sq`].
+//! The search is exact for any matrix whose norm is known, so the accuracy of the components affects only the speed.
+//! [`Basis::norm_sq`] bounds the norm of the matrix as it is stored.
 
 use dapple_hash::{Seed, hash1, unit_f64};
 use dapple_raster::parallel;
@@ -13,83 +13,84 @@ use dapple_raster::simd;
 use dapple_raster::simd::dispatch;
 use fearless_simd::{f32x16, prelude::*};
 
-/// Directions that are rotated together: the lanes of a register.
+/// Number of directions that are rotated together: the lanes of a register.
 pub(crate) const LANES: usize = 16;
 
-/// Lines of the covariance that are summed together: they stay in the cache.
+/// Number of rows of the covariance matrix that are summed together, so that they stay in the cache.
 const BAND: usize = 8;
 
-/// How exact directions are.
+/// Accuracy of the directions against the time to compute them.
 #[derive(Clone, Copy, Debug)]
 struct Effort {
-    /// The most directions.
+    /// Maximum number of directions.
     most: usize,
-    /// The most rows whose covariance is taken.
+    /// Maximum number of rows in the sample.
     sample: usize,
-    /// Steps of orthogonal iteration: the spectrum of neighborhoods falls quickly.
+    /// Number of steps of orthogonal iteration. Few suffice, since the spectrum of neighborhoods falls quickly.
     steps: usize,
 }
 
 impl Effort {
-    /// The step from one row of the sample to the next, at least 1.
+    /// Stride of the sample in rows, at least 1.
     fn step(&self, dims: usize, rows: &[f32]) -> usize {
         (rows.len() / dims).div_ceil(self.sample).max(1)
     }
 }
 
-/// More directions hold almost nothing of the variance of neighborhoods, and cost as much as the first ones.
+/// Effort for many rows. More than 64 directions would cost as much each, and hold almost none of the variance.
 const EFFORT: Effort = Effort {
     most: 64,
     sample: 2048,
     steps: 4,
 };
 
-/// For fewer than [`FEW`] rows: what better directions save in searches is less than they cost.
+/// Effort for fewer than [`FEW`] rows, where better directions cost more than they save in searches.
 const LESS: Effort = Effort {
     most: 32,
     sample: 512,
     steps: 3,
 };
 
-/// The number of rows from which on directions are worth more.
+/// Minimum number of rows for [`EFFORT`].
 const FEW: usize = 20_000;
 
-/// Where the iteration starts.
+/// Seed of the initial directions of the iteration.
 const START: Seed = Seed(2001);
 
-/// The part of its squared length that a vector keeps at least, if it does not depend on others.
+/// A vector is linearly dependent on others if orthogonalization leaves at most this fraction of its squared length.
 const DEPENDENT: f64 = 1e-20;
 
-/// Sums that a rotation adds up separately, so that an addition need not wait for the one before.
+/// Number of partial sums of a rotation; an addition need not wait for the previous one.
 const SUMS: usize = 4;
 
-/// Directions, the one with the largest variance first.
+/// Directions, in order of decreasing variance.
 #[derive(Clone, Debug)]
 pub(crate) struct Basis {
-    /// The mean, which is subtracted from rows and queries.
+    /// Mean of the sample, which is subtracted from rows and queries.
     mean: Vec<f32>,
-    /// For each group of [`LANES`] directions, for each value of a row, the factors: the matrix W, transposed in groups.
+    /// Matrix W, transposed in groups: for each group of [`LANES`] directions, and for each value of a row, the
+    /// factors.
     groups: Vec<[f32; LANES]>,
-    /// An upper bound of the square of the spectral norm of W.
+    /// Upper bound of the squared spectral norm of W.
     pub(crate) norm_sq: f64,
 }
 
 impl Basis {
-    /// The directions of rows of `dims` finite numbers, for a search.
+    /// Computes the directions of rows of `dims` finite values, for a search.
     pub(crate) fn new(dims: usize, rows: &[f32]) -> Self {
         let is_few = rows.len() < FEW * dims;
         let effort = if is_few { LESS } else { EFFORT };
-        // Odd, so that rows of pixels of an image are not all of the same few columns.
+        // Use an odd stride, or the sample could hold only a few columns of the image.
         Self::of(effort, effort.step(dims, rows) | 1, dims, rows)
     }
 
-    /// The directions of rows, at most `most` and those that fill up a group.
+    /// Computes at most `most` directions of the rows, rounded up to a multiple of [`LANES`].
     pub(crate) fn with_most(most: usize, dims: usize, rows: &[f32]) -> Self {
         let effort = Effort { most, ..EFFORT };
         Self::of(effort, effort.step(dims, rows), dims, rows)
     }
 
-    /// The directions of every `step`th row.
+    /// Computes the directions of every `step`th row.
     fn of(effort: Effort, step: usize, dims: usize, rows: &[f32]) -> Self {
         let sample: Vec<&[f32]> = rows.chunks_exact(dims).step_by(step).collect();
         let mean = mean(dims, &sample);
@@ -101,6 +102,7 @@ impl Basis {
             let matrix = covariance(dims, &sample);
             principal(dims, n_directions, &matrix, effort.steps)
         };
+        // Store the directions as `f32`, transposed in groups.
         let mut groups = vec![[0.0; LANES]; dims * n_directions / LANES];
         for (direction, factors) in directions.chunks_exact(dims).enumerate() {
             let group = &mut groups[direction / LANES * dims..][..dims];
@@ -116,12 +118,12 @@ impl Basis {
         }
     }
 
-    /// The number of directions, a multiple of [`LANES`]. Some of them may be zero.
+    /// Returns the number of directions, a multiple of [`LANES`]. Some may be zero vectors.
     pub(crate) fn n_directions(&self) -> usize {
         self.groups.len() / self.mean.len() * LANES
     }
 
-    /// What [`Self::rotate`] writes to.
+    /// Allocates the output of [`Self::rotate`].
     pub(crate) fn memory(&self) -> Vec<[f32; LANES]> {
         vec![[0.0; LANES]; self.n_directions() / LANES]
     }
@@ -138,9 +140,9 @@ impl Basis {
         );
     }
 
-    /// The coordinates of something centered along the directions: a group of them for each element of `rotated`.
+    /// Computes the components of a centered vector, one group of directions per element of `rotated`.
     ///
-    /// Each is a sum of `dims` products, whose terms are rounded at most [`Self::roundings`] times.
+    /// Each component is a sum of `dims` products, whose terms are rounded at most [`Self::roundings`] times.
     #[inline(always)]
     pub(crate) fn rotate<S: Simd>(&self, simd: S, centered: &[f32], rotated: &mut [[f32; LANES]]) {
         for (rotated, factors) in rotated
@@ -151,13 +153,14 @@ impl Basis {
         }
     }
 
-    /// How often at most a term of [`Self::rotate`] is rounded: with the mean taken off, multiplied, and added up.
+    /// Returns how often a term of [`Self::rotate`] is rounded at most: by the subtraction of the mean, the product and
+    /// the sums.
     pub(crate) fn roundings(&self) -> usize {
         2 + self.mean.len().div_ceil(SUMS) + 2
     }
 }
 
-/// Sums of products, [`SUMS`] for each lane, which are added at the end.
+/// Computes sixteen dot products, with [`SUMS`] partial sums for each lane.
 #[inline(always)]
 fn rotate_group<S: Simd>(simd: S, values: &[f32], factors: &[[f32; LANES]]) -> f32x16<S> {
     let mut sums = [f32x16::splat(simd, 0.0); SUMS];
@@ -174,7 +177,7 @@ fn rotate_group<S: Simd>(simd: S, values: &[f32], factors: &[[f32; LANES]]) -> f
     (sums[0] + sums[1]) + (sums[2] + sums[3])
 }
 
-/// The mean of some rows, rounded: any point would do.
+/// Returns the mean of rows, rounded to `f32`. The search is exact for any point in its place.
 fn mean(dims: usize, rows: &[&[f32]]) -> Vec<f32> {
     let mut sums = vec![0.0_f64; dims];
     for row in rows {
@@ -186,7 +189,8 @@ fn mean(dims: usize, rows: &[&[f32]]) -> Vec<f32> {
     sums.iter().map(|sum| (sum / n_rows) as f32).collect()
 }
 
-/// Rows less the mean, divided by the largest magnitude so that no square is out of range. Empty if all is zero.
+/// Returns the rows minus the mean, divided by the largest magnitude so that squares do not overflow. Empty if all are
+/// zero.
 fn centered(rows: &[&[f32]], mean: &[f32]) -> Vec<f64> {
     let less_mean = |row: &&[f32]| -> Vec<f64> {
         let pairs = row.iter().zip(mean);
@@ -205,7 +209,7 @@ fn centered(rows: &[&[f32]], mean: &[f32]) -> Vec<f64> {
     values
 }
 
-/// Sums of products of the values of rows: a symmetric matrix.
+/// Returns the covariance matrix of the centered rows, up to a factor: sums of products.
 fn covariance(dims: usize, sample: &[f64]) -> Vec<f64> {
     let level = simd::level();
     let bands = parallel::map(dims.div_ceil(BAND), |band| {
@@ -213,6 +217,7 @@ fn covariance(dims: usize, sample: &[f64]) -> Vec<f64> {
         dispatch!(level, _simd => add_products(dims, band * BAND, sample, &mut sums));
         sums
     });
+    // Mirror the upper triangle.
     let mut matrix = bands.concat();
     for line in 0..dims {
         for column in 0..line {
@@ -222,7 +227,7 @@ fn covariance(dims: usize, sample: &[f64]) -> Vec<f64> {
     matrix
 }
 
-/// Adds the products of some values of each row, from `first` on, and of all from `first` on: lines of the matrix.
+/// Adds the products of rows to a band of the matrix that begins at row and column `first`.
 #[inline(always)]
 fn add_products(dims: usize, first: usize, sample: &[f64], sums: &mut [f64]) {
     for row in sample.chunks_exact(dims) {
@@ -235,21 +240,26 @@ fn add_products(dims: usize, first: usize, sample: &[f64], sums: &mut [f64]) {
     }
 }
 
-/// The unit eigenvectors with the largest eigenvalues, one after the other; zeros where there are no more.
+/// Returns the unit eigenvectors with the largest eigenvalues, stored contiguously. If there are fewer, the rest are
+/// zero vectors.
 fn principal(dims: usize, n_directions: usize, matrix: &[f64], n_steps: usize) -> Vec<f64> {
+    // Start with random directions.
     let mut directions: Vec<f64> = (0..(dims * n_directions) as i64)
         .map(|i| unit_f64(hash1(START, [i], 0)) - 0.5)
         .collect();
+    // Orthogonal iteration.
     for _ in 0..n_steps {
         directions = times(dims, &directions, matrix);
         orthonormalize(dims, &mut directions);
     }
+    // Rayleigh-Ritz step: diagonalize the matrix in the subspace of the directions.
     let images = times(dims, &directions, matrix);
     let mut small: Vec<f64> = Vec::with_capacity(n_directions * n_directions);
     for direction in directions.chunks_exact(dims) {
         small.extend(images.chunks_exact(dims).map(|image| dot(direction, image)));
     }
     let (values, vectors) = super::jacobi::eigen(n_directions, small);
+    // Rotate the directions to the eigenvectors, the largest eigenvalue first.
     let mut order: Vec<usize> = (0..n_directions).collect();
     order.sort_by(|&a, &b| values[b].total_cmp(&values[a]));
     let mut sorted = Vec::with_capacity(directions.len());
@@ -268,10 +278,10 @@ fn principal(dims: usize, n_directions: usize, matrix: &[f64], n_steps: usize) -
     sorted
 }
 
-/// An upper bound of the square of the spectral norm of W: the largest sum of magnitudes in a line of W times its
+/// Returns an upper bound of the squared spectral norm of W: the largest sum of magnitudes in a row of W times its
 /// transpose.
 ///
-/// The products are exact in `f64`, and their sums are off by less than the factor that is added.
+/// The products are exact in `f64`, and the error of their sums is below the constant that is added.
 fn norm_sq(dims: usize, groups: &[[f32; LANES]]) -> f64 {
     let mut directions = Vec::with_capacity(groups.len() * LANES);
     for group in groups.chunks_exact(dims) {
@@ -289,7 +299,7 @@ fn norm_sq(dims: usize, groups: &[[f32; LANES]]) -> f64 {
     largest + 1e-9
 }
 
-/// Each direction times a symmetric matrix.
+/// Multiplies each direction with a symmetric matrix.
 fn times(dims: usize, directions: &[f64], matrix: &[f64]) -> Vec<f64> {
     let level = simd::level();
     let images = parallel::map(directions.len() / dims, |i| {
@@ -301,7 +311,7 @@ fn times(dims: usize, directions: &[f64], matrix: &[f64]) -> Vec<f64> {
     images.concat()
 }
 
-/// Adds the lines of a matrix, each times a factor.
+/// Adds the rows of a matrix, each times its factor.
 #[inline(always)]
 fn add_lines(factors: &[f64], lines: &[f64], sums: &mut [f64]) {
     for (&factor, line) in factors.iter().zip(lines.chunks_exact(sums.len())) {
@@ -311,8 +321,7 @@ fn add_lines(factors: &[f64], lines: &[f64], sums: &mut [f64]) {
     }
 }
 
-/// Makes directions orthogonal to those before them, and unit; those that depend on them become zero (modified
-/// Gram-Schmidt).
+/// Makes directions orthonormal (modified Gram-Schmidt). A direction that depends on earlier ones becomes zero.
 fn orthonormalize(dims: usize, directions: &mut [f64]) {
     for i in 0..directions.len() / dims {
         let (before, rest) = directions.split_at_mut(i * dims);
@@ -336,7 +345,7 @@ fn orthonormalize(dims: usize, directions: &mut [f64]) {
     }
 }
 
-/// The sum of products.
+/// Dot product with eight partial sums.
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     let mut sums = [0.0; 8];
     let (a_8, a) = a.as_chunks::<8>();

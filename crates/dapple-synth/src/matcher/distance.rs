@@ -1,15 +1,18 @@
 //! The distance that defines which row is nearest.
+//!
+//! It is the squared Euclidean distance in `f32`, with one fixed order of additions, so that all SIMD levels give the
+//! same bits.
 
 use fearless_simd::{f32x16, prelude::*};
 
-/// The number of sums that are added at the end.
+/// Number of partial sums.
 pub(crate) const LANES: usize = 16;
 
-/// The paper's D(M, N): the sum of squared differences in `f32`, summed in the one fixed order that defines which row is
-/// nearest.
+/// Squared distance of two vectors in `f32`, D(M, N) of Turk's paper, summed in the one fixed order that defines which
+/// row is nearest.
 ///
-/// Sixteen sums, each of every sixteenth term, are added in pairs. What one of the two has more than the other does not
-/// count.
+/// Sixteen partial sums, each of every sixteenth term, are added in pairs. If one slice is longer, its excess values
+/// are ignored.
 #[must_use]
 #[inline]
 pub fn distance_sq(a: &[f32], b: &[f32]) -> f32 {
@@ -28,7 +31,7 @@ pub fn distance_sq(a: &[f32], b: &[f32]) -> f32 {
     add_in_pairs(sums)
 }
 
-/// Rows, each filled up with zeros to whole registers. A zero more in a sum changes no bit of it.
+/// Rows padded with zeros to whole registers. The padding adds zeros to a sum, which change no bit.
 #[derive(Clone, Debug)]
 pub(crate) struct PaddedRows {
     values: Vec<[f32; LANES]>,
@@ -36,7 +39,7 @@ pub(crate) struct PaddedRows {
 }
 
 impl PaddedRows {
-    /// Copies rows of `dims` numbers. There are none if `dims` is zero.
+    /// Copies rows of `dims` values each. Empty if `dims` is zero.
     pub(crate) fn new(dims: usize, rows: &[f32]) -> Self {
         let stride = dims.div_ceil(LANES).max(1);
         let mut values = Vec::with_capacity(rows.len() / dims.max(1) * stride);
@@ -46,18 +49,18 @@ impl PaddedRows {
         Self { values, stride }
     }
 
-    /// The number of rows.
+    /// Number of rows.
     pub(crate) fn len(&self) -> usize {
         self.values.len() / self.stride
     }
 
-    /// A row.
+    /// Values of a row, padded.
     #[inline(always)]
     pub(crate) fn row(&self, row: u32) -> &[[f32; LANES]] {
         &self.values[row as usize * self.stride..][..self.stride]
     }
 
-    /// [`distance_sq`] of a row and a query filled up alike.
+    /// Returns [`distance_sq`] of a row and a padded query.
     #[inline(always)]
     pub(crate) fn distance_sq<S: Simd>(&self, simd: S, query: &[[f32; LANES]], row: u32) -> f32 {
         let row = self.row(row);
@@ -66,6 +69,7 @@ impl PaddedRows {
             let difference = f32x16::simd_from(simd, query) - f32x16::simd_from(simd, row);
             sums += difference * difference;
         }
+        // Add the sums in pairs, in the order of `add_in_pairs`.
         let (low, high) = sums.split();
         let (low, high) = (low + high).split();
         let sums: [f32; 4] = (low + high).into();
@@ -73,7 +77,7 @@ impl PaddedRows {
     }
 }
 
-/// Adds numbers to whole registers, the last of them filled up with zeros.
+/// Appends values to `target`, padded with zeros to whole registers.
 #[inline(always)]
 pub(crate) fn pad(values: &[f32], target: &mut Vec<[f32; LANES]>) {
     let (values, rest) = values.as_chunks::<LANES>();
@@ -85,7 +89,8 @@ pub(crate) fn pad(values: &[f32], target: &mut Vec<[f32; LANES]>) {
     }
 }
 
-/// How often at most a term of [`distance_sq`] is rounded: as a difference, twice in it, as a square, and added up.
+/// Returns how often a term of [`distance_sq`] is rounded at most: once as a difference, which is squared and so counts
+/// twice, once as a square, and by the additions.
 pub(crate) fn roundings(dims: usize) -> usize {
     3 + dims.div_ceil(LANES) + 4
 }

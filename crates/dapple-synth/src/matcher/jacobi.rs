@@ -1,16 +1,16 @@
 //! Eigenvalues and eigenvectors of a small symmetric matrix, by cyclic Jacobi rotations.
 //!
-//! Golub and Van Loan, Matrix Computations, 4th edition, section 8.5. In `f64`, in one fixed order.
+//! Reference: Golub and Van Loan, Matrix Computations, 4th edition, section 8.5. Computed in `f64`, in one fixed order.
 
-/// Sweeps over all pairs: the method converges quadratically, so that fewer are needed.
+/// Maximum number of sweeps over all pairs. The method converges quadratically, so fewer are needed.
 const SWEEPS: usize = 12;
 
-/// Where the sweeps end: the squares of what is off the diagonal, by those of the diagonal.
+/// Convergence threshold: sum of squares off the diagonal, relative to that of the diagonal.
 const DONE: f64 = 1e-24;
 
-/// The eigenvalues, in no order, and the eigenvectors that belong to them, one after the other.
+/// Returns the eigenvalues, unordered, and the unit eigenvectors in the same order, stored contiguously.
 ///
-/// `matrix` has `n` lines of `n` numbers and is symmetric.
+/// `matrix` is symmetric and has `n` rows of `n` values.
 pub(crate) fn eigen(n: usize, mut matrix: Vec<f64>) -> (Vec<f64>, Vec<f64>) {
     let mut vectors = vec![0.0; n * n];
     for i in 0..n {
@@ -22,6 +22,7 @@ pub(crate) fn eigen(n: usize, mut matrix: Vec<f64>) -> (Vec<f64>, Vec<f64>) {
         }
         for p in 0..n {
             for q in p + 1..n {
+                // Zero the element at (p, q) by a rotation from both sides.
                 let (cos, sin) = rotation(&matrix, n, p, q);
                 if sin != 0.0 {
                     rotate_lines(&mut matrix, n, [p, q], [cos, sin]);
@@ -35,7 +36,7 @@ pub(crate) fn eigen(n: usize, mut matrix: Vec<f64>) -> (Vec<f64>, Vec<f64>) {
     (values, vectors)
 }
 
-/// The cosine and sine of the angle that makes the element at (p, q) zero.
+/// Returns the cosine and sine of the rotation that makes the element at (p, q) zero.
 fn rotation(matrix: &[f64], n: usize, p: usize, q: usize) -> (f64, f64) {
     let off = matrix[p * n + q];
     if off == 0.0 {

@@ -1,44 +1,51 @@
-//! When a row may be skipped: the bound on rounding that makes the search exact.
+//! Proof of the pruning bound: when a row may be rejected without a comparison in full.
 //!
-//! Write x for a row, q for the query, D for [`distance_sq`](super::distance_sq) as it is computed, W for the matrix of k
-//! directions and m for the mean as they are stored, y and z for the rotated row and query as they are computed, and P
-//! for the sum of squares of differences of their whole coordinates ([`Lattice`]), or of some of them, or of the
-//! distances from a box. u = 2^-24 is the most by which `f32` rounds, relatively; below the normal numbers additions are
-//! exact, and a product is off by at most v = 2^-150.
+//! Notation:
+//!
+//! - x is a row and q the query; D is [`distance_sq`](super::distance_sq) as computed.
+//! - W is the matrix of k directions and m the mean, both as stored.
+//! - y and z are the rotated row and query as computed.
+//! - P is the sum of the squared differences of their integer coordinates ([`Lattice`]), or of some of them, or of the
+//!   distances from a box.
+//! - u = 2^-24 is the largest relative rounding error of `f32`. Below the normal numbers additions are exact, and the
+//!   error of a product is at most v = 2^-150.
+//!
+//! Steps:
 //!
 //! 1. A term of D is rounded at most `a` times ([`distance::roundings`]), so that D >= (1 - a u) |x - q|^2 - 2 dims v, and
 //!    |x - q| <= sqrt((D + 2 dims v) / (1 - a u)).
 //! 2. A term of a coordinate of z is rounded at most `b` times ([`Basis::roundings`]). With c for the centered query as
 //!    computed, `|z_j - W_j (q - m)| <= 1.01 b u |W_j| |c| + 2 dims v`, where 1.01 covers the powers of u. The squares of
-//!    all `|W_j|` add up to at most k |W|^2, so that |z - W (q - m)| <= 1.01 b u sqrt(k) |W| |c| + 2 sqrt(k) dims v. The same
-//!    holds for y.
-//! 3. Whole coordinates are nearer to each other than z and y, but for their rounding, [`Lattice::error`] for each of both.
-//! 4. By the triangle inequality, sqrt(P) <= |W| |x - q| + E, with E for the errors of 2 and 3, of the row and of the query.
-//!    P itself is exact, a part of a sum of squares is not larger than the sum, and a box is not farther than what is in it.
+//!    all `|W_j|` add up to at most k |W|^2, so that |z - W (q - m)| <= 1.01 b u sqrt(k) |W| |c| + 2 sqrt(k) dims v. The
+//!    bound for y has the same form.
+//! 3. Integer coordinates are not farther apart than z and y, except for the rounding of each: [`Lattice::error`].
+//! 4. By the triangle inequality, sqrt(P) <= |W| |x - q| + E. E is the sum of the errors of steps 2 and 3, of the row and of
+//!    the query. P itself is exact. A part of a sum of squares is not larger than the sum, and a box is not farther than a
+//!    point in it.
 //!
-//! Together, a row whose D is at most B has a P of at most T(B), which [`Margin::threshold`] gives. What has a larger P
-//! has a larger D than B: to skip it loses neither the nearest row nor one that is equally near. T is computed in `f64`,
-//! whose own rounding the factor [`SLACK`] covers many times over.
+//! Together: a row with D <= B has P <= T(B), which [`Margin::threshold`] returns. A row with a larger P has D > B, so
+//! rejecting it loses neither the nearest row nor an equally near one. T is computed in `f64`; the factor [`SLACK`]
+//! covers the rounding of this computation many times over.
 //!
-//! No number may overflow on the way: centered rows and queries have at most the length [`LONGEST`].
+//! Overflow is excluded, because the length of centered rows and queries is at most [`LONGEST`].
 
 use super::basis::Basis;
 use super::distance;
 use super::lattice::Lattice;
 
-/// The longest centered row or query that is looked for in a tree. Its square is far below the largest `f32`.
+/// Maximum length of a centered row or query in the tree. Its square is far below the largest `f32`.
 pub(crate) const LONGEST: f64 = 1e15;
 
-/// The relative error of rounding to `f32`.
+/// Relative error of rounding to `f32`.
 const U: f64 = 1.0 / (1 << 24) as f64;
 
-/// The absolute error of a product below the normal numbers: half of the least `f32`.
+/// Absolute error of a product below the normal numbers: half of the smallest positive `f32`.
 const V: f64 = f32::from_bits(1) as f64 / 2.0;
 
-/// More than the relative error of a few operations, or of a sum of a thousand terms, in `f64`.
+/// Factor above the relative error of a few operations, or of a sum of a thousand terms, in `f64`.
 const SLACK: f64 = 1.0 + 1e-12;
 
-/// The bound for one tree: what does not depend on the query.
+/// The terms of the bound that do not depend on the query, for one tree.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Margin {
     /// 2 dims v.
@@ -47,12 +54,12 @@ pub(crate) struct Margin {
     units_sq: f64,
     /// 1.01 b u sqrt(k) |W| in units.
     rotation: f64,
-    /// The value of E for a row and a query of length zero.
+    /// E for a row and a query of length zero.
     fixed: f64,
 }
 
 impl Margin {
-    /// The bound for rows of `dims` numbers, of which the longest one centered has the length `longest`.
+    /// Computes the bound for rows of `dims` values, given the length of the longest centered row.
     pub(crate) fn new(dims: usize, basis: &Basis, lattice: &Lattice, longest: f64) -> Self {
         let k = basis.n_directions() as f64;
         let norm = basis.norm_sq.sqrt() * lattice.per_unit();
@@ -67,24 +74,23 @@ impl Margin {
         }
     }
 
-    /// E for a centered query of this length, in units.
+    /// Returns E in units, given the length of the centered query.
     #[inline(always)]
     pub(crate) fn error(&self, length: f64) -> f64 {
         self.rotation * length + self.fixed
     }
 
-    /// T: the largest sum of squares of a row with a distance of at most `distance_sq`. Infinity gives the largest
-    /// number.
+    /// Returns T: the largest possible P of a row with D <= `distance_sq`. For infinity it is `i32::MAX`.
     #[inline(always)]
     pub(crate) fn threshold(&self, distance_sq: f32, error: f64) -> i32 {
         let distance_sq = (f64::from(distance_sq) + self.distance_underflow) * self.units_sq;
         let distance = distance_sq.sqrt() + error;
-        // The cast rounds down, as it may for sums that are whole, and stays in range.
+        // The cast rounds down, which is right for integer sums, and saturates.
         (distance * distance * SLACK) as i32
     }
 }
 
-/// The length of a vector of `f32`, rounded up.
+/// Returns the length of a vector of `f32`, rounded up.
 #[inline(always)]
 pub(crate) fn length(values: &[f32]) -> f64 {
     let mut sums = [0.0_f64; 8];

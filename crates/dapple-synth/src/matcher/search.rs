@@ -1,4 +1,9 @@
-//! The search in a tree: groups of leaves in the order of their distance, and of each leaf no more than is needed.
+//! Branch-and-bound search in the k-d tree for the row nearest to a query.
+//!
+//! Steps: compute the distances of the query from the boxes of all groups of leaves, and visit the groups in order of
+//! this distance. In a group, reject leaves by their boxes, then by the partial distances of their rows. Compare the
+//! remaining rows in full, which lowers the threshold for all others. A sum is a squared distance, or a part of it, in
+//! integer units of the [lattice](super::lattice).
 
 use super::basis::LANES;
 use super::margin::Margin;
@@ -6,33 +11,34 @@ use super::tree::{Boxes, Pairs, STEP, Tree};
 use super::{Match, PaddedRows};
 use fearless_simd::{i16x32, i32x16, prelude::*};
 
-/// A search on its way.
+/// State of a search.
 pub(crate) struct Search<'a, S> {
     pub(crate) simd: S,
     pub(crate) tree: &'a Tree,
     pub(crate) margin: &'a Margin,
     pub(crate) rows: &'a PaddedRows,
-    /// The factor of the squared distance of each row. Since none is below 1, what is too far without its factor
-    /// is too far with it, and the bounds of the tree stay right.
+    /// Factor of the squared distance of each row. All are at least 1, so a row that is too far without its factor is
+    /// too far with it, and the bounds of the tree stay valid.
     pub(crate) factors: Option<&'a [f32]>,
-    /// The query, filled up with zeros.
+    /// Query, padded with zeros.
     pub(crate) query: &'a [[f32; LANES]],
-    /// The query along the directions, each pair of coordinates sixteen times.
+    /// Integer components of the query; each pair is repeated in all sixteen lanes.
     pub(crate) placed: &'a [[Pairs; STEP]],
     /// [`Margin::error`] of the query.
     pub(crate) error: f64,
-    /// The nearest row so far.
+    /// Nearest row so far.
     pub(crate) best: Option<Match>,
-    /// The distance of `best`, or the bound that the caller gave.
+    /// Squared distance of `best`, or the bound of the caller.
     pub(crate) below: f32,
-    /// Rows with a larger sum of squares are not nearer than `below`.
+    /// Rows with a larger sum are farther than `below`.
     pub(crate) threshold: i32,
 }
 
 impl<S: Simd> Search<'_, S> {
-    /// Finds the nearest row. `order` is memory.
+    /// Finds the nearest row. `order` is scratch memory.
     #[inline(always)]
     pub(crate) fn run(&mut self, order: &mut Vec<u64>) {
+        // Collect the groups whose boxes are near. An entry is the squared distance (upper half) and the index.
         order.clear();
         for (first, boxes) in (0..).step_by(LANES).zip(&self.tree.groups) {
             let sums: [i32; LANES] = self.box_sums(boxes).into();
@@ -43,6 +49,7 @@ impl<S: Simd> Search<'_, S> {
                 }
             }
         }
+        // Visit them in order of distance.
         order.sort_unstable();
         for &entry in order.iter() {
             if (entry >> 32) as i32 > self.threshold {
@@ -52,7 +59,7 @@ impl<S: Simd> Search<'_, S> {
         }
     }
 
-    /// Compares with a row.
+    /// Compares the query with a row in full, and lowers the threshold if it is the nearest so far.
     #[inline(always)]
     pub(crate) fn compare(&mut self, row: u32) {
         let mut distance_sq = self.rows.distance_sq(self.simd, self.query, row);
@@ -67,7 +74,7 @@ impl<S: Simd> Search<'_, S> {
         }
     }
 
-    /// Looks at the leaves of a group whose boxes are near.
+    /// Visits the leaves of a group whose boxes are near.
     #[inline(always)]
     fn visit_group(&mut self, group: usize) {
         let first = group * LANES;
@@ -75,7 +82,7 @@ impl<S: Simd> Search<'_, S> {
         let mut all = (1_u64 << n) - 1;
         let sums = self.box_sums(&self.tree.leaves[group]);
         if self.best.is_none() {
-            // One leaf alone brings the threshold down for the others.
+            // Visit the nearest leaf first, which lowers the threshold for the others.
             let sums: [i32; LANES] = sums.into();
             let (nearest, _) = least(&sums[..n]);
             all &= !(1 << nearest);
@@ -85,10 +92,10 @@ impl<S: Simd> Search<'_, S> {
         self.visit_leaves(first, near);
     }
 
-    /// Compares the rows of leaves that may be near: those of the sixteen from `first` on that have a bit in `near`.
+    /// Compares the rows of leaves that may be near. Leaf `first + i` is visited if bit `i` of `near` is set.
     ///
-    /// All of them take a step before one takes the next, and which ones stay is found without a branch: a processor
-    /// could not predict it.
+    /// All leaves advance by one step before the next step begins. Which ones remain is computed without branches,
+    /// because a processor could not predict them.
     #[inline(always)]
     fn visit_leaves(&mut self, first: usize, mut near: u64) {
         let mut sums = [[0_i32; LANES]; LANES];
@@ -114,7 +121,7 @@ impl<S: Simd> Search<'_, S> {
         }
     }
 
-    /// Compares with the rows of a leaf whose sums are near, the nearest first.
+    /// Compares with the rows of a leaf whose sums are within the threshold, in order of increasing sums.
     #[inline(always)]
     fn compare_rows(&mut self, leaf: usize, mut sums: [i32; LANES]) {
         for _ in 0..LANES {
@@ -127,7 +134,7 @@ impl<S: Simd> Search<'_, S> {
         }
     }
 
-    /// Adds the squares of the differences of the query and sixteen rows along [`STEP`] pairs of directions.
+    /// Adds the squared differences of the query and sixteen rows along [`STEP`] pairs of directions to their sums.
     #[inline(always)]
     fn add_squares(
         &self,
@@ -144,7 +151,7 @@ impl<S: Simd> Search<'_, S> {
         sums
     }
 
-    /// The squared distances of the query from sixteen boxes.
+    /// Returns the squared distances of the query from sixteen boxes.
     #[inline(always)]
     fn box_sums(&self, boxes: &Boxes) -> i32x16<S> {
         let mut sums = i32x16::splat(self.simd, 0);
@@ -159,7 +166,7 @@ impl<S: Simd> Search<'_, S> {
     }
 }
 
-/// The place of the least number, and the number.
+/// Returns the index of the minimum, and the minimum.
 #[inline(always)]
 fn least(values: &[i32]) -> (usize, i32) {
     let mut least = (0, i32::MAX);

@@ -1,12 +1,12 @@
-//! Rows in the order of a k-d tree, with boxes around them.
+//! k-d tree of the rows, with bounding boxes.
 //!
-//! Rows are halved along the direction in which they spread most (Bentley, Multidimensional binary search trees used for
-//! associative searching, Communications of the ACM 18, 1975) until sixteen are left: a leaf, whose rows fill the lanes of a
-//! register. Sixteen leaves one after the other are a subtree, and so are sixteen of those; the boxes of sixteen are tested
-//! at once.
+//! Rows are split in two along the direction in which they spread most (Bentley, Multidimensional binary search
+//! trees used for associative searching, Communications of the ACM 18, 1975), recursively until sixteen are left. They
+//! form a leaf, and fill the lanes of a register. Sixteen consecutive leaves are a subtree, called a group; sixteen
+//! consecutive groups are a subtree as well. The boxes of sixteen leaves or groups are tested at once.
 //!
-//! Coordinates are whole numbers of a [`Lattice`]. Those along two directions stand side by side, as the instruction that
-//! multiplies and adds pairs wants them.
+//! Coordinates are integers of a [`Lattice`]. The coordinates along two directions are interleaved, as required by the
+//! instruction that multiplies and adds pairs.
 
 use super::basis::{Basis, LANES};
 use super::lattice::Lattice;
@@ -15,60 +15,63 @@ use dapple_raster::parallel;
 use dapple_raster::simd;
 use dapple_raster::simd::dispatch;
 
-/// Pairs of directions after which the rows of a leaf are looked at again.
+/// Number of pairs of directions between two tests of the rows of a leaf.
 pub(crate) const STEP: usize = 4;
 
-/// Directions along which rows are halved and have boxes: those of the first step, in which they differ most.
+/// Number of directions that are split and have boxes: those of the first step, in which rows differ most.
 const BOX_DIRECTIONS: usize = 2 * STEP;
 
-/// The coordinates of sixteen rows along two directions: both of the first row, both of the second, and so on.
+/// Coordinates of sixteen rows along two directions, interleaved: both of the first row, both of the second, and so on.
 pub(crate) type Pairs = [i16; 2 * LANES];
 
-/// Rows that are rotated by one thread at a time.
+/// Number of rows that a thread rotates at a time.
 const CHUNK: usize = 512;
 
-/// Boxes of sixteen things: the least and the largest coordinates.
+/// Bounding boxes of sixteen leaves or groups: minimum and maximum coordinates.
 #[derive(Clone, Debug)]
 pub(crate) struct Boxes {
     pub(crate) low: [Pairs; STEP],
     pub(crate) high: [Pairs; STEP],
 }
 
-/// The rows along the directions of a basis, in leaves.
+/// The rows as coordinates along the directions of a basis, in leaves.
 #[derive(Clone, Debug)]
 pub(crate) struct Tree {
-    /// The row in each lane of each leaf. The lanes that are left over in the last leaf repeat its last row.
+    /// The row in each lane of each leaf. Unused lanes of the last leaf repeat its last row.
     pub(crate) rows: Vec<[u32; LANES]>,
-    /// The coordinates of each leaf along the first eight directions, along the next eight, and so on. What is looked at
-    /// after one another lies close together.
+    /// Coordinates of all leaves along the first eight directions, then along the next eight, and so on. A step reads
+    /// contiguous memory.
     pub(crate) steps: Vec<Vec<[Pairs; STEP]>>,
-    /// Boxes around the rows of sixteen leaves each.
+    /// Bounding boxes of the leaves, in groups of sixteen.
     pub(crate) leaves: Vec<Boxes>,
-    /// Boxes around the leaves of sixteen of those each.
+    /// Bounding boxes of the groups, in sixteens.
     pub(crate) groups: Vec<Boxes>,
 }
 
-/// Rows along directions, before they are sorted.
+/// Quantized coordinates of the rows, in their original order.
 pub(crate) struct Placed {
     n_directions: usize,
     coordinates: Vec<i16>,
     pub(crate) lattice: Lattice,
-    /// The length of the longest centered row.
+    /// Length of the longest centered row.
     pub(crate) longest: f64,
 }
 
 impl Placed {
-    /// Rotates rows of `dims` numbers. Nothing if they are not finite or too long.
+    /// Rotates and quantizes rows of `dims` values. Returns `None` if a row is not finite or longer than
+    /// [`margin::LONGEST`].
     pub(crate) fn new(dims: usize, rows: &[f32], basis: &Basis) -> Option<Self> {
+        // Rotate the rows to the directions.
         let n_directions = basis.n_directions();
         let chunks: Vec<&[f32]> = rows.chunks(CHUNK * dims).collect();
         let rotated = parallel::map(chunks.len(), |chunk| rotate(dims, chunks[chunk], basis));
         let longest = rotated.iter().fold(0.0, |max, part| part.longest.max(max));
-        // This is false for a length that is not a number, which `f64::max` would not keep.
+        // False for NaN, which `f64::max` would discard.
         let all_short = rotated.iter().all(|part| part.length_sq < f64::INFINITY);
         if !all_short || longest > margin::LONGEST {
             return None;
         }
+        // Quantize the coordinates.
         let length_sq: f64 = rotated.iter().map(|part| part.length_sq).sum();
         let spread = (length_sq / (rows.len() / dims) as f64).sqrt();
         let lattice = Lattice::new(longest, spread);
@@ -98,11 +101,13 @@ impl Placed {
 }
 
 impl Tree {
-    /// Sorts rows into leaves.
+    /// Builds the tree over the rows in `order`.
     pub(crate) fn new(placed: &Placed, mut order: Vec<u32>) -> Self {
+        // Sort the rows into leaves, and repeat the last row in unused lanes.
         sort(&mut order, placed);
         let leaf = |leaf: &[u32]| std::array::from_fn(|lane| leaf[lane.min(leaf.len() - 1)]);
         let rows: Vec<[u32; LANES]> = order.chunks(LANES).map(leaf).collect();
+        // Copy the coordinates, step by step.
         let steps = parallel::map(placed.n_directions / (2 * STEP), |step| {
             let coordinates = |leaf: &[u32; LANES]| {
                 let lanes = leaf.map(|row| &placed.row(row)[2 * STEP * step..][..2 * STEP]);
@@ -110,6 +115,7 @@ impl Tree {
             };
             rows.iter().map(coordinates).collect()
         });
+        // Compute the bounding boxes of the leaves and of the groups.
         let around = |leaf: &[u32; LANES]| around_rows(&leaf.map(|row| placed.row(row)));
         let boxes: Vec<Box> = rows.iter().map(around).collect();
         let boxes_16: Vec<Box> = boxes.chunks(LANES).map(around_boxes).collect();
@@ -122,14 +128,14 @@ impl Tree {
     }
 }
 
-/// The numbers of all rows.
+/// Returns the indices of all rows.
 pub(crate) fn every_row(dims: usize, rows: &[f32]) -> Vec<u32> {
     (0..rows.len().checked_div(dims).unwrap_or(0) as u32).collect()
 }
 
-/// The numbers of all rows but those that are equal to an earlier one to the last bit, in any order.
+/// Returns the indices of all rows except bitwise duplicates of an earlier row. They are not in ascending order.
 ///
-/// Of equal rows only the first is ever the nearest, and an image that is the same along one axis has many.
+/// Of equal rows only the first is ever the nearest. An image that is constant along one axis has many duplicates.
 pub(crate) fn distinct_rows(dims: usize, rows: &[f32]) -> Vec<u32> {
     let mut order = every_row(dims, rows);
     let bits = |row: u32| {
@@ -141,11 +147,11 @@ pub(crate) fn distinct_rows(dims: usize, rows: &[f32]) -> Vec<u32> {
     order
 }
 
-/// A part of the rows along directions.
+/// Rotated rows of one chunk.
 struct Rotated {
     values: Vec<[f32; LANES]>,
     longest: f64,
-    /// The sum of the squared lengths of the centered rows.
+    /// Sum of the squared lengths of the centered rows.
     length_sq: f64,
 }
 
@@ -173,13 +179,14 @@ fn rotate(dims: usize, rows: &[f32], basis: &Basis) -> Rotated {
     part
 }
 
-/// Halves rows, and the halves again, down to leaves. All leaves but the last one are full, and sixteen of them that are
-/// tested at once are a subtree.
+/// Splits rows recursively into leaves. All leaves except the last are full, and each aligned run of sixteen leaves is
+/// a subtree.
 fn sort(rows: &mut [u32], placed: &Placed) {
     let n_leaves = rows.len().div_ceil(LANES);
     if n_leaves < 2 {
         return;
     }
+    // Find the direction of the largest spread.
     let mut low = [i16::MAX; BOX_DIRECTIONS];
     let mut high = [i16::MIN; BOX_DIRECTIONS];
     for &row in rows.iter() {
@@ -195,18 +202,19 @@ fn sort(rows: &mut [u32], placed: &Placed) {
         }
     }
     let middle = n_leaves.next_power_of_two() / 2 * LANES;
+    // Split so that the first part is a full subtree: its number of leaves is a power of two.
     rows.select_nth_unstable_by_key(middle, |&row| (placed.row(row)[widest], row));
     let (before, after) = rows.split_at_mut(middle);
     sort(before, placed);
     sort(after, placed);
 }
 
-/// The coordinates of rows along two directions.
+/// Returns the coordinates of sixteen rows along two directions, interleaved.
 fn pairs(lanes: &[&[i16]; LANES], pair: usize) -> Pairs {
     std::array::from_fn(|i| lanes[i / 2][2 * pair + i % 2])
 }
 
-/// A box: the least and the largest coordinates.
+/// Bounding box: the minimum and maximum coordinates.
 type Box = [[i16; BOX_DIRECTIONS]; 2];
 
 fn around_rows(lanes: &[&[i16]; LANES]) -> Box {
@@ -224,7 +232,7 @@ fn around_boxes(boxes: &[Box]) -> Box {
     ]
 }
 
-/// Up to sixteen boxes side by side. What is in the lanes that are left over does not matter.
+/// Interleaves up to sixteen boxes for a test at once. The content of unused lanes does not matter.
 fn side_by_side(boxes: &[Box]) -> Boxes {
     let side = |side: usize| {
         let lanes = |i: usize| &boxes[i.min(boxes.len() - 1)][side];
