@@ -1,27 +1,43 @@
-//! Corrections of all sites of a level at once, by what the exemplar looks like around the places that they are from.
+//! Synthesis on surfaces by correction in appearance space: all sites of a level move, a few times, to the exemplar
+//! position whose surroundings are most similar to theirs.
 //!
 //! References: Sylvain Lefebvre and Hugues Hoppe, "Appearance-Space Texture Synthesis", SIGGRAPH 2006, DOI
 //! 10.1145/1141911.1141921, and "Parallel Controllable Texture Synthesis", SIGGRAPH 2005, DOI 10.1145/1186822.1073261.
 //!
-//! A site is from a place in the exemplar, on all levels one between the pixels of its full size. What is compared are the principal
-//! components of windows around such places ([`stage`]), as far apart as the sites of the level. A window is looked up where
-//! a site around goes on to: nothing is interpolated, so nothing is blurred, and 32 numbers are compared, where two squares of
-//! colors have 171. From level to level sites keep their places, and new ones go on from the nearest of those. Then every site takes a few times, of the places that its neighbors go on to and of those most like these, the one
-//! around which the exemplar looks most like the texture around it.
+//! Input: the sites of a [`Synthesizer`], an exemplar, guides, and the pixels that the first pass of [`engine`]
+//! assigned to the coarsest sites. Output: for each site of each level, a pixel of the exemplar.
 //!
-//! Departures from the papers: sites are not pixels of a chart, and there are no jumps between charts; what lies to which
-//! side of a site follows from the field, half of it here and half there ([`links`]). Neighbors are corrected one after the
-//! other, in classes of sites that are not connected, which depend on nothing but the graph. The coarsest level begins with
-//! the paper's first pass of a sweep (Turk 2001), in which large features grow from one side to the other. Parts of the
-//! exemplar that the texture has too often cost more from one pass to the next, as those of endless textures do.
+//! The source of a site is a position in the exemplar, with subpixel precision. On every level it is a position in the
+//! exemplar at full size. A feature vector describes the window around a pixel: the principal components of its colors
+//! ([`stage`]). Neighborhoods are compared by the features on their four diagonals, as far apart as the sites of the
+//! level. They are 32 numbers, where two squares of colors have 171. Features are looked up at the positions that the
+//! neighbors predict; nothing is interpolated, so nothing is blurred.
 //!
-//! Where directions have a symmetry, the first pass says by how many quarter turns the exemplar lies turned at the coarsest
-//! sites, and finer ones take this from the nearest of them. A site goes on with neighbors at which it lies the same; of
-//! others it sees what the exemplar looks like when it is turned.
+//! Steps on each level, from the coarsest:
 //!
-//! Guides are compared beside the components. What a site goes on to from the coarser level may be far from what they ask
-//! for, with nothing nearer around it: a site whose guides are off by a good part of how much its surroundings are
-//! searches all of the exemplar before it is corrected.
+//! - Sites of the coarser level keep their positions. A new site takes the position that its nearest coarser neighbor
+//!   predicts.
+//! - Each site compares several candidates and takes the best ([`choose`]): the positions that its neighbors predict,
+//!   positions half a pixel from the best of these, and the positions most similar to the predicted ones. This is
+//!   repeated a few times for all sites.
+//!
+//! Departures from the papers:
+//!
+//! - Sites are not pixels of a chart, so there are no jumps between charts. The offset of a neighbor in the exemplar
+//!   follows from the orientation field, half from the site and half from the neighbor ([`links`]).
+//! - Sites are corrected in classes, one class after the other. Sites of a class are not connected. Classes depend on
+//!   the graph alone.
+//! - The coarsest level begins with the first pass of Turk's sweep (2001), in which large features grow from one side
+//!   to the other.
+//! - Parts of the exemplar that the texture uses too often cost more from pass to pass, as in endless textures.
+//!
+//! If the orientation field has a symmetry, the first pass determines the rotation of the exemplar at the coarsest
+//! sites, and finer sites take it from the nearest of them. A site continues only neighbors with the same rotation; at
+//! the others it reads the features of the rotated exemplar.
+//!
+//! Guides are compared along with the features. The position predicted by the coarser level may have guides far from
+//! the wanted ones, with no better position near it. So a site searches the whole exemplar before correction if its
+//! guides differ by a large fraction of the difference of its features ([`MISFIT`]).
 
 mod links;
 
@@ -41,56 +57,58 @@ use dapple_raster::simd::{self, dispatch};
 use glam::Vec2;
 use links::Links;
 
-/// Places are counted in parts of a pixel, of which there are 2 to the power of this along each axis. With whole pixels what a site
-/// goes on to is off by up to a half at every step, and pieces of the exemplar are cut up.
+/// Positions are in units of 2^-`PART_BITS` pixels along each axis. With whole pixels, a prediction would be off by up
+/// to half a pixel at every step, which cuts up pieces of the exemplar.
 ///
-/// An exemplar may have 2^29 pixels along a side, more than those of five rows that an image can have.
+/// The integers suffice for exemplars of 2^29 pixels along a side, more than an image with five rows can have.
 const PART_BITS: u32 = 3;
 
-/// How far beside the best place a site also looks: half of a pixel.
+/// Distance at which a site also tries positions around the best one: half a pixel, in units of [`PART_BITS`].
 ///
-/// Measured on the six models of figure 5: of neighbors 13 to 18 % are of other pieces, in place of 14 to 27 % with whole pixels,
-/// and where these meet colors differ by 7 to 34 % less (mean squares of all neighbors). Without a look aside pieces are larger
-/// still, and differ more where they meet, as with a whole pixel.
+/// Measured on the six models of figure 5: 13 to 18 % of neighbors are of other pieces, compared with 14 to 27 % with
+/// whole pixels, and colors where pieces meet differ by 7 to 34 % less (mean squares of all neighbors). Without this
+/// step pieces are larger still, and differ more where they meet; the same holds for a step of a whole pixel.
 const ASIDE: i64 = 1 << (PART_BITS - 1);
 
-/// How often a level is corrected; the coarsest twice as often.
+/// Number of correction passes per level; the coarsest level has twice as many.
 const N_PASSES: usize = 3;
 
-/// Sites that one task corrects at least.
+/// Minimum number of sites per task.
 const TASK: usize = 64;
 
-/// The most places that a site chooses from, but for those that are like them.
+/// Maximum number of predicted positions that a site compares. The positions similar to them are not counted.
 const MAX_COHERENT: usize = 16;
 
-/// How much a cost changes after a pass, in mean squared distances, for a part that the texture never has.
+/// Decrease of the cost of a part that the texture does not use, per pass, in units of the mean squared distance.
 const STEP: f32 = 0.8;
 
-/// The squared distance of the guides of a site, in that of its surroundings, from which on it searches.
+/// A site searches the whole exemplar if the squared distance of its guides exceeds this fraction of that of its
+/// features.
 ///
-/// Measured on leaves after a soft and a hard picture: the light of the texture follows that of the picture (correlation) by
-/// 0.42 and 0.41, as colors do, in the same time as with 1 (0.40 and 0.39); to search everywhere gives 0.01 more and takes
-/// a quarter longer.
+/// Measured on leaves, guided by a soft and by a hard image: the correlation of the brightness of the texture with that
+/// of the image is 0.42 and 0.41, as in synthesis by colors, in the same time as with 1 (0.40 and 0.39). A search for
+/// every site gives 0.01 more and takes a quarter longer.
 const MISFIT: f32 = 0.25;
 
-/// Tasks that search before a callback hears of it.
+/// Number of tasks that search between two progress callbacks.
 const TASKS: usize = 256;
 
-/// The sites of a surface with their directions and guides, and the exemplar on all levels.
+/// Correction of the sites of a surface: the sites with their frames and guides, and the exemplar on all levels.
 pub(crate) struct Appearance<'a> {
     hierarchy: &'a Hierarchy,
     targets: &'a Targets,
-    /// By how many quarter turns the exemplar lies turned at each site; nothing where directions have no symmetry.
+    /// Rotation of the exemplar at each site, in quarter turns; empty if the orientation field has no symmetry.
     pub(crate) quarters: Vec<u8>,
     frames: Frames,
-    /// The levels, the finest first.
+    /// Levels of the exemplar, the finest first.
     stages: Vec<Stage>,
     seed: Seed,
-    /// How much costs change, and 0 where there are none.
+    /// Factor of the changes of costs; 0 if parts have no costs.
     evenness: f32,
 }
 
-/// A place in parts of pixels, and how unlike the exemplar around it is to the texture around the site.
+/// A candidate position in units of [`PART_BITS`], and the squared distance of its surroundings from those of the site,
+/// costs included.
 #[derive(Clone, Copy, Debug)]
 struct Choice {
     place: [u32; 2],
@@ -98,12 +116,12 @@ struct Choice {
 }
 
 impl<'a> Appearance<'a> {
-    /// Prepares the levels of an exemplar, which lies turned by these quarter turns at the coarsest sites; there are as many
-    /// guides as it has.
+    /// Prepares the levels of an exemplar. `coarsest` is its rotation at the coarsest sites, in quarter turns.
+    /// `targets` has as many guides as the exemplar.
     ///
     /// # Errors
     ///
-    /// [`SynthErrorKind::Masked`] for a mask that leaves nothing.
+    /// [`SynthErrorKind::Masked`] for a mask that allows no pixel.
     pub(crate) fn new(
         synthesizer: &'a Synthesizer,
         exemplar: &Exemplar,
@@ -111,7 +129,8 @@ impl<'a> Appearance<'a> {
         coarsest: &[u8],
         options: &Options,
     ) -> Result<Self, SynthError> {
-        // What is smaller than the exemplar has not all of its parts; what repeats has all of them anyway; and guides say which.
+        // Do not even out usage if the texture is smaller than the exemplar and cannot use all parts, if the exemplar
+        // is regular and its parts are used evenly anyway, or if guides determine the parts.
         let [width, height] = exemplar.size.map(|side| side as usize);
         let quarters = quarters(synthesizer, coarsest, options.n_levels);
         let frames = Frames::new(synthesizer, &quarters);
@@ -129,7 +148,7 @@ impl<'a> Appearance<'a> {
         )?;
         for stage in &mut stages {
             stage.coherence = match options.coherence {
-                // Measured: also what repeats goes on better than with less.
+                // Measured: 2 lets regular exemplars continue better than smaller factors, too.
                 Coherence::Auto => 2.0,
                 Coherence::Factor(factor) => factor,
             };
@@ -145,8 +164,8 @@ impl<'a> Appearance<'a> {
         })
     }
 
-    /// The pixel of the exemplar that each site of each level is from, the finest first, given those of the coarsest level
-    /// of a pyramid that the coarsest sites begin with.
+    /// Corrects all levels. Returns the exemplar pixel of each site of each level, the finest level first. `coarsest`
+    /// holds the initial pixels of the coarsest sites, on the coarsest level of a pyramid.
     pub(crate) fn run(
         &mut self,
         coarsest: &[u32],
@@ -154,6 +173,7 @@ impl<'a> Appearance<'a> {
     ) -> Result<Vec<Vec<[u32; 2]>>, SynthError> {
         let n_levels = self.stages.len();
         let mut levels: Vec<Vec<[u32; 2]>> = Vec::new();
+        // Process the levels, the coarsest first.
         for level in (0..n_levels).rev() {
             let links = Links::new(self.hierarchy, &self.frames, level);
             let mut places = match levels.last() {
@@ -179,6 +199,7 @@ impl<'a> Appearance<'a> {
             self.correct(level, &links, n_passes, &mut places, &mut tell)?;
             levels.push(places);
         }
+        // Convert positions to pixels.
         levels.reverse();
         let pixels = |places: Vec<[u32; 2]>| {
             let pixels = places.into_iter().map(|place| narrow(pixel(place)));
@@ -187,7 +208,7 @@ impl<'a> Appearance<'a> {
         Ok(levels.into_iter().map(pixels).collect())
     }
 
-    /// The places of the coarsest sites, which have these pixels of a pyramid.
+    /// Returns the initial positions of the coarsest sites. `pixels` are on the coarsest level of a pyramid.
     fn begin(&self, level: usize, pixels: &[u32]) -> Vec<[u32; 2]> {
         let stage = &self.stages[level];
         let width = ((stage.size[0] - 1) >> level) + 1;
@@ -200,8 +221,8 @@ impl<'a> Appearance<'a> {
         pixels.iter().enumerate().map(place).collect()
     }
 
-    /// The places of the sites of a level before they are corrected: those of the coarser level keep theirs, and the others
-    /// go on from the nearest of them.
+    /// Returns the initial positions of a level. Sites of the coarser level keep theirs; a new site takes the position
+    /// that its nearest coarser neighbor predicts.
     fn refine(&self, level: usize, coarser: &[[u32; 2]], links: &Links) -> Vec<[u32; 2]> {
         let stage = &self.stages[level];
         let n_sites = self.hierarchy.levels()[level].n_sites();
@@ -209,6 +230,7 @@ impl<'a> Appearance<'a> {
             if let Some(&place) = coarser.get(site) {
                 return place;
             }
+            // Find the nearest coarser neighbor with the same rotation.
             let near = links.of(site).near.iter();
             let parents = near.filter(|link| link.site() < coarser.len() && link.quarters() == 0);
             let nearest = parents.min_by(|a, b| {
@@ -224,7 +246,7 @@ impl<'a> Appearance<'a> {
         })
     }
 
-    /// A random place for a site.
+    /// Returns a random usable position for a site.
     fn any(&self, level: usize, site: usize) -> [u32; 2] {
         let stage = &self.stages[level];
         let usable = stage.usable_pixels();
@@ -237,7 +259,7 @@ impl<'a> Appearance<'a> {
         middle([pixel % stage.size[0], pixel / stage.size[0]].map(i64::from))
     }
 
-    /// Moves sites whose guides are off to the places of the exemplar that are the most like these and their surroundings.
+    /// Moves sites whose guides differ much to the position of the exemplar with the most similar features and guides.
     fn obey(
         &self,
         level: usize,
@@ -259,6 +281,7 @@ impl<'a> Appearance<'a> {
                     let own = pixel(*place);
                     let off = stage.guides_distance_sq(wanted, own);
                     let around = around(stage, links, site, &before);
+                    // Search only if the guides differ by a large fraction of the features' difference.
                     if off <= MISFIT * distance_sq(stage, &around, own) {
                         continue;
                     }
@@ -272,7 +295,7 @@ impl<'a> Appearance<'a> {
         Ok(())
     }
 
-    /// Corrects all sites of a level some times.
+    /// Corrects all sites of a level `n_passes` times.
     fn correct(
         &mut self,
         level: usize,
@@ -283,6 +306,7 @@ impl<'a> Appearance<'a> {
     ) -> Result<(), SynthError> {
         let simd = simd::level();
         let Stage { size, spacing, .. } = self.stages[level];
+        // Start without costs; the wanted usage is even over the usable pixels.
         let mut costs = Costs::new(size, spacing as u32);
         let usable = self.stages[level].usable_pixels();
         let usable = usable
@@ -293,6 +317,7 @@ impl<'a> Appearance<'a> {
         for _ in 0..n_passes {
             let mut sum = 0.0;
             for class in &links.classes {
+                // Choose the positions of a class in parallel, then store them.
                 let choose = |at: usize| {
                     let site = class[at] as usize;
                     let wanted = self.targets.of(level, site as u32);
@@ -307,6 +332,7 @@ impl<'a> Appearance<'a> {
                 done += class.len();
                 tell(done)?;
             }
+            // Raise the costs of parts that are used too often.
             if self.evenness > 0.0 {
                 let scale = *scale.get_or_insert(sum / places.len().max(1) as f64) as f32;
                 let shares = costs.shares(places.iter().map(|&place| narrow(pixel(place))));
@@ -318,8 +344,8 @@ impl<'a> Appearance<'a> {
     }
 }
 
-/// By how many quarter turns the exemplar lies turned at all sites, given those at the coarsest ones: each site goes on with
-/// the nearest one of the coarser level that it is connected to.
+/// Returns the rotation of the exemplar at all sites, in quarter turns. `coarsest` holds that of the coarsest sites.
+/// Every other site continues the rotation of the nearest coarser site among its neighbors.
 fn quarters(synthesizer: &Synthesizer, coarsest: &[u8], n_levels: usize) -> Vec<u8> {
     if coarsest.is_empty() {
         return Vec::new();
@@ -345,8 +371,8 @@ fn quarters(synthesizer: &Synthesizer, coarsest: &[u8], n_levels: usize) -> Vec<
     quarters
 }
 
-/// The place around which the exemplar looks most like the texture around a site, with guides like the wanted ones. Of equally
-/// good ones the first.
+/// Returns the position with the least distance to a site: in features around it, in guides from `wanted`, and in
+/// costs. Of equally good positions the first wins.
 #[inline(always)]
 fn choose(
     stage: &Stage,
@@ -355,6 +381,7 @@ fn choose(
     places: &[[u32; 2]],
     wanted: &[f32],
 ) -> Choice {
+    // Compare the position of the site itself.
     let around = around(stage, links, site, places);
     let mut best = Choice {
         place: places[site],
@@ -364,6 +391,7 @@ fn choose(
     let mut coherent = [own; MAX_COHERENT];
     let mut n_coherent = 1;
     best.compare(stage, &around, wanted, own, 1.0);
+    // Compare the positions that the neighbors predict.
     for link in links.of(site).near {
         if link.quarters() != 0 {
             continue;
@@ -379,7 +407,7 @@ fn choose(
             best.compare(stage, &around, wanted, place, 1.0);
         }
     }
-    // What lies a little beside the best, so that pieces can stretch and need not break.
+    // Compare positions half a pixel from the best one: they let pieces stretch without a break.
     let found = best.place;
     for [x, y] in [[ASIDE, 0], [-ASIDE, 0], [0, ASIDE], [0, -ASIDE]] {
         let aside = [i64::from(found[0]) + x, i64::from(found[1]) + y];
@@ -389,6 +417,7 @@ fn choose(
             best.compare(stage, &around, wanted, place, 1.0);
         }
     }
+    // Compare the positions most similar to the predicted ones, at a disadvantage.
     for &place in &coherent[..n_coherent] {
         if let Some(similar) = stage.similar(pixel(place)) {
             let similar = within(similar, place.map(i64::from));
@@ -399,7 +428,7 @@ fn choose(
 }
 
 impl Choice {
-    /// Takes a place if it is better; its squared distance counts by a factor.
+    /// Takes a position if it is better than the best so far. `factor` multiplies its squared distance, costs excluded.
     #[inline(always)]
     fn compare(
         &mut self,
@@ -418,8 +447,8 @@ impl Choice {
     }
 }
 
-/// The features on the diagonals of a site: of each the mean of what the sites around it go on to there. Nothing where there
-/// are none, as past an edge of the surface.
+/// Returns the features on each diagonal of a site: the mean of the features that the sites there predict. `None` for a
+/// diagonal without sites, for example past an edge of the surface.
 #[inline(always)]
 fn around(
     stage: &Stage,
@@ -427,6 +456,7 @@ fn around(
     site: usize,
     places: &[[u32; 2]],
 ) -> [Option<[f32; N_FEATURES]>; 4] {
+    // Average over the sites near this diagonal.
     let corners = links.of(site).corners;
     let mut around = [None; 4];
     for corner in 0..4 {
@@ -453,7 +483,8 @@ fn around(
     around
 }
 
-/// The features on all diagonals, with their mean in place of those that are missing; nothing if all are.
+/// Returns the features on all diagonals; missing ones are replaced by the mean of the others. `None` if all are
+/// missing.
 fn filled(around: [Option<[f32; N_FEATURES]>; 4]) -> Option<[[f32; N_FEATURES]; 4]> {
     let known: Vec<_> = around.into_iter().flatten().collect();
     if known.is_empty() {
@@ -465,7 +496,8 @@ fn filled(around: [Option<[f32; N_FEATURES]>; 4]) -> Option<[[f32; N_FEATURES]; 
     Some(around.map(|features| features.unwrap_or(mean)))
 }
 
-/// The squared distance of features on the diagonals of a site from those on the diagonals of a place.
+/// Squared distance between the features on the diagonals of a site and those on the diagonals of a pixel. Missing
+/// diagonals are skipped.
 #[inline(always)]
 fn distance_sq(stage: &Stage, around: &[Option<[f32; N_FEATURES]>; 4], place: [i64; 2]) -> f32 {
     let known = around.iter().zip(DIAGONALS);
@@ -473,7 +505,7 @@ fn distance_sq(stage: &Stage, around: &[Option<[f32; N_FEATURES]>; 4], place: [i
     stage.distance_sq_of(known, place)
 }
 
-/// The place at the end of a way from another one, which may be outside of the exemplar.
+/// Returns a position plus an offset in pixels. The result may be outside of the exemplar.
 #[inline(always)]
 fn moved(place: [u32; 2], way: Vec2) -> [i64; 2] {
     let way = (way * (1 << PART_BITS) as f32).round();
@@ -483,26 +515,26 @@ fn moved(place: [u32; 2], way: Vec2) -> [i64; 2] {
     ]
 }
 
-/// A place in the exemplar, if textures may go on there.
+/// Returns a position within the exemplar, wrapped if the exemplar wraps, or `None` if its pixel is not usable.
 #[inline(always)]
 fn settled(stage: &Stage, place: [i64; 2]) -> Option<[u32; 2]> {
     let pixel = stage.usable(place.map(|at| at >> PART_BITS))?;
     Some(within(pixel, place))
 }
 
-/// The place in a pixel that is where another one is in its pixel.
+/// Returns the position in `pixel` with the subpixel part of `place`.
 #[inline(always)]
 fn within(pixel: [i64; 2], place: [i64; 2]) -> [u32; 2] {
     let part = (1 << PART_BITS) - 1;
     [0, 1].map(|axis| (pixel[axis] << PART_BITS | place[axis] & part) as u32)
 }
 
-/// The middle of a pixel.
+/// Returns the position of the center of a pixel.
 fn middle(pixel: [i64; 2]) -> [u32; 2] {
     within(pixel, [1 << (PART_BITS - 1); 2])
 }
 
-/// The pixel that a place is in.
+/// Returns the pixel that contains a position.
 #[inline(always)]
 fn pixel(place: [u32; 2]) -> [i64; 2] {
     place.map(|at| i64::from(at >> PART_BITS))

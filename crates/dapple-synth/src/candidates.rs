@@ -1,24 +1,28 @@
-//! The neighborhoods of an exemplar, as rows of numbers.
+//! Candidates of neighborhood matching: the neighborhoods of the exemplar's pixels, as rows of numbers.
 //!
 //! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, DOI 10.1145/383259.383297, section 5.
 //!
-//! A row has the pixels of a neighborhood in a fixed order: part after part, in each the offsets row by row from the top,
-//! for each all channels. Values are multiplied with the root of the part's weight, so that plain squared distances
-//! between rows are the weighted ones. After the parts come the guides of the pixel in the middle, if there are any.
+//! Input: the [`Pyramid`] of the exemplar and a [`Pass`], which defines the shape of the neighborhood. Output: a row
+//! for each candidate, and the pixel at its center.
 //!
-//! Pixels whose neighborhoods reach past an edge are left out, as in the paper. It leaves open what to do on small
-//! levels, where nearly none remains: of 8 × 8 pixels, ten have H(7, 0). Where fewer than [`FEW`] remain that a mask does
-//! not leave out, here all pixels are compared, and the exemplar is mirrored at its edges. Of several images side by side
-//! each is counted, and mirrored, by itself.
+//! A row holds the pixels of a neighborhood in a fixed order: part after part, the offsets of a part row by row from
+//! the top, and all channels of a pixel. Each value is multiplied by the square root of the part's weight, so the
+//! squared distance of two rows is the weighted one. The guides of the center pixel follow at the end, if there are
+//! any.
 //!
-//! So it is on all levels where pixels are to be used evenly ([`Options::evenness`]): of 128 × 128 pixels the first of
-//! three levels would see only two thirds. Measured on four such exemplars, colors come nearer by a third
-//! ([`Likeness`](crate::Likeness)). Only the passes that read both levels leave the pixels at the edges out even then:
-//! narrow pieces at an edge, mirrored, gave specks.
+//! Pixels whose neighborhoods reach past an edge are not candidates, as in the paper. The paper does not say what to do
+//! on small levels, where few or none remain: of 8 × 8 pixels, ten have H(7, 0). Here, if fewer than [`FEW`] usable
+//! pixels remain, all usable pixels are candidates, and the exemplar is mirrored at its edges. An exemplar made of
+//! several images side by side is counted and mirrored image by image.
 //!
-//! The paper centers a neighborhood on the coarser level at half of the coordinates rounded down. Four pixels then have
-//! the same F(n, 1), and the first of them always wins. By default it is centered at exactly half, with bilinear
-//! interpolation; both readings are there as [`CoarserCenter`].
+//! If pixels shall be used evenly ([`Options::evenness`]), all pixels are candidates on all levels; otherwise the first
+//! of three levels would compare only two thirds of 128 × 128 pixels. Measured on four such exemplars, the distance of
+//! colors ([`Likeness`](crate::Likeness)) falls by a third. Passes that read both levels are an exception: they never
+//! use pixels at the edges because of evenness, since narrow pieces mirrored at an edge gave specks.
+//!
+//! The paper centers a neighborhood on the coarser level at half of the coordinates, rounded down. Then four pixels
+//! have the same F(n, 1), and the first of them always wins. By default it is centered at exactly half, with bilinear
+//! interpolation. [`CoarserCenter`] selects one of the two.
 
 use crate::error::{SynthError, SynthErrorKind};
 use crate::exemplar::Area;
@@ -27,54 +31,56 @@ use crate::neighborhood::{Part, Pass, Reads};
 use crate::{Edges, Exemplar, Options, Pyramid};
 use core::ops::Range;
 
-/// Where fewer neighborhoods lie within the exemplar, those that reach past an edge are compared, too.
+/// Minimum number of neighborhoods within the exemplar; with fewer, neighborhoods that reach past an edge are
+/// candidates, too.
 ///
 /// Measured on leaves of 64 × 64 pixels with three levels: the distance of patches ([`Likeness`](crate::Likeness)) is
 /// 0.061 with no limit, 0.039 with 200, 0.024 with 400 and 0.023 with 1000.
 const FEW: usize = 400;
 
-/// Where a neighborhood on the coarser level is centered, for a pixel whose coordinates halved are not whole.
+/// Center of a neighborhood on the coarser level, for a pixel whose halved coordinates are not integers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum CoarserCenter {
-    /// At exactly half of the coordinates, with values between pixels (bilinear).
+    /// At exactly half of the coordinates, with bilinear interpolation between pixels.
     #[default]
     Exact,
-    /// At half of the coordinates, rounded down, as the paper has it: four pixels share their neighborhood.
+    /// At half of the coordinates, rounded down, as in the paper: four pixels share their neighborhood.
     Floor,
 }
 
-/// All neighborhoods that a pass compares with.
+/// All neighborhoods that a pass compares with, one row each.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Candidates {
-    /// Values of one neighborhood: offsets times channels, part after part; then guides.
+    /// Number of values of a row: offsets times channels of all parts, and the guides.
     pub(crate) dims: usize,
-    /// One row after the other, each value times the root of its part's weight.
+    /// Values of all rows, stored contiguously, each times the root of its part's weight.
     pub(crate) rows: Vec<f32>,
-    /// The pixel of each row, as `row * width + column` of the pass' level of the pyramid; ascending.
+    /// Center pixel of each row, as `row * width + column` of the pass's level of the pyramid; ascending.
     pub(crate) pixels: Vec<u32>,
-    /// The pixels past the edges of the pass' level, and its size.
+    /// Edge mode and size of the pass's level.
     edges: Edges,
     size: [u32; 2],
-    /// The rectangle of the pixels that have rows.
+    /// Rectangle of the pixels that have rows: its columns and its lines.
     inner: [Inner; 2],
-    /// For the pixels of the rectangle their rows, or [`NO_ROW`]; nothing if all have one.
+    /// For each pixel of the rectangle the index of its row, or [`NO_ROW`]; `None` if all pixels have one.
     row_of: Option<Vec<u32>>,
-    /// The pixels beside each other, where they are sites of a surface.
+    /// Neighbors of each pixel, if the pixels are sites of a surface.
     beside: Option<Beside>,
 }
 
-/// For each site of a surface the sites nearest to the places of the eight pixels around it, row by row, itself in the middle.
+/// For each site of a surface, the sites nearest to the positions of a 3 × 3 square of pixels, row by row. The site
+/// itself is in the middle.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Beside(pub(crate) Vec<[u32; 9]>);
 
-/// In place of the row of a pixel that has none.
+/// In place of a row: the pixel is not a candidate.
 const NO_ROW: u32 = u32::MAX;
 
-/// In place of the number of the image of a pixel that is not compared.
+/// In place of the index of an image: the pixel is not a candidate.
 const NO_AREA: u32 = u32::MAX;
 
-/// The columns or the rows that are compared: from `first` to before `end`.
+/// Range of columns or lines that have candidates: from `first` to before `end`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Inner {
     first: u32,
@@ -82,19 +88,19 @@ struct Inner {
 }
 
 impl Candidates {
-    /// The neighborhoods of all pixels of the pass' level that do not reach past an edge; of all pixels where the
-    /// exemplar wraps, and where fewer than 400 would remain.
+    /// Gathers the neighborhoods of all pixels of the pass's level that do not reach past an edge. If the exemplar
+    /// wraps, or if fewer than 400 would remain, it gathers those of all pixels.
     ///
     /// # Errors
     ///
-    /// [`SynthErrorKind::Exemplar`] for a level that has less than half of a neighborhood's side, and the errors of
+    /// [`SynthErrorKind::Exemplar`] if a side of a level is less than half of a neighborhood's side, and the errors of
     /// [`Schedule::check`](crate::Schedule::check) for levels that the pyramid does not have and parts out of their
     /// ranges.
     pub fn new(pyramid: &Pyramid, pass: &Pass, center: CoarserCenter) -> Result<Self, SynthError> {
         Self::within(pyramid, pass, center, FEW)
     }
 
-    /// The neighborhoods that a pass compares with under these options.
+    /// Gathers the neighborhoods of a pass under these options.
     pub(crate) fn for_options(
         pyramid: &Pyramid,
         pass: &Pass,
@@ -103,11 +109,12 @@ impl Candidates {
         Self::within(pyramid, pass, options.center, few(pass, options))
     }
 
-    /// The neighborhoods that a pass of a [repair](crate::PlaneTexture::repair) compares with: on all levels but the finest
-    /// also those that reach past an edge.
+    /// Gathers the neighborhoods of a pass of a [repair](crate::PlaneTexture::repair). On all levels except the finest,
+    /// neighborhoods that reach past an edge are included.
     ///
-    /// What is made beside a side of the image sees that side, and so do only the neighborhoods beside it: a border along a
-    /// side goes on. On the finest level the coarser one has decided that, and mirrored pieces would give specks.
+    /// A repaired site near a side of the image has that side in its neighborhood, and so have only the candidates near
+    /// a side. They let a border along the side continue. On the finest level the coarser one has decided this already,
+    /// and mirrored pieces would give specks.
     pub(crate) fn of_repair(
         pyramid: &Pyramid,
         pass: &Pass,
@@ -117,7 +124,7 @@ impl Candidates {
         Self::within(pyramid, pass, center, few)
     }
 
-    /// The neighborhoods of some sites of a level of a surface, whose numbers ascend.
+    /// Takes the neighborhoods of some sites of a level of a surface; their indices ascend.
     pub(crate) fn of_sites(
         level: &Exemplar,
         number: usize,
@@ -144,17 +151,19 @@ impl Candidates {
         })
     }
 
-    /// The neighborhoods that do not reach past an edge, or all where less than `few` would remain.
+    /// Gathers the neighborhoods that do not reach past an edge, or all if fewer than `few` would remain.
     fn within(
         pyramid: &Pyramid,
         pass: &Pass,
         center: CoarserCenter,
         few: usize,
     ) -> Result<Self, SynthError> {
+        // Check the sizes of the levels that are read.
         pass.check(pyramid.levels.len())?;
         for part in &pass.parts {
             check_level(pyramid, pass.level + part.reads.step(), part.side)?;
         }
+        // Prepare the sampling of each part in each image of the exemplar.
         let level = &pyramid.levels[pass.level];
         let readers: Vec<Vec<PartReader<'_>>> = (0..level.areas().len())
             .map(|area| {
@@ -162,6 +171,7 @@ impl Candidates {
                 pass.parts.iter().map(reader).collect()
             })
             .collect();
+        // Find the candidates of each image.
         let mut inner = level.size.map(|end| Inner { first: 0, end });
         let mut n_rows = 0;
         let mut area_of = vec![NO_AREA; level.size[0] as usize * level.size[1] as usize];
@@ -175,6 +185,7 @@ impl Candidates {
                 area_of[pixel as usize] = number as u32;
             }
         }
+        // Allocate the rows.
         let n_values = |part: &Part| part.offsets().len() * level.n_channels;
         let dims = pass.parts.iter().map(n_values).sum::<usize>() + level.n_guides();
         let mut candidates = Self {
@@ -187,6 +198,7 @@ impl Candidates {
             row_of: level.usable.as_ref().map(|_| vec![NO_ROW; area_of.len()]),
             beside: None,
         };
+        // Fill the rows in the order of the pixels.
         let guide_scale = guide_scale(pass);
         let mut samples = Vec::new();
         for (pixel, area) in (0u32..).zip(area_of) {
@@ -214,46 +226,47 @@ impl Candidates {
         Ok(candidates)
     }
 
-    /// The number of values of a neighborhood.
+    /// Number of values of a neighborhood.
     #[must_use]
     pub fn dims(&self) -> usize {
         self.dims
     }
 
-    /// The number of neighborhoods.
+    /// Number of neighborhoods.
     #[must_use]
     pub fn len(&self) -> usize {
         self.pixels.len()
     }
 
-    /// Whether there are none.
+    /// Returns true if there are no neighborhoods.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.pixels.is_empty()
     }
 
-    /// One neighborhood.
+    /// Values of one neighborhood.
     ///
     /// # Panics
     ///
-    /// If there is no such row.
+    /// If `row` is not below [`len`](Self::len).
     #[must_use]
     pub fn row(&self, row: usize) -> &[f32] {
         &self.rows[row * self.dims..(row + 1) * self.dims]
     }
 
-    /// The column and the row in the exemplar's level of the pixel in the middle of a neighborhood.
+    /// Column and row of the pixel at the center of a neighborhood, in the exemplar's level.
     ///
     /// # Panics
     ///
-    /// If there is no such row.
+    /// If `row` is not below [`len`](Self::len).
     #[must_use]
     pub fn pixel(&self, row: usize) -> [u32; 2] {
         let pixel = self.pixels[row];
         [pixel % self.size[0], pixel / self.size[0]]
     }
 
-    /// The neighborhood of a pixel, which may lie past an edge where the exemplar wraps. None if it is not compared.
+    /// Returns the index of a pixel's neighborhood, or `None` if the pixel is not a candidate. If the exemplar wraps,
+    /// the coordinates may lie past its edges.
     #[must_use]
     #[inline]
     pub fn row_of_pixel(&self, [mut column, mut line]: [i64; 2]) -> Option<u32> {
@@ -263,7 +276,7 @@ impl Candidates {
         }
         let [columns, lines] = self.inner;
         let within = columns.contains(column) && lines.contains(line);
-        // Within the exemplar, which has at most 2^31 pixels.
+        // The cast is exact: the pixel is within the exemplar, which has at most 2^31 pixels.
         let row = || {
             let row = (line as u32 - lines.first) * columns.len() as u32;
             row + (column as u32 - columns.first)
@@ -275,7 +288,8 @@ impl Candidates {
         }
     }
 
-    /// The neighborhood of the pixel at an offset from one, at most 1 along each axis on a surface.
+    /// Returns the neighborhood of the pixel at an offset from `pixel`. On a surface the offset is at most 1 along each
+    /// axis.
     #[inline]
     pub(crate) fn row_beside(&self, pixel: u32, [i, j]: [i32; 2]) -> Option<u32> {
         if let Some(Beside(beside)) = &self.beside {
@@ -286,11 +300,12 @@ impl Candidates {
         self.row_of_pixel([x + i64::from(i), y + i64::from(j)])
     }
 
-    /// The neighborhood of one of the four pixels under one of the coarser level, which has as many columns as `width`.
+    /// Returns the neighborhood of one of the four pixels of this level that cover a pixel of the coarser level, which
+    /// has `width` columns. The offset is 0 or 1 along each axis.
     #[inline]
     pub(crate) fn row_under(&self, coarser: u32, width: u32, [i, j]: [i32; 2]) -> Option<u32> {
         if self.beside.is_some() {
-            // The sites of a level are the first of the finer one.
+            // The sites of a level are the first sites of the finer level.
             return self.row_beside(coarser, [i, j]);
         }
         self.row_of_pixel(grid::over(coarser, width, [i, j].map(i64::from)))
@@ -307,8 +322,8 @@ impl Inner {
     }
 }
 
-/// The number of whole neighborhoods below which the others are compared, too; without a limit where pixels are to be used
-/// evenly.
+/// Returns the minimum number of neighborhoods within the exemplar; with fewer, the others are candidates, too.
+/// Unlimited if pixels shall be used evenly, except in passes that read both levels.
 pub(crate) fn few(pass: &Pass, options: &Options) -> usize {
     let reads = |reads| pass.parts.iter().any(|part| part.reads == reads);
     let refines = reads(Reads::Same) && reads(Reads::Coarser);
@@ -319,13 +334,13 @@ pub(crate) fn few(pass: &Pass, options: &Options) -> usize {
     }
 }
 
-/// The factor of guides: the root of the weights of all pixels of a neighborhood.
+/// Factor of guides: the root of the total weight of all pixels of a neighborhood.
 pub(crate) fn guide_scale(pass: &Pass) -> f32 {
     let weight = |part: &Part| part.offsets().len() as f32 * part.weight;
     pass.parts.iter().map(weight).sum::<f32>().sqrt()
 }
 
-/// Where a pixel lies on the level that is read, in half pixels.
+/// Center of a pixel's neighborhood on the level that is read, in half pixels.
 pub(crate) fn halves(pixel: [u32; 2], reads: Reads, center: CoarserCenter) -> [i64; 2] {
     pixel.map(|at| match (reads, center) {
         (Reads::Same, _) => 2 * i64::from(at),
@@ -334,16 +349,16 @@ pub(crate) fn halves(pixel: [u32; 2], reads: Reads, center: CoarserCenter) -> [i
     })
 }
 
-/// Reads one part of a neighborhood.
+/// Samples one part of a neighborhood in one image of the exemplar.
 struct PartReader<'a> {
     level: &'a Exemplar,
-    /// The rectangle of the image that is read, past whose edges it goes on as the level does.
+    /// Rectangle of the image. Past its edges the edge mode of the level applies.
     area: Area,
     reads: Reads,
     half: i32,
-    /// The root of the part's weight.
+    /// Square root of the part's weight.
     scale: f32,
-    /// Where the offsets are in the square: runs of samples side by side.
+    /// Ranges of consecutive samples of the square that belong to the part.
     runs: Vec<Range<usize>>,
 }
 
@@ -352,6 +367,7 @@ impl<'a> PartReader<'a> {
         let half = part.side as i32 / 2;
         let place = |&[i, j]: &[i32; 2]| ((j + half) * (2 * half + 1) + i + half) as usize;
         let read = &pyramid.levels[level + part.reads.step()];
+        // Merge consecutive offsets into ranges.
         let mut runs: Vec<Range<usize>> = Vec::new();
         for place in part.offsets().iter().map(place) {
             match runs.last_mut() {
@@ -369,7 +385,7 @@ impl<'a> PartReader<'a> {
         }
     }
 
-    /// Whether textures may have all pixels of the square around a position.
+    /// Returns whether the mask allows all pixels of the square around a position.
     fn is_usable(&self, halves: [i64; 2]) -> bool {
         let Some(usable) = &self.level.usable else {
             return true;
@@ -386,12 +402,12 @@ impl<'a> PartReader<'a> {
         })
     }
 
-    /// Whether the image has no pixel on the level that is read.
+    /// Returns whether the image has no pixel on the level that is read.
     fn is_empty(&self) -> bool {
         (0..2).any(|axis| self.area.first[axis] >= self.area.end[axis])
     }
 
-    /// The columns and the rows of the square around a position.
+    /// Returns the columns and the rows of the square around a position.
     fn square(&self, halves: [i64; 2]) -> [[usize; MAX_SIDE]; 2] {
         let Area { first, end } = self.area;
         let size = [0, 1].map(|axis| end[axis] - first[axis]);
@@ -405,7 +421,7 @@ impl<'a> PartReader<'a> {
         places
     }
 
-    /// Appends the values of the part around a position.
+    /// Appends the weighted values of the part around a position to `target`. `samples` is scratch memory.
     fn read(&self, halves: [i64; 2], samples: &mut Vec<f32>, target: &mut Vec<f32>) {
         let (half, n) = (self.half, self.level.n_channels);
         let side = 2 * half as usize + 1;
@@ -421,7 +437,7 @@ impl<'a> PartReader<'a> {
     }
 }
 
-/// Refuses a level that has less than half of a neighborhood's side.
+/// Fails if a side of a level is less than half of a neighborhood's side.
 fn check_level(pyramid: &Pyramid, level: usize, side: u32) -> Result<(), SynthError> {
     let size = pyramid.levels[level].size;
     if size[0].min(size[1]) > side / 2 {
@@ -434,8 +450,8 @@ fn check_level(pyramid: &Pyramid, level: usize, side: u32) -> Result<(), SynthEr
     }))
 }
 
-/// The pixels of an area of a level whose neighborhoods the mask leaves, and the rectangle that they lie in: without those
-/// whose neighborhoods reach past an edge, unless fewer than `few` would remain.
+/// Returns the candidates of an image, and the rectangle that they lie in. The mask must allow the whole neighborhood.
+/// Neighborhoods that reach past an edge are left out unless fewer than `few` would remain.
 fn pixels_of_area(
     pyramid: &Pyramid,
     pass: &Pass,
@@ -470,7 +486,7 @@ fn pixels_of_area(
     (within, pixels)
 }
 
-/// The pixels of an image along an axis whose neighborhoods do not reach past its edges.
+/// Returns the range of an image's pixels along an axis whose neighborhoods do not reach past its edges.
 fn inner_of(
     pyramid: &Pyramid,
     pass: &Pass,
@@ -498,7 +514,7 @@ fn inner_of(
             let last = (halves + 1).div_euclid(2) + after;
             halves.div_euclid(2) + before >= start && last < stop
         };
-        // What fits is without gaps.
+        // The pixels that fit are contiguous.
         let first = (inner.first..inner.end).find(fits).unwrap_or(inner.end);
         let end = (first..inner.end)
             .rev()

@@ -1,46 +1,47 @@
-//! The shapes of neighborhoods, and in which order they are used.
+//! Shapes of neighborhoods, and schedules: the sequence of passes that use them.
 //!
-//! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, DOI 10.1145/383259.383297, figure 4 and section
-//! 5; the causal shape is from Li-Yi Wei and Marc Levoy, "Fast Texture Synthesis using Tree-structured Vector
+//! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, DOI 10.1145/383259.383297, figure 4 and
+//! section 5; the causal shape is from Li-Yi Wei and Marc Levoy, "Fast Texture Synthesis using Tree-structured Vector
 //! Quantization", SIGGRAPH 2000, DOI 10.1145/344779.345009.
 //!
-//! | the paper's | is | with side 7 |
+//! | paper | here | pixels for n = 7 |
 //! |---|---|---|
-//! | F(n, 0) | `Part::new(Shape::Full, n, Reads::Same)` | 48 pixels: all but the center, which is what is looked for |
-//! | H(n, 0) | `Part::new(Shape::Half, n, Reads::Same)` | 21 pixels: the three rows above |
-//! | F(n, 1) | `Part::new(Shape::Full, n, Reads::Coarser)` | 49 pixels: on the coarser level the center is known, too |
+//! | F(n, 0) | `Part::new(Shape::Full, n, Reads::Same)` | 48: all except the center, which is unknown |
+//! | H(n, 0) | `Part::new(Shape::Half, n, Reads::Same)` | 21: the three rows above |
+//! | F(n, 1) | `Part::new(Shape::Full, n, Reads::Coarser)` | 49: all, since the center is known on the coarser level |
 //!
-//! Where the text is silent: H has no pixel of the center's own row, because half of that row is not colored yet
-//! ([`Shape::HalfWithRow`] is the other reading); half of 7, which the paper rounds to 3, is rounded to an odd number.
+//! Two choices that the paper does not state: H has no pixel of the center's own row, because half of that row is not
+//! colored yet ([`Shape::HalfWithRow`] is the other reading). Half of a side is rounded to an odd number; the paper
+//! rounds half of 7 to 3.
 //!
 //! Offsets are in pixels of the level that is read, to the right and down.
 
 use crate::error::{SynthError, SynthErrorKind};
 
-/// The largest weight of a part: no sum of squares can overflow.
+/// Maximum weight of a part; sums of squares cannot overflow.
 const MAX_WEIGHT: f32 = 1e6;
 
-/// Which part of a square of pixels belongs to a neighborhood.
+/// Pixels of a square that belong to a neighborhood.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Shape {
-    /// All of the square; without its center on the same level, with it on the coarser one (F).
+    /// All pixels of the square (F). The center is excluded on the same level, and included on the coarser one.
     Full,
     /// The rows above the center (H).
     Half,
-    /// The rows above the center, and the row of the center without it.
+    /// The rows above the center, and the row of the center except the center.
     HalfWithRow,
-    /// The rows above the center and what is left of it, after Wei and Levoy.
+    /// The rows above the center, and the pixels to the left of it (Wei and Levoy).
     Causal,
 }
 
-/// Which level a part of a neighborhood reads.
+/// Level that a part of a neighborhood reads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Reads {
-    /// The level of the pixel itself: the paper's 0.
+    /// The level of the pixel itself; 0 in the paper's notation.
     Same,
-    /// The next coarser level: the paper's 1.
+    /// The next coarser level; 1 in the paper's notation.
     Coarser,
 }
 
@@ -48,18 +49,18 @@ pub enum Reads {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Part {
-    /// Which pixels of the square.
+    /// Pixels of the square that are compared.
     pub shape: Shape,
-    /// The side of the square in pixels: odd, from 3 to 15.
+    /// Side of the square in pixels: odd, from 3 to 15.
     pub side: u32,
-    /// Which level is read.
+    /// Level that is read.
     pub reads: Reads,
-    /// The factor of its squared differences, above 0 and at most 10^6; by default 1.
+    /// Factor of the squared differences, above 0 and at most 10^6 [default: 1].
     pub weight: f32,
 }
 
 impl Part {
-    /// A part with the weight 1.
+    /// Creates a part with the weight 1.
     #[must_use]
     pub const fn new(shape: Shape, side: u32, reads: Reads) -> Self {
         Self {
@@ -70,15 +71,15 @@ impl Part {
         }
     }
 
-    /// This part with another weight.
+    /// Returns this part with another weight.
     #[must_use]
     pub const fn with_weight(self, weight: f32) -> Self {
         Self { weight, ..self }
     }
 
-    /// The offsets of its pixels from the center, to the right and down, row by row from the top.
+    /// Returns the offsets of the pixels from the center, to the right and down, row by row from the top.
     ///
-    /// There are none for a side of 0.
+    /// Empty for a side of 0.
     ///
     /// # Examples
     ///
@@ -114,20 +115,20 @@ impl Part {
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Pass {
-    /// The level, 0 the finest.
+    /// Level; 0 is the finest.
     pub level: usize,
-    /// The parts that are compared, all together.
+    /// Parts of the neighborhood, compared together.
     pub parts: Vec<Part>,
 }
 
 impl Pass {
-    /// F(7, 1).
+    /// Pass that initializes a level from the coarser one: F(7, 1).
     fn extrapolate(level: usize) -> Self {
         let parts = vec![Part::new(Shape::Full, 7, Reads::Coarser)];
         Self { level, parts }
     }
 
-    /// F(side, 0) + F(3, 1).
+    /// Pass that corrects a level: F(side, 0) + F(3, 1).
     fn correct(level: usize, side: u32) -> Self {
         let parts = vec![
             Part::new(Shape::Full, side, Reads::Same),
@@ -141,15 +142,15 @@ impl Pass {
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Schedule {
-    /// The passes. Before the first visit of a level it is filled with random pixels of the exemplar. The last visit of
+    /// Passes in order. Before its first pass, a level is filled with random pixels of the exemplar. The last pass over
     /// level 0 gives the result.
     pub passes: Vec<Pass>,
 }
 
 impl Schedule {
-    /// The passes of section 5.2: H(7, 0) on the coarsest level, and F(7, 1), then F(7, 0) + F(3, 1) on each finer one.
+    /// Schedule of section 5.2: H(7, 0) on the coarsest level; F(7, 1), then F(7, 0) + F(3, 1), on each finer level.
     ///
-    /// The paper has three or four levels; with one there is only the first pass.
+    /// The paper has three or four levels. One level gives only the first pass.
     #[must_use]
     pub fn paper(n_levels: usize) -> Self {
         let coarsest = n_levels.saturating_sub(1);
@@ -163,12 +164,12 @@ impl Schedule {
         Self { passes }
     }
 
-    /// The passes of a [repair](crate::PlaneTexture::repair): F(7, 0), eight times on the coarsest level, then
-    /// F(7, 0) + F(3, 1) four times on each finer one, but on the finest F(5, 0) + F(3, 1) twice.
+    /// Schedule of a [repair](crate::PlaneTexture::repair): F(7, 0) eight times on the coarsest level, F(7, 0) + F(3,
+    /// 1) four times on each finer level, and F(5, 0) + F(3, 1) twice on the finest.
     ///
-    /// Measured on 33 photographs of 128 × 128 pixels with three holes of 39 × 39 each: windows of 7 × 7 pixels in and beside a
-    /// hole are nearer to those of the photograph by 3 % than with the passes of a [mesh](Self::repair_on_mesh), in 40 % of
-    /// the time.
+    /// Measured on 33 photographs of 128 × 128 pixels with three holes of 39 × 39 each, by comparing windows of 7 × 7
+    /// pixels in and near a hole with those of the photograph: their distance is 3 % less than with the schedule of a
+    /// [mesh](Self::repair_on_mesh), in 40 % of the time.
     #[must_use]
     pub fn repair(n_levels: usize) -> Self {
         let coarsest = n_levels.saturating_sub(1);
@@ -180,8 +181,8 @@ impl Schedule {
         Self { passes }
     }
 
-    /// The passes of a [repair of a mesh](crate::MeshExemplar::repair): F(7, 0), eight times on the coarsest level, and
-    /// F(7, 1), then F(7, 0) + F(3, 1) twice on each finer one.
+    /// Schedule of a [repair of a mesh](crate::MeshExemplar::repair): F(7, 0) eight times on the coarsest level; F(7,
+    /// 1), then F(7, 0) + F(3, 1) twice, on each finer level.
     #[must_use]
     pub fn repair_on_mesh(n_levels: usize) -> Self {
         let coarsest = n_levels.saturating_sub(1);
@@ -193,7 +194,7 @@ impl Schedule {
         Self { passes }
     }
 
-    /// The passes of a repair on the coarsest level.
+    /// Passes of a repair on the coarsest level.
     fn of_a_hole(coarsest: usize) -> Vec<Pass> {
         let parts = vec![Part::new(Shape::Full, 7, Reads::Same)];
         vec![
@@ -205,7 +206,7 @@ impl Schedule {
         ]
     }
 
-    /// The method without levels, whose pseudo-code is in section 5.1: one pass with one neighborhood.
+    /// Schedule without levels, as in the pseudocode of section 5.1: one pass with one neighborhood.
     #[must_use]
     pub fn single_level(shape: Shape, side: u32) -> Self {
         let parts = vec![Part::new(shape, side, Reads::Same)];
@@ -214,13 +215,14 @@ impl Schedule {
         }
     }
 
-    /// Refuses passes that cannot be run with `n_levels` levels.
+    /// Checks that the passes can run with `n_levels` levels.
     ///
     /// # Errors
     ///
-    /// [`SynthErrorKind::Count`] for no pass, a pass without parts and no visit of level 0; [`SynthErrorKind::Range`] for
-    /// a level that is not there, a side that is not odd and from 3 to 15, and a weight that is not above 0 and at most
-    /// 10^6; [`SynthErrorKind::Unfilled`] for a pass that reads a coarser level that no pass before it visited.
+    /// [`SynthErrorKind::Count`] without a pass, for a pass without parts, and without a pass over level 0;
+    /// [`SynthErrorKind::Range`] for a level that does not exist, a side that is even or not from 3 to 15, and a weight
+    /// that is not above 0 and at most 10^6; [`SynthErrorKind::Unfilled`] for a pass that reads a coarser level that no
+    /// earlier pass visited.
     pub fn check(&self, n_levels: usize) -> Result<(), SynthError> {
         check_any(self.passes.len(), "passes")?;
         let mut filled = vec![false; n_levels];
@@ -241,7 +243,7 @@ impl Schedule {
 }
 
 impl Pass {
-    /// Refuses parts and levels out of their ranges.
+    /// Checks that the parts and levels are in range.
     pub(crate) fn check(&self, n_levels: usize) -> Result<(), SynthError> {
         check_any(self.parts.len(), "parts of a pass")?;
         for part in &self.parts {
@@ -275,7 +277,7 @@ impl Pass {
 }
 
 impl Reads {
-    /// How much coarser the level is that is read.
+    /// Number of levels from the pass's level to the coarser level that is read: 0 or 1.
     pub(crate) const fn step(self) -> usize {
         match self {
             Self::Same => 0,
@@ -284,7 +286,7 @@ impl Reads {
     }
 }
 
-/// Refuses none of something.
+/// Fails if a count is 0.
 fn check_any(count: usize, what: &'static str) -> Result<(), SynthError> {
     if count > 0 {
         return Ok(());

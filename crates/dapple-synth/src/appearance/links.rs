@@ -1,5 +1,9 @@
-//! Which sites of a level read which: the neighbors of each, which it goes on with, and the sites on its diagonals, which
-//! say what is there.
+//! The sites that each site reads during correction: its neighbors in the graph, whose pieces it continues, and the
+//! sites near its four diagonals, whose features it compares.
+//!
+//! Input: the graphs of a [`Hierarchy`] and the [`Frames`] of its sites. Output: for each site, its links in compressed
+//! rows, and the classes of unconnected sites. The graph and the frames do not change, so links are computed once per
+//! level.
 
 use crate::endless::stage::DIAGONALS;
 use crate::orientation::offset_before;
@@ -8,57 +12,58 @@ use crate::{Hierarchy, SiteGraph, SiteIdx};
 use dapple_raster::parallel;
 use glam::Vec2;
 
-/// How far along both axes the middle of the sites is that tell of a diagonal, in those of a window: beyond the corner, so that a site
-/// sees more than its neighbors.
+/// Center of the disk from which the sites of a diagonal are taken, along both axes, in units of the distance between
+/// features. A value above 1 lies beyond the corner, so a site sees more than its neighbors.
 ///
-/// Measured on hooks, text, leaves and bricks: with 1.6 windows of the texture are 2 to 5 % nearer to those of the exemplar
-/// than with 1.0.
+/// Measured on hooks, text, leaves and bricks: windows of the texture are 2 to 5 % nearer to those of the exemplar with
+/// 1.6 than with 1.0.
 const CORNER: f32 = 1.6;
 
-/// How far from there they are at most.
+/// Radius of this disk, in the same unit.
 const REACH: f32 = 1.1;
 
-/// The most spacings of the sites that are read between those of a window. Only the coarsest level has more to a large pixel, and
-/// twelve rings of sites around each would be most of the time.
+/// Maximum distance between features, in spacings of the sites that are read. Only the coarsest level has larger pixels
+/// of the exemplar; there twelve rings of sites around each site would take most of the time.
 const MAX_SPACINGS: f32 = 3.0;
 
-/// Sites that one task links at least.
+/// Number of sites that a task links.
 const TASK: usize = 256;
 
-/// Tasks whose links are put together before others begin.
+/// Number of tasks whose links are merged before the next ones run.
 const TASKS: usize = 256;
 
-/// The most classes; more would only wait for each other.
+/// Largest index of a class. Further classes would only add waiting.
 const MAX_CLASSES: u32 = 63;
 
-/// Another site, and where it lies. There are so many that every byte counts.
+/// Another site and its offset. There are so many links that every byte counts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Link {
-    /// The site, and above [`SITE_BITS`] by how many quarter turns the exemplar lies turned there, seen from here.
+    /// Index of the site; above [`SITE_BITS`], the rotation of the exemplar there relative to this site, in quarter
+    /// turns.
     turned_site: u32,
-    /// The way to it in pixels of the exemplar.
+    /// Offset of the site in pixels of the exemplar.
     way: [f32; 2],
 }
 
-/// The bits of a link that say which site it is; there are at most 2^28.
+/// Number of bits for the index of a site; there are at most 2^28 sites.
 const SITE_BITS: u32 = 30;
 
-/// The sites that each site of a level reads.
+/// Links of all sites of a level.
 #[derive(Debug)]
 pub(super) struct Links {
     links: Vec<Link>,
-    /// Where the neighbors of each site begin, and those of its diagonals, one after the other.
+    /// Compressed rows: for each site, the start of its neighbors and of the sites of its four diagonals in `links`.
     rows: Vec<[u32; 5]>,
-    /// The sites in classes that are corrected one after the other; no two of one class are connected.
+    /// Classes of sites. Classes are corrected sequentially; connected sites are in different classes.
     pub(super) classes: Vec<Vec<u32>>,
 }
 
-/// What a site reads.
+/// The links of one site.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Around<'a> {
-    /// The sites that it is connected to.
+    /// Neighbors of the site in the graph.
     pub(super) near: &'a [Link],
-    /// The sites on each of [`DIAGONALS`].
+    /// Sites near each of [`DIAGONALS`].
     pub(super) corners: [&'a [Link]; 4],
 }
 
@@ -75,7 +80,7 @@ impl Link {
         (self.turned_site & ((1 << SITE_BITS) - 1)) as usize
     }
 
-    /// By how many quarter turns the exemplar lies turned at the site, seen from the one that it is linked to.
+    /// Rotation of the exemplar at the linked site relative to this site, in quarter turns.
     #[inline]
     pub(super) fn quarters(&self) -> u8 {
         (self.turned_site >> SITE_BITS) as u8
@@ -91,7 +96,7 @@ impl Links {
     pub(super) fn new(hierarchy: &Hierarchy, frames: &Frames, level: usize) -> Self {
         let n_sites = hierarchy.levels()[level].n_sites();
         let (mut links, mut rows) = (Vec::new(), Vec::with_capacity(n_sites + 1));
-        // Links take most of the memory of a synthesis: few of them are there twice.
+        // Links take most of the memory of a synthesis, so merge them in small blocks to avoid a second copy.
         for first in (0..n_sites).step_by(TASK * TASKS) {
             let n_tasks = (n_sites - first).div_ceil(TASK).min(TASKS);
             let pieces = parallel::map(n_tasks, |piece| {
@@ -117,7 +122,7 @@ impl Links {
         }
     }
 
-    /// What a site reads.
+    /// Returns the links of a site.
     #[inline]
     pub(super) fn of(&self, site: usize) -> Around<'_> {
         let [near, corners @ ..] = self.rows[site];
@@ -131,7 +136,7 @@ impl Links {
     }
 }
 
-/// Appends the links of a site, and where they begin.
+/// Appends the links of a site to `links`, and the start of each group to `rows`.
 fn add(
     hierarchy: &Hierarchy,
     frames: &Frames,
@@ -140,12 +145,14 @@ fn add(
     (links, rows): &mut (Vec<Link>, Vec<[u32; 5]>),
 ) {
     let graph = hierarchy.levels()[level].graph();
+    // Link the neighbors.
     let near = graph.neighbors(site);
     let begin = links.len() as u32;
     links.extend(
         near.iter()
             .filter_map(|&other| link(hierarchy, frames, site, other)),
     );
+    // Link the sites around each diagonal: within a disk and in the quadrant of the diagonal.
     let mut row = [begin; 5];
     let scale = frames.of_site[site.index()].scale;
     let (found, unit) = around(hierarchy, level, site, scale);
@@ -166,15 +173,16 @@ fn add(
     rows.push(row);
 }
 
-/// The sites that may tell of the diagonals of a site where a pixel is `scale` spacings large, and how far apart those are that
-/// a window compares, in spacings of the finest level.
+/// Returns the sites that may lie near the diagonals of a site, and the distance between features in spacings of the
+/// finest level. `scale` is the size of a pixel of the exemplar, in spacings.
 ///
-/// Of the many sites within large pixels, those of a coarser level say as much. Pixels smaller than the spacing are seen through
-/// sites a spacing apart.
+/// If a pixel is large, it contains many sites; then sites of a coarser level are used, which have the same
+/// information. If a pixel is smaller than the spacing, the features are one spacing apart.
 fn around(hierarchy: &Hierarchy, level: usize, site: SiteIdx, scale: f32) -> (Vec<SiteIdx>, f32) {
     let levels = hierarchy.levels();
     let mut found = levels[level].graph().neighbors(site).to_vec();
     let (mut read, mut spacings) = (level, scale);
+    // While a pixel spans two spacings or more, continue on the next coarser level.
     while spacings >= 2.0 && read + 1 < levels.len() {
         add_ring(levels[read].graph(), site, &mut found);
         (read, spacings) = (read + 1, 0.5 * spacings);
@@ -188,7 +196,7 @@ fn around(hierarchy: &Hierarchy, level: usize, site: SiteIdx, scale: f32) -> (Ve
     (found, spacings * (1_u64 << read) as f32)
 }
 
-/// Adds the sites that those found are connected to, without the site around which they lie, in their order.
+/// Adds the neighbors of the sites in `found`, without `site`, and sorts by index.
 fn add_ring(graph: &SiteGraph, site: SiteIdx, found: &mut Vec<SiteIdx>) {
     for at in 0..found.len() {
         found.extend(graph.neighbors(found[at]));
@@ -198,7 +206,8 @@ fn add_ring(graph: &SiteGraph, site: SiteIdx, found: &mut Vec<SiteIdx>) {
     found.dedup();
 }
 
-/// The way to another site; nothing if it is on another sheet.
+/// Returns the link to another site, or `None` if it is on another sheet of the surface: the normals are more than a
+/// right angle apart.
 fn link(hierarchy: &Hierarchy, frames: &Frames, from: SiteIdx, to: SiteIdx) -> Option<Link> {
     let (sites, [a, b]) = (hierarchy.sites(), [from, to].map(|site| site.index()));
     if sites.normals()[a].dot(sites.normals()[b]) < 0.0 {
@@ -207,12 +216,12 @@ fn link(hierarchy: &Hierarchy, frames: &Frames, from: SiteIdx, to: SiteIdx) -> O
     let way = (sites.positions()[b] - sites.positions()[a]).as_vec3();
     let quarters = frames.quarters_between(a, b);
     let [here, there] = [a, b].map(|site| frames.of_site[site].flat(way));
-    // Frames turn on the way: the mean of both ends is that of its middle.
+    // The frame changes along the way; average the offsets in the frames of both ends.
     let way = 0.5 * (here + Vec2::from(offset_before(there.to_array(), quarters)));
     Some(Link::new(to, quarters, way))
 }
 
-/// Puts every site into the first class that none of its neighbors with a lower number is in.
+/// Graph coloring: puts every site into the first class that contains none of its neighbors with a lower index.
 fn classes(hierarchy: &Hierarchy, level: usize) -> Vec<Vec<u32>> {
     let graph = hierarchy.levels()[level].graph();
     let mut class_of = vec![0_u32; graph.len()];
