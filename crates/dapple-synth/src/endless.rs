@@ -1,22 +1,38 @@
-//! Endless textures: any window of a texture without ends, made on its own.
+//! Endless textures: any window of an unbounded texture, computed independently of all other windows.
 //!
 //! References: Sylvain Lefebvre and Hugues Hoppe, "Parallel Controllable Texture Synthesis", SIGGRAPH 2005, DOI
-//! 10.1145/1186822.1073261; the same, "Appearance-Space Texture Synthesis", SIGGRAPH 2006, DOI 10.1145/1141911.1141921.
+//! 10.1145/1186822.1073261, and, by the same authors, "Appearance-Space Texture Synthesis", SIGGRAPH 2006, DOI
+//! 10.1145/1141911.1141921.
 //!
-//! From level to level each pixel becomes four, which go on where it is in the exemplar. Then every pixel is corrected a few
-//! times: of the pixels that its neighbors go on to, and of the one most like each of these, it takes the one around which
-//! the exemplar looks most like the texture around it. What is compared are not colors but the principal components of
-//! windows. A quarter of the pixels, such as those whose columns and rows are even, is corrected at a time; they do not
-//! read each other. So a pixel depends on what is near it on each level, and in the end on random pixels of the coarsest
-//! one, which hashes of their columns and rows choose: a window is made with a margin on every level, and nothing else.
+//! Input: an exemplar, and [`EndlessOptions`] with seed, number of levels and period. Output: for each pixel of a
+//! window, its source pixel in the exemplar.
 //!
-//! Departures from the papers: the coarsest level begins with random pixels of the exemplar and not with copies of it. Only
-//! where it is a tile of something that repeats in it, such as bricks, it begins with copies, of whose pixels each is
-//! replaced by one that is like it, or like that, and so on: random ones would settle to courses that do not go on. There
-//! is no jitter on finer levels; where nothing repeats, what only is like what goes on is at a disadvantage; levels are corrected three times, the coarsest six times, and not twice; the pixel most
-//! like another is searched on the grid of its level, of which each pixel takes the place beside its own; features near an
-//! edge that is cut are left out where enough others remain ([`stage`]), and those of averages of the texture are not
-//! projected a second time. Parts of the exemplar that textures would have too often cost more ([`evenness`]).
+//! Steps, from the coarsest level to the finest:
+//!
+//! - Upsampling: each pixel becomes four, which continue it in the exemplar.
+//! - Correction, a few times: each pixel compares the source pixels that its neighbors predict, and the pixel most
+//!   similar to each of these. It takes the one whose surroundings in the exemplar are most similar to its own in the
+//!   texture. Features are compared, not colors: the principal components of windows ([`stage`]). A quarter of the
+//!   pixels is corrected at a time, for example all pixels with even column and row, because they do not read each
+//!   other.
+//!
+//! So a pixel depends on pixels near it on each level, and in the end on random pixels of the coarsest level, which are
+//! hashes of their columns and rows. A window is computed with a margin on every level.
+//!
+//! Departures from the papers:
+//!
+//! - The coarsest level begins with random pixels of the exemplar instead of copies of it. An exception is an exemplar
+//!   that wraps and repeats within itself, such as bricks: there random pixels would settle into courses that do not
+//!   line up. The coarsest level begins with copies, and each pixel is replaced several times in succession by the most
+//!   similar one.
+//! - There is no jitter on finer levels.
+//! - For exemplars that are not regular, similar pixels are at a disadvantage against predicted ones ([`COHERENCE`]).
+//! - Levels are corrected three times, and the coarsest six times, instead of twice.
+//! - The most similar pixel is searched on a grid of the level. A pixel between pixels of the grid takes the result of
+//!   its grid pixel, displaced by the same offset.
+//! - Pixels near a cut edge are not used if enough others remain ([`stage`]).
+//! - Averages of features of the texture are not projected a second time.
+//! - Parts of the exemplar that textures would use too often cost more ([`evenness`]).
 
 pub(crate) mod evenness;
 pub(crate) mod stage;
@@ -31,21 +47,23 @@ use dapple_hash::Seed;
 use evenness::REPETITION;
 use stage::Stage;
 
-/// By how much more than once the distance counts of a pixel that only is like one that a neighbor goes on to, where the
-/// exemplar is not regular: what goes on keeps its detail.
+/// Additional weight of the distance of similar pixels against predicted ones, for exemplars that are not regular:
+/// distances are multiplied by `1 + COHERENCE`. Continuing a piece of the exemplar preserves its detail.
 ///
-/// Measured on photographs, four textures of each: colors and patches are nearer to those of the exemplar
-/// ([`Likeness`](crate::Likeness)) by half for grass, rock, sand and gravel, by a tenth for leaves, and a seventh farther
-/// for a meadow and for wood. With 2 leaves lose what they gained; and weave, which is regular, is torn already with 1.
+/// Measured on photographs, four textures of each: the distances of colors and patches from the exemplar
+/// ([`Likeness`](crate::Likeness)) fall by half for grass, rock, sand and gravel, and by a tenth for leaves; they rise
+/// by a seventh for a meadow and for wood. With 2, leaves lose this gain. Weave, which is regular, is torn already with
+/// 1.
 const COHERENCE: f32 = 1.0;
 
-/// The most levels.
+/// Maximum number of levels.
 const MAX_LEVELS: u32 = 16;
 
-/// The pixels of the coarsest level along the shorter side of an exemplar, at least, where the number of levels follows from it.
+/// Minimum number of pixels along the shorter side of the exemplar on the coarsest level, for the default number of
+/// levels.
 const COARSEST: u32 = 4;
 
-/// Columns and rows of windows are at most this far from the first.
+/// Maximum absolute value of the first column and row of a window.
 const MAX_PLACE: i64 = 1 << 52;
 
 /// Options of an [`Endless`] texture.
@@ -56,19 +74,19 @@ const MAX_PLACE: i64 = 1 << 52;
     serde(default, deny_unknown_fields)
 )]
 pub struct EndlessOptions {
-    /// The seed of the coarsest level; by default `Seed(0)`.
+    /// Seed of the coarsest level [default: `Seed(0)`].
     pub seed: Seed,
-    /// The levels, from 1 to 16. The more there are, the larger are the things that the texture has as the exemplar has
-    /// them; by default as many as the exemplar has room for: the coarsest has from 4 to 7 pixels along its shorter side.
+    /// Number of levels, from 1 to 16. More levels preserve larger features of the exemplar. By default as many as fit
+    /// the exemplar: the coarsest level has from 4 to 7 pixels along its shorter side.
     pub n_levels: Option<u32>,
-    /// The columns and rows after which the texture repeats, multiples of 2 to the number of levels; by default it does
-    /// not.
+    /// Period of the texture in columns and in rows, multiples of 2 to the number of levels; `None` for no period
+    /// [default: `None`].
     pub period: [Option<u32>; 2],
 }
 
-/// A texture without ends that looks like an exemplar, of which any window can be made.
+/// An unbounded texture that looks like an exemplar, and of which any window can be computed.
 ///
-/// A window has the same pixels as any larger one has there.
+/// Two windows have the same pixels where they overlap.
 ///
 /// # Examples
 ///
@@ -93,40 +111,41 @@ pub struct Endless {
     edges: Edges,
     seed: Seed,
     period: [Option<u32>; 2],
-    /// The levels, the finest first.
+    /// Levels of the exemplar, the finest first.
     stages: Vec<Stage>,
-    /// The pixels that textures may have on the coarsest level.
+    /// Usable pixels of the coarsest level.
     coarsest: Vec<u32>,
-    /// Whether the exemplar is a tile of something that repeats within it.
+    /// Whether the exemplar is a tile that repeats within itself.
     is_lattice: bool,
 }
 
 impl Endless {
-    /// Prepares a texture: most of the time of small windows, about a microsecond per pixel of the exemplar and
-    /// level, and half a second of one core for trials that show which parts of the exemplar textures would have too often.
+    /// Prepares a texture. This takes most of the time of small windows: about a microsecond per pixel of the exemplar
+    /// and level. Trials that measure how often textures use each part of the exemplar add half a second of one core.
     ///
-    /// A [mask](Exemplar::with_mask) of the exemplar is heeded; its [guides](Exemplar::with_guides) are not.
+    /// A [mask](Exemplar::with_mask) of the exemplar applies; its [guides](Exemplar::with_guides) are ignored.
     ///
     /// # Errors
     ///
-    /// Typed errors for another number of levels than 1 to 16, for more than there are pixels along a side of the exemplar,
-    /// for a period that is no multiple of 2 to their number, and for a mask that leaves nothing.
+    /// Fails if the number of levels is not from 1 to 16, or leaves less than one pixel of the coarsest level along a
+    /// side of the exemplar; if a period is not a multiple of 2 to that number; and if a mask allows no pixel.
     pub fn new(exemplar: &Exemplar, options: &EndlessOptions) -> Result<Self, SynthError> {
         Self::new_cancellable(exemplar, options, &|| false)
     }
 
-    /// What [`new`](Self::new) prepares, unless `is_cancelled` returns true. It is called on any thread, and once for some
-    /// milliseconds of work.
+    /// Prepares a texture like [`new`](Self::new), unless `is_cancelled` returns true. It is called on any thread, once
+    /// per few milliseconds of work.
     ///
     /// # Errors
     ///
-    /// Those of [`new`](Self::new), and [`SynthErrorKind::Cancelled`](crate::SynthErrorKind::Cancelled).
+    /// The errors of [`new`](Self::new), and [`SynthErrorKind::Cancelled`](crate::SynthErrorKind::Cancelled).
     pub fn new_cancellable(
         exemplar: &Exemplar,
         options: &EndlessOptions,
         is_cancelled: &(dyn Fn() -> bool + Sync),
     ) -> Result<Self, SynthError> {
         let wanted = Wanted::new(is_cancelled);
+        // Choose the number of levels.
         let side = exemplar.size[0].min(exemplar.size[1]);
         let most = side
             .checked_ilog2()
@@ -143,6 +162,7 @@ impl Endless {
                 return Err(SynthError::new(SynthErrorKind::Period { period, n_levels }));
             }
         }
+        // Compute the features of the exemplar on each level.
         let mut stages = stage::stages(
             exemplar,
             &Guides::default(),
@@ -164,7 +184,7 @@ impl Endless {
             coarsest: stages.last().map_or(Vec::new(), Stage::usable_pixels),
             stages,
         };
-        // Copies of what repeats are even, and moving it would break it.
+        // Copies of a repeating tile use all parts evenly, and costs would break the repetition.
         if !texture.is_lattice {
             let repetition = if is_regular { 0.0 } else { REPETITION };
             texture.even_out(repetition, &wanted)?;
@@ -172,19 +192,20 @@ impl Endless {
         Ok(texture)
     }
 
-    /// The number of levels.
+    /// Number of levels.
     #[must_use]
     pub fn n_levels(&self) -> usize {
         self.stages.len()
     }
 
-    /// The window of `size` pixels whose first pixel is in the given column and row, at most 2^26 pixels.
+    /// Computes the window of `size` pixels, at most 2^26 in total, whose first pixel is at column `first[0]` and row
+    /// `first[1]`.
     ///
-    /// Along an axis on which it has the length of the period it wraps.
+    /// The result wraps along an axis if its size is the period.
     ///
     /// # Errors
     ///
-    /// Typed errors for no pixels and too many, and for columns and rows beyond 2^52; and
+    /// Fails if the window has no pixels or too many, if its first column or row is beyond ±2^52, and with
     /// [`SynthErrorKind::Cancelled`](crate::SynthErrorKind::Cancelled) if the callback breaks.
     pub fn window(
         &self,

@@ -1,19 +1,22 @@
-//! How evenly textures use the parts of an exemplar: what a part costs in a match.
+//! Even usage of the parts of an exemplar, by costs that are added to the distances of correction.
 //!
-//! Corrections alone take what fits many neighborhoods again and again: of a photograph of grass, one that is lighter on one
-//! side, textures have little but the middle. So every part of the exemplar, of which there are up to 16 × 16, has a cost
-//! that is added to the squared distance of its pixels. Costs are found by trials: a piece of the texture is made, the
-//! parts that it has too often become dearer, and those that it has too rarely cheaper; the costs of the most even trial
-//! are kept. They belong to the texture and not to a window, so that windows are crops of larger ones.
+//! Without costs, correction prefers pixels that fit many neighborhoods: textures of a photograph of grass that is
+//! lighter on one side use little but its middle. So the exemplar is divided into at most 16 × 16 parts, and the cost
+//! of a part is added to the squared distance of its pixels.
 //!
-//! What lies beside something that looks the same in every detail is noticed even where all parts are used equally often. So
-//! a pixel costs more, too, that is nearly from where one beside it is from, instead of as far from there as it should be. In
-//! what is regular, such as bricks, everything is repeated, and it costs nothing.
+//! Costs are found by trials. Each trial makes a piece of the texture, then raises the costs of parts that it uses too
+//! often and lowers those of parts that it uses too rarely. The costs of the most even trial are kept. They belong to
+//! the texture and not to a window, so a window has the same pixels as any larger one.
 //!
-//! Only levels have costs of which the piece is at least as wide as the exemplar: on finer ones it is too small to show all
-//! parts, and what they have follows from the coarser ones.
+//! A second cost is for repetition: two equal details close to each other are visible even if all parts are used
+//! equally often. It applies to a source that is nearly the source of a nearby pixel, instead of as far from it as the
+//! two pixels are from each other. Regular exemplars such as bricks repeat everywhere, and have no such cost.
 //!
-//! Reference: our own; prices that rise with the demand are those of Bertsekas's auctions for assignment problems.
+//! Only levels on which the piece is at least as wide as the exemplar have costs. On finer levels it is too small to
+//! show all parts, and their usage follows from the coarser levels.
+//!
+//! Reference: the method is our own. Prices that rise with demand are from Bertsekas's auction algorithm for assignment
+//! problems.
 
 use super::Endless;
 use super::stage::Stage;
@@ -22,36 +25,38 @@ use crate::SynthError;
 use crate::engine::Wanted;
 use dapple_raster::parallel;
 
-/// The columns and rows of the piece that a trial makes, in pixels of the level.
+/// Side of the piece that a trial makes, in pixels of the level.
 const SIDE: i64 = 64;
 
-/// The trials of a level.
+/// Number of trials per level.
 const N_TRIALS: u32 = 20;
 
-/// The most parts along an axis.
+/// Maximum number of parts along an axis.
 const MAX_PARTS: u32 = 16;
 
-/// How much a cost changes after the first trial, in mean squared distances, for a part that textures never have.
+/// Decrease of the cost of a part that the first trial does not use, in units of the mean squared distance.
 const STEP: f32 = 0.8;
 
-/// The trials after which costs change by half as much as after the first.
+/// Number of trials after which the changes of costs are half as large.
 const HALF_STEP: f32 = 8.0;
 
-/// The cost of a place that repeats what lies beside a pixel, in mean squared distances: 4 % of the pixels of a texture of leaves have
-/// their source again within 16 pixels without it, and 1 % with it; twice as much leaves hardly fewer.
+/// Cost of a source that repeats one near it, in units of the mean squared distance.
+///
+/// Measured on a texture of leaves: 4 % of the pixels have their source again within 16 pixels without this cost, and 1
+/// % with it. A cost twice as large hardly lowers this further.
 pub(super) const REPETITION: f32 = 1.0;
 
-/// What the parts of an exemplar cost; nothing if they are not told apart.
+/// Costs of the parts of an exemplar; empty if all parts cost nothing.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Costs {
-    /// The part of each column in the first row, and what each row adds to that.
+    /// Index of the part of a pixel: the sum of a value of its column and a value of its row.
     of_column: Vec<u32>,
     of_row: Vec<u32>,
     of_part: Vec<f32>,
 }
 
 impl Costs {
-    /// Parts of an exemplar that cost nothing.
+    /// Divides an exemplar into parts that cost nothing. A part is at least `spacing` pixels wide.
     pub(crate) fn new(size: [u32; 2], spacing: u32) -> Self {
         let side = spacing.max((size[0].max(size[1]) - 1) / MAX_PARTS + 1);
         let [n_columns, n_rows] = size.map(|n| (n - 1) / side + 1);
@@ -62,13 +67,13 @@ impl Costs {
         }
     }
 
-    /// The part of a place within the exemplar.
+    /// Returns the index of the part that contains a pixel of the exemplar.
     #[inline]
     fn part(&self, [column, row]: [i64; 2]) -> usize {
         (self.of_row[row as usize] + self.of_column[column as usize]) as usize
     }
 
-    /// What a place within the exemplar costs.
+    /// Returns the cost of a pixel of the exemplar.
     #[inline]
     pub(crate) fn of(&self, place: [i64; 2]) -> f32 {
         if self.of_part.is_empty() {
@@ -77,7 +82,7 @@ impl Costs {
         self.of_part[self.part(place)]
     }
 
-    /// The share of each part among some places.
+    /// Returns the fraction of the given pixels in each part.
     pub(crate) fn shares(&self, places: impl IntoIterator<Item = [u32; 2]>) -> Vec<f32> {
         let mut counts = vec![0_u32; self.of_part.len()];
         let mut n_places = 0;
@@ -89,8 +94,8 @@ impl Costs {
         counts.into_iter().map(share).collect()
     }
 
-    /// Makes parts dearer that there are too many of, and those cheaper that there are too few of: by `step` where all or
-    /// none are too many.
+    /// Raises the costs of parts with a larger share than wanted, and lowers those of parts with a smaller one. The
+    /// change is `step` for a part without pixels, and approaches `step` for a part with far too many.
     pub(crate) fn change(&mut self, shares: &[f32], wanted: &[f32], step: f32) {
         for (cost, (share, wanted)) in self.of_part.iter_mut().zip(shares.iter().zip(wanted)) {
             if *wanted > 0.0 {
@@ -101,8 +106,8 @@ impl Costs {
 }
 
 impl Endless {
-    /// Finds out what the parts of the exemplar cost on the coarser levels, and what `repetition` does, which is given in mean
-    /// squared distances.
+    /// Finds the costs of the parts of the exemplar on the coarser levels. `repetition` is the cost of repetition in
+    /// units of the mean squared distance.
     pub(crate) fn even_out(
         &mut self,
         repetition: f32,
@@ -110,6 +115,7 @@ impl Endless {
     ) -> Result<(), SynthError> {
         let mut coarser: Option<Area> = None;
         for level in (0..self.stages.len()).rev() {
+            // End at the first level on which the piece is smaller than the exemplar.
             let Stage { size, spacing, .. } = self.stages[level];
             if SIDE * spacing < i64::from(size[0].max(size[1])) {
                 return Ok(());
@@ -121,6 +127,7 @@ impl Endless {
                     .iter()
                     .map(|pixel| [pixel % size[0], pixel / size[0]]),
             );
+            // Make a piece with the current costs.
             let half = SIDE / 2;
             let mut scale = None;
             let mut best = (f32::INFINITY, costs.clone(), None);
@@ -129,16 +136,19 @@ impl Endless {
                 self.stages[level].costs = costs.clone();
                 let made = self.area(level, coarser.as_ref(), [-half..half, -half..half]);
                 let scale = *scale.get_or_insert_with(|| made.mean_sq(&self.stages[level]));
-                // Where it is farther, what goes on past the edge of an exemplar that wraps would count as repeated.
+                // With a larger distance, an exemplar that wraps would count as repeated where it continues past its
+                // edge.
                 if 2 * READS * spacing <= i64::from(size[0].min(size[1])) {
                     self.stages[level].repetition_cost = repetition * scale;
                 }
+                // Measure the unevenness, and keep the costs and the piece of the most even trial.
                 let shares = costs.shares(made.inner().map(|at| made.at(at).map(|at| at as u32)));
                 let pairs = || shares.iter().zip(&even);
                 let uneven = pairs().map(|(a, b)| (a - b).abs()).sum();
                 if uneven < best.0 {
                     best = (uneven, costs.clone(), Some(made));
                 }
+                // Adjust the costs for the next trial.
                 costs.change(
                     &shares,
                     &even,
@@ -152,14 +162,14 @@ impl Endless {
 }
 
 impl Area {
-    /// The pixels around which everything is here that a correction reads.
+    /// Returns the pixels whose correction reads only pixels of the area.
     fn inner(&self) -> impl Iterator<Item = [i64; 2]> {
         let rows = self.rows.start + READS..self.rows.end - READS;
         let columns = self.columns.start + READS..self.columns.end - READS;
         rows.flat_map(move |row| columns.clone().map(move |column| [column, row]))
     }
 
-    /// The mean squared distance of what is around pixels and around their places in the exemplar.
+    /// Returns the mean squared distance between the features around pixels and around their sources.
     fn mean_sq(&self, stage: &Stage) -> f32 {
         let inner: Vec<[i64; 2]> = self.inner().collect();
         let distances = parallel::map_at_least(64, inner.len(), |at| {

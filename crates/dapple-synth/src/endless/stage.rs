@@ -1,7 +1,14 @@
-//! What an exemplar looks like around each of its pixels, on every level of a texture.
+//! Appearance features: vectors that describe the surroundings of each pixel of an exemplar, on every level.
 //!
-//! All levels have the full size of the exemplar: each is the one before it, blurred by the weights 1-4-6-4-1 of pixels as
-//! far apart as those of the texture are on it. So a texture may go on at any pixel of the exemplar on coarse levels, too.
+//! Reference: Sylvain Lefebvre and Hugues Hoppe, "Appearance-Space Texture Synthesis", SIGGRAPH 2006, DOI
+//! 10.1145/1141911.1141921.
+//!
+//! Input: an exemplar, its guides and mask, and a number of levels. Output: a [`Stage`] per level, with the features,
+//! the usable pixels, and for each pixel the most similar other one.
+//!
+//! All levels have the full size of the exemplar, as in an à trous pyramid. Each level is the previous one blurred with
+//! the weights 1-4-6-4-1; their distance is the spacing of the texture's pixels on the previous level, 1, 2, 4 and so
+//! on. So a source can be any pixel of the exemplar, on coarse levels too.
 
 use super::evenness::Costs;
 use crate::engine::Wanted;
@@ -13,73 +20,73 @@ use crate::{Edges, Exemplar, Symmetry, SynthError, SynthErrorKind};
 use dapple_raster::simd::{self, dispatch};
 use dapple_raster::{Wrap, parallel};
 
-/// The numbers that tell what is around a pixel.
+/// Number of features of a pixel.
 pub(crate) const N_FEATURES: usize = 8;
 
-/// The pixels around one whose features are compared, in pixels of the level.
+/// Offsets of the pixels whose features are compared, in pixels of the level.
 pub(crate) const DIAGONALS: [[i64; 2]; 4] = [[-1, -1], [1, -1], [-1, 1], [1, 1]];
 
-/// How far the windows reach that features tell of, in pixels of the level.
+/// Half side of the window that features describe, in pixels of the level.
 const HALF: i64 = 2;
 
-/// The squared weights of the columns and the rows of a window.
+/// Squared weights of the columns and of the rows of a window.
 const WEIGHTS: [f32; 2 * HALF as usize + 1] = [1.0, 4.0, 6.0, 4.0, 1.0];
 
-/// Pixels that are alike are this part of the shorter side of the exemplar from each other, or farther.
+/// Minimum distance between a pixel and the most similar one, as a fraction of the exemplar's shorter side.
 const APART: f64 = 0.05;
 
-/// The most pixels of a grid: a search among them takes a tenth of a millisecond.
+/// Maximum number of pixels of the grid. A search among them takes a tenth of a millisecond.
 const GRID: i64 = 1 << 14;
 
-/// Pixels of the grid that are searched together.
+/// Number of pixels of the grid that a task searches for.
 const PIXELS: usize = 512;
 
-/// The searches after which it is asked again whether the texture is still wanted.
+/// Number of searches between two polls for cancellation.
 const ASKED: usize = 64;
 
-/// The most windows whose principal components are taken.
+/// Maximum number of windows from which the principal components are computed.
 const SAMPLE: usize = 4096;
 
-/// In place of the row or the pixel of what has none.
+/// In place of a row or a pixel: there is none.
 const NONE: u32 = u32::MAX;
 
-/// An exemplar on one level of a texture.
+/// One level of an exemplar.
 #[derive(Clone, Debug)]
 pub(crate) struct Stage {
     pub(crate) size: [u32; 2],
     wrap: Wrap,
-    /// The pixels of the exemplar between two pixels of the level.
+    /// Distance of two pixels of the level, in pixels of the exemplar.
     pub(crate) spacing: i64,
-    /// The principal components of the window around each pixel: of the exemplar as it is, and turned by one, two and three
-    /// quarter turns; nothing for turns that its symmetry does not have.
+    /// Features of each pixel: principal components of the window around it. There is one list for each rotation of the
+    /// exemplar, from 0 to 3 quarter turns; rotations that the symmetry lacks have an empty list.
     features: [Vec<[f32; N_FEATURES]>; 4],
-    /// Whether textures may have each pixel; all of them if nothing is said.
+    /// Whether each pixel may be a source; `None` if all may.
     usable: Option<Vec<bool>>,
-    /// The columns and rows between pixels of the grid on which alike ones are searched.
+    /// Distance of two pixels of the grid on which similar pixels are searched, in pixels of the exemplar.
     pub(crate) step: i64,
-    /// For each pixel of the grid the one of the grid that is most like it.
+    /// For each pixel of the grid, the index of the most similar pixel of the grid, or [`NONE`].
     similar: Vec<u32>,
-    /// One value of each guide for every pixel, times the root of its weight.
+    /// Guides of every pixel, each times the root of its weight.
     guides: Vec<f32>,
-    /// The usable pixels of the grid, to be searched for; nothing without guides.
+    /// Usable pixels of the grid, for [`search`](Self::search); `None` without guides.
     searched: Option<Grid>,
-    /// The costs of the parts of the exemplar, added to the squared distances of places in them.
+    /// Costs of the parts of the exemplar, added to squared distances.
     pub(crate) costs: Costs,
-    /// The cost of a place that repeats what lies beside a pixel, added to its squared distance.
+    /// Cost of a source that repeats one near it, added to its squared distance.
     pub(super) repetition_cost: f32,
-    /// By how much more than once the distance counts of a place that only is like one that a neighbor goes on to.
+    /// Additional weight of similar pixels: their distances are multiplied by `1 + coherence`.
     pub(crate) coherence: f32,
 }
 
-/// The usable pixels of a grid, as rows of what is compared.
+/// Usable pixels of a grid, with a matcher over their features and guides.
 #[derive(Clone, Debug)]
 struct Grid {
-    /// The number of each pixel in the grid.
+    /// Index in the grid of each usable pixel.
     pixels: Vec<usize>,
     matcher: Matcher,
 }
 
-/// The levels of an exemplar that may lie turned as a symmetry says, with some of its guides or none, the finest first.
+/// Computes the levels of an exemplar, the finest first, with features for each rotation of `symmetry`.
 pub(crate) fn stages(
     exemplar: &Exemplar,
     guides: &Guides,
@@ -87,6 +94,7 @@ pub(crate) fn stages(
     n_levels: usize,
     wanted: &Wanted<'_>,
 ) -> Result<Vec<Stage>, SynthError> {
+    // Blur the pixels and the guides from level to level.
     let mut pixels = vec![exemplar.pixels.clone()];
     let mut guides_of = vec![guides.values.clone()];
     let n_guides = guides.roots.len();
@@ -101,7 +109,7 @@ pub(crate) fn stages(
         ));
         guides_of.push(blurred(exemplar, &guides_of[level - 1], n_guides, step));
     }
-    // Never more is left out than of the next coarser level, so that the pixels that its texture has are usable.
+    // A level excludes at most as wide a margin as the next coarser one, so sources of the coarser level stay usable.
     let mut reach = i64::MAX;
     let mut masks = Vec::with_capacity(n_levels);
     for level in (0..n_levels).rev() {
@@ -112,6 +120,7 @@ pub(crate) fn stages(
         reach = left;
     }
     masks.reverse();
+    // Compute the features of all levels.
     let stage = |level: usize| {
         let features = features(exemplar, symmetry, &pixels[level], 1 << level, wanted)?;
         let (guides, mask) = (guides_of[level].clone(), masks[level].clone());
@@ -120,12 +129,12 @@ pub(crate) fn stages(
     parallel::map(n_levels, stage).into_iter().collect()
 }
 
-/// A place in the exemplar, which has less than 2^32 columns and rows.
+/// Converts a pixel of the exemplar, which has less than 2^32 columns and rows.
 pub(crate) fn narrow(place: [i64; 2]) -> [u32; 2] {
     place.map(|at| at as u32)
 }
 
-/// An image of `n` channels with every pixel mixed with those two and one steps away along both axes.
+/// Blurs an image of `n` channels with the weights 1-4-6-4-1 along both axes, at pixels `step` apart.
 fn blurred(exemplar: &Exemplar, pixels: &[f32], n: usize, step: i64) -> Vec<f32> {
     let [width, height] = exemplar.size;
     let wrap = exemplar.edges.wrap();
@@ -134,6 +143,7 @@ fn blurred(exemplar: &Exemplar, pixels: &[f32], n: usize, step: i64) -> Vec<f32>
     };
     let line = width as usize * n;
     let rows = parallel::map(height as usize, |row| {
+        // Blur vertically, then horizontally.
         let mut mixed = Vec::with_capacity(line);
         blend(
             taps(row, height).map(|row| &pixels[row * line..][..line]),
@@ -151,7 +161,7 @@ fn blurred(exemplar: &Exemplar, pixels: &[f32], n: usize, step: i64) -> Vec<f32>
     rows.concat()
 }
 
-/// The principal components of the windows around all pixels, for each number of quarter turns that a symmetry has.
+/// Computes the features of all pixels for each rotation of a symmetry.
 fn features(
     exemplar: &Exemplar,
     symmetry: Symmetry,
@@ -162,6 +172,7 @@ fn features(
     let n = exemplar.n_channels;
     let [width, height] = exemplar.size;
     let wrap = exemplar.edges.wrap();
+    // Gather the weighted window around a pixel, for a rotated exemplar.
     let taps = |at: usize, side: u32| {
         let tap = |tap| wrap.index(at as i64 + tap * spacing, side) as usize;
         core::array::from_fn::<usize, { WEIGHTS.len() }, _>(|at| tap(at as i64 - HALF))
@@ -171,7 +182,7 @@ fn features(
         let (columns, rows) = (taps(column, width), taps(row, height));
         for (y, down) in (-HALF..).zip(WEIGHTS) {
             for (x, across) in (-HALF..).zip(WEIGHTS) {
-                // Both sums of weights are 16.
+                // The weights of the columns add up to 16, and so do those of the rows.
                 let weight = (down * across).sqrt() / 16.0;
                 let [x, y] = offset_after([x, y], quarters).map(|at| (at + HALF) as usize);
                 let pixel = &pixels[(rows[y] * width as usize + columns[x]) * n..][..n];
@@ -179,6 +190,7 @@ fn features(
             }
         }
     };
+    // Find the principal components of a sample of the windows.
     let dims = WEIGHTS.len() * WEIGHTS.len() * n;
     let n_pixels = width as usize * height as usize;
     let step = n_pixels.div_ceil(SAMPLE);
@@ -190,6 +202,7 @@ fn features(
     });
     let basis = Basis::with_most(N_FEATURES, dims, &sample.concat());
     let level = simd::level();
+    // Project the windows of all pixels.
     let turned = |quarters: u8| {
         let rows = parallel::map(height as usize, |row| {
             if wanted.is_over() {
@@ -215,8 +228,8 @@ fn features(
     Ok(features)
 }
 
-/// The pixels that textures may have, and how far they are from what they may not have: at most `reach`, and less, down to
-/// nothing, where that would leave out more than half.
+/// Returns the usable pixels, and the width of the margin that was excluded around cut edges and masked pixels. The
+/// margin is `reach`, or smaller, down to 0, if more than half of the pixels would be excluded.
 fn usable(
     exemplar: &Exemplar,
     level: usize,
@@ -235,6 +248,7 @@ fn usable(
     if enough == 0 {
         return Err(SynthError::new(SynthErrorKind::Masked { level }));
     }
+    // Halve the margin until enough pixels are usable.
     loop {
         let rows = all.chunks_exact(width);
         let across: Vec<bool> = rows
@@ -255,7 +269,7 @@ fn usable(
     }
 }
 
-/// The places of a line around which something holds everywhere within `reach`.
+/// Returns for each position of a line whether a condition holds everywhere within `reach` of it (binary erosion).
 fn inner(edges: Edges, side: usize, reach: i64, holds: impl Fn(usize) -> bool) -> Vec<bool> {
     let side = side as i64;
     let reach = reach.min(side);
@@ -263,6 +277,7 @@ fn inner(edges: Edges, side: usize, reach: i64, holds: impl Fn(usize) -> bool) -
         Edges::Wrap => holds(at.rem_euclid(side) as usize),
         Edges::Cut => (0..side).contains(&at) && holds(at as usize),
     };
+    // Count the positions in a row at which the condition holds, up to `at + reach`.
     let mut run = (-reach..reach).rev().take_while(|&at| holds_at(at)).count() as i64;
     let mut inner = Vec::with_capacity(side as usize);
     for at in 0..side {
@@ -273,8 +288,7 @@ fn inner(edges: Edges, side: usize, reach: i64, holds: impl Fn(usize) -> bool) -
 }
 
 impl Stage {
-    /// A level of an exemplar, which looks like this around its pixels and has these guides there, and of which textures may
-    /// have some pixels.
+    /// Creates a level of an exemplar from its features, guides and mask, and finds the most similar pixels.
     fn new(
         exemplar: &Exemplar,
         level: usize,
@@ -285,6 +299,7 @@ impl Stage {
     ) -> Result<Self, SynthError> {
         let spacing = 1_i64 << level;
         let n_pixels = i64::from(exemplar.size[0]) * i64::from(exemplar.size[1]);
+        // Double the step of the grid until it has at most `GRID` pixels.
         let mut step = spacing;
         while n_pixels > GRID * step * step {
             step *= 2;
@@ -307,23 +322,23 @@ impl Stage {
         Ok(stage)
     }
 
-    /// The pixel at a column and row, of which those past the edges are mirrored or wrapped.
+    /// Returns the features of a pixel. Coordinates past the edges are mirrored or wrapped.
     #[inline(always)]
     pub(crate) fn features(&self, place: [i64; 2]) -> &[f32; N_FEATURES] {
         self.turned_features(place, 0)
     }
 
-    /// What [`features`](Self::features) returns, with the exemplar turned by quarter turns that its symmetry has.
+    /// Returns the features of a pixel like [`features`](Self::features), with the exemplar rotated by `quarters`.
     #[inline(always)]
     pub(crate) fn turned_features(&self, place: [i64; 2], quarters: u8) -> &[f32; N_FEATURES] {
         let (column, row) = (self.within(0, place[0]), self.within(1, place[1]));
         &self.features[usize::from(quarters)][row * self.size[0] as usize + column]
     }
 
-    /// A column or row of the exemplar, counted on past its edges.
+    /// Maps a column or row to the exemplar, mirrored or wrapped past its edges.
     #[inline(always)]
     fn within(&self, axis: usize, at: i64) -> usize {
-        // The remainder of a division costs more than all else here.
+        // Avoid the remainder of a division, the most expensive operation here.
         if (0..i64::from(self.size[axis])).contains(&at) {
             at as usize
         } else {
@@ -331,20 +346,22 @@ impl Stage {
         }
     }
 
-    /// The squared distance of features on the diagonals of a pixel from those on the diagonals of a place.
+    /// Squared distance between features on the diagonals of a texture pixel and those on the diagonals of an exemplar
+    /// pixel.
     #[inline(always)]
     pub(crate) fn distance_sq(&self, around: &[[f32; N_FEATURES]; 4], place: [i64; 2]) -> f32 {
         self.distance_sq_of(around.iter().zip(DIAGONALS), place)
     }
 
-    /// The squared distance of features on some diagonals of a pixel from those on the same of a place.
+    /// Squared distance between features on some diagonals of a texture pixel and those on the same diagonals of an
+    /// exemplar pixel.
     #[inline(always)]
     pub(crate) fn distance_sq_of<'a>(
         &self,
         around: impl Iterator<Item = (&'a [f32; N_FEATURES], [i64; 2])>,
         [column, row]: [i64; 2],
     ) -> f32 {
-        // Each component has a sum of its own, so that they fill registers and do not wait for each other.
+        // Sum each feature separately: the sums fill registers and do not depend on each other.
         let mut sums = [0.0; N_FEATURES];
         for (own, [x, y]) in around {
             let other = self.features([column + x * self.spacing, row + y * self.spacing]);
@@ -356,8 +373,8 @@ impl Stage {
         ((a + e) + (c + g)) + ((b + f) + (d + h))
     }
 
-    /// The squared distance of guides at a pixel of a texture from those of a place within the exemplar: each counts as a
-    /// channel that differs everywhere.
+    /// Squared distance between the wanted guides and those of an exemplar pixel, times the number of diagonals: a
+    /// guide counts as a channel that differs everywhere.
     #[inline]
     pub(crate) fn guides_distance_sq(&self, wanted: &[f32], [column, row]: [i64; 2]) -> f32 {
         if wanted.is_empty() {
@@ -369,7 +386,7 @@ impl Stage {
         DIAGONALS.len() as f32 * squares.sum::<f32>()
     }
 
-    /// The place of the grid whose diagonals and guides are the most like these; nothing without guides.
+    /// Returns the pixel of the grid with the most similar features and guides; `None` if the exemplar has no guides.
     pub(crate) fn search(
         &self,
         around: &[[f32; N_FEATURES]; 4],
@@ -382,16 +399,16 @@ impl Stage {
         Some(self.grid_place(grid.pixels[found.row as usize]))
     }
 
-    /// The place of a pixel that is a quarter of one of the next coarser level: beside the place of that, or, where that
-    /// is not usable, the same.
+    /// Returns the initial source of the pixel `at`, given the source of its parent on the coarser level: the pixel
+    /// half a spacing from it toward the child, or `parent` itself if that pixel is not usable.
     pub(crate) fn child(&self, parent: [i64; 2], at: [i64; 2]) -> [i64; 2] {
-        // Half of the spacing to either side; rounded down on the finest level.
+        // Half of the spacing to either side, rounded down: 1 or 0 pixels on the finest level.
         let step = at.map(|at| ((2 * at.rem_euclid(2) - 1) * self.spacing).div_euclid(2));
         let beside = [parent[0] + step[0], parent[1] + step[1]];
         self.usable(beside).unwrap_or(parent)
     }
 
-    /// A place in the exemplar, if textures may go on there.
+    /// Returns a pixel within the exemplar, wrapped if the exemplar wraps, or `None` if it is not usable.
     #[inline(always)]
     pub(crate) fn usable(&self, mut place: [i64; 2]) -> Option<[i64; 2]> {
         for (at, side) in place.iter_mut().zip(self.size) {
@@ -410,7 +427,7 @@ impl Stage {
         usable[pixel as usize].then_some(place)
     }
 
-    /// The pixels that textures may have.
+    /// Returns the indices of the usable pixels.
     pub(crate) fn usable_pixels(&self) -> Vec<u32> {
         let pixels = 0..self.size[0] * self.size[1];
         match &self.usable {
@@ -419,7 +436,8 @@ impl Stage {
         }
     }
 
-    /// The place that is to the one most like the grid's nearest as `place` is to that, if it is usable.
+    /// Returns the pixel most similar to a given one, if it is usable: the most similar pixel of the grid, plus the
+    /// offset of the given pixel from its grid pixel.
     #[inline(always)]
     pub(crate) fn similar(&self, place: [i64; 2]) -> Option<[i64; 2]> {
         let [column, row] = place.map(|at| at / self.step);
@@ -432,21 +450,22 @@ impl Stage {
         self.usable([0, 1].map(|axis| found[axis] * self.step + place[axis] % self.step))
     }
 
-    /// The columns and rows of the grid.
+    /// Number of columns and rows of the grid.
     fn grid(&self) -> [i64; 2] {
         self.size.map(|side| (i64::from(side) - 1) / self.step + 1)
     }
 
-    /// The place of a pixel of the grid.
+    /// Converts the index of a grid pixel to the pixel of the exemplar.
     fn grid_place(&self, pixel: usize) -> [i64; 2] {
         let [width, _] = self.grid();
         [pixel as i64 % width, pixel as i64 / width].map(|at| at * self.step)
     }
 
-    /// Finds the pixel of the grid that is most like each of the grid, not too near to it.
+    /// Finds the most similar other pixel of the grid for each pixel of the grid, at least [`apart`](Self::apart) away.
     fn search_alike(&mut self, wanted: &Wanted<'_>) -> Result<(), SynthError> {
         let [width, height] = self.grid();
         let n_pixels = (width * height) as usize;
+        // Gather the features and guides of the usable pixels of the grid.
         let is_usable = |pixel: &usize| self.usable(self.grid_place(*pixel)).is_some();
         let pixels: Vec<usize> = (0..n_pixels).filter(is_usable).collect();
         let mut row_of = vec![NONE; n_pixels];
@@ -462,6 +481,7 @@ impl Stage {
             compared(&DIAGONALS.map(|step| *self.features(around(step))), guides)
         });
         let dims = DIAGONALS.len() * N_FEATURES + n_guides;
+        // Search for each pixel. Infinite factors exclude the pixels near it.
         let matcher = Matcher::with_factors(dims, &values.concat());
         let apart = self.apart();
         let found = parallel::map(pixels.len().div_ceil(PIXELS), |block| {
@@ -482,12 +502,13 @@ impl Stage {
                 };
                 let found = matcher.find(query, &mut memory).map(|found| found.row);
                 self.mark(&row_of, pixels[row], apart, 1.0, &mut factors);
-                // What is most like the next one is often beside it.
+                // Hint for the next pixel: the pixel most similar to it is often next to this result.
                 hint = found.map(|row| row + 1);
                 Some(found.map_or(NONE, |row| pixels[row as usize] as u32))
             };
             rows.map_while(search).collect::<Vec<u32>>()
         });
+        // Store the results.
         wanted.check()?;
         self.similar = vec![NONE; row_of.len()];
         for (&pixel, found) in pixels.iter().zip(found.concat()) {
@@ -497,13 +518,14 @@ impl Stage {
         Ok(())
     }
 
-    /// How far pixels that are alike are from each other at least, but for rounding, in steps of the grid.
+    /// Minimum distance between a pixel and the most similar one, in steps of the grid, up to rounding.
     pub(crate) fn apart(&self) -> i64 {
         let side = f64::from(self.size[0].min(self.size[1]));
         ((APART * side) as i64 / self.step).max(1)
     }
 
-    /// Sets the factors of the pixels of the grid that are at most `apart` of its steps from one.
+    /// Sets the factors of the pixels of the grid within a disk around a pixel; `apart` is its radius in steps of the
+    /// grid.
     fn mark(&self, row_of: &[u32], at: usize, apart: i64, factor: f32, factors: &mut [f32]) {
         let [width, height] = self.grid();
         let [column, line] = [at as i64 % width, at as i64 / width];
@@ -520,8 +542,8 @@ impl Stage {
     }
 }
 
-/// The numbers by which places are compared: the features on the four diagonals of a place, and its guides, which count four
-/// times.
+/// Returns the vector that the matcher compares: the features on the four diagonals of a pixel, and its guides, which
+/// count four times.
 fn compared(around: &[[f32; N_FEATURES]; 4], guides: &[f32]) -> Vec<f32> {
     let mut values = around.as_flattened().to_vec();
     let root = (DIAGONALS.len() as f32).sqrt();

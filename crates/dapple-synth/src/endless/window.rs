@@ -1,4 +1,7 @@
-//! The pixels of a window, level by level.
+//! Computation of a window of an endless texture, level by level.
+//!
+//! Input: the levels of the exemplar and the rectangle of the window. Output: the source pixel of each pixel. Margins
+//! are added on each level, so that every value that the window depends on is computed.
 
 use super::Endless;
 use super::stage::{DIAGONALS, N_FEATURES, Stage, narrow};
@@ -11,28 +14,28 @@ use dapple_hash::{hash2, unit_f64};
 use dapple_raster::simd::{self, dispatch};
 use dapple_raster::{Raster, parallel};
 
-/// How often a level is corrected.
+/// Number of correction passes per level; the coarsest level has twice as many.
 pub(super) const N_PASSES: usize = 3;
 
-/// How often, less one at most, a pixel of a regular exemplar is first replaced by the one most like it.
+/// Number of possible replacement counts: a pixel of the coarsest level of a regular exemplar is replaced by the most
+/// similar one 0 to 7 times.
 const MOVES: f64 = 8.0;
 
-/// How far the pixels are that a correction of one pixel reads.
+/// Maximum distance of the pixels that the correction of a pixel reads, along each axis.
 pub(super) const READS: i64 = 2;
 
-/// The pixels of a level from one report of the progress to the next: a quarter of them is corrected, in some
-/// milliseconds.
+/// Number of pixels between two progress reports. A quarter of them is corrected, which takes some milliseconds.
 const REPORTED: i64 = 1 << 16;
 
-/// The pixels that are corrected at a time: the remainders of columns and rows by 2, in this order.
+/// The four subpasses of a correction pass, in order: the remainders of column and row by 2 of the corrected pixels.
 pub(super) const QUARTERS: [[i64; 2]; 4] = [[0, 0], [1, 1], [0, 1], [1, 0]];
 
-/// How far the pixels are that the passes over a level depend on.
+/// Returns the distance of the farthest pixels that a pixel depends on after `n_passes` passes over a level.
 const fn reach(n_passes: usize) -> i64 {
     READS * (QUARTERS.len() * n_passes) as i64
 }
 
-/// How often the level over a coarser one is corrected, or the coarsest.
+/// Number of correction passes of a level, given the coarser one.
 fn n_passes(coarser: Option<&Area>) -> usize {
     match coarser {
         None => 2 * N_PASSES,
@@ -40,26 +43,26 @@ fn n_passes(coarser: Option<&Area>) -> usize {
     }
 }
 
-/// A rectangle of the texture on one level, and the places in the exemplar that its pixels are from.
+/// A rectangle of the texture on one level, with the source pixel in the exemplar of each of its pixels.
 #[derive(Debug)]
 pub(super) struct Area {
     pub(super) columns: Range<i64>,
     pub(super) rows: Range<i64>,
-    /// Written by threads that wait for each other where they read what others write.
+    /// Source of each pixel. A thread that reads a value waits for the thread that writes it.
     places: Vec<[AtomicU32; 2]>,
 }
 
-/// A row of a quarter that is corrected.
+/// One row of a subpass; the unit of work of a thread.
 #[derive(Clone, Copy, Debug)]
 struct Turn {
     quarter: [i64; 2],
     row: i64,
-    /// The turns from the first one on that must be over before.
+    /// Number of turns, from the first one, that must be finished before this one.
     wait: usize,
 }
 
 impl Endless {
-    /// The sources of a window.
+    /// Computes the sources of a window.
     pub(super) fn sources(
         &self,
         [column, row]: [i64; 2],
@@ -68,7 +71,7 @@ impl Endless {
     ) -> Result<Raster<[u32; 2]>, SynthError> {
         let [columns, rows] =
             [(column, size[0]), (row, size[1])].map(|(first, side)| first..first + i64::from(side));
-        // What is to be known of each level, the finest first.
+        // Find the range of pixels that are needed on each level, the finest first.
         let mut needs = vec![[columns.clone(), rows.clone()]];
         for level in 1..self.stages.len() {
             let reach = reach(N_PASSES);
@@ -77,15 +80,18 @@ impl Endless {
             };
             needs.push(needs[level - 1].clone().map(parents));
         }
+        // Compute the levels, the coarsest first.
         let mut coarser: Option<Area> = None;
         for (level, stage) in self.stages.iter().enumerate().rev() {
             let n_passes = n_passes(coarser.as_ref());
             let reach = reach(n_passes);
+            // Extend the range by the pixels that corrections read.
             let around = needs[level]
                 .clone()
                 .map(|range| range.start - reach..range.end + reach);
             let area = self.start(level, coarser.as_ref(), around);
             let n_quarters = area.places.len() / QUARTERS.len();
+            // Correct the level in parts, and report progress after each.
             for (corrected, &quarter) in (0..n_passes).flat_map(|_| &QUARTERS).enumerate() {
                 for rows in area.parts() {
                     let above = (rows.start - area.rows.start) as usize;
@@ -102,6 +108,7 @@ impl Endless {
             }
             coarser = Some(area);
         }
+        // Cut out the window.
         let place = |x: u32, y: u32| {
             let at = [column + i64::from(x), row + i64::from(y)];
             let place = coarser.as_ref().map_or([0; 2], |area| area.at(at));
@@ -110,7 +117,7 @@ impl Endless {
         Ok(Raster::from_fn(size, place)?)
     }
 
-    /// The pixels of a level before they are corrected.
+    /// Creates a level before its correction: from the coarser level, or at random on the coarsest.
     fn start(
         &self,
         level: usize,
@@ -126,7 +133,7 @@ impl Endless {
         })
     }
 
-    /// The pixels of a level, corrected as far as is here what corrections read.
+    /// Creates a level and corrects the pixels whose neighborhoods lie within the area.
     pub(super) fn area(
         &self,
         level: usize,
@@ -139,20 +146,23 @@ impl Endless {
         area
     }
 
-    /// The place of a pixel of the coarsest level before it is corrected: any, or where copies of a regular exemplar side by
-    /// side have what is like that.
+    /// Returns the initial source of a pixel of the coarsest level: a random pixel of the exemplar. For a regular
+    /// exemplar that wraps, it is the pixel at this position in copies of the exemplar, replaced by the most similar
+    /// one 0 to 7 times.
     fn random(&self, level: usize, mut at: [i64; 2]) -> [i64; 2] {
         for (at, period) in at.iter_mut().zip(self.period) {
             if let Some(period) = period {
                 *at = at.rem_euclid(i64::from(period) >> level);
             }
         }
+        // Draw a random number from the position within the period.
         let part = unit_f64(hash2(self.seed.child("endless", 0), at, 0));
         if !self.is_lattice {
             let pixel = self.coarsest[(part * self.coarsest.len() as f64) as usize];
             return [pixel % self.size[0], pixel / self.size[0]].map(i64::from);
         }
         let stage = &self.stages[level];
+        // Start with a copy of the exemplar, and replace the pixel a random number of times.
         let mut place = [0, 1].map(|axis| {
             let side = i64::from(self.size[axis]);
             (at[axis] * stage.spacing).rem_euclid(side)
@@ -164,7 +174,8 @@ impl Endless {
     }
 }
 
-/// The columns or rows of a range whose remainder by 2 is `rest`, but those from which not all is here that is read.
+/// Returns the columns or rows of a range with the remainder `rest` by 2, except those whose correction reads past the
+/// range.
 fn odd_or_even(range: &Range<i64>, rest: i64) -> impl Iterator<Item = i64> + use<> {
     let first = range.start + READS;
     let first = first + (rest - first).rem_euclid(2);
@@ -192,26 +203,26 @@ impl Area {
         }
     }
 
-    /// The number of a pixel among the places.
+    /// Index of a pixel in `places`.
     #[inline(always)]
     fn index(&self, [column, row]: [i64; 2]) -> usize {
         let width = self.columns.end - self.columns.start;
         ((row - self.rows.start) * width + column - self.columns.start) as usize
     }
 
-    /// The place of a pixel.
+    /// Source of a pixel.
     #[inline(always)]
     pub(super) fn at(&self, pixel: [i64; 2]) -> [i64; 2] {
         let [column, row] = &self.places[self.index(pixel)];
-        // Of a pixel that another thread writes, the board makes an order.
+        // Relaxed is enough: the board orders reads after writes of other threads.
         [
             column.load(Ordering::Relaxed).into(),
             row.load(Ordering::Relaxed).into(),
         ]
     }
 
-    /// Corrects quarters of the pixels in some rows one after the other, but those pixels from which not all is there that
-    /// is read.
+    /// Corrects the pixels of the given subpasses in some rows, except pixels whose correction reads past the area.
+    /// Subpasses follow each other; rows run in parallel.
     fn correct(&self, stage: &Stage, quarters: &[[i64; 2]], rows: Range<i64>) {
         let level = simd::level();
         let turns = self.turns(quarters, &rows);
@@ -227,7 +238,7 @@ impl Area {
         });
     }
 
-    /// The rows, in parts after which the progress is reported, each with the rows around it that it reads.
+    /// Splits the rows into parts for progress reports. Each part includes the rows around it that it reads.
     fn parts(&self) -> impl Iterator<Item = Range<i64>> + use<> {
         let rows = self.rows.start..self.rows.end - 2 * READS;
         let n_rows = (REPORTED / (self.columns.end - self.columns.start)).max(2);
@@ -235,7 +246,7 @@ impl Area {
         firsts.map(move |first| first..rows.end.min(first + n_rows) + 2 * READS)
     }
 
-    /// Corrects some pixels of a row.
+    /// Corrects the given pixels of a row.
     #[inline(always)]
     fn correct_row(&self, stage: &Stage, columns: impl Iterator<Item = i64>, row: i64) {
         for column in columns {
@@ -246,7 +257,8 @@ impl Area {
         }
     }
 
-    /// The rows of quarters. Each waits for those of the quarter before it that it reads, and that read it.
+    /// Wavefront schedule of the rows of all subpasses. A row waits for the rows of the previous subpass that it reads,
+    /// and for those that read it.
     fn turns(&self, quarters: &[[i64; 2]], rows: &Range<i64>) -> Vec<Turn> {
         let mut turns: Vec<Turn> = Vec::new();
         let mut before = 0..0;
@@ -262,7 +274,8 @@ impl Area {
         turns
     }
 
-    /// The place around which the exemplar looks most like the texture around a pixel. Of equally good ones the first.
+    /// Returns the best source of a pixel: the exemplar pixel whose surroundings are most similar to those of the pixel
+    /// in the texture. Of equally good sources the first wins.
     #[inline(always)]
     fn corrected(&self, stage: &Stage, [column, row]: [i64; 2]) -> [i64; 2] {
         let mut choice = Choice {
@@ -272,6 +285,7 @@ impl Area {
             around: self.around(stage, [column, row]),
             best: (f32::INFINITY, self.at([column, row])),
         };
+        // Compare the pixels that the nine neighbors predict, the pixel itself included.
         let mut coherent = [choice.best.1; 9];
         let mut n_coherent = 0;
         for y in -1..=1 {
@@ -287,6 +301,7 @@ impl Area {
                 }
             }
         }
+        // Compare the pixels most similar to these, at a disadvantage.
         for &place in &coherent[..n_coherent] {
             if let Some(place) = stage.similar(place) {
                 choice.compare(place, 1.0 + stage.coherence);
@@ -295,8 +310,9 @@ impl Area {
         choice.best.1
     }
 
-    /// Whether a place is less than half as far from that of a pixel beside the given one as the two pixels are from each
-    /// other. Pixels of the same quarter do not count, since they are corrected at the same time.
+    /// Returns whether a source repeats one near it: its distance from the source of a nearby pixel is less than half
+    /// of the distance of the two pixels. Pixels of the same subpass are ignored, since they are corrected at the same
+    /// time.
     #[inline(always)]
     fn repeats(&self, stage: &Stage, [column, row]: [i64; 2], place: [i64; 2]) -> bool {
         for y in -READS..=READS {
@@ -314,8 +330,8 @@ impl Area {
         false
     }
 
-    /// The features on the diagonals of a pixel: of each the mean of what it has and what two pixels beyond it, one along
-    /// each axis, go on to there.
+    /// Returns the features on each diagonal of a pixel: the mean of those of the diagonal pixel and those that two
+    /// pixels beyond it, one along each axis, predict for it.
     #[inline(always)]
     pub(super) fn around(&self, stage: &Stage, [column, row]: [i64; 2]) -> [[f32; N_FEATURES]; 4] {
         let mut around = [[0.0; N_FEATURES]; 4];
@@ -339,25 +355,25 @@ impl Area {
     }
 }
 
-/// The choice of a place for a pixel.
+/// Search for the best source of a pixel.
 struct Choice<'a> {
     stage: &'a Stage,
     area: &'a Area,
     pixel: [i64; 2],
-    /// The features on the diagonals of the pixel.
+    /// Features on the diagonals of the pixel.
     around: [[f32; N_FEATURES]; 4],
-    /// The squared distance of the best place up to now, and the place.
+    /// Squared distance of the best source so far, costs included, and the source.
     best: (f32, [i64; 2]),
 }
 
 impl Choice<'_> {
-    /// Takes a place if it is better; its squared distance counts by a factor.
+    /// Takes a source if it is better than the best so far. `factor` multiplies its squared distance, costs excluded.
     #[inline(always)]
     fn compare(&mut self, place: [i64; 2], factor: f32) {
         let stage = self.stage;
         let distance_sq = factor * stage.distance_sq(&self.around, place);
         let mut distance_sq = distance_sq + stage.costs.of(place);
-        // What is too far already need not be looked for beside the pixel.
+        // Test for repetition only if the source could still win.
         if distance_sq < self.best.0
             && stage.repetition_cost > 0.0
             && self.area.repeats(stage, self.pixel, place)
