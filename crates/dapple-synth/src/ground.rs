@@ -1,4 +1,7 @@
-//! The ground of a texture: sites on several levels, their order, and how neighborhoods are read.
+//! The domain of a synthesis as [`engine`](crate::engine) sees it: sites on several levels, their order, and the
+//! sampling of their neighborhoods.
+//!
+//! [`Ground`] has an implementation for surfaces (`mesh_ground.rs`) and others for planes.
 
 use crate::Symmetry;
 use crate::guides::Targets;
@@ -6,67 +9,67 @@ use crate::turns::Turns;
 use core::ops::RangeInclusive;
 use core::sync::atomic::{AtomicU8, AtomicU32, Ordering};
 
-/// In place of a site, or of the pixel of one that begins with a random one.
+/// In place of a site: there is none. In place of a pixel: it is unknown, and a random one is drawn.
 pub(crate) const UNKNOWN: u32 = u32::MAX;
 
-/// What the sites of a level begin with.
+/// Initial state of a level in a repair.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Start {
-    /// The pixel of each site, or [`UNKNOWN`].
+    /// Initial pixel of each site, or [`UNKNOWN`].
     pub(crate) pixels: Vec<u32>,
     /// Whether each site keeps its pixel.
     pub(crate) is_kept: Vec<bool>,
 }
 
-/// The colors of sites, or of the pixels of a grid.
+/// Colors of sites, or of the pixels of a grid.
 pub(crate) trait Colors: Copy + Sync {
-    /// The number of values of each.
+    /// Number of channels.
     fn n_channels(&self) -> usize;
 
-    /// The values of one.
+    /// Channels of one site or pixel.
     fn of(&self, at: usize) -> &[f32];
 }
 
-/// Values side by side, `n_channels` for each site or pixel.
+/// Colors stored contiguously, `n_channels` values for each site or pixel.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Plain<'a> {
     pub(crate) values: &'a [f32],
     pub(crate) n_channels: usize,
 }
 
-/// Sites that have the colors of pixels; other threads may give them others in the meantime.
+/// Colors of sites by reference to pixels. Other threads may change the references at the same time.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Painted<'a> {
     pub(crate) pixels: Plain<'a>,
-    /// What each site is from.
+    /// Source of each site.
     pub(crate) sources: &'a Sources,
 }
 
-/// What the sites of a level are from.
+/// Sources of the sites of a level: their pixels and the rotations of the exemplar.
 #[derive(Debug, Default)]
 pub(crate) struct Sources {
-    /// The pixel of each site; nothing if no pass visited the level.
+    /// Exemplar pixel of each site; empty if no pass visited the level.
     pub(crate) pixels: Vec<AtomicU32>,
-    /// By how many quarter turns the exemplar lies turned at each site; nothing where directions have no symmetry.
+    /// Rotation of the exemplar at each site, in quarter turns; empty if the orientation field has no symmetry.
     pub(crate) quarters: Vec<AtomicU8>,
 }
 
-/// Where a square of samples is read.
+/// Position and extent of a square of samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Square {
-    /// The site in its middle.
+    /// Site at the center.
     pub(crate) site: u32,
-    /// The level of the site.
+    /// Level of the site.
     pub(crate) level: usize,
-    /// The level whose sites are read, and whose spacing is that of the samples: `level` or the next coarser one.
+    /// Level whose sites are read: `level` or the next coarser one. Its spacing is that of the samples.
     pub(crate) reads: usize,
-    /// The samples go from `-half` to `half` in both directions.
+    /// Half side: samples go from `-half` to `half` along both axes.
     pub(crate) half: i32,
-    /// Whether only the rows above the middle are needed, with that of the middle or without, or all.
+    /// Rows that are needed.
     pub(crate) rows: Rows,
 }
 
-/// Which rows of a square are needed.
+/// Rows of a square that are needed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Rows {
     Above,
@@ -74,68 +77,68 @@ pub(crate) enum Rows {
     All,
 }
 
-/// Samples of a square, row by row from the top; rows that are not needed hold anything.
+/// Samples of a square, row by row from the top. Rows that are not needed have arbitrary content.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Samples {
-    /// `n_channels` values for each sample.
+    /// Channels, `n_channels` values for each sample.
     pub(crate) values: Vec<f32>,
-    /// The site of the level read that counts most at each sample; [`UNKNOWN`] past an edge of a texture that is repaired.
+    /// Site with the largest weight at each sample; [`UNKNOWN`] past an edge of a texture that is repaired.
     pub(crate) nearest: Vec<u32>,
 }
 
 /// Sites on several levels, 0 the finest.
 pub(crate) trait Ground: Sync {
-    /// Tables that a pass needs to read squares.
+    /// Tables that a pass needs to sample squares.
     type Prepared: Sync;
-    /// Memory of `read`, kept from square to square.
+    /// Scratch memory of [`read`](Self::read).
     type Memory: Default + Send;
 
-    /// The number of sites of a level.
+    /// Number of sites of a level.
     fn n_sites(&self, level: usize) -> usize;
 
-    /// How much what [`read`](Self::read) gives is blurred: the part of a pixel that each of the two beside it along an axis
-    /// has.
+    /// Blur of the samples from [`read`](Self::read): the weight of each of the two adjacent pixels along an axis
+    /// [default: 0].
     fn blur(&self) -> f32 {
         0.0
     }
 
-    /// What the sites of a level begin with; where there is nothing, random pixels, and all sites are visited.
+    /// Initial state of a level in a repair. By default there is none: pixels are random, and all sites are visited.
     fn start(&self, _level: usize) -> Option<&Start> {
         None
     }
 
-    /// The guides of the texture, if it has any.
+    /// Guides of the texture, if any.
     fn targets(&self) -> Option<&Targets> {
         None
     }
 
-    /// The site of the coarser level that a site is over, and which of the four over it: whether its column and its row are
-    /// odd. Nothing where sites do not lie so.
+    /// Returns the site of the coarser level below a site, and the quadrant of the site in it: whether its column and
+    /// its row are odd. `None` if sites are not arranged in a grid.
     fn parent(&self, _level: usize, _site: u32) -> Option<(u32, [i64; 2])> {
         None
     }
 
-    /// The symmetry of the directions in which squares are laid.
+    /// Symmetry of the orientation field.
     fn symmetry(&self) -> Symmetry {
         Symmetry::One
     }
 
-    /// How many quarter turns take the directions of a site nearest to those of another one after some quarter turns.
+    /// Rotation at `site` nearest to the direction of `other` rotated by `quarters`, in quarter turns.
     fn quarters_toward(&self, _site: u32, _other: u32, _quarters: u8) -> u8 {
         0
     }
 
-    /// The sites of a level that are visited, in the order of the sweep.
+    /// Returns the sites of a level that are visited, in the order of the sweep.
     fn order(&self, level: usize) -> Vec<u32>;
 
-    /// The tables of a pass over a level that reads squares of these halves on the level itself and on the next coarser
-    /// one.
+    /// Prepares a pass over a level. `same` and `coarser` are the half sides of the squares on the level itself and on
+    /// the next coarser one; `None` if the pass does not read them.
     fn prepare(&self, level: usize, same: Option<i32>, coarser: Option<i32>) -> Self::Prepared;
 
-    /// The order in which threads share the sites of a level, in a pass that reads squares on the level itself.
+    /// Returns the wavefront schedule of the sites of a level, for a pass that reads squares on the level itself.
     fn turns(&self, level: usize, prepared: &Self::Prepared) -> Turns;
 
-    /// Reads a square of samples on the level `square.reads`, which has these colors.
+    /// Samples a square on the level `square.reads`, whose sites have these colors.
     fn read(
         &self,
         square: Square,
@@ -171,14 +174,14 @@ impl Colors for Painted<'_> {
 }
 
 impl Painted<'_> {
-    /// The pixel of a site.
+    /// Pixel of a site.
     #[inline(always)]
     pub(crate) fn source(&self, site: usize) -> u32 {
-        // A thread that reads a site that another one writes waits for its turn to be over, which makes an order of both.
+        // Relaxed is enough: the schedule orders this read after writes of other threads.
         self.sources.pixels[site].load(Ordering::Relaxed)
     }
 
-    /// By how many quarter turns the exemplar lies turned at a site.
+    /// Rotation of the exemplar at a site, in quarter turns.
     #[inline]
     pub(crate) fn quarters(&self, site: usize) -> u8 {
         let quarters = self.sources.quarters.get(site);
@@ -187,12 +190,12 @@ impl Painted<'_> {
 }
 
 impl Square {
-    /// The number of samples along a side.
+    /// Number of samples along a side.
     pub(crate) fn side(&self) -> usize {
         2 * self.half as usize + 1
     }
 
-    /// The rows that are needed.
+    /// Range of the rows that are needed, relative to the center.
     pub(crate) fn range(&self) -> RangeInclusive<i32> {
         let last = match self.rows {
             Rows::Above => -1,
@@ -204,7 +207,7 @@ impl Square {
 }
 
 impl Samples {
-    /// Makes room for the samples of a square.
+    /// Resizes the buffers to the samples of a square.
     pub(crate) fn make_room(&mut self, side: usize, n_channels: usize) {
         self.values.resize(side * side * n_channels, 0.0);
         self.nearest.resize(side * side, 0);

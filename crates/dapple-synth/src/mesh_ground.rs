@@ -1,9 +1,15 @@
-//! Sites on a surface: squares of samples are laid out by walking along O and P.
+//! Sampling of neighborhoods on a surface, by walks along the orientation field.
 //!
-//! A sample at the offset (i, j) is found by going i spacings along P, to the right, and from there j spacings along O,
-//! down, on the polygons of the surface; both directions are carried along, and turn as the field does ([`turning`]). Its
-//! value is that of equation 1, with distances in space. The sites that count are those within reach of the square as it
-//! would be on a plane.
+//! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, doi 10.1145/383259.383297.
+//!
+//! The field has two directions at each site, O (down) and P (right). The sample at offset (i, j) is found by a walk on
+//! the polygons of the surface: i spacings along P, and from there j spacings along O. Both directions are transported
+//! along the walk, and rotate with the field ([`turning`]). The color of the sample is interpolated from the sites near
+//! it, as in equation 1 of the paper, with distances in space. Only sites within reach of the square as it would be on
+//! a plane have weight.
+//!
+//! Input: a site, a level and a square of offsets. Output: colors and nearest sites of the samples. The steps are
+//! [`nearby`] (sites in reach), [`lattice`] (positions of the samples) and [`interpolate()`] (their colors).
 
 mod interpolate;
 mod lattice;
@@ -25,17 +31,19 @@ pub(crate) use lattice::Lattice;
 pub(crate) use nearby::{Around, Nearby, Record};
 pub(crate) use turning::turn_rates;
 
-/// How much farther than on a plane sites may lie from a sample's site and still count, in spacings.
+/// Additional reach: how much farther than on a plane a site may be from the center of a square, in spacings.
 const REACH_SPARE: f64 = 0.5;
 
-/// The blur of the samples of a square. The weights of equation 1 and pixels that are up to a half off have half of this
-/// variance; the rest is for sources that bend where sites go on with a piece of the exemplar.
+/// Blur of the samples: the weight of each of the two adjacent pixels along an axis. Half of this variance comes from
+/// the weights of equation 1 and from pixels that are up to a half off. The rest is for sources that bend where sites
+/// continue a piece of the exemplar.
 ///
-/// Measured on flat textures of leaves, rock and grass of 128 × 128 pixels: of the exemplar's deviation 0.77 to 0.85 remain
-/// without a blur, 0.86 to 0.90 with 0.11, and 0.92 to 0.95 with 0.2; lengths of gradients are then within a tenth of its.
+/// Measured on flat textures of leaves, rock and grass of 128 × 128 pixels: the standard deviation, relative to that of
+/// the exemplar, is 0.77 to 0.85 without a blur, 0.86 to 0.90 with 0.11, and 0.92 to 0.95 with 0.2. With 0.2 the
+/// lengths of gradients are within a tenth of those of the exemplar.
 const BLUR: f32 = 0.2;
 
-/// The sites of a hierarchy, with the directions of the texture.
+/// Sites of a hierarchy with the orientation field of the texture.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct MeshGround<'a> {
     pub(crate) surface: &'a Surface,
@@ -43,16 +51,16 @@ pub(crate) struct MeshGround<'a> {
     pub(crate) orientation: &'a Orientation,
     pub(crate) sweep: &'a Sweep,
     pub(crate) axes: Axes,
-    /// How large a pixel of the exemplar is at each site, in spacings; nothing where all are 1.
+    /// Size of a pixel of the exemplar at each site, in spacings; empty if all are 1.
     pub(crate) scales: &'a [f32],
-    /// Whether the exemplar is blurred as its squares are.
+    /// Whether the exemplar is blurred as much as the samples.
     pub(crate) is_blurred: bool,
     pub(crate) targets: Option<&'a Targets>,
-    /// What the sites of each level begin with in a repair.
+    /// Initial state of each level in a repair; empty otherwise.
     pub(crate) starts: &'a [Start],
 }
 
-/// The sites around those of a level, on the level itself and on the next coarser one.
+/// Tables of a pass: the sites within reach of each site, on its level and on the next coarser one.
 #[derive(Debug)]
 pub(crate) struct Prepared {
     level: usize,
@@ -60,7 +68,7 @@ pub(crate) struct Prepared {
     coarser: Option<Neighborhoods>,
 }
 
-/// Memory of reading squares, kept from square to square.
+/// Scratch memory for sampling, reusable from square to square.
 #[derive(Debug, Default)]
 pub(crate) struct MeshMemory {
     nearby: Nearby,
@@ -69,20 +77,20 @@ pub(crate) struct MeshMemory {
 }
 
 impl MeshMemory {
-    /// Whether the samples of the square that was read last are at least `least` apart along rows and columns, as they are
-    /// where no way to them met a border or a sharp fold.
+    /// Returns whether the samples of the last square are at least `least` apart along rows and columns. They are
+    /// closer if a walk ended at a border or a sharp fold.
     pub(crate) fn is_spread(&self, least: f64) -> bool {
         self.lattice.is_spread(least as f32)
     }
 }
 
 impl MeshGround<'_> {
-    /// How large a pixel of the exemplar is at a site, in spacings.
+    /// Size of a pixel of the exemplar at a site, in spacings.
     fn scale(&self, site: usize) -> f64 {
         self.scales.get(site).map_or(1.0, |&scale| scale.into())
     }
 
-    /// The sites around those of a level that squares on the level `reads` are made of.
+    /// Gathers, for each site of `level`, the sites of level `reads` that squares of this half side can reach.
     fn neighborhoods(&self, level: usize, reads: usize, half: i32) -> Neighborhoods {
         let largest = self.scales.iter().copied().fold(0.0, f32::max);
         let largest = if largest > 0.0 {
@@ -101,7 +109,8 @@ impl MeshGround<'_> {
     }
 }
 
-/// How far sites have a part in a sample of a pixel of this size, in spacings: all those within a large pixel do.
+/// Radius within which sites have weight at a sample, in spacings, for a pixel of this size. A large pixel takes all
+/// sites within it.
 fn radius(scale: f64) -> f64 {
     INTERPOLATION_RADIUS * scale.max(1.0)
 }

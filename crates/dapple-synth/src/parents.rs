@@ -1,17 +1,18 @@
-//! Upsampling along the graph: the coarser sites that a finer site takes its value from.
+//! Upsampling along the graph: the coarser sites from which a finer site interpolates its value.
 //!
-//! The paper interpolates with the coarser sites within a radius in space (section 3.2). Here they are also at most two
-//! edges of the finer level away, which is as far as the radius reaches on even sites: that keeps values from jumping
-//! over gaps, to other components and to other sheets, where sweep distances have nothing in common; and it needs no
-//! search.
+//! Input: a hierarchy, a level and a site. Output: coarser sites with weights (equation 1 of Turk's paper).
+//!
+//! The paper interpolates between the coarser sites within a radius in space (section 3.2). Here they are also at most
+//! two edges of the finer graph away, which covers the radius on evenly spaced sites. This prevents values from jumping
+//! over gaps, to other components and to other sheets, where sweep distances are unrelated. It also needs no search.
 
 use crate::sites::weight;
 use crate::{Hierarchy, INTERPOLATION_RADIUS, SiteIdx};
 
-/// The most coarser sites that count; even sites have about five in reach.
+/// Maximum number of parent sites; evenly spaced sites have about five in range.
 const MOST: usize = 16;
 
-/// Coarser sites around a site, and their weights.
+/// Coarser sites near a site, and their weights.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Parents {
     sites: [SiteIdx; MOST],
@@ -20,8 +21,8 @@ pub(crate) struct Parents {
 }
 
 impl Parents {
-    /// The sites of level `level + 1` around a site of level `level`; where none is within the radius, the nearest of
-    /// those two edges away counts alone, and there may be none at all.
+    /// Finds the parents of a site of `level`, on level `level + 1`. If none is within the radius, the nearest site
+    /// within two edges has all the weight. A site without coarser sites within two edges has no parents.
     pub(crate) fn new(hierarchy: &Hierarchy, level: usize, site: SiteIdx) -> Self {
         let graph = hierarchy.levels()[level].graph();
         let coarser = &hierarchy.levels()[level + 1];
@@ -31,7 +32,7 @@ impl Parents {
             weights: [0.0; MOST],
             count: 0,
         };
-        // Neighbors come lowest first, so the coarser ones come before all others.
+        // Neighbors ascend, so coarser sites precede all others.
         for &near in graph.neighbors(site) {
             if near.0 < n_coarser {
                 parents.add(near);
@@ -49,7 +50,7 @@ impl Parents {
         parents
     }
 
-    /// The sites and their weights, which are not negative and not all zero.
+    /// Sites and their weights, which are not negative and not all zero.
     #[inline]
     pub(crate) fn iter(&self) -> impl Iterator<Item = (usize, f64)> + Clone {
         let sites = self.sites[..self.count].iter().map(|site| site.index());
@@ -64,7 +65,7 @@ impl Parents {
         }
     }
 
-    /// Gives the sites the weights of equation 1.
+    /// Computes the weights of equation 1.
     fn weigh(&mut self, hierarchy: &Hierarchy, site: SiteIdx, radius: f64) {
         let positions = hierarchy.sites().positions();
         let at = positions[site.index()];

@@ -1,47 +1,47 @@
-//! Sub-pixel sources: the places in the exemplar, between its pixels, that sites are from.
+//! Subpixel sources: positions in the exemplar, between its pixels, from which sites take their color.
 //!
-//! A site takes a whole pixel, but lies anywhere beside the sites whose texture it goes on with: so sources are off by half
-//! a pixel, and what is read with them has edges that jump from site to site. Here the source of a site is moved to the
-//! mean of itself and of what the neighbors predict, a few times. A neighbor predicts its own source, and from there the
-//! way to the site in the frame of the texture. One that continues another piece of the exemplar predicts something far
-//! away, and has no say.
+//! A matched site takes a whole pixel, but lies at an arbitrary offset from the sites whose piece it continues. So its
+//! source is off by up to half a pixel, and edges in the texture jump from site to site. Here the source of a site is
+//! moved, a few times, to the mean of itself and the predictions of its neighbors. A neighbor predicts its own source
+//! plus the offset of the site from it, in the frame of the texture. A neighbor that continues another piece of the
+//! exemplar predicts a distant position, and is ignored.
 //!
-//! References: our own; that neighbors predict sources is from Michael Ashikhmin, "Synthesizing Natural Textures", I3D
-//! 2001, DOI 10.1145/364338.364405.
+//! References: the averaging is our own. That neighbors predict sources is from Michael Ashikhmin, "Synthesizing
+//! Natural Textures", I3D 2001, DOI 10.1145/364338.364405.
 //!
-//! Units: places are in pixels of the exemplar, the middle of the first one at 0, x to the right and y down.
+//! Units: positions are in pixels of the exemplar; the center of the first pixel is at 0, x points right and y down.
 
 use crate::columns;
 use crate::orientation::turned;
 use crate::{Edges, Exemplar, Hierarchy, SiteIdx, Symmetry, Synthesizer};
 use glam::{DVec2, Vec2, Vec3};
 
-/// How far from each other two predictions of one place may be, in pixels.
+/// Maximum distance of two predictions of the same source, in pixels.
 pub(crate) const AGREEMENT: f32 = 1.5;
 
-/// The cosine of the angle between the directions of neighbors from which on they are not those of one piece: halfway to a
-/// quarter turn.
+/// Minimum cosine of the angle between the directions of two neighbors that belong to one piece: 45°, half of a quarter
+/// turn.
 const SAME_TURN: f32 = 0.707;
 
-/// How often sources are averaged.
+/// Number of averaging steps.
 pub(crate) const N_STEPS: usize = 8;
 
-/// Places in an exemplar that the finest sites are from.
+/// Sources of the finest sites in an exemplar.
 pub(crate) trait Sourced: Sync {
-    /// A place in the exemplar.
+    /// A position in the exemplar.
     type Place: Copy + Send + Sync;
 
-    /// The source of a site.
+    /// Source of a site.
     fn of_site(&self, site: usize) -> Self::Place;
 
-    /// The shortest way from one place to another one, in pixels; infinite where there is none.
+    /// Shortest offset from one position to another, in pixels; infinite if there is no path between them.
     fn difference(&self, to: Self::Place, from: Self::Place) -> Vec2;
 
-    /// The place at a way from one.
+    /// Position at an offset from another one.
     fn moved(&self, place: Self::Place, by: Vec2) -> Self::Place;
 }
 
-/// The sub-pixel sources of the finest sites.
+/// Subpixel sources of the finest sites, in an image.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Places {
     pub(crate) of_site: Vec<Vec2>,
@@ -49,25 +49,25 @@ pub(crate) struct Places {
     pub(crate) edges: Edges,
 }
 
-/// Directions on the surface at a site, in pixels of the exemplar for a length in space.
+/// Frame of the texture at a site: directions on the surface, in pixels of the exemplar per unit length.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Frame {
     pub(crate) right: Vec3,
     pub(crate) down: Vec3,
-    /// The size of a pixel in spacings.
+    /// Size of a pixel of the exemplar, in spacings.
     pub(crate) scale: f32,
 }
 
-/// The frames of the finest sites.
+/// Frames of the finest sites.
 #[derive(Clone, Debug)]
 pub(crate) struct Frames {
     pub(crate) of_site: Vec<Frame>,
-    /// The quarter turns that neighbors may be off by.
+    /// Symmetry of the orientation field, by which frames of neighbors may differ.
     symmetry: Symmetry,
 }
 
 impl Places {
-    /// The places of sites that took these pixels.
+    /// Computes the sources of sites, given the pixels that they took.
     pub(crate) fn new(
         hierarchy: &Hierarchy,
         frames: &Frames,
@@ -102,7 +102,7 @@ impl Sourced for Places {
     fn difference(&self, to: Vec2, from: Vec2) -> Vec2 {
         let way = to - from;
         let size = Vec2::new(self.size[0] as f32, self.size[1] as f32);
-        // Mostly there is nothing to take off, and to round is slow without an instruction for it.
+        // Most offsets need no wrapping, and rounding is slow on processors without an instruction for it.
         if self.edges == Edges::Cut || way.abs().cmplt(0.5 * size).all() {
             return way;
         }
@@ -115,7 +115,7 @@ impl Sourced for Places {
     }
 }
 
-/// The mean of a site's source and those that its neighbors predict, if they agree.
+/// Returns the mean of a site's source and the predictions of its neighbors that agree with it.
 pub(crate) fn averaged<P: Sourced>(
     places: &P,
     hierarchy: &Hierarchy,
@@ -132,7 +132,7 @@ pub(crate) fn averaged<P: Sourced>(
         if frames.differ(frame.down, other) {
             continue;
         }
-        // Frames turn on the way: the mean of both ends is that of its middle.
+        // The frame changes along the way; average the offsets in the frames of both ends.
         let way = 0.5 * (frame.flat(way) + other.flat(way));
         let predicted = places.moved(places.of_site(neighbor.index()), way);
         let off = places.difference(predicted, own);
@@ -145,7 +145,7 @@ pub(crate) fn averaged<P: Sourced>(
 }
 
 impl Frame {
-    /// A way in space as one in the exemplar.
+    /// Converts an offset in space to one in the exemplar.
     #[inline]
     pub(crate) fn flat(&self, way: Vec3) -> Vec2 {
         Vec2::new(way.dot(self.right), way.dot(self.down))
@@ -153,7 +153,8 @@ impl Frame {
 }
 
 impl Frames {
-    /// The frames of sites whose exemplar lies turned by these quarter turns, or by none if there are no such numbers.
+    /// Computes the frames of sites. `quarters` is the rotation of the exemplar at each site in quarter turns, or empty
+    /// if there is none.
     pub(crate) fn new(synthesizer: &Synthesizer, quarters: &[u8]) -> Self {
         let (hierarchy, orientation) = (synthesizer.hierarchy(), synthesizer.orientation());
         let spacing = hierarchy.levels()[0].spacing();
@@ -175,13 +176,13 @@ impl Frames {
         }
     }
 
-    /// How many pixels of the exemplar there is room for.
+    /// Area of the surface in pixels of the exemplar.
     pub(crate) fn n_pixels(&self) -> f64 {
         let scales = self.of_site.iter().map(|frame| f64::from(frame.scale));
         scales.map(|scale| 1.0 / (scale * scale)).sum()
     }
 
-    /// By how many quarter turns the exemplar at one site lies turned from how it lies at another one.
+    /// Relative rotation of the exemplar between two sites, in quarter turns.
     #[inline]
     pub(crate) fn quarters_between(&self, from: usize, to: usize) -> u8 {
         let (own, other) = (&self.of_site[from], self.of_site[to].down);
@@ -190,7 +191,7 @@ impl Frames {
             .quarters_to(DVec2::new(along(own.down), along(own.right)))
     }
 
-    /// Whether the exemplar lies turned at a site, seen from where its down is this direction of any length.
+    /// Returns whether the exemplar is rotated at a site, relative to a direction `down` of any length.
     #[inline]
     pub(crate) fn differ(&self, down: Vec3, other: &Frame) -> bool {
         let lengths = down.length_squared() * other.down.length_squared();

@@ -1,9 +1,10 @@
-//! How regular an exemplar is: whether what lies around a pixel is found elsewhere in it, too.
+//! Regularity of an exemplar: how well the surroundings of a pixel are found elsewhere in it.
 //!
-//! The measure is of this crate. The neighborhoods of some pixels, each without its mean, are compared with all that lie
-//! apart from them. The mean of the least squared distances over the mean of all is near 0 where an exemplar is drawn by a
-//! rule, as hooks, bricks and checkers are, and about a half for grass and sand, where no detail occurs twice. Means are
-//! taken off because clouds would pass for regular: they are alike in what is smooth, and their detail is not.
+//! The neighborhoods of a sample of pixels, each minus its mean, are compared with all neighborhoods that lie apart
+//! from them. The mean of the least squared distances, divided by the mean of all, is near 0 if an exemplar is drawn by
+//! a rule, as hooks, bricks and checkers are. It is about 0.5 for grass and sand, where no detail occurs twice.
+//! Regularity is 1 minus this ratio. Means are subtracted because clouds would pass for regular: their smooth parts are
+//! similar, but their details are not.
 //!
 //! A peak of the autocorrelation says less: photographs that were made to tile have one, and wiggly checkers have none.
 //!
@@ -16,25 +17,26 @@ use dapple_raster::simd;
 use dapple_raster::simd::dispatch;
 use fearless_simd::prelude::*;
 
-/// The side of the part in the middle of the exemplar that is compared. A side of 128 ranks the exemplars at hand alike, and
-/// takes four times as long.
+/// Side of the central part of the exemplar that is compared, in pixels. A side of 128 ranks the available exemplars in
+/// the same order, and takes four times as long.
 const WINDOW: u32 = 64;
 
-/// The side of a neighborhood: that of the finest passes.
+/// Side of a neighborhood in pixels, as in the passes of the finest level.
 const SIDE: u32 = 7;
 
-/// How far apart two pixels lie along one axis at least to be compared: most of one's neighborhood is then not the other's.
+/// Minimum distance of two pixels along at least one axis. Their neighborhoods then overlap in less than half.
 const APART: u32 = 5;
 
-/// About how many neighborhoods are compared with all others.
+/// Approximate number of neighborhoods that are compared with all others.
 const N_QUERIES: u32 = 128;
 
 impl Exemplar {
-    /// How well the surroundings of a pixel are found elsewhere in the exemplar, from 0 (not at all) to 1 (exactly).
+    /// Measures how well the surroundings of a pixel are found elsewhere in the exemplar, from 0 (not at all) to 1
+    /// (exactly).
     ///
-    /// It is 1 less a ratio: the squared distance of a neighborhood of 7 × 7 pixels to the nearest one that lies apart from
-    /// it, over that to any one, each neighborhood without its mean. Only the middle 64 × 64 pixels are compared. 0 for an
-    /// exemplar that is too small to have neighborhoods apart from each other.
+    /// It is 1 minus the ratio of two mean squared distances of neighborhoods of 7 × 7 pixels, each minus its mean: to
+    /// the nearest neighborhood that lies apart, and to any that lies apart. Only the central 64 × 64 pixels are
+    /// compared. Returns 0 for an exemplar that is too small to have two neighborhoods apart from each other.
     ///
     /// # Examples
     ///
@@ -53,8 +55,9 @@ impl Exemplar {
             return 0.0;
         };
         let n_rows = details.pixels.len() as u32;
-        // Odd, so that no pixels in columns or in rows of four, eight and so on are always passed over.
+        // Use an odd step: with a power of two, some columns or rows would never be sampled.
         let step = (n_rows / N_QUERIES) | 1;
+        // Compare each sampled neighborhood with all that lie apart.
         let mut nearest = Mean::default();
         let mut any = Mean::default();
         for query in (0..n_rows).step_by(step as usize) {
@@ -65,13 +68,14 @@ impl Exemplar {
         }
         match (nearest.count > 0.0, any.sum > 0.0) {
             (true, true) => 1.0 - nearest.get() / any.get(),
-            // All alike.
+            // All neighborhoods are equal.
             (true, false) => 1.0,
             (false, _) => 0.0,
         }
     }
 
-    /// The part in the middle with sides up to a limit. It is cut if it is less than all.
+    /// Returns the central part, with sides of at most `side` pixels. Its edges are cut unless it is the whole
+    /// exemplar.
     fn middle(&self, side: u32) -> Self {
         let size = self.size.map(|whole| whole.min(side));
         let [left, top] = [0, 1].map(|axis| ((self.size[axis] - size[axis]) / 2) as usize);
@@ -99,17 +103,17 @@ impl Exemplar {
     }
 }
 
-/// The neighborhoods of an image, each without its mean.
+/// The neighborhoods of an image, each minus its mean.
 struct Details {
     rows: PaddedRows,
-    /// The pixel of each.
+    /// Center pixel of each neighborhood.
     pixels: Vec<[u32; 2]>,
     size: [u32; 2],
     edges: Edges,
 }
 
 impl Details {
-    /// None if the image is smaller than half of a neighborhood.
+    /// Gathers the neighborhoods, or returns `None` if a side of the image is less than half of a neighborhood's side.
     fn new(image: &Exemplar) -> Option<Self> {
         let pass = Pass {
             level: 0,
@@ -117,6 +121,7 @@ impl Details {
         };
         let pyramid = image.pyramid(1).ok()?;
         let mut neighborhoods = Candidates::new(&pyramid, &pass, CoarserCenter::Exact).ok()?;
+        // Subtract the mean of each channel.
         let dims = neighborhoods.dims();
         for row in neighborhoods.rows.chunks_exact_mut(dims) {
             for channel in 0..image.n_channels {
@@ -136,8 +141,8 @@ impl Details {
         })
     }
 
-    /// The least squared distance to a neighborhood that lies apart, and infinity if there is none; all of them go into a
-    /// mean.
+    /// Returns the least squared distance to a neighborhood that lies apart; infinity if there is no such neighborhood.
+    /// All distances are added to `mean`.
     #[inline(always)]
     fn least_from<S: Simd>(&self, simd: S, query: u32, mean: &mut Mean) -> f32 {
         let from = self.pixels[query as usize];
@@ -153,7 +158,7 @@ impl Details {
         least
     }
 
-    /// Whether two pixels are so far from each other that their neighborhoods are to be compared.
+    /// Returns whether two pixels are far enough apart for their neighborhoods to be compared.
     fn lie_apart(&self, a: [u32; 2], b: [u32; 2]) -> bool {
         (0..2).any(|axis| {
             let step = a[axis].abs_diff(b[axis]);
@@ -166,7 +171,7 @@ impl Details {
     }
 }
 
-/// The mean of numbers.
+/// Running mean.
 #[derive(Default)]
 struct Mean {
     sum: f64,

@@ -1,38 +1,38 @@
-//! How often the pixels of the exemplar were used, and what that costs them.
+//! Penalty on pixels of the exemplar that were used often.
 //!
-//! Where the least distance alone decides, a few pixels are used again and again: those that are like everything a
-//! little. Colors that are rare in the exemplar vanish. The remedy here is a penalty on what was used, as Kaspar,
-//! Neubert, Lischinski, Pauly and Kopf have it for patches ("Self Tuning Texture Optimization", Computer Graphics Forum
-//! 34, 2015). Here it is one factor for each pixel: its squared distances are multiplied by 1, and by as much more as
-//! [`Options::evenness`](crate::Options::evenness) says for the uses around it.
+//! If the least distance alone decides, a few pixels that are moderately similar to everything are used again and
+//! again, and rare colors of the exemplar vanish. So usage is penalized, as Kaspar, Neubert, Lischinski, Pauly and Kopf
+//! do for patches ("Self Tuning Texture Optimization", Computer Graphics Forum 34, 2015). Here each pixel has a factor
+//! for its squared distances: 1 plus a cost per use, which [`Options::evenness`](crate::Options::evenness) determines.
 //!
-//! A use is spread over [`REACH`] pixels to all sides. Where only the pixel itself cost more, its neighbors would not,
-//! and the texture would rather break off in the middle of a brick than go on with a pixel that was used once more than
-//! others.
+//! A use counts for all pixels within [`REACH`] pixels along each axis. If it counted for the pixel alone, its
+//! neighbors would cost less, and the texture would break off in the middle of a brick instead of continuing with a
+//! pixel that was used once more than others.
 //!
-//! Usage depends on all sites before, so such a pass goes one site after the other on one thread. Only passes that
-//! read no coarser level count, those of the coarsest level in the paper's schedule: the finer levels follow it.
+//! Usage depends on all earlier sites, so a pass that counts it is sequential. Only passes that do not read a coarser
+//! level count usage; in the paper's schedule these are the passes of the coarsest level, which the finer levels
+//! follow.
 
 use crate::Candidates;
 
-/// How many pixels a use reaches to all sides.
+/// Distance along each axis, in pixels, within which a use counts.
 const REACH: i32 = 1;
 
-/// The pixels that a use is spread over.
+/// Number of pixels for which a use counts.
 const N_PIXELS: i32 = (2 * REACH + 1) * (2 * REACH + 1);
 
-/// The uses around the pixel of each row, and its factor.
+/// Number of uses near the pixel of each row, and the factor of the row.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Usage {
-    /// The increment of a factor for one use within reach.
+    /// Increment of a factor per use in reach.
     cost: f64,
     counts: Vec<u32>,
-    /// At least 1 each; empty if nothing is counted.
+    /// Factor of each row, at least 1; empty if usage is not counted.
     factors: Vec<f32>,
 }
 
 impl Usage {
-    /// Counts without any use. `evenness` is the cost if all pixels were used equally often by `n_sites` sites.
+    /// Starts without any use. `evenness` is the cost of a pixel if `n_sites` sites use all pixels equally often.
     pub(crate) fn new(evenness: f32, n_rows: usize, n_sites: usize) -> Self {
         if evenness == 0.0 {
             return Self::default();
@@ -45,12 +45,13 @@ impl Usage {
         }
     }
 
-    /// By how much the squared distances of the rows are multiplied, at least 1; none if nothing is counted.
+    /// Factors of the squared distances of the rows, at least 1; `None` if usage is not counted.
     pub(crate) fn factors(&self) -> Option<&[f32]> {
         (!self.factors.is_empty()).then_some(&self.factors)
     }
 
-    /// Counts a use of a row for all pixels within reach of its pixel; what is no row does not count.
+    /// Counts a use of a row for all pixels within reach of its pixel. Values that are not the index of a row are
+    /// ignored.
     pub(crate) fn add(&mut self, row: u32, candidates: &Candidates) {
         if row as usize >= self.counts.len() {
             return;

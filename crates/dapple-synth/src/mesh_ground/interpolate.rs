@@ -1,7 +1,10 @@
-//! Equation 1 for all samples of a square at once.
+//! Interpolation of the colors of all samples of a square, vectorized (equation 1 of Turk's paper).
 //!
-//! The lanes of a register are samples of a row. A row takes the sites that can reach it, one after the other in the
-//! order of [`Around`], so that sums have one order at every SIMD level. Sites out of reach would add zeros.
+//! Input: positions and normals of the samples, and the sites within reach. Output: for each sample the weighted mean
+//! of the colors of the sites around it, and the site with the largest weight.
+//!
+//! The lanes of a register are samples of a row. For each row, sites are added in the order of [`Around`], so the order
+//! of additions is the same at every SIMD level. Sites out of reach would add zeros, and are skipped.
 
 use super::lattice::{Lattice, Row};
 use super::nearby::{Around, Record};
@@ -12,49 +15,49 @@ use core::ops::Range;
 use dapple_raster::simd::dispatch;
 use fearless_simd::{Level, f32x8, prelude::*, u32x8};
 
-/// Below this sum of weights the nearest site counts alone.
+/// Minimum sum of weights; below it, the nearest site alone counts.
 const WEIGHT_MIN: f32 = 1e-4;
-/// Two unit vectors that have at least this product with a third one are at most a right angle apart; with a margin for
-/// rounding.
+/// Two unit vectors whose dot products with a third are at least this value are at most a right angle apart. It is cos
+/// 45° plus a margin for rounding.
 const SAME_SHEET: f32 = 0.7072;
-/// The margin that is added to the reach of a site before rows are left out, as a part of the radius: far more than
-/// rounding.
+/// Relative margin of the reach of a site when rows are excluded; far more than rounding.
 const MARGIN: f32 = 1e-3;
-/// The channels that are added up at once.
+/// Number of channels that are accumulated at once.
 const CHANNELS: usize = 4;
-/// The samples in a register.
+/// Number of samples in a register.
 const LANES: usize = 8;
-/// How many rows of samples most sites reach at the most: rows are a spacing apart, and a site reaches 1.1 to both sides.
+/// Number of rows that most sites reach at most: rows are a spacing apart, and a site reaches 1.1 spacings to both
+/// sides.
 const USUAL_ROWS: usize = 3;
 
-/// Memory of interpolation, kept from square to square.
+/// Scratch memory of interpolation, reusable from square to square.
 #[derive(Debug, Default)]
 pub(crate) struct Interpolation {
-    /// The sites that can reach a row, and their values.
+    /// Sites that reach at least one row, and their colors.
     reaching: Vec<Record>,
     colors: Vec<[f32; CHANNELS]>,
     bounds: Vec<Bounds>,
-    /// For each row the numbers of the sites that can reach it, and how many there are.
+    /// For each row, the indices in `reaching` of the sites that reach it, and their number.
     lists: Vec<u32>,
     lengths: Vec<[usize; LANES]>,
 }
 
-/// The bounds of sites that can reach eight rows: how far down, and how far to the right of the middle of the square, a
-/// site may be.
+/// Bounds of eight rows: how far down (index 0) and how far right (index 1) of the center a site may be to reach each
+/// row.
 #[derive(Clone, Copy, Debug)]
 struct Bounds {
     least: [[f32; LANES]; 2],
     most: [[f32; LANES]; 2],
 }
 
-/// Everything that the sums of a square are made of.
+/// Input of the sums of a square.
 struct Terms<'a> {
     lattice: &'a Lattice,
     around: Around<'a>,
     radius: f32,
 }
 
-/// Fills samples with means of the colors of the nearby sites.
+/// Fills samples with the weighted means of the colors of the nearby sites.
 pub(crate) fn interpolate(
     level: Level,
     lattice: &Lattice,
@@ -68,9 +71,12 @@ pub(crate) fn interpolate(
         around,
         radius,
     };
+    // Assign sites to rows.
     let n_channels = colors.n_channels();
     dispatch!(level, simd => list(simd, &terms, memory));
+    // Compare normals only if a site may be on another sheet.
     let check = !is_one_sheet(lattice, &memory.reaching);
+    // Accumulate four channels at a time.
     for first in (0..n_channels).step_by(CHANNELS) {
         let here = CHANNELS.min(n_channels - first);
         memory.colors.clear();
@@ -83,9 +89,10 @@ pub(crate) fn interpolate(
     }
 }
 
-/// Lists the sites that can reach each row.
+/// Lists the sites that reach each row.
 #[inline(always)]
 fn list<S: Simd>(simd: S, terms: &Terms<'_>, memory: &mut Interpolation) {
+    // Reset the lists.
     let axes = [terms.lattice.down, terms.lattice.right].map(|axis| axis.as_vec3().to_array());
     bound(simd, terms, axes, &mut memory.bounds);
     let n = terms.around.len();
@@ -95,6 +102,7 @@ fn list<S: Simd>(simd: S, terms: &Terms<'_>, memory: &mut Interpolation) {
     memory.lengths.clear();
     memory.lengths.resize(memory.bounds.len(), [0; LANES]);
     memory.reaching.resize(n + 1, Record::default());
+    // Test each site against the bounds of eight rows at a time.
     let mut n_reaching = 0;
     for record in terms.around.sites() {
         let place = axes.map(|axis| f32x8::splat(simd, dot(record.position, axis)));
@@ -109,7 +117,7 @@ fn list<S: Simd>(simd: S, terms: &Terms<'_>, memory: &mut Interpolation) {
             };
             let mut rows = (within(0) & within(1)).to_bitmask();
             reaches |= rows != 0;
-            // Most sites reach two or three rows; without branches on how many, which a processor could not predict.
+            // Most sites reach two or three rows. Branches on their number would be mispredicted, so avoid them.
             for _ in 0..USUAL_ROWS {
                 let row = rows.trailing_zeros() as usize % LANES;
                 lists[row * (n + 1) + lengths[row]] = n_reaching as u32;
@@ -128,7 +136,7 @@ fn list<S: Simd>(simd: S, terms: &Terms<'_>, memory: &mut Interpolation) {
     memory.reaching.truncate(n_reaching);
 }
 
-/// Finds how far along two axes the sites may be that reach each row.
+/// Computes the range along two axes of the sites that reach each row.
 #[inline(always)]
 fn bound<S: Simd>(simd: S, terms: &Terms<'_>, axes: [[f32; 3]; 2], bounds: &mut Vec<Bounds>) {
     let reach = terms.radius * (1.0 + MARGIN);
@@ -156,7 +164,7 @@ fn bound<S: Simd>(simd: S, terms: &Terms<'_>, axes: [[f32; 3]; 2], bounds: &mut 
     }
 }
 
-/// Adds up weights and weighted values of some channels.
+/// Interpolates some channels of all samples.
 #[inline(always)]
 fn add_up<S: Simd>(
     simd: S,
@@ -191,14 +199,15 @@ fn add_up<S: Simd>(
     }
 }
 
-/// The sums of a row.
+/// Sums of a row.
 struct Sums {
     weights: [f32; LANES],
-    /// Which site has the largest weight, the first of several.
+    /// Index of the site with the largest weight; of equal weights the first.
     nearest: [u32; LANES],
     values: [[f32; LANES]; CHANNELS],
 }
 
+/// Accumulates weights, weighted colors and the nearest sites over the sites that reach a row.
 #[inline(always)]
 fn add_up_row<S: Simd>(
     simd: S,
@@ -219,12 +228,14 @@ fn add_up_row<S: Simd>(
         let record = &reaching[at as usize];
         let [px, py, pz] = record.position;
         let (dx, dy, dz) = (x - px, y - py, z - pz);
+        // Weigh the site at all samples; a site on another sheet has weight 0.
         let mut weight = weights(simd, (dx * dx + dy * dy + dz * dz) * inverse_sq);
         if check {
             let [mx, my, mz] = record.normal;
             let opposed = (nx * mx + ny * my + nz * mz).simd_lt(0.0);
             weight = opposed.select(zero, weight);
         }
+        // Accumulate.
         sum += weight;
         let is_larger = weight.simd_gt(largest);
         nearest = is_larger.select(u32x8::splat(simd, at), nearest);
@@ -248,7 +259,7 @@ fn add_up_row<S: Simd>(
     sums
 }
 
-/// Whether no site can have a normal that is more than a right angle from a sample's.
+/// Returns whether no site can have a normal that is more than a right angle from a sample's.
 fn is_one_sheet(lattice: &Lattice, reaching: &[Record]) -> bool {
     let Some(middle) = reaching.first().map(|record| record.normal) else {
         return true;
@@ -260,7 +271,8 @@ fn is_one_sheet(lattice: &Lattice, reaching: &[Record]) -> bool {
         })
 }
 
-/// The site nearest to a sample among those whose normals are not opposed; without any, the nearest of all.
+/// Returns the site nearest to a sample among those whose normals are not opposed, or the nearest of all if there are
+/// none.
 #[cold]
 fn nearest(row: &Row, around: Around<'_>, lane: usize) -> u32 {
     let sample: [f32; 3] = array::from_fn(|part| row.lanes[part][lane]);

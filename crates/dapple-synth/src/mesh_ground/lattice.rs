@@ -1,43 +1,47 @@
-//! Where the samples of a square are on a surface.
+//! Positions of the samples of a square on a surface.
+//!
+//! Input: the center on the surface, the direction O there, the rates at which the field rotates, and the spacing.
+//! Output: position and normal of each sample, relative to the center.
 
 use super::turning::Turning;
 use crate::ground::Square;
 use dapple_mesh::{Surface, SurfacePoint, Walk};
 use glam::{DVec2, DVec3, Vec3};
 
-/// The samples in a register.
+/// Number of samples in a register.
 const LANES: usize = 8;
 
 /// Samples on a surface, in rows of at most eight.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Lattice {
-    /// The number of samples along a side.
+    /// Number of samples along a side.
     pub(crate) side: usize,
-    /// The directions at the middle in which rows follow each other, and along which they lie.
+    /// Unit vectors at the center: across the rows (O), and along the rows (P).
     pub(crate) down: DVec3,
     pub(crate) right: DVec3,
     pub(crate) rows: Vec<Row>,
-    /// How the directions of the square turn.
+    /// Rotation of the directions per half step.
     turning: Turning,
 }
 
-/// Samples side by side.
+/// Up to eight consecutive samples of a row of the square.
 #[derive(Clone, Debug)]
 pub(crate) struct Row {
-    /// The number of the row in the square, from the top.
+    /// Index of the row in the square, from the top.
     pub(crate) at: usize,
     pub(crate) first_column: usize,
-    /// How many lanes are used.
+    /// Number of lanes in use.
     pub(crate) n_lanes: usize,
-    /// x, y and z relative to the middle of the square, and of the normals.
+    /// Position relative to the center (x, y, z), and normal (x, y, z).
     pub(crate) lanes: [[f32; LANES]; 6],
 }
 
-/// So far away that no site counts, and that squares stay finite.
+/// Coordinate of unused samples: no site is in reach, and its square is finite.
 const NOWHERE: f32 = 1e18;
 
 impl Lattice {
-    /// Walks to all samples of a square around a point. Directions are carried along, and turn on the way.
+    /// Walks to all samples of a square around a point. Directions are transported along the walk, and rotate on the
+    /// way.
     pub(crate) fn lay(
         &mut self,
         surface: &Surface,
@@ -48,6 +52,7 @@ impl Lattice {
     ) {
         self.make_room(square);
         self.turning = turning;
+        // Find O at the center, in the plane of its face.
         let down = surface
             .flatten(middle.face, orientation)
             .normalize_or(DVec2::X);
@@ -61,7 +66,9 @@ impl Lattice {
             left: 0.0,
         };
         let around = (center, spacing);
+        // Walk along the column through the center.
         self.lay_column(surface, &start, half as usize, square, around);
+        // Walk to the right and to the left; at each step, walk along the column there.
         for way in [1.0, -1.0] {
             let turn = turning.right.toward(way);
             let mut walk = Walk {
@@ -69,7 +76,7 @@ impl Lattice {
                 ..start
             };
             for step in 1..=half {
-                // Half of the turn before the step and half of it after: the second-order midpoint rule.
+                // Rotate by half before the step and by half after it: the second-order midpoint rule.
                 walk = surface.walk(walk.point, turn.of(walk.direction), spacing);
                 walk.direction = turn.of(walk.direction);
                 let column = Walk {
@@ -82,8 +89,8 @@ impl Lattice {
         }
     }
 
-    /// Lines up points that somebody else chose, eight in a row, relative to `center`. Rows follow each other from the first
-    /// point to the last one.
+    /// Arranges given points eight to a row, relative to `center`. The direction across the rows is from the first
+    /// point to the last.
     pub(crate) fn line_up(&mut self, surface: &Surface, points: &[SurfacePoint], center: DVec3) {
         self.side = points.len();
         self.down = match points {
@@ -96,14 +103,15 @@ impl Lattice {
         for (number, points) in points.chunks(LANES).enumerate() {
             self.rows.push(Row::new(0, number * LANES, points.len()));
             for (lane, &point) in points.iter().enumerate() {
-                // The smooth normal, which does not change from face to face.
+                // Use the smooth normal, which does not change from face to face.
                 let normal = surface.normal(point);
                 self.put(surface, (point, normal), [0, number * LANES + lane], center);
             }
         }
     }
 
-    /// Whether samples that follow each other in columns, and in the row of the middle or the last one, are `least` apart.
+    /// Returns whether adjacent samples of all columns, and of the middle row (or the last, if there are fewer), are at
+    /// least `least` apart.
     pub(crate) fn is_spread(&self, least: f32) -> bool {
         let blocks = self.side.div_ceil(LANES).max(1);
         let n_rows = self.rows.len() / blocks;
@@ -120,7 +128,7 @@ impl Lattice {
                 .all(|column| is_apart(place(middle, column - 1), place(middle, column)))
     }
 
-    /// Has as many rows as the square needs, with their unused lanes nowhere.
+    /// Allocates the rows that the square needs; unused lanes are at [`NOWHERE`].
     fn make_room(&mut self, square: &Square) {
         let side = square.side();
         let n_rows = square.range().count();
@@ -141,7 +149,7 @@ impl Lattice {
             .collect();
     }
 
-    /// Walks up and down from the middle of a column, where O is the direction of `start`.
+    /// Walks up and down from the middle of a column. O is the direction of `start`.
     fn lay_column(
         &mut self,
         surface: &Surface,
@@ -172,6 +180,7 @@ impl Lattice {
         }
     }
 
+    /// Stores a sample.
     #[inline]
     fn put(
         &mut self,
@@ -193,7 +202,7 @@ impl Lattice {
 }
 
 impl Row {
-    /// A row whose samples are nowhere yet.
+    /// Creates a row whose samples are at [`NOWHERE`].
     fn new(at: usize, first_column: usize, n_lanes: usize) -> Self {
         let (far, zero) = ([NOWHERE; LANES], [0.0; LANES]);
         Self {

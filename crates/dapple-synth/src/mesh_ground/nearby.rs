@@ -1,7 +1,9 @@
-//! The sites around a site, in columns that are read from one end to the other.
+//! Sites within reach of a site, in arrays of coordinates that are read sequentially.
 //!
-//! Positions are kept in `f32`, relative to the middle of all sites: rounding is below 1e-4 of a spacing for a thousand
-//! million sites.
+//! Input: the sites of a level. Output: for a site, the sites in a ball around it, in a fixed order.
+//!
+//! Sites are sorted by cells. Positions are `f32`, relative to the center of the bounding box of all sites: rounding is
+//! below 1e-4 of a spacing for a billion sites.
 
 use crate::cells::Cells;
 use crate::{Hierarchy, Sites};
@@ -9,21 +11,22 @@ use dapple_raster::simd::dispatch;
 use fearless_simd::{Level, f32x8, prelude::*};
 use glam::{DVec3, Vec3};
 
-/// The side of a cell in spacings.
+/// Side of a cell in spacings.
 const CELL: f64 = 3.0;
-/// The sites in a register.
+/// Number of sites in a register.
 const LANES: usize = 8;
 
-/// The sites that may be near each site of a level.
+/// The sites near each site of a level.
 #[derive(Clone, Debug)]
 pub(crate) struct Neighborhoods {
     cells: Cells,
-    /// Where the sites that are read begin in each cell.
+    /// Index of the first record of each cell.
     first: Vec<u32>,
-    /// Cell after cell, the positions also coordinate by coordinate, with a register more at the end.
+    /// Sites that are read, sorted by cell; `columns` holds their positions by coordinate, padded by a register at the
+    /// end.
     records: Vec<Record>,
     columns: [Vec<f32>; 3],
-    /// The positions of the sites in the middle.
+    /// Positions of the sites at the centers of neighborhoods.
     centers: Vec<Vec3>,
     reach_sq: f32,
 }
@@ -36,26 +39,27 @@ pub(crate) struct Record {
     pub(crate) site: u32,
 }
 
-/// The sites near a position, in the order in which their values are added up.
+/// Scratch memory: the sites near a position, in the order in which their colors are added.
 #[derive(Debug, Default)]
 pub(crate) struct Nearby {
     numbers: Vec<u32>,
-    /// The sites that are not of [`Neighborhoods`].
+    /// Sites of [`Self::collect_ball`], which are not in a [`Neighborhoods`].
     records: Vec<Record>,
 }
 
-/// Sites near a position: some of a list, which is not in their order.
+/// Sites near a position: a selection of records.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Around<'a> {
     records: &'a [Record],
-    /// Which of `records` they are.
+    /// Indices of the selected records.
     numbers: &'a [u32],
-    /// The position that others are relative to.
+    /// Position that the others are relative to.
     center: [f32; 3],
 }
 
 impl Neighborhoods {
-    /// The neighborhoods of the first `n_sites` sites among the first `n_reads`, which are `spacing` apart.
+    /// Builds the neighborhoods of the first `n_sites` sites among the first `n_reads` sites. The latter are `spacing`
+    /// apart.
     pub(crate) fn new(
         sites: &Sites,
         [n_sites, n_reads]: [usize; 2],
@@ -64,12 +68,14 @@ impl Neighborhoods {
     ) -> Self {
         let positions = &sites.positions()[..n_sites];
         let cells = Cells::new(positions, CELL * spacing, reach);
+        // Find the center of the bounding box.
         let [low, high] = [
             (DVec3::INFINITY, DVec3::min as fn(DVec3, DVec3) -> DVec3),
             (DVec3::NEG_INFINITY, DVec3::max),
         ]
         .map(|(start, pick)| positions.iter().copied().fold(start, pick));
         let middle = low * 0.5 + high * 0.5;
+        // Count the sites of each cell, and sum up.
         let mut first = vec![0_u32; cells.n_cells() + 1];
         for site in 0..n_reads as u32 {
             first[cells.of_site(site) + 1] += 1;
@@ -81,6 +87,7 @@ impl Neighborhoods {
             .iter()
             .map(|&at| (at - middle).as_vec3())
             .collect();
+        // Sort the sites by cell.
         let mut records = vec![Record::default(); n_reads];
         let mut next = first.clone();
         for site in 0..n_reads {
@@ -92,6 +99,7 @@ impl Neighborhoods {
             };
             *to += 1;
         }
+        // Copy the coordinates into arrays.
         let column = |part: usize| {
             let column = records.iter().map(|record| record.position[part]);
             column.chain([f32::MAX; LANES]).collect()
@@ -106,13 +114,13 @@ impl Neighborhoods {
         }
     }
 
-    /// The cells, between which dependencies are kept.
+    /// Cells, the unit of dependencies between sites.
     pub(crate) fn cells(&self) -> &Cells {
         &self.cells
     }
 
-    /// Takes the sites in the ball of a site; a small piece of the surface that has no site of a coarse level takes the
-    /// nearest one of all.
+    /// Selects the sites in the ball around a site. If it is empty, selects the nearest site of all: a small piece of
+    /// the surface may have no site of a coarse level.
     #[inline]
     pub(crate) fn collect<'a>(
         &'a self,
@@ -134,7 +142,7 @@ impl Neighborhoods {
         }
     }
 
-    /// Lists the sites in the ball around a center in a cell.
+    /// Lists the sites in a ball around a center in a cell.
     #[inline(always)]
     fn collect_ball<S: Simd>(
         &self,
@@ -148,7 +156,7 @@ impl Neighborhoods {
         for cells in self.cells.near(cell) {
             let [from, until] =
                 [cells.start, cells.end].map(|cell| self.first[cell as usize] as usize);
-            // Room for all, and for the rest of the last register.
+            // Reserve memory for all sites and a full last register.
             if numbers.len() < length + until - from + LANES {
                 numbers.resize(length + until - from + LANES, 0);
             }
@@ -160,9 +168,9 @@ impl Neighborhoods {
                     load(z) - center[2],
                 ];
                 let near = (x * x + y * y + z * z).simd_lt(self.reach_sq).to_bitmask();
-                // The last register of a row of cells also holds sites of the next one.
+                // The last register of a run of cells also holds sites of the next run.
                 let near = near & ((1 << (until - first).min(LANES)) - 1);
-                // Without branches on which ones are near, which a processor could not predict.
+                // Avoid branches on the lanes that are near, which would be mispredicted.
                 let room: &mut [u32] = &mut numbers[length..length + LANES];
                 let mut n_near = 0;
                 for lane in 0..LANES {
@@ -175,7 +183,7 @@ impl Neighborhoods {
         numbers.truncate(length);
     }
 
-    /// The number of the site nearest to a position; of several the first.
+    /// Returns the index of the record nearest to a position; of equally near ones the site with the lowest index.
     #[cold]
     fn nearest(&self, center: [f32; 3]) -> Option<u32> {
         let far = |record: &Record| length_sq(difference(record.position, center));
@@ -197,13 +205,13 @@ fn difference(a: [f32; 3], b: [f32; 3]) -> [f32; 3] {
 }
 
 impl<'a> Around<'a> {
-    /// The number of sites.
+    /// Number of sites.
     #[inline(always)]
     pub(crate) fn len(&self) -> usize {
         self.numbers.len()
     }
 
-    /// The sites.
+    /// Selected sites, with positions relative to the center.
     #[inline(always)]
     pub(crate) fn sites(self) -> impl Iterator<Item = Record> + 'a {
         self.numbers.iter().map(move |&number| {
@@ -217,7 +225,7 @@ impl<'a> Around<'a> {
 }
 
 impl Nearby {
-    /// Takes the sites of a level in a ball; if there are none, in the next larger one of twice the radius that has some.
+    /// Selects the sites of a level in a ball. If it is empty, doubles its radius until it is not.
     pub(crate) fn collect_ball(
         &mut self,
         hierarchy: &Hierarchy,

@@ -1,31 +1,31 @@
-//! How the directions of a texture turn around a site.
+//! Rotation of the orientation field around a site, to first order.
 //!
-//! A square that is laid out with the directions of its middle alone is crossed by the features of a field that bends. The
-//! paper's first pass sees the rows above only: there the features seem to come from one side, and it goes on straight
-//! where they should bend. All later passes keep that error. So directions turn on the way as the field does, to first
-//! order: by one rate along P and one along O, which fit the field at the neighbors of the site best.
+//! If a square is laid out with the directions at its center alone, features of a curved field cross it at an angle.
+//! The paper's first pass reads only the rows above: there the features seem to come from one side, and are continued
+//! straight where they should bend. All later passes keep that error. So the directions rotate during the walk to a
+//! sample as the field does. There are two rates, one along P and one along O, fitted to the field at the neighbors of
+//! the site by least squares.
 
 use crate::{Hierarchy, Orientation, SiteIdx};
 use glam::DVec2;
 
-/// The most that directions turn from the middle of a square to its edge, in radians. There is no useful rate close to
-/// where the field turns around a point, and sites that are out of reach of the square do not count.
+/// Maximum rotation from the center of a square to its edge, in radians. Close to a singularity of the field no rate is
+/// useful, and sites out of reach of the square do not count.
 const MOST: f64 = 0.5;
 
-/// The turns of half a step along P and of half a step along O.
+/// Rotations per half step along P and per half step along O.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Turning {
     pub(crate) right: Turn,
     pub(crate) down: Turn,
 }
 
-/// A turn in a tangent plane: its cosine and sine.
+/// A rotation in a tangent plane: its cosine and sine.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Turn(DVec2);
 
 impl Turning {
-    /// Fits the field around a site of a level, for squares of samples that lie `spacing` apart and up to `half` from the
-    /// middle.
+    /// Fits the field around a site of a level. Samples are `spacing` apart, and up to `half` steps from the center.
     pub(crate) fn around(
         hierarchy: &Hierarchy,
         orientation: &Orientation,
@@ -35,6 +35,7 @@ impl Turning {
         let Some([right, down]) = turn_rates(hierarchy, orientation, site, level) else {
             return Self::default();
         };
+        // Limit the rotation over the whole square.
         let limit = MOST / f64::from(half.max(1));
         let half_step = |rate: f64| Turn::by((spacing * rate).clamp(-limit, limit) / 2.0);
         Self {
@@ -44,8 +45,8 @@ impl Turning {
     }
 }
 
-/// How fast the field turns from O to P along P and along O, in radians for a unit of length: what fits it best at the
-/// neighbors of a site. Nothing where they lie on one line.
+/// Returns the rates of rotation of the field from O to P, along P and along O, in radians per unit length. They are a
+/// least-squares fit to the neighbors of a site. `None` if the neighbors lie on one line.
 pub(crate) fn turn_rates(
     hierarchy: &Hierarchy,
     orientation: &Orientation,
@@ -56,13 +57,13 @@ pub(crate) fn turn_rates(
     let vectors = orientation.vectors();
     let at = site.index();
     let (down, right) = (vectors[at], normals[at].cross(vectors[at]));
-    // The normal equations of the least squares: turn = x * along P + y * along O.
+    // Normal equations of the least-squares fit: rotation = x * along P + y * along O.
     let (mut xx, mut xy, mut yy, mut of_x, mut of_y) = (0.0, 0.0, 0.0, 0.0, 0.0);
     for other in hierarchy.levels()[level].graph().neighbors(site) {
         let other = other.index();
         let step = positions[other] - positions[at];
         let (x, y) = (step.dot(right), step.dot(down));
-        // The sine of the turn from O here to O there, seen in the tangent plane.
+        // Sine of the angle from O here to O there, in the tangent plane.
         let there = orientation.nearest(normals, other, down);
         let there = DVec2::new(there.dot(down), there.dot(right));
         let turn = there.normalize_or(DVec2::X).y;
@@ -72,8 +73,9 @@ pub(crate) fn turn_rates(
         of_x += x * turn;
         of_y += y * turn;
     }
+    // Solve the equations.
     let determinant = xx * yy - xy * xy;
-    // Neighbors on one line say nothing of what is beside it; this is not so for a number that is none either.
+    // Neighbors on one line determine only one rate. The comparison is false for NaN as well.
     let is_plane = determinant > 1e-6 * (xx + yy) * (xx + yy);
     is_plane.then(|| {
         [
@@ -84,27 +86,27 @@ pub(crate) fn turn_rates(
 }
 
 impl Default for Turn {
-    /// Straight on.
+    /// No rotation.
     fn default() -> Self {
         Self(DVec2::X)
     }
 }
 
 impl Turn {
-    /// A turn from O to P by a small angle in radians; by 2 atan(angle / 2) to be exact.
+    /// Creates a rotation from O to P by a small angle in radians. The exact angle is 2 atan(angle / 2).
     fn by(angle: f64) -> Self {
         let tangent = angle / 2.0;
         let square = tangent * tangent;
         Self(DVec2::new(1.0 - square, angle) / (1.0 + square))
     }
 
-    /// The turned direction.
+    /// Rotates a direction.
     #[inline]
     pub(crate) fn of(self, direction: DVec2) -> DVec2 {
         self.0.rotate(direction)
     }
 
-    /// The turn of a step forward, with 1, or of one backward, with -1.
+    /// Returns the rotation for a step forward (1) or backward (-1).
     #[inline]
     pub(crate) fn toward(self, way: f64) -> Self {
         Self(DVec2::new(self.0.x, way * self.0.y))
