@@ -82,8 +82,8 @@ const MAX_COHERENT: usize = 16;
 /// Decrease of the cost of a part that the texture does not use, per pass, in units of the mean squared distance.
 const STEP: f32 = 0.8;
 
-/// A site searches the whole exemplar if the squared distance of its guides exceeds this fraction of that of its
-/// features.
+/// A site searches the whole exemplar if the squared distance of its guides, divided by the squared distance of its
+/// features, exceeds this value.
 ///
 /// Measured on leaves, guided by a soft and by a hard image: the correlation of the brightness of the texture with that
 /// of the image is 0.42 and 0.41, as in synthesis by colors, in the same time as with 1 (0.40 and 0.39). A search for
@@ -344,8 +344,8 @@ impl<'a> Appearance<'a> {
     }
 }
 
-/// Returns the rotation of the exemplar at all sites, in quarter turns. `coarsest` holds that of the coarsest sites.
-/// Every other site continues the rotation of the nearest coarser site among its neighbors.
+/// Returns the rotation of the exemplar at all sites, in quarter turns. `coarsest` holds the rotations at the
+/// coarsest sites. Every other site continues the rotation of the nearest coarser site among its neighbors.
 fn quarters(synthesizer: &Synthesizer, coarsest: &[u8], n_levels: usize) -> Vec<u8> {
     if coarsest.is_empty() {
         return Vec::new();

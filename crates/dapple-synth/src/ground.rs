@@ -1,7 +1,7 @@
 //! The domain of a synthesis as [`engine`](crate::engine) sees it: sites on several levels, their order, and the
 //! sampling of their neighborhoods.
 //!
-//! [`Ground`] has an implementation for surfaces (`mesh_ground.rs`) and others for planes.
+//! [`Ground`] is implemented for surfaces (`mesh_ground.rs`) and for planes (`plane.rs`).
 
 use crate::Symmetry;
 use crate::guides::Targets;
@@ -9,7 +9,7 @@ use crate::turns::Turns;
 use core::ops::RangeInclusive;
 use core::sync::atomic::{AtomicU8, AtomicU32, Ordering};
 
-/// In place of a site: there is none. In place of a pixel: it is unknown, and a random one is drawn.
+/// Marks a missing site, or an unknown pixel in place of which a random one is drawn.
 pub(crate) const UNKNOWN: u32 = u32::MAX;
 
 /// Initial state of a level in a repair.
@@ -61,7 +61,7 @@ pub(crate) struct Square {
     pub(crate) site: u32,
     /// Level of the site.
     pub(crate) level: usize,
-    /// Level whose sites are read: `level` or the next coarser one. Its spacing is that of the samples.
+    /// Level whose sites are read: `level` or the next coarser one. Samples have the spacing of this level.
     pub(crate) reads: usize,
     /// Half side: samples go from `-half` to `half` along both axes.
     pub(crate) half: i32,
@@ -102,7 +102,7 @@ pub(crate) trait Ground: Sync {
         0.0
     }
 
-    /// Initial state of a level in a repair. By default there is none: pixels are random, and all sites are visited.
+    /// Initial state of a level in a repair. The default `None` means random pixels, and a visit of all sites.
     fn start(&self, _level: usize) -> Option<&Start> {
         None
     }

@@ -153,8 +153,8 @@ impl Frame {
 }
 
 impl Frames {
-    /// Computes the frames of sites. `quarters` is the rotation of the exemplar at each site in quarter turns, or empty
-    /// if there is none.
+    /// Computes the frames of sites. `quarters` is the rotation of the exemplar at each site in quarter turns; if
+    /// it is empty, all rotations are 0.
     pub(crate) fn new(synthesizer: &Synthesizer, quarters: &[u8]) -> Self {
         let (hierarchy, orientation) = (synthesizer.hierarchy(), synthesizer.orientation());
         let spacing = hierarchy.levels()[0].spacing();

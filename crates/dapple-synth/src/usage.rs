@@ -1,6 +1,6 @@
 //! Penalty on pixels of the exemplar that were used often.
 //!
-//! If the least distance alone decides, a few pixels that are moderately similar to everything are used again and
+//! If distance alone decides, a few pixels that are moderately similar to everything are used again and
 //! again, and rare colors of the exemplar vanish. So usage is penalized, as Kaspar, Neubert, Lischinski, Pauly and Kopf
 //! do for patches ("Self Tuning Texture Optimization", Computer Graphics Forum 34, 2015). Here each pixel has a factor
 //! for its squared distances: 1 plus a cost per use, which [`Options::evenness`](crate::Options::evenness) determines.
@@ -100,7 +100,7 @@ mod tests {
         for edges in [Edges::Wrap, Edges::Cut] {
             let candidates = candidates(edges);
             let mut usage = Usage::new(1.0, 64, 64);
-            // The pixel in column 0 of row 5, and what is no row.
+            // Use the pixel in column 0 of row 5, and then an index that is not a row.
             usage.add(40, &candidates);
             usage.add(u32::MAX, &candidates);
             let factors = usage.factors().unwrap();

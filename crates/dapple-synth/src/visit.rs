@@ -39,7 +39,7 @@ pub(crate) struct Visit<'a, G: Ground> {
     matcher: Matcher,
     /// Whether a site keeps its pixel where its whole neighborhood continues one piece of the exemplar.
     is_repair: bool,
-    /// Preference for coherent rows: one wins if its squared distance is at most `1 + coherence` times the least.
+    /// Preference for coherent rows: one wins if its squared distance is at most `1 + coherence` times the minimum.
     coherence: f32,
     /// [`Options::evenness`]; 0 in passes that do not count usage.
     evenness: f32,

@@ -1,4 +1,4 @@
-//! Tests of corrections on surfaces.
+//! Tests of correction in appearance space on surfaces.
 
 use super::links::Links;
 use super::{Appearance, Choice, around, choose, distance_sq, middle, pixel, quarters};
@@ -49,7 +49,7 @@ fn sources(texture: &SurfaceTexture) -> Vec<[u32; 2]> {
     texture.sources(0).collect()
 }
 
-/// An offset after some quarter turns of what it is an offset in, each of which takes right to up.
+/// Rotates an offset by quarter turns; each takes right to up.
 fn before([mut x, mut y]: [f32; 2], quarters: u8) -> Vec2 {
     for _ in 0..quarters {
         (x, y) = (y, -x);
@@ -57,7 +57,7 @@ fn before([mut x, mut y]: [f32; 2], quarters: u8) -> Vec2 {
     Vec2::new(x, y)
 }
 
-/// By how many quarter turns the exemplar at a site lies turned from how it lies at another one.
+/// Relative rotation of the exemplar between two sites, in quarter turns, found by comparing all rotations.
 fn turn(frames: &[Frame], symmetry: Symmetry, [from, to]: [usize; 2]) -> u8 {
     let Frame { right, down, .. } = frames[from];
     let alike = |&quarters: &u8| match quarters {
@@ -70,7 +70,7 @@ fn turn(frames: &[Frame], symmetry: Symmetry, [from, to]: [usize; 2]) -> u8 {
     turns.max_by(|a, b| alike(a).total_cmp(&alike(b))).unwrap()
 }
 
-/// The way from one site to another one in pixels.
+/// Offset from one site to another one, in pixels.
 fn way(ball: &Synthesizer, frames: &[Frame], [from, to]: [usize; 2]) -> Vec2 {
     let positions = ball.hierarchy().sites().positions();
     let way = (positions[to] - positions[from]).as_vec3();
@@ -146,7 +146,7 @@ fn sites_take_the_place_that_comparing_with_all_they_may_take_finds() {
     }
 }
 
-/// The quarter turns of a symmetry for the coarsest sites, one after the other; none where there is no symmetry.
+/// Assigns the rotations of a symmetry to the coarsest sites in turn; empty without a symmetry.
 fn all_quarters(ball: &Synthesizer) -> Vec<u8> {
     let turns = match ball.orientation().symmetry() {
         Symmetry::One => &[],
@@ -156,7 +156,7 @@ fn all_quarters(ball: &Synthesizer) -> Vec<u8> {
     turns.take(ball.hierarchy().levels()[1].n_sites()).collect()
 }
 
-/// The place at the end of a way; places are counted in eighths of pixels.
+/// Position at an offset from another one. Positions are in eighths of a pixel, offsets in pixels.
 fn from([x, y]: [u32; 2], way: Vec2) -> [i64; 2] {
     let way = (8.0 * way).round();
     [i64::from(x) + way.x as i64, i64::from(y) + way.y as i64]
@@ -171,13 +171,13 @@ fn usable_at(stage: &Stage, place: [i64; 2]) -> Option<[i64; 2]> {
     Some([0, 1].map(|axis| 8 * pixel[axis] + place[axis].rem_euclid(8)))
 }
 
-/// The places half a pixel beside one.
+/// Usable positions half a pixel from a position.
 fn aside(stage: &Stage, [x, y]: [i64; 2]) -> Vec<[i64; 2]> {
     let aside = [[x + 4, y], [x - 4, y], [x, y + 4], [x, y - 4]].into_iter();
     aside.filter_map(|place| usable_at(stage, place)).collect()
 }
 
-/// A place and others, of several in one pixel the first.
+/// A position and others; of several in one pixel only the first.
 fn first_in_pixels(own: [i64; 2], others: impl Iterator<Item = [i64; 2]>) -> Vec<[i64; 2]> {
     let mut places = vec![own];
     for place in others {
@@ -230,7 +230,7 @@ fn takes_the_place_that_comparing_with_all_finds(ball: &Synthesizer) {
         });
         let around: Vec<[f32; 8]> = around.collect();
         let unlike = |place: [i64; 2]| {
-            // With the weight of a half, on four diagonals.
+            // The weight 0.5, times four diagonals.
             let off = guide.row(place[1] as u32)[place[0] as usize] - wanted[site];
             unlike(stage, &around, place) + 2.0 * off * off
         };
@@ -253,7 +253,7 @@ fn takes_the_place_that_comparing_with_all_finds(ball: &Synthesizer) {
         let least = all.fold(f32::INFINITY, f32::min);
         let wanted = targets.of(0, site as u32);
         let Choice { distance_sq, .. } = choose(stage, &links, site, &places, wanted);
-        // Sums of the same squares in another order.
+        // The sums have another order than in the code.
         assert!(
             (distance_sq - least).abs() <= 1e-4 * least,
             "{symmetry}, {site}: {distance_sq}, {least}"
@@ -292,7 +292,7 @@ fn sites_whose_guides_are_off_search_all_of_the_exemplar() {
         }
         let around = around(stage, &links, site, &before);
         if around.iter().any(Option::is_none) {
-            // What is not known is guessed.
+            // Missing features are replaced by a mean, so the result is not exact.
             continue;
         }
         n_exact += 1;
@@ -301,7 +301,7 @@ fn sites_whose_guides_are_off_search_all_of_the_exemplar() {
         };
         let all = (0..20).flat_map(|row| (0..24).map(move |column| off([column, row])));
         let least = all.fold(f32::INFINITY, f32::min);
-        // Sums of the same squares in another order.
+        // The sums have another order than in the code.
         assert!(
             off(pixel(place)) <= least * 1.0001,
             "{site}: {} {least}",
@@ -311,7 +311,7 @@ fn sites_whose_guides_are_off_search_all_of_the_exemplar() {
     assert!(n_exact > 400, "{n_exact} of 500");
 }
 
-/// The squared distance of what is on the diagonals of a site from what is on those of a place.
+/// Squared distance between features on the diagonals of a site and those on the diagonals of a pixel.
 fn unlike(stage: &Stage, around: &[[f32; 8]], [x, y]: [i64; 2]) -> f32 {
     let corners = around.iter().zip(DIAGONALS);
     let squares = corners.flat_map(|(own, [i, j])| {
@@ -332,7 +332,7 @@ fn features_of_what_looks_alike_when_turned_are_those_at_the_turned_place() {
             at = offset_before(at, 1);
             *value = unit_f32((hash2(Seed(3), at.map(|at| at.rem_euclid(SIDE)), 0) >> 32) as u32);
         }
-        // In one order for all turns.
+        // Sort, so that the sum does not depend on the rotation.
         values.sort_unstable_by(f32::total_cmp);
         values.iter().sum()
     };
@@ -384,10 +384,10 @@ fn exemplars_lie_turned_as_at_the_neighbors_but_along_seams() {
                 .filter(|&&near| agrees(&texture.quarters, site, near))
                 .count();
         }
-        // Seams go from singularity to singularity, of which there are a few.
+        // Seams connect singularities, and there are few of these.
         assert!(same * 100 > 93 * all, "{symmetry}: {same} of {all}");
 
-        // However the coarsest sites lie turned, the others do as one of them that they are connected to.
+        // Every finer site takes its rotation from one of the coarser sites among its neighbors.
         let n_coarser = ball.hierarchy().levels()[1].n_sites();
         let turns = symmetry.quarters().iter().copied().cycle();
         let coarsest: Vec<u8> = turns.take(n_coarser).collect();
@@ -460,7 +460,8 @@ fn links_reach_as_far_as_pixels_do() {
         let flat = flat.with_scales(vec![scale; 3000]).unwrap();
         let links = Links::new(flat.hierarchy(), &Frames::new(&flat, &[]), 0);
         let n_read = flat.hierarchy().levels()[levels].n_sites();
-        // Windows are a pixel wide, or a spacing if that is more, and end after three of the coarsest level.
+        // The distance of features is a pixel, or a spacing if that is larger. It is at most three spacings of the
+        // coarsest level.
         let unit = scale.clamp(1.0, 6.0) / scale;
         for (site, &at) in flat.hierarchy().sites().positions().iter().enumerate() {
             let is_inner = (at - DVec3::new(0.5, 0.5, 0.0)).abs().max_element() < 0.2;
@@ -484,7 +485,7 @@ fn links_reach_as_far_as_pixels_do() {
 
 #[test]
 fn strands_go_on_from_one_side_to_the_other() {
-    // Strands that sway, every 16 pixels.
+    // Swaying strands, one every 16 pixels.
     let is_strand = |x: u32, y: u32| {
         let sway = (x % 32).abs_diff(16) / 3;
         (y + sway) % 16 < 5
@@ -499,7 +500,7 @@ fn strands_go_on_from_one_side_to_the_other() {
     let (n_pieces, n_torn) = strands(&synthesizer(square.clone(), 6000, |_, _| DVec3::NEG_Y));
     assert_eq!(n_torn, 0, "strands with an end within");
     assert!(n_pieces >= 4, "{n_pieces} strands");
-    // From the left they spread to three times the room.
+    // From left to right, strands fan out to three times the width.
     let fan = synthesizer(square, 6000, |at, normal| {
         (at + DVec3::new(0.5, -0.5, 0.0)).cross(normal)
     });
@@ -510,8 +511,8 @@ fn strands_go_on_from_one_side_to_the_other() {
     assert!(n_pieces >= 4, "{n_pieces} strands that widen");
 }
 
-/// The pieces of more than 8 connected sites with a value above 0.5, and how many of them do not go from x = 0 to 1 though they
-/// are away from the edges along y.
+/// Returns the number of connected components of more than 8 sites with values above 0.5, and how many of them do not
+/// reach from x = 0 to 1 although they are away from the edges along y.
 fn pieces(flat: &Synthesizer, values: &[f32]) -> (usize, usize) {
     let graph = flat.hierarchy().levels()[0].graph();
     let positions = flat.hierarchy().sites().positions();

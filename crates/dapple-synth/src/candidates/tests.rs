@@ -1,4 +1,4 @@
-//! Rows of neighborhoods beside naive ones.
+//! Tests of the rows of neighborhoods against a naive computation.
 
 use super::{Candidates, CoarserCenter, FEW};
 use crate::{
@@ -19,7 +19,7 @@ fn noise(size: [u32; 2], edges: Edges, n_levels: usize) -> Pyramid {
     exemplar.pyramid(n_levels).unwrap()
 }
 
-/// The pixel at a place that may lie past the edges.
+/// Channel of a pixel that may lie past the edges.
 fn pixel(level: &Exemplar, [column, row]: [i64; 2], channel: usize) -> f64 {
     let wrap = if level.edges == Edges::Wrap {
         Wrap::Repeat
@@ -31,7 +31,7 @@ fn pixel(level: &Exemplar, [column, row]: [i64; 2], channel: usize) -> f64 {
     level.pixels[(y * level.size[0] as usize + x) * level.n_channels + channel].into()
 }
 
-/// A row by the definition, in `f64`; nothing if it reaches past an edge that is cut.
+/// Reference for a row, in `f64`, and whether it stays within edges that are cut.
 fn naive(pyramid: &Pyramid, pass: &Pass, center: CoarserCenter, at: [u32; 2]) -> (Vec<f64>, bool) {
     let mut row = Vec::new();
     let mut within = true;
@@ -67,7 +67,7 @@ fn bilinear(level: &Exemplar, x: f64, y: f64, channel: usize) -> f64 {
     top * (1.0 - fy) + bottom * fy
 }
 
-/// A pass with all kinds of parts.
+/// Pass with parts of several shapes, levels and weights.
 fn mixed(level: usize) -> Pass {
     let parts = vec![
         Part::new(Shape::Causal, 5, Reads::Same).with_weight(2.0),
@@ -106,7 +106,7 @@ fn rows_equal_the_definition() {
                 assert_eq!(candidates.pixel(row), *at, "{size:?} {edges:?} {center:?}");
                 assert_eq!(candidates.row(row).len(), values.len(), "dims");
                 for (value, expected) in candidates.row(row).iter().zip(values) {
-                    // A few roundings of f32 for values up to 1.5.
+                    // A few rounding errors of `f32`, for values up to 1.5.
                     assert!(
                         (f64::from(*value) - expected).abs() < 1e-6,
                         "{at:?} {value} {expected}"
@@ -170,7 +170,7 @@ fn four_pixels_share_a_row_only_with_the_floor() {
 
 #[test]
 fn a_row_between_two_pixels_is_their_mean() {
-    // On the coarser level the columns are 0, 1, ..., and the exemplar is a ramp that the pyramid keeps inside.
+    // The exemplar is a ramp. Away from the edges, column n of the coarser level has the value 2 n.
     let plane = Raster::from_fn([64, 64], |x, _| x as f32).unwrap();
     let pyramid = Exemplar::from_planes(&[(&plane, 1.0)], Edges::Cut)
         .unwrap()
@@ -311,7 +311,7 @@ fn masks_leave_out_the_neighborhoods_that_they_touch() {
         let some = all.levels[0].clone().with_mask(&mask).unwrap();
         let some = some.pyramid(2).unwrap();
         let passes = Schedule::paper(2).passes;
-        // Without the neighborhoods that reach past an edge, and with all of them.
+        // Exclude and include the neighborhoods that reach past an edge.
         for (pass, few) in passes
             .iter()
             .flat_map(|pass| [(pass, 0), (pass, usize::MAX)])
@@ -326,7 +326,7 @@ fn masks_leave_out_the_neighborhoods_that_they_touch() {
                     let level = pass.level + part.reads.step();
                     let exemplar = &some.levels[level];
                     let half = i64::from(part.side / 2);
-                    // On the coarser level what is between two pixels is of both.
+                    // A center between two pixels of the coarser level belongs to both.
                     let ends = at.map(|at| match part.reads {
                         Reads::Same => [at - half, at + half],
                         Reads::Coarser => [at / 2 - half, (at + 1) / 2 + half],

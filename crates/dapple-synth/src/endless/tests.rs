@@ -13,7 +13,7 @@ use proptest::prelude::*;
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
-/// Spots of two channels that wrap.
+/// Image of spots with two channels that wraps.
 fn spots(size: [u32; 2], edges: Edges) -> Exemplar {
     let noise = |x: u32, y: u32, channel: u64| {
         let cell = [x % size[0] / 3, y % size[1] / 2].map(i64::from);
@@ -37,7 +37,7 @@ fn window(texture: &Endless, first: [i64; 2], size: [u32; 2]) -> PlaneTexture {
     texture.window(first, size, go_on).unwrap()
 }
 
-/// The place of one pixel after some corrections of quarters, each pixel on its own.
+/// Reference for the source of a pixel after a number of subpasses, computed recursively pixel by pixel.
 struct Naive<'a> {
     texture: &'a Endless,
     known: BTreeMap<(usize, usize, [i64; 2]), [i64; 2]>,
@@ -111,7 +111,7 @@ impl Naive<'_> {
         let similar = similar.map(|place| (place, 1.0 + stage.coherence));
         let candidates = coherent.iter().map(|&place| (place, 1.0)).chain(similar);
         let steps = (-2..=2).flat_map(|y: i64| (-2..=2).map(move |x: i64| [x, y]));
-        // Pixels of the same quarter do not read each other.
+        // Pixels of the same subpass do not read each other.
         let near = steps.filter(|[x, y]| x % 2 != 0 || y % 2 != 0);
         let near = near.map(|[x, y]| {
             let should_be = x.abs().max(y.abs()) as f64 * h as f64;
@@ -207,7 +207,7 @@ fn pixels_that_are_alike_are_those_that_comparing_with_all_finds() {
                 let least = grid.iter().filter(is_apart).map(|&other| distance(other));
                 let least = least.fold(f32::INFINITY, f32::min);
                 let found = stage.similar(place).map_or(f32::INFINITY, distance);
-                // Sums of the same squares in another order.
+                // The sums have another order than in the code.
                 assert!(
                     (found - least).abs() <= 1e-5 * least,
                     "{place:?}: {found}, {least}"
@@ -217,7 +217,7 @@ fn pixels_that_are_alike_are_those_that_comparing_with_all_finds() {
     }
 }
 
-/// The features on the diagonals of a place.
+/// Features on the diagonals of a pixel.
 fn around(stage: &Stage, [column, row]: [i64; 2]) -> [[f32; N_FEATURES]; 4] {
     let h = stage.spacing;
     DIAGONALS.map(|[x, y]| *stage.features([column + x * h, row + y * h]))
@@ -262,7 +262,7 @@ fn windows_have_the_same_bits_on_any_number_of_threads() {
 
 #[test]
 fn costs_make_textures_have_all_parts_of_an_exemplar() {
-    // Grain that is lighter on one side.
+    // Grain that is brighter on one side.
     let grain = |x: u32, y: u32| {
         let cell = [x / 2, y / 2].map(i64::from);
         unit_f32((hash2(Seed(0), cell, 0) >> 32) as u32) + 0.02 * x as f32
@@ -286,7 +286,7 @@ fn costs_make_textures_have_all_parts_of_an_exemplar() {
         pairs.map(|(a, b)| (a - b).abs()).sum()
     };
     let [with, without] = [&texture, &free].map(uneven);
-    // In photographs it is from a fifth to a half.
+    // For photographs the ratio is from 0.2 to 0.5.
     assert!(with < 0.7 * without, "{with} with costs, {without} without");
 }
 
@@ -300,7 +300,7 @@ fn what_lies_side_by_side_is_repeated_less_where_that_costs() {
     let exemplar = Exemplar::from_planes(&[(&plane, 1.0)], Edges::Cut).unwrap();
     let mut texture = endless(&exemplar, 5, [None; 2]);
     for stage in &mut texture.stages {
-        // What goes on repeats less by itself: each is tested alone.
+        // Coherence also lowers repetition; turn it off to test the cost alone.
         stage.coherence = 0.0;
     }
     let mut free = texture.clone();
@@ -308,7 +308,7 @@ fn what_lies_side_by_side_is_repeated_less_where_that_costs() {
         assert!(stage.repetition_cost > 0.0);
         stage.repetition_cost = 0.0;
     }
-    // The pixels that have their source again at most 8 columns or rows away.
+    // Count the pixels whose source occurs again at most 8 columns and rows away.
     let n_repeated = |texture: &Endless| {
         let made = window(texture, [0, 0], [128; 2]);
         let source = |[x, y]: [i64; 2]| made.sources().row(y as u32)[x as usize];
@@ -321,7 +321,7 @@ fn what_lies_side_by_side_is_repeated_less_where_that_costs() {
         places.filter(is_repeated).count()
     };
     let [with, without] = [&texture, &free].map(n_repeated);
-    // Of photographs it is a quarter to two thirds as many.
+    // For photographs the ratio is from a quarter to two thirds.
     assert!(
         10 * with < 9 * without,
         "{with} where it costs, {without} elsewhere"
@@ -360,7 +360,7 @@ fn textures_have_nothing_that_a_mask_leaves_out() {
     let mask = Raster::from_fn([40, 32], is_clean).unwrap();
     let texture = endless(&exemplar.clone().with_mask(&mask).unwrap(), 3, [None; 2]);
     for &[x, y] in window(&texture, [0, 0], [80, 80]).sources().pixels() {
-        // The features of the finest level tell of two pixels more.
+        // Features of the finest level depend on two more pixels to each side.
         assert!(
             x.abs_diff(12) > 5 || y.abs_diff(9) > 7,
             "column {x}, row {y}"
@@ -442,7 +442,7 @@ fn value_stability_endless() {
     );
 }
 
-/// Textures of an exemplar that is cut and of one that wraps, with one to four levels.
+/// Textures of a cut and of a wrapping exemplar, with one to four levels.
 static TEXTURES: LazyLock<[[Endless; 4]; 2]> = LazyLock::new(|| {
     [Edges::Cut, Edges::Wrap].map(|edges| {
         [1, 2, 3, 4].map(|n_levels| endless(&spots([19, 26], edges), n_levels, [None, Some(48)]))
@@ -455,7 +455,7 @@ proptest! {
     #[test]
     fn windows_are_crops_of_larger_ones(
         first in prop::array::uniform2(-200_i64..200),
-        // Twice as far as the pixels of the coarsest level, eight, lie apart.
+        // More than twice the distance of the pixels of the coarsest level, which is eight.
         size in prop::array::uniform2(1_u32..20),
         before in prop::array::uniform2(0_u32..17),
         after in prop::array::uniform2(0_u32..17),
@@ -491,13 +491,13 @@ fn preparation_can_be_cancelled_at_every_call_and_is_asked_often() {
     );
     let same = window(&made.unwrap(), [3, 5], [70, 40]);
     assert_eq!(same.sources(), alone.sources());
-    // Half a second of work.
+    // The preparation takes half a second of work.
     assert!(n_calls > 100, "{n_calls} calls");
     for last in (0..n_calls).step_by(n_calls / 12) {
         let (made, n_calls) = prepare(last);
         let error = made.unwrap_err();
         assert!(matches!(error.kind(), SynthErrorKind::Cancelled), "{error}");
-        // It is not asked again, but by threads that were asking at the time.
+        // Polling ends, except on threads that were polling at the time.
         assert!(
             n_calls <= last + parallel::n_threads(),
             "{n_calls} from {last} on"
@@ -513,14 +513,14 @@ fn progress_of_large_windows_is_reported_within_quarters() {
         reports.push(progress);
         ControlFlow::Continue(())
     });
-    // The finest level has 420,000 pixels and its corrections 12 quarters, each in parts of a few thousand pixels.
+    // The finest level has 420,000 pixels and 12 subpasses, each reported in parts of a few thousand pixels.
     assert!(reports.len() > 12 * 6, "{} reports", reports.len());
     let place = |progress: &Progress| (progress.pass, progress.done);
     assert!(
         reports.is_sorted_by(|a, b| place(a) < place(b)),
         "{reports:?}"
     );
-    // Parts of quarters have the bits of smaller windows, whose quarters are in one part.
+    // Compare with a smaller window, whose subpasses are not split into parts.
     let small = window(&texture, [600, 500], [90, 90]);
     let rows =
         (0..90).map(|row| large.as_ref().unwrap().sources().row(500 + row)[600..690].to_vec());

@@ -1,4 +1,4 @@
-//! The engine beside the paper's pseudo-code, which compares every neighborhood with every pixel's.
+//! Tests of the engine against the paper's pseudocode, which compares every neighborhood with every candidate.
 
 mod turned;
 
@@ -38,7 +38,7 @@ fn sphere(n_sites: usize) -> Synthesizer {
     Synthesizer::new(surface, &[], &options).unwrap()
 }
 
-/// The neighborhood colors N(v).
+/// The neighborhood colors N(v) of the paper.
 fn neighborhood(
     ground: &MeshGround<'_>,
     pass: &Pass,
@@ -85,7 +85,7 @@ fn neighborhood(
     query
 }
 
-/// The passes as the paper's pseudo-code has them; the first pixels are those of `started`.
+/// The passes as in the paper's pseudocode. The initial pixels are `started`.
 fn pseudo_code(
     ground: &MeshGround<'_>,
     pyramid: &Pyramid,
@@ -233,7 +233,7 @@ fn coherent_texture_has_more_neighbors_that_continue_each_other() {
     assert!(coherent > plain, "{coherent} beside {plain} edges");
 }
 
-/// The sites of each pixel on the coarser level of a texture with this evenness.
+/// For each pixel of the coarser level, the number of sites that use it, in a texture with this evenness.
 fn uses(evenness: f32) -> Vec<usize> {
     let case = sphere(4000);
     let options = Options {

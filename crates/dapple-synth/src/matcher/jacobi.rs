@@ -5,7 +5,7 @@
 /// Maximum number of sweeps over all pairs. The method converges quadratically, so fewer are needed.
 const SWEEPS: usize = 12;
 
-/// Convergence threshold: sum of squares off the diagonal, relative to that of the diagonal.
+/// Convergence threshold: sum of squares off the diagonal, divided by the sum of squares on the diagonal.
 const DONE: f64 = 1e-24;
 
 /// Returns the eigenvalues, unordered, and the unit eigenvectors in the same order, stored contiguously.

@@ -12,16 +12,16 @@
 //!
 //! Steps:
 //!
-//! 1. A term of D is rounded at most `a` times ([`distance::roundings`]), so that D >= (1 - a u) |x - q|^2 - 2 dims v, and
-//!    |x - q| <= sqrt((D + 2 dims v) / (1 - a u)).
+//! 1. A term of D is rounded at most `a` times ([`distance::roundings`]), so that D >= (1 - a u) |x - q|^2 - 2 dims v,
+//!    and |x - q| <= sqrt((D + 2 dims v) / (1 - a u)).
 //! 2. A term of a coordinate of z is rounded at most `b` times ([`Basis::roundings`]). With c for the centered query as
-//!    computed, `|z_j - W_j (q - m)| <= 1.01 b u |W_j| |c| + 2 dims v`, where 1.01 covers the powers of u. The squares of
-//!    all `|W_j|` add up to at most k |W|^2, so that |z - W (q - m)| <= 1.01 b u sqrt(k) |W| |c| + 2 sqrt(k) dims v. The
-//!    bound for y has the same form.
+//!    computed, `|z_j - W_j (q - m)| <= 1.01 b u |W_j| |c| + 2 dims v`, where 1.01 covers the powers of u. The squares
+//!    of all `|W_j|` add up to at most k |W|^2, so that
+//!    |z - W (q - m)| <= 1.01 b u sqrt(k) |W| |c| + 2 sqrt(k) dims v. The bound for y has the same form.
 //! 3. Integer coordinates are not farther apart than z and y, except for the rounding of each: [`Lattice::error`].
-//! 4. By the triangle inequality, sqrt(P) <= |W| |x - q| + E. E is the sum of the errors of steps 2 and 3, of the row and of
-//!    the query. P itself is exact. A part of a sum of squares is not larger than the sum, and a box is not farther than a
-//!    point in it.
+//! 4. By the triangle inequality, sqrt(P) <= |W| |x - q| + E. E is the sum of the errors of steps 2 and 3, of the row
+//!    and of the query. P itself is exact. A part of a sum of squares is not larger than the sum, and a box is not
+//!    farther than a point in it.
 //!
 //! Together: a row with D <= B has P <= T(B), which [`Margin::threshold`] returns. A row with a larger P has D > B, so
 //! rejecting it loses neither the nearest row nor an equally near one. T is computed in `f64`; the factor [`SLACK`]

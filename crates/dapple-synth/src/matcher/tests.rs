@@ -1,4 +1,4 @@
-//! The search beside comparing with all rows.
+//! Tests of the search against a comparison with all rows.
 
 mod parts;
 
@@ -7,12 +7,12 @@ use dapple_hash::{Seed, hash2, unit_f32};
 use dapple_raster::simd::for_every_level;
 use proptest::prelude::*;
 
-/// The definition: compares with all rows.
+/// Reference: compares with all rows.
 fn brute_force(dims: usize, rows: &[f32], query: &[f32], below: f32) -> Option<Match> {
     brute_force_times(dims, rows, query, below, |_| 1.0)
 }
 
-/// The nearest row by comparing all, with a factor for each.
+/// Reference with a factor for each row.
 fn brute_force_times(
     dims: usize,
     rows: &[f32],
@@ -54,12 +54,12 @@ fn check(matcher: &Matcher, rows: &[f32], query: &[f32], memory: &mut MatcherMem
     }
 }
 
-/// A number from 0 to 1 for each pair of numbers.
+/// Random number from 0 to 1 for a pair of integers.
 fn random(i: usize, j: usize) -> f32 {
     unit_f32((hash2(Seed(5), [i as i64, j as i64], 0) >> 32) as u32)
 }
 
-/// Bricks with smooth noise on them, at any place.
+/// Color of a brick texture with smooth noise, at any position.
 fn texture(x: f32, y: f32) -> [f32; 3] {
     let noise = |x: f32, y: f32| {
         let (i, j) = (x.floor(), y.floor());
@@ -84,7 +84,7 @@ fn texture(x: f32, y: f32) -> [f32; 3] {
     base.map(|value| value + rough)
 }
 
-/// The 48 neighbors of a place, on a grid turned by an angle with this cosine and sine, scaled.
+/// The 48 neighbors of a position, on a grid rotated and scaled by a vector (cosine and sine times a factor).
 fn neighborhood(x: f32, y: f32, [cos, sin]: [f32; 2]) -> Vec<f32> {
     let mut values = Vec::new();
     for j in -3_i8..=3 {
@@ -98,7 +98,7 @@ fn neighborhood(x: f32, y: f32, [cos, sin]: [f32; 2]) -> Vec<f32> {
     values
 }
 
-/// Neighborhoods of a texture, and queries like those of a synthesis: between pixels, turned, mixed and a bit off.
+/// Neighborhoods of a texture, and queries as in a synthesis: between pixels, rotated, mixed and perturbed.
 fn exemplar(side: usize, n_queries: usize) -> (usize, Vec<f32>, Vec<Vec<f32>>) {
     let place = |i: usize| (4 + i) as f32;
     let rows: Vec<f32> = (0..side * side)
@@ -157,13 +157,13 @@ fn nearest_with_factors_is_that_of_brute_force() {
     let (dims, rows, queries) = exemplar(40, 100);
     let n_rows = rows.len() / dims;
     let memory = &mut MatcherMemory::default();
-    // With few rows all of them are compared, with many the index is used.
+    // Few rows are compared one by one; many rows have an index.
     for n_rows in [40, n_rows] {
         let rows = &rows[..n_rows * dims];
         let matcher = Matcher::with_factors(dims, rows);
         assert_eq!(matcher.index.is_some(), n_rows > 40, "the index is used");
         for (number, query) in queries.iter().enumerate() {
-            // Many rows are free, as at the beginning of a pass, and a few cost sixty times as much.
+            // Many factors are 1, as at the beginning of a pass, and a few are about 60.
             let factor = |row: u32| {
                 let over = (random(number, row as usize) - 0.5).max(0.0);
                 1.0 + 1000.0 * over * over * over * over
@@ -190,7 +190,7 @@ fn nearest_with_factors_is_that_of_brute_force() {
 
 #[test]
 fn nearest_is_the_first_of_rows_with_equal_products() {
-    // All rows are at distance 1 or 2 from the query; the factors make all products 2, but for one row.
+    // All rows are at distance 1 or 2 from the query. The factors make all products 2, except for one row.
     let value = |row: usize| {
         if row.is_multiple_of(2) {
             1.0
@@ -224,7 +224,7 @@ fn nearest_is_the_first_of_rows_with_equal_products() {
 
 #[test]
 fn equal_rows_are_kept_once() {
-    // 37 different rows of 5 numbers, again and again, and one more at the end.
+    // 37 different rows of 5 values, repeated, and another one at the end.
     let row = |at: usize| (0..5).map(move |j| random(at % 37, j));
     let rows: Vec<f32> = (0..2000)
         .flat_map(row)

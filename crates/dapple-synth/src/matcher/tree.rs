@@ -18,7 +18,7 @@ use dapple_raster::simd::dispatch;
 /// Number of pairs of directions between two tests of the rows of a leaf.
 pub(crate) const STEP: usize = 4;
 
-/// Number of directions that are split and have boxes: those of the first step, in which rows differ most.
+/// Number of directions that are split and have boxes: the first ones, in which rows differ most.
 const BOX_DIRECTIONS: usize = 2 * STEP;
 
 /// Coordinates of sixteen rows along two directions, interleaved: both of the first row, both of the second, and so on.

@@ -1,4 +1,4 @@
-//! Squares on surfaces, beside samples that are walked to one by one and mixed from all sites.
+//! Tests of sampling on surfaces against samples found by separate walks and interpolated from all sites.
 
 use super::{MeshGround, MeshMemory, interpolate};
 use crate::ground::{Ground, Plain, Rows, Samples, Square};
@@ -8,7 +8,7 @@ use dapple_mesh::{Mesh, Surface};
 use dapple_raster::simd::{self, for_every_level};
 use glam::{DVec2, DVec3};
 
-/// A torus as a grid of triangles, or a part of it with two borders.
+/// Torus as a grid of triangles, or a part of it with two borders.
 fn torus(n_around: u32, is_open: bool) -> Surface {
     let n_tube = 12;
     let place = |around: u32, tube: u32| {
@@ -54,7 +54,7 @@ impl Case {
         self.0.ground(Axes::Carried, false)
     }
 
-    /// Walks to one sample, i along P and j along O.
+    /// Walks to one sample, i steps along P and j steps along O.
     fn walk(&self, square: &Square, [i, j]: [i32; 2]) -> (DVec3, DVec3) {
         let spacing = self.0.hierarchy().levels()[square.reads].spacing();
         let at = square.site as usize;
@@ -115,7 +115,7 @@ fn square(site: u32, reads: usize, half: i32) -> Square {
     }
 }
 
-/// Values at sites that tell them apart.
+/// Values that differ between nearby sites.
 fn column(n: usize) -> Vec<f32> {
     (0..n).map(|at| (at * 7919 % 101) as f32 / 101.0).collect()
 }
@@ -204,7 +204,7 @@ fn square_of_constant_values_is_constant() {
         samples.make_room(15, 1);
         let colors = plain(&[0.75; 500], 1);
         ground.read(square, &prepared, colors, &mut samples, &mut memory);
-        // A weighted mean of equal values is off by some roundings.
+        // A weighted mean of equal values has a few rounding errors.
         let off = samples
             .values
             .iter()
@@ -253,7 +253,7 @@ fn turns_keep_the_order_of_sites_that_read_each_other() {
 
 #[test]
 fn piece_without_a_coarse_site_reads_the_nearest_one() {
-    // A large triangle, and far away one so small that no site of the coarser level is on it.
+    // A large triangle, and a distant one so small that it has no site of the coarser level.
     let positions = [
         [0.0, 0.0],
         [10.0, 0.0],

@@ -1,4 +1,4 @@
-//! Shapes and schedules.
+//! Tests of shapes and schedules.
 
 use super::{Part, Pass, Reads, Schedule, Shape};
 use crate::SynthErrorKind;
@@ -20,7 +20,7 @@ fn refused(passes: &[Pass], n_levels: usize) -> SynthErrorKind {
         .clone()
 }
 
-/// The pixels of a part as a picture: `#` for those that are compared.
+/// Draws a part: `#` for pixels that are compared.
 fn picture(shape: Shape, side: u32, reads: Reads) -> Vec<String> {
     let half = side as i32 / 2;
     let offsets = Part::new(shape, side, reads).offsets();

@@ -1,4 +1,5 @@
-//! Passes along a field of two or four directions, beside code that turns every square and compares with every pixel.
+//! Tests of passes with an orientation field of two or four directions, against code that rotates every square and
+//! compares with every candidate.
 
 use super::*;
 use crate::engine::run_turned;
@@ -20,10 +21,10 @@ fn sphere_along(symmetry: Symmetry, n_sites: usize) -> Synthesizer {
     Synthesizer::from_parts(surface, hierarchy, orientation, None).unwrap()
 }
 
-/// A pixel and a number of quarter turns for each site.
+/// Pixel and rotation in quarter turns of each site, on two levels.
 type Levels = [Vec<(u32, u8)>; 2];
 
-/// The samples of a part of a neighborhood, and which sites they are of.
+/// Samples of a part of a neighborhood, and their nearest sites.
 fn read(
     ground: &MeshGround<'_>,
     pass: &Pass,
@@ -64,16 +65,16 @@ fn read(
     samples
 }
 
-/// The sample at an offset in a square that lies turned: a quarter turn is taken so many times.
+/// Index of the sample at an offset in a square that is rotated by quarter turns.
 fn sample_at([mut i, mut j]: [i32; 2], half: i32, quarters: u8) -> usize {
     for _ in 0..quarters {
-        // What is to the right of the turned square is above, and what is below it is to the right.
+        // The right of the rotated square is up, and its down is right.
         (i, j) = (j, -i);
     }
     ((j + half) * (2 * half + 1) + i + half) as usize
 }
 
-/// How the exemplar of another site lies at a site: the turn of four whose direction is nearest.
+/// Rotation of the exemplar at `site` nearest to that of another site, in quarter turns.
 fn lies(case: &Synthesizer, site: u32, other: u32, quarters: u8) -> u8 {
     let direction = |site: u32, quarters| {
         let at = site as usize;
@@ -86,7 +87,7 @@ fn lies(case: &Synthesizer, site: u32, other: u32, quarters: u8) -> u8 {
     all.max_by(|a, b| near(a).total_cmp(&near(b))).unwrap()
 }
 
-/// How the exemplar may lie at a site: as it does at one of its neighbors.
+/// Rotations that a site may take: those of its neighbors.
 fn wanted(
     case: &Synthesizer,
     pass: &Pass,
@@ -117,7 +118,7 @@ fn wanted(
     wanted
 }
 
-/// All passes, one site after the other.
+/// Runs all passes sequentially.
 fn naive(
     case: &Synthesizer,
     pyramid: &Pyramid,

@@ -1,4 +1,4 @@
-//! Tests of what the search is made of.
+//! Tests of the parts of the search: quantization, bounds, eigenvectors and directions.
 
 use super::*;
 use dapple_raster::simd::dispatch;
@@ -11,7 +11,7 @@ fn sums_of_squares_never_exceed_the_threshold() {
         for value in rows.iter_mut().chain(queries.iter_mut().flatten()) {
             *value *= scale;
         }
-        // One row and one query far out are drawn into the ball.
+        // One row and one query lie far outside of the ball.
         rows[..dims].fill(30.0 * scale);
         queries[0].fill(-50.0 * scale);
         let index =
@@ -72,7 +72,7 @@ fn jacobi_gives_eigenvectors() {
     for (value, vector) in values.iter().zip(vectors.chunks_exact(n)) {
         for (line, own) in matrix.chunks_exact(n).zip(vector) {
             let image: f64 = line.iter().zip(vector).map(|(a, b)| a * b).sum();
-            // The sweeps end when what is off the diagonal is 1e-12 of the diagonal.
+            // The sweeps end when the elements off the diagonal are 1e-12 of the diagonal.
             assert!(
                 (image - value * own).abs() < 1e-11,
                 "{image} is not {value} times {own}"
@@ -88,7 +88,7 @@ fn directions_hold_all_of_rows_in_a_plane() {
         |i: usize, j: usize| random(i, 0) * random(1, j) + 0.1 * random(i, 2) * random(3, j);
     let rows: Vec<f32> = (0..100 * dims).map(|i| plane(i / dims, i % dims)).collect();
     let basis = Basis::new(dims, &rows);
-    // Rounding W to 24 bits moves its norm by less than this.
+    // Rounding W to 24 bits changes its norm by less than this.
     assert!((basis.norm_sq - 1.0).abs() < 1e-5, "{}", basis.norm_sq);
     let level = Level::baseline();
     let mut centered = Vec::new();
@@ -97,7 +97,7 @@ fn directions_hold_all_of_rows_in_a_plane() {
         basis.center(row, &mut centered);
         dispatch!(level, simd => basis.rotate(simd, &centered, &mut rotated));
         let [whole, part] = [margin::length(&centered), margin::length(&rotated[0][..2])];
-        // The coordinates are of the order of 1 and have 24 bits.
+        // Coordinates are about 1 and have 24 bits.
         assert!((whole - part).abs() < 1e-5, "{part} of {whole}");
     }
 }
