@@ -15,10 +15,10 @@
 //! pixels remain, all usable pixels are candidates, and the exemplar is mirrored at its edges. An exemplar made of
 //! several images side by side is counted and mirrored image by image.
 //!
-//! If pixels shall be used evenly ([`Options::evenness`]), all pixels are candidates on all levels; otherwise the first
-//! of three levels would compare only two thirds of 128 × 128 pixels. Measured on four such exemplars, the distance of
-//! colors ([`Likeness`](crate::Likeness)) falls by a third. Passes that read both levels are an exception: they never
-//! use pixels at the edges because of evenness, since narrow pieces mirrored at an edge gave specks.
+//! If pixels are to be used evenly ([`Options::evenness`]), all pixels are candidates on all levels. Otherwise the
+//! first of three levels would compare only two thirds of the pixels of an exemplar of 128 × 128. Measured on four such
+//! exemplars, the distance of colors ([`Likeness`](crate::Likeness)) falls by a third. Passes that read both levels are
+//! an exception: for them the minimum of [`FEW`] remains, since narrow pieces mirrored at an edge gave specks.
 //!
 //! The paper centers a neighborhood on the coarser level at half of the coordinates, rounded down. Then four pixels
 //! have the same F(n, 1), and the first of them always wins. By default it is centered at exactly half, with bilinear
@@ -300,8 +300,8 @@ impl Candidates {
         self.row_of_pixel([x + i64::from(i), y + i64::from(j)])
     }
 
-    /// Returns the neighborhood of one of the four pixels of this level that cover a pixel of the coarser level, which
-    /// has `width` columns. The offset is 0 or 1 along each axis.
+    /// Returns the neighborhood of one of the four children of a pixel of the coarser level, which has `width` columns.
+    /// The offset is 0 or 1 along each axis.
     #[inline]
     pub(crate) fn row_under(&self, coarser: u32, width: u32, [i, j]: [i32; 2]) -> Option<u32> {
         if self.beside.is_some() {

@@ -74,13 +74,13 @@ const MAX_PLACE: i64 = 1 << 52;
     serde(default, deny_unknown_fields)
 )]
 pub struct EndlessOptions {
-    /// Seed of the coarsest level [default: `Seed(0)`].
+    /// Seed of the coarsest level; by default `Seed(0)`.
     pub seed: Seed,
     /// Number of levels, from 1 to 16. More levels preserve larger features of the exemplar. By default as many as fit
     /// the exemplar: the coarsest level has from 4 to 7 pixels along its shorter side.
     pub n_levels: Option<u32>,
-    /// Period of the texture in columns and in rows, multiples of 2 to the number of levels; `None` for no period
-    /// [default: `None`].
+    /// Period of the texture in columns and in rows, multiples of 2 to the number of levels; by default `None`: no
+    /// period.
     pub period: [Option<u32>; 2],
 }
 

@@ -96,8 +96,8 @@ pub(crate) trait Ground: Sync {
     /// Number of sites of a level.
     fn n_sites(&self, level: usize) -> usize;
 
-    /// Blur of the samples from [`read`](Self::read): the weight of each of the two adjacent pixels along an axis
-    /// [default: 0].
+    /// Blur of the samples from [`read`](Self::read): the weight of each of the two adjacent pixels along an axis,
+    /// by default 0.
     fn blur(&self) -> f32 {
         0.0
     }
@@ -112,7 +112,7 @@ pub(crate) trait Ground: Sync {
         None
     }
 
-    /// Returns the site of the coarser level below a site, and the quadrant of the site in it: whether its column and
+    /// Returns the parent of a site on the coarser level, and the quadrant of the site in it: whether its column and
     /// its row are odd. `None` if sites are not arranged in a grid.
     fn parent(&self, _level: usize, _site: u32) -> Option<(u32, [i64; 2])> {
         None

@@ -55,7 +55,7 @@ pub struct Part {
     pub side: u32,
     /// Level that is read.
     pub reads: Reads,
-    /// Factor of the squared differences, above 0 and at most 10^6 [default: 1].
+    /// Factor of the squared differences, above 0 and at most 10^6; by default 1.
     pub weight: f32,
 }
 

@@ -217,7 +217,7 @@ mod tests {
     #[test]
     fn regularity_is_low_for_noise_and_for_clouds() {
         let white = exemplar([64, 64], Edges::Cut, noise).regularity();
-        // Of 3364 distances with 48 terms each, the least is about half of the mean.
+        // The minimum of 3364 distances with 48 terms each is about half of their mean.
         assert!((0.3..0.6).contains(&white), "{white}");
         let clouds = exemplar([64, 64], Edges::Cut, |x, y| {
             0.1 * (x + y) as f32 + noise(x, y)
@@ -228,7 +228,7 @@ mod tests {
     #[test]
     fn regularity_does_not_depend_on_contrast_and_brightness() {
         let plain = exemplar([40, 40], Edges::Cut, noise).regularity();
-        // Powers of two round nothing; a shift rounds values to 2^-21.
+        // Scaling by a power of two is exact; the shift rounds values to 2^-21.
         let scaled = exemplar([40, 40], Edges::Cut, |x, y| 4.0 * noise(x, y)).regularity();
         let shifted = exemplar([40, 40], Edges::Cut, |x, y| 2.0 + noise(x, y)).regularity();
         assert_eq!(plain, scaled, "contrast");

@@ -268,7 +268,7 @@ impl<'a, G: Ground> Visit<'a, G> {
                 return None;
             }
         }
-        // On its own level the site must have this pixel already; else take the finer pixel below the coarser one.
+        // On its own level the site must have this pixel already; else take the child of the coarser pixel.
         let piece = piece? as u32;
         if reads == Reads::Same {
             return (painted.source(site as usize) == piece).then_some(piece);
@@ -347,8 +347,8 @@ impl<'a, G: Ground> Visit<'a, G> {
         }
     }
 
-    /// Adds the coherent rows of the level itself. Each of the eight neighboring samples predicts the pixel that lies,
-    /// relative to its source, where this site lies relative to it.
+    /// Adds the coherent rows of the level itself. Each of the eight neighboring samples predicts its source pixel plus
+    /// the offset of this site from it.
     fn continue_same(
         &self,
         center: Center,
@@ -370,7 +370,7 @@ impl<'a, G: Ground> Visit<'a, G> {
         }
     }
 
-    /// Adds the coherent rows of the coarser level: the four pixels below the source of the middle sample.
+    /// Adds the coherent rows of the coarser level: the four children of the source of the middle sample.
     fn continue_coarser(
         &self,
         center: Center,
@@ -393,7 +393,7 @@ impl<'a, G: Ground> Visit<'a, G> {
         }
     }
 
-    /// Returns the nearest row, or a coherent one whose squared distance is at most `1 + coherence` times larger.
+    /// Returns the nearest row, or a coherent one whose squared distance is at most `1 + coherence` times as large.
     fn best_row(&self, worker: &mut Worker<G::Memory>, factors: Option<&[f32]>) -> Best {
         let Worker {
             query,

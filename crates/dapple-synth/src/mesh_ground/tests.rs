@@ -143,8 +143,8 @@ fn squares_are_those_of_single_walks_and_of_all_sites() {
                         [sample % square.side(), sample / square.side()].map(|at| at as i32 - half);
                     let (position, normal) = case.walk(&square, [i, j]);
                     if let Some(oracle) = case.mix(reads, position, normal, &column) {
-                        // Positions are rounded to f32: 1e-7 of the surface's size, which is 3e-6 of a radius here, times
-                        // the slope of a mean of few sites, which is at most some 50 values per radius.
+                        // Positions are rounded to f32: 1e-7 of the surface's size, which is 3e-6 of a radius here,
+                        // times the slope of a mean of few sites, which is at most some 50 values per radius.
                         assert!(
                             (f64::from(value) - oracle).abs() < 1e-3,
                             "site {site}, sample {i} {j}: {value} beside {oracle}"

@@ -124,14 +124,14 @@ mod tests {
     use glam::DVec3;
 
     const HALF: i32 = 3;
-    /// Circles around this point pass through the unit square, which it is far from.
+    /// Center of the circles of the field; it is far from the unit square.
     const CENTER: DVec3 = DVec3::new(-1.0, 0.5, 0.0);
 
     fn circles(hierarchy: &Hierarchy, center: DVec3) -> Orientation {
         Orientation::from_fn(hierarchy, |at, normal| normal.cross(at - center))
     }
 
-    /// How far the samples above and below the middle of a square are from the circle through it, in spacings, at most.
+    /// Maximum distance of the samples above and below the center of a square from the circle through it, in spacings.
     fn off_circle(hierarchy: &Hierarchy, site: SiteIdx, turning: Turning) -> f64 {
         let surface = Surface::new(square()).unwrap();
         let orientation = circles(hierarchy, CENTER);
@@ -168,8 +168,9 @@ mod tests {
                 continue; // The square may end at an edge of the surface.
             }
             let turning = Turning::around(&hierarchy, &orientation, (site, 0), (spacing, HALF));
-            // Straight on, three steps lead off by 9 / 2 of the spacing over the radius, which is 0.054 over 1.75 at the
-            // most here. The fit is of first order, and its neighbors are not all around at the same distances.
+            // Without rotation, three steps end 9 / 2 spacing / radius off the circle. Here the spacing is 0.054 and
+            // the radius at most 1.75. The fit is of first order, and its neighbors are at different distances on
+            // different sides.
             let [followed, carried] =
                 [turning, Turning::default()].map(|turning| off_circle(&hierarchy, site, turning));
             assert!(carried > 0.1, "{site:?}: straight on by {carried}");
