@@ -195,6 +195,7 @@ impl<'a> Appearance<'a> {
                 };
                 engine::report(callback, progress)
             };
+            // Move sites with wrong guides, then correct all sites.
             self.obey(level, &links, &mut places, &mut tell)?;
             self.correct(level, &links, n_passes, &mut places, &mut tell)?;
             levels.push(places);
@@ -227,6 +228,7 @@ impl<'a> Appearance<'a> {
         let stage = &self.stages[level];
         let n_sites = self.hierarchy.levels()[level].n_sites();
         parallel::map_at_least(TASK, n_sites, |site| {
+            // Sites of the coarser level keep their position.
             if let Some(&place) = coarser.get(site) {
                 return place;
             }
@@ -241,6 +243,7 @@ impl<'a> Appearance<'a> {
             let Some(link) = nearest else {
                 return self.any(level, site);
             };
+            // Take the position that it predicts, or its own if that is not usable.
             let parent = coarser[link.site()];
             settled(stage, moved(parent, -link.way())).unwrap_or(parent)
         })
@@ -353,6 +356,7 @@ fn quarters(synthesizer: &Synthesizer, coarsest: &[u8], n_levels: usize) -> Vec<
     let (hierarchy, orientation) = (synthesizer.hierarchy(), synthesizer.orientation());
     let (positions, normals) = (hierarchy.sites().positions(), hierarchy.sites().normals());
     let mut quarters = coarsest.to_vec();
+    // Propagate the rotations from level to level.
     for level in hierarchy.levels()[..n_levels - 1].iter().rev() {
         let n_coarser = quarters.len();
         for site in n_coarser..level.n_sites() {
@@ -468,6 +472,7 @@ fn around(
         let diagonal = Vec2::new((x * stage.spacing) as f32, (y * stage.spacing) as f32);
         let mut sums = [0.0; N_FEATURES];
         for link in links {
+            // Offset from the linked site to the diagonal, in the frame of that site.
             let way = offset_after((diagonal - link.way()).to_array(), link.quarters());
             let place = moved(places[link.site()], way.into()).map(|at| at >> PART_BITS);
             let features = stage.turned_features(place, link.quarters());

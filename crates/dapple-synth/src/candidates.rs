@@ -135,6 +135,7 @@ impl Candidates {
         if pixels.is_empty() {
             return Err(SynthError::new(SynthErrorKind::Masked { level: number }));
         }
+        // Invert the list of sites.
         let mut row_of = vec![NO_ROW; beside.0.len()];
         for (row, &pixel) in (0..).zip(&pixels) {
             row_of[pixel as usize] = row;
@@ -274,6 +275,7 @@ impl Candidates {
             column = column.rem_euclid(self.size[0].into());
             line = line.rem_euclid(self.size[1].into());
         }
+        // Find the index of the pixel in the rectangle of candidates.
         let [columns, lines] = self.inner;
         let within = columns.contains(column) && lines.contains(line);
         // The cast is exact: the pixel is within the exemplar, which has at most 2^31 pixels.
@@ -282,6 +284,7 @@ impl Candidates {
             row + (column as u32 - columns.first)
         };
         let row = within.then(row)?;
+        // With a mask, look up its row.
         match &self.row_of {
             None => Some(row),
             Some(row_of) => Some(row_of[row as usize]).filter(|&row| row != NO_ROW),
@@ -462,6 +465,7 @@ fn pixels_of_area(
 ) -> ([Inner; 2], Vec<u32>) {
     let level = &pyramid.levels[pass.level];
     let area = &level.areas()[number];
+    // Lists the pixels of a rectangle whose neighborhoods the mask allows.
     let usable = |within: [Inner; 2]| {
         let [columns, lines] = within;
         let places = (lines.first..lines.end)
@@ -474,6 +478,7 @@ fn pixels_of_area(
         let pixel = |[x, line]: [u32; 2]| line * level.size[0] + x;
         places.filter(is_usable).map(pixel).collect::<Vec<_>>()
     };
+    // Try the pixels within the edges first.
     let all = [0, 1].map(|axis| Inner {
         first: area.first[axis],
         end: area.end[axis],
@@ -499,6 +504,7 @@ fn inner_of(
         [first[axis], end[axis]]
     };
     let [first, end] = along(pass.level);
+    // Shrink the range for each part that does not wrap.
     let mut inner = Inner { first, end };
     for part in &pass.parts {
         let read: &Exemplar = &pyramid.levels[pass.level + part.reads.step()];

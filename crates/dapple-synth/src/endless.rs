@@ -154,6 +154,7 @@ impl Endless {
             let levels = (side / COARSEST).checked_ilog2();
             levels.map_or(1, |levels| (levels + 1).min(MAX_LEVELS))
         });
+        // Check the number of levels and the periods.
         let range = "from 1 to 16, and none wider than the exemplar";
         let holds = (1..=most).contains(&n_levels);
         SynthError::check(holds, "number of levels", n_levels.into(), range)?;
@@ -170,6 +171,7 @@ impl Endless {
             n_levels as usize,
             &wanted,
         )?;
+        // Regular exemplars have no disadvantage for similar pixels.
         let is_tile = exemplar.edges == Edges::Wrap && exemplar.usable.is_none();
         let is_regular = exemplar.regularity() > REGULAR;
         for stage in &mut stages {

@@ -186,11 +186,13 @@ impl Ground for MeshGround<'_> {
         };
         let Some(around) = around else { return };
         let at = square.site as usize;
+        // Find the distance of the samples.
         let spacing = self.hierarchy.levels()[square.reads].spacing();
         let scale = self.scale(at);
         let step = spacing * scale;
         let point = self.hierarchy.sites().points()[at];
         let vectors = self.orientation.vectors();
+        // Fit the rotation of the field, if directions follow it.
         let turning = match self.axes {
             Axes::Carried => Turning::default(),
             Axes::Followed => Turning::around(
@@ -200,6 +202,7 @@ impl Ground for MeshGround<'_> {
                 (step, square.half),
             ),
         };
+        // Collect the sites in reach, walk to the samples, and interpolate.
         let level = simd::level();
         let sites = around.collect(level, square.site, &mut memory.nearby);
         let lattice = &mut memory.lattice;

@@ -247,6 +247,7 @@ impl Pass {
     pub(crate) fn check(&self, n_levels: usize) -> Result<(), SynthError> {
         check_any(self.parts.len(), "parts of a pass")?;
         for part in &self.parts {
+            // Check the side, the weight and the level.
             let side = part.side;
             let holds = side % 2 == 1 && (3..=15).contains(&side);
             SynthError::check(

@@ -46,6 +46,7 @@ impl Parents {
                 }
             }
         }
+        // Weigh the parents by distance.
         parents.weigh(hierarchy, site, coarser.spacing() * INTERPOLATION_RADIUS);
         parents
     }

@@ -134,6 +134,7 @@ pub(crate) fn averaged<P: Sourced>(
         }
         // The frame changes along the way; average the offsets in the frames of both ends.
         let way = 0.5 * (frame.flat(way) + other.flat(way));
+        // Add the prediction if it agrees.
         let predicted = places.moved(places.of_site(neighbor.index()), way);
         let off = places.difference(predicted, own);
         if off.length_squared() < AGREEMENT * AGREEMENT {
@@ -162,6 +163,7 @@ impl Frames {
         let frame = |site: usize| {
             let quarters = quarters.get(site).copied().unwrap_or(0);
             let scale = synthesizer.scale(site);
+            // Pixels per unit length.
             let pixels = 1.0 / (spacing * f64::from(scale));
             let down = turned(orientation.vectors()[site], normals[site], quarters);
             Frame {

@@ -77,6 +77,7 @@ impl Exemplar {
     /// Returns the central part, with sides of at most `side` pixels. Its edges are cut unless it is the whole
     /// exemplar.
     fn middle(&self, side: u32) -> Self {
+        // Find the central rectangle.
         let size = self.size.map(|whole| whole.min(side));
         let [left, top] = [0, 1].map(|axis| ((self.size[axis] - size[axis]) / 2) as usize);
         let len = size[0] as usize * self.n_channels;
@@ -115,6 +116,7 @@ struct Details {
 impl Details {
     /// Gathers the neighborhoods, or returns `None` if a side of the image is less than half of a neighborhood's side.
     fn new(image: &Exemplar) -> Option<Self> {
+        // Gather all neighborhoods.
         let pass = Pass {
             level: 0,
             parts: vec![Part::new(Shape::Full, SIDE, Reads::Same)],

@@ -218,10 +218,12 @@ impl<'a, G: Ground> Visit<'a, G> {
                 found[usize::from(self.quarters_of(site, nearest, painted))] = true;
             }
         };
+        // Middle of the coarser square.
         if let (Some(half), Some(painted)) = (self.coarser, state.coarser) {
             let side = 2 * half.half as usize + 1;
             add(&painted, worker.coarser.nearest[side * side / 2]);
         }
+        // Eight neighbors on the level itself.
         for term in self.terms.iter().filter(|term| term.is_beside()) {
             add(&state.here, worker.same.nearest[term.samples[0]]);
         }
@@ -259,6 +261,7 @@ impl<'a, G: Ground> Visit<'a, G> {
             if nearest == UNKNOWN {
                 continue;
             }
+            // Predict the pixel at the center: the source of the sample minus its offset.
             let source = painted.source(nearest as usize);
             let width = exemplar.size[0];
             let [x, y] = [source % width, source / width].map(i64::from);
@@ -293,12 +296,14 @@ impl<'a, G: Ground> Visit<'a, G> {
             half: half.half,
             rows: half.rows,
         };
+        // Sample the square on the level itself.
         if let Some(half) = self.same {
             let square = square(self.level, half);
             same.make_room(square.side(), self.n_channels);
             self.ground
                 .read(square, &self.prepared, state.here, same, ground);
         }
+        // Sample the square on the coarser level, or reuse the samples of the previous pass.
         if let (Some(half), Some(painted)) = (self.coarser, state.coarser) {
             let square = square(self.level + 1, half);
             coarser.make_room(square.side(), self.n_channels);
@@ -416,6 +421,7 @@ impl<'a, G: Ground> Visit<'a, G> {
             },
             _ => Best::NONE,
         };
+        // Find a row that is nearer than this fallback.
         let query = Query {
             below: fallback.distance_sq,
             hint: near.map(|near| near.row),
@@ -524,6 +530,7 @@ pub(crate) fn terms_of(pass: &Pass, halves: [i32; 2]) -> Vec<Term> {
         };
         let side = 2 * half + 1;
         for offset in part.offsets() {
+            // The exemplar is rotated by `quarters`, so look up the sample at the offset before the rotation.
             let sample = |quarters| {
                 let [i, j] = offset_before(offset, quarters);
                 ((j + half) * side + i + half) as usize

@@ -107,6 +107,7 @@ impl Links {
                 }
                 part
             });
+            // Append the parts in order, with their starts shifted.
             for (part, ends) in pieces {
                 let before = links.len() as u32;
                 let ends = ends.into_iter();

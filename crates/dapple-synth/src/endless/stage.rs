@@ -239,6 +239,7 @@ fn usable(
         return Ok((None, reach));
     }
     let [width, height] = exemplar.size.map(|side| side as usize);
+    // Start from the mask; at least half of its pixels must remain.
     let all = match &exemplar.usable {
         Some(usable) => usable.clone(),
         None => vec![true; width * height],
@@ -250,6 +251,7 @@ fn usable(
     }
     // Halve the margin until enough pixels are usable.
     loop {
+        // Erode along the rows, then along the columns.
         let rows = all.chunks_exact(width);
         let across: Vec<bool> = rows
             .flat_map(|row| inner(exemplar.edges, width, reach, |at| row[at]))

@@ -338,6 +338,7 @@ impl Area {
         for (sums, [x, y]) in around.iter_mut().zip(DIAGONALS) {
             for [beyond_x, beyond_y] in [[0, 0], [x, 0], [0, y]] {
                 let [across, down] = self.at([column + x + beyond_x, row + y + beyond_y]);
+                // The source of the pixel beyond predicts the diagonal.
                 let place = [
                     across - beyond_x * stage.spacing,
                     down - beyond_y * stage.spacing,

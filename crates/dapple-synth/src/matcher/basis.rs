@@ -92,6 +92,7 @@ impl Basis {
 
     /// Computes the directions of every `step`th row.
     fn of(effort: Effort, step: usize, dims: usize, rows: &[f32]) -> Self {
+        // Center the sample, and find its principal components.
         let sample: Vec<&[f32]> = rows.chunks_exact(dims).step_by(step).collect();
         let mean = mean(dims, &sample);
         let sample = centered(&sample, &mean);
@@ -326,6 +327,7 @@ fn orthonormalize(dims: usize, directions: &mut [f64]) {
     for i in 0..directions.len() / dims {
         let (before, rest) = directions.split_at_mut(i * dims);
         let direction = &mut rest[..dims];
+        // Subtract the projections on earlier directions.
         let length_sq = dot(direction, direction);
         for other in before.chunks_exact(dims) {
             let along = dot(direction, other);
@@ -333,6 +335,7 @@ fn orthonormalize(dims: usize, directions: &mut [f64]) {
                 *value -= along * other;
             }
         }
+        // Normalize, or set to zero if almost nothing remains.
         let left_sq = dot(direction, direction);
         let factor = if left_sq > DEPENDENT * length_sq {
             1.0 / left_sq.sqrt()

@@ -99,6 +99,7 @@ impl<S: Simd> Search<'_, S> {
     #[inline(always)]
     fn visit_leaves(&mut self, first: usize, mut near: u64) {
         let mut sums = [[0_i32; LANES]; LANES];
+        // Add the next step to the sums of all remaining leaves, and drop leaves without a near row.
         for (placed, pairs) in self.placed.iter().zip(&self.tree.steps) {
             let pairs = &pairs[first..];
             let mut left = near;
@@ -114,6 +115,7 @@ impl<S: Simd> Search<'_, S> {
                 return;
             }
         }
+        // Compare the rows of the remaining leaves.
         while near != 0 {
             let leaf = near.trailing_zeros() as usize;
             near &= near - 1;

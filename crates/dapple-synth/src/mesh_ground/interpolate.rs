@@ -150,6 +150,7 @@ fn bound<S: Simd>(simd: S, terms: &Terms<'_>, axes: [[f32; 3]; 2], bounds: &mut 
         for (at, row) in rows.iter().enumerate() {
             let [x, y, z] = [0, 1, 2].map(|part| f32x8::from_slice(simd, &row.lanes[part]));
             for (axis, [ax, ay, az]) in axes.into_iter().enumerate() {
+                // Range of the samples of the row along the axis, extended by the reach of a site.
                 let places: [f32; LANES] = (x * ax + y * ay + z * az).into();
                 let (mut least, mut most) = (f32::INFINITY, f32::NEG_INFINITY);
                 for &place in &places[..row.n_lanes] {
@@ -185,6 +186,7 @@ fn add_up<S: Simd>(
         for lane in 0..row.n_lanes {
             let sample = row.at * side + row.first_column + lane;
             let to = &mut samples.values[sample * n_channels..][channels.clone()];
+            // Divide by the sum of weights; without weights, take the nearest site.
             if sums.weights[lane] > WEIGHT_MIN {
                 samples.nearest[sample] = memory.reaching[sums.nearest[lane] as usize].site;
                 for (channel, value) in to.iter_mut().enumerate() {
@@ -216,6 +218,7 @@ fn add_up_row<S: Simd>(
     list: &[u32],
     (reaching, colors): (&[Record], &[[f32; CHANNELS]]),
 ) -> Sums {
+    // Load positions and normals of the samples.
     let zero = f32x8::splat(simd, 0.0);
     let load = |part: usize| f32x8::from_slice(simd, &row.lanes[part]);
     let (x, y, z) = (load(0), load(1), load(2));
@@ -246,6 +249,7 @@ fn add_up_row<S: Simd>(
         c += weight * cc;
         d += weight * cd;
     }
+    // Store the sums.
     let mut sums = Sums {
         weights: [0.0; LANES],
         nearest: [0; LANES],

@@ -92,6 +92,7 @@ impl Lattice {
     /// Arranges given points eight to a row, relative to `center`. The direction across the rows is from the first
     /// point to the last.
     pub(crate) fn line_up(&mut self, surface: &Surface, points: &[SurfacePoint], center: DVec3) {
+        // Point the axis across the rows from the first to the last point.
         self.side = points.len();
         self.down = match points {
             [first, .., last] => surface.position(*last) - surface.position(*first),
@@ -161,10 +162,12 @@ impl Lattice {
         let half = square.half;
         let last = *square.range().end();
         let mut normal = (start.point.face, surface.face_normal(start.point.face));
+        // Store the middle of the column.
         if last >= 0 {
             let at = [half as usize, column];
             self.put(surface, (start.point, normal.1), at, center);
         }
+        // Walk up, then down.
         for (way, n_steps) in [(-1, half), (1, last)] {
             let turn = self.turning.down.toward(f64::from(way));
             let (mut point, mut direction) = (start.point, start.direction * f64::from(way));

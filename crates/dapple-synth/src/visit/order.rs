@@ -42,6 +42,7 @@ impl<G: Ground> Visit<'_, G> {
             kept,
             factors: None,
         };
+        // Choose the order by what the pass reads.
         let mut workers = Vec::new();
         workers.resize_with(parallel::n_threads(), Worker::default);
         if self.same.is_none() {
@@ -84,11 +85,13 @@ impl<G: Ground> Visit<'_, G> {
         workers: &mut [Worker<G::Memory>],
         tell: &mut dyn FnMut(usize) -> Result<(), SynthError>,
     ) -> Result<(), SynthError> {
+        // One thread needs no schedule.
         let turns = if workers.len() == 1 {
             Turns::in_order(self.ground.order(self.level))
         } else {
             self.ground.turns(self.level, &self.prepared)
         };
+        // Run the schedule in stretches; report progress after each.
         for first in (0..turns.len()).step_by(STRETCH) {
             let end = turns.len().min(first + STRETCH);
             let board = Board::new(first..end, workers.len());
@@ -115,6 +118,7 @@ impl<G: Ground> Visit<'_, G> {
         let n_sites = self.ground.n_sites(self.level);
         let mut kept = Kept::new(n_sites, keep, self.n_channels);
         let side = self.coarser.map_or(0, |half| 2 * half.half as usize + 1);
+        // Pair each site with the memory for its kept square, if squares are kept.
         let rooms = kept.sites().map(Some).chain(repeat_with(|| None));
         let start = self.ground.start(self.level);
         let is_visited = |site: u32| start.is_none_or(|start| !start.is_kept[site as usize]);
@@ -124,12 +128,14 @@ impl<G: Ground> Visit<'_, G> {
             let left = Mutex::new(sites.by_ref().take(end - first));
             parallel::together(workers, |_, worker| {
                 loop {
+                    // Take the next sites.
                     let mut left = left.lock().unwrap_or_else(PoisonError::into_inner);
                     let piece: Vec<_> = left.by_ref().take(PIECE).collect();
                     drop(left);
                     if piece.is_empty() {
                         return;
                     }
+                    // Visit them, and keep their coarser squares.
                     for (site, room) in piece.into_iter().filter(|(site, _)| is_visited(*site)) {
                         self.visit(site, worker, state);
                         if let Some(mut room) = room {
