@@ -57,13 +57,13 @@ use dapple_raster::simd::{self, dispatch};
 use glam::Vec2;
 use links::Links;
 
-/// Positions are in units of 2^-`PART_BITS` pixels along each axis. With whole pixels, a prediction would be off by up
-/// to half a pixel at every step, which cuts up pieces of the exemplar.
+/// Number of subpixel bits of a position, which is in units of 1/8 pixel along each axis. With whole pixels, a
+/// prediction would be off by up to half a pixel at every step, which cuts up pieces of the exemplar.
 ///
-/// The integers suffice for exemplars of 2^29 pixels along a side, more than an image with five rows can have.
+/// Coordinates of 32 bits allow 2^29 pixels along a side. An image with at least five rows cannot have more.
 const PART_BITS: u32 = 3;
 
-/// Distance at which a site also tries positions around the best one: half a pixel, in units of [`PART_BITS`].
+/// Distance at which a site also tries positions around the best one: half a pixel, in units of 1/8 pixel.
 ///
 /// Measured on the six models of figure 5: 13 to 18 % of neighbors are of other pieces, compared with 14 to 27 % with
 /// whole pixels, and colors where pieces meet differ by 7 to 34 % less (mean squares of all neighbors). Without this
@@ -107,8 +107,8 @@ pub(crate) struct Appearance<'a> {
     evenness: f32,
 }
 
-/// A candidate position in units of [`PART_BITS`], and the squared distance of its surroundings from those of the site,
-/// costs included.
+/// A candidate position in units of 1/8 pixel, and its squared distance in features and guides from the site, plus its
+/// cost.
 #[derive(Clone, Copy, Debug)]
 struct Choice {
     place: [u32; 2],

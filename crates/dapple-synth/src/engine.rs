@@ -106,7 +106,7 @@ pub(crate) fn run_turned<G: Ground>(
     run_passes(ground, pyramid, &passes, options, callback)
 }
 
-/// Runs the given passes instead of those of the options; otherwise like [`run_turned`].
+/// Runs the given passes, whatever the schedule of the options. Returns the same as [`run_turned`].
 pub(crate) fn run_passes<G: Ground>(
     ground: &G,
     pyramid: &Pyramid,

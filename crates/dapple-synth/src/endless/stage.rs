@@ -129,7 +129,7 @@ pub(crate) fn stages(
     parallel::map(n_levels, stage).into_iter().collect()
 }
 
-/// Converts a pixel of the exemplar, which has less than 2^32 columns and rows.
+/// Converts the coordinates of a pixel of the exemplar to `u32`; they are below 2^32.
 pub(crate) fn narrow(place: [i64; 2]) -> [u32; 2] {
     place.map(|at| at as u32)
 }

@@ -263,7 +263,7 @@ fn add_up_row<S: Simd>(
     sums
 }
 
-/// Returns whether no site can have a normal that is more than a right angle from a sample's.
+/// Returns true if the normals of all sites and samples are certainly at most a right angle apart.
 fn is_one_sheet(lattice: &Lattice, reaching: &[Record]) -> bool {
     let Some(middle) = reaching.first().map(|record| record.normal) else {
         return true;
