@@ -1,12 +1,15 @@
-//! Where the faces of a mesh are in a texture map (section 6).
+//! Atlases: the layout of a mesh's faces in a texture map (section 6).
 //!
 //! Reference: Marc Soucy, Guy Godin and Marc Rioux, "A texture-mapping approach for the compression of colored 3D
-//! triangulations", The Visual Computer 12(10), 1996: every face is mapped to a right triangle of its own, two of which
-//! share a square tile. Here tiles are all of one size, or of sizes that follow the areas of the faces; or the map is one
-//! of [charts](Atlas::charts), large pieces of the surface, or the caller's. No piece that is made here is mirrored: what
-//! is counterclockwise from outside is so in the picture.
+//! triangulations", The Visual Computer 12(10), 1996: every face is mapped to a separate right triangle, and two
+//! triangles share a square tile.
 //!
-//! Texel (x, y) has its center at `(x + 0.5, y + 0.5)`; row 0 is the top, and uv go from 0 to 1, v down.
+//! Tiles have a single size, or sizes that follow the areas of the faces. Other layouts consist of
+//! [charts](Atlas::charts), large pieces of the surface, or are supplied by the caller. Layouts that are made here
+//! mirror no piece: faces that are counterclockwise from outside are counterclockwise in the map.
+//!
+//! Texel (x, y) has its center at `(x + 0.5, y + 0.5)`. Row 0 is the top. Texture coordinates go from 0 to 1, with v
+//! down.
 
 mod charts;
 mod own_uvs;
@@ -23,34 +26,36 @@ use dapple_mesh::{FaceIdx, Surface, SurfacePoint};
 use dapple_raster::Raster;
 use glam::DVec2;
 
-/// A texture map's layout: which face each texel shows, and where the corners of faces are.
+/// The layout of a texture map: the face that each texel shows, and the corners of each face.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Atlas {
     faces: Raster<u32>,
-    /// The corners of every face, in texels; NaN for a face without a place.
+    /// The corners of every face, in texels; NaN for a face without a place in the map.
     corners: Vec<[DVec2; 3]>,
-    /// Whether every level of a mipmap can be shown: in a layout of tiles, the coarse ones mix them.
+    /// Whether every level of a mipmap can be shown. In a layout of tiles, coarse levels mix unrelated faces.
     mipmaps: bool,
 }
 
-/// The most padding of pieces.
+/// Maximum padding of pieces, in texels.
 const PADDING_MAX: u32 = 1 << 10;
 
-/// No face.
+/// Marks a texel without a face.
 const NONE: u32 = u32::MAX;
 
 impl Atlas {
-    /// Charts: pieces of the surface that are flattened as a whole, with borders along creases where there are some, and
-    /// packed by their shapes into a square map. `side` is that of the map in texels.
+    /// Lays out charts: pieces of the surface, each flattened as a whole. Their borders follow creases where possible.
+    /// They are packed by shape into a square map with a side of `side` texels.
     ///
-    /// Texels are of about one size on the surface ([`AtlasReport::stretch`]). More than 512 charts are packed in rows, which
-    /// is faster by far and leaves more of the map free. The padding is 1 texel below a side of 512,
-    /// then 2, and from 4096 on a 1024th of the side: pieces are twice as far apart. All texels between them continue
-    /// them, so that every level of a mipmap can be shown.
+    /// Texels have about the same size on the surface ([`AtlasReport::stretch`]). More than 512 charts are packed in
+    /// rows, which is much faster but leaves more of the map empty.
+    ///
+    /// The padding is 1 texel for sides below 512; otherwise it is a 1024th of the side, rounded down, but at least 2.
+    /// Charts are twice the padding apart. All texels between charts continue them, so that every level of a mipmap can
+    /// be shown.
     ///
     /// # Errors
     ///
-    /// [`SynthErrorKind::Range`] if the pieces with their padding have no room, or if the map is larger than 2^14.
+    /// [`SynthErrorKind::Range`] if the charts with their padding do not fit, or if the map is larger than 2^14.
     ///
     /// # Examples
     ///
@@ -70,26 +75,26 @@ impl Atlas {
         Self::charts_with(surface, side, None, |_| ControlFlow::Continue(()))
     }
 
-    /// Charts with a padding of the caller's, from 1 to 1024 texels.
+    /// Lays out charts with the given padding, from 1 to 1024 texels.
     ///
-    /// With `3 * 2^k` texels, bilinear reading of a mipmap's first `k + 2` levels mixes in no other piece.
+    /// With `3 * 2^k` texels, bilinear sampling of a mipmap's first `k + 2` levels mixes in no other chart.
     ///
     /// # Errors
     ///
-    /// Those of [`charts`](Self::charts), and [`SynthErrorKind::Range`] for another padding.
+    /// The errors of [`charts`](Self::charts), and [`SynthErrorKind::Range`] for a padding out of range.
     pub fn charts_padded(surface: &Surface, side: u32, padding: u32) -> Result<Self, SynthError> {
         Self::charts_with(surface, side, Some(padding), |_| ControlFlow::Continue(()))
     }
 
-    /// Charts with a callback, which is called with the part of the work that is done, from 0 to 1, and can stop it. `padding`
-    /// is that of [`charts_padded`](Self::charts_padded), or by default that of [`charts`](Self::charts).
+    /// Lays out charts with a callback, which receives the completed fraction of the work, from 0 to 1, and can cancel.
+    /// `padding` is as in [`charts_padded`](Self::charts_padded); `None` means the padding of [`charts`](Self::charts).
     ///
-    /// The callback is called for each chart that was flattened and for each trial to pack all of them, but not while the
+    /// The callback is called after each flattened chart and for each attempt to pack all of them, but not while the
     /// surface is cut.
     ///
     /// # Errors
     ///
-    /// Those of [`charts_padded`](Self::charts_padded), and [`SynthErrorKind::Cancelled`] if the callback stops the work.
+    /// The errors of [`charts_padded`](Self::charts_padded), and [`SynthErrorKind::Cancelled`] if the callback cancels.
     pub fn charts_with(
         surface: &Surface,
         side: u32,
@@ -100,60 +105,64 @@ impl Atlas {
         charts::charts(surface, side, padding, &mut callback)
     }
 
-    /// Right triangles of one size, two in a square tile, as in the paper. `side` is that of the square map in texels.
+    /// Lays out right triangles of a single size, two per square tile, as in the paper. The map is a square of `side`
+    /// texels.
     ///
-    /// Texels around a triangle continue it, so that reading between texels mixes in no other face. This padding is the
-    /// largest power of two that is at most a 16th of a tile's side, and at least 1.
+    /// Texels around a triangle continue it, so that interpolation between texels mixes in no other face. This padding
+    /// is the largest power of two up to a 16th of a tile's side, but at least 1 texel.
     ///
     /// # Errors
     ///
-    /// [`SynthErrorKind::Range`] if a tile would have fewer texels than padding needs, saying the side that is needed, or
-    /// if the map is larger than 2^14.
+    /// [`SynthErrorKind::Range`] if a tile would have fewer texels than its padding needs, or if the map is larger than
+    /// 2^14. The message states the side that is needed.
     pub fn uniform(surface: &Surface, side: u32) -> Result<Self, SynthError> {
         tiles::uniform(surface, side, tiles::padding(surface, side))
     }
 
-    /// Right triangles of one size with a padding of the caller's, from 1 to 1024 texels.
+    /// Lays out right triangles of a single size with the given padding, from 1 to 1024 texels.
     ///
-    /// With a padding of `2^k` texels and a side that is a multiple of it, bilinear reading of a mipmap's first `k + 1`
-    /// levels, each the mean of 2 x 2 texels of the one before, mixes in no other face: tiles begin at multiples of
-    /// `2^k`.
+    /// A mipmap level averages 2 × 2 texels of the level before. With a padding of `2^k` texels and a side that is a
+    /// multiple of it, tiles begin at multiples of `2^k`. Bilinear sampling of the first `k + 1` levels then mixes in
+    /// no other face.
     ///
     /// # Errors
     ///
-    /// Those of [`uniform`](Self::uniform), and [`SynthErrorKind::Range`] for another padding.
+    /// The errors of [`uniform`](Self::uniform), and [`SynthErrorKind::Range`] for a padding out of range.
     pub fn uniform_padded(surface: &Surface, side: u32, padding: u32) -> Result<Self, SynthError> {
         tiles::uniform(surface, side, padding)
     }
 
-    /// Right triangles in tiles whose sides are powers of two and follow the areas of the faces, so that texels are of
-    /// about one size on the surface. The padding is that of [`uniform`](Self::uniform).
+    /// Lays out right triangles in tiles whose sides are powers of two and follow the areas of the faces, so that
+    /// texels have about the same size on the surface. The padding is that of [`uniform`](Self::uniform).
     ///
     /// # Errors
     ///
-    /// Those of [`uniform`](Self::uniform).
+    /// The errors of [`uniform`](Self::uniform).
     pub fn by_area(surface: &Surface, side: u32) -> Result<Self, SynthError> {
         tiles::by_area(surface, side, tiles::padding(surface, side))
     }
 
-    /// Right triangles by area with a padding of the caller's, as in [`uniform_padded`](Self::uniform_padded).
+    /// Lays out right triangles by area with the given padding, as in [`uniform_padded`](Self::uniform_padded).
     ///
     /// # Errors
     ///
-    /// Those of [`uniform_padded`](Self::uniform_padded).
+    /// The errors of [`uniform_padded`](Self::uniform_padded).
     pub fn by_area_padded(surface: &Surface, side: u32, padding: u32) -> Result<Self, SynthError> {
         tiles::by_area(surface, side, padding)
     }
 
-    /// The caller's own layout: uv of the three corners of every face, v down. Whole turns are taken off, so that a face
-    /// may lie in any unit square, but not across two of them; what lies outside is not shown.
+    /// Uses a layout of the caller: the texture coordinates of the three corners of every face, with v down. A face may
+    /// lie in any unit square: integer offsets are removed. Parts of a face outside of the unit square of its center
+    /// are not shown.
     ///
-    /// Where faces overlap, the one with the lower index is shown. `padding` texels around what is covered are filled,
-    /// too; with as many as the map has, all are, and no level of a mipmap mixes in texels without a face.
+    /// Where faces overlap, the one with the lowest index is shown. A border of `padding` texels around covered texels
+    /// is filled, too. With a padding as large as the map all texels are filled, and no level of a mipmap mixes in
+    /// texels without a face.
     ///
     /// # Errors
     ///
-    /// [`SynthErrorKind::Count`] for another number of faces, and as [`uniform`](Self::uniform).
+    /// [`SynthErrorKind::Count`] unless there is an entry for each face, and [`SynthErrorKind::Range`] for a side of 0
+    /// or above 2^14.
     pub fn from_uvs(
         surface: &Surface,
         uvs: &[[DVec2; 3]],
@@ -163,13 +172,13 @@ impl Atlas {
         own_uvs::from_uvs(surface, uvs, size, padding)
     }
 
-    /// Columns and rows.
+    /// The size in texels: columns and rows.
     #[must_use]
     pub fn size(&self) -> [u32; 2] {
         self.faces.size()
     }
 
-    /// The uv of the corners of every face, from 0 to 1, v down; NaN for a face without a place.
+    /// The texture coordinates of the corners of every face, from 0 to 1, with v down; NaN for a face without a place.
     #[must_use]
     pub fn uvs(&self) -> Vec<[DVec2; 3]> {
         let size = self.faces.size().map(f64::from);
@@ -177,49 +186,50 @@ impl Atlas {
         self.corners.iter().map(|face| face.map(uv)).collect()
     }
 
-    /// Whether every level of a mipmap can be shown. Not in a layout of tiles: past a level that the padding allows,
-    /// texels mix faces that are far apart on the surface, and no padding is wide enough for the coarsest levels.
+    /// Whether every level of a mipmap can be shown. It cannot in a layout of tiles: past the level that the padding
+    /// allows, texels mix faces that are far apart on the surface, and no padding is wide enough for the coarsest
+    /// levels.
     pub(crate) fn mipmaps(&self) -> bool {
         self.mipmaps
     }
 
-    /// The part of the texels that show a face, padding included: 0 to 1.
+    /// Fraction of the texels that show a face, including padding: 0 to 1.
     #[must_use]
     pub fn coverage(&self) -> f64 {
         let covered = self.faces.pixels().iter().filter(|face| **face != NONE);
         covered.count() as f64 / self.faces.pixels().len() as f64
     }
 
-    /// How good the layout is for the surface that it was made for.
+    /// Measures the quality of the layout for its surface.
     #[must_use]
     pub fn report(&self, surface: &Surface) -> AtlasReport {
         AtlasReport::new(self, surface)
     }
 
-    /// The L2 stretch of every face of the surface that the layout was made for, as [`AtlasReport::stretch`] sums it up:
-    /// above 1 where texels are larger than elsewhere. NaN for a face without a place.
+    /// The L2 stretch of every face of the layout's surface, whose root mean square is [`AtlasReport::stretch`]. It is
+    /// above 1 where texels are larger on the surface than on average, and NaN for a face without a place.
     #[must_use]
     pub fn stretches(&self, surface: &Surface) -> Vec<f64> {
         report::stretches(self, surface)
     }
 
-    /// The face of a texel.
+    /// The face of a texel; `None` for a texel that shows no face.
     ///
     /// # Panics
     ///
-    /// If there is no such texel.
+    /// If the texel is outside of the map.
     #[must_use]
     pub fn face(&self, [column, row]: [u32; 2]) -> Option<FaceIdx> {
         let face = self.faces.row(row)[column as usize];
         (face != NONE).then_some(FaceIdx(face))
     }
 
-    /// Where the center of a texel is on the surface: on its face, or, in the padding, on the face that continues it.
-    /// Past a border of the mesh, it is where the border was met.
+    /// The point of the surface at the center of a texel: on the texel's face or, in the padding, on the face that
+    /// continues it. Past a border of the mesh it is the point where the path met the border.
     ///
     /// # Panics
     ///
-    /// If there is no such texel.
+    /// If the texel is outside of the map.
     #[must_use]
     pub fn point(&self, surface: &Surface, texel: [u32; 2]) -> Option<SurfacePoint> {
         let face = self.face(texel)?;
@@ -229,17 +239,17 @@ impl Atlas {
         if weights.iter().all(|&weight| weight >= 0.0) {
             return Some(point);
         }
-        // The path from the middle of the face unfolds what is across its edges.
+        // Walk from the centroid of the face: this unfolds the faces across its edges.
         let middle = surface.point(face, [1.0 / 3.0; 3]);
         let path = point.flat - middle.flat;
         let length = path.length();
-        // Where a caller's layout makes a sliver of a face, a texel beside it is far away.
+        // Limit the distance: in a caller's layout, texels next to a sliver are far from its centroid.
         let distance = length.min(surface.area().sqrt());
         Some(surface.walk(middle, path / length, distance).point)
     }
 }
 
-/// The weights of three corners that give a position.
+/// The barycentric weights of a position in a triangle.
 fn weights([a, b, c]: [DVec2; 3], at: DVec2) -> [f64; 3] {
     let area = (b - a).perp_dot(c - a);
     let of_b = (at - a).perp_dot(c - a) / area;
@@ -247,13 +257,13 @@ fn weights([a, b, c]: [DVec2; 3], at: DVec2) -> [f64; 3] {
     [1.0 - of_b - of_c, of_b, of_c]
 }
 
-/// Refuses padding that pieces cannot have.
+/// Returns an error for a padding that is not from 1 to [`PADDING_MAX`].
 fn check_padding(padding: u32) -> Result<(), SynthError> {
     let holds = (1..=PADDING_MAX).contains(&padding);
     SynthError::check(holds, "padding", padding.into(), "from 1 to 1024")
 }
 
-/// Refuses sides that a map cannot have.
+/// Returns an error for a side that is not from 1 to [`MAP_MAX`].
 fn check_side(side: u32) -> Result<(), SynthError> {
     if (1..=MAP_MAX).contains(&side) {
         return Ok(());
@@ -265,7 +275,7 @@ fn check_side(side: u32) -> Result<(), SynthError> {
     }))
 }
 
-/// The largest side of a map.
+/// Maximum side of a map, in texels.
 const MAP_MAX: u32 = 1 << 14;
 
 #[cfg(test)]

@@ -1,7 +1,8 @@
-//! Baking: a texture map from the sites (section 6).
+//! Baking: rendering a texture map from the sites (section 6).
 //!
-//! Texels are taken in small blocks; those of one face of a block read the same sites. What a texel shows is either a mean
-//! of the values at the sites around it, as in the paper, or the exemplar itself ([`magnify`](crate::magnify)).
+//! Texels are processed in small blocks. The texels of one face in a block read the same sites. A texel shows either a
+//! weighted mean of the values of the sites around it, as in the paper, or a piece of the exemplar
+//! ([`magnify`](crate::magnify)).
 
 use crate::atlas::Atlas;
 use crate::ground::{Plain, Samples};
@@ -11,46 +12,46 @@ use dapple_mesh::{FaceIdx, Surface, SurfacePoint};
 use dapple_raster::{Raster, parallel, simd};
 use glam::DVec3;
 
-/// The sides of a block in texels.
+/// Side of a block, in texels.
 const BLOCK: u32 = 8;
-/// The reach within which there is a site of the finest level of a piece of the surface, in spacings.
+/// Search margin around a group of texels, in spacings: every piece of the surface has a finest site within it.
 const REACH: f64 = 2.0;
 
-/// Texels of one face, close together.
+/// Texels of one face in one block.
 pub(crate) struct Group<'a> {
     pub(crate) surface: &'a Surface,
     pub(crate) face: FaceIdx,
     pub(crate) points: &'a [SurfacePoint],
-    /// The position in space that those of `sites` are relative to.
+    /// The position in space that the positions of `sites` are relative to.
     pub(crate) center: DVec3,
-    /// The finest sites that can reach one of the texels, and some more.
+    /// A superset of the finest sites within reach of a texel of the group.
     pub(crate) sites: Around<'a>,
 }
 
-/// A way to get the values of texels from the sites around them, with memory that it keeps from group to group.
+/// Computes the values of texels from the sites around them, with scratch memory that is reused from group to group.
 pub(crate) trait Paint {
-    /// Writes the channels of every point of the group, one point after the other.
+    /// Writes the channels of every point of the group, point by point.
     fn paint(&mut self, group: &Group<'_>, values: &mut [f32]);
 }
 
-/// Memory of a thread that bakes blocks of texels.
+/// Scratch memory of a thread that bakes blocks of texels.
 struct Memory<'a> {
-    /// The texels of a block by face.
+    /// The texels of a block, sorted by face.
     texels: Vec<(FaceIdx, [u32; 2])>,
     points: Vec<SurfacePoint>,
     nearby: Nearby,
-    /// The channels of the texels of a face, one texel after the other.
+    /// The channels of the texels of a group, texel by texel.
     values: Vec<f32>,
     paint: Box<dyn Paint + 'a>,
 }
 
-/// Mixes the values of the finest sites at every texel of an atlas; `background` where there is no face.
+/// Interpolates the values of the finest sites at every texel of an atlas. Texels without a face get `background`.
 ///
-/// `column` has `N` values for each site.
+/// `column` has `N` values per site.
 ///
 /// # Errors
 ///
-/// [`SynthErrorKind::Count`] for another number of values.
+/// [`SynthErrorKind::Count`] if `column` has a different number of values.
 pub fn bake<const N: usize>(
     surface: &Surface,
     hierarchy: &Hierarchy,
@@ -81,7 +82,8 @@ pub fn bake<const N: usize>(
     })
 }
 
-/// Paints every texel of an atlas, each thread with a `painter` of its own; `background` where there is no face.
+/// Paints every texel of an atlas. Each thread creates its own painter with `painter`. Texels without a face get
+/// `background`.
 pub(crate) fn bake_with<'a, const N: usize>(
     surface: &Surface,
     hierarchy: &Hierarchy,
@@ -106,7 +108,7 @@ pub(crate) fn bake_with<'a, const N: usize>(
     Ok(Raster::from_vec(size, bands.concat())?)
 }
 
-/// The input of all blocks.
+/// The input shared by all blocks.
 struct Baker<'a, 'p> {
     surface: &'a Surface,
     hierarchy: &'a Hierarchy,
@@ -116,7 +118,7 @@ struct Baker<'a, 'p> {
 }
 
 impl Baker<'_, '_> {
-    /// The channels of some rows, one texel after the other.
+    /// The channels of some rows of the map, texel by texel.
     fn bake_rows(&self, rows: core::ops::Range<u32>) -> Vec<f32> {
         let width = self.atlas.size()[0];
         let n_channels = self.background.len();
@@ -130,6 +132,7 @@ impl Baker<'_, '_> {
             paint: (self.painter)(),
         };
         for first in (0..width).step_by(BLOCK as usize) {
+            // Collect the texels of the block, and group them by face.
             memory.texels.clear();
             for row in rows.clone() {
                 for column in first..(first + BLOCK).min(width) {
@@ -138,7 +141,7 @@ impl Baker<'_, '_> {
                     memory.texels.extend(face.map(|face| (face, texel)));
                 }
             }
-            // Stable, so that the texels of a face stay row by row.
+            // The sort is stable, so that the texels of a face stay in row order.
             memory.texels.sort_by_key(|(face, _)| *face);
             let texels = core::mem::take(&mut memory.texels);
             for group in texels.chunk_by(|a, b| a.0 == b.0) {
@@ -154,7 +157,7 @@ impl Baker<'_, '_> {
         values
     }
 
-    /// Fills `memory.values` with those of some texels of one face.
+    /// Computes the values of some texels of one face into `memory.values`.
     fn bake_group(&self, group: &[(FaceIdx, [u32; 2])], memory: &mut Memory<'_>) {
         let surface = self.surface;
         memory.points.clear();
@@ -166,6 +169,7 @@ impl Baker<'_, '_> {
         if memory.points.is_empty() {
             return;
         }
+        // Collect the sites around the bounding ball of the texels.
         let positions = || memory.points.iter().map(|&point| surface.position(point));
         let center = positions().sum::<DVec3>() / memory.points.len() as f64;
         let far_sq = positions()
@@ -186,7 +190,7 @@ impl Baker<'_, '_> {
     }
 }
 
-/// Means of the values at the sites around: equation 1, in the registers that also read the neighborhoods.
+/// Paints weighted means of the sites around (equation 1), with the SIMD code that also reads neighborhoods.
 struct Mixed<'a> {
     colors: Plain<'a>,
     radius: f32,

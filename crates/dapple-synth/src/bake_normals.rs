@@ -1,13 +1,14 @@
-//! Normal maps, turned from the exemplar into the frames of a texture map.
+//! Baking of normal maps: rotation of the exemplar's normals into the tangent frames of a texture map.
 //!
-//! A normal of the exemplar has parts to the right, up or down as [`NormalY`] says, and out. On the surface these are the
-//! directions P, O (which is down) and n of the site that copies it. Between sites the vectors along the surface are
-//! mixed in space, not their parts: near a singularity of the field, where frames turn fast, parts would not fit together.
+//! A normal of the exemplar has components to the right, up or down as [`NormalY`] says, and outward. On the surface
+//! these directions are P, O (which points down) and n of the site that copies the normal. Between sites, the
+//! tangential vectors are interpolated in space, not by component: near a singularity of the field, where frames rotate
+//! fast, components of adjacent sites would not match.
 //!
-//! A texel's frame is that of glTF 2.0: N is the normal that the mesh is shaded by (those of the corners, mixed), T the
-//! tangent along +u at a right angle to it, and B = ± N × T points to the top of the map, with the sign that says whether
-//! the face is mirrored there. T is what programs work out when a file has no tangents. Sites have the normals of the
-//! smooth surface; where the mesh is shaded by another, as beside a crease, vectors along the surface turn with it.
+//! The frame of a texel is that of glTF 2.0. N is the interpolated shading normal of the face's corners. T is the
+//! tangent along +u, perpendicular to N. B = ± N × T points to the top of the map; the sign depends on whether the face
+//! is mirrored there. T is the tangent that programs compute when a file has none. Sites have the normals of the smooth
+//! surface. Where the shading normal differs, as next to a crease, tangential vectors rotate with it.
 //!
 //! Reference: Morten S. Mikkelsen, "Simulation of Wrinkled Surfaces Revisited", master's thesis, University of Copenhagen, 2008.
 
@@ -24,18 +25,18 @@ use dapple_mesh::{CREASE, Walk};
 use dapple_raster::Raster;
 use glam::DVec3;
 
-/// Bakes a normal map of the exemplar, or of a version that is a whole number of times as large.
+/// Bakes a normal map of the exemplar, or of a version whose size is an integer multiple of the exemplar's.
 ///
-/// `y` is where green points, in the exemplar and in the result. `shading` has the normals of the corners of all faces by
-/// which the model is shaded, as [`textured_model`](crate::textured_model) takes them. Texels without a face are flat.
+/// `y` is the direction of green, in the exemplar and in the result. `shading` has the normal of every corner of every
+/// face, as [`textured_model`](crate::textured_model) takes them. Texels without a face are flat.
 ///
-/// Codes next to the middle of an image count as 0 (see [`Normal::centered`]): turned into the frames of charts, their slope
-/// would show at seams of what is flat.
+/// Codes adjacent to the middle code of an image count as 0 (see [`Normal::centered`]): rotated into the frames of
+/// charts, their slope would show at seams of flat regions.
 ///
 /// # Errors
 ///
-/// Those of [`bake_colors`](crate::bake_colors), and [`SynthErrorKind::Count`](crate::SynthErrorKind::Count) unless there
-/// is a normal for each corner.
+/// The errors of [`bake_colors`](crate::bake_colors), and [`SynthErrorKind::Count`](crate::SynthErrorKind::Count)
+/// unless there is a normal for each corner.
 ///
 /// # Examples
 ///
@@ -77,6 +78,7 @@ pub fn bake_normals(
         NormalY::OpenGl => map.par_map(|normal| normal.centered().to_array()),
         NormalY::DirectX => map.par_map(|&normal| turned_over(normal.centered()).to_array()),
     };
+    // Bake the normals in space, then express each in the frame of its texel.
     let values = in_space(synthesizer, texture, map, atlas)?;
     let tangents = Tangents::new(surface, atlas, shading);
     let map = Raster::from_rows(atlas.size(), |row| {
@@ -104,7 +106,7 @@ pub fn bake_normals(
     })
 }
 
-/// For each texel the part of its normal along the surface, in space, and the part out of it.
+/// For each texel, the tangential part of its normal, in space, and the outward component.
 fn in_space(
     synthesizer: &Synthesizer,
     texture: &SurfaceTexture,
@@ -116,6 +118,7 @@ fn in_space(
         let along = right * f64::from(x) - down * f64::from(y);
         [along.x as f32, along.y as f32, along.z as f32, z]
     };
+    // Source on a surface: take the normals from its map.
     if let Some(places) = texture.lifted_between() {
         let relief = Relief::new(&places.origin, map.size())?;
         let detail = LiftedDetail::new(map, &places.origin)?;
@@ -132,6 +135,7 @@ fn in_space(
             },
         );
     }
+    // Source between the pixels of an image.
     if let Some(places) = &texture.places {
         let detail = Detail::new(map, places.size, places.edges)?;
         return magnify(
@@ -146,6 +150,7 @@ fn in_space(
             },
         );
     }
+    // Values at sites, interpolated between them.
     let (surface, hierarchy) = (synthesizer.surface(), synthesizer.hierarchy());
     let (outs, downs) = (
         hierarchy.sites().normals(),
@@ -169,7 +174,7 @@ fn in_space(
     bake::<4>(surface, hierarchy, &column, atlas, flat)
 }
 
-/// The frames of the texture coordinates of a source, whose normals are between creases.
+/// The tangent frames of a source surface with its texture coordinates. Its shading normals are smooth between creases.
 struct Relief<'a> {
     origin: &'a Origin,
     shading: Vec<[DVec3; 3]>,
@@ -188,7 +193,8 @@ impl<'a> Relief<'a> {
         })
     }
 
-    /// The parts to the right, up and out, as the texture runs at the end of a walk, of a normal in the frame there.
+    /// The components of a normal to the right, up and outward, relative to the texture's axes at the end of a walk.
+    /// The given components are those in the tangent frame there.
     fn turned(&self, [x, y, z]: [f32; 3], walk: &Walk) -> [f32; 3] {
         let surface = self.origin.synthesizer.surface();
         let face = walk.point.face;
@@ -204,27 +210,27 @@ impl<'a> Relief<'a> {
     }
 }
 
-/// A vector turned as the shortest way turns one unit vector to another.
+/// Rotates a vector by the shortest rotation that takes one unit vector to another.
 pub(crate) fn turned(vector: DVec3, from: DVec3, to: DVec3) -> DVec3 {
     let (sum, cos) = (from + to, from.dot(to));
     if cos <= -1.0 + 1e-9 {
-        // All ways are equally short.
+        // Opposite vectors: no rotation is shortest.
         return vector;
     }
     vector - sum * (sum.dot(vector) / (1.0 + cos)) + to * (2.0 * from.dot(vector))
 }
 
-/// The unit normal with a part along the surface, seen in a frame of a tangent and a bitangent, and a part out of it.
+/// The unit normal of a tangential part, expressed in a frame of a tangent and a bitangent, and an outward component.
 fn in_frame(along: DVec3, out: f64, [tangent, bitangent]: [DVec3; 2]) -> Normal {
     let normal = DVec3::new(along.dot(tangent), along.dot(bitangent), out);
-    // Opposite normals may cancel.
+    // The interpolated normals may cancel where they are opposite.
     let [x, y, z] = normal.normalize_or(DVec3::Z).as_vec3().to_array();
     Normal { x, y, z }
 }
 
-/// The normal with the other direction of green.
+/// The normal with green inverted.
 fn turned_over(normal: Normal) -> Normal {
-    // Zero stays what it is.
+    // Subtract instead of negating: 0 does not become -0.
     let y = 0.0 - normal.y;
     Normal { y, ..normal }
 }

@@ -1,15 +1,16 @@
-//! The image that a texture is to look like, and its Gaussian pyramid.
+//! The exemplar: the example image of a synthesis, and its Gaussian pyramid.
 //!
 //! References: Peter J. Burt and Edward H. Adelson, "The Laplacian Pyramid as a Compact Image Code", IEEE Transactions on
 //! Communications, 1983, DOI 10.1109/TCOM.1983.1095851, for the pyramid; Greg Turk, "Texture Synthesis on Surfaces",
 //! SIGGRAPH 2001, DOI 10.1145/383259.383297, section 5.2, for its use.
 //!
-//! Pixel `(a, b)` of a level lies on pixel `(2a, 2b)` of the next finer one, and is the mean of the pixels around it with
-//! the weights 1-4-6-4-1 along both axes. A side of `n` pixels becomes one of `n / 2`, rounded up. Nothing is rounded to
-//! the codes of a file on the way.
+//! Pixel `(a, b)` of a level lies at pixel `(2a, 2b)` of the next finer level. It is the mean of the pixels around that
+//! one, with the weights 1-4-6-4-1 along both axes. A side of `n` pixels becomes one of `n / 2`, rounded up. Values are
+//! not quantized between levels.
 //!
-//! A wrapping level with an odd side has no coarser version that wraps: its pixels would lie two apart but for the last
-//! and the first, which would lie one apart. From there on the pyramid is cut; [`Exemplar::edges`] says what a level is.
+//! A wrapping level with an odd side has no coarser version that wraps: adjacent pixels would be two apart, except the
+//! last and the first, which would be one apart. From there on all levels have cut edges. [`Exemplar::edges`] returns
+//! the boundary of a level.
 
 use crate::error::{SynthError, SynthErrorKind};
 use crate::grid::Grid;
@@ -19,10 +20,10 @@ use crate::side_by_side::SideBySide;
 use dapple_color::LinearRgb;
 use dapple_raster::{Raster, Wrap};
 
-/// The most levels of a pyramid.
+/// Maximum number of levels of a pyramid.
 pub(crate) const MAX_LEVELS: usize = 16;
 
-/// The largest value of a pixel, times the root of its weight: no sum of squares can overflow.
+/// Maximum absolute value of a pixel times the square root of its weight. Within it, no sum of squares can overflow.
 const MAX_VALUE: f32 = 1e12;
 
 dapple_raster::named! {
@@ -39,7 +40,7 @@ dapple_raster::named! {
 }
 
 impl Edges {
-    /// Where places past an edge are read.
+    /// The wrapping rule for places past an edge.
     pub(crate) fn wrap(self) -> Wrap {
         match self {
             Self::Cut => Wrap::Mirror,
@@ -48,19 +49,19 @@ impl Edges {
     }
 }
 
-/// An image whose neighborhoods are matched: pixels of one or several channels.
+/// The example image whose neighborhoods are matched, with one or several channels per pixel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Exemplar {
     pub(crate) size: [u32; 2],
     pub(crate) n_channels: usize,
     pub(crate) edges: Edges,
-    /// `n_channels` values for each pixel, row by row.
+    /// `n_channels` values per pixel, row by row.
     pub(crate) pixels: Vec<f32>,
-    /// Whether textures may have each pixel; all of them if nothing is said.
+    /// Mask of the pixels that textures may use; `None` if all are usable.
     pub(crate) usable: Option<Vec<bool>>,
-    /// The rectangles of several images that lie in this one, each with edges of its own; empty for a single image.
+    /// The rectangles of the images within this one, each with its own edges; empty for a single image.
     pub(crate) areas: Vec<Area>,
-    /// What says which of its pixels go where.
+    /// Guides, which control where in a texture each part of the exemplar is used.
     pub(crate) guides: Guides,
 }
 
@@ -78,7 +79,7 @@ impl Area {
         (0..2).all(|axis| (self.first[axis]..self.end[axis]).contains(&place[axis]))
     }
 
-    /// The pixels of the next coarser level that lie on pixels of this rectangle.
+    /// The pixels of the next coarser level whose positions lie in this rectangle.
     fn halved(self) -> Self {
         Self {
             first: self.first.map(|at| at.div_ceil(2)),
@@ -86,7 +87,7 @@ impl Area {
         }
     }
 
-    /// The five places along an axis that place `at` of the coarser level is the mean of.
+    /// The five places along an axis that are averaged for place `at` of the coarser level.
     fn taps(self, axis: usize, at: u32, wrap: Wrap) -> [usize; 5] {
         let [first, end] = [self.first, self.end].map(|corner| corner[axis]);
         let center = 2 * i64::from(at) - i64::from(first);
@@ -94,20 +95,20 @@ impl Area {
     }
 }
 
-/// A Gaussian pyramid: the exemplar and its smaller versions, the finest first.
+/// A Gaussian pyramid: the exemplar and its reduced versions, finest first.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pyramid {
     pub(crate) levels: Vec<Exemplar>,
 }
 
 impl Exemplar {
-    /// A color image, matched in its sRGB codes from 0 to 1, as the paper's were.
+    /// Creates an exemplar from a color image. It is matched in sRGB codes from 0 to 1, as in the paper.
     ///
-    /// The codes have 16 bits, so those of 8-bit files are exact. Colors outside of 0 to 1 are clamped for matching.
+    /// The codes have 16 bits, so the values of 8-bit files are exact. Colors outside 0 to 1 are clamped for matching.
     ///
     /// # Errors
     ///
-    /// [`SynthErrorKind::NotFinite`].
+    /// [`SynthErrorKind::NotFinite`] for a color that is not finite.
     pub fn new(image: &Raster<LinearRgb>, edges: Edges) -> Result<Self, SynthError> {
         for (pixel, color) in image.pixels().iter().enumerate() {
             for value in color.to_array() {
@@ -127,15 +128,15 @@ impl Exemplar {
         })
     }
 
-    /// Any planes, each with the weight of its squared differences.
+    /// Creates an exemplar from any planes, each with a weight on its squared differences.
     ///
-    /// The planes are used as they are: heights from 0 to 1 with the weight 1 count as much as one channel of a color.
-    /// Inside, values are multiplied with the roots of the weights, so [`pixels`](Self::pixels) shows them so.
+    /// The planes are used as they are: heights from 0 to 1 with the weight 1 count as much as one color channel.
+    /// Values are stored multiplied by the square root of their weight; [`pixels`](Self::pixels) returns these.
     ///
     /// # Errors
     ///
-    /// Typed errors for no plane, different sizes, weights that are not above zero and finite, and values that are not
-    /// finite or, weighted, beyond 10^12.
+    /// Typed errors for zero planes, for different sizes, for weights that are not positive and finite, and for values
+    /// that are not finite or, times the square root of the weight, beyond 10^12.
     pub fn from_planes(planes: &[(&Raster<f32>, f32)], edges: Edges) -> Result<Self, SynthError> {
         let Some((first, _)) = planes.first() else {
             return Err(SynthError::new(SynthErrorKind::Count {
@@ -156,14 +157,14 @@ impl Exemplar {
         })
     }
 
-    /// This exemplar with the channels of another of its size beside its own, each with the weight of its squared
-    /// differences: a material whose colors are matched together with its heights, say. The edges, mask and guides are those
-    /// of this one.
+    /// Appends the channels of another exemplar of the same size. `weight` scales their squared differences. For
+    /// example, the colors of a material can be matched together with its heights. Edges, mask and guides stay those of
+    /// this exemplar.
     ///
     /// # Errors
     ///
-    /// [`SynthErrorKind::Count`] for one of another size, and [`SynthErrorKind::Range`] for a weight that is not above zero
-    /// and finite, and for values that are, weighted, beyond 10^12.
+    /// [`SynthErrorKind::Count`] if the sizes differ, and [`SynthErrorKind::Range`] for a weight that is not positive
+    /// and finite, or for values that are, times its square root, beyond 10^12.
     ///
     /// # Examples
     ///
@@ -216,8 +217,8 @@ impl Exemplar {
         })
     }
 
-    /// This exemplar without the pixels at which a mask is false: no texture has them, nor any pixel whose neighborhood
-    /// they are in.
+    /// Excludes the pixels at which a mask is false. Textures use neither these pixels nor those with an excluded pixel
+    /// in their neighborhood.
     ///
     /// # Errors
     ///
@@ -228,11 +229,11 @@ impl Exemplar {
         Ok(Self { usable, ..self })
     }
 
-    /// This exemplar as several images, which lie in it as a layout says: each has edges of its own, past which it is
-    /// mirrored. What lies between them is left out.
+    /// Divides the exemplar into several images, as in a layout. Each image has its own edges and is mirrored past
+    /// them. Pixels between the images are excluded.
     ///
-    /// So each of them is matched as it would be alone: on small levels, of which nearly all neighborhoods reach past an
-    /// edge, none would remain otherwise. Endless textures use the layout as a [mask](Self::with_mask).
+    /// Each image is matched as if it were alone. Otherwise no neighborhood would remain on small levels, where nearly
+    /// all reach past an edge. Endless textures use the layout as a [mask](Self::with_mask) only.
     ///
     /// # Errors
     ///
@@ -257,9 +258,11 @@ impl Exemplar {
         let mut mask = layout.mask()?;
         mask.check_same_size(self.size)?;
         let areas = layout.areas();
+        // A single image of the full size needs no areas.
         if areas.len() == 1 && areas[0].end == self.size {
             return Ok(self);
         }
+        // Combine the layout's mask with an earlier one.
         if let Some(usable) = &self.usable {
             let own = Raster::from_fn(self.size, |x, y| {
                 usable[y as usize * self.size[0] as usize + x as usize]
@@ -270,7 +273,7 @@ impl Exemplar {
         Ok(Self { areas, ..exemplar })
     }
 
-    /// The rectangles of its images: one for a single image.
+    /// The rectangles of the images; the whole exemplar for a single image.
     pub(crate) fn areas(&self) -> Vec<Area> {
         if self.areas.is_empty() {
             let [first, end] = [[0; 2], self.size];
@@ -279,21 +282,22 @@ impl Exemplar {
         self.areas.clone()
     }
 
-    /// A smaller exemplar: the means of squares of `factor` pixels along each side, 1 or more. What does not fill a square
-    /// is left out, and a square with a pixel that a mask leaves out is left out, too.
+    /// Reduces the exemplar: each pixel becomes the mean of a square of `factor` × `factor` pixels, `factor` at least
+    /// 1. An incomplete square at the end is dropped. A square with a masked pixel is masked.
     ///
-    /// A texture of it shows the larger one with [`PlaneTexture::transfer`](crate::PlaneTexture::transfer), and takes a
-    /// fraction of the time and the memory.
+    /// Synthesis from the reduced exemplar takes a fraction of the time and memory. The texture shows the full detail
+    /// with [`PlaneTexture::transfer`](crate::PlaneTexture::transfer).
     ///
     /// # Errors
     ///
-    /// [`SynthErrorKind::Range`] for a factor of 0 and one that no square fits.
+    /// [`SynthErrorKind::Range`] for a factor of 0 or above the shorter side.
     pub fn reduced(&self, factor: u32) -> Result<Self, SynthError> {
         let side = self.size[0].min(self.size[1]);
         let holds = (1..=side).contains(&factor);
         SynthError::check(holds, "factor", factor.into(), "from 1 to the shorter side")?;
         let size = self.size.map(|side| side / factor);
         let [width, columns] = [self.size[0], factor].map(|side| side as usize);
+        // Indices of the pixels of a square.
         let square = |x: u32, y: u32| {
             let rows = y as usize * columns..(y as usize + 1) * columns;
             rows.flat_map(move |row| {
@@ -319,6 +323,7 @@ impl Exemplar {
                 .map(|mut square| square.all(|at| usable[at]))
                 .collect()
         };
+        // If pixels were dropped, the image no longer wraps.
         let is_whole = size.map(|side| side * factor) == self.size;
         Ok(Self {
             size,
@@ -341,11 +346,11 @@ impl Exemplar {
         })
     }
 
-    /// The pyramid with `n_levels` levels, from 1 to 16, this image the first.
+    /// Builds the pyramid with `n_levels` levels, from 1 to 16. This image is the finest level.
     ///
     /// # Errors
     ///
-    /// [`SynthErrorKind::Range`] for another number of levels.
+    /// [`SynthErrorKind::Range`] if `n_levels` is not from 1 to 16.
     pub fn pyramid(&self, n_levels: usize) -> Result<Pyramid, SynthError> {
         let holds = (1..=MAX_LEVELS).contains(&n_levels);
         SynthError::check(holds, "number of levels", n_levels as f64, "from 1 to 16")?;
@@ -355,31 +360,31 @@ impl Exemplar {
         })
     }
 
-    /// Columns and rows.
+    /// The size in pixels: columns and rows.
     #[must_use]
     pub fn size(&self) -> [u32; 2] {
         self.size
     }
 
-    /// The number of values of a pixel.
+    /// The number of values per pixel.
     #[must_use]
     pub fn n_channels(&self) -> usize {
         self.n_channels
     }
 
-    /// The pixels past the edges.
+    /// The boundary of the exemplar.
     #[must_use]
     pub fn edges(&self) -> Edges {
         self.edges
     }
 
-    /// The values that are compared: [`n_channels`](Self::n_channels) for each pixel, row by row from the top.
+    /// The values that are matched: [`n_channels`](Self::n_channels) per pixel, row by row from the top.
     #[must_use]
     pub fn pixels(&self) -> &[f32] {
         &self.pixels
     }
 
-    /// The pixels, and what lies past the edges; past a cut that is the mirrored image.
+    /// The pixel grid with its wrapping rule; cut edges are mirrored.
     pub(crate) fn grid(&self) -> Grid<Plain<'_>> {
         Grid {
             colors: self.plain(),
@@ -388,13 +393,13 @@ impl Exemplar {
         }
     }
 
-    /// Whether textures may have a pixel.
+    /// Whether textures may use a pixel.
     pub(crate) fn is_usable(&self, pixel: usize) -> bool {
         let usable = self.usable.as_ref();
         usable.is_none_or(|usable| usable[pixel])
     }
 
-    /// The number of a pixel, which may lie past an edge where the exemplar wraps.
+    /// The index of the pixel at a place, wrapped if the exemplar wraps; `None` past a cut edge.
     pub(crate) fn pixel_at(&self, place: [i64; 2]) -> Option<usize> {
         let [width, height] = self.size.map(i64::from);
         let [column, row] = match self.edges {
@@ -405,7 +410,7 @@ impl Exemplar {
         is_within.then_some((row * width + column) as usize)
     }
 
-    /// The values of the pixels.
+    /// The values of all pixels.
     pub(crate) fn plain(&self) -> Plain<'_> {
         Plain {
             values: &self.pixels,
@@ -413,7 +418,7 @@ impl Exemplar {
         }
     }
 
-    /// The image with every pixel mixed with those around it.
+    /// The image blurred along both axes; `blur` is the weight of each of the two neighbors along an axis.
     fn blurred(&self, blur: f32) -> Self {
         let n = self.n_channels;
         let [width, height] = self.size.map(|side| side as usize);
@@ -426,6 +431,7 @@ impl Exemplar {
         let beside = |at: usize, side: usize, wrap: Wrap| {
             [-1, 1].map(|step| wrap.index(at as i64 + step, side as u32) as usize)
         };
+        // Blur along the rows.
         let mut across = Vec::with_capacity(self.pixels.len());
         for row in self.pixels.chunks_exact(width * n) {
             for at in 0..width {
@@ -433,6 +439,7 @@ impl Exemplar {
                 across.extend((0..n).map(|channel| mixed(row, at, steps, channel)));
             }
         }
+        // Blur along the columns.
         let mut pixels = Vec::with_capacity(self.pixels.len());
         for at in 0..height {
             let steps = beside(at, height, wrap_y).map(|row| row * width);
@@ -445,12 +452,13 @@ impl Exemplar {
         }
     }
 
-    /// The next coarser level.
+    /// The next coarser level of the pyramid.
     fn halved(&self) -> Self {
         let half = self.size.map(|side| side.div_ceil(2));
         let odd = self.size.iter().any(|side| side % 2 == 1);
         let grid = self.grid();
         let areas = self.areas();
+        // A coarser pixel is usable if all pixels that it averages are usable.
         let usable = self.usable.as_ref().map(|usable| {
             let is_usable = |x: u32, y: u32| {
                 let is_within = |area: &&Area| area.halved().contains([x, y]);
@@ -479,8 +487,7 @@ impl Exemplar {
 }
 
 impl Pyramid {
-    /// The levels, every pixel mixed with the four beside it and those across: along each axis, both neighbors have a part
-    /// of `blur`.
+    /// All levels blurred along both axes; `blur` is the weight of each of the two neighbors along an axis.
     pub(crate) fn blurred(&self, blur: f32) -> Self {
         Self {
             levels: self
@@ -491,14 +498,14 @@ impl Pyramid {
         }
     }
 
-    /// The levels, the finest first.
+    /// The levels, finest first.
     #[must_use]
     pub fn levels(&self) -> &[Exemplar] {
         &self.levels
     }
 }
 
-/// Refuses a value that is not finite, of the given pixel in an image of the given width.
+/// Returns an error for a value that is not finite. `pixel` is its index in an image of the given width.
 fn check_finite(value: f32, pixel: usize, width: u32) -> Result<(), SynthError> {
     if value.is_finite() {
         return Ok(());
@@ -512,14 +519,14 @@ fn check_finite(value: f32, pixel: usize, width: u32) -> Result<(), SynthError> 
     }))
 }
 
-/// Refuses a value, times the root of its weight, whose squares could overflow.
+/// Returns an error for a value, times the square root of its weight, whose sum of squares could overflow.
 fn check_weighted(scaled: f32) -> Result<(), SynthError> {
     let holds = scaled.abs() <= MAX_VALUE;
     let range = "from -1e12 to 1e12";
     SynthError::check(holds, "weighted value of a pixel", scaled.into(), range)
 }
 
-/// The roots of weights, which are to be above zero and finite.
+/// The square roots of weights; an error for a weight that is not positive and finite.
 pub(crate) fn roots(weights: &[f32]) -> Result<Vec<f32>, SynthError> {
     for &weight in weights {
         let holds = weight > 0.0 && weight.is_finite();
@@ -529,7 +536,7 @@ pub(crate) fn roots(weights: &[f32]) -> Result<Vec<f32>, SynthError> {
     Ok(weights.iter().map(|weight| weight.sqrt()).collect())
 }
 
-/// Planes of one size times their roots, pixel by pixel.
+/// Interleaves planes of one size pixel by pixel, each multiplied by its root.
 pub(crate) fn interleaved(planes: &[&Raster<f32>], roots: &[f32]) -> Result<Vec<f32>, SynthError> {
     let Some(first) = planes.first() else {
         return Ok(Vec::new());
@@ -548,7 +555,7 @@ pub(crate) fn interleaved(planes: &[&Raster<f32>], roots: &[f32]) -> Result<Vec<
     Ok(pixels)
 }
 
-/// The values of the next coarser level of an image; zero where it has none of these rectangles.
+/// The values of the next coarser level of an image; zero outside of the given rectangles.
 pub(crate) fn halved(image: &Grid<Plain<'_>>, areas: &[Area]) -> Vec<f32> {
     let Grid { colors, size, wrap } = *image;
     let n = colors.n_channels;
@@ -558,7 +565,7 @@ pub(crate) fn halved(image: &Grid<Plain<'_>>, areas: &[Area]) -> Vec<f32> {
         let coarse = area.halved();
         let columns = coarse.first[0]..coarse.end[0];
         let row_len = columns.len() * n;
-        // Means along the rows of the rectangle.
+        // Average along the rows of the rectangle.
         let mut rows = Vec::with_capacity(row_len * (area.end[1] - area.first[1]) as usize);
         for row in area.first[1]..area.end[1] {
             let row = &colors.values[row as usize * size[0] as usize * n..];
@@ -567,7 +574,7 @@ pub(crate) fn halved(image: &Grid<Plain<'_>>, areas: &[Area]) -> Vec<f32> {
                 blend(taps.map(|column| &row[column * n..][..n]), &mut rows);
             }
         }
-        // Means of five of these rows.
+        // Average five of these rows each.
         let mut blended = Vec::with_capacity(row_len);
         for at in coarse.first[1]..coarse.end[1] {
             let taps = area.taps(1, at, wrap[1]);
@@ -581,13 +588,13 @@ pub(crate) fn halved(image: &Grid<Plain<'_>>, areas: &[Area]) -> Vec<f32> {
     values
 }
 
-/// The five places that place `at` of the coarser level is the mean of.
+/// The five places along an axis that are averaged for place `at` of the coarser level.
 pub(crate) fn taps(at: u32, side: u32, wrap: Wrap) -> [usize; 5] {
     let center = 2 * i64::from(at);
     [-2, -1, 0, 1, 2].map(|step| wrap.index(center + step, side) as usize)
 }
 
-/// Appends the means with the weights 1-4-6-4-1 of five slices of one length.
+/// Appends the element-wise mean of five slices of equal length, with the weights 1-4-6-4-1.
 pub(crate) fn blend([a, b, c, d, e]: [&[f32]; 5], target: &mut Vec<f32>) {
     for i in 0..c.len() {
         target.push(((a[i] + e[i]) + 4.0 * (b[i] + d[i]) + 6.0 * c[i]) / 16.0);

@@ -1,13 +1,13 @@
-//! How alike two textures are, as two numbers: the sliced Wasserstein distances of their colors and of their patches.
+//! Similarity of two textures: the sliced Wasserstein distances of their colors and of their patches.
 //!
 //! Reference: Julien Rabin, Gabriel Peyré, Julie Delon and Marc Bernot, "Wasserstein Barycenter and Its Application to
 //! Texture Mixing", SSVM 2011, DOI 10.1007/978-3-642-24785-9_37.
 //!
-//! Both sets of points are projected on 64 directions that are the same for everyone. Along a line the distance of two
-//! sets is the area between their quantiles (W1): how far a point must go on the average to turn one set into the other.
-//! The result is the mean over the directions, in the units of the values. Sets may have different sizes.
+//! Both sets of points are projected onto 64 fixed directions. Along a direction, the distance of two sets is the area
+//! between their quantile functions (W1): the mean distance that points must move to turn one set into the other. The
+//! result is the mean over the directions, in the units of the values. The sets may differ in size.
 //!
-//! Reproducibility: as everywhere, the same bits on every machine.
+//! Reproducibility: the same bits on every machine.
 
 use crate::Exemplar;
 use crate::error::{SynthError, SynthErrorKind};
@@ -16,26 +16,26 @@ use dapple_hash::{Seed, hash1, unit_f64};
 /// The number of directions.
 const N_DIRECTIONS: u64 = 64;
 
-/// The side of a patch in pixels.
+/// Side of a patch in pixels.
 const PATCH: usize = 5;
 
-/// How far two textures are from each other; 0 for a texture and itself.
+/// Distance between two textures; 0 for a texture and itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Likeness {
-    /// The distance between the sets of pixels: whether as much is there of each color.
+    /// Distance between the sets of pixels: whether the images have the same amount of each color.
     pub colors: f64,
-    /// The distance between the sets of 5 × 5 patches: whether it is arranged in the same way.
+    /// Distance between the sets of 5 × 5 patches: whether the colors are arranged in the same way.
     pub patches: f64,
 }
 
 impl Likeness {
-    /// Compares two images in the values that are matched, for colors their sRGB codes from 0 to 1.
+    /// Compares two images by the values that synthesis matches; for colors these are sRGB codes from 0 to 1.
     ///
     /// # Errors
     ///
-    /// [`SynthErrorKind::Count`] if the images have different numbers of channels, [`SynthErrorKind::Exemplar`] for an image
-    /// that is smaller than a patch.
+    /// [`SynthErrorKind::Count`] if the images have different numbers of channels, [`SynthErrorKind::Exemplar`] for an
+    /// image smaller than a patch.
     ///
     /// # Examples
     ///
@@ -73,7 +73,7 @@ impl Likeness {
     }
 }
 
-/// The channels of an image, one after the other, so that patches side by side are read together.
+/// The channels of an image in separate planes, so that adjacent patches are projected together.
 struct Planes {
     size: [usize; 2],
     channels: Vec<Vec<f32>>,
@@ -91,7 +91,7 @@ impl Planes {
         }
     }
 
-    /// How far each patch goes along a direction, in ascending order.
+    /// The projection of each patch onto a direction, in ascending order.
     fn project(&self, side: usize, direction: &[f32]) -> Vec<f32> {
         let [width, height] = self.size;
         let [columns, rows] = [width - side + 1, height - side + 1];
@@ -113,7 +113,7 @@ impl Planes {
     }
 }
 
-/// The sliced Wasserstein distance of the sets of patches with the given side.
+/// The sliced Wasserstein distance between the two sets of patches of the given side.
 fn distance(images: &[Planes; 2], side: usize) -> f64 {
     let dims = images[0].channels.len() * side * side;
     let mut sum = 0.0;
@@ -125,10 +125,10 @@ fn distance(images: &[Planes; 2], side: usize) -> f64 {
     sum / N_DIRECTIONS as f64
 }
 
-/// A vector of the length 1.
+/// Pseudorandom direction `number`: a vector of length 1.
 fn direction(number: u64, dims: usize) -> Vec<f32> {
     let seed = Seed(0).child("directions of the likeness", number);
-    // Twelve uniform numbers are normal enough for all directions to be equally likely.
+    // The sum of twelve uniform numbers is close enough to a normal distribution to make all directions equally likely.
     let normal = |at| {
         let uniform = |index| unit_f64(hash1(seed, [at], index));
         (0..12).map(uniform).sum::<f64>() - 6.0
@@ -138,15 +138,16 @@ fn direction(number: u64, dims: usize) -> Vec<f32> {
     parts.iter().map(|part| (part / length) as f32).collect()
 }
 
-/// The area between the quantiles of two sets of numbers in ascending order: W1.
+/// The area between the quantile functions of two sets of numbers in ascending order: W1.
 fn area_between(a: &[f32], b: &[f32]) -> f64 {
-    // The numbers stand for shares of one; both sets' shares are whole in units of 1 / (a.len() · b.len()).
+    // Each number has an equal share of 1. In units of 1 / (a.len() · b.len()) all shares are integers.
     let [share_a, share_b] = [b.len() as u64, a.len() as u64];
     let [mut i, mut j] = [0, 0];
     let [mut left_a, mut left_b] = [share_a, share_b];
     let mut sum = 0.0;
     while i < a.len() && j < b.len() {
         let share = left_a.min(left_b);
+        // Advance by the smaller remaining share.
         sum += share as f64 * (f64::from(a[i]) - f64::from(b[j])).abs();
         left_a -= share;
         left_b -= share;
@@ -212,7 +213,8 @@ mod tests {
         let [small, large] =
             [[8, 8], [8, 24]].map(|size| image(size, 2, |x, y, channel| noise(x, y % 8, channel)));
         let likeness = Likeness::new(&small, &large).unwrap();
-        // Three copies of each color; the projections are equal, and so the distance is 0 but for no rounding at all.
+        // Three copies of each color have the same quantile function. The distance is exactly 0, without rounding
+        // errors.
         assert_eq!(likeness.colors, 0.0, "three times each color");
     }
 

@@ -1,15 +1,17 @@
-//! Textures on a plane or on a torus: the passes of the surface, with pixels for sites.
+//! Synthesis on a plane or on a torus: the passes of surface synthesis, with pixels as sites.
 //!
 //! References: Li-Yi Wei and Marc Levoy, "Fast Texture Synthesis using Tree-structured Vector Quantization", SIGGRAPH
 //! 2000, DOI 10.1145/344779.345009, for the plane; Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, DOI
 //! 10.1145/383259.383297, for the passes.
 //!
-//! A pixel of the texture is a site, its neighborhood lies in memory, and nothing is interpolated but the coarser level
-//! at half pixels. A level has half of the pixels of the next finer one along each axis, rounded up.
+//! Every pixel of the texture is a site. Neighborhoods are read directly from the pixel grid. The only interpolated
+//! values are those of the coarser level at half pixels. A level has half the pixels of the next finer one along each
+//! axis, rounded up.
 //!
-//! The sweep goes row by row. Along rows that wrap that would be one long chain, each pixel waiting for the one before it
-//! all around the torus; there the finer levels, where every pixel has a color before the sweep begins to refine it, go
-//! in slanted lines instead, which change the texture no more than another seed and can be visited on all cores.
+//! The sweep visits sites in scanline order. Along rows that wrap, this order is a single chain around the torus: each
+//! pixel waits for the one before it. On such rows the coarsest level keeps the scanline order. Finer levels, where
+//! every pixel has a color before the sweep refines it, use slanted wavefronts instead. These run on all cores and
+//! change the texture no more than another seed does.
 
 mod enlarge;
 mod pieces;
@@ -30,13 +32,13 @@ use dapple_raster::{Raster, Wrap};
 
 pub use tile::tile_plane;
 
-/// The most pixels of a texture: one takes about 200 bytes on the way.
+/// Maximum number of pixels of a texture. Synthesis takes about 200 bytes per pixel.
 const MAX_PIXELS: u64 = 1 << 26;
 
-/// How many columns a slanted line goes to the left per row: one more than half of a neighborhood of side 7 reaches.
+/// Slant of a wavefront, in columns to the left per row: one more than a 7 × 7 neighborhood reaches.
 const SLANT: u32 = 4;
 
-/// A texture in the plane: for every pixel the one of the exemplar that it is from.
+/// A texture in the plane: the source pixel in the exemplar for every pixel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlaneTexture {
     sources: Raster<[u32; 2]>,
@@ -45,16 +47,16 @@ pub struct PlaneTexture {
     exemplar_edges: Edges,
 }
 
-/// Makes a texture of `size` pixels, at most 2^26 of them, that looks like an exemplar.
+/// Synthesizes a texture of `size` pixels, at most 2^26 in total, that looks like an exemplar.
 ///
-/// `edges` says for columns and rows whether the texture is to wrap: [`Edges::Wrap`] makes a tile.
+/// `edges` sets the boundary of columns and of rows: [`Edges::Wrap`] makes the texture tile along that axis.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/synthesize-plane.md"))]
 ///
 /// # Errors
 ///
-/// Typed errors for an exemplar that is too small, for options out of their ranges, for no pixels and too many, and for a
-/// wrapping side that cannot be halved once per level but the last.
+/// Typed errors for an exemplar that is too small, for options out of range, for zero or too many pixels, and for a
+/// wrapping side that is not divisible by 2^(number of levels - 1).
 ///
 /// # Examples
 ///
@@ -83,12 +85,12 @@ pub fn synthesize_plane(
     )
 }
 
-/// Synthesizes a texture like [`synthesize_plane`], with a callback that hears of the progress and can stop it.
+/// Synthesizes a texture like [`synthesize_plane`], with a callback that receives the progress and can cancel.
 ///
 /// # Errors
 ///
-/// Those of [`synthesize_plane`], and [`SynthErrorKind::Cancelled`](crate::SynthErrorKind::Cancelled) if the callback
-/// breaks.
+/// The errors of [`synthesize_plane`], and [`SynthErrorKind::Cancelled`](crate::SynthErrorKind::Cancelled) if the
+/// callback breaks.
 pub fn synthesize_plane_with(
     exemplar: &Exemplar,
     size: [u32; 2],
@@ -101,16 +103,18 @@ pub fn synthesize_plane_with(
     PlaneTexture::grown(&ground, &pyramid, options, &mut callback)
 }
 
-/// Synthesizes a texture like [`synthesize_plane_with`], whose guides say where in it which part of the exemplar goes: as
-/// many planes as the exemplar has [guides](Exemplar::with_guides). The texture has their size.
+/// Synthesizes a texture like [`synthesize_plane_with`], controlled by guides: planes that match parts of the texture
+/// with parts of the exemplar. There must be as many as the exemplar has [guides](Exemplar::with_guides). The texture
+/// has the size of the planes.
 ///
 /// [`Options::evenness`] has no effect.
 ///
 /// # Errors
 ///
-/// Those of [`synthesize_plane_with`]; [`SynthErrorKind::Count`](crate::SynthErrorKind::Count) for no guide and another
-/// number than the exemplar has, [`SynthErrorKind::Raster`](crate::SynthErrorKind::Raster) for guides of different sizes,
-/// and [`SynthErrorKind::NotFinite`](crate::SynthErrorKind::NotFinite).
+/// The errors of [`synthesize_plane_with`]; [`SynthErrorKind::Count`](crate::SynthErrorKind::Count) if there are no
+/// guides or their number differs from the exemplar's; [`SynthErrorKind::Raster`](crate::SynthErrorKind::Raster) for
+/// guides of different sizes; and [`SynthErrorKind::NotFinite`](crate::SynthErrorKind::NotFinite) for a value that is
+/// not finite.
 ///
 /// # Examples
 ///
@@ -181,10 +185,11 @@ impl PlaneTexture {
         })
     }
 
-    /// The texture with these [`sources`](Self::sources) in an exemplar of a size: a texture that was made before, for maps
-    /// that it is to show now.
+    /// Creates a texture from the [`sources`](Self::sources) of an earlier synthesis, for example to transfer other
+    /// maps.
     ///
-    /// `edges` and `exemplar_edges` say what lies past the edges of the texture and of the exemplar.
+    /// `exemplar_size` is in pixels. `edges` and `exemplar_edges` are the boundaries of the texture and of the
+    /// exemplar.
     ///
     /// # Errors
     ///
@@ -210,24 +215,24 @@ impl PlaneTexture {
         }
     }
 
-    /// The column and row in the exemplar of the pixel that each pixel is from.
+    /// The source of each pixel: column and row in the exemplar.
     #[must_use]
     pub fn sources(&self) -> &Raster<[u32; 2]> {
         &self.sources
     }
 
-    /// The values of a map at the sources: the texture's colors, from the image of the exemplar, and heights, normals and
-    /// roughness that follow them.
+    /// Transfers a map of the exemplar to the texture: every pixel gets the map's value at its source. The exemplar's
+    /// image gives the texture's colors; maps of height, normals or roughness follow the same sources.
     ///
-    /// A map that is a whole number of times as large as the exemplar, such as the photograph that it was made from, gives
-    /// a texture that is as much larger, with all detail of the map and no synthesis. Each of its pixels is one of the
-    /// map's: where neighbors go on with the same piece of the exemplar it is copied as a whole, and the border of two
-    /// pieces is smooth.
+    /// The map may be an integer multiple of the exemplar's size, such as the photograph that the exemplar was reduced
+    /// from. The result is then larger than the texture by the same factor. It has all detail of the map without
+    /// further synthesis. Each of its pixels is a pixel of the map: neighbors from one contiguous piece of the exemplar
+    /// are copied as a whole, and the border between two pieces is smooth.
     ///
     /// # Errors
     ///
-    /// [`SynthErrorKind::Detail`](crate::SynthErrorKind::Detail) for a map of another size,
-    /// [`SynthErrorKind::Raster`](crate::SynthErrorKind::Raster) if the texture would be too large.
+    /// [`SynthErrorKind::Detail`](crate::SynthErrorKind::Detail) for a map whose size is not a multiple of the
+    /// exemplar's, [`SynthErrorKind::Raster`](crate::SynthErrorKind::Raster) if the result would be too large.
     pub fn transfer<T: Copy + Send + Sync>(
         &self,
         map: &Raster<T>,
@@ -253,14 +258,14 @@ impl PlaneTexture {
     }
 }
 
-/// Refuses sizes without pixels and with too many.
+/// Returns an error for a size of zero pixels or more than [`MAX_PIXELS`].
 pub(crate) fn check_pixels(size: [u32; 2]) -> Result<(), SynthError> {
     let n_pixels = u64::from(size[0]) * u64::from(size[1]);
     let holds = (1..=MAX_PIXELS).contains(&n_pixels);
     SynthError::check(holds, "number of pixels", n_pixels as f64, "from 1 to 2^26")
 }
 
-/// Pixels on several levels.
+/// The pixels of the texture on all levels.
 #[derive(Clone, Debug)]
 struct PlaneGround {
     /// The sizes of the levels, the finest first.
@@ -268,7 +273,7 @@ struct PlaneGround {
     edges: [Edges; 2],
     wrap: [Wrap; 2],
     center: CoarserCenter,
-    /// What the sites of each level begin with; nothing for random pixels.
+    /// Initial pixels of the sites of each level, for repairs; empty for random pixels.
     starts: Vec<Start>,
     targets: Option<Targets>,
 }
@@ -294,7 +299,7 @@ impl PlaneGround {
         })
     }
 
-    /// The site at a column and row, which may lie past an edge that wraps.
+    /// The index of the site at a column and row, wrapped where the edge wraps; `None` past an edge that is cut.
     fn index(&self, level: usize, place: [i64; 2]) -> Option<usize> {
         let size = self.sizes[level];
         let mut at = [0; 2];
@@ -309,7 +314,7 @@ impl PlaneGround {
         Some((at[1] * i64::from(size[0]) + at[0]) as usize)
     }
 
-    /// Replaces the sites of a square that lie past an edge that is cut.
+    /// Marks the sites of a square that lie past a cut edge as [`UNKNOWN`].
     fn leave_out_mirrored(&self, halves: [i64; 2], square: &Square, nearest: &mut [u32]) {
         let side = square.side();
         let [first_x, first_y] = halves.map(|at| at.div_euclid(2) - i64::from(square.half));
@@ -330,7 +335,7 @@ impl PlaneGround {
 }
 
 impl Ground for PlaneGround {
-    /// How far squares on the level itself reach.
+    /// Half the side of neighborhoods on the level itself.
     type Prepared = i32;
     type Memory = ();
 
@@ -356,12 +361,15 @@ impl Ground for PlaneGround {
 
     fn order(&self, level: usize) -> Vec<u32> {
         let n_sites = self.n_sites(level) as u32;
+        // A repair visits only the sites of its holes.
         if let Some(start) = self.start(level) {
             return repair::order(start, self.sizes[level][0]);
         }
+        // Rows that do not wrap, and the coarsest level, use scanline order.
         if self.wrap[0] != Wrap::Repeat || level + 1 == self.sizes.len() {
             return (0..n_sites).collect();
         }
+        // Slanted wavefronts: sites on one line do not read each other.
         let line = |site| {
             let [column, row] = self.pixel(level, site);
             u64::from(column) + u64::from(SLANT) * u64::from(row)
@@ -407,11 +415,13 @@ impl Ground for PlaneGround {
         } else {
             Reads::Coarser
         };
+        // Read the values of the neighborhood.
         let at = halves(self.pixel(square.level, square.site), reads, self.center);
         let size = self.sizes[square.reads];
         let wrap = self.wrap;
         let grid = Grid { colors, size, wrap };
         grid.read(at, square.half, square.range(), &mut samples.values);
+        // Record the site of each sample.
         let [columns, rows] = grid::square(at, square.half, size, wrap);
         for (row, nearest) in rows
             .iter()
@@ -421,6 +431,7 @@ impl Ground for PlaneGround {
                 *nearest = *row as u32 * size[0] + column as u32;
             }
         }
+        // During repairs, mirrored sites past a cut edge are not candidates.
         if !self.starts.is_empty() {
             self.leave_out_mirrored(at, &square, &mut samples.nearest);
         }

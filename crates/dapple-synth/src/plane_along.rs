@@ -1,12 +1,12 @@
-//! Textures in the plane along directions, with features of different sizes from place to place.
+//! Synthesis in the plane along a direction field, with features whose size varies from place to place.
 //!
-//! The plane is a rectangle that sites are scattered over as over any surface, with a field that the caller drew, and the
-//! texture is baked to an image of its pixels: neighborhoods turn and grow with the field, and sources lie between the
-//! pixels of the exemplar. (Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001,
-//! <https://doi.org/10.1145/383259.383297>.)
+//! The plane is a rectangle. Sites are scattered over it as over any surface, the caller supplies the direction field,
+//! and the texture is baked to an image of the plane's pixels. Neighborhoods rotate and scale with the field, and
+//! sources lie between the pixels of the exemplar. (Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH
+//! 2001, <https://doi.org/10.1145/383259.383297>.)
 //!
-//! The rectangle lies in the plane of x and y. A pixel has a side of 1; the image begins at the origin, and its rows go down
-//! to -y.
+//! The rectangle lies in the plane of x and y. A pixel has a side of 1. The image begins at the origin, and its rows go
+//! down to -y.
 
 use crate::engine::Progress;
 use crate::plane::check_pixels;
@@ -19,35 +19,38 @@ use dapple_mesh::{Mesh, Surface};
 use dapple_raster::{Raster, Wrap};
 use glam::{DVec2, DVec3};
 
-/// A texture in the plane along a field. [`bake_colors`](crate::bake_colors) and its like make images of it.
+/// A texture in the plane along a direction field. [`bake_colors`](crate::bake_colors) and similar functions render
+/// images.
 #[derive(Clone, Debug)]
 pub struct PlaneAlong {
     /// The sites on the rectangle.
     pub synthesizer: Synthesizer,
-    /// Their sources.
+    /// The sources of the sites.
     pub texture: SurfaceTexture,
-    /// The rectangle as an image.
+    /// The atlas that maps the rectangle to its image.
     pub atlas: Atlas,
 }
 
-/// How large a pixel of the exemplar is, in pixels of the texture, from 1/8 to 8; what is smaller than 1 loses detail.
+/// Size of an exemplar pixel, in pixels of the texture, from 1/8 to 8. Sizes below 1 lose detail.
 #[derive(Clone, Copy, Debug)]
 pub enum PlaneScales<'a> {
-    /// At every pixel: a plane of the size of the texture.
+    /// The size at every pixel: a plane with the size of the texture.
     Plane(&'a Raster<f32>),
-    /// As large as the directions ask for, within bounds: see [`Synthesizer::with_conformal_scales`].
+    /// Sizes that follow from the directions, clamped to these bounds: see [`Synthesizer::with_conformal_scales`].
     Conformal([f32; 2]),
 }
 
-/// Makes a texture like an exemplar whose down follows `directions`, a plane of the size of the texture, with pixels of these sizes.
+/// Synthesizes a texture like an exemplar along `directions`, a plane with the size of the texture, with exemplar
+/// pixels scaled by `scales`.
 ///
-/// Directions are angles in radians: at 0 the down of the exemplar points down, and at a quarter turn, π / 2, to the right.
+/// A direction is an angle in radians to which the exemplar's down axis rotates: at 0 it points down, and at π / 2, a
+/// quarter turn, to the right.
 ///
 /// # Errors
 ///
-/// Those of [`Synthesizer::synthesize_with`], [`SynthErrorKind::Raster`](crate::SynthErrorKind::Raster) for planes of
-/// different sizes, and [`SynthErrorKind::Range`](crate::SynthErrorKind::Range) for too many pixels, an angle that is not
-/// finite, and a scale out of its range.
+/// The errors of [`Synthesizer::synthesize_with`], [`SynthErrorKind::Raster`](crate::SynthErrorKind::Raster) for planes
+/// of different sizes, and [`SynthErrorKind::Range`](crate::SynthErrorKind::Range) for too many pixels, for an angle
+/// that is not finite, and for a scale out of its range.
 ///
 /// # Examples
 ///
@@ -89,6 +92,7 @@ pub fn synthesize_plane_along(
             "finite",
         )?;
     }
+    // Scatter sites over the rectangle and orient them.
     let surface = rectangle(size)?;
     let hierarchy = Hierarchy::new(&surface, &sites(size, options))?;
     let orientation = Orientation::from_fn(&hierarchy, |at, _| {
@@ -96,6 +100,7 @@ pub fn synthesize_plane_along(
         DVec3::new(sin, -cos, 0.0)
     });
     let synthesizer = Synthesizer::from_parts(surface, hierarchy, orientation, None)?;
+    // Scale the neighborhoods.
     let synthesizer = match scales {
         PlaneScales::Plane(scales) => {
             let positions = synthesizer.hierarchy().sites().positions().iter();
@@ -104,6 +109,7 @@ pub fn synthesize_plane_along(
         }
         PlaneScales::Conformal(bounds) => synthesizer.with_conformal_scales(bounds)?,
     };
+    // Synthesize, and lay the image's pixels over the rectangle.
     let texture = synthesizer.synthesize_with(exemplar, options, callback)?;
     let atlas = Atlas::from_uvs(synthesizer.surface(), &uvs(size, &synthesizer), size, 0)?;
     Ok(PlaneAlong {
@@ -113,9 +119,9 @@ pub fn synthesize_plane_along(
     })
 }
 
-/// The sites of a plane: so many that they are a pixel apart.
+/// The options of the sites on a plane: as many as give a spacing of one pixel.
 fn sites(size: [u32; 2], options: &Options) -> HierarchyOptions {
-    // The area of a site in a hexagonal lattice is the root of 3/4.
+    // A site of a hexagonal lattice with a spacing of 1 has the area sqrt(3/4).
     let n_sites = f64::from(size[0]) * f64::from(size[1]) * (4.0_f64 / 3.0).sqrt();
     HierarchyOptions {
         n_sites: n_sites.round() as usize,
@@ -125,7 +131,7 @@ fn sites(size: [u32; 2], options: &Options) -> HierarchyOptions {
     }
 }
 
-/// The rectangle of an image.
+/// The surface of an image of `size` pixels: a rectangle of two triangles.
 fn rectangle(size: [u32; 2]) -> Result<Surface, SynthError> {
     let [x, y] = size.map(f64::from);
     let corners = [[0.0, 0.0], [0.0, -y], [x, -y], [x, 0.0]];
@@ -134,7 +140,7 @@ fn rectangle(size: [u32; 2]) -> Result<Surface, SynthError> {
     Ok(Surface::new(mesh)?)
 }
 
-/// The places of the rectangle's corners in its image.
+/// The texture coordinates of the rectangle's faces in its image, from 0 to 1.
 fn uvs(size: [u32; 2], synthesizer: &Synthesizer) -> Vec<[DVec2; 3]> {
     let [width, height] = size.map(f64::from);
     let mesh = synthesizer.surface().mesh();
@@ -144,7 +150,7 @@ fn uvs(size: [u32; 2], synthesizer: &Synthesizer) -> Vec<[DVec2; 3]> {
     corners.collect()
 }
 
-/// The pixel at a position.
+/// The value of a plane at a position; past the edges, that of the nearest pixel.
 fn pixel(plane: &Raster<f32>, at: DVec3) -> &f32 {
     let [column, row] = [at.x, -at.y].map(|at| at.floor() as i64);
     plane.at(column, row, [Wrap::Clamp; 2])

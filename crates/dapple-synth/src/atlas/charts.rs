@@ -1,9 +1,10 @@
 //! Charts: large pieces of a surface, each flattened as a whole.
 //!
-//! They are cut, flattened (least squares conformal maps, then as rigid as possible) and packed by `uvunwrap`, which is
-//! Rust without dependencies, uses no function whose bits differ between platforms, and refuses pieces that fold or
-//! overlap; `xatlas` is C++, whose bindings need libclang, and hangs on some meshes. A packer of our own that also turned
-//! charts by 45 degrees and less used as much of the map, within 3 %. More than [`MANY`] charts are packed in rows.
+//! `uvunwrap` cuts the surface into charts, flattens them (least squares conformal maps, then as rigid as possible) and
+//! packs them. It is written in Rust without dependencies, uses no function whose bits differ between platforms, and
+//! rejects charts that fold or overlap. `xatlas` is written in C++, its bindings need libclang, and it hangs on some
+//! meshes. A packer of our own that also rotated charts by 45 degrees and less used as much of the map, within 3 %.
+//! More than [`MANY`] charts are packed in rows.
 //!
 //! References: Bruno Lévy, Sylvain Petitjean, Nicolas Ray and Jérome Maillot, "Least Squares Conformal Maps for Automatic
 //! Texture Atlas Generation", SIGGRAPH 2002, doi 10.1145/566654.566590; Ligang Liu, Lei Zhang, Yin Xu, Craig Gotsman and
@@ -18,41 +19,41 @@ use glam::{DVec2, DVec3, Vec3};
 use std::sync::{Mutex, PoisonError};
 use uvunwrap::{Density, MeshInput, Options, Packing, Progress, Stage};
 
-/// The largest angle between a face and the mean of its chart, in degrees. At 70 there are a third as many charts, but
-/// their arms leave up to half of the map free, and 100,000 faces take three times as long.
+/// Maximum angle between a face normal and the mean of its chart, in degrees. At 70 there are a third as many charts,
+/// but their arms leave up to half of the map empty, and 100,000 faces take three times as long.
 const ANGLE_MAX: f32 = 40.0;
 
-/// Number of charts above which they are packed in rows instead of by their shapes. Packing by shapes compares each chart with
-/// all places between the others: it took three quarters of the time of 2,000 charts, and most of that of more.
+/// Number of charts above which they are packed in rows instead of by shape. Packing by shape compares each chart with
+/// all places between the others: it took three quarters of the time for 2,000 charts, and most of the time for more.
 const MANY: usize = 512;
 
-/// Part of the work that is done once all charts are flat.
+/// Completed fraction of the work when all charts are flat.
 const FLAT: f64 = 0.7;
 
-/// A callback for the part of the work that is done, from 0 to 1.
+/// A callback that receives the completed fraction of the work, from 0 to 1.
 pub(super) type Callback<'a> = &'a mut (dyn FnMut(f64) -> ControlFlow<()> + Send);
 
 /// The reason why the unwrapping was stopped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Stop {
-    /// The caller asked for it.
+    /// The caller cancelled.
     Asked,
-    /// There are too many charts to pack them by their shapes.
+    /// There are too many charts to pack them by shape.
     Many,
     /// The charts with their padding need more texels than the map has.
     NoRoom,
 }
 
-/// What is known while charts are made.
+/// State of the unwrapping that the progress callback updates.
 struct Watch<'a> {
     callback: Callback<'a>,
-    /// The part of the work that was reported; it never decreases.
+    /// Last reported fraction of the work; it never decreases.
     shown: f64,
     n_charts: usize,
     stopped: Option<Stop>,
 }
 
-/// The padding of charts in a map of this side.
+/// Default padding of charts, in texels, in a map of the given side.
 pub(super) fn padding(side: u32) -> u32 {
     match side {
         0..512 => 1,
@@ -78,7 +79,7 @@ pub(super) fn charts(
         padding,
         ..Options::default()
     };
-    // A chart has a texel at least, and padding to all sides.
+    // Upper bound of the number of charts: each takes at least one texel and its padding on all sides.
     let [across, beside] = [side, padding].map(u64::from);
     let room = across * across / (1 + 2 * beside * (beside + 1));
     let watch = Mutex::new(Watch {
@@ -87,7 +88,7 @@ pub(super) fn charts(
         n_charts: 0,
         stopped: None,
     });
-    // Charts are connected.
+    // Lower bound of the number of charts: each is connected.
     let n_least = n_components(&positions, &indices);
     if n_least as u64 > room {
         return Err(too_small(side));
@@ -95,6 +96,7 @@ pub(super) fn charts(
     if n_least > MANY {
         options.packing = Packing::Fast;
     }
+    // Unwrap; if there turn out to be too many charts to pack by shape, again with packing in rows.
     let mut layout;
     loop {
         let most = match options.packing {
@@ -115,7 +117,7 @@ pub(super) fn charts(
             None => break,
         }
     }
-    // What else is refused cannot be in a mesh.
+    // The library's other errors are about input that a valid mesh cannot contain.
     let layout = layout
         .ok()
         .filter(|layout| layout.page_count == 1)
@@ -127,7 +129,7 @@ pub(super) fn charts(
         if vertex.chart.is_none() {
             return DVec2::NAN;
         }
-        // Their pictures are mirrored.
+        // The library's charts are mirrored: flip u.
         let [u, v] = vertex.uv.map(f64::from);
         DVec2::new(1.0 - u, v) * size
     };
@@ -137,18 +139,18 @@ pub(super) fn charts(
 }
 
 impl Watch<'_> {
-    /// Counts the charts and reports the progress. Whether the work goes on.
+    /// Counts the charts, reports the progress, and returns whether the work continues.
     fn hear(&mut self, progress: Progress, most: usize, room: u64) -> bool {
         let done = progress.done as f64;
         let part = match (progress.stage, progress.total) {
             (Stage::Segmenting, _) => 0.0,
             (Stage::Parameterizing, Some(total)) => FLAT * done / total.max(1) as f64,
-            // The number of trials is not known before.
+            // The number of packing attempts is not known in advance.
             (Stage::Packing, _) => FLAT + (1.0 - FLAT) * done / (done + 8.0),
             _ => 1.0,
         };
         self.shown = self.shown.max(part);
-        // Each chart is reported once, when it is flat.
+        // Each chart is reported once, when it has been flattened.
         self.n_charts += usize::from(progress.stage == Stage::Parameterizing);
         self.stopped = if (self.callback)(self.shown).is_break() {
             Some(Stop::Asked)
@@ -163,10 +165,10 @@ impl Watch<'_> {
     }
 }
 
-/// Number of connected components of the faces that have an area, where vertices at one position are one: a lower bound of the
-/// number of charts.
+/// Number of connected components of the faces with an area: a lower bound of the number of charts. Vertices at the
+/// same position count as one.
 fn n_components(positions: &[[f32; 3]], indices: &[u32]) -> usize {
-    // The first vertex at the position of each vertex. The sum makes one zero of both.
+    // Join vertices with the same position: each points to the first of them. Adding zero turns -0 into 0.
     let bits = |vertex: u32| positions[vertex as usize].map(|part| (part + 0.0).to_bits());
     let mut order: Vec<u32> = (0..positions.len() as u32).collect();
     order.sort_unstable_by_key(|&vertex| (bits(vertex), vertex));
@@ -188,6 +190,7 @@ fn n_components(positions: &[[f32; 3]], indices: &[u32]) -> usize {
         let at = |vertex: u32| Vec3::from(positions[vertex as usize]).as_dvec3();
         has_area[a as usize] |= (at(b) - at(a)).cross(at(c) - at(a)) != DVec3::ZERO;
     }
+    // Count the components with an area.
     let mut counted = vec![false; positions.len()];
     for vertex in 0..positions.len() {
         if has_area[vertex] {
@@ -197,7 +200,7 @@ fn n_components(positions: &[[f32; 3]], indices: &[u32]) -> usize {
     counted.into_iter().filter(|&counted| counted).count()
 }
 
-/// The root of a vertex in a forest, whose paths are halved on the way.
+/// The root of a vertex in a union-find forest, with path halving.
 fn root(roots: &mut [u32], mut vertex: u32) -> u32 {
     while roots[vertex as usize] != vertex {
         let above = roots[roots[vertex as usize] as usize];
@@ -207,9 +210,9 @@ fn root(roots: &mut [u32], mut vertex: u32) -> u32 {
     vertex
 }
 
-/// The corners of a face, or none if they have no area.
+/// The corners of a face; NaN if it has no area or is mirrored.
 fn with_area([a, b, c]: [DVec2; 3]) -> [DVec2; 3] {
-    // Not a number is not below zero.
+    // A comparison with NaN is false.
     if (b - a).perp_dot(c - a) < 0.0 {
         [a, b, c]
     } else {
@@ -217,7 +220,7 @@ fn with_area([a, b, c]: [DVec2; 3]) -> [DVec2; 3] {
     }
 }
 
-/// Positions moved and scaled into the cube from -1 to 1.
+/// Positions translated and scaled into the cube from -1 to 1.
 fn in_unit_cube(positions: &[DVec3]) -> Vec<[f32; 3]> {
     let low = positions.iter().copied().reduce(DVec3::min);
     let high = positions.iter().copied().reduce(DVec3::max);

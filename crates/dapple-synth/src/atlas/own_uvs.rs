@@ -1,4 +1,4 @@
-//! A layout that the caller brings along.
+//! Atlases from a layout that the caller supplies.
 
 use super::tangents::center;
 use super::{Atlas, NONE, check_side, weights};
@@ -7,7 +7,7 @@ use dapple_mesh::Surface;
 use dapple_raster::Raster;
 use glam::DVec2;
 
-/// How far outside of a face a texel's center still counts as inside, in weights: rounding leaves no gap between faces.
+/// Tolerance of the inside test for texel centers, in barycentric weights: rounding leaves no gap between faces.
 const ROUNDING: f64 = 1e-9;
 
 pub(super) fn from_uvs(
@@ -31,7 +31,7 @@ pub(super) fn from_uvs(
     )
 }
 
-/// The atlas in which faces cover the texels between their corners, and `padding` texels around them.
+/// Builds the atlas in which each face covers the texels between its corners, plus a border of `padding` texels.
 pub(super) fn covered(
     corners: Vec<[DVec2; 3]>,
     size: [u32; 2],
@@ -51,7 +51,8 @@ pub(super) fn covered(
     })
 }
 
-/// The corners in texels, brought into the unit square; NaN for a face without an area or far outside of it.
+/// The corners in texels, translated by whole units so that the centroid is in the unit square; NaN for a face without
+/// an area or too far away.
 fn place(uvs: [DVec2; 3], scale: DVec2) -> [DVec2; 3] {
     let turns = ((uvs[0] + uvs[1] + uvs[2]) / 3.0).floor();
     let corners = uvs.map(|uv| (uv - turns) * scale);
@@ -63,13 +64,14 @@ fn place(uvs: [DVec2; 3], scale: DVec2) -> [DVec2; 3] {
     }
 }
 
-/// Gives a face the texels whose centers it covers and that no face has yet.
+/// Assigns a face to the texels whose centers it covers, unless they already show another face.
 fn cover(faces: &mut Raster<u32>, face: u32, corners: &[DVec2; 3]) {
     let [a, b, c] = *corners;
     if !a.is_finite() {
         return;
     }
     let size = faces.size();
+    // Range of texels whose centers are between two positions along an axis.
     let texels = |low: f64, high: f64, length: u32| {
         let last = f64::from(length);
         let [from, until] = [(low - 0.5).ceil(), (high - 0.5).floor() + 1.0];
@@ -89,7 +91,8 @@ fn cover(faces: &mut Raster<u32>, face: u32, corners: &[DVec2; 3]) {
     }
 }
 
-/// Gives free texels beside a face that face, ring after ring; beside several the one with the lowest index.
+/// Dilates the covered texels `padding` times: each ring takes the faces of adjacent texels, the lowest index of
+/// several.
 fn spread(faces: &mut Raster<u32>, padding: u32) {
     let covered = faces.pixels().iter().enumerate();
     let mut ring: Vec<usize> = covered
@@ -119,7 +122,7 @@ fn spread(faces: &mut Raster<u32>, padding: u32) {
     }
 }
 
-/// The texels around one, and itself.
+/// The texel itself and its neighbors, diagonal ones included.
 fn neighbors(texel: usize, size: [u32; 2]) -> impl Iterator<Item = usize> {
     let [width, height] = size.map(|length| length as usize);
     let (row, column) = (texel / width, texel % width);

@@ -1,22 +1,22 @@
-//! How good a layout is.
+//! Measures of the quality of a layout.
 //!
 //! Reference: Pedro V. Sander, John Snyder, Steven J. Gortler and Hugues Hoppe, "Texture Mapping Progressive Meshes",
-//! SIGGRAPH 2001, doi 10.1145/383259.383307, section 3: the stretch of a map.
+//! SIGGRAPH 2001, doi 10.1145/383259.383307, section 3: the stretch of a parameterization.
 
 use super::{Atlas, NONE, tangents, weights};
 use dapple_mesh::{FaceEdge, FaceIdx, Surface};
 use glam::DVec2;
 
-/// How good a layout is for a surface.
+/// Quality of a layout for a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct AtlasReport {
-    /// The number of pieces: sets of faces that lie together in the map as they do on the surface.
+    /// Number of pieces: sets of faces that are connected in the map as on the surface.
     pub pieces: usize,
-    /// The part of the texels whose centers lie on their faces, which is without padding: 0 to 1.
+    /// Fraction of the texels whose centers lie on their faces, padding excluded: 0 to 1.
     pub used: f64,
-    /// The L2 stretch of Sander et al.: the root mean square of how far a texel reaches on the surface, in all
-    /// directions, over what it would be if all texels were squares of one size. It is at least 1.
+    /// The L2 stretch of Sander et al.: the root mean square length of a texel on the surface over all directions,
+    /// divided by the length if all texels were squares of equal size. It is at least 1.
     pub stretch: f64,
 }
 
@@ -34,7 +34,7 @@ impl AtlasReport {
     }
 }
 
-/// For each face the number of its piece, from 0, or [`NONE`] without a place.
+/// The index of each face's piece, from 0; [`NONE`] for a face without a place.
 pub(super) fn pieces(atlas: &Atlas, surface: &Surface) -> Vec<u32> {
     let corners = &atlas.corners;
     let mut pieces = vec![NONE; corners.len()];
@@ -45,6 +45,7 @@ pub(super) fn pieces(atlas: &Atlas, surface: &Surface) -> Vec<u32> {
         }
         pieces[first.index()] = count;
         open.push(first);
+        // Add the faces across edges that have the same ends in the map.
         while let Some(face) = open.pop() {
             let edges = [0, 1, 2].map(|edge| FaceEdge { face, edge });
             for (from, to) in edges.map(|from| (from, surface.adjacency().across(from))) {
@@ -63,13 +64,13 @@ pub(super) fn pieces(atlas: &Atlas, surface: &Surface) -> Vec<u32> {
     pieces
 }
 
-/// The places of the ends of an edge.
+/// The positions of the two ends of an edge in the map, in texels.
 fn ends(corners: &[[DVec2; 3]], at: FaceEdge) -> [DVec2; 2] {
     let start = usize::from(at.edge);
     [start, (start + 1) % 3].map(|corner| corners[at.face.index()][corner])
 }
 
-/// The part of the texels whose centers are on their faces.
+/// Fraction of the texels whose centers are on their faces.
 fn used(atlas: &Atlas) -> f64 {
     let [width, height] = atlas.size();
     let is_on = |texel: [u32; 2]| {
@@ -83,7 +84,7 @@ fn used(atlas: &Atlas) -> f64 {
     count as f64 / (f64::from(width) * f64::from(height))
 }
 
-/// The L2 stretch of all faces with a place.
+/// The L2 stretch of all faces with a place, weighted by their areas.
 fn stretch(atlas: &Atlas, surface: &Surface) -> f64 {
     let (mut sum, mut area) = (0.0, 0.0);
     for (face, stretch) in (0..).map(FaceIdx).zip(stretches(atlas, surface)) {
@@ -95,7 +96,7 @@ fn stretch(atlas: &Atlas, surface: &Surface) -> f64 {
     if area > 0.0 { (sum / area).sqrt() } else { 1.0 }
 }
 
-/// The L2 stretch of every face; NaN without a place.
+/// The L2 stretch of every face; NaN for a face without a place.
 pub(super) fn stretches(atlas: &Atlas, surface: &Surface) -> Vec<f64> {
     let (mut on_surface, mut in_map) = (0.0, 0.0);
     let faces = (0..).map(FaceIdx).zip(&atlas.corners);
@@ -110,6 +111,7 @@ pub(super) fn stretches(atlas: &Atlas, surface: &Surface) -> Vec<f64> {
             reach
         })
         .collect();
+    // Normalize by the mean density of texels.
     let density = if on_surface > 0.0 {
         (in_map / on_surface).sqrt()
     } else {
@@ -118,7 +120,7 @@ pub(super) fn stretches(atlas: &Atlas, surface: &Surface) -> Vec<f64> {
     reaches.into_iter().map(|reach| reach * density).collect()
 }
 
-/// The root mean square, over all directions, of the length on the surface of a texel of a face; NaN without a place.
+/// The root mean square length, over all directions, of a texel on the surface; NaN for a face without a place.
 fn reach(surface: &Surface, face: FaceIdx, [a, b, c]: [DVec2; 3]) -> f64 {
     let [pa, pb, pc] = surface.mesh().corners(face);
     let (b, c, pb, pc) = (b - a, c - a, pb - pa, pc - pa);

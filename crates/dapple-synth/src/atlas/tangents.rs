@@ -1,9 +1,10 @@
-//! The frames of texture coordinates, as programs make them that read a file without tangents.
+//! Tangent frames of texture coordinates, as programs compute them for files without tangents.
 //!
 //! Reference: Morten S. Mikkelsen, "Simulation of Wrinkled Surfaces Revisited", master's thesis, University of
-//! Copenhagen, 2008: the tangent at a corner of a face is the mean of those of all faces that share its vertex, its place
-//! in the map and its handedness, weighted by their angles there, each at a right angle to the vertex's normal; between
-//! corners tangents are mixed linearly. Angles are those of the faces, not of their projections.
+//! Copenhagen, 2008. The tangent at a corner is the mean of the tangents of all faces with the same vertex, texture
+//! coordinates and handedness. Each is projected to the plane perpendicular to the vertex normal, and weighted by the
+//! angle of its face. Between corners, tangents are interpolated linearly. Angles are those of the faces, not of their
+//! projections.
 
 use super::{Atlas, weights};
 use dapple_mesh::{FaceIdx, Surface};
@@ -17,12 +18,12 @@ pub(crate) struct Tangents {
     is_mirrored: Vec<bool>,
 }
 
-/// The key of corners that share a tangent: the vertex, the bits of the place in the map and of the normal, and
-/// the handedness.
+/// The key of corners that share a tangent: the vertex, the bits of its position in the map, the bits of its normal,
+/// and the handedness.
 type Key = (u32, [u64; 2], [u64; 3], bool);
 
 impl Tangents {
-    /// The tangents of a mesh that is shaded by these normals of the corners of its faces.
+    /// Computes the tangents of a mesh. `shading` has the normal of each corner of each face.
     pub(crate) fn new(surface: &Surface, atlas: &Atlas, shading: &[[DVec3; 3]]) -> Self {
         let mesh = surface.mesh();
         let mut tangents = Self {
@@ -39,7 +40,7 @@ impl Tangents {
             for corner in 0..3 {
                 let normal = shading[face.index()][corner];
                 let flat = flat_part(tangent, normal).normalize_or_zero();
-                // Adding zero makes both zeros the same.
+                // Adding zero turns -0 into 0.
                 let place = (places[corner] + 0.0).to_array().map(f64::to_bits);
                 let normal = (normal + 0.0).to_array().map(f64::to_bits);
                 let share = flat * angle(corners, corner);
@@ -47,7 +48,7 @@ impl Tangents {
                 shares.push((key, face, corner, share));
             }
         }
-        // Stable, so that sums run in the order of the faces.
+        // The sort is stable, so that sums run in the order of the faces.
         shares.sort_by_key(|share| share.0);
         for group in shares.chunk_by(|a, b| a.0 == b.0) {
             let sum: DVec3 = group.iter().map(|share| share.3).sum();
@@ -59,8 +60,8 @@ impl Tangents {
         tangents
     }
 
-    /// The tangent and the bitangent at a texel of a face, at right angles to the unit normal there; the bitangent points
-    /// to the top of the map.
+    /// The tangent and the bitangent at a texel, perpendicular to the unit normal there. The bitangent points to the
+    /// top of the map.
     pub(crate) fn frame(&self, atlas: &Atlas, texel: [u32; 2], normal: DVec3) -> [DVec3; 2] {
         let Some(face) = atlas.face(texel) else {
             let tangent = normal.any_orthonormal_vector();
@@ -69,7 +70,7 @@ impl Tangents {
         self.frame_of(face, weights_within(atlas, face, texel), normal)
     }
 
-    /// The tangent and the bitangent at the point of a face with these weights of its corners.
+    /// The tangent and the bitangent at the point of a face with the given barycentric weights.
     pub(crate) fn frame_of(&self, face: FaceIdx, weights: [f64; 3], normal: DVec3) -> [DVec3; 2] {
         let mixed = sum(self.corners[face.index()], weights);
         let tangent = flat_part(mixed, normal).normalize_or(normal.any_orthonormal_vector());
@@ -79,39 +80,40 @@ impl Tangents {
     }
 }
 
-/// The mean of vectors at the corners of a face as it is at a texel; in the padding, that of the border goes on.
+/// The interpolated vector of a face's corners at a texel. In the padding it is extrapolated as the border's value.
 pub(crate) fn mixed(atlas: &Atlas, face: FaceIdx, texel: [u32; 2], corners: [DVec3; 3]) -> DVec3 {
     sum(corners, weights_within(atlas, face, texel))
 }
 
-/// The weights of the corners of a face at a texel, each from 0 to 1.
+/// The barycentric weights of a texel in a face, each clamped to 0 to 1.
 fn weights_within(atlas: &Atlas, face: FaceIdx, texel: [u32; 2]) -> [f64; 3] {
     let weights = weights(atlas.corners[face.index()], center(texel));
     weights.map(|weight| weight.clamp(0.0, 1.0))
 }
 
-/// The sum of the vectors at the corners of a face times their weights.
+/// The weighted sum of the vectors at the corners of a face.
 pub(crate) fn sum(corners: [DVec3; 3], weights: [f64; 3]) -> DVec3 {
     let parts = corners.iter().zip(weights);
     parts.map(|(&corner, weight)| corner * weight).sum()
 }
 
-/// Where the center of a texel is, in texels.
+/// The center of a texel, in texels.
 pub(super) fn center([column, row]: [u32; 2]) -> DVec2 {
     DVec2::new(f64::from(column) + 0.5, f64::from(row) + 0.5)
 }
 
-/// The direction of +u in a face, and whether the face is mirrored in the map; any without a place there.
+/// The direction of +u on a face, and whether the face is mirrored in the map; any direction for a face without a
+/// place.
 fn face_tangent([a, b, c]: [DVec3; 3], [ua, ub, uc]: [DVec2; 3]) -> (DVec3, bool) {
     let (b, c, ub, uc) = (b - a, c - a, ub - ua, uc - ua);
-    // Rows go down: what is counterclockwise from outside is so in the picture if this is below zero.
+    // Rows go down: a face that is counterclockwise from outside and not mirrored has a negative product.
     let is_mirrored = ub.perp_dot(uc) > 0.0;
     let along = b * uc.y - c * ub.y;
     let tangent = if is_mirrored { along } else { -along };
     (tangent.normalize_or_zero(), is_mirrored)
 }
 
-/// The part of a vector at a right angle to a unit vector.
+/// The component of a vector perpendicular to a unit vector.
 fn flat_part(vector: DVec3, normal: DVec3) -> DVec3 {
     vector - normal * vector.dot(normal)
 }

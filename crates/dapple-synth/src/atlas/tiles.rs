@@ -1,4 +1,4 @@
-//! Square tiles of two right triangles.
+//! Atlases of square tiles, each with two right triangles.
 
 use super::{Atlas, NONE, check_padding, check_side};
 use crate::{SynthError, SynthErrorKind};
@@ -18,39 +18,40 @@ impl Frame {
         Ok(Self { padding })
     }
 
-    /// The excess of a tile's side over the legs of its triangles: padding at both ends of the legs, and twice between
-    /// the long sides, where it is counted along an axis; and half a texel at both ends.
+    /// Side of a tile minus the legs of its triangles, in texels: padding at both ends of the legs, twice the padding
+    /// between the hypotenuses, measured along an axis, and half a texel at both ends.
     fn width(self) -> u32 {
         4 * self.padding + 1
     }
 
-    /// The least side of a tile: its triangles have legs of one texel.
+    /// Minimum side of a tile, in texels: its triangles have legs of one texel.
     fn tile_min(self) -> u32 {
         self.width() + 1
     }
 
-    /// The grid of the places of tiles: the largest power of two up to the padding.
+    /// Grid spacing of tile positions: the largest power of two up to the padding.
     fn step(self) -> u32 {
         1 << self.padding.ilog2()
     }
 }
 
-/// The padding of tiles of one size for a map of this side, also where they are of several sizes.
+/// Default padding, in texels, in a map of the given side, for tiles of one size and of several.
 ///
-/// Padding takes about four times itself off the legs of the triangles: this leaves them three quarters of a tile.
+/// Padding shortens the legs of the triangles by about four times its width: this leaves three quarters of a tile's
+/// side.
 pub(super) fn padding(surface: &Surface, side: u32) -> u32 {
     let part = side / tiles_across(surface) / 16;
     part.checked_ilog2().map_or(1, |log| 1 << log.min(10))
 }
 
-/// How many tiles of one size lie side by side.
+/// Number of tiles per row if all have the same size.
 fn tiles_across(surface: &Surface) -> u32 {
     let n_tiles = (surface.mesh().faces().len() as u32).div_ceil(2);
     let root = n_tiles.isqrt();
     root + u32::from(root * root < n_tiles)
 }
 
-/// A tile of two faces, or one.
+/// A tile of one or two faces. Positions and sides are in texels.
 struct Tile {
     first: [u32; 2],
     side: u32,
@@ -77,12 +78,12 @@ pub(super) fn uniform(surface: &Surface, side: u32, padding: u32) -> Result<Atla
 pub(super) fn by_area(surface: &Surface, side: u32, padding: u32) -> Result<Atlas, SynthError> {
     check_side(side)?;
     let frame = Frame::new(padding)?;
-    // The legs of a right triangle as large as each face, and the faces from the largest to the smallest.
+    // Sort the faces by the legs of a right triangle of the same area, largest first.
     let n_faces = surface.mesh().faces().len() as u32;
     let leg = |face: u32| (2.0 * surface.face_area(FaceIdx(face))).sqrt();
     let mut faces: Vec<(f64, u32)> = (0..n_faces).map(|face| (leg(face), face)).collect();
     faces.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-    // The largest scale whose tiles fit, by bisection: at zero all tiles are the smallest ones.
+    // Find the largest scale whose tiles fit, by bisection. At scale 0 all tiles have the minimum size.
     let (mut low, mut high) = (0.0, f64::from(side) / faces[0].0);
     pack(&faces, low, side, frame).ok_or_else(|| too_small(side))?;
     for _ in 0..40 {
@@ -97,16 +98,18 @@ pub(super) fn by_area(surface: &Surface, side: u32, padding: u32) -> Result<Atla
     fill(surface, side, frame, tiles.into_iter())
 }
 
-/// Packs tiles of faces with the given legs, the longest first, in shelves; nothing if they do not fit.
+/// Packs the tiles of faces with the given legs, longest first, in shelves; `None` if they do not fit.
 fn pack(faces: &[(f64, u32)], scale: f64, side: u32, frame: Frame) -> Option<Vec<Tile>> {
     let mut tiles = Vec::with_capacity(faces.len().div_ceil(2));
     let (mut at, mut shelf) = ([0, 0], 0);
     for pair in faces.chunks(2) {
         let wanted = pair[0].0 * scale + f64::from(frame.width());
+        // Round the side up to a power of two.
         let mut tile = frame.tile_min().next_power_of_two();
         while f64::from(tile) < wanted {
             tile *= 2;
         }
+        // Start a new shelf at the end of a row.
         if at[0] + tile > side {
             at = [0, at[1] + shelf];
         }
@@ -126,7 +129,7 @@ fn pack(faces: &[(f64, u32)], scale: f64, side: u32, frame: Frame) -> Option<Vec
     Some(tiles)
 }
 
-/// Writes the tiles of a map.
+/// Writes the tiles into an atlas.
 fn fill(
     surface: &Surface,
     side: u32,
@@ -141,18 +144,20 @@ fn fill(
         let origin = DVec2::new(f64::from(tile.first[0]), f64::from(tile.first[1]));
         for (half, face) in tile.faces.into_iter().enumerate() {
             let Some(face) = face else { continue };
-            // The first triangle has its right angle at the tile's first corner, the second at the last one.
+            // The right angle of the first triangle is at the tile's first corner, that of the second at the last
+            // corner.
             let (corner, way) = match half {
                 0 => (origin + padding, 1.0),
                 _ => (origin + f64::from(tile.side) - padding, -1.0),
             };
-            // Rows go down: so the picture of the face is not mirrored.
+            // Rows go down: this order of the ends does not mirror the face.
             let ends = [DVec2::ZERO, DVec2::Y * legs, DVec2::X * legs];
             let first = opposite_longest(surface, FaceIdx(face));
             for (at, end) in ends.into_iter().enumerate() {
                 corners[face as usize][(first + at) % 3] = corner + end * way;
             }
         }
+        // Split the texels along the diagonal.
         let side = tile.side;
         for y in 0..side {
             let row = faces.width() as usize * (tile.first[1] + y) as usize;
@@ -170,7 +175,7 @@ fn fill(
     })
 }
 
-/// The corner across from the longest edge, where the right angle distorts least; of equal ones the first.
+/// The corner opposite the longest edge, where a right angle distorts least; of equal edges the first.
 fn opposite_longest(surface: &Surface, face: FaceIdx) -> usize {
     let [a, b, c] = surface.mesh().corners(face);
     let lengths = [

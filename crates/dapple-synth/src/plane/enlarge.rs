@@ -1,18 +1,18 @@
-//! The pixels of a larger version of the exemplar for a texture in the plane that is as much larger.
+//! Enlarging a texture in the plane from a larger version of its exemplar, by an integer factor.
 //!
-//! Every pixel of the texture near a place predicts a pixel of the larger exemplar: its own source, and from there the way
-//! to the place. The one that most of them predict is taken, those nearer counting more: so the borders between pieces
-//! are smooth, and nothing is mixed.
+//! Each texture pixel near an output pixel predicts a pixel of the larger exemplar: its own source plus the offset to
+//! the output pixel. The prediction with the largest sum of weights is taken, where nearer pixels weigh more. So the
+//! borders between pieces are smooth, and no values are mixed.
 
 use crate::Edges;
 use crate::sites::weight;
 use dapple_raster::{Raster, Wrap};
 
-/// How far pixels have a say, in pixels: so far that corners are round, and not so far that a pixel alone among others is
-/// outvoted.
+/// Radius of the weights, in texture pixels: large enough that corners are round, and small enough that a single pixel
+/// between others is not outvoted.
 const RADIUS: f64 = 1.25;
 
-/// A texture, and how many times as large it is to be.
+/// A texture with the factor of its enlargement.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Enlarged<'a> {
     pub(super) sources: &'a Raster<[u32; 2]>,
@@ -24,13 +24,14 @@ pub(super) struct Enlarged<'a> {
 }
 
 impl Enlarged<'_> {
-    /// The column and row in the larger exemplar of the pixel at a place of the larger texture.
+    /// The column and row in the larger exemplar for a pixel of the larger texture.
     pub(super) fn source(&self, place: [u32; 2]) -> [u32; 2] {
         let place = place.map(i64::from);
         let own = place.map(|at| at / self.factor);
         let mut votes = [([0; 2], 0.0_f64); 9];
         let mut n_votes = 0;
-        // The own pixel is first, and its prediction is within the exemplar.
+        // Sum the weights of each distinct prediction. The pixel's own site comes first: its prediction is always
+        // within the exemplar, so there is at least one.
         for [x, y] in [
             [0, 0],
             [-1, -1],
@@ -46,7 +47,7 @@ impl Enlarged<'_> {
             let Some(predicted) = self.predicted(site, place) else {
                 continue;
             };
-            // Distances in pixels of the texture between middles.
+            // Distance between pixel centers, in pixels of the texture.
             let away = [0, 1].map(|axis| {
                 let middle = (place[axis] as f64 + 0.5) / self.factor as f64 - 0.5;
                 middle - site[axis] as f64
@@ -65,6 +66,7 @@ impl Enlarged<'_> {
                 }
             }
         }
+        // Take the prediction of the largest weight; of equal ones, the first.
         let mut best = votes[0];
         for &vote in &votes[1..n_votes] {
             if vote.1 > best.1 {
@@ -74,7 +76,7 @@ impl Enlarged<'_> {
         best.0.map(|at| at as u32)
     }
 
-    /// The pixel that a site predicts for a place; none past the edges of the texture or of the exemplar.
+    /// The pixel that a site predicts at a place; `None` past a cut edge of the texture or of the exemplar.
     fn predicted(&self, site: [i64; 2], place: [i64; 2]) -> Option<[i64; 2]> {
         let mut at = [0; 2];
         for axis in 0..2 {

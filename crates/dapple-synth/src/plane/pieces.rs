@@ -1,28 +1,31 @@
-//! What a texture in the plane is made of: its pieces, and how well they fit.
+//! The pieces that a texture in the plane consists of, and how well they fit together.
 
 use super::PlaneTexture;
 use crate::{Edges, Exemplar, SynthError};
 use dapple_raster::Raster;
 
-/// How far around a pixel the texture is compared with the exemplar, in pixels.
+/// Half the side of the window in which texture and exemplar are compared, in pixels.
 const HALF: i64 = 2;
 
-/// In place of the piece of a pixel that is in none yet.
+/// Marks a pixel that is not assigned to a piece yet.
 const NONE: u32 = u32::MAX;
 
 impl PlaneTexture {
-    /// For each pixel the number of its piece, from 0, by their first pixels row by row: pixels beside each other are of one
-    /// piece if their sources are beside each other in the same way.
+    /// Labels the pieces of the texture: for each pixel, the index of its piece. Adjacent pixels belong to one piece if
+    /// their sources are adjacent in the same direction. Indices start at 0, in row order of the first pixel of each
+    /// piece.
     ///
     /// # Errors
     ///
-    /// [`SynthErrorKind::Raster`](crate::SynthErrorKind::Raster) for a texture without pixels, which none is.
+    /// [`SynthErrorKind::Raster`](crate::SynthErrorKind::Raster) for a texture without pixels, which cannot be
+    /// constructed.
     pub fn pieces(&self) -> Result<Raster<u32>, SynthError> {
         let [width, height] = self.sources.size();
         let index = |[column, row]: [u32; 2]| row as usize * width as usize + column as usize;
         let mut pieces = vec![NONE; self.sources.pixels().len()];
         let mut n_pieces = 0;
         let mut open = Vec::new();
+        // Flood-fill each piece from its first pixel.
         for first in (0..height).flat_map(|row| (0..width).map(move |column| [column, row])) {
             if pieces[index(first)] != NONE {
                 continue;
@@ -44,15 +47,17 @@ impl PlaneTexture {
         Ok(Raster::from_vec([width, height], pieces)?)
     }
 
-    /// How unlike the texture around each pixel and the exemplar around its source are: the root of the mean squared
-    /// difference of the values within two pixels, at least 0.
+    /// Measures how well pieces fit: the root mean squared difference, at least 0, between the texture in a window of
+    /// two pixels around each pixel and the exemplar in the window around its source.
     ///
-    /// Where it is 0 the exemplar goes on; else a border of pieces is near, and the more it can be seen, the larger it is.
-    /// Values are those of the exemplar times the roots of their weights; sRGB codes from 0 to 1 for colors.
+    /// A difference of 0 means that the texture continues the exemplar. Near a border between pieces it is larger; the
+    /// more visible the border, the larger the value. Differences are of the exemplar's values times the square roots
+    /// of their weights; for colors these values are sRGB codes from 0 to 1.
     ///
     /// # Errors
     ///
-    /// [`SynthErrorKind::Raster`](crate::SynthErrorKind::Raster) for an exemplar of another size than the texture's.
+    /// [`SynthErrorKind::Raster`](crate::SynthErrorKind::Raster) for an exemplar whose size differs from that of the
+    /// texture's.
     pub fn differences(&self, exemplar: &Exemplar) -> Result<Raster<f32>, SynthError> {
         Raster::filled(self.exemplar_size, ())?.check_same_size(exemplar.size)?;
         let size = self.sources.size();
@@ -61,7 +66,7 @@ impl PlaneTexture {
         })?)
     }
 
-    /// The difference at a pixel.
+    /// The root mean squared difference at a pixel.
     fn difference(&self, exemplar: &Exemplar, place: [u32; 2]) -> f32 {
         let n = exemplar.n_channels;
         let source = self.source(place);
@@ -84,7 +89,7 @@ impl PlaneTexture {
         (sum / n_values.max(1) as f32).sqrt()
     }
 
-    /// The pixel a step from another, if its source is as far from that one's.
+    /// The pixel at an offset from another one, if its source has the same offset from the other's source.
     fn goes_on(&self, place: [u32; 2], step: [i64; 2]) -> Option<[u32; 2]> {
         let beside = self.beside(place, step)?;
         let [from, to] = [place, beside].map(|place| self.source(place));
@@ -99,7 +104,7 @@ impl PlaneTexture {
         is_next.then_some(beside)
     }
 
-    /// The pixel some steps from another; none past an edge that is cut.
+    /// The pixel at an offset from another one; `None` past a cut edge.
     fn beside(&self, place: [u32; 2], step: [i64; 2]) -> Option<[u32; 2]> {
         let mut beside = [0; 2];
         for axis in 0..2 {

@@ -1,12 +1,14 @@
-//! Synthesizing a part of a texture again, with everything around it as it was.
+//! Repair: synthesizing part of a texture again while everything around it stays as it is.
 //!
 //! Reference: Sylvain Lefebvre and Hugues Hoppe, "Parallel Controllable Texture Synthesis", SIGGRAPH 2005, DOI
-//! 10.1145/1073204.1073261, for passes that correct pixels far from each other at the same time, and several times.
+//! 10.1145/1073204.1073261, for correction passes that visit distant pixels in parallel, and repeat.
 //!
-//! A sweep would know only one side of a hole. Here all pixels of a level have a color before any is visited, those in the
-//! hole too, and each compares with all of its neighborhood. What a hole begins with on the coarsest level is the piece of
-//! the exemplar that fits what is around it best; where no piece is as large as the hole, random pixels. On finer levels a
-//! pixel begins with what the one under it goes on to, as in the paper of 2005.
+//! A sweep would know only one side of a hole. In a repair every pixel of a level, inside the hole too, has a color
+//! before any is visited, and each compares its full neighborhood.
+//!
+//! On the coarsest level a hole starts as the piece of the exemplar that fits its surroundings best. Where no piece is
+//! as large as the hole, it starts with random pixels. On finer levels a pixel starts with the continuation of its
+//! parent's source, as in the paper of 2005.
 
 use super::{PlaneGround, PlaneTexture};
 use crate::engine::Progress;
@@ -16,23 +18,24 @@ use crate::{Exemplar, Options, Pyramid, Schedule, SynthError};
 use core::ops::ControlFlow;
 use dapple_raster::Raster;
 
-/// The columns and rows between two sites that are visited one after the other: more than a neighborhood of side 7
-/// reaches, so that they do not wait for each other.
+/// Side of the square tiles that define the visiting order, in pixels: more than a 7 × 7 neighborhood reaches, so that
+/// consecutive sites, one per tile, do not wait for each other.
 const STRIDE: u32 = 4;
 
-/// The order of the sites of a square: those after one another are far from each other.
+/// Rank in the visiting order of each site of a tile. Sites of consecutive ranks are far apart.
 const DITHER: [[u8; STRIDE as usize]; STRIDE as usize] =
     [[0, 8, 2, 10], [12, 4, 14, 6], [3, 11, 1, 9], [15, 7, 13, 5]];
 
-/// How far around a hole pixels are compared to find what it begins with: as far as a neighborhood reaches.
+/// Width of the ring around a hole that is compared with the exemplar, in pixels: as far as a neighborhood reaches.
 const RING: i64 = 3;
 
-/// How many times the squared differences of a piece count that lacks some of its surroundings. At half of the deviation it is
-/// taken: by chance a part of the surroundings is rarely that much more alike than all of them.
+/// Penalty factor on the squared differences of a piece that lacks part of its ring. Such a piece wins only at less
+/// than half the deviation of a complete one: by chance, part of a ring is rarely that much more similar than the
+/// whole.
 const PARTIAL: f64 = 4.0;
 
 impl PlaneTexture {
-    /// The exemplar itself: every pixel is from where it is.
+    /// Creates the texture that equals the exemplar: every pixel is its own source.
     ///
     /// # Errors
     ///
@@ -46,19 +49,20 @@ impl PlaneTexture {
         })
     }
 
-    /// Synthesizes the pixels at which a mask is true again; all others stay as they are.
+    /// Synthesizes the pixels at which a mask is true again. All others keep their sources.
     ///
-    /// Scratches and things that do not belong to a texture vanish so: the exemplar is the photograph
-    /// [without them](Exemplar::with_mask), and the texture its [`identity`](Self::identity).
+    /// This removes scratches and objects that do not belong to a texture. For that, use the photograph as the
+    /// exemplar, [without the defects](Exemplar::with_mask), and its [`identity`](Self::identity) as the texture.
     ///
-    /// Without a schedule in the options it is [`Schedule::repair`]. The sites are visited in an order in which neighbors
-    /// are far apart. [`Options::evenness`] has no effect: a small part need not use all of the exemplar.
+    /// If the options have no schedule, [`Schedule::repair`] is used. Sites are visited in an order in which
+    /// consecutive ones are far apart. [`Options::evenness`] has no effect: a small part need not use all of the
+    /// exemplar.
     ///
     /// # Errors
     ///
-    /// Those of [`synthesize_plane_with`](crate::synthesize_plane_with), and
-    /// [`SynthErrorKind::Raster`](crate::SynthErrorKind::Raster) for a mask that is not as large as the texture and an
-    /// exemplar that is not as large as the texture's.
+    /// The errors of [`synthesize_plane_with`](crate::synthesize_plane_with), and
+    /// [`SynthErrorKind::Raster`](crate::SynthErrorKind::Raster) if the mask and the texture have different sizes, or
+    /// if the exemplar does not have the size of the texture's exemplar.
     ///
     /// # Examples
     ///
@@ -104,7 +108,7 @@ impl PlaneTexture {
         Self::grown(&ground, &pyramid, &options, &mut callback)
     }
 
-    /// What the sites of each level begin with.
+    /// The initial pixels of the sites of each level.
     fn starts(
         &self,
         mask: &Raster<bool>,
@@ -114,6 +118,7 @@ impl PlaneTexture {
         let mut starts = Vec::new();
         let mut sources = self.sources.clone();
         let mut is_kept = mask.map(|&is_made| !is_made);
+        // Kept sites start with their source, others with it only if it is usable.
         for exemplar in pyramid.levels() {
             if !starts.is_empty() {
                 (sources, is_kept) = coarser(&sources, &is_kept, ground)?;
@@ -129,6 +134,7 @@ impl PlaneTexture {
                 is_kept: is_kept.pixels().to_vec(),
             });
         }
+        // Fill the holes of the coarsest level with the pieces that fit best.
         if let (Some(start), Some(exemplar)) = (starts.last_mut(), pyramid.levels().last()) {
             let level = pyramid.levels().len() - 1;
             for hole in holes(start, ground, level) {
@@ -139,7 +145,8 @@ impl PlaneTexture {
     }
 }
 
-/// The sources and the sites that are kept on the next coarser level: those all of whose pixels are kept.
+/// The sources and the mask of kept sites on the next coarser level. A site is kept if all pixels that it averages are
+/// kept.
 fn coarser(
     sources: &Raster<[u32; 2]>,
     is_kept: &Raster<bool>,
@@ -159,14 +166,14 @@ fn coarser(
     ))
 }
 
-/// Sites beside each other that begin with nothing, and those around them.
+/// A connected group of sites without an initial pixel, and the ring of sites around it.
 struct Hole {
-    /// Columns and rows; across an edge that wraps they go on.
+    /// Columns and rows of the sites. Across a wrapping edge they continue past the size of the texture.
     sites: Vec<[i64; 2]>,
     ring: Vec<[i64; 2]>,
 }
 
-/// The holes of a level.
+/// Finds the holes of a level.
 fn holes(start: &Start, ground: &PlaneGround, level: usize) -> Vec<Hole> {
     let [width, height] = ground.sizes[level].map(i64::from);
     let mut found = vec![false; start.pixels.len()];
@@ -175,6 +182,7 @@ fn holes(start: &Start, ground: &PlaneGround, level: usize) -> Vec<Hole> {
         if found[first] || start.pixels[first] != UNKNOWN {
             continue;
         }
+        // Grow the hole from its first site; diagonal neighbors are connected.
         found[first] = true;
         let mut sites = vec![[first as i64 % width, first as i64 / width]];
         let mut at = 0;
@@ -190,6 +198,7 @@ fn holes(start: &Start, ground: &PlaneGround, level: usize) -> Vec<Hole> {
             }
             at += 1;
         }
+        // Collect the known sites around the hole.
         let mut in_ring = vec![false; (width * height) as usize];
         let mut ring = Vec::new();
         for place in sites.iter().flat_map(|&site| square(site, RING)) {
@@ -206,25 +215,25 @@ fn holes(start: &Start, ground: &PlaneGround, level: usize) -> Vec<Hole> {
     holes
 }
 
-/// The places at most `reach` columns and rows away.
+/// The places at most `reach` columns and rows away, with the place itself.
 fn square([column, row]: [i64; 2], reach: i64) -> impl Iterator<Item = [i64; 2]> {
     let rows = row - reach..=row + reach;
     rows.flat_map(move |row| (column - reach..=column + reach).map(move |column| [column, row]))
 }
 
 impl Hole {
-    /// Gives the sites the piece of the exemplar whose surroundings are most like theirs; nothing if none is as large. Of
-    /// several the first row by row.
+    /// Fills the sites with the piece of the exemplar whose ring is most similar to that of the hole; of several, the
+    /// first in row order. If no piece is as large as the hole, the sites stay unknown.
     ///
-    /// On the coarsest level of a small image pieces may lack some of their surroundings, which reach past a side or into the
-    /// hole. Those that have at least half of them are compared by what is there, but their differences count
-    /// [`PARTIAL`] times.
+    /// On the coarsest level of a small image, a piece may lack part of its ring, which reaches past a side or into the
+    /// hole. Pieces with at least half of their ring are compared by that part, but their differences are multiplied by
+    /// [`PARTIAL`].
     fn fill(&self, start: &mut Start, ground: &PlaneGround, level: usize, exemplar: &Exemplar) {
         let pixel_of = |place: [i64; 2]| {
             let pixel = exemplar.pixel_at(place);
             pixel.filter(|&pixel| exemplar.is_usable(pixel))
         };
-        // A piece lies in one image where there are several.
+        // Where the exemplar consists of several images, a piece lies within one of them.
         let areas = exemplar.areas();
         let width = exemplar.size[0] as usize;
         let area_of = |pixel: usize| {
@@ -235,6 +244,7 @@ impl Hole {
             areas.iter().position(|area| area.contains(place))
         };
         let colors = exemplar.plain();
+        // Colors of the ring around the hole.
         let painted: Vec<([i64; 2], &[f32])> = self
             .ring
             .iter()
@@ -246,7 +256,7 @@ impl Hole {
         let [width, height] = exemplar.size.map(i64::from);
         let [column, row] = self.sites[0];
         let n_least = painted.len().div_ceil(2);
-        // The sum of squared differences of the surroundings of a piece, if it is below a limit.
+        // Sum of squared differences of a piece's ring, if below a limit.
         let difference = |offset: [i64; 2], limit: f64| {
             let moved = |[column, row]: [i64; 2]| pixel_of([column + offset[0], row + offset[1]]);
             let area = moved([column, row]).and_then(&area_of);
@@ -272,13 +282,15 @@ impl Hole {
                     return None;
                 }
             }
+            // Scale the sum to the whole ring, with the penalty.
             if n_there < painted.len() {
                 sum *= PARTIAL * painted.len() as f64 / n_there as f64;
-                // A piece that has all of its surroundings wins where nothing differs.
+                // Where nothing differs, a piece with its whole ring wins.
                 sum += f64::MIN_POSITIVE;
             }
             (sum < limit).then_some(sum)
         };
+        // Compare every offset of the hole within the exemplar.
         let mut best = (f64::INFINITY, None);
         for offset in (0..height).flat_map(|y| (0..width).map(move |x| [x - column, y - row])) {
             if let Some(sum) = difference(offset, best.0) {
@@ -286,6 +298,7 @@ impl Hole {
             }
         }
         let Some([x, y]) = best.1 else { return };
+        // Copy the piece.
         for &[column, row] in &self.sites {
             let site = ground.index(level, [column, row]);
             if let (Some(site), Some(pixel)) = (site, pixel_of([column + x, row + y])) {
@@ -295,7 +308,8 @@ impl Hole {
     }
 }
 
-/// The sites of a level that are made: one of each square of [`STRIDE`] columns and rows, then the next of each.
+/// The sites to synthesize in visiting order: one site of each tile of [`STRIDE`] columns and rows, then the next of
+/// each.
 pub(super) fn order(start: &Start, width: u32) -> Vec<u32> {
     let in_square = |site: u32| {
         let [column, row] = [site % width, site / width].map(|at| (at % STRIDE) as usize);

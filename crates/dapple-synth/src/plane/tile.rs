@@ -1,8 +1,8 @@
-//! Tiles of an exemplar that does not repeat: its largest part that nearly does, with a new seam.
+//! Tiles from an exemplar that does not repeat: its largest part that nearly repeats, with a synthesized seam.
 //!
-//! No cut closes the seam of bricks whose courses do not meet. Here the side of the tile is one after which the image is
-//! most like itself, so that courses do meet where it can be had; then a strip along the seam is synthesized again, which
-//! bends what is left to fit.
+//! No cut closes the seam of bricks whose courses do not meet. This method chooses the side of the tile as the shift at
+//! which the image is most similar to itself, so that courses meet where possible. Then it synthesizes a strip along
+//! the seam again, which bends the remaining mismatch to fit.
 
 use super::PlaneTexture;
 use crate::engine::Progress;
@@ -10,15 +10,16 @@ use crate::{Edges, Exemplar, Options, SynthError};
 use core::ops::ControlFlow;
 use dapple_raster::{Raster, parallel};
 
-/// Makes a tile of an exemplar: it repeats along the axes, and only a strip along their seams is synthesized.
+/// Makes a tile of an exemplar that repeats along the given axes. Only a strip along the seams is synthesized.
 ///
-/// The tile is at least half as large as the exemplar along each axis, and smaller by at least half of `width`, that of the
-/// strip in pixels. Its side is a multiple of 2 to the number of levels less one. Along other axes it is as large.
+/// `width` is the width of the strip in pixels. Along each repeating axis the side of the tile is at least half that of
+/// the exemplar, at most the exemplar's side minus half of `width`, and a multiple of 2^(number of levels - 1). Along
+/// other axes the tile has the size of the exemplar.
 ///
 /// # Errors
 ///
-/// Those of [`PlaneTexture::repair`], and [`SynthErrorKind::Range`](crate::SynthErrorKind::Range) for a strip that is not
-/// at least 2 pixels wide, and wider than an eighth of a side.
+/// The errors of [`PlaneTexture::repair`], and [`SynthErrorKind::Range`](crate::SynthErrorKind::Range) for an exemplar
+/// with a side below 4 · 2^(number of levels - 1), and for a strip that is not from 2 pixels to half of the side wide.
 pub fn tile_plane(
     exemplar: &Exemplar,
     axes: [bool; 2],
@@ -44,18 +45,19 @@ pub fn tile_plane(
     texture.repair(exemplar, &mask, options, callback)
 }
 
-/// How a tile lies in the exemplar along an axis.
+/// The part of the exemplar that a tile covers along one axis, and its seam.
 struct Strip {
     /// The side of the tile.
     side: u32,
-    /// The seam: before it pixels are from past the side, from it on they are from where they are.
+    /// Position of the seam. Pixels before it are taken from one side length further on, all others from their own
+    /// position.
     seam: u32,
-    /// Half of the width around the seam that is made.
+    /// Half the width of the strip around the seam that is synthesized.
     half: u32,
 }
 
 impl Strip {
-    /// All of a side, without a seam.
+    /// The whole side of the exemplar, without a seam.
     fn none(side: u32) -> Self {
         Self {
             side,
@@ -64,7 +66,8 @@ impl Strip {
         }
     }
 
-    /// The side after which an exemplar is most like itself, and a seam in the middle of what overlaps.
+    /// Chooses the side as the shift at which the exemplar is most similar to itself. The seam is in the middle of the
+    /// overlap.
     fn new(
         exemplar: &Exemplar,
         axis: usize,
@@ -80,13 +83,15 @@ impl Strip {
         let holds = half > 0 && width <= whole / 2;
         let range = "from 2 to half of the side";
         SynthError::check(holds, "width of a strip", width.into(), range)?;
+        // Compare the exemplar with itself at every allowed shift.
         let sides = (whole / 2).div_ceil(step)..(whole - half) / step + 1;
         let costs = parallel::map(sides.len(), |at| {
             let side = (sides.start + at as u32) * step;
-            // Of sides that are equally good, as in a texture without a period, the largest.
+            // Prefer the largest of equally good sides, as in a texture without a period.
             let lost = f64::from(whole - side) / f64::from(whole);
             difference(exemplar, axis, side) * (1.0 + lost)
         });
+        // Take the lowest cost; of equal ones, the largest side.
         let mut best = (f64::INFINITY, sides.end - 1);
         for (side, cost) in sides.zip(costs).rev() {
             if cost < best.0 {
@@ -101,19 +106,20 @@ impl Strip {
         })
     }
 
-    /// The column or row of the exemplar at one of the tile.
+    /// The column or row of the exemplar for one of the tile.
     fn source(&self, at: u32) -> u32 {
         if at < self.seam { at + self.side } else { at }
     }
 
-    /// Whether a column or row is in the strip.
+    /// Whether a column or row is in the strip that is synthesized.
     fn is_made(&self, at: u32) -> bool {
         let past = (at + self.side - self.seam) % self.side;
         past < self.half || past >= self.side - self.half
     }
 }
 
-/// The mean squared difference of an exemplar and itself moved along an axis.
+/// The mean squared difference between an exemplar and its copy shifted by `by` pixels along an axis, over their
+/// overlap.
 fn difference(exemplar: &Exemplar, axis: usize, by: u32) -> f64 {
     let [width, height] = exemplar.size.map(|side| side as usize);
     let n = exemplar.n_channels;
