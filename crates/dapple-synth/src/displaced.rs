@@ -1,23 +1,24 @@
-//! Heights that move a mesh: displaced along the normals, not only shaded.
+//! Displacement: moving the vertices of a mesh along their normals by heights, instead of shading alone.
 //!
 //! Reference: our own.
 //!
-//! Units: heights times the scale are lengths in units of the mesh; positive ones go out. A mesh shows only heights that
-//! change more slowly than its edges are long: the triangles of the sites show all, those of the input often do not.
+//! Units: a height times the scale is a length in units of the mesh; positive heights move outward. A mesh can only
+//! show heights whose features are larger than its edges: the triangles of the sites show all features, those of the
+//! input mesh often do not.
 
 use crate::maps::{check_column, check_finite};
 use crate::{SynthError, Synthesizer};
 use dapple_mesh::Mesh;
 use glam::DVec3;
 
-/// The triangles of the finest sites ([`Hierarchy::triangles`](crate::Hierarchy::triangles)), with every site moved
-/// along its normal by its height times `scale`.
+/// Displaces the triangles of the finest sites ([`Hierarchy::triangles`](crate::Hierarchy::triangles)): every site
+/// moves along its normal by its height times `scale`.
 ///
 /// # Errors
 ///
-/// [`SynthErrorKind::Count`](crate::SynthErrorKind::Count) unless there is a height for each site,
-/// [`SynthErrorKind::Range`](crate::SynthErrorKind::Range) if one or the scale is not finite, and
-/// [`SynthErrorKind::Mesh`](crate::SynthErrorKind::Mesh) if a vertex goes beyond 1e30.
+/// [`SynthErrorKind::Count`](crate::SynthErrorKind::Count) unless there is one height per site,
+/// [`SynthErrorKind::Range`](crate::SynthErrorKind::Range) if a height or the scale is not finite, and
+/// [`SynthErrorKind::Mesh`](crate::SynthErrorKind::Mesh) if a vertex moves beyond 1e30.
 pub fn displaced_sites(
     synthesizer: &Synthesizer,
     heights: &[f32],
@@ -30,14 +31,14 @@ pub fn displaced_sites(
     moved(&mesh, normals, heights, scale)
 }
 
-/// The input mesh, with every vertex moved along its normal by the height interpolated there times `scale`.
+/// Displaces the input mesh: every vertex moves along its normal by the interpolated height times `scale`.
 ///
-/// Vertices that no face has stay where they are, and so do those with no site in reach. Vertices at one position that
-/// are not joined have normals of their own and come apart: join them first, by [`Mesh::repair`].
+/// Vertices without a face and vertices without a site in reach do not move. Separate vertices at the same position
+/// have different normals and come apart: join them first with [`Mesh::repair`].
 ///
 /// # Errors
 ///
-/// Those of [`displaced_sites`].
+/// The errors of [`displaced_sites`].
 pub fn displaced_mesh(
     synthesizer: &Synthesizer,
     heights: &[f32],
@@ -46,6 +47,7 @@ pub fn displaced_mesh(
     check(synthesizer, heights, scale)?;
     let mesh = synthesizer.surface().mesh();
     let normals = mesh.vertex_normals();
+    // Interpolate the heights at the vertices.
     let at_vertices = mesh.positions().iter().zip(&normals).map(|(&at, &normal)| {
         let height = synthesizer
             .hierarchy()

@@ -1,9 +1,10 @@
-//! The paper's two displays as models for files: the sites with their colors, and the input mesh with a texture map.
+//! The two displays of the paper as models for export: the sites with their colors, and the input mesh with a texture
+//! map.
 //!
 //! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, section 6,
-//! <https://doi.org/10.1145/383259.383297>. `M_1` is a graph and no mesh;
-//! [`Hierarchy::triangles`](crate::Hierarchy::triangles) says how triangles are made of it. The fields of a [`Model`] may
-//! be changed: its mesh for one that is [displaced](crate::displaced_mesh), say.
+//! <https://doi.org/10.1145/383259.383297>. `M_1` is a graph, not a mesh;
+//! [`Hierarchy::triangles`](crate::Hierarchy::triangles) explains how it is triangulated. The fields of a [`Model`] may
+//! be changed, for example to replace its mesh with a [displaced](crate::displaced_mesh) one.
 
 use crate::maps::check_column;
 use crate::{Atlas, SynthError, SynthErrorKind, Synthesizer};
@@ -11,11 +12,11 @@ use dapple_color::LinearRgba;
 use dapple_mesh::{EncodedImage, Mesh, Model, Surface};
 use glam::{DVec2, DVec3};
 
-/// The first display: the triangles of the finest sites, with a color for each.
+/// Exports the first display: the triangles of the finest sites, with a color per site.
 ///
 /// # Errors
 ///
-/// [`SynthErrorKind::Count`] unless there is a color for each site.
+/// [`SynthErrorKind::Count`] unless there is one color per site.
 ///
 /// # Examples
 ///
@@ -40,14 +41,14 @@ pub fn site_model(synthesizer: &Synthesizer, colors: Vec<LinearRgba>) -> Result<
     sites(synthesizer, mesh, colors)
 }
 
-/// The finest sites as a cloud of points with normals and a color for each.
+/// Exports the finest sites as a point cloud with normals and a color per point.
 ///
-/// The directions of the texture, in the same order, are [`Orientation::vectors`](crate::Orientation::vectors), and the
-/// sizes of discs that touch are about half of [`Level::spacing`](crate::Level::spacing).
+/// [`Orientation::vectors`](crate::Orientation::vectors) has the directions of the texture in the same order. Discs
+/// that touch have a radius of about half of [`Level::spacing`](crate::Level::spacing).
 ///
 /// # Errors
 ///
-/// Those of [`site_model`].
+/// The errors of [`site_model`].
 pub fn point_model(
     synthesizer: &Synthesizer,
     colors: Vec<LinearRgba>,
@@ -57,16 +58,17 @@ pub fn point_model(
     sites(synthesizer, mesh, colors)
 }
 
-/// The second display: the input mesh with a texture map, of which `base_color` is the file, in the layout of an atlas.
+/// Exports the second display: the input mesh with a texture map in the layout of an atlas. `base_color` is the map's
+/// encoded image.
 ///
-/// Every corner of every face has a texture coordinate of its own, and the normal of `shading`: those of its file, or of
-/// [`Mesh::corner_normals`]. More maps go into the model's [`material`](Model::material). Faces that have no place in the
-/// map show its first corner. Textures are shown without mipmaps in layouts of tiles, whose coarse levels mix faces that
-/// are far apart, and with them in charts and the caller's own.
+/// Every corner of every face has its own texture coordinates and its own normal from `shading`, which are the normals
+/// of the mesh's file or of [`Mesh::corner_normals`]. Further maps go into the model's [`material`](Model::material).
+/// Faces without a place in the map show its first corner. Mipmaps are disabled for layouts of tiles, whose coarse
+/// levels mix faces that are far apart, and enabled for charts and layouts of the caller.
 ///
 /// # Errors
 ///
-/// [`SynthErrorKind::Count`] if the atlas or the normals are for another number of faces.
+/// [`SynthErrorKind::Count`] if the atlas or the normals have a different number of faces than the surface.
 ///
 /// # Examples
 ///
@@ -118,7 +120,7 @@ pub fn textured_model(
     Ok(model)
 }
 
-/// Refuses normals of the corners of another number of faces.
+/// Returns an error unless there are normals for each face.
 pub(crate) fn check_shading(surface: &Surface, shading: &[[DVec3; 3]]) -> Result<(), SynthError> {
     if shading.len() == surface.mesh().faces().len() {
         return Ok(());
@@ -130,7 +132,7 @@ pub(crate) fn check_shading(surface: &Surface, shading: &[[DVec3; 3]]) -> Result
     }))
 }
 
-/// A model whose vertices are the finest sites.
+/// Builds a model whose vertices are the finest sites.
 fn sites(
     synthesizer: &Synthesizer,
     mesh: Mesh,

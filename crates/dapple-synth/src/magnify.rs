@@ -1,8 +1,9 @@
-//! Magnified bakes: texels read the exemplar itself, at the places that the sites around them predict.
+//! Magnified bakes: texels sample the exemplar itself, at the places that the sites around them predict.
 //!
-//! Every site near a texel predicts a place: its own source, and from there the way to the texel in the site's frame. Those
-//! that agree are a piece, and predict their mean. Where there are several pieces, the one whose sites have the most
-//! weight is shown; the others fade over a seam so narrow that it softens nothing.
+//! Each site near a texel predicts a place in the exemplar: its own source plus the offset to the texel in the site's
+//! frame. Sites whose predictions agree form a piece, which predicts their weighted mean. Where there are several
+//! pieces, the one whose sites have the largest sum of weights is shown. The others fade over a seam that is too narrow
+//! to blur anything.
 //!
 //! Reference: our own, after the magnification of Sylvain Lefebvre and Hugues Hoppe, "Parallel Controllable Texture
 //! Synthesis", SIGGRAPH 2005, DOI 10.1145/1186822.1073261, section 5.
@@ -17,26 +18,26 @@ use reach::{Reach, Reaching};
 
 mod reach;
 
-/// How far away sites have a say, in spacings: half again as far as in means of values, so that seams are smooth and a
-/// site alone among others is outvoted.
+/// Radius of the weights of sites, in spacings. It is half again as large as for means of values, so that seams are
+/// smooth and a single site between others is outvoted.
 const RADIUS: f32 = 1.5;
 
-/// Pieces with less than this part of the largest share are not shown.
+/// Minimum share of a piece, relative to the largest: pieces below it are not shown.
 const SHARE_LEAST: f32 = 1.0 / 256.0;
 
-/// What a texel shows of the exemplar.
+/// The part of the exemplar that a texel shows.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Spot<P> {
     /// The place in the exemplar.
     pub(crate) place: P,
-    /// The side of the texel in pixels of the exemplar: the root of its area.
+    /// Side of the texel in pixels of the exemplar: the square root of its area.
     pub(crate) footprint: f32,
-    /// The directions in space of the exemplar's columns and rows, of length 1 but for rounding.
+    /// The directions in space of the exemplar's rows (`right`) and columns (`down`); unit vectors up to rounding.
     pub(crate) right: Vec3,
     pub(crate) down: Vec3,
 }
 
-/// The values of an exemplar's map at every texel of an atlas.
+/// Renders the values of an exemplar's map at every texel of an atlas.
 pub(crate) fn magnify<const N: usize, P: Sourced>(
     synthesizer: &Synthesizer,
     places: &P,
@@ -68,7 +69,7 @@ pub(crate) fn magnify<const N: usize, P: Sourced>(
     })
 }
 
-/// The side of a texel on every face, in spacings: the root of its area. 0 where it has none.
+/// Side of a texel on every face, in spacings: the square root of its area; 0 for a face without an area in the map.
 pub(crate) fn footprints(
     synthesizer: &Synthesizer,
     uvs: &[[DVec2; 3]],
@@ -83,7 +84,7 @@ pub(crate) fn footprints(
         let texels = (ub - ua).perp_dot(uc - ua).abs();
         let area = (b - a).cross(c - a).length();
         let side = (area / texels).sqrt() / spacing;
-        // Not so for a face without a place, which no texel shows.
+        // A face without a place is not finite here; no texel shows it.
         if side.is_finite() { side as f32 } else { 0.0 }
     };
     (0..).map(FaceIdx).zip(uvs).map(side).collect()
@@ -92,7 +93,7 @@ pub(crate) fn footprints(
 /// A function that writes the channels of a spot.
 type ValueOf<'a, P> = dyn Fn(&Spot<P>, &mut [f32]) + Sync + 'a;
 
-/// The input of all texels.
+/// The input shared by all texels.
 struct Magnified<'a, P: Sourced> {
     places: &'a P,
     frames: Frames,
@@ -101,12 +102,12 @@ struct Magnified<'a, P: Sourced> {
     value: &'a ValueOf<'a, P::Place>,
 }
 
-/// Sites that predict about the same place.
+/// Sites that predict about the same place, summed with their weights.
 #[derive(Clone, Copy, Debug)]
 struct Piece<P> {
-    /// The prediction of the site with the largest weight.
+    /// The prediction of the first site, which has the largest weight.
     place: P,
-    /// Sums with the weights of the sites: of how far from `place` the predictions are, of directions, and of scales.
+    /// Weighted sums over the sites: offsets of the predictions from `place`, directions, and scales.
     off: Vec2,
     right: Vec3,
     down: Vec3,
@@ -114,15 +115,15 @@ struct Piece<P> {
     weight: f32,
 }
 
-/// Memory of a thread.
+/// Scratch memory of a thread.
 #[derive(Debug)]
 struct Pieces<P> {
     pieces: Vec<Piece<P>>,
-    /// The channels of a piece.
+    /// The channels of one piece.
     channels: Vec<f32>,
 }
 
-/// The input of all texels, with the memory of a thread.
+/// The input shared by all texels, with the scratch memory of a thread.
 struct Magnifier<'a, P: Sourced> {
     input: &'a Magnified<'a, P>,
     reach: Reach,
@@ -134,6 +135,7 @@ impl<P: Sourced> Paint for Magnifier<'_, P> {
         let (input, memory) = (self.input, &mut self.pieces);
         let footprint = input.footprints[group.face.index()];
         let n_channels = values.len() / group.points.len();
+        // Find the sites in reach of each point, largest weight first.
         self.reach
             .find(simd::level(), group, RADIUS * input.spacing);
         let values = values.chunks_exact_mut(n_channels);
@@ -145,7 +147,7 @@ impl<P: Sourced> Paint for Magnifier<'_, P> {
 }
 
 impl<P: Sourced> Magnified<'_, P> {
-    /// Puts sites in reach together whose predictions agree.
+    /// Groups the sites in reach into pieces whose predictions agree.
     fn gather(&self, reaching: &[Reaching], pieces: &mut Vec<Piece<P::Place>>) {
         pieces.clear();
         for &Reaching { site, way, weight } in reaching {
@@ -157,6 +159,7 @@ impl<P: Sourced> Magnified<'_, P> {
                 let is_near = off.length_squared() < AGREEMENT * AGREEMENT;
                 is_near && !self.frames.differ(piece.down, frame)
             };
+            // Add the site to the first piece that agrees, or start a new one.
             if let Some(piece) = pieces.iter_mut().find(agrees) {
                 piece.off += self.places.difference(place, piece.place) * weight;
                 piece.right += frame.right * (weight * frame.scale);
@@ -176,7 +179,7 @@ impl<P: Sourced> Magnified<'_, P> {
         }
     }
 
-    /// Writes the channels of the piece with the most weight, or of several at their seam.
+    /// Writes the channels of the piece with the largest weight; at a seam, a mixture of several.
     fn mix(&self, memory: &mut Pieces<P::Place>, footprint: f32, mixed: &mut [f32]) {
         let most = memory
             .pieces
@@ -186,6 +189,7 @@ impl<P: Sourced> Magnified<'_, P> {
         mixed.fill(0.0);
         let mut shares = 0.0;
         for piece in &memory.pieces {
+            // The eighth power of the relative weight keeps seams narrow.
             let part = piece.weight / most;
             let square = part * part;
             let fourth = square * square;
@@ -205,6 +209,7 @@ impl<P: Sourced> Magnified<'_, P> {
             }
             shares += share;
         }
+        // Normalize the shares.
         mixed.iter_mut().for_each(|sum| *sum /= shares);
     }
 }

@@ -1,9 +1,9 @@
-//! Maps of colors and of plain values, baked from the sources of the finest sites.
+//! Baking of color maps and plain value maps, from the sources of the finest sites.
 //!
-//! Any map of the exemplar follows what was matched, and so does a larger version of one, which is sharper: all maps that
-//! are baked with one [`Atlas`] fit together texel by texel.
+//! Every map of the exemplar follows the same sources as the matched image. So does an enlarged version of a map, which
+//! shows more detail. All maps that are baked with the same [`Atlas`] are aligned texel by texel.
 //!
-//! Texels without a face, which only coarse levels of a mipmap can show, have the mean of the map.
+//! Texels without a face get the mean of the map. Only coarse levels of a mipmap can show them.
 //!
 //! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, doi 10.1145/383259.383297, section 6.
 
@@ -14,16 +14,16 @@ use crate::{Atlas, SurfaceTexture, SynthError, SynthErrorKind, Synthesizer, bake
 use dapple_color::{Code, LinearRgb, LinearRgba};
 use dapple_raster::Raster;
 
-/// Bakes colors: the exemplar, a map of it, or a version that is a whole number of times as large.
+/// Bakes colors: the exemplar's image, a map of it, or a version whose size is an integer multiple.
 ///
-/// Colors are mixed in their sRGB codes, as [`Exemplar::new`](crate::Exemplar::new) compares them, with 16 bits; what is
-/// outside of 0 to 1 is clamped.
+/// Colors are interpolated as 16-bit sRGB codes, as [`Exemplar::new`](crate::Exemplar::new) compares them. Values
+/// outside 0 to 1 are clamped.
 ///
 /// # Errors
 ///
-/// [`SynthErrorKind::Count`] for a texture of other sites, [`SynthErrorKind::Detail`] for a map of another size,
-/// [`SynthErrorKind::Raster`] for one that is larger where [sources](crate::Options::sources) are pixels, and
-/// [`SynthErrorKind::Range`] if a color is not finite.
+/// [`SynthErrorKind::Count`] for a texture of other sites, [`SynthErrorKind::Detail`] for a map whose size is not a
+/// multiple of the exemplar's, [`SynthErrorKind::Raster`] for a larger map if the [sources](crate::Options::sources)
+/// are pixels, and [`SynthErrorKind::Range`] if a color is not finite.
 pub fn bake_colors(
     synthesizer: &Synthesizer,
     texture: &SurfaceTexture,
@@ -39,14 +39,14 @@ pub fn bake_colors(
     Ok(map.par_map(|codes| LinearRgb::from_srgb(codes.map(u16::from_unit))))
 }
 
-/// Bakes colors with their alpha, as [`bake_colors`] does those without.
+/// Bakes colors with alpha, like [`bake_colors`].
 ///
-/// Colors are mixed as far as they are there, so that the color of what is transparent does not show at its edge. Where all
-/// is transparent they are mixed as if it were not. Alpha is clamped to 0 to 1.
+/// Colors are weighted by alpha, so that the colors of transparent pixels do not show at edges. Where all pixels are
+/// transparent, alpha is ignored and the colors are interpolated without it. Alpha is clamped to 0 to 1.
 ///
 /// # Errors
 ///
-/// Those of [`bake_colors`].
+/// The errors of [`bake_colors`].
 pub fn bake_colors_alpha(
     synthesizer: &Synthesizer,
     texture: &SurfaceTexture,
@@ -59,6 +59,7 @@ pub fn bake_colors_alpha(
         }
         check_finite("alpha", pixel.alpha)?;
     }
+    // Interpolate premultiplied colors, with the plain ones for fully transparent texels.
     let codes = map.par_map(|pixel| {
         let code = |code: u16| f32::from(code) / f32::from(u16::MAX);
         let [r, g, b] = pixel.color.to_srgb::<u16>().map(code);
@@ -79,16 +80,16 @@ pub fn bake_colors_alpha(
     }))
 }
 
-/// Bakes values, such as heights or roughness, which are mixed as they are.
+/// Bakes plain values, such as heights or roughness, which are interpolated without conversion.
 ///
 /// # Errors
 ///
-/// Those of [`bake_colors`].
+/// The errors of [`bake_colors`].
 ///
 /// # Examples
 ///
-/// Colors are matched together with heights, which count half as much; roughness is not matched at all. All three are
-/// copied.
+/// Colors and heights are matched together; heights have half the weight. Roughness is not matched. All three maps are
+/// baked from the same sources.
 ///
 /// ```
 /// use dapple_raster::Raster;
@@ -113,7 +114,7 @@ pub fn bake_colors_alpha(
 ///     .map(|map| bake_values(&tetrahedron, &texture, map, &atlas))
 ///     .collect();
 /// let maps = maps?;
-/// // The three still belong together.
+/// // The three maps are still aligned.
 /// let (bright, roughness) = (maps[0].row(20)[30], maps[2].row(20)[30]);
 /// assert!((1.0 - 0.5 * bright - roughness).abs() < 1e-5);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -132,7 +133,7 @@ pub fn bake_values(
     Ok(map.par_map(|&[value]| value))
 }
 
-/// Bakes a map with the sources that the texture has.
+/// Bakes a map by the kind of sources that the texture has: lifted, between pixels, or at pixels.
 fn bake_map<const N: usize>(
     synthesizer: &Synthesizer,
     texture: &SurfaceTexture,
@@ -141,6 +142,7 @@ fn bake_map<const N: usize>(
 ) -> Result<Raster<[f32; N]>, SynthError> {
     check_column(synthesizer, "sites of the texture", texture.n_sites())?;
     let background = mean(map.pixels());
+    // Sources on the surface of another model.
     if let Some(places) = texture.lifted_between() {
         let detail = LiftedDetail::new(map, &places.origin)?;
         return magnify(
@@ -155,11 +157,13 @@ fn bake_map<const N: usize>(
             },
         );
     }
+    // Sources at pixels: interpolate the values of the sites.
     let Some(places) = &texture.places else {
         let column = texture.transfer(&map)?;
         let (surface, hierarchy) = (synthesizer.surface(), synthesizer.hierarchy());
         return bake(surface, hierarchy, column.as_flattened(), atlas, background);
     };
+    // Sources between pixels: sample the map.
     let detail = Detail::new(map, places.size, places.edges)?;
     magnify(
         synthesizer,
@@ -171,7 +175,7 @@ fn bake_map<const N: usize>(
     )
 }
 
-/// Refuses a column that has not just one value for each finest site.
+/// Returns an error unless a column has one value per finest site.
 pub(crate) fn check_column(
     synthesizer: &Synthesizer,
     what: &'static str,
@@ -187,7 +191,7 @@ pub(crate) fn check_column(
     }))
 }
 
-/// Refuses NaN and infinity.
+/// Returns an error for NaN and infinity.
 pub(crate) fn check_finite(what: &'static str, value: f32) -> Result<(), SynthError> {
     SynthError::check(value.is_finite(), what, value.into(), "finite")
 }

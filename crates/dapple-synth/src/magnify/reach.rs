@@ -1,4 +1,4 @@
-//! The sites that have a say at texels, found for all texels of a face at once.
+//! Search of the sites in reach of texels, for all texels of a face at once.
 
 use crate::bake::Group;
 use crate::mesh_ground::{Around, Record};
@@ -7,48 +7,49 @@ use dapple_raster::simd::dispatch;
 use fearless_simd::{Level, f32x8, prelude::*};
 use glam::Vec3;
 
-/// The sites in a register.
+/// Number of sites per SIMD register.
 const LANES: usize = 8;
 
-/// The most sites that have a say at a point: those of the largest weights. One sheet has about ten within reach; where many
-/// sheets cross there can be thousands, whose ranks take time with the square of their number.
+/// Maximum number of sites per point: those of the largest weights. One sheet has about ten in reach. Where many sheets
+/// cross there can be thousands, and ranking takes time proportional to the square of their number.
 const MOST: usize = 64;
 
 /// A site in reach of a point.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Reaching {
     pub(super) site: u32,
-    /// From the site to the point.
+    /// Offset from the site to the point.
     pub(super) way: Vec3,
     pub(super) weight: f32,
 }
 
-/// The sites in reach of each point of a group and on the same sheet, that of the largest weight first, of several the
-/// first of the group. Where there is none, the nearest one, on the same sheet if there can be.
+/// For each point of a group, the sites in reach on the same sheet, in order of decreasing weight; sites of equal
+/// weight are in the order of the group. If there is none, the nearest site, on the same sheet if possible.
 #[derive(Debug, Default)]
 pub(super) struct Reach {
-    /// The points and their smooth normals, relative to the middle of the group.
+    /// The points and their smooth normals, relative to the center of the group.
     points: Vec<[Vec3; 2]>,
     sites: Vec<u32>,
-    /// The coordinates of positions and normals of the sites, up to a whole number of registers.
+    /// The coordinates of positions and normals of the sites, padded to a multiple of [`LANES`].
     columns: [Vec<f32>; 6],
     found: Found,
-    /// One point after the other.
+    /// The sites in reach of all points, point by point.
     reaching: Vec<Reaching>,
-    /// Where those of each point end.
+    /// For each point, the end of its range in `reaching`.
     ends: Vec<usize>,
 }
 
-/// The sites in reach of one point, in the order of the group, up to a whole number of registers.
+/// The sites in reach of one point, in the order of the group, padded to a multiple of [`LANES`].
 #[derive(Debug, Default)]
 struct Found {
     numbers: Vec<u32>,
     weights: Vec<f32>,
 }
 
-/// Positions that may be within reach of some points of a face: between two planes on both sides of it.
+/// A slab that contains all positions in reach of the points of a face: the space between two planes parallel to it.
 ///
-/// All sites in a ball around the points come from the grid. Where sheets cross, most of them are above or below the face.
+/// The sites are collected from a ball around the points. Where sheets cross, most of those sites are above or below
+/// the slab.
 #[derive(Clone, Copy, Debug)]
 struct Slab {
     normal: Vec3,
@@ -63,7 +64,8 @@ impl Slab {
             .iter()
             .map(|[at, _]| at.length())
             .fold(radius, f32::max);
-        // Rounding of coordinates, of the normal, and of products: a few times 2^-24 of the largest coordinate.
+        // Margin for rounding of coordinates, of the normal, and of products: a few times 2^-24 of the largest
+        // coordinate.
         let reach = radius + 1e-5 * far;
         Self {
             normal,
@@ -74,13 +76,13 @@ impl Slab {
 
     fn holds(&self, position: [f32; 3]) -> bool {
         let height = Vec3::from(position).dot(self.normal);
-        // Holds for a normal that is NaN.
+        // The negation makes a NaN normal contain everything.
         !(height < self.low || height > self.high)
     }
 }
 
 impl Reach {
-    /// Finds the sites of a group that are less than a radius from its points.
+    /// Finds the sites of a group within `radius` of each of its points.
     pub(super) fn find(&mut self, level: Level, group: &Group<'_>, radius: f32) {
         self.points.clear();
         self.points.extend(group.points.iter().map(|&point| {
@@ -89,6 +91,7 @@ impl Reach {
         }));
         self.sites.clear();
         self.columns.iter_mut().for_each(Vec::clear);
+        // Collect the sites in the slab, as columns of coordinates.
         let face_normal = group.surface.face_normal(group.face).as_vec3();
         let slab = Slab::around(&self.points, face_normal, radius);
         for record in group.sites.sites() {
@@ -103,7 +106,7 @@ impl Reach {
         }
         let n_slots = self.sites.len().next_multiple_of(LANES);
         for column in &mut self.columns {
-            // Out of reach.
+            // Padding: positions out of reach.
             column.resize(n_slots, f32::MAX);
         }
         self.found.numbers.resize(n_slots, 0);
@@ -113,7 +116,7 @@ impl Reach {
         dispatch!(level, simd => self.list(simd, radius, group.sites));
     }
 
-    /// The sites in reach of one point after the other.
+    /// The sites in reach, for one point after another.
     pub(super) fn of_points(&self) -> impl Iterator<Item = &[Reaching]> {
         let starts = core::iter::once(0).chain(self.ends.iter().copied());
         starts
@@ -136,6 +139,7 @@ impl Reach {
             };
             let start = self.reaching.len();
             self.reaching.resize(start + n_found, Reaching::default());
+            // Write the sites in order of decreasing weight.
             for found in 0..n_found {
                 let rank = self.found.rank(simd, found, n_found);
                 let number = self.found.numbers[found] as usize;
@@ -150,7 +154,7 @@ impl Reach {
 }
 
 impl Found {
-    /// Searches the sites within a radius of a point, and counts them.
+    /// Finds the sites within a radius of a point, and returns their number.
     #[inline(always)]
     fn search<S: Simd>(
         &mut self,
@@ -168,20 +172,23 @@ impl Found {
             let [x, y, z] = [x - at.x, y - at.y, z - at.z];
             let weight = weights(simd, (x * x + y * y + z * z) * inverse_sq);
             let along = nx * normal.x + ny * normal.y + nz * normal.z;
+            // In reach: a positive weight, and a normal that is not opposed (the same sheet).
             let reaches = (weight.simd_gt(0.0) & along.simd_ge(0.0)).to_bitmask();
             let weight: [f32; LANES] = weight.into();
-            // Without branches on which ones reach the point, which a processor could not predict.
+            // Compact without branches: which lanes are in reach is unpredictable.
             for (lane, weight) in weight.into_iter().enumerate() {
                 self.numbers[n_found] = (first + lane) as u32;
                 self.weights[n_found] = weight;
                 n_found += (reaches >> lane & 1) as usize;
             }
         }
+        // Clear the padding, for `rank`.
         self.weights[n_found..n_found.next_multiple_of(LANES)].fill(0.0);
         n_found
     }
 
-    /// Keeps the sites of the largest weights, in their order, of equal ones the first. Returns their number.
+    /// Keeps the [`MOST`] sites of the largest weights in their order, the first of equal ones. Returns the number of
+    /// sites.
     fn keep_largest(&mut self, n_found: usize) -> usize {
         if n_found <= MOST {
             return n_found;
@@ -200,13 +207,14 @@ impl Found {
         MOST
     }
 
-    /// How many sites come before one in the order of weights.
+    /// Rank of a site: the number of sites with a larger weight, or with an equal weight and an earlier position.
     #[inline(always)]
     fn rank<S: Simd>(&self, simd: S, found: usize, n_found: usize) -> usize {
         let weight = f32x8::splat(simd, self.weights[found]);
         let mut rank = 0;
         for first in (0..n_found).step_by(LANES) {
             let others = f32x8::from_slice(simd, &self.weights[first..first + LANES]);
+            // Of equal weights, count only those before this one.
             let earlier = (1_u32 << found.saturating_sub(first).min(LANES)) - 1;
             let before = u32::from(others.simd_gt(weight).to_bitmask() as u8)
                 | u32::from(others.simd_eq(weight).to_bitmask() as u8) & earlier;
@@ -216,7 +224,7 @@ impl Found {
     }
 }
 
-/// The site nearest to a point, the first of several: of those on the same sheet, if there are any.
+/// The site nearest to a point, the first of equally near ones. Sites on the same sheet take precedence.
 #[cold]
 fn nearest([at, normal]: [Vec3; 2], around: Around<'_>) -> Option<Reaching> {
     let far = |record: &Record| {
@@ -246,7 +254,7 @@ mod tests {
     use fearless_simd::{Level, f32x8, prelude::*};
     use glam::{DVec3, Vec3};
 
-    /// The weight of one site, with the arithmetic of a register.
+    /// The weight of one site, computed with SIMD arithmetic.
     fn weight(level: Level, x_sq: f32) -> f32 {
         dispatch!(level, simd => {
             let all: [f32; LANES] = weights(simd, f32x8::splat(simd, x_sq)).into();
@@ -336,7 +344,7 @@ mod tests {
         let spacing = hierarchy.levels()[0].spacing();
         let points = &hierarchy.sites().points()[..40];
         let center = surface.position(points[0]);
-        // Far enough that some points have many sites in reach, and others none.
+        // The ball is so large that some points have many sites in reach, and others none.
         let mut nearby = Nearby::default();
         let sites = nearby.collect_ball(hierarchy, 0, center, 6.0 * spacing);
         let group = Group {
