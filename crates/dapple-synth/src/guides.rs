@@ -1,11 +1,11 @@
-//! Guides: values beside those that a texture gets, which say where in it which part of the exemplar goes.
+//! Guides: additional channels that control where in a texture each part of the exemplar is used.
 //!
 //! Reference: Hertzmann, Jacobs, Oliver, Curless and Salesin, "Image Analogies", SIGGRAPH 2001, DOI
 //! 10.1145/383259.383295.
 //!
-//! The exemplar has guides at its pixels, and the texture at its sites. To the distance of two neighborhoods comes that of
-//! the guides in their middles, on the level that is matched, times the number of pixels that are compared: a guide with the
-//! weight 1 counts as much as a channel of the colors that is off by as much everywhere.
+//! The exemplar has guides at its pixels, and the texture at its sites. The distance of two neighborhoods includes the
+//! difference of the guides at their centers, on the level that is matched, times the number of pixels compared. A
+//! guide with the weight 1 therefore counts as much as a color channel with the same difference at every pixel.
 
 use crate::exemplar::{Area, halved, interleaved, roots};
 use crate::grid::Grid;
@@ -13,36 +13,36 @@ use crate::ground::Plain;
 use crate::{Exemplar, Hierarchy, SynthError, SynthErrorKind};
 use dapple_raster::{Raster, Wrap};
 
-/// The guides of an exemplar, of one level.
+/// The guides of one level of an exemplar.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Guides {
-    /// The roots of their weights.
+    /// The square root of each guide's weight.
     pub(crate) roots: Vec<f32>,
-    /// One value of each guide for every pixel, times the root of its weight.
+    /// For every pixel, one value per guide, times the square root of its weight.
     pub(crate) values: Vec<f32>,
 }
 
-/// The guides of a texture.
+/// The guides of a texture, on all levels.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Targets {
-    /// For each level one value of each guide for every site, times the root of its weight.
+    /// For each level, one value per guide for every site, times the square root of its weight.
     levels: Vec<Vec<f32>>,
     /// The number of guides.
     n: usize,
 }
 
 impl Exemplar {
-    /// This exemplar with guides, each with the weight of its squared differences: planes of its size that say which of its
-    /// pixels go where a texture has the same values.
+    /// Adds guides, each with a weight on its squared differences. Guides are planes of the exemplar's size: pixels are
+    /// used where the texture's guides have similar values.
     ///
-    /// A texture of it needs as many guides: [`synthesize_plane_guided`](crate::synthesize_plane_guided) and
-    /// [`Synthesizer::synthesize_guided`](crate::Synthesizer::synthesize_guided). With the weight 1 a guide counts as much
-    /// as one channel of the colors; with as much as there are channels, of colors from 0 to 1, a guide of zeros and ones
-    /// is obeyed nearly everywhere.
+    /// A texture needs the same number of guides, see [`synthesize_plane_guided`](crate::synthesize_plane_guided) and
+    /// [`Synthesizer::synthesize_guided`](crate::Synthesizer::synthesize_guided). With the weight 1 a guide counts as
+    /// much as one color channel. With colors from 0 to 1 and a weight equal to the number of channels, the texture
+    /// follows a guide of zeros and ones nearly everywhere.
     ///
     /// # Errors
     ///
-    /// Those of [`from_planes`](Self::from_planes), and [`SynthErrorKind::Raster`] for guides of another size.
+    /// The errors of [`from_planes`](Self::from_planes), and [`SynthErrorKind::Raster`] for guides of a different size.
     pub fn with_guides(self, guides: &[(&Raster<f32>, f32)]) -> Result<Self, SynthError> {
         for (guide, _) in guides {
             guide.check_same_size(self.size)?;
@@ -64,7 +64,8 @@ impl Exemplar {
 }
 
 impl Guides {
-    /// The guides of the next coarser level of an image of a size, in which images have these rectangles.
+    /// The guides of the next coarser level of an image with the given size, in which the images have the given
+    /// rectangles.
     pub(crate) fn halved(&self, size: [u32; 2], wrap: [Wrap; 2], areas: &[Area]) -> Self {
         Self {
             roots: self.roots.clone(),
@@ -72,7 +73,7 @@ impl Guides {
         }
     }
 
-    /// The values at a pixel.
+    /// The values of all guides at a pixel.
     pub(crate) fn of(&self, pixel: usize) -> &[f32] {
         let n = self.roots.len();
         &self.values[pixel * n..][..n]
@@ -88,7 +89,7 @@ impl Guides {
 }
 
 impl Targets {
-    /// The guides of a texture in the plane, on levels of these sizes.
+    /// Builds the guides of a texture in the plane, on levels of the given sizes.
     pub(crate) fn of_plane(
         exemplar: &Exemplar,
         guides: &[&Raster<f32>],
@@ -111,7 +112,7 @@ impl Targets {
         })
     }
 
-    /// The guides of a texture on a surface: for each a value for every site.
+    /// Builds the guides of a texture on a surface, from one value per finest site for each guide.
     pub(crate) fn of_surface(
         exemplar: &Exemplar,
         guides: &[&[f32]],
@@ -137,6 +138,7 @@ impl Targets {
                 let range = "finite";
                 SynthError::check(false, "value of a guide", value.into(), range)?;
             }
+            // Weight the values, and filter them from level to level.
             let mut column: Vec<f32> = guide.iter().map(|value| value * root).collect();
             for (level, values) in levels.iter_mut().enumerate() {
                 if level > 0 {
@@ -155,13 +157,13 @@ impl Targets {
         self.n
     }
 
-    /// The values at a site of a level.
+    /// The values of all guides at a site of a level.
     pub(crate) fn of(&self, level: usize, site: u32) -> &[f32] {
         &self.levels[level][site as usize * self.n..][..self.n]
     }
 }
 
-/// Refuses guides of a texture that are not as many as those of the exemplar.
+/// Returns an error unless the texture has as many guides as the exemplar.
 pub(crate) fn check_count(count: usize, expected: usize) -> Result<(), SynthError> {
     if count == expected {
         return Ok(());

@@ -1,27 +1,30 @@
-//! Lifting: textures whose example is another textured surface.
+//! Lifting: synthesis whose exemplar is another textured surface.
 //!
-//! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, DOI 10.1145/383259.383297. Section 8 ends with what
-//! is left to do: "to extend this method to taking patterns directly from other surfaces. Imagine being able to "lift" the
-//! color, bumps and ridges from one model and place them onto another surface." No more is said of how.
+//! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, DOI 10.1145/383259.383297. Section 8 ends with
+//! future work: "to extend this method to taking patterns directly from other surfaces. Imagine being able to "lift"
+//! the color, bumps and ridges from one model and place them onto another surface." The paper does not say how.
 //!
-//! Here the example is a surface with sites of its own, on as many levels, with directions and an order, as the surface that
-//! gets the texture has. They are its pixels:
+//! Here the source surface has its own sites, on as many levels as the target, with directions and an order. These
+//! sites serve as the pixels of the exemplar:
 //!
-//! * The color of a finest site is the mean of the source's texture over a square of one spacing, to which is walked over the
-//!   faces, so that borders of the texture's pieces do not show. Coarser levels are low-pass filtered columns (section 3.2).
-//! * The neighborhood of a site is read on the source as it is on the target: by walking along the field, between sites, by
-//!   equation 1. So both are blurred alike, and need no blur as those of an image do. All neighborhoods are compared, and
-//!   the match is exact; those that meet a border or a sharp fold of the source are left out as those that reach past the
-//!   edge of an image are.
-//! * What an image knows by columns and rows, which pixel continues another, is here the site nearest to a step from it.
-//! * A sub-pixel source is a site of the source and a way from it in its frame. A texel walks it, and reads the texture at the
-//!   uv where it ends: it is as sharp as the source, and every map of the source follows.
+//! * The color of a finest site is the mean of the source's texture over a square of one spacing. The square's points
+//!   are found by walking over the faces, so that borders of the texture's pieces do not show. Coarser levels are
+//!   low-pass filtered columns (section 3.2).
+//! * The neighborhood of a site is read on the source as on the target: by walking along the field, with
+//!   interpolation between sites by equation 1. Both are blurred equally; only the neighborhoods of an image need an
+//!   additional blur. All neighborhoods are compared, and the match is exact. Neighborhoods that meet a border or a
+//!   sharp fold of the source are excluded, as are those that reach past the edge of an image.
+//! * In an image, columns and rows define which pixel continues another. Here the site nearest to the end of a step
+//!   does.
+//! * A sub-pixel source is a site of the source plus an offset in the site's frame. A texel walks along the offset
+//!   and samples the texture at the texture coordinates where the walk ends. The result is as sharp as the source, and
+//!   every map of the source can be transferred.
 //!
-//! Patches of the source could be flattened to an image instead, whose neighborhoods do not cross from patch to patch. On the
-//! coarsest of three levels a neighborhood reaches over 24 pixels: patches would either overlap many times, or lose most of a
-//! source as small as a model is.
+//! The alternative is to flatten patches of the source to an image, whose neighborhoods do not cross from patch to
+//! patch. On the coarsest of three levels a neighborhood reaches over 24 pixels: patches would either overlap many
+//! times, or lose most of a source as small as a typical model.
 //!
-//! Units: a pixel is one spacing of finest sites, on the source and on the target.
+//! Units: a pixel is one spacing of the finest sites, on the source and on the target.
 
 mod origin;
 mod reading;
@@ -46,31 +49,32 @@ use core::ops::ControlFlow;
 use glam::DVec2;
 use std::sync::Arc;
 
-/// A textured surface as an example.
+/// An exemplar that is a textured surface.
 #[derive(Clone, Debug)]
 pub struct MeshExemplar {
     origin: Arc<Origin>,
-    /// The sites of every level as images of one row.
+    /// The sites of every level, stored as images of one row.
     pyramid: Pyramid,
 }
 
 impl MeshExemplar {
-    /// A surface with sites and directions, the texture coordinates of the corners of its faces (v down; whole turns are taken
-    /// off a face), and the texture that lies at these: colors, or any planes with weights, masks and guides, as an exemplar
-    /// has them.
+    /// Creates an exemplar from a surface with sites and directions, the texture coordinates of the corners of its
+    /// faces, and the texture at these coordinates. In the coordinates v points down, and integer offsets are removed
+    /// per face. The texture is an exemplar: colors, or any planes with weights, masks and guides.
     ///
-    /// The sites are what is matched, as the pixels of an image are: features are as large on the target as on the source where
-    /// both have sites equally far apart, and more sites of the source make them larger. Sites beside texels that a
-    /// [mask](Exemplar::with_mask) leaves out are not used. [Scales](Synthesizer::with_scales) of the source have no effect.
+    /// The sites are matched as the pixels of an image are. Features have the same size on the target as on the source
+    /// if both have the same spacing of sites; more sites on the source make features larger. Sites next to masked
+    /// texels ([`with_mask`](Exemplar::with_mask)) are not used. [Scales](Synthesizer::with_scales) of the source have
+    /// no effect.
     ///
     /// # Errors
     ///
-    /// [`SynthErrorKind::Count`] unless there are coordinates for each face, and [`SynthErrorKind::Range`] for one that is
-    /// not from -10^6 to 10^6.
+    /// [`SynthErrorKind::Count`] unless there are coordinates for each face, and [`SynthErrorKind::Range`] for a
+    /// coordinate outside -10^6 to 10^6.
     ///
     /// # Examples
     ///
-    /// The checker of one tetrahedron, for another one.
+    /// Lifts a checker from one tetrahedron to another.
     ///
     /// ```
     /// use core::ops::ControlFlow;
@@ -113,24 +117,24 @@ impl MeshExemplar {
         })
     }
 
-    /// The number of values of a site.
+    /// The number of values per site.
     #[must_use]
     pub fn n_channels(&self) -> usize {
         self.pyramid.levels[0].n_channels
     }
 
-    /// The surface, its sites and their directions.
+    /// The source surface with its sites and directions.
     #[must_use]
     pub fn source(&self) -> &Synthesizer {
         &self.origin.synthesizer
     }
 
-    /// The neighborhoods of the sites that a pass compares with.
+    /// The candidate neighborhoods of a pass.
     fn candidates(&self, pass: &Pass, options: &Options) -> Result<Candidates, SynthError> {
         rows::candidates(&self.origin.synthesizer, &self.pyramid, pass, options)
     }
 
-    /// The sites of the finest levels.
+    /// The finest `n_levels` levels of sites; an error if the source has fewer.
     fn levels(&self, n_levels: usize) -> Result<&[Exemplar], SynthError> {
         self.pyramid.levels.get(..n_levels).ok_or_else(|| {
             SynthError::new(SynthErrorKind::Count {
@@ -141,7 +145,7 @@ impl MeshExemplar {
         })
     }
 
-    /// Runs the passes on a ground, which is that of a target.
+    /// Runs the passes on the target's sites and their neighborhoods (`ground`).
     fn grow(
         &self,
         target: &Synthesizer,
@@ -166,17 +170,17 @@ impl MeshExemplar {
 }
 
 impl Synthesizer {
-    /// Gives every site the color of a site of another surface. `guides` are those of
-    /// [`synthesize_guided`](Self::synthesize_guided), as many as the example's texture has.
+    /// Synthesizes a texture from another surface: every site takes the color of a source site. `guides` are as in
+    /// [`synthesize_guided`](Self::synthesize_guided); there must be as many as the exemplar's texture has.
     ///
-    /// The texture is baked as others are, with the maps of the example's own texture coordinates, of any size:
-    /// [`bake_colors`](crate::bake_colors) and beside it. The [sources](SurfaceTexture::sources) of sites are the numbers of
-    /// the example's sites, in row 0. [`Coherence::Auto`](crate::Coherence::Auto) is a factor of 2.
+    /// Bake the texture like any other, for example with [`bake_colors`](crate::bake_colors), from maps of any size in
+    /// the exemplar's texture coordinates. The [sources](SurfaceTexture::sources) are indices of the exemplar's sites,
+    /// in row 0. [`Coherence::Auto`](crate::Coherence::Auto) means a factor of 2.
     ///
     /// # Errors
     ///
-    /// Those of [`synthesize_guided`](Self::synthesize_guided), and [`SynthErrorKind::Count`] for more levels than the sites
-    /// of the example have.
+    /// The errors of [`synthesize_guided`](Self::synthesize_guided), and [`SynthErrorKind::Count`] for more levels than
+    /// the exemplar's sites have.
     pub fn lift(
         &self,
         exemplar: &MeshExemplar,
@@ -195,7 +199,7 @@ impl Synthesizer {
     }
 }
 
-/// The sites of the next coarser level.
+/// Filters the sites of a level to the next coarser level.
 fn coarser(hierarchy: &Hierarchy, level: usize, finer: &Exemplar) -> Result<Exemplar, SynthError> {
     let n_sites = hierarchy.levels()[level + 1].n_sites();
     let halved = |values: &[f32], n: usize| {
@@ -209,7 +213,7 @@ fn coarser(hierarchy: &Hierarchy, level: usize, finer: &Exemplar) -> Result<Exem
         }
         Ok::<_, SynthError>(pixels)
     };
-    // A site is mixed with those up to two edges away.
+    // The low-pass filter reaches sites up to two edges away.
     let usable = finer.usable.as_ref().map(|usable| {
         let graph = hierarchy.levels()[level].graph();
         let mut usable = reading::eroded(&reading::eroded(usable, graph), graph);

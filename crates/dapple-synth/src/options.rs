@@ -5,11 +5,11 @@ use core::num::ParseFloatError;
 use core::str::FromStr;
 use dapple_hash::Seed;
 
-/// The most that may be asked of [`Options::evenness`]: no factor can make a distance infinite.
+/// Maximum of [`Options::evenness`]: no factor within it can make a distance infinite.
 const MAX_EVENNESS: f32 = 1000.0;
 
-/// The regularity from which on the least distance wins: between those of the exemplars that look better so, from 0.93,
-/// and of those that look better with a coherence of 2, up to 0.86.
+/// Regularity of an exemplar above which [`Coherence::Auto`] always takes the least distance. Exemplars from 0.93 look
+/// better with the least distance, those up to 0.86 with a coherence of 2.
 pub(crate) const REGULAR: f64 = 0.9;
 
 /// Options of a synthesis from an exemplar.
@@ -20,35 +20,35 @@ pub(crate) const REGULAR: f64 = 0.9;
     serde(default, deny_unknown_fields)
 )]
 pub struct Options {
-    /// The seed of the first colors; by default `Seed(0)`.
+    /// Seed of the initial random colors [default: `Seed(0)`].
     pub seed: Seed,
-    /// The levels of the pyramid and of the sites; by default 3.
+    /// Number of levels of the pyramid and of the sites, from 1 to 16 [default: 3].
     pub n_levels: usize,
-    /// The passes; by default those of the paper for `n_levels` levels.
+    /// The passes [default: those of the paper for `n_levels` levels].
     pub schedule: Option<Schedule>,
-    /// Where neighborhoods on the coarser level are centered; by default exactly.
+    /// Center of neighborhoods on the coarser level [default: exact].
     pub center: CoarserCenter,
-    /// The values that are compared on surfaces; by default what windows look like.
+    /// The values that are compared on surfaces [default: appearance].
     pub matching: Matching,
-    /// Which way neighborhoods on surfaces go on away from their site; by default as the field does.
+    /// The axes of neighborhoods on surfaces away from their site [default: they follow the field].
     pub axes: Axes,
-    /// Which sources the finest sites on surfaces have; by default between pixels.
+    /// The kind of sources of the finest sites on surfaces [default: places between pixels].
     pub sources: Sources,
-    /// How much worse a match may be that continues the source of a neighboring site; by default as the exemplar asks
-    /// for.
+    /// Permitted excess in the distance of a match that continues the source of a neighboring site [default: chosen by the
+    /// exemplar].
     pub coherence: Coherence,
-    /// How evenly the pixels of the exemplar are used, from 0 to 1000, by default 1.
+    /// Preference for even use of the exemplar's pixels, from 0 to 1000 [default: 1].
     ///
-    /// In passes that read no coarser level, of which the paper's schedule has one, the squared distance of a pixel is
-    /// multiplied by `1 + evenness` if it and those around it were already used as often as all are in the end on the
-    /// average; such a pass runs on one thread. And pixels near an edge of the exemplar are used, too, as if it were
-    /// mirrored there. Where appearance is compared, parts of the exemplar cost more from one correction to the next that the
-    /// texture has too often. At 0 only the least distance counts, as in the paper: many pixels are then never used, and colors
-    /// that are rare vanish.
+    /// In passes that read no coarser level (the paper's schedule has one), the squared distance of a pixel is
+    /// multiplied by `1 + evenness` if the pixel and its neighbors have already been used as often as the average pixel
+    /// at the end of the pass. Such a pass runs on one thread. Pixels near an edge of the exemplar are candidates, too,
+    /// as if it were mirrored there. With [`Matching::Appearance`], parts of the exemplar that the texture uses too
+    /// often cost more from one correction to the next. At 0 only the least distance counts, as in the paper: many
+    /// pixels are then never used, and rare colors vanish.
     pub evenness: f32,
 }
 
-/// How much worse a match may be that continues the source of a neighboring site.
+/// Permitted excess in the distance of a coherent match: one that continues the source of a neighboring site.
 ///
 /// In text it is `auto` or a number.
 ///
@@ -57,37 +57,37 @@ pub struct Options {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Coherence {
-    /// A factor of 2; but for a regular exemplar, one whose [`Exemplar::regularity`] is above 0.9, the least distance
-    /// wins in passes that read a coarser level.
+    /// A factor of 2. For a regular exemplar, one whose [`Exemplar::regularity`] is above 0.9, the least distance wins
+    /// instead in passes that read a coarser level.
     ///
-    /// Where the exemplar has what fits, as hooks that interlock and courses of bricks, the least distance finds it, and
-    /// with 2 the texture tears instead. In photographs no detail occurs twice, and the least distance blurs it away:
-    /// leaves keep 0.65 of their standard deviation with 0, and 0.87 with 2.
+    /// Where the exemplar has pieces that fit together, such as interlocking hooks and courses of bricks, the least
+    /// distance finds them, and a factor of 2 tears the texture. In photographs no detail occurs twice, and the least
+    /// distance blurs it: leaves keep 0.65 of their standard deviation with 0, and 0.87 with 2.
     ///
     /// In passes that read no coarser level the factor is 1 for any exemplar, as with a coherence of 2. There the sweep
-    /// begins among random colors, and their averages resemble only a few pixels of the exemplar. With 0 those are taken
-    /// again and again: the squares of a checker run together where the sweep begins.
+    /// begins among random colors, and their averages resemble only a few pixels of the exemplar. With 0 those pixels
+    /// are used again and again: the squares of a checker run together where the sweep begins.
     ///
     /// Measuring the regularity takes a few milliseconds.
     #[default]
     Auto,
-    /// It wins if its squared distance is at most 1 + this times the least; in passes that read no coarser level, where
-    /// no later one can mend what does not fit together, 1 + half of this times. Finite and at least 0; at 0 the least
-    /// always wins, as in the paper.
+    /// The coherent match wins if its squared distance is at most 1 + this factor times the least. In passes that read
+    /// no coarser level, where no later pass can repair mismatches, the limit is 1 + half of this factor. Finite and at
+    /// least 0; at 0 the least distance always wins, as in the paper.
     Factor(f32),
 }
 
-/// How much worse a match may be that continues the source of a neighboring site, at least 0.
+/// Permitted excess in the squared distance of coherent matches, relative to the least one; at least 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct CoherenceFactors {
-    /// In passes that read no coarser level.
+    /// The excess in passes that read no coarser level.
     pub(crate) initial: f32,
-    /// In passes that read one.
+    /// The excess in passes that read a coarser level.
     pub(crate) finer: f32,
 }
 
 impl Coherence {
-    /// The factors for an exemplar.
+    /// The factors to use with an exemplar.
     pub(crate) fn factors(self, exemplar: &Exemplar) -> CoherenceFactors {
         let (factor, is_least) = match self {
             Self::Auto => (2.0, exemplar.regularity() > REGULAR),
@@ -174,23 +174,24 @@ impl Default for Options {
 }
 
 impl Options {
-    /// The paper at its word: neighborhoods on the coarser level are centered at rounded coordinates and laid out
-    /// straight on, the least difference always wins, and texture maps mix the colors of sites.
+    /// The options of the paper: neighborhoods on the coarser level are centered at rounded coordinates and follow
+    /// straight axes, the least distance always wins, and texture maps interpolate the colors of sites.
     ///
-    /// Differences from its text remain, on every surface and with any options:
+    /// Some differences from its text remain, on every surface and with any options:
     ///
-    /// * Where fewer than 400 neighborhoods of a level lie within an exemplar that does not wrap, those that reach past its
-    ///   edges are compared as well, as if it were mirrored there. The paper compares none of them; of 8 × 8 pixels, which
-    ///   64 × 64 have on the fourth level, ten would be left.
-    /// * In the sweep distance neighbors count less that disagree by about a spacing or more (Cauchy's weights), so that a
-    ///   distance that cannot grow everywhere jumps along few lines. In the paper all count by their edge lengths alone.
-    /// * Directions and the sweep distance are solved for on the coarsest level by conjugate gradients, where the paper
-    ///   repeats equations 4 and 5: the averages that those would settle at, but for the weights.
-    /// * A level of sites begins with the middles of the edges between the sites before it, where the paper scatters random
-    ///   points, and sites push each other with another force than in Turk's paper of 1991 (see
+    /// * On levels where fewer than 400 neighborhoods lie within an exemplar that does not wrap, neighborhoods that
+    ///   reach past its edges are candidates as well, as if it were mirrored there. The paper compares none of them. A
+    ///   64 × 64 exemplar has 8 × 8 pixels on the fourth level, and only ten neighborhoods would remain.
+    /// * In the sweep distance, neighbors that disagree by about a spacing or more have lower weights (Cauchy's), so
+    ///   that a distance that cannot grow everywhere jumps along few lines. In the paper all weights depend on edge
+    ///   lengths alone.
+    /// * Directions and the sweep distance are solved on the coarsest level by conjugate gradients. The paper
+    ///   iterates equations 4 and 5. Both have the same solution, except for the weights.
+    /// * A level of sites starts with the midpoints of the edges between the previous level's sites, where the paper
+    ///   scatters random points. Sites repel each other with a different force than in Turk's paper of 1991 (see
     ///   [`nested_points`](crate::nested_points)).
     ///
-    /// The documentation of [this crate](crate) lists how it reads what the paper leaves open.
+    /// The documentation of [this crate](crate) lists its interpretations where the paper leaves details open.
     #[must_use]
     pub fn paper() -> Self {
         Self {
@@ -204,12 +205,12 @@ impl Options {
         }
     }
 
-    /// The passes: the given ones, or those of the paper.
+    /// The passes: those given, or else those of the paper.
     ///
     /// # Errors
     ///
-    /// Typed errors for no level, more than 16, a coherence that is below zero or not finite, an evenness that is not
-    /// from 0 to 1000, and as [`Schedule::check`].
+    /// Typed errors for a number of levels that is not from 1 to 16, a coherence that is negative or not finite, an
+    /// evenness that is not from 0 to 1000, and the errors of [`Schedule::check`].
     pub(crate) fn passes(&self) -> Result<Schedule, SynthError> {
         if !(1..=16).contains(&self.n_levels) {
             return Err(SynthError::new(SynthErrorKind::Count {

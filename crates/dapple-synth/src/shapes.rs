@@ -10,8 +10,8 @@ use dapple_raster::Raster;
 use glam::DVec3;
 use std::collections::BTreeMap;
 
-/// A rectangle of `n` squares, each in two triangles, seen from outside with u to the right and v up, mapped by `at`: `open`
-/// tells for each axis whether it does not close up on itself.
+/// A rectangular grid of `n` squares, each split into two triangles, with vertices placed by `at` from u and v, 0 to 1.
+/// Seen from outside, u points right and v points up. For each axis, `open` is false if the grid closes up on itself.
 pub(crate) fn sheet(n: [u32; 2], open: [bool; 2], at: impl Fn(f64, f64) -> DVec3) -> Mesh {
     let [columns, rows] = [0, 1].map(|axis| n[axis] + u32::from(open[axis]));
     let mut positions = Vec::new();
@@ -33,7 +33,7 @@ pub(crate) fn sheet(n: [u32; 2], open: [bool; 2], at: impl Fn(f64, f64) -> DVec3
     Mesh::new(positions, &faces).unwrap()
 }
 
-/// The faces of several meshes as those of one.
+/// One mesh with the faces of several.
 fn joined(meshes: &[Mesh]) -> Mesh {
     let (mut positions, mut faces) = (Vec::new(), Vec::new());
     for mesh in meshes {
@@ -48,7 +48,7 @@ fn joined(meshes: &[Mesh]) -> Mesh {
     Mesh::new(positions, &faces).unwrap()
 }
 
-/// Triangles whose corners are anywhere in the unit cube.
+/// Triangles with random corners in the unit cube.
 pub(crate) fn tangle(n: u32) -> Mesh {
     let part = |corner: u32, axis: i64| unit_f64(hash2(Seed(3), [corner.into(), axis], 0));
     let corner = |corner: u32| DVec3::from([0, 1, 2].map(|axis| part(corner, axis)));
@@ -61,20 +61,20 @@ pub(crate) fn square() -> Mesh {
     sheet([4; 2], [true; 2], |u, v| DVec3::new(u, v, 0.0))
 }
 
-/// The unit square and one of a quarter of the area far above it.
+/// The unit square, and a square of a quarter of its area far above it.
 pub(crate) fn two_squares() -> Mesh {
     let upper = sheet([2; 2], [true; 2], |u, v| DVec3::new(0.5 * u, 0.5 * v, 3.0));
     joined(&[square(), upper])
 }
 
-/// A quarter of the unit sphere's width around the point [0, 0, 1].
+/// A patch of the unit sphere around the point [0, 0, 1]: the unit square at z = 1, projected onto the sphere.
 pub(crate) fn cap() -> Mesh {
     sheet([8; 2], [true; 2], |u, v| {
         DVec3::new(u - 0.5, v - 0.5, 1.0).normalize()
     })
 }
 
-/// The unit sphere: a cube's sides pushed out, with welded seams.
+/// The unit sphere: the sides of a cube, welded and projected onto the sphere.
 pub(crate) fn sphere() -> Mesh {
     let n = 8;
     let mut positions: Vec<DVec3> = Vec::new();
@@ -123,7 +123,7 @@ pub(crate) fn plane() -> Surface {
     Surface::new(sheet([5; 2], [true; 2], |u, v| DVec3::new(u, v, 0.0))).unwrap()
 }
 
-/// The unit square at several heights; those at odd places of the list face down.
+/// The unit square at several heights. The squares with odd indices face down.
 pub(crate) fn sheets(heights: &[f64]) -> Surface {
     let sheets = heights.iter().enumerate().map(|(place, &z)| {
         let up = sheet([4; 2], [true; 2], |u, v| DVec3::new(u, v, z));
@@ -151,14 +151,14 @@ pub(crate) fn torus(columns: u32, rows: u32) -> Surface {
     Surface::new(sheet([columns, rows], [false; 2], torus)).unwrap()
 }
 
-/// A sphere of radius 1: an octahedron whose faces were cut into four, `cuts` times.
+/// A sphere of radius 1: an octahedron whose faces are split into four, `cuts` times.
 pub(crate) fn geodesic_sphere(cuts: u32) -> Surface {
     let mut positions: Vec<DVec3> = DVec3::AXES.iter().flat_map(|&axis| [axis, -axis]).collect();
     let mut faces = Vec::new();
     for x in [0, 1] {
         for y in [2, 3] {
             for z in [4, 5] {
-                // Mirrored octants go around the other way.
+                // Mirrored octants have the opposite orientation.
                 let is_mirrored = (x + y + z) % 2 == 1;
                 faces.push(if is_mirrored { [x, z, y] } else { [x, y, z] });
             }
@@ -184,7 +184,7 @@ pub(crate) fn geodesic_sphere(cuts: u32) -> Surface {
     Surface::new(Mesh::new(positions, &faces).unwrap()).unwrap()
 }
 
-/// Triangles that share no vertices: a large one, and ever smaller ones beside it.
+/// A row of triangles without shared vertices, each with half the side of the one before.
 pub(crate) fn scraps(n: u32) -> Surface {
     let mut positions = Vec::new();
     let mut faces = Vec::new();
@@ -198,7 +198,7 @@ pub(crate) fn scraps(n: u32) -> Surface {
     Surface::new(Mesh::new(positions, &faces).unwrap()).unwrap()
 }
 
-/// The model of this name among the real ones beside the workspace, or nothing and a message where they are absent.
+/// The real model of this name in `shared/`, next to the workspace; `None`, with a message, if it does not exist.
 pub(crate) fn real(name: &str) -> Option<Mesh> {
     let path = format!(
         "{}/../../../shared/data/meshes/{name}",
@@ -211,7 +211,7 @@ pub(crate) fn real(name: &str) -> Option<Mesh> {
     Some(dapple_mesh_io::read_model(path).unwrap().mesh)
 }
 
-/// A mesh with its positions changed.
+/// A mesh with its positions mapped by `change`.
 pub(crate) fn moved(mesh: &Mesh, change: impl Fn(DVec3) -> DVec3) -> Mesh {
     let positions = mesh
         .positions()
@@ -237,7 +237,7 @@ pub(crate) fn sites_on(mesh: Mesh, n_sites: usize, n_levels: usize) -> Hierarchy
     Hierarchy::new(&Surface::new(mesh).unwrap(), &options).unwrap()
 }
 
-/// The distance of neighbors in a hexagonal lattice of `n_sites` sites on a surface.
+/// The spacing of a hexagonal lattice of `n_sites` sites on a surface.
 pub(crate) fn spacing(surface: &Surface, n_sites: usize) -> f64 {
     hexagonal_spacing(surface.area(), n_sites)
 }
@@ -263,14 +263,14 @@ fn random(surface: &Surface, seed: Seed, number: i64) -> SurfacePoint {
     }
 }
 
-/// Random sites, as many as asked for.
+/// `n_sites` random sites.
 pub(crate) fn random_sites(surface: &Surface, n_sites: usize, seed: u64) -> Sites {
     let seed = Seed(seed);
     let points = (0..n_sites as i64).map(|number| random(surface, seed, number));
     Sites::new(surface, points.collect())
 }
 
-/// About as many sites as asked for, none nearer to another one on its side than 0.7 spacings.
+/// About `n_sites` sites with a minimum distance of 0.75 spacings between sites whose normals agree.
 pub(crate) fn even_sites(surface: &Surface, n_sites: usize, seed: u64) -> Sites {
     let seed = Seed(seed);
     let least = 0.75 * spacing(surface, n_sites);
@@ -288,7 +288,7 @@ pub(crate) fn even_sites(surface: &Surface, n_sites: usize, seed: u64) -> Sites 
     Sites::new(surface, kept.into_iter().map(|(point, ..)| point).collect())
 }
 
-/// Sites on a mesh that run along a field of positions and normals.
+/// A synthesizer with sites on a mesh, oriented by a function of position and normal.
 pub(crate) fn synthesizer(
     mesh: Mesh,
     n_sites: usize,
@@ -311,7 +311,8 @@ pub(crate) fn on_threads<T: Send>(work: impl Fn() -> T + Sync) -> [T; 3] {
     })
 }
 
-/// A texture whose sites have the pixels of a map with one row, one after the other, so that maps are any columns.
+/// A texture in which each site's source is the pixel with the site's index in a map of one row. Any column can then be
+/// a map.
 pub(crate) fn pixel_per_site(n_sites: usize) -> SurfaceTexture {
     let row = Raster::filled([n_sites as u32, 1], 0.0).unwrap();
     let exemplar = Exemplar::from_planes(&[(&row, 1.0)], Edges::Cut).unwrap();

@@ -1,4 +1,4 @@
-//! Several images in one, for a texture of several examples.
+//! Layouts that place several images in one, for synthesis from several examples.
 
 use crate::exemplar::Area;
 use crate::turned::{Turn, Turned};
@@ -6,12 +6,13 @@ use crate::{SynthError, SynthErrorKind};
 use dapple_color::Normal;
 use dapple_raster::Raster;
 
-/// Where several images lie in one that holds them all: side by side, a column of no image between them. Each
-/// may lie there [turned and mirrored](Self::with_turned), too.
+/// The layout of several images in one: adjacent, separated by one empty column each. Every image can also appear
+/// [rotated and mirrored](Self::with_turned).
 ///
-/// Joined images and their joined maps make one exemplar, in which each image has
-/// [edges of its own](crate::Exemplar::with_layout). What lies between them is in no texture. With the [`membership`](Self::membership) of each image as a [guide](crate::Exemplar::with_guides), the caller
-/// says which of them goes where.
+/// Joined images and their joined maps make one exemplar, in which each image has [its own
+/// edges](crate::Exemplar::with_layout). Textures use no pixels between images. With the
+/// [`membership`](Self::membership) of each image as a [guide](crate::Exemplar::with_guides), the caller controls where
+/// in a texture each image is used.
 ///
 /// # Examples
 ///
@@ -32,39 +33,39 @@ use dapple_raster::Raster;
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SideBySide {
-    /// The sizes of the images.
+    /// The sizes of the images, in pixels.
     images: Vec<[u32; 2]>,
     parts: Vec<Part>,
     size: [u32; 2],
 }
 
-/// An image in one of the ways in which it lies there.
+/// An image with one of its rotations and reflections.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Part {
     image: usize,
     turn: Turn,
-    /// The first column.
+    /// The first column in the joined image.
     first: u32,
     size: [u32; 2],
 }
 
 impl SideBySide {
-    /// The layout of images of these sizes, from left to right.
+    /// Creates the layout of images of the given sizes, from left to right.
     ///
     /// # Errors
     ///
-    /// [`SynthErrorKind::Count`] for no image, and [`SynthErrorKind::Range`] for a width of all together that is not from 1
-    /// to 2^31.
+    /// [`SynthErrorKind::Count`] for zero images, and [`SynthErrorKind::Range`] if the total width is not from 1 to
+    /// 2^31.
     pub fn new(sizes: &[[u32; 2]]) -> Result<Self, SynthError> {
         Self::laid_out(sizes, Turned::None)
     }
 
-    /// The layout of the same images, each turned and mirrored in all the given ways: those of the first image come first,
-    /// beginning with the image as it is.
+    /// Creates the layout of the same images with the given rotations and reflections. All versions of the first image
+    /// come first, and each image's unchanged version is the first of its versions.
     ///
     /// # Errors
     ///
-    /// [`SynthErrorKind::Range`] for a width of all together that is more than 2^31.
+    /// [`SynthErrorKind::Range`] if the total width is more than 2^31.
     pub fn with_turned(self, turned: Turned) -> Result<Self, SynthError> {
         Self::laid_out(&self.images, turned)
     }
@@ -77,6 +78,7 @@ impl SideBySide {
                 needed: "at least 1",
             }));
         }
+        // Every image in every version.
         let ways = turned.ways();
         let of_image = |image: usize| ways.iter().map(move |&turn| (image, turn));
         let ways = (0..images.len()).flat_map(of_image);
@@ -88,6 +90,7 @@ impl SideBySide {
         let width = width + sizes.len() as u64 - 1;
         let holds = (1..=1 << 31).contains(&width);
         SynthError::check(holds, "width of all images", width as f64, "from 1 to 2^31")?;
+        // Place the versions from left to right.
         let mut parts = Vec::with_capacity(sizes.len());
         let mut first = 0;
         for ((image, turn), &size) in ways.zip(&sizes) {
@@ -107,29 +110,29 @@ impl SideBySide {
         })
     }
 
-    /// The size of the image that holds all others.
+    /// The size of the joined image, in pixels.
     #[must_use]
     pub fn size(&self) -> [u32; 2] {
         self.size
     }
 
-    /// The size of an image, from 0.
+    /// The size of an image by its index, from 0.
     ///
     /// # Panics
     ///
-    /// If there is no such image.
+    /// If the layout has no image with that index.
     #[must_use]
     pub fn size_of(&self, image: usize) -> [u32; 2] {
         self.images[image]
     }
 
-    /// The image that a pixel belongs to, from 0; nothing between them and below the lower ones.
+    /// The index of the image at a pixel, from 0; `None` between images and below the shorter ones.
     #[must_use]
     pub fn image_at(&self, place: [u32; 2]) -> Option<usize> {
         self.part_at(place).map(|part| part.image)
     }
 
-    /// The part that a pixel belongs to.
+    /// The part at a pixel.
     fn part_at(&self, [column, row]: [u32; 2]) -> Option<&Part> {
         let is_within = |part: &&Part| {
             (part.first..part.first + part.size[0]).contains(&column) && row < part.size[1]
@@ -137,7 +140,7 @@ impl SideBySide {
         self.parts.iter().find(is_within)
     }
 
-    /// The rectangles of the images, in all the ways in which they lie.
+    /// The rectangles of all parts: each image in all its rotations and reflections.
     pub(crate) fn areas(&self) -> Vec<Area> {
         let area = |part: &Part| Area {
             first: [part.first, 0],
@@ -146,12 +149,12 @@ impl SideBySide {
         self.parts.iter().map(area).collect()
     }
 
-    /// All images in one, with `between` where no image is.
+    /// Joins all images into one. Pixels without an image get `between`.
     ///
     /// # Errors
     ///
-    /// [`SynthErrorKind::Count`] for another number of images, [`SynthErrorKind::Raster`] for images of other sizes than
-    /// those of the layout, and if all together are too large.
+    /// [`SynthErrorKind::Count`] if the number of images differs from the layout's, [`SynthErrorKind::Raster`] for
+    /// images whose sizes differ from the layout's, and if the joined image is too large.
     pub fn join<T: Copy + Send + Sync>(
         &self,
         images: &[&Raster<T>],
@@ -177,14 +180,15 @@ impl SideBySide {
         })?)
     }
 
-    /// All normal maps in one, with green up, turned as the images are; flat where no image is.
+    /// Joins all normal maps into one, with green up. Normals are rotated and mirrored with their images; pixels
+    /// without an image are flat.
     ///
-    /// Where images are turned or mirrored, codes next to the middle count as 0 (see [`Normal::centered`]), so that what is
-    /// flat stays one color.
+    /// Where images are rotated or mirrored, codes adjacent to the middle count as 0 (see [`Normal::centered`]), so
+    /// that flat regions have a single color.
     ///
     /// # Errors
     ///
-    /// Those of [`join`](Self::join).
+    /// The errors of [`join`](Self::join).
     pub fn join_normals(&self, images: &[&Raster<Normal>]) -> Result<Raster<Normal>, SynthError> {
         let joined = self.join(images, Normal::FLAT)?;
         let is_turned = self.parts.iter().any(|part| part.turn != Turn::default());
@@ -196,22 +200,22 @@ impl SideBySide {
         })?)
     }
 
-    /// Whether there is an image at each pixel.
+    /// The mask of the layout: true at pixels of an image.
     ///
     /// # Errors
     ///
-    /// [`SynthErrorKind::Raster`] if all together are too large.
+    /// [`SynthErrorKind::Raster`] if the joined image is too large.
     pub fn mask(&self) -> Result<Raster<bool>, SynthError> {
         Ok(Raster::from_fn(self.size, |column, row| {
             self.image_at([column, row]).is_some()
         })?)
     }
 
-    /// 1 at the pixels of one image, from 0, and 0 at those of all others.
+    /// The membership mask of an image by its index, from 0: 1 at its pixels and 0 at all others.
     ///
     /// # Errors
     ///
-    /// [`SynthErrorKind::Raster`] if all together are too large.
+    /// [`SynthErrorKind::Raster`] if the joined image is too large.
     pub fn membership(&self, image: usize) -> Result<Raster<f32>, SynthError> {
         Ok(Raster::from_fn(self.size, |column, row| {
             f32::from(self.image_at([column, row]) == Some(image))

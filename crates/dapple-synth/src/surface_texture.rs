@@ -6,31 +6,31 @@ use crate::places::Places;
 use crate::{Pyramid, SynthError, SynthErrorKind};
 use dapple_raster::Raster;
 
-/// Colors at the sites of a hierarchy, and which pixels of the exemplar they are from.
+/// The result of a synthesis on a surface: colors of the sites of a hierarchy, and their sources in the exemplar.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SurfaceTexture {
     levels: Vec<Level>,
     n_channels: usize,
-    /// The sources of the finest sites, if they are places on another surface.
+    /// The sources of the finest sites if they are places on another surface.
     pub(crate) lifted: Option<LiftedPlaces>,
-    /// The sources of the finest sites, if they are places between pixels.
+    /// The sources of the finest sites if they are places between pixels.
     pub(crate) places: Option<Places>,
-    /// By how many quarter turns the exemplar lies turned at each finest site; nothing where directions have no symmetry.
+    /// Rotation of the exemplar at each finest site, in quarter turns; empty if the directions have no symmetry.
     pub(crate) quarters: Vec<u8>,
 }
 
-/// Colors and sources of every site of a level; empty if no pass visited it.
+/// Colors and sources of the sites of a level; empty if no pass visited it.
 #[derive(Clone, Debug, PartialEq)]
 struct Level {
     values: Vec<f32>,
-    /// The pixel that each site is from, as `row * width + column`.
+    /// The source pixel of each site, as `row * width + column`.
     sources: Vec<u32>,
-    /// The size of the exemplar's level.
+    /// The size of the exemplar on this level, in pixels.
     size: [u32; 2],
 }
 
 impl SurfaceTexture {
-    /// The texture whose sites are from these pixels of the levels of a pyramid.
+    /// Creates a texture from the source pixels of the sites on each level of a pyramid.
     pub(crate) fn new(pyramid: &Pyramid, sources: Vec<Vec<u32>>, places: Option<Places>) -> Self {
         let exemplars = pyramid.levels();
         let levels = exemplars.iter().zip(sources).map(|(exemplar, sources)| {
@@ -51,7 +51,7 @@ impl SurfaceTexture {
         }
     }
 
-    /// The places on another surface at which texels read its maps; none where they mix the values of sites.
+    /// The places on another surface at which texels sample its maps; `None` if texels interpolate the values of sites.
     pub(crate) fn lifted_between(&self) -> Option<&LiftedPlaces> {
         self.lifted.as_ref().filter(|places| !places.is_mixed)
     }
@@ -61,28 +61,28 @@ impl SurfaceTexture {
         self.levels.first().map_or(0, |level| level.sources.len())
     }
 
-    /// The number of values at a site, that of the exemplar's channels.
+    /// The number of values per site, equal to the exemplar's number of channels.
     #[must_use]
     pub fn n_channels(&self) -> usize {
         self.n_channels
     }
 
-    /// The values at the sites of a level, 0 the finest, `n_channels` for each, as the exemplar has them; empty for a
-    /// level that no pass visited.
+    /// The values of the sites of a level, `n_channels` per site, in the units of the exemplar. Level 0 is the finest.
+    /// Empty for a level that no pass visited.
     ///
     /// # Panics
     ///
-    /// If there is no such level.
+    /// If the texture does not have that level.
     #[must_use]
     pub fn values(&self, level: usize) -> &[f32] {
         &self.levels[level].values
     }
 
-    /// The column and row of the pixel that each site of a level is from, in that level of the exemplar's pyramid.
+    /// The source of each site of a level: column and row in that level of the exemplar's pyramid.
     ///
     /// # Panics
     ///
-    /// If there is no such level.
+    /// If the texture does not have that level.
     pub fn sources(&self, level: usize) -> impl ExactSizeIterator<Item = [u32; 2]> {
         let level = &self.levels[level];
         let width = level.size[0].max(1);
@@ -92,14 +92,14 @@ impl SurfaceTexture {
             .map(move |pixel| [pixel % width, pixel / width])
     }
 
-    /// The values of another map of the exemplar's size at the sources of the finest sites: how colors, heights, normals
-    /// and roughness follow what was matched. Of a texture that was [lifted](crate::Synthesizer::lift) they are those of a map
-    /// of any size at the texture coordinates of the example.
+    /// Transfers a map of the exemplar's size: returns its values at the sources of the finest sites. Colors, heights,
+    /// normals and roughness follow the same sources. For a [lifted](crate::Synthesizer::lift) texture, the map may
+    /// have any size and is read at the exemplar's texture coordinates.
     ///
     /// # Errors
     ///
-    /// [`SynthErrorKind::Raster`] for a map of another size, [`SynthErrorKind::Count`] if no pass visited the finest
-    /// level.
+    /// [`SynthErrorKind::Raster`] for a map of a different size, [`SynthErrorKind::Count`] if no pass visited the
+    /// finest level.
     pub fn transfer<T: Copy>(&self, map: &Raster<T>) -> Result<Vec<T>, SynthError> {
         let Level { size, sources, .. } = &self.levels[0];
         if self.lifted.is_none() {

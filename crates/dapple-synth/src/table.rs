@@ -1,30 +1,32 @@
-//! Lines of numbers under named columns (CSV), for directions and control points.
+//! Tables of numbers with named columns (CSV), for directions and control points.
 //!
-//! Numbers have a decimal point, and columns are separated by commas. A header of names may give the columns in any order.
+//! Numbers have a decimal point, and columns are separated by commas. With a header, the columns may be in any order.
 
 use crate::{SynthError, SynthErrorKind};
 use dapple_raster::text::decode;
 
-/// A line of a table.
+/// A row of a table.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct TableRow {
-    /// The number of the line in the text, from 1.
+    /// Line number in the text, from 1.
     pub line: usize,
-    /// The numbers, in the order of the names of a form.
+    /// The numbers, in the order of the names of the form.
     pub numbers: Vec<f64>,
 }
 
-/// Reads lines of numbers separated by commas. Each has all columns of one of the `forms`, which are lists of names.
+/// Parses rows of numbers separated by commas. Each row has the columns of one of the `forms`, which are lists of
+/// column names.
 ///
-/// A byte order mark, blank lines, and lines that begin with `#` are left out. If no field of the first other line is a
-/// number, it is a header: its names must be those of a form, in upper or lower case, and the columns are in its
-/// order. Without a header, and with one in the order of a form, a line may have the columns of any form.
+/// A byte order mark, blank lines, and lines that begin with `#` are ignored. If no field of the first remaining line
+/// is a number, that line is a header. It must have the names of one form, in any order and in upper or lower case, and
+/// determines the order of the columns. Without a header, or with a header in the order of its form, each row may have
+/// the columns of any form.
 ///
 /// # Errors
 ///
-/// [`SynthErrorKind::Text`] with the number of the line that is a wrong header or does not have finite numbers. The reason
-/// names semicolons, tabs, quotes and decimal commas.
+/// [`SynthErrorKind::Text`] with the line number of an invalid header or of a row without finite numbers. The reason
+/// points out semicolons, tabs, quotes and decimal commas.
 ///
 /// # Examples
 ///
@@ -45,7 +47,7 @@ pub fn parse_table(text: &str, forms: &[&[&str]]) -> Result<Vec<TableRow>, Synth
     };
     if fields(first).all(|field| field.parse::<f64>().is_err()) {
         let columns = header(first, forms).map_err(|why| refused(line, why))?;
-        // A header in the usual order says nothing new, so that lines may have more columns of another form.
+        // A header in the order of its form is not needed: rows may then have the columns of another form.
         order = (!columns.is_sorted()).then_some(columns);
     } else {
         let numbers = numbers(first, None, forms).map_err(|why| refused(line, why))?;
@@ -62,7 +64,7 @@ fn fields(row: &str) -> impl Iterator<Item = &str> {
     row.split(',').map(str::trim)
 }
 
-/// For each name of a form, the column of the header that has it.
+/// For each name of the matching form, its column in the header.
 fn header(row: &str, forms: &[&[&str]]) -> Result<Vec<usize>, String> {
     let names: Vec<_> = fields(row).collect();
     let place = |name: &&str| {
@@ -78,7 +80,7 @@ fn header(row: &str, forms: &[&[&str]]) -> Result<Vec<usize>, String> {
     })
 }
 
-/// The numbers of a line, in the order of the header or else of the form.
+/// The numbers of a row, reordered by the header if there is one.
 fn numbers(row: &str, order: Option<&[usize]>, forms: &[&[&str]]) -> Result<Vec<f64>, String> {
     let mut numbers = Vec::new();
     for field in fields(row) {
@@ -102,7 +104,7 @@ fn numbers(row: &str, order: Option<&[usize]>, forms: &[&[&str]]) -> Result<Vec<
             Some(order) => format!("the header has {}", order.len()),
             None => format!("{} are needed", list(forms)),
         };
-        // With decimal commas every number counts twice.
+        // Decimal commas double the number of fields.
         let is_double = forms.iter().any(|form| 2 * form.len() == count);
         let cure = if is_double {
             "; decimals are written with a point, and not with a comma"
@@ -117,7 +119,7 @@ fn numbers(row: &str, order: Option<&[usize]>, forms: &[&[&str]]) -> Result<Vec<
     })
 }
 
-/// Why a line is not separated by commas.
+/// The reason that a line is not separated by commas, if it contains another separator or quotes.
 fn odd_separator(row: &str) -> Option<String> {
     let found = match row.chars().find(|c| ";\t\"'|".contains(*c))? {
         ';' => "semicolons",
@@ -135,7 +137,7 @@ fn odd_separator(row: &str) -> Option<String> {
     ))
 }
 
-/// The columns of the forms, as they are written in a header.
+/// The columns of all forms, written as headers.
 fn list(forms: &[&[&str]]) -> String {
     let forms: Vec<_> = forms.iter().map(|form| form.join(",")).collect();
     forms.join(" or ")

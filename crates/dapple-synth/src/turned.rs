@@ -1,4 +1,4 @@
-//! Turned and mirrored images, for exemplars whose things lie in any direction.
+//! Rotations and reflections of images, for exemplars whose features may have any direction.
 
 use dapple_color::Normal;
 
@@ -19,7 +19,8 @@ dapple_raster::named! {
     }
 }
 
-/// A way to lay an image on a grid of pixels: mirrored or not, left for right, and then turned clockwise.
+/// A symmetry of the pixel grid: an optional reflection, left for right, followed by a clockwise rotation in quarter
+/// turns.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Turn {
     is_mirrored: bool,
@@ -27,7 +28,7 @@ pub(crate) struct Turn {
 }
 
 impl Turned {
-    /// The ways, that of the image itself first.
+    /// The symmetries of this choice, the identity first.
     pub(crate) fn ways(self) -> Vec<Turn> {
         let (is_mirrored, quarters): (&[bool], _) = match self {
             Self::None => (&[false], 0..1),
@@ -46,7 +47,7 @@ impl Turned {
 }
 
 impl Turn {
-    /// The size of an image that lies so.
+    /// The size of a rotated image, from its original size.
     pub(crate) fn size(self, [width, height]: [u32; 2]) -> [u32; 2] {
         match self.quarters % 2 {
             0 => [width, height],
@@ -54,7 +55,7 @@ impl Turn {
         }
     }
 
-    /// The pixel of an image of a size that comes to lie at a place within it.
+    /// The pixel of the original image that is shown at a place of the rotated one. The size is that of the original.
     pub(crate) fn pixel(self, [x, y]: [u32; 2], [width, height]: [u32; 2]) -> [u32; 2] {
         let [column, row] = match self.quarters {
             0 => [x, y],
@@ -68,7 +69,7 @@ impl Turn {
         }
     }
 
-    /// A normal, with green up, as it lies so.
+    /// Rotates and mirrors a normal with green up.
     pub(crate) fn normal(self, Normal { x, y, z }: Normal) -> Normal {
         let x = if self.is_mirrored { -x } else { x };
         let [x, y] = match self.quarters {

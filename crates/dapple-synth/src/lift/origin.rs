@@ -1,4 +1,4 @@
-//! Places on a source surface, from which the sites of a texture are.
+//! Places on a source surface: the sources of a lifted texture.
 
 use crate::detail::Detail;
 use crate::magnify::footprints;
@@ -9,38 +9,39 @@ use dapple_raster::Raster;
 use glam::{DVec2, DVec3, Vec2, Vec3};
 use std::sync::Arc;
 
-/// How much longer the way between two places is in space than along the surface where they lie on two sheets, in pixels.
+/// Maximum excess of the distance in space over that along the surface, in pixels. Beyond it, two places are on
+/// different sheets.
 const SHEETS: f32 = 1.0;
 
-/// The largest texture coordinate: the texels of any map have numbers.
+/// Maximum absolute texture coordinate: texel indices of any map fit an integer.
 const UV_MAX: f64 = 1e6;
 
-/// A surface from which a texture is lifted.
+/// The source surface of a lifted texture.
 #[derive(Clone, Debug)]
 pub(crate) struct Origin {
     pub(crate) synthesizer: Synthesizer,
-    /// The texture coordinates of the corners of faces, whole turns taken off.
+    /// The texture coordinates of the corners of faces, with integer offsets removed.
     pub(crate) uvs: Vec<[DVec2; 3]>,
-    /// What lies past the edges of the texture.
+    /// The boundary of the texture.
     pub(crate) edges: Edges,
     frames: Vec<Frame>,
     /// The spacing of the finest sites.
     spacing: f32,
 }
 
-/// A place on the source: a finest site, and the way from it in its frame, in pixels.
+/// A place on the source: a finest site and an offset in the site's frame, in pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Place {
     pub(crate) site: u32,
     pub(crate) off: Vec2,
 }
 
-/// The places from which the finest sites of a texture are.
+/// The sources of the finest sites of a texture.
 #[derive(Clone, Debug)]
 pub(crate) struct LiftedPlaces {
     pub(crate) origin: Arc<Origin>,
     pub(crate) of_site: Vec<Place>,
-    /// Whether texels mix the values of sites, as in the paper.
+    /// Whether texels interpolate the values of sites, as in the paper, instead of sampling the source's maps.
     pub(crate) is_mixed: bool,
 }
 
@@ -81,11 +82,12 @@ impl Origin {
         self.synthesizer.hierarchy()
     }
 
-    /// The point of a place, and the direction of the source's down there, in the plane of its face.
+    /// The point of a place, and the source's down direction there, in the plane of its face.
     pub(crate) fn walk(&self, place: Place) -> Walk {
         let surface = self.synthesizer.surface();
         let point = self.hierarchy().sites().points()[place.site as usize];
         let orientation = self.synthesizer.orientation().vectors()[place.site as usize];
+        // Express the offset in the plane of the site's face.
         let down = surface
             .flatten(point.face, orientation)
             .normalize_or(DVec2::X);
@@ -102,20 +104,20 @@ impl Origin {
         let along = way / length;
         let walk = surface.walk(point, along, length * f64::from(self.spacing));
         Walk {
-            // The way turned, and down turned as much.
+            // Rotate the direction of the walk's end by the angle from the offset to down.
             direction: DVec2::new(along.dot(down), along.perp_dot(down)).rotate(walk.direction),
             ..walk
         }
     }
 
-    /// The texture coordinates of a point.
+    /// The texture coordinates at a point.
     pub(crate) fn uv(&self, point: SurfacePoint) -> DVec2 {
         let weights = self.synthesizer.surface().weights(point);
         let corners = self.uvs[point.face.index()].iter().zip(weights);
         corners.map(|(&uv, weight)| uv * weight).sum()
     }
 
-    /// How many texels of a map of a size are as long as a pixel, on every face; 0 on one without an area in it.
+    /// Side of a pixel in texels of a map of the given size, for every face; 0 for a face without an area in the map.
     pub(crate) fn texels(&self, size: [u32; 2]) -> Vec<f32> {
         let sides = footprints(&self.synthesizer, &self.uvs, size).into_iter();
         sides
@@ -123,7 +125,7 @@ impl Origin {
             .collect()
     }
 
-    /// The way from one finest site to another near it, in pixels.
+    /// Offset from one finest site to another near it, in pixels.
     pub(super) fn step(&self, to: u32, from: u32) -> Vec2 {
         let [to_place, from_place] = [to, from].map(|site| Place {
             site,
@@ -132,13 +134,14 @@ impl Origin {
         self.flat(self.way(to_place, from_place), to, from)
     }
 
-    /// A way in space as one between two sites. Frames turn on the way: the mean of both ends is that of its middle.
+    /// Converts an offset in space to pixels between two sites. Frames rotate along the way: the mean of the offsets in
+    /// both frames approximates the offset in the frame halfway.
     fn flat(&self, way: Vec3, to: u32, from: u32) -> Vec2 {
         let [to, from] = [to, from].map(|site| self.frames[site as usize].flat(way));
         0.5 * (from + to)
     }
 
-    /// The way in space from one place to another.
+    /// Offset in space from one place to another.
     fn way(&self, to: Place, from: Place) -> Vec3 {
         let positions = self.hierarchy().sites().positions();
         let [to_at, from_at] = [to, from].map(|place| positions[place.site as usize]);
@@ -152,7 +155,8 @@ impl Origin {
 }
 
 impl LiftedPlaces {
-    /// The places of sites that took these finest sites of the source, between them if that is asked for.
+    /// Creates the sources of sites from their matched source sites. With sub-pixel sources, places are averaged with
+    /// their neighbors' predictions.
     pub(super) fn new(
         hierarchy: &Hierarchy,
         frames: &Frames,
@@ -178,7 +182,7 @@ impl LiftedPlaces {
         lifted
     }
 
-    /// The pixel of a map at every place.
+    /// The nearest texel of a map at every place.
     pub(crate) fn transfer<T: Copy>(&self, map: &Raster<T>) -> Vec<T> {
         let size = map.size().map(f64::from);
         let wrap = self.origin.edges.wrap();
@@ -192,7 +196,7 @@ impl LiftedPlaces {
 }
 
 impl PartialEq for LiftedPlaces {
-    /// Places on one source: of equal copies of it, they differ.
+    /// Compares the places and the identity of the source: equal copies of a source differ.
     fn eq(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.origin, &other.origin)
             && self.of_site == other.of_site
@@ -216,6 +220,7 @@ impl Sourced for LiftedPlaces {
         let [to_normal, from_normal] = [to, from].map(|place| normals[place.site as usize]);
         let way = self.origin.way(to, from);
         let flat = self.origin.flat(way, to.site, from.site);
+        // Places on different sheets are infinitely far apart.
         let is_far = way.length() > (flat.length() + SHEETS) * self.origin.spacing;
         if is_far || DVec3::dot(to_normal, from_normal) < 0.0 {
             return Vec2::INFINITY;
@@ -232,7 +237,7 @@ impl Sourced for LiftedPlaces {
     }
 }
 
-/// A map of the source, read at places.
+/// A map of the source, sampled at points of its surface.
 pub(crate) struct LiftedDetail<'a, const N: usize> {
     origin: &'a Origin,
     detail: Detail<N>,
@@ -241,7 +246,7 @@ pub(crate) struct LiftedDetail<'a, const N: usize> {
 }
 
 impl<'a, const N: usize> LiftedDetail<'a, N> {
-    /// A map of any size at the texture coordinates of the source.
+    /// Prepares a map of any size in the texture coordinates of the source.
     pub(crate) fn new(map: Raster<[f32; N]>, origin: &'a Origin) -> Result<Self, SynthError> {
         let size = map.size();
         Ok(Self {
@@ -252,7 +257,7 @@ impl<'a, const N: usize> LiftedDetail<'a, N> {
         })
     }
 
-    /// The mean around a place; the footprint is the side of a square in pixels.
+    /// The filtered value at a point. `footprint` is the side of the square filter region, in pixels.
     pub(crate) fn sample(&self, point: SurfacePoint, footprint: f32) -> [f32; N] {
         let at = self.origin.uv(point) * self.size - 0.5;
         self.detail

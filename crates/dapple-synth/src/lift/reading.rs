@@ -1,4 +1,4 @@
-//! The colors of a source's finest sites: means of its texture.
+//! Colors of a source's finest sites: means of its texture.
 
 use super::Origin;
 use super::origin::Place;
@@ -8,10 +8,11 @@ use crate::{Edges, Exemplar, SiteGraph, SiteIdx, columns};
 use dapple_raster::Wrap;
 use glam::{DVec2, Vec2};
 
-/// The most points along the side of a site's square. Past it they lie between texels, and some are passed over.
+/// Maximum number of sample points along the side of a site's square. In larger squares samples are more than a texel
+/// apart, and some texels are skipped.
 const POINTS_MAX: u32 = 8;
 
-/// The finest sites as an image of one row.
+/// Builds the finest level: the finest sites as an image of one row.
 pub(super) fn at_sites(origin: &Origin, texture: &Exemplar) -> Exemplar {
     let texels = origin.texels(texture.size);
     let reader = Reader { origin, texture };
@@ -31,7 +32,7 @@ pub(super) fn at_sites(origin: &Origin, texture: &Exemplar) -> Exemplar {
         n_channels: n,
         edges: Edges::Cut,
         pixels,
-        // Neighborhoods are read between sites.
+        // Neighborhoods interpolate between sites, so neighbors of unusable sites are excluded, too.
         usable: texture.usable.as_ref().map(|_| eroded(&is_usable, graph)),
         areas: Vec::new(),
         guides: Guides {
@@ -41,7 +42,7 @@ pub(super) fn at_sites(origin: &Origin, texture: &Exemplar) -> Exemplar {
     }
 }
 
-/// Whether each site and all its neighbors may be used.
+/// For each site, whether it and all its neighbors are usable.
 pub(super) fn eroded(usable: &[bool], graph: &SiteGraph) -> Vec<bool> {
     let all = |site: usize| {
         let mut neighbors = graph.neighbors(SiteIdx(site as u32)).iter();
@@ -50,22 +51,23 @@ pub(super) fn eroded(usable: &[bool], graph: &SiteGraph) -> Vec<bool> {
     (0..usable.len()).map(all).collect()
 }
 
-/// The values of a site.
+/// The averaged values of a site.
 struct Site {
-    /// Those of the channels, then those of the guides.
+    /// The values of the channels, followed by the values of the guides.
     values: Vec<f32>,
-    /// Whether textures may have all texels that they are the mean of.
+    /// Whether all averaged texels are usable.
     is_usable: bool,
 }
 
-/// A texture and where it lies.
+/// A texture with its texture coordinates on the source.
 struct Reader<'a> {
     origin: &'a Origin,
     texture: &'a Exemplar,
 }
 
 impl Reader<'_> {
-    /// The mean over a square of one pixel around a site.
+    /// Averages the texture over a square of one pixel around a site. `texels` has the side of a pixel in texels for
+    /// each face.
     fn site(&self, site: u32, texels: &[f32]) -> Site {
         let point = self.origin.hierarchy().sites().points()[site as usize];
         let side = texels[point.face.index()].ceil();
@@ -75,6 +77,7 @@ impl Reader<'_> {
             values: vec![0.0; n_values],
             is_usable: true,
         };
+        // Walk to the points of a regular grid in the square.
         let part = 1.0 / (n * n) as f32;
         for [column, row] in (0..n).flat_map(|row| (0..n).map(move |column| [column, row])) {
             let off = Vec2::new(column as f32 + 0.5, row as f32 + 0.5) / n as f32 - 0.5;
@@ -84,7 +87,7 @@ impl Reader<'_> {
         mean
     }
 
-    /// Adds a part of the texture at a uv, between its texels.
+    /// Adds the bilinear sample at texture coordinates, with the weight `part`, to a mean.
     fn add(&self, uv: DVec2, part: f32, mean: &mut Site) {
         let Exemplar { size, usable, .. } = self.texture;
         let colors = self.texture.plain();

@@ -1,12 +1,12 @@
-//! Repair: the masked part of a source's texture again, with everything else as it was.
+//! Repair on surfaces: synthesizing the masked part of a source's texture again while the rest stays as it is.
 //!
-//! A stain or a scar on a surface is covered with the texture around it: the surface is lifted onto itself. As in a repair in
-//! the plane, all sites have a source before any is visited, and each compares with all of its neighborhood, several times.
-//! Those that are kept are from where they are. What a hole begins with on the coarsest level is the piece of the surface that
-//! fits what is around it best; where no piece is as large as the hole, random sites. A pass goes from the rim of a hole
-//! inward.
+//! A stain or a scar is covered with the texture around it: the surface is lifted onto itself. As in a repair in the
+//! plane, all sites have a source before any is visited, and each compares its full neighborhood, several times. Kept
+//! sites are their own sources. On the coarsest level a hole starts as the piece of the surface that fits its
+//! surroundings best. Where no piece is as large as the hole, it starts with random sites. A pass proceeds from the rim
+//! of a hole inward.
 //!
-//! Reference: our own; the passes are those of [`Schedule::repair_on_mesh`].
+//! Reference: our own. The passes are those of [`Schedule::repair_on_mesh`].
 
 use super::origin::Place;
 use super::{MeshExemplar, Origin};
@@ -18,25 +18,25 @@ use core::ops::ControlFlow;
 use dapple_raster::parallel;
 use glam::Vec2;
 
-/// How many edges around a hole sites are compared to find what it begins with: as far as a neighborhood reaches.
+/// Width of the ring around a hole that is compared, in edges: as far as a neighborhood reaches.
 const RING: u32 = 3;
 
-/// How far from the end of a way the nearest site may be, in spacings.
+/// Search radius for the site nearest to the end of a walk, in spacings.
 const NEAR: f64 = 1.5;
 
 impl MeshExemplar {
-    /// Makes the sites again that the [mask](Exemplar::with_mask) of the texture leaves out, and keeps all others where they
-    /// are.
+    /// Synthesizes the sites that the texture's [mask](Exemplar::with_mask) excludes. All others keep their sources.
     ///
-    /// The texture is for [`source`](Self::source) itself. Baked to a map at the texture coordinates of the example, it is
-    /// what belongs at the texels that the mask leaves out; all others need no change.
+    /// The result is a texture for [`source`](Self::source) itself. Baked to a map in the exemplar's texture
+    /// coordinates, it has the repaired colors of the excluded texels; all others need no change.
     ///
-    /// Without a schedule in the options it is [`Schedule::repair_on_mesh`]. [`Options::evenness`] has no effect: a small
-    /// part need not use all of the texture.
+    /// If the options have no schedule, [`Schedule::repair_on_mesh`] is used. [`Options::evenness`] has no effect: a
+    /// small part need not use all of the texture.
     ///
     /// # Errors
     ///
-    /// Those of [`Synthesizer::lift`](crate::Synthesizer::lift) without guides, which a repair has none of.
+    /// The errors of [`Synthesizer::lift`](crate::Synthesizer::lift), except those of guides, which a repair does not
+    /// use.
     pub fn repair(
         &self,
         options: &Options,
@@ -56,7 +56,7 @@ impl MeshExemplar {
         self.grow(self.source(), &ground, &options, &mut callback)
     }
 
-    /// What the sites of each level begin with.
+    /// The initial sources of the sites of each level.
     fn starts(&self, levels: &[Exemplar]) -> Vec<Start> {
         let start = |level: &Exemplar| {
             let n_sites = level.size[0];
@@ -71,6 +71,7 @@ impl MeshExemplar {
             }
         };
         let mut starts: Vec<Start> = levels.iter().map(start).collect();
+        // Fill the holes of the coarsest level with the pieces that fit best.
         if let (Some(start), Some(exemplar)) = (starts.last_mut(), levels.last()) {
             let level = levels.len() - 1;
             let graph = self.origin.hierarchy().levels()[level].graph();
@@ -92,7 +93,7 @@ impl MeshExemplar {
     }
 }
 
-/// The sites of a level that are made again, from the rims of holes inward; those of a ring in the given order.
+/// The sites of a level to synthesize, from the rims of holes inward; the sites of a ring keep the given order.
 pub(crate) fn order(start: &Start, graph: &SiteGraph, mut order: Vec<u32>) -> Vec<u32> {
     let rings = rings(graph, &start.is_kept);
     order.retain(|&site| !start.is_kept[site as usize]);
@@ -100,7 +101,7 @@ pub(crate) fn order(start: &Start, graph: &SiteGraph, mut order: Vec<u32>) -> Ve
     order
 }
 
-/// How many edges each site is from one that is kept; the largest number where there is none.
+/// Graph distance from each site to the nearest kept site, in edges; `u32::MAX` if unreachable.
 fn rings(graph: &SiteGraph, is_kept: &[bool]) -> Vec<u32> {
     let mut rings: Vec<u32> = is_kept
         .iter()
@@ -121,13 +122,14 @@ fn rings(graph: &SiteGraph, is_kept: &[bool]) -> Vec<u32> {
     rings
 }
 
-/// Sites beside each other that are made again, and those around them, each with the way to it from one in the middle.
+/// A connected group of sites to synthesize, and the ring of sites around it. Each site has its offset from a site in
+/// the middle, in pixels.
 struct Hole {
     sites: Vec<(u32, Vec2)>,
     ring: Vec<(u32, Vec2)>,
 }
 
-/// The holes of a level.
+/// Finds the holes of a level.
 fn holes(origin: &Origin, graph: &SiteGraph, is_kept: &[bool]) -> Vec<Hole> {
     let rings = rings(graph, is_kept);
     let mut is_found = is_kept.to_vec();
@@ -137,6 +139,7 @@ fn holes(origin: &Origin, graph: &SiteGraph, is_kept: &[bool]) -> Vec<Hole> {
             continue;
         }
         is_found[first] = true;
+        // Collect the connected sites.
         let mut sites = vec![first as u32];
         let mut at = 0;
         while let Some(&site) = sites.get(at) {
@@ -148,7 +151,7 @@ fn holes(origin: &Origin, graph: &SiteGraph, is_kept: &[bool]) -> Vec<Hole> {
             }
             at += 1;
         }
-        // The innermost site, the first of several.
+        // Lay out the hole from its innermost site, the first of several.
         let middle = sites
             .iter()
             .copied()
@@ -165,7 +168,8 @@ fn holes(origin: &Origin, graph: &SiteGraph, is_kept: &[bool]) -> Vec<Hole> {
 }
 
 impl Hole {
-    /// The hole of a site, laid out from it on: the way to a site is that to the one by which it was reached, and from there.
+    /// Lays out the hole around its middle site. Sites are visited breadth-first, and the offset of a site is the sum
+    /// of the steps that lead to it.
     fn around(origin: &Origin, graph: &SiteGraph, is_kept: &[bool], middle: u32) -> Self {
         let mut hole = Self {
             sites: vec![(middle, Vec2::ZERO)],
@@ -185,6 +189,7 @@ impl Hole {
                 is_found[near.index()] = true;
                 let way = way + origin.step(near.0, site);
                 reached.push((near.0, way, edges));
+                // Sites reached over kept ones form the ring.
                 let list = if edges == 0 {
                     &mut hole.sites
                 } else {
@@ -197,7 +202,7 @@ impl Hole {
     }
 }
 
-/// Looks for what holes of a level begin with.
+/// Searches for the initial pieces of holes on a level.
 struct Filler<'a> {
     origin: &'a Origin,
     level: usize,
@@ -206,8 +211,8 @@ struct Filler<'a> {
 }
 
 impl Filler<'_> {
-    /// The site that takes the place of the middle of a hole in the piece whose surroundings are most like those of the hole,
-    /// the first of several; nothing if no piece is as large.
+    /// The middle site of the piece whose ring is most similar to that of the hole, the first of several; `None` if no
+    /// piece is as large as the hole.
     fn best(&self, hole: &Hole) -> Option<u32> {
         const CHUNK: usize = 64;
         let n_sites = self.is_kept.len();
@@ -221,6 +226,7 @@ impl Filler<'_> {
             }
             best
         };
+        // Search chunks in parallel; between chunks, the first of equal pieces wins.
         let found = parallel::map(n_sites.div_ceil(CHUNK), best_of);
         let mut best = (f64::INFINITY, None);
         for found in found {
@@ -231,8 +237,8 @@ impl Filler<'_> {
         best.1
     }
 
-    /// How unlike the surroundings of a hole are those of the piece with a site in the middle, if that is below a limit and
-    /// all of the piece is kept.
+    /// The sum of squared differences between the ring of a hole and that of the piece around a middle site. `None` if
+    /// it is not below a limit, or if a site of the piece is not kept.
     fn distance(&self, hole: &Hole, first: u32, limit: f64) -> Option<f64> {
         let mut distance = 0.0;
         let colors = self.exemplar.plain();
@@ -251,7 +257,8 @@ impl Filler<'_> {
         is_whole.then_some(distance)
     }
 
-    /// The site that is kept nearest to the end of a way from a site.
+    /// The site nearest to the end of a walk of `off` from a site; `None` if the walk meets a border, or if no site is
+    /// in reach or the nearest is not kept.
     fn site_at(&self, site: u32, off: Vec2) -> Option<u32> {
         let walk = self.origin.walk(Place { site, off });
         if walk.left != 0.0 {

@@ -1,4 +1,4 @@
-//! The neighborhoods of a source's sites.
+//! Candidate neighborhoods: the neighborhoods of a source's sites.
 
 use crate::candidates::{self, Beside};
 use crate::ground::{Ground, Rows, Samples, Square};
@@ -7,14 +7,14 @@ use crate::visit::{self, Half, Term};
 use crate::{Candidates, Options, Pass, Pyramid, Reads, SynthError, Synthesizer};
 use dapple_raster::parallel;
 
-/// The sites that one thread reads at a time.
+/// Number of sites per parallel task.
 const CHUNK: usize = 512;
 
-/// The least distance in spacings of samples that follow each other: less is past a border or across a sharp fold.
+/// Minimum distance between adjacent samples, in spacings. A smaller distance means a border or a sharp fold.
 const LEAST: f64 = 0.5;
 
-/// The neighborhoods of all sites of the pass' level that meet no border, fold or unusable site; of all usable ones where
-/// few would remain.
+/// The neighborhoods of all sites of the pass's level that meet no border, fold or unusable site. If too few remain,
+/// the neighborhoods of all usable sites.
 pub(super) fn candidates(
     source: &Synthesizer,
     pyramid: &Pyramid,
@@ -40,6 +40,7 @@ pub(super) fn candidates(
         let first = chunk * CHUNK;
         reader.chunk(first..(first + CHUNK).min(n_sites))
     });
+    // Leave out neighborhoods at borders and folds if enough others remain.
     let few = candidates::few(pass, options);
     let sites = chunks
         .iter()
@@ -48,6 +49,7 @@ pub(super) fn candidates(
     let only_whole = n_whole.count() >= few;
     let level = &pyramid.levels()[pass.level];
     let dims = reader.dims();
+    // Concatenate the chunks.
     let mut pixels = Vec::new();
     let mut rows = Vec::new();
     let mut beside = Vec::new();
@@ -65,7 +67,7 @@ pub(super) fn candidates(
     Candidates::of_sites(level, pass.level, rows, pixels, Beside(beside))
 }
 
-/// Neighborhoods of some sites, one after the other.
+/// The neighborhoods of consecutive sites.
 #[derive(Default)]
 struct Chunk {
     rows: Vec<f32>,
@@ -74,13 +76,13 @@ struct Chunk {
     beside: Vec<[u32; 9]>,
 }
 
-/// Reads neighborhoods as those of the texture are.
+/// Reads neighborhoods on the source in the same way as on the target.
 struct Reader<'a> {
     ground: &'a MeshGround<'a>,
     prepared: <MeshGround<'a> as Ground>::Prepared,
     beside: <MeshGround<'a> as Ground>::Prepared,
     terms: Vec<Term>,
-    /// The squares on the level itself and on the coarser one.
+    /// The extents of the squares on the level itself and on the coarser one.
     halves: [Option<Half>; 2],
     level: usize,
     pyramid: &'a Pyramid,
@@ -88,7 +90,7 @@ struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    /// The number of values of a neighborhood.
+    /// Number of values of a neighborhood, guides included.
     fn dims(&self) -> usize {
         let level = &self.pyramid.levels()[self.level];
         self.terms.len() * level.n_channels + level.n_guides()
@@ -122,7 +124,8 @@ impl Reader<'_> {
         chunk
     }
 
-    /// Reads the square of a site on its level or on the one `step` coarser, if that is read; whether all of it is there.
+    /// Reads the square of a site on its level or on the one `step` coarser, if the pass reads that level. Returns
+    /// whether the square meets no border or fold.
     fn read(&self, site: u32, step: usize, samples: &mut Samples, memory: &mut MeshMemory) -> bool {
         let Some(half) = self.halves[step] else {
             return true;
@@ -142,7 +145,7 @@ impl Reader<'_> {
         memory.is_spread(LEAST * self.ground.hierarchy.levels()[reads].spacing())
     }
 
-    /// Whether textures may have the sites that a neighborhood is made of.
+    /// Whether all sites of a neighborhood are usable.
     fn is_usable(&self, site: u32, samples: [&Samples; 2]) -> bool {
         let usable = |step: usize, site: u32| {
             self.pyramid.levels()[self.level + step].is_usable(site as usize)
@@ -154,7 +157,8 @@ impl Reader<'_> {
             })
     }
 
-    /// The sites nearest to the eight steps from a site, and itself.
+    /// The 3 × 3 sites around a site, row by row: the nearest site to each of the eight steps, with the site itself in
+    /// the center.
     fn read_beside(&self, site: u32, memory: &mut MeshMemory) -> [u32; 9] {
         let square = Square {
             site,
