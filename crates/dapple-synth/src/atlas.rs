@@ -156,7 +156,7 @@ impl Atlas {
     /// are not shown.
     ///
     /// Where faces overlap, the one with the lowest index is shown. A border of `padding` texels around covered texels
-    /// is filled, too. With a padding as large as the map all texels are filled, and no level of a mipmap mixes in
+    /// is filled, too. If the padding is the side of the map, all texels are filled, and no level of a mipmap mixes in
     /// texels without a face.
     ///
     /// # Errors

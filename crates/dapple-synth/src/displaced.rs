@@ -3,8 +3,8 @@
 //! Reference: our own.
 //!
 //! Units: a height times the scale is a length in units of the mesh; positive heights move outward. A mesh can only
-//! show heights whose features are larger than its edges: the triangles of the sites show all features, those of the
-//! input mesh often do not.
+//! show heights whose features are larger than its edges: the triangles of the sites show all features, the triangles
+//! of the input mesh often do not.
 
 use crate::maps::{check_column, check_finite};
 use crate::{SynthError, Synthesizer};

@@ -8,8 +8,8 @@ use dapple_hash::Seed;
 /// Maximum of [`Options::evenness`]: no factor within it can make a distance infinite.
 const MAX_EVENNESS: f32 = 1000.0;
 
-/// Regularity of an exemplar above which [`Coherence::Auto`] always takes the least distance. Exemplars from 0.93 look
-/// better with the least distance, those up to 0.86 with a coherence of 2.
+/// Regularity of an exemplar above which [`Coherence::Auto`] always takes the smallest distance. Exemplars from 0.93
+/// look better with the smallest distance, exemplars up to 0.86 with a coherence of 2.
 pub(crate) const REGULAR: f64 = 0.9;
 
 /// Options of a synthesis from an exemplar.
@@ -24,7 +24,7 @@ pub struct Options {
     pub seed: Seed,
     /// Number of levels of the pyramid and of the sites, from 1 to 16 [default: 3].
     pub n_levels: usize,
-    /// The passes [default: those of the paper for `n_levels` levels].
+    /// The passes [default: the paper's passes for `n_levels` levels].
     pub schedule: Option<Schedule>,
     /// Center of neighborhoods on the coarser level [default: exact].
     pub center: CoarserCenter,
@@ -34,8 +34,8 @@ pub struct Options {
     pub axes: Axes,
     /// The kind of sources of the finest sites on surfaces [default: places between pixels].
     pub sources: Sources,
-    /// Permitted excess in the distance of a match that continues the source of a neighboring site [default: chosen by the
-    /// exemplar].
+    /// Permitted excess in the distance of a match that continues the source of a neighboring site [default: chosen by
+    /// the exemplar].
     pub coherence: Coherence,
     /// Preference for even use of the exemplar's pixels, from 0 to 1000 [default: 1].
     ///
@@ -43,7 +43,7 @@ pub struct Options {
     /// multiplied by `1 + evenness` if the pixel and its neighbors have already been used as often as the average pixel
     /// at the end of the pass. Such a pass runs on one thread. Pixels near an edge of the exemplar are candidates, too,
     /// as if it were mirrored there. With [`Matching::Appearance`], parts of the exemplar that the texture uses too
-    /// often cost more from one correction to the next. At 0 only the least distance counts, as in the paper: many
+    /// often cost more from one correction to the next. At 0 only the smallest distance counts, as in the paper: many
     /// pixels are then never used, and rare colors vanish.
     pub evenness: f32,
 }
@@ -57,12 +57,12 @@ pub struct Options {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Coherence {
-    /// A factor of 2. For a regular exemplar, one whose [`Exemplar::regularity`] is above 0.9, the least distance wins
-    /// instead in passes that read a coarser level.
+    /// A factor of 2. For a regular exemplar, one whose [`Exemplar::regularity`] is above 0.9, the smallest distance
+    /// wins instead in passes that read a coarser level.
     ///
-    /// Where the exemplar has pieces that fit together, such as interlocking hooks and courses of bricks, the least
-    /// distance finds them, and a factor of 2 tears the texture. In photographs no detail occurs twice, and the least
-    /// distance blurs it: leaves keep 0.65 of their standard deviation with 0, and 0.87 with 2.
+    /// Where the exemplar has pieces that fit together, such as interlocking hooks and courses of bricks, the smallest
+    /// distance finds them, and a factor of 2 tears the texture. In photographs no detail occurs twice, and the
+    /// smallest distance blurs it: leaves keep 0.65 of their standard deviation with 0, and 0.87 with 2.
     ///
     /// In passes that read no coarser level the factor is 1 for any exemplar, as with a coherence of 2. There the sweep
     /// begins among random colors, and their averages resemble only a few pixels of the exemplar. With 0 those pixels
@@ -71,13 +71,13 @@ pub enum Coherence {
     /// Measuring the regularity takes a few milliseconds.
     #[default]
     Auto,
-    /// The coherent match wins if its squared distance is at most 1 + this factor times the least. In passes that read
-    /// no coarser level, where no later pass can repair mismatches, the limit is 1 + half of this factor. Finite and at
-    /// least 0; at 0 the least distance always wins, as in the paper.
+    /// The coherent match wins if its squared distance is at most 1 + this factor times the smallest. In passes that
+    /// read no coarser level, where no later pass can repair mismatches, the limit is 1 + half of this factor. Finite
+    /// and at least 0; at 0 the smallest distance always wins, as in the paper.
     Factor(f32),
 }
 
-/// Permitted excess in the squared distance of coherent matches, relative to the least one; at least 0.
+/// Permitted excess in the squared distance of coherent matches, relative to the smallest one; at least 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct CoherenceFactors {
     /// The excess in passes that read no coarser level.
@@ -175,7 +175,7 @@ impl Default for Options {
 
 impl Options {
     /// The options of the paper: neighborhoods on the coarser level are centered at rounded coordinates and follow
-    /// straight axes, the least distance always wins, and texture maps interpolate the colors of sites.
+    /// straight axes, the smallest distance always wins, and texture maps interpolate the colors of sites.
     ///
     /// Some differences from its text remain, on every surface and with any options:
     ///
@@ -205,7 +205,7 @@ impl Options {
         }
     }
 
-    /// The passes: those given, or else those of the paper.
+    /// The given passes, or else the paper's.
     ///
     /// # Errors
     ///

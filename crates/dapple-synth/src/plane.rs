@@ -4,8 +4,8 @@
 //! 2000, DOI 10.1145/344779.345009, for the plane; Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, DOI
 //! 10.1145/383259.383297, for the passes.
 //!
-//! Every pixel of the texture is a site. Neighborhoods are read directly from the pixel grid. The only interpolated
-//! values are those of the coarser level at half pixels. A level has half the pixels of the next finer one along each
+//! Every pixel of the texture is a site. Neighborhoods are read directly from the pixel grid. Only values of the
+//! coarser level are interpolated, at half pixels. A level has half the pixels of the next finer one along each
 //! axis, rounded up.
 //!
 //! The sweep visits sites in scanline order. Along rows that wrap, this order is a single chain around the torus: each
@@ -104,8 +104,8 @@ pub fn synthesize_plane_with(
 }
 
 /// Synthesizes a texture like [`synthesize_plane_with`], controlled by guides: planes that match parts of the texture
-/// with parts of the exemplar. There must be as many as the exemplar has [guides](Exemplar::with_guides). The texture
-/// has the size of the planes.
+/// with parts of the exemplar. Their number must equal that of the exemplar's [guides](Exemplar::with_guides). The
+/// texture has the size of the planes.
 ///
 /// [`Options::evenness`] has no effect.
 ///

@@ -43,8 +43,8 @@ pub enum PlaneScales<'a> {
 /// Synthesizes a texture like an exemplar along `directions`, a plane with the size of the texture, with exemplar
 /// pixels scaled by `scales`.
 ///
-/// A direction is an angle in radians to which the exemplar's down axis rotates: at 0 it points down, and at π / 2, a
-/// quarter turn, to the right.
+/// A direction is an angle in radians. At 0 the exemplar's down axis points down; at π / 2, a quarter turn, it points
+/// to the right.
 ///
 /// # Errors
 ///
@@ -119,7 +119,7 @@ pub fn synthesize_plane_along(
     })
 }
 
-/// The options of the sites on a plane: as many as give a spacing of one pixel.
+/// The options of the sites on a plane, with a spacing of one pixel.
 fn sites(size: [u32; 2], options: &Options) -> HierarchyOptions {
     // A site of a hexagonal lattice with a spacing of 1 has the area sqrt(3/4).
     let n_sites = f64::from(size[0]) * f64::from(size[1]) * (4.0_f64 / 3.0).sqrt();
@@ -150,7 +150,7 @@ fn uvs(size: [u32; 2], synthesizer: &Synthesizer) -> Vec<[DVec2; 3]> {
     corners.collect()
 }
 
-/// The value of a plane at a position; past the edges, that of the nearest pixel.
+/// The value of a plane at a position; past the edges, the value of the nearest pixel.
 fn pixel(plane: &Raster<f32>, at: DVec3) -> &f32 {
     let [column, row] = [at.x, -at.y].map(|at| at.floor() as i64);
     plane.at(column, row, [Wrap::Clamp; 2])

@@ -55,7 +55,8 @@ impl Turn {
         }
     }
 
-    /// The pixel of the original image that is shown at a place of the rotated one. The size is that of the original.
+    /// The pixel of the original image that is shown at a place of the rotated one. `[width, height]` is the original's
+    /// size.
     pub(crate) fn pixel(self, [x, y]: [u32; 2], [width, height]: [u32; 2]) -> [u32; 2] {
         let [column, row] = match self.quarters {
             0 => [x, y],

@@ -3,8 +3,8 @@
 //! Reference: Morten S. Mikkelsen, "Simulation of Wrinkled Surfaces Revisited", master's thesis, University of
 //! Copenhagen, 2008. The tangent at a corner is the mean of the tangents of all faces with the same vertex, texture
 //! coordinates and handedness. Each is projected to the plane perpendicular to the vertex normal, and weighted by the
-//! angle of its face. Between corners, tangents are interpolated linearly. Angles are those of the faces, not of their
-//! projections.
+//! angle of its face. Between corners, tangents are interpolated linearly. Angles are measured on the faces, not on
+//! their projections.
 
 use super::{Atlas, weights};
 use dapple_mesh::{FaceIdx, Surface};

@@ -144,8 +144,8 @@ fn fill(
         let origin = DVec2::new(f64::from(tile.first[0]), f64::from(tile.first[1]));
         for (half, face) in tile.faces.into_iter().enumerate() {
             let Some(face) = face else { continue };
-            // The right angle of the first triangle is at the tile's first corner, that of the second at the last
-            // corner.
+            // The right angle of the first triangle is at the tile's first corner; the second triangle has it at the
+            // last corner.
             let (corner, way) = match half {
                 0 => (origin + padding, 1.0),
                 _ => (origin + f64::from(tile.side) - padding, -1.0),

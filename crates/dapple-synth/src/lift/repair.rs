@@ -211,8 +211,8 @@ struct Filler<'a> {
 }
 
 impl Filler<'_> {
-    /// The middle site of the piece whose ring is most similar to that of the hole, the first of several; `None` if no
-    /// piece is as large as the hole.
+    /// The middle site of the piece whose ring is most similar to the ring of the hole, the first of several; `None` if
+    /// no piece is as large as the hole.
     fn best(&self, hole: &Hole) -> Option<u32> {
         const CHUNK: usize = 64;
         let n_sites = self.is_kept.len();

@@ -10,7 +10,7 @@ use glam::Vec3;
 /// Number of sites per SIMD register.
 const LANES: usize = 8;
 
-/// Maximum number of sites per point: those of the largest weights. One sheet has about ten in reach. Where many sheets
+/// Maximum number of sites per point; the largest weights are kept. One sheet has about ten in reach. Where many sheets
 /// cross there can be thousands, and ranking takes time proportional to the square of their number.
 const MOST: usize = 64;
 

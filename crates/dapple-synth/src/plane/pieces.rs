@@ -56,8 +56,8 @@ impl PlaneTexture {
     ///
     /// # Errors
     ///
-    /// [`SynthErrorKind::Raster`](crate::SynthErrorKind::Raster) for an exemplar whose size differs from that of the
-    /// texture's.
+    /// [`SynthErrorKind::Raster`](crate::SynthErrorKind::Raster) for an exemplar with a different size than the
+    /// texture's exemplar.
     pub fn differences(&self, exemplar: &Exemplar) -> Result<Raster<f32>, SynthError> {
         Raster::filled(self.exemplar_size, ())?.check_same_size(exemplar.size)?;
         let size = self.sources.size();

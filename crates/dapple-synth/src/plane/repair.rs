@@ -222,8 +222,8 @@ fn square([column, row]: [i64; 2], reach: i64) -> impl Iterator<Item = [i64; 2]>
 }
 
 impl Hole {
-    /// Fills the sites with the piece of the exemplar whose ring is most similar to that of the hole; of several, the
-    /// first in row order. If no piece is as large as the hole, the sites stay unknown.
+    /// Fills the sites with the piece of the exemplar whose ring is most similar to the ring of the hole; of several,
+    /// the first in row order. If no piece is as large as the hole, the sites stay unknown.
     ///
     /// On the coarsest level of a small image, a piece may lack part of its ring, which reaches past a side or into the
     /// hole. Pieces with at least half of their ring are compared by that part, but their differences are multiplied by
