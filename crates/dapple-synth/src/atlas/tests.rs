@@ -6,7 +6,7 @@ use crate::shapes::{cap, moved, square};
 use dapple_mesh::{FaceIdx, Mesh, Surface};
 use glam::{DVec2, DVec3};
 
-/// A box of three different sides, twelve faces.
+/// A box with three different side lengths and twelve faces.
 fn cuboid() -> Surface {
     let positions: Vec<DVec3> = (0..8)
         .map(|corner| {
@@ -29,7 +29,7 @@ fn cuboid() -> Surface {
     Surface::new(Mesh::new(positions, &faces).unwrap()).unwrap()
 }
 
-/// Every texel that bilinear reading inside of a face touches shows that face.
+/// Asserts that all texels read by bilinear sampling inside of a face show that face.
 fn assert_padded(atlas: &Atlas) {
     for (face, corners) in (0..).map(FaceIdx).zip(&atlas.corners) {
         for step_b in 0..=20 {
@@ -39,7 +39,7 @@ fn assert_padded(atlas: &Atlas) {
                 let low = (at - 0.5 + 1e-9).floor();
                 for near in [DVec2::ZERO, DVec2::X, DVec2::Y, DVec2::ONE] {
                     let texel = low + near;
-                    // A texel that is read with no weight does not count.
+                    // Texels with zero weight do not count.
                     let read = (at - 0.5 - texel).abs().max_element() < 1.0 - 1e-6;
                     if read {
                         let texel = [texel.x as u32, texel.y as u32];
@@ -67,7 +67,8 @@ fn uniform_tiles_are_right_triangles_of_one_size_with_the_longest_edge_across() 
         let lengths = |[a, b, c]: [f64; 3]| (a.max(b).max(c), a.min(b).min(c));
         let [a, b, c] = *corners;
         let (long, short) = lengths([a.distance(b), b.distance(c), c.distance(a)]);
-        // Twelve faces in six tiles, three across: 21 texels each, of which the frame takes 4 paddings of 1, and 1.
+        // Twelve faces take six tiles, three per row, of 21 texels each. The frame of a tile takes 4 paddings of 1 and
+        // one texel more.
         assert_eq!(short, f64::from(21 - 4 - 1), "legs of {face:?}");
         assert!(
             (long - short * 2.0_f64.sqrt()).abs() < 1e-9,
@@ -89,7 +90,7 @@ fn tiles_by_area_give_larger_faces_more_texels() {
         let [a, b, c] = atlas.corners[face as usize];
         a.distance(b).min(b.distance(c)).min(c.distance(a))
     };
-    // The faces of 1 x 2 come first, those of 2 x 5 last.
+    // The faces of 1 x 2 come first, the faces of 2 x 5 last.
     assert!(leg(11) >= 1.9 * leg(0), "{} beside {}", leg(11), leg(0));
 }
 
@@ -128,7 +129,7 @@ fn own_layout_shows_each_face_where_its_uv_are() {
     let mesh = Mesh::new(positions, &[[0, 1, 2], [0, 2, 3]]).unwrap();
     let surface = Surface::new(mesh).unwrap();
     let uv = |x: f64, y: f64| DVec2::new(x, y);
-    // The lower face lies one unit further, which is the same place.
+    // The lower face is offset by one unit, which is removed.
     let uvs = [
         [uv(0.25, 0.25), uv(0.75, 0.25), uv(0.75, 0.75)],
         [uv(1.25, 0.25), uv(1.75, 0.75), uv(1.25, 0.75)],
@@ -163,7 +164,7 @@ fn bad_layouts_are_refused() {
     assert_eq!(atlas.coverage(), 0.0, "uv that are not finite show nothing");
 }
 
-/// The faces of each texel of a level of a mipmap: those of its 2 x 2 texels, one face or several.
+/// The set of faces that each texel of the next mipmap level mixes: the union over 2 × 2 texels.
 fn halved(level: &[Vec<Vec<u32>>]) -> Vec<Vec<Vec<u32>>> {
     let side = level.len() / 2;
     let faces = |row: usize, column: usize| {
@@ -235,7 +236,7 @@ fn tiles_are_not_mirrored() {
         Atlas::by_area(&surface, 64).unwrap(),
     ] {
         for [a, b, c] in atlas.uvs() {
-            // Counterclockwise in the picture, where rows go down.
+            // Counterclockwise in the map, where rows go down.
             assert!((b - a).perp_dot(c - a) < 0.0, "{a} {b} {c}");
         }
     }
@@ -259,7 +260,7 @@ fn padding_of_an_own_layout_ends_where_the_map_is_full() {
 
 #[test]
 fn own_layout_has_no_gap_where_an_edge_goes_through_the_center_of_a_texel() {
-    // By rounding, the center of texel (3, 3) is a little outside of both.
+    // By rounding, the center of texel (3, 3) is slightly outside of both faces.
     let [p, q] = [
         DVec2::new(0.32, 0.53),
         DVec2::new(0.5549999999999999, 0.345),
@@ -282,7 +283,7 @@ fn own_layout_has_no_gap_where_an_edge_goes_through_the_center_of_a_texel() {
 fn texels_beside_a_sliver_are_on_the_surface() {
     let surface = cuboid();
     let mut uvs = vec![[DVec2::NAN; 3]; 12];
-    // A face that is not larger than rounding, around the center of a texel.
+    // A face with the size of rounding errors, around the center of a texel.
     for size in [1e-12, 1e-15] {
         let center = DVec2::splat(4.5 / 8.0);
         uvs[0] = [
@@ -301,7 +302,7 @@ fn texels_beside_a_sliver_are_on_the_surface() {
     }
 }
 
-/// The places of the vertices of a mesh above the unit square.
+/// Texture coordinates of a mesh above the unit square, projected along z.
 fn from_above(surface: &Surface) -> Vec<[DVec2; 3]> {
     let faces = 0..surface.mesh().faces().len() as u32;
     let place = |at: DVec3| DVec2::new(at.x, 1.0 - at.y);
@@ -359,7 +360,7 @@ fn tangents_do_not_jump_across_the_edges_of_a_continuous_layout() {
                 let point = atlas.point(&surface, texel).unwrap();
                 tangents.frame(&atlas, texel, surface.normal(point))
             });
-            // A texel is 1/25 of a face of the cap, over which normals turn by less than 0.2.
+            // A texel is 1/25 of a face of the cap, over which normals rotate by less than 0.2.
             assert!(a.distance(b) < 0.02, "{a} beside {b}");
             assert!(up.y > 0.5 && a.x > 0.5, "{a} and {up} are right and up");
             jumps += usize::from(left != right);
@@ -378,10 +379,10 @@ fn report_of_a_map_twice_as_wide_as_high_is_that_of_its_singular_values() {
     let report = Atlas::from_uvs(&surface, &uvs, [64, 64], 0)
         .unwrap()
         .report(&surface);
-    // A texel reaches 1 and 2 in its directions, and would reach the square root of 2 if it were a square.
+    // The lengths of a texel are 1 and 2 along its axes. A square of the same area has the length sqrt(2).
     assert!((report.stretch - (2.5_f64 / 2.0).sqrt()).abs() < 1e-12);
     assert_eq!((report.pieces, report.used), (1, 0.5));
-    // One face without a place, and then away from the others.
+    // First one face without a place, then the same face apart from the others.
     uvs[0] = [DVec2::NAN; 3];
     let atlas = Atlas::from_uvs(&surface, &uvs, [64, 64], 0).unwrap();
     assert_eq!(

@@ -1,4 +1,4 @@
-//! Maps of small surfaces, beside texels that are mixed one by one.
+//! Maps of small surfaces, compared with texels that are interpolated individually.
 
 use super::bake;
 use crate::{Atlas, Hierarchy, HierarchyOptions, SynthErrorKind};
@@ -52,7 +52,7 @@ fn texels_are_those_of_plain_interpolation() {
             let normal = surface.normal(point);
             let plain = hierarchy.interpolate(0, &pairs, surface.position(point), normal);
             let plain = plain.unwrap().unwrap();
-            // Positions are rounded to f32, 1e-6 of a radius here.
+            // Tolerance: positions are rounded to f32, 1e-6 of a radius here.
             let off = (value[0] - plain[0]).abs().max((value[1] - plain[1]).abs());
             assert!(off < 1e-3, "{column} {row}: {value:?} beside {plain:?}");
         }

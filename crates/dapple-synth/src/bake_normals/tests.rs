@@ -1,4 +1,5 @@
-//! Normals on planes, where they are known, and on a sphere, beside vectors that are mixed one by one.
+//! Normal maps on planes, where the normals are known, and on a sphere, compared with vectors interpolated
+//! individually.
 
 use super::*;
 use crate::SynthErrorKind;
@@ -13,7 +14,7 @@ const TILTED: Normal = Normal {
     z: 0.8,
 };
 
-/// The unit square, whose field has an angle to down, and its own layout, mirrored or not.
+/// The unit square with a field at an angle to down, and a layout of the whole square, optionally mirrored.
 fn plane(angle: f64, mirrored: bool) -> (Synthesizer, Atlas) {
     let down = DVec3::new(libm::sin(angle), -libm::cos(angle), 0.0);
     let plane = synthesizer(square(), N, |_, _| down);
@@ -27,7 +28,7 @@ fn plane(angle: f64, mirrored: bool) -> (Synthesizer, Atlas) {
     (plane, atlas)
 }
 
-/// Bakes a normal for each site, which are mixed.
+/// Bakes one normal per site, interpolated between sites.
 fn baked(
     synthesizer: &Synthesizer,
     normals: &[Normal],
@@ -39,7 +40,7 @@ fn baked(
     bake_normals(synthesizer, &texture, &row(normals), y, atlas, shading)
 }
 
-/// Shading without a crease.
+/// Shading normals without creases.
 fn smooth(synthesizer: &Synthesizer) -> Vec<[DVec3; 3]> {
     synthesizer
         .surface()
@@ -50,7 +51,7 @@ fn smooth(synthesizer: &Synthesizer) -> Vec<[DVec3; 3]> {
 fn assert_all(map: &Raster<Normal>, want: [f64; 3], what: &str) {
     for normal in map.pixels() {
         for (got, want) in normal.to_array().into_iter().zip(want) {
-            // Some roundings to `f32`.
+            // Tolerance: some roundings to `f32`.
             assert!(
                 (f64::from(got) - want).abs() < 1e-6,
                 "{what}: {normal:?} for {want}"
@@ -73,7 +74,7 @@ fn rotated_field_rotates_the_normals() {
         .unwrap();
         let (sin, cos) = (libm::sin(angle), libm::cos(angle));
         let (x, y) = (0.48, 0.36);
-        // Counterclockwise, as the field.
+        // The normal rotates counterclockwise with the field.
         let want = [x * cos - y * sin, x * sin + y * cos, 0.8];
         assert_all(&map, want, &format!("angle {angle}"));
     }
@@ -129,7 +130,7 @@ fn flat_normals_stay_flat() {
         Atlas::by_area(sphere.surface(), 300).unwrap(),
     ] {
         for y in [NormalY::OpenGl, NormalY::DirectX] {
-            // As images of 8 and 16 bits have it, none of whose codes is 0.
+            // Flat normals as images of 8 and 16 bits store them; no code has the value 0.
             let read = [
                 Normal::FLAT,
                 Normal::from_codes([128_u8, 128, 255]),
@@ -157,7 +158,7 @@ fn normals_cancel_to_flat() {
     assert_all(&map, [0.0, 0.0, 1.0], "nothing");
 }
 
-/// A program that reads the map and has made its own tangents sees the vectors of the sites, mixed.
+/// A program that reads the map and computes its own tangents sees the interpolated vectors of the sites.
 #[test]
 fn decoded_normals_are_the_mixed_vectors_of_the_sites() {
     let sphere = synthesizer(sphere(), N, |at, _| DVec3::Y.cross(at) + DVec3::splat(0.2));
@@ -191,7 +192,7 @@ fn decoded_normals_are_the_mixed_vectors_of_the_sites() {
             }
             shown += 1;
             let out = surface.normal(point);
-            // The tangent solves: the edges of the face are their steps in u and v times two vectors.
+            // Solve for the tangent: the edges of the face are their steps in u and v times two vectors.
             let [a, b, c] = surface.mesh().corners(face);
             let [ua, ub, uc] = uvs[face.index()];
             let steps = glam::DMat2::from_cols(ub - ua, uc - ua).inverse();
@@ -207,7 +208,8 @@ fn decoded_normals_are_the_mixed_vectors_of_the_sites() {
             let mixed = sphere.hierarchy().interpolate(0, &along, at, normal);
             let mixed = mixed.unwrap().unwrap();
             let want = (mixed - out * mixed.dot(out) + out * 0.8).normalize();
-            // The tangents of corners are mixed, not those of the face turned: second order in the angles of the mesh.
+            // Tangents of corners are interpolated here, without the face's rotation: an error of second order in the
+            // mesh's angles.
             assert!(seen.distance(want) < 0.01, "{seen} beside {want}");
         }
     }
@@ -228,7 +230,7 @@ fn normals_keep_their_tilt_where_the_mesh_is_shaded_flat() {
         &[[0, 1, 2], [0, 2, 3], [3, 2, 4], [3, 4, 5]],
     )
     .unwrap();
-    // Down of the example is along the ridge, which lies on both sides.
+    // The exemplar's down points along the ridge, which lies on both sides.
     let roof = synthesizer(roof, N, |_, _| DVec3::X);
     let flat = roof.surface().mesh().corner_normals(CREASE);
     let atlas = Atlas::uniform(roof.surface(), 128).unwrap();
@@ -240,12 +242,12 @@ fn normals_keep_their_tilt_where_the_mesh_is_shaded_flat() {
             let Some(point) = atlas.point(roof.surface(), texel) else {
                 continue;
             };
-            // Nearer to the ridge than sites reach, the vectors of both sides are mixed.
+            // Skip texels within reach of sites beyond the ridge, where the vectors of both sides are mixed.
             let from_ridge = 1.0 - roof.surface().position(point).z;
             if from_ridge > 0.25 {
                 shown += 1;
                 let z = map.row(row)[column as usize].z;
-                // Sites near the ridge have normals between those of both sides.
+                // Normals of sites near the ridge are between the normals of both sides.
                 assert!((z - TILTED.z).abs() < 0.02, "{z} at {texel:?}");
             }
         }

@@ -1,4 +1,4 @@
-//! Spheres that grow, and heights that are refused.
+//! Displaced spheres, and errors for invalid heights.
 
 use super::*;
 use crate::SynthErrorKind;
@@ -29,7 +29,7 @@ fn equal_heights_move_every_vertex_along_its_normal() {
     let mesh = displaced_mesh(&sphere, &heights, 0.5).unwrap();
     assert_eq!(mesh.faces(), sphere.surface().mesh().faces(), "faces");
     for at in mesh.positions() {
-        // Vertex normals of the mesh are a little off those of the sphere.
+        // Tolerance: vertex normals of the mesh differ slightly from the sphere's normals.
         assert!((at.length() - 1.25).abs() < 1e-3, "{at}");
     }
 }
@@ -48,7 +48,7 @@ fn heights_are_interpolated_at_vertices() {
         let plain = plane.hierarchy().interpolate(0, &heights, from, DVec3::Z);
         let want = 2.0 * f64::from(plain.unwrap().unwrap());
         assert_eq!(at, from + DVec3::Z * want);
-        // Sites around a vertex are at most two spacings away, and fewer on one side at the border.
+        // Tolerance: sites around a vertex are up to two spacings away, and at the border there are fewer on one side.
         assert!((at.z - 2.0 * from.x).abs() < 0.1, "{at}");
     }
 }

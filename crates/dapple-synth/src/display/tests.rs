@@ -1,4 +1,4 @@
-//! Models that fit together, also as files.
+//! Exported models whose parts match, also after a round trip through files.
 
 use super::*;
 use crate::shapes::{pixel_per_site, row, sphere, square, synthesizer};
@@ -11,7 +11,7 @@ use glam::DVec3;
 
 const N: usize = 300;
 
-/// Shading without a crease.
+/// Shading normals without creases.
 fn smooth(surface: &Surface) -> Vec<[DVec3; 3]> {
     surface.mesh().corner_normals(core::f64::consts::PI)
 }
@@ -40,7 +40,7 @@ fn sites_are_the_vertices_of_both_models() {
         assert_eq!(model.colors.as_ref(), Some(&colors));
     }
     assert_eq!(points.mesh.faces().len(), 0, "points");
-    // Euler: a closed surface of N vertices has 2 N - 4 triangles.
+    // By Euler's formula, a closed surface of N vertices has 2 N - 4 triangles.
     assert_eq!(triangles.mesh.faces().len(), 2 * N - 4);
     for colors in [vec![], vec![color(0); N + 1]] {
         assert!(site_model(&sphere, colors.clone()).is_err(), "triangles");
@@ -77,7 +77,7 @@ fn textured_model_comes_back_from_its_file() {
     assert_eq!(read.mesh.faces().len(), model.mesh.faces().len());
     for (read, uvs) in read.uvs.unwrap().iter().zip(atlas.uvs()) {
         for (read, uv) in read.iter().zip(uvs) {
-            // The file has `f32`.
+            // The file stores `f32`.
             assert!(read.distance(uv) < 1e-6, "{read} for {uv}");
         }
     }
@@ -106,7 +106,7 @@ fn atlas_of_another_mesh_is_refused() {
     );
 }
 
-/// The level of a mipmap after one of it: each texel is the mean of 2 x 2.
+/// The next mipmap level: each texel is the mean of 2 × 2 texels.
 fn halved(level: &Raster<f32>) -> Raster<f32> {
     let size = level.size().map(|length| length / 2);
     let mean = |column: u32, row: u32| {
@@ -117,7 +117,7 @@ fn halved(level: &Raster<f32>) -> Raster<f32> {
     Raster::from_fn(size, mean).unwrap()
 }
 
-/// The value between the texels of a level that repeats.
+/// The bilinear sample of a level that repeats.
 fn bilinear(level: &Raster<f32>, uv: DVec2) -> f64 {
     let side = f64::from(level.width());
     let at = uv * side - 0.5;
@@ -134,8 +134,8 @@ fn bilinear(level: &Raster<f32>, uv: DVec2) -> f64 {
     )
 }
 
-/// The unit square is shown by levels of a mipmap as by its map itself. Its values rise by 1 over its side, along which
-/// the map has `texels`.
+/// Asserts that mipmap levels show the unit square as the map itself does. The map's values rise by 1 over the side of
+/// the square, which spans `texels` texels.
 fn assert_shown(atlas: &Atlas, n_levels: u32, texels: f64) {
     let plane = synthesizer(square(), N, |_, _| DVec3::NEG_Y);
     let sites = plane.hierarchy().sites().positions().iter();
@@ -149,7 +149,8 @@ fn assert_shown(atlas: &Atlas, n_levels: u32, texels: f64) {
                 let [to_b, to_c] = [step % 9, step / 9].map(|step| f64::from(step) / 8.0);
                 let uv = a + (b - a) * to_b * (1.0 - to_c) + (c - a) * to_c;
                 let (shown, baked) = (bilinear(&level, uv), bilinear(&map, uv));
-                // Two texels of the level are mixed; between sites values may rise faster than by 1.
+                // Tolerance: two texels of the level are mixed, and between sites values may rise faster than by 1 per
+                // side.
                 let off = (shown - baked).abs();
                 assert!(
                     off < 3.0 * texel,
@@ -174,7 +175,7 @@ fn mesh_looks_the_same_at_every_level_that_its_sampler_allows() {
         .collect();
     let own = Atlas::from_uvs(&surface, &uvs, [256; 2], 256).unwrap();
     for (atlas, texels) in [
-        // Four tiles of 128 texels lie side by side, of which a padding of 8 leaves 95 to a quarter of the square.
+        // Four tiles of 128 texels per row. A padding of 8 leaves 95 texels for a quarter of the square.
         (Atlas::uniform(&surface, 512).unwrap(), 4.0 * 95.0),
         (Atlas::by_area(&surface, 512).unwrap(), 4.0 * 95.0),
         (own, 0.6 * 256.0),
@@ -191,7 +192,7 @@ fn mesh_looks_the_same_at_every_level_that_its_sampler_allows() {
 #[test]
 fn padding_by_default_follows_from_the_size_and_the_number_of_faces() {
     let surface = Surface::new(square()).unwrap();
-    // It doubles with the side, which carries one level more.
+    // The default padding doubles with the side, which allows one more level.
     for (side, n_levels) in [(64, 1), (128, 2), (256, 3), (512, 4), (1024, 5)] {
         let padding = f64::from(1 << (n_levels - 1));
         let texels = 4.0 * (f64::from(side) / 4.0 - 4.0 * padding - 1.0);

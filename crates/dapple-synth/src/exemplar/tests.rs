@@ -1,4 +1,4 @@
-//! Exemplars and pyramids beside naive ones.
+//! Exemplars and pyramids compared with naive implementations.
 
 use super::{Edges, Exemplar};
 use crate::{SynthError, SynthErrorKind};
@@ -21,7 +21,7 @@ fn noise(size: [u32; 2], channels: u64, edges: Edges) -> Exemplar {
     Exemplar::from_planes(&planes, edges).unwrap()
 }
 
-/// One pixel of the coarser level from the 25 of the finer one, in `f64`.
+/// One pixel of the coarser level from 25 pixels of the finer level, computed in `f64`.
 fn naive(finer: &Exemplar, [column, row]: [u32; 2], channel: usize) -> f64 {
     let weights = [1.0, 4.0, 6.0, 4.0, 1.0];
     let wrap = match finer.edges {
@@ -65,7 +65,7 @@ fn levels_equal_the_naive_mean_of_25_pixels() {
                             let pixel = (row * coarser.size[0] + column) as usize;
                             let value = f64::from(coarser.pixels[pixel * 2 + channel]);
                             let expected = naive(finer, [column, row], channel);
-                            // Ten roundings of f32 for values up to 1.
+                            // Tolerance: ten roundings of f32 for values up to 1.
                             assert!(
                                 (value - expected).abs() < 1e-6,
                                 "{size:?} {value} {expected}"
@@ -80,7 +80,7 @@ fn levels_equal_the_naive_mean_of_25_pixels() {
 
 #[test]
 fn a_spot_becomes_the_weights_of_the_kernel() {
-    // Sixteen columns, with the spot in column 8: it reaches columns 3, 4 and 5 of the coarser level.
+    // Sixteen columns with a spot in column 8, which contributes to columns 3, 4 and 5 of the coarser level.
     let plane = Raster::from_fn([16, 1], |x, _| if x == 8 { 16.0 } else { 0.0 }).unwrap();
     let pyramid = Exemplar::from_planes(&[(&plane, 1.0)], Edges::Wrap)
         .unwrap()
@@ -102,7 +102,7 @@ fn a_constant_stays_to_the_last_bit() {
             .pyramid(6)
             .unwrap();
         let values = pyramid.levels().iter().flat_map(|level| &level.pixels);
-        // Five products with weights that sum to one are rounded a few times.
+        // Tolerance: five products with weights that sum to one are rounded a few times.
         assert!(
             values.into_iter().all(|value| (value - 0.7).abs() < 1e-6),
             "constant"
@@ -266,7 +266,8 @@ fn a_mask_leaves_out_every_coarser_pixel_that_is_a_mean_of_what_it_leaves_out() 
             let [finer, coarser] = pair else {
                 unreachable!()
             };
-            // Of a mean, the weights of what is left out are above zero.
+            // All weights of a mean are positive, so the mean of masked marks is above zero exactly if one of them is
+            // averaged.
             let usable = finer.usable.as_ref().unwrap();
             let marks = usable.iter().map(|&usable| f32::from(!usable)).collect();
             let marks = Exemplar {

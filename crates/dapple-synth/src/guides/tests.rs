@@ -1,4 +1,4 @@
-//! Guides on surfaces; those in the plane are tested with it.
+//! Guides on surfaces. Guides in the plane are tested with the plane.
 
 use crate::shapes::sphere;
 use crate::{
@@ -9,7 +9,7 @@ use core::ops::ControlFlow;
 use dapple_mesh::Surface;
 use dapple_raster::Raster;
 
-/// Stripes of two widths; a guide says which.
+/// An exemplar with stripes of two widths, and a guide that distinguishes them.
 fn exemplar() -> Exemplar {
     let stripes = Raster::from_fn([64, 32], |x, y| {
         let width = if x < 32 { 2 } else { 4 };
@@ -45,7 +45,7 @@ fn guides_say_where_on_a_surface_parts_of_the_exemplar_go() {
         .zip(&is_above)
         .filter(|&([column, _], &is_above)| f32::from(column >= 32) == is_above)
         .count();
-    // But for sites beside the equator, of which there are about 200.
+    // About 200 sites next to the equator may differ.
     assert!(obeyed > 2800, "{obeyed} of 3000");
 }
 

@@ -1,4 +1,4 @@
-//! Lifting beside the paper's pseudo-code on two surfaces, and beside what an image gives.
+//! Lifting compared with the paper's pseudo-code on two surfaces, and with synthesis from an image.
 
 use super::*;
 use crate::ground::{Ground, Painted, Rows, Samples, Square};
@@ -14,7 +14,7 @@ use dapple_mesh::{CREASE, Surface};
 use dapple_raster::Raster;
 use glam::DVec3;
 
-/// Sites on two levels.
+/// A surface with sites on two levels.
 fn sites(surface: Surface, n_sites: usize) -> Synthesizer {
     let options = HierarchyOptions {
         n_sites,
@@ -25,7 +25,7 @@ fn sites(surface: Surface, n_sites: usize) -> Synthesizer {
     Synthesizer::new(surface, &[], &options).unwrap()
 }
 
-/// Blurred noise, the same in every run.
+/// Blurred noise, identical in every run.
 fn noise(side: u32, blur: f32) -> Raster<f32> {
     let at = |x: u32, y: u32| unit_f32((hash2(Seed(5), [x.into(), y.into()], 0) >> 32) as u32);
     let image = Raster::from_fn([side; 2], at).unwrap();
@@ -34,7 +34,7 @@ fn noise(side: u32, blur: f32) -> Raster<f32> {
     Raster::from_vec([side; 2], blurred.levels()[0].pixels().to_vec()).unwrap()
 }
 
-/// Coordinates that lay the unit square on a map, with y up and v down.
+/// Texture coordinates that map the unit square to a whole map, with y up and v down.
 fn flat_uvs(surface: &Surface) -> Vec<[DVec2; 3]> {
     let mesh = surface.mesh();
     let uv = |at: DVec3| DVec2::new(at.x, 1.0 - at.y);
@@ -44,7 +44,7 @@ fn flat_uvs(surface: &Surface) -> Vec<[DVec2; 3]> {
         .collect()
 }
 
-/// A torus with noise on it, as an example.
+/// An exemplar that is a torus with noise.
 fn noisy_torus(n_sites: usize) -> MeshExemplar {
     let source = sites(torus(24, 12), n_sites);
     let uvs = Atlas::uniform(source.surface(), 256).unwrap().uvs();
@@ -64,7 +64,7 @@ fn options(n_levels: usize) -> Options {
     }
 }
 
-/// A neighborhood, part by part, of a site whose surface has these pixels.
+/// The neighborhood of a site, part by part, on a surface whose sites have the given sources.
 fn neighborhood(
     ground: &MeshGround<'_>,
     pass: &Pass,
@@ -103,7 +103,7 @@ fn neighborhood(
     values
 }
 
-/// Every site with its own number.
+/// Sources in which every site is its own source.
 fn own_pixels(exemplar: &MeshExemplar) -> Vec<Sources> {
     let levels = exemplar.pyramid.levels().iter();
     let numbers = levels.map(|level| Sources {
@@ -120,7 +120,7 @@ fn lifting_is_the_pseudo_code_with_neighborhoods_of_the_source() {
     let options = Options {
         coherence: Coherence::Factor(0.0),
         evenness: 0.0,
-        // Followed, the middle of a larger square, which a pass keeps from the one before, may turn less.
+        // With followed axes, the center of a larger square, which a pass reuses from the one before, may rotate less.
         axes: crate::Axes::Carried,
         ..options(2)
     };
@@ -128,7 +128,7 @@ fn lifting_is_the_pseudo_code_with_neighborhoods_of_the_source() {
     let ground = target.ground(options.axes, false);
     let own = own_pixels(&exemplar);
     let found = target.lift(&exemplar, &[], &options, go_on).unwrap();
-    // What the coarsest level begins with is not part of the public result: its last visit gives it anyway.
+    // The initial sources of the coarsest level are not public: take the result of its last visit instead.
     let mut levels = [Sources::default(), Sources::default()];
     levels[1].pixels = found
         .sources(1)
@@ -159,7 +159,7 @@ fn lifting_is_the_pseudo_code_with_neighborhoods_of_the_source() {
     assert!(found == expected[0], "other sites than the pseudo-code's");
 }
 
-/// The quantiles of values, and those of the lengths of gradients.
+/// The quantiles of values and of gradient lengths.
 fn looks(map: &Raster<f32>) -> [[f32; 5]; 2] {
     let quantiles = |mut values: Vec<f32>| {
         values.sort_unstable_by(f32::total_cmp);
@@ -185,7 +185,7 @@ fn square_with_a_picture_gives_about_what_the_picture_gives() {
     let target = synthesizer(square(), n_sites, |_, _| DVec3::NEG_Y);
     let source = synthesizer(square(), n_sites, |_, _| DVec3::NEG_Y);
     let uvs = flat_uvs(target.surface());
-    // Pixels of the picture are as large as the spacing of sites.
+    // Choose pixels with the size of the spacing of sites.
     let side = (1.0 / target.hierarchy().levels()[0].spacing()).round() as u32;
     let picture = noise(side, 0.3);
     let texture = Exemplar::from_planes(&[(&picture, 1.0)], Edges::Cut).unwrap();
@@ -209,7 +209,7 @@ fn square_with_a_picture_gives_about_what_the_picture_gives() {
     }
 }
 
-/// The texture of a source on itself, every site from where it is.
+/// The texture of a source on itself: every site is its own source.
 fn identity(exemplar: &MeshExemplar, between: crate::Sources) -> SurfaceTexture {
     let source = exemplar.source();
     let n_sites = source.hierarchy().sites().len() as u32;
@@ -237,7 +237,8 @@ fn identity(exemplar: &MeshExemplar, between: crate::Sources) -> SurfaceTexture 
 fn texture_of_the_source_itself_is_as_sharp_as_it_is() {
     for (source, least) in [
         (synthesizer(square(), 800, |_, _| DVec3::NEG_Y), 1e-3),
-        // Frames turn from site to site, and steps are longer than their chords: texels, four for a spacing, are off by one.
+        // Frames rotate from site to site, and steps are longer than their chords: at four texels per spacing, texels
+        // are off by one.
         (sites(torus(24, 12), 3000), 0.045),
     ] {
         let is_flat = least < 0.01;
@@ -274,7 +275,7 @@ fn colors_of_sites_follow_the_texture() {
     let exemplar = noisy_torus(3000);
     let map = noise(256, 0.3);
     let texture = identity(&exemplar, crate::Sources::Pixel);
-    // A site is the mean over about a pixel and a half of the texture, which is blurred by more.
+    // Tolerance: a site is the mean over about a pixel and a half of the texture, whose blur is wider.
     let read = texture.transfer(&map).unwrap();
     let off = read.iter().zip(texture.values(0));
     let off = off.map(|(a, b)| (a - b).abs()).sum::<f32>() / read.len() as f32;
@@ -333,7 +334,8 @@ fn guides_of_the_source_say_what_goes_where() {
 
 #[test]
 fn normals_keep_their_lean_in_the_frames_of_both_surfaces() {
-    // The uv of the source are turned: +u is up on the square, and the relief leans that way, against the texture's down.
+    // The source's texture coordinates are rotated: +u points up on the square. The relief leans that way, against the
+    // texture's down.
     let source = synthesizer(square(), 400, |_, _| DVec3::NEG_Y);
     let turned: Vec<[DVec2; 3]> = flat_uvs(source.surface())
         .iter()
@@ -348,7 +350,7 @@ fn normals_keep_their_lean_in_the_frames_of_both_surfaces() {
         z: 0.8,
     };
     let relief = Raster::filled([32; 2], normal).unwrap();
-    // On the target the texture runs to the right, so that up of the source is left: -u.
+    // On the target the texture's down points right, so the source's up points left: -u.
     let target = synthesizer(square(), 400, |_, _| DVec3::X);
     let uvs = flat_uvs(target.surface());
     let atlas = Atlas::from_uvs(target.surface(), &uvs, [48; 2], 0).unwrap();
@@ -408,7 +410,7 @@ fn sources_of_a_few_sites_and_of_odd_coordinates_are_no_panic() {
     let map = Raster::filled([4; 2], LinearRgb::gray(0.25)).unwrap();
     let texture = Exemplar::new(&map, Edges::Cut).unwrap();
     let uvs = flat_uvs(&Surface::new(square()).unwrap());
-    // Collapsed, huge and negative coordinates, and far more texels than sites.
+    // Collapsed, huge and negative texture coordinates, and a map with far more texels than sites.
     for change in [
         |_: DVec2| DVec2::ZERO,
         |uv: DVec2| uv * 1e6,

@@ -1,4 +1,4 @@
-//! The unit square, where the place in the exemplar that a texel is to show is known.
+//! Magnification on the unit square, where the place in the exemplar is known for each texel.
 
 use super::*;
 use crate::detail::Detail;
@@ -9,17 +9,17 @@ use dapple_color::LinearRgb;
 use dapple_hash::{Seed, hash2, unit_f32};
 use glam::DVec3;
 
-/// The sites of the square; they are a 36th apart.
+/// Number of sites on the square; the spacing is 1/36.
 const N: usize = 1500;
-/// The sides of exemplars.
+/// Side of exemplars, in pixels.
 const SIDE: u32 = 48;
 
-/// The square, on which the texture runs down.
+/// The square with sites whose down is the down of the map.
 fn plane(n_sites: usize) -> Synthesizer {
     synthesizer(square(), n_sites, |_, _| DVec3::NEG_Y)
 }
 
-/// The square as a map.
+/// The layout of the square as one map.
 fn atlas(plane: &Synthesizer, side: u32) -> Atlas {
     let mesh = plane.surface().mesh();
     let uv = |at: DVec3| DVec2::new(at.x, 1.0 - at.y);
@@ -30,7 +30,7 @@ fn atlas(plane: &Synthesizer, side: u32) -> Atlas {
     Atlas::from_uvs(plane.surface(), &uvs, [side; 2], 0).unwrap()
 }
 
-/// The place in an exemplar that lies over the square, two pixels from its corner.
+/// The place in an exemplar that is laid over the square, with its corner at an offset of two pixels.
 fn place(plane: &Synthesizer, at: DVec3) -> Vec2 {
     let spacing = plane.hierarchy().levels()[0].spacing();
     Vec2::new(
@@ -39,7 +39,7 @@ fn place(plane: &Synthesizer, at: DVec3) -> Vec2 {
     )
 }
 
-/// The texture whose sites have the pixels at these places.
+/// A texture whose sites have the pixels at the given places as sources.
 fn texture(plane: &Synthesizer, edges: Edges, source: impl Fn(Vec2) -> Vec2) -> SurfaceTexture {
     let image = Raster::filled([SIDE; 2], 0.0).unwrap();
     let exemplar = Exemplar::from_planes(&[(&image, 1.0)], edges).unwrap();
@@ -55,7 +55,7 @@ fn texture(plane: &Synthesizer, edges: Edges, source: impl Fn(Vec2) -> Vec2) -> 
     SurfaceTexture::new(&exemplar.pyramid(1).unwrap(), vec![sources], Some(places))
 }
 
-/// A texture with whole pixels for sources.
+/// The texture with whole pixels as sources.
 fn with_pixels(texture: &SurfaceTexture) -> SurfaceTexture {
     let mut texture = texture.clone();
     texture.places = None;
@@ -76,7 +76,7 @@ fn deviation(values: &[f32]) -> f64 {
 fn averaged_sources_are_where_the_sites_are() {
     let plane = plane(N);
     for edges in [Edges::Cut, Edges::Wrap] {
-        // Past the lower right corner of an exemplar that wraps.
+        // Places past the lower right corner of an exemplar that wraps.
         let shift = if edges == Edges::Wrap { 30.0 } else { 0.0 };
         let texture = texture(&plane, edges, |place| place + shift);
         let places = texture.places.unwrap();
@@ -86,7 +86,7 @@ fn averaged_sources_are_where_the_sites_are() {
             f64::from(off.length_squared())
         });
         let off = (off.sum::<f64>() / N as f64).sqrt();
-        // Pixels are off by the root of a sixth, 0.41.
+        // Whole pixels would be off by the root of a sixth, 0.41.
         assert!(off < 0.15, "{edges:?}: {off}");
     }
 }
@@ -131,7 +131,7 @@ fn border_of_two_pieces_is_a_third_of_a_pixel_wide() {
             .pixels()
             .iter()
             .filter(|value| (0.05..0.95).contains(*value));
-        // Eight texels for a pixel, and 36 pixels of border.
+        // Eight texels per pixel, and a border of 36 pixels.
         between.count() as f64 / (64.0 * 36.0)
     });
     assert!(sharp < 0.35, "{sharp} pixels wide");
@@ -143,7 +143,7 @@ fn larger_map_shows_its_detail() {
     let plane = plane(N);
     let atlas = atlas(&plane, 8 * 36);
     let texture = texture(&plane, Edges::Wrap, |place| place);
-    // Two waves in a pixel of the exemplar.
+    // Two waves per pixel of the exemplar.
     let wave = |x, _| libm::sinf(x as f32 * core::f32::consts::FRAC_PI_2);
     let map = Raster::from_fn([8 * SIDE; 2], wave).unwrap();
     let baked = bake_values(&plane, &texture, &map, &atlas).unwrap();
@@ -171,7 +171,7 @@ fn texels_larger_than_pixels_show_means() {
     );
 }
 
-/// Noise with features of some pixels.
+/// Noise with features of a few pixels.
 fn noise(side: u32) -> Raster<f32> {
     let at = |x: u32, y: u32| unit_f32((hash2(Seed(5), [x.into(), y.into()], 0) >> 32) as u32);
     let image = Raster::from_fn([side; 2], at).unwrap();
@@ -185,7 +185,7 @@ fn noise(side: u32) -> Raster<f32> {
     .unwrap()
 }
 
-/// The quantiles of the lengths of gradients that half, a tenth and a hundredth of the pixels exceed.
+/// The gradient lengths that half, a tenth and a hundredth of the pixels exceed.
 fn gradients(image: &Raster<f32>) -> [f32; 3] {
     let [width, height] = image.size();
     let mut lengths: Vec<f32> = (1..height - 1)
@@ -205,7 +205,7 @@ fn bake_is_as_sharp_as_the_exemplar() {
     let plane = plane(4000);
     let image = noise(32);
     let exemplar = Exemplar::from_planes(&[(&image, 1.0)], Edges::Wrap).unwrap();
-    // Three texels for a pixel.
+    // Three texels per pixel.
     let side = (3.0 / plane.hierarchy().levels()[0].spacing()) as u32;
     let atlas = atlas(&plane, side);
     let detail = Detail::new(image.map(|&value| [value]), [32; 2], Edges::Wrap).unwrap();
@@ -228,7 +228,7 @@ fn bake_is_as_sharp_as_the_exemplar() {
     let [(sharp, kept), (mixed, mixed_kept)] = ratios;
     let near = |ratio: &f32| (0.9..1.1).contains(ratio);
     assert!(sharp[..2].iter().all(near), "{ratios:?}");
-    // Pieces of noise do not fit together: the largest gradients are those of their borders.
+    // Pieces of noise do not fit together: the largest gradients are at their borders.
     assert!((0.9..1.3).contains(&sharp[2]), "{ratios:?}");
     assert!(kept > 0.95, "{ratios:?}");
     assert!(mixed[0] < 0.88 && mixed_kept < 0.9, "{ratios:?}");

@@ -1,4 +1,4 @@
-//! Maps beside plain interpolation, and columns that are refused.
+//! Maps compared with direct interpolation, and errors for columns of a wrong length.
 
 use super::*;
 use crate::shapes::{pixel_per_site, row, sphere, synthesizer};
@@ -33,7 +33,7 @@ fn values_are_those_of_plain_interpolation() {
             let plain = sphere.hierarchy().interpolate(0, &random(), at, normal);
             let plain = plain.unwrap().unwrap();
             let value = map.row(row)[column as usize];
-            // Positions are rounded to `f32` in the map.
+            // Tolerance: positions in the map are rounded to `f32`.
             assert!((value - plain).abs() < 1e-4, "{value} beside {plain}");
         }
     }
@@ -60,7 +60,7 @@ fn colors_are_mixed_in_their_codes_and_stay_what_they_are_where_all_are_alike() 
     let values = bake_values(&sphere, &pixel_per_site(N), &row(&grays), &atlas).unwrap();
     for (color, value) in map.pixels().iter().zip(values.pixels()) {
         let [code, _, _] = color.to_srgb::<u16>();
-        // Codes are rounded before and after.
+        // Tolerance: codes are rounded before and after.
         assert!(
             (code.to_unit() - value).abs() < 2.0 / 65535.0,
             "{code} for {value}"
@@ -94,7 +94,7 @@ fn what_is_transparent_lends_no_color_to_its_edge() {
     }
     assert!(n_mixed > 1000, "{n_mixed} texels");
 
-    // Opaque colors are those that are baked without alpha, up to a rounding of codes.
+    // Opaque colors equal the colors baked without alpha, up to a rounding of codes.
     let colors: Vec<_> = random().into_iter().map(LinearRgb::gray).collect();
     let opaque: Vec<_> = colors.iter().copied().map(LinearRgba::opaque).collect();
     let with = bake_colors_alpha(&sphere, &texture, &row(&opaque), &atlas).unwrap();

@@ -1,4 +1,4 @@
-//! The plane beside the pseudo-code of the paper.
+//! Synthesis in the plane, compared with the paper's pseudo-code.
 
 use super::{MAX_PIXELS, PlaneGround, PlaneTexture, synthesize_plane, synthesize_plane_with};
 use crate::ground::Ground;
@@ -15,7 +15,7 @@ use proptest::prelude::*;
 mod guides;
 mod naive;
 
-/// Soft noise of two channels that wraps.
+/// An exemplar of smooth noise with two channels that wraps.
 fn exemplar(size: [u32; 2], edges: Edges) -> Exemplar {
     let noise = |x: u32, y: u32, channel: u64| {
         let cell = [x % size[0] / 3, y % size[1] / 2].map(i64::from);
@@ -33,7 +33,7 @@ fn paper(n_levels: usize, center: CoarserCenter) -> Options {
     }
 }
 
-/// The sources of a texture as numbers of pixels.
+/// The sources of a texture as pixel indices.
 fn made(exemplar: &Exemplar, size: [u32; 2], edges: [Edges; 2], options: &Options) -> Vec<u32> {
     let texture = synthesize_plane(exemplar, size, edges, options).unwrap();
     let pixel = |&[column, row]: &[u32; 2]| row * exemplar.size()[0] + column;
@@ -71,7 +71,7 @@ fn schedules_of_the_user_equal_the_pseudo_code() {
     let exemplar = exemplar([24, 20], Edges::Wrap);
     let causal = Part::new(Shape::Causal, 5, Reads::Same);
     let coarser = Part::new(Shape::Full, 3, Reads::Coarser).with_weight(0.5);
-    // Wei and Levoy: one visit of each level, in which a level is filled with random pixels and then read.
+    // Wei and Levoy: each level is filled with random pixels and visited once.
     let passes = vec![
         Pass {
             level: 1,
@@ -175,7 +175,7 @@ fn turns_keep_the_order_of_sites_that_read_each_other() {
     }
 }
 
-/// The sites that a site reads, where nothing lies past an edge that is cut.
+/// The sites that a site reads, without those past a cut edge.
 fn near(ground: &PlaneGround, level: usize, site: u32, half: i32) -> Vec<u32> {
     let size = ground.sizes[level];
     let [x, y] = ground.pixel(level, site).map(i64::from);
@@ -200,24 +200,24 @@ fn slanted_lines_of_a_torus_wait_only_for_earlier_lines() {
     )
     .unwrap();
     let turns = ground.turns(0, &3);
-    // A line begins with the first site that waits for one of the line before it.
+    // A new line begins with the first site that waits for a site of the current line.
     let (mut n_lines, mut first) = (1, 0);
     for turn in 0..turns.len() {
         if turns.turn(turn).1 > first {
             (n_lines, first) = (n_lines + 1, turn);
         }
     }
-    // As many as on a plane: lines through the corners are 511 + 4 · 255 apart.
+    // The number is the same as on a plane: lines through opposite corners are 511 + 4 · 255 apart.
     assert_eq!(n_lines, 512 + 4 * 255, "lines of 512 x 256 pixels");
 }
 
-/// Soft waves of 8 pixels in both directions.
+/// Smooth waves with a period of 8 pixels in both directions.
 fn waves() -> Raster<f32> {
     let wave = |at: u32| ((at % 8) as f32 - 3.5).abs() / 4.0;
     Raster::from_fn([32, 32], |x, y| wave(x) + 0.5 * wave(y)).unwrap()
 }
 
-/// The mean difference of the neighbors in the rows, and that of the pixels that meet where the last column meets the first.
+/// The mean absolute difference between neighbors within rows, and between the last and the first pixel of a row.
 fn jumps(made: &Raster<f32>) -> [f64; 2] {
     let [width, height] = made.size();
     let (mut sums, mut counts) = ([0.0; 2], [0; 2]);
@@ -233,7 +233,7 @@ fn jumps(made: &Raster<f32>) -> [f64; 2] {
 #[test]
 fn a_texture_that_wraps_has_no_seam() {
     let plane = waves();
-    // 44 pixels end in the middle of a wave.
+    // A width of 44 pixels ends in the middle of a wave.
     let exemplar = Exemplar::from_planes(&[(&plane, 1.0)], Edges::Wrap).unwrap();
     let with = |edges| {
         let texture = synthesize_plane(&exemplar, [44, 64], [edges; 2], &Options::default());
@@ -305,7 +305,7 @@ fn maps_follow_the_sources() {
     );
 }
 
-/// Why a texture is refused.
+/// The kind of the error of a synthesis.
 fn kind(size: [u32; 2], edges: Edges, options: &Options) -> SynthErrorKind {
     let exemplar = exemplar([24, 20], Edges::Wrap);
     let result = synthesize_plane(&exemplar, size, [edges; 2], options);
@@ -455,7 +455,7 @@ proptest! {
     }
 }
 
-/// A texture that goes on with one piece of an exemplar of 12 × 9 pixels everywhere.
+/// A texture of a single piece of an exemplar with 12 × 9 pixels.
 fn one_piece() -> PlaneTexture {
     PlaneTexture {
         sources: Raster::from_fn([24, 18], |x, y| [(x + 5) % 12, (y + 7) % 9]).unwrap(),
@@ -485,7 +485,7 @@ fn pixel_alone_among_others_is_rounded_off_in_a_larger_texture() {
             .zip(enlarged.pixels())
             .filter(|&(at, place)| plain.pixels()[at] != *place)
     };
-    // Of a square of 8 × 8 pixels, the corners are of the piece around it.
+    // The corners of the square of 8 × 8 pixels belong to the piece around it.
     assert!((20..60).contains(&others().count()), "{}", others().count());
     for (at, &[x, y]) in others() {
         let [column, row] = [at as u32 % 192, at as u32 / 192];

@@ -1,4 +1,4 @@
-//! Stripes, whose directions and widths are measured.
+//! Stripes along a direction field, with measured directions and widths.
 
 use super::*;
 use crate::shapes::{cap, synthesizer};
@@ -6,7 +6,7 @@ use crate::{Edges, Matching, bake_values};
 use core::f32::consts::FRAC_PI_2;
 use dapple_raster::RasterError;
 
-/// The rows of a pair of stripes.
+/// The period of the stripes, in rows.
 const PERIOD: u32 = 8;
 const SIZE: [u32; 2] = [72, 60];
 
@@ -37,7 +37,7 @@ fn image(along: &PlaneAlong) -> Raster<f32> {
     bake_values(&along.synthesizer, &along.texture, &stripes(), &along.atlas).unwrap()
 }
 
-/// How often values pass a half along the rows of a part of an image, or along its columns, per pixel.
+/// Number of crossings of the value 0.5 per pixel, along the rows or the columns of a part of an image.
 fn passes(image: &Raster<f32>, from: [u32; 2], until: [u32; 2], axis: usize) -> f64 {
     let (mut count, mut all) = (0.0, 0.0);
     for y in from[1]..until[1] - 1 {

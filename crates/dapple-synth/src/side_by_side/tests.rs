@@ -71,7 +71,7 @@ fn bad_images_are_refused() {
     );
 }
 
-/// Noise with grains that are wide in one image and high in the other.
+/// A layout of two images of noise, with wide grains in one and tall grains in the other.
 fn two() -> (SideBySide, Exemplar) {
     let noise = |size, grain: [u32; 2]| {
         let value = |x: u32, y: u32| {

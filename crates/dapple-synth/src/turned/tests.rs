@@ -1,4 +1,4 @@
-//! Images as they lie turned and mirrored, and textures of them.
+//! Rotated and mirrored images, and textures made of them.
 
 use super::Turned;
 use crate::{Edges, Endless, EndlessOptions, Exemplar, SideBySide};
@@ -7,7 +7,7 @@ use dapple_color::{HeightPlane, Normal, NormalOptions, normal_map};
 use dapple_raster::{Named as _, Raster};
 use glam::DVec2;
 
-/// The layout of one image, turned and mirrored.
+/// The layout of one image with its rotations and reflections.
 fn layout(size: [u32; 2], turned: Turned) -> SideBySide {
     let layout = SideBySide::new(&[size]).unwrap();
     layout.with_turned(turned).unwrap()
@@ -46,7 +46,8 @@ fn each_part_is_the_image_as_it_lies_there() {
 fn all_ways_of_an_image_belong_to_it() {
     let layout = SideBySide::new(&[[2, 3], [4, 1]]).unwrap();
     let layout = layout.with_turned(Turned::Quarters).unwrap();
-    // 2 3 2 3 columns of the first, 4 1 4 1 of the second, and a column between each two.
+    // Versions of the first image are 2, 3, 2 and 3 columns wide, those of the second 4, 1, 4 and 1, with a column
+    // between each two.
     assert_eq!(layout.size(), [10 + 10 + 7, 4]);
     let first_row: Vec<_> = (0..27).map(|x| layout.image_at([x, 0])).collect();
     let first = |n| vec![Some(0); n];
@@ -86,7 +87,7 @@ fn normals_are_those_of_turned_heights() {
             let part = joined.crop([first, 0], size).unwrap();
             for (a, b) in part.pixels().iter().zip(expected.pixels()) {
                 let apart = (a.x - b.x).abs() + (a.y - b.y).abs() + (a.z - b.z).abs();
-                // A sum of two squares in the other order.
+                // Tolerance: a sum of two squares in the other order.
                 assert!(apart < 1e-6, "{turned}: {a:?} and {b:?}");
             }
             first += size[0] + 1;
@@ -108,7 +109,7 @@ fn flat_normals_of_images_are_one_color_however_turned() {
                 .unwrap();
             for normal in joined.pixels() {
                 match turned {
-                    // Nothing is turned, and nothing changes; between images it is flat.
+                    // Without rotations the normals do not change; pixels between images are flat.
                     Turned::None => assert!([flat, Normal::FLAT].contains(normal)),
                     _ => {
                         assert_eq!(normal.to_codes::<u8>(), [128, 128, 255]);

@@ -13,7 +13,7 @@ use proptest::prelude::*;
 use std::collections::BTreeSet;
 use std::sync::Mutex;
 
-/// The cube from 0 to 1.
+/// The unit cube.
 fn cube() -> Mesh {
     let bits = (0..8).map(|corner| [0, 1, 2].map(|axis| f64::from(corner >> axis & 1)));
     let sides = [
@@ -28,7 +28,7 @@ fn cube() -> Mesh {
     Mesh::new(bits.map(DVec3::from).collect(), &faces).unwrap()
 }
 
-/// Surfaces with and without borders, handles and sharp edges, in one piece and in several.
+/// Surfaces with and without borders, handles and creases, in one and in several components.
 fn surfaces() -> Vec<Surface> {
     let meshes = [cube(), sphere(), cap(), tube(), two_squares()];
     let meshes = meshes.into_iter().map(|mesh| Surface::new(mesh).unwrap());
@@ -39,7 +39,7 @@ fn surfaces() -> Vec<Surface> {
         .collect()
 }
 
-/// Every face is seen from outside, within the map, and has all texels whose centers are inside of it.
+/// Asserts that every face is not mirrored, lies within the map, and covers all texels whose centers are inside of it.
 fn assert_apart(atlas: &Atlas) {
     let size = DVec2::from(atlas.size().map(f64::from));
     for (face, corners) in (0..).map(FaceIdx).zip(&atlas.corners) {
@@ -115,7 +115,7 @@ fn charts_are_as_far_apart_as_twice_their_padding() {
     }
 }
 
-/// The texels that are not at the border of a map.
+/// The texels that are not at the border of the map.
 fn texels(atlas: &Atlas) -> impl Iterator<Item = [u32; 2]> {
     let [width, height] = atlas.size();
     (5..height - 5).flat_map(move |row| (5..width - 5).map(move |column| [column, row]))
@@ -132,7 +132,7 @@ fn charts_of_what_is_flat_or_rolled_are_not_stretched() {
         assert_eq!(report.pieces, pieces, "pieces");
         assert!((report.stretch - 1.0).abs() < 1e-6, "{}", report.stretch);
     }
-    // A tube unrolls; its triangles are chords of the circle.
+    // A tube unrolls to a rectangle; its triangles are chords of the circle.
     let tube = Surface::new(tube()).unwrap();
     let report = Atlas::charts(&tube, 256).unwrap().report(&tube);
     assert!((report.stretch - 1.0).abs() < 1e-4, "{}", report.stretch);
@@ -221,7 +221,7 @@ fn charts_report_their_progress_and_stop() {
 
 #[test]
 fn many_charts_are_packed_in_rows_and_refused_early() {
-    // As many charts as faces: loose squares, more than are packed by their shapes.
+    // Loose squares, one chart per square: more charts than are packed by shape.
     let squares = |n: u32| {
         let corner = |x: u32, y: u32| DVec3::new(x.into(), y.into(), 0.0);
         let square = |at: u32| {
@@ -251,11 +251,11 @@ fn many_charts_are_packed_in_rows_and_refused_early() {
         });
         (atlas, n_calls)
     };
-    // Each chart is cut once: a first try to pack them by their shapes would report more than 512 of them twice.
+    // Each chart is cut once: a first attempt to pack by shape would report more than 512 charts twice.
     let (_, n_calls) = calls_of(&surface, 256);
     assert!(n_calls < 2 * MANY, "{n_calls} calls");
-    // Of 64 x 64 texels, 5 are the least for a chart with a padding of 1: 819 charts at most. So many components are refused
-    // before any is cut.
+    // A chart with a padding of 1 takes at least 5 texels, so 64 × 64 texels hold at most 819 charts. More components
+    // are rejected before any is cut.
     let (refused, n_calls) = calls_of(&squares(820), 64);
     let error = refused.unwrap_err();
     assert!(

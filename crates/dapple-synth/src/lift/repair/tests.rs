@@ -1,4 +1,4 @@
-//! A checker with a stain, flat and around a torus.
+//! Repair of a stained checker, on a square and around a torus.
 
 use super::*;
 use crate::shapes::{square, synthesizer, torus};
@@ -10,10 +10,10 @@ fn go_on(_: Progress) -> ControlFlow<()> {
     ControlFlow::Continue(())
 }
 
-/// The sides of textures.
+/// Side of textures, in texels.
 const SIDE: u32 = 128;
 
-/// A texture with a stain at the texels at which the mask is false.
+/// A texture with a stain at the texels where the mask is false.
 struct Stained {
     clean: Raster<f32>,
     mask: Raster<bool>,
@@ -80,7 +80,7 @@ fn stain_on_a_checker_becomes_checker_and_all_else_stays() {
             n_wrong += usize::from((found - clean).abs() > 0.5);
         }
     }
-    // Sites are two texels apart, and edges of squares are off by a fraction of that.
+    // Tolerance: sites are two texels apart, and edges of squares are off by a fraction of that.
     assert!(10 * n_wrong < n, "{n_wrong} of {n} texels are wrong");
 }
 
@@ -88,7 +88,7 @@ fn stain_on_a_checker_becomes_checker_and_all_else_stays() {
 fn stripes_around_a_torus_go_on_through_a_stain() {
     let surface = torus(32, 16);
     let atlas = Atlas::charts(&surface, SIDE).unwrap();
-    // Stripes in space, which the field runs along.
+    // Stripes in space, along which the field runs.
     let at = |x: u32, y: u32| {
         let point = atlas.point(&surface, [x, y]);
         point.map_or(DVec3::ZERO, |point| surface.position(point))

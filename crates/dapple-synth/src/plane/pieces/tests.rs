@@ -6,7 +6,7 @@ use dapple_raster::Raster;
 
 const SIZE: [u32; 2] = [13, 11];
 
-/// Noise of a channel.
+/// Noise, different for each channel.
 fn noise(channel: u64) -> Raster<f32> {
     let value = |x: u32, y: u32| {
         let place = [x, y].map(i64::from);
@@ -19,7 +19,7 @@ fn exemplar(edges: Edges) -> Exemplar {
     Exemplar::from_planes(&[(&noise(0), 1.0), (&noise(1), 0.25)], edges).unwrap()
 }
 
-/// A texture whose sources a function says.
+/// A texture with the sources that a function returns.
 fn texture(
     edges: [Edges; 2],
     exemplar_edges: Edges,
@@ -29,7 +29,7 @@ fn texture(
     PlaneTexture::from_sources(sources, edges, SIZE, exemplar_edges).unwrap()
 }
 
-/// Blocks of 4 × 3 pixels, each from another place, past the edges of an exemplar that wraps.
+/// The sources of blocks of 4 × 3 pixels, each from another place. Some reach past the edges of an exemplar that wraps.
 fn blocks(x: u32, y: u32) -> [u32; 2] {
     let shift = (hash2(Seed(3), [x / 4, y / 3].map(i64::from), 0) >> 40) as u32;
     [(x + shift) % SIZE[0], (y + shift / 7) % SIZE[1]]
@@ -47,7 +47,7 @@ fn copies_are_one_piece_and_random_pixels_one_each() {
             .iter()
             .all(|&piece| piece == 0)
     );
-    // Where the exemplar is cut, so is the copy.
+    // A copy of a cut exemplar is cut as well.
     let cut = texture([Edges::Cut; 2], Edges::Cut, |x, y| {
         [(x + 5) % 13, (y + 9) % 11]
     });
@@ -69,7 +69,7 @@ fn pieces_are_those_that_joining_pairs_of_pixels_finds() {
         for exemplar_edges in [Edges::Cut, Edges::Wrap] {
             let texture = texture(edges, exemplar_edges, blocks);
             let mut expected: Vec<u32> = (0..16 * 12).collect();
-            // Both pixels of a pair take the smaller number until nothing changes.
+            // Both pixels of each pair take the smaller label, until nothing changes.
             let mut last = Vec::new();
             while last != expected {
                 last.clone_from(&expected);
@@ -94,7 +94,7 @@ fn pieces_are_those_that_joining_pairs_of_pixels_finds() {
                     }
                 }
             }
-            // Numbers without gaps, by the first pixel.
+            // Renumber without gaps, in the order of the first pixels.
             let mut firsts = expected.clone();
             firsts.sort_unstable();
             firsts.dedup();
@@ -144,7 +144,7 @@ fn differences_are_nothing_within_pieces_and_those_of_plain_loops_elsewhere() {
         }
         let expected = (sum / n_values).sqrt();
         let found = f64::from(differences.row(y as u32)[x as usize]);
-        // Sums of 50 squares in single precision.
+        // Tolerance: sums of 50 squares in single precision.
         assert!(
             (found - expected).abs() < 1e-5,
             "{x} {y}: {found} and {expected}"

@@ -1,4 +1,4 @@
-//! Repairs beside passes that compare everything with everything, and tiles.
+//! Repairs compared with an exhaustive search, and tiles.
 
 use crate::{
     Candidates, CoarserCenter, Coherence, Edges, Exemplar, Options, Pass, PlaneTexture, Pyramid,
@@ -8,7 +8,7 @@ use core::ops::ControlFlow;
 use dapple_hash::{Seed, hash2, unit_f32};
 use dapple_raster::{Raster, Wrap};
 
-/// Soft noise that repeats after `period` pixels.
+/// Smooth noise with a period of `period` pixels.
 fn noise(size: [u32; 2], period: u32) -> Raster<f32> {
     let value = |x: u32, y: u32| {
         let cell = [x % period / 2, y % period / 3].map(i64::from);
@@ -17,7 +17,7 @@ fn noise(size: [u32; 2], period: u32) -> Raster<f32> {
     Raster::from_fn(size, value).unwrap()
 }
 
-/// The exemplar of a plane without its hole, in which all values are off.
+/// The exemplar of a plane with wrong values in its hole, which a mask excludes.
 fn damaged(size: [u32; 2], edges: Edges, hole: &Raster<bool>) -> Exemplar {
     let plane = noise(size, 64);
     let plane = plane.zip_map(hole, |&value, &is_off| if is_off { 9.0 } else { value });
@@ -26,7 +26,7 @@ fn damaged(size: [u32; 2], edges: Edges, hole: &Raster<bool>) -> Exemplar {
     exemplar.with_mask(&mask).unwrap()
 }
 
-/// The least difference wins.
+/// Options under which the smallest distance always wins.
 fn least(n_levels: usize) -> Options {
     Options {
         n_levels,
@@ -41,14 +41,14 @@ fn repaired(exemplar: &Exemplar, hole: &Raster<bool>, options: &Options) -> Plan
     whole.repair(exemplar, hole, options, keep_on).unwrap()
 }
 
-/// The sources of a level in the oracle, and whether they are made.
+/// The sources of a level in the oracle, and which of them are synthesized.
 struct NaiveLevel {
     size: [u32; 2],
     sources: Vec<[i64; 2]>,
     is_made: Vec<bool>,
 }
 
-/// The repair of an exemplar, pixel by pixel.
+/// An oracle that repairs an exemplar pixel by pixel.
 struct Naive<'a> {
     pyramid: &'a Pyramid,
     wrap: Wrap,
@@ -72,7 +72,7 @@ impl Naive<'_> {
         0.25 * ((at([0, 0]) + at([1, 0])) + (at([0, 1]) + at([1, 1])))
     }
 
-    /// The source of a site that all sites around it, and itself on its own level, predict.
+    /// The source that all sites around a site predict for it; on its own level the site itself is included.
     fn piece(&self, pass: &Pass, site: [u32; 2]) -> Option<[i64; 2]> {
         let part = &pass.parts[0];
         let level = pass.level + usize::from(part.reads == Reads::Coarser);
@@ -113,7 +113,7 @@ impl Naive<'_> {
         let [width, height] = self.levels[pass.level].size;
         for turn in 0..16 {
             for site in (0..width * height).map(|site| [site % width, site / width]) {
-                // The 4 x 4 matrix of ordered dithering, from its recursion.
+                // The 4 × 4 matrix of ordered dithering, computed by its recursion.
                 let [x, y] = site.map(|at| at % 4);
                 let quad = |x: u32, y: u32| 2 * (x ^ y) + y;
                 let index = (site[1] * width + site[0]) as usize;
@@ -151,8 +151,8 @@ impl Naive<'_> {
         }
     }
 
-    /// What is made on a level begins with what the coarser one goes on to; nothing of it is from the hole or past an edge,
-    /// as holes are here.
+    /// Initializes the synthesized sites of a level by continuing the sources of the coarser level. With the holes of
+    /// these tests, no continuation reaches into the hole or past an edge.
     fn go_on(&mut self, level: usize) {
         let [width, _] = self.levels[level].size;
         let wider = self.levels[level + 1].size[0];
@@ -167,7 +167,7 @@ impl Naive<'_> {
     }
 }
 
-/// The sources of a repair whose hole is one rectangle on the coarsest level.
+/// The oracle's sources of a repair whose hole is one rectangle on the coarsest level.
 fn naive(exemplar: &Exemplar, hole: &Raster<bool>, n_levels: usize) -> Vec<[u32; 2]> {
     let pyramid = exemplar.pyramid(n_levels).unwrap();
     let wrap = match exemplar.edges() {
@@ -211,7 +211,7 @@ fn naive(exemplar: &Exemplar, hole: &Raster<bool>, n_levels: usize) -> Vec<[u32;
     sources.map(|source| source.map(|at| at as u32)).collect()
 }
 
-/// Fills a hole in the middle of a level with the piece whose surroundings are nearest.
+/// Fills a hole inside of a level with the piece whose surroundings are most similar.
 fn fit(level: &mut NaiveLevel, exemplar: &Exemplar) {
     let [width, height] = level.size.map(i64::from);
     let at = |x: i64, y: i64| (y * width + x) as usize;
@@ -281,7 +281,7 @@ fn repairs_equal_passes_that_compare_everything() {
 
 #[test]
 fn only_the_hole_changes_and_nothing_is_from_it() {
-    // Two holes, one of them across an edge.
+    // Two holes, one of them at an edge.
     let is_off = |x: u32, y: u32| x.abs_diff(31) < 5 && y.abs_diff(40) < 4 || x < 3 && y > 60;
     let hole = Raster::from_fn([72, 80], is_off).unwrap();
     for edges in [Edges::Cut, Edges::Wrap] {
@@ -311,7 +311,7 @@ fn repairs_do_not_depend_on_threads() {
 
 #[test]
 fn what_is_larger_than_all_else_begins_with_random_pixels() {
-    // Three quarters of the image: no piece is as large.
+    // The hole is larger than the rest of the image: no piece is as large.
     let hole = Raster::from_fn([64, 64], |x, _| x >= 24).unwrap();
     let exemplar = damaged([64, 64], Edges::Cut, &hole);
     let options = least(1);
@@ -392,14 +392,14 @@ fn tile(plane: &Raster<f32>, axes: [bool; 2], width: u32) -> PlaneTexture {
 
 #[test]
 fn tiles_of_what_repeats_repeat_it() {
-    // After 24 pixels, of which twice and three times lie between half and all of it less half of the strip.
+    // The period is 24. Two and three periods are between half of the side and the side minus half of the strip.
     let plane = noise([90, 60], 24);
     let both = tile(&plane, [true; 2], 12);
     assert_eq!(both.sources().size(), [72, 48], "the largest that repeats");
     let across = tile(&plane, [true, false], 12);
     assert_eq!(across.sources().size(), [72, 60], "one axis");
-    // Where an axis does not repeat, rows near its edges are compared with mirrored ones: 3 on the coarsest level, and
-    // as many more as a pixel of it has.
+    // Where an axis does not repeat, neighborhoods near its edges include mirrored rows: 3 on the coarsest level, times
+    // the finest rows per row of that level.
     for (texture, edge) in [(both, 0), (across, 16)] {
         let made = texture.transfer(&plane).unwrap();
         for row in edge..made.height() - edge {
@@ -468,9 +468,9 @@ fn strips_that_are_too_wide_or_too_narrow_are_refused() {
     );
 }
 
-/// Repairs holes across the border of an image that is 1 inside and 0 outside: on the right `margin` pixels from its side, and
-/// turned to each side. `half` is half of the width and height of the holes, which end two pixels before the side. Returns the
-/// numbers of wrong pixels.
+/// Repairs holes across the border of an image that is 1 inside and 0 outside. The border is `margin` pixels from the
+/// right side; the test rotates the image to each side. `half` is half of the width and height of the holes, which end
+/// two pixels before the side. Returns the number of wrong pixels for each side.
 fn wrong_at_borders(
     side: u32,
     margin: u32,
@@ -508,7 +508,7 @@ fn wrong_at_borders(
 #[test]
 fn border_along_a_side_goes_on() {
     for margin in [4, 6, 8, 10, 12, 16, 20, 24] {
-        // A leaf on nothing, which has its distance to all sides.
+        // A shape on an empty background, `margin` pixels from all sides.
         let wrong = wrong_at_borders(128, margin, [6, 4], |side, margin, at| {
             at.iter().all(|at| (margin..side - margin).contains(at))
         });

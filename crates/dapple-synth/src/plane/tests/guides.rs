@@ -1,4 +1,4 @@
-//! Textures with guides.
+//! Textures in the plane with guides.
 
 use super::naive::naive_guided;
 use super::{exemplar, paper};
@@ -9,14 +9,14 @@ use crate::{
 use core::ops::ControlFlow;
 use dapple_raster::Raster;
 
-/// Guides whose values and coarser values `f32` has exactly.
+/// Guides whose values, also on coarser levels, are exact in `f32`.
 fn guides(size: [u32; 2]) -> [Raster<f32>; 2] {
     let left = Raster::from_fn(size, |x, _| f32::from(x < size[0] / 2)).unwrap();
     let rows = Raster::from_fn(size, |_, y| f32::from(y as u8 / 4 % 4) / 4.0).unwrap();
     [left, rows]
 }
 
-/// An exemplar with [`guides`] of the weight 1.
+/// An exemplar with [`guides`], each with the weight 1.
 fn guided_exemplar(size: [u32; 2], edges: Edges) -> Exemplar {
     let [left, rows] = guides(size);
     let guides = [(&left, 1.0), (&rows, 1.0)];
@@ -51,7 +51,7 @@ fn guided_textures_equal_the_pseudo_code() {
 #[test]
 fn guides_say_where_parts_of_the_exemplar_go() {
     let exemplar = guided_exemplar([64, 64], Edges::Wrap);
-    // Left and right exchanged, and the rows as they are.
+    // Guides with left and right exchanged, and rows unchanged.
     let [left, rows] = guides([64, 64]);
     let right = left.map(|left| 1.0 - left);
     let made = synthesize_plane_guided(
@@ -71,7 +71,7 @@ fn guides_say_where_parts_of_the_exemplar_go() {
         obeyed[0] += u32::from(value(&left, source) == value(&right, [x, y]));
         obeyed[1] += u32::from(value(&rows, source) == value(&rows, [x, y]));
     }
-    // But for sites beside the borders of guides, where a piece goes on.
+    // Sites next to the borders of guides may differ, where a piece continues across.
     assert!(obeyed[0] > 64 * 60, "sides: {obeyed:?}");
     assert!(obeyed[1] > 64 * 50, "rows: {obeyed:?}");
 }
@@ -117,7 +117,7 @@ fn bad_guides_are_refused() {
         ),
         "infinite"
     );
-    // Without guides of the texture.
+    // No guides for the texture, although the exemplar has some.
     let plain = synthesize_plane(&exemplar, [20; 2], [Edges::Cut; 2], &Options::default());
     assert!(
         matches!(

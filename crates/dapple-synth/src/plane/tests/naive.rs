@@ -1,4 +1,4 @@
-//! The pseudo-code of the paper, as it is written.
+//! The paper's pseudo-code, implemented literally.
 
 use crate::plane::SLANT;
 use crate::{
@@ -19,7 +19,7 @@ struct NaiveLevel {
 }
 
 impl NaiveLevel {
-    /// The color at a place in half pixels: the mean of two or four pixels between them.
+    /// The color at a place in half pixels: a pixel, or the mean of the two or four pixels around it.
     fn color(&self, halves: [i64; 2], channel: usize) -> f32 {
         let at = |step: [i64; 2]| {
             let [x, y] = [0, 1].map(|axis| {
@@ -33,7 +33,7 @@ impl NaiveLevel {
     }
 }
 
-/// A guide of the next coarser level: means with the products of the weights 1-4-6-4-1.
+/// The next coarser level of a guide: means with the products of the weights 1-4-6-4-1.
 fn coarser_guide(guide: &Raster<f32>, wrap: [Wrap; 2]) -> Raster<f32> {
     let weights = [1.0, 4.0, 6.0, 4.0, 1.0];
     let mean = |x: u32, y: u32| {
@@ -49,7 +49,7 @@ fn coarser_guide(guide: &Raster<f32>, wrap: [Wrap; 2]) -> Raster<f32> {
     Raster::from_fn(guide.size().map(|side| side.div_ceil(2)), mean).unwrap()
 }
 
-/// The pseudo-code of the paper for any schedule: every site compares with all candidates, in the order of the sweep.
+/// The paper's pseudo-code for any schedule: every site compares with all candidates, in the order of the sweep.
 pub(super) fn naive(
     exemplar: &Exemplar,
     size: [u32; 2],
@@ -59,7 +59,7 @@ pub(super) fn naive(
     naive_guided(exemplar, &[], size, edges, options)
 }
 
-/// The pseudo-code for a texture with guides, whose weights are 1.
+/// The pseudo-code for a texture with guides of weight 1.
 pub(super) fn naive_guided(
     exemplar: &Exemplar,
     guides: &[&Raster<f32>],
