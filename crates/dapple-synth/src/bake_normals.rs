@@ -10,7 +10,8 @@
 //! is mirrored there. T is the tangent that programs compute when a file has none. Sites have the normals of the smooth
 //! surface. Where the shading normal differs, as next to a crease, tangential vectors rotate with it.
 //!
-//! Reference: Morten S. Mikkelsen, "Simulation of Wrinkled Surfaces Revisited", master's thesis, University of Copenhagen, 2008.
+//! Reference: Morten S. Mikkelsen, "Simulation of Wrinkled Surfaces Revisited", master's thesis, University of
+//! Copenhagen, 2008.
 
 use crate::atlas::{self, Tangents};
 use crate::detail::Detail;
@@ -88,6 +89,7 @@ pub fn bake_normals(
             let (Some(face), Some(point)) = (atlas.face(texel), atlas.point(surface, texel)) else {
                 return Normal::FLAT;
             };
+            // Rotate the tangential part from the smooth normal to the shading normal.
             let out = atlas::mixed(atlas, face, texel, shading[face.index()]);
             let out = out.normalize_or(surface.face_normal(face));
             let frame = tangents.frame(atlas, texel, out);

@@ -1,7 +1,7 @@
 //! The exemplar: the example image of a synthesis, and its Gaussian pyramid.
 //!
-//! References: Peter J. Burt and Edward H. Adelson, "The Laplacian Pyramid as a Compact Image Code", IEEE Transactions on
-//! Communications, 1983, DOI 10.1109/TCOM.1983.1095851, for the pyramid; Greg Turk, "Texture Synthesis on Surfaces",
+//! References: Peter J. Burt and Edward H. Adelson, "The Laplacian Pyramid as a Compact Image Code", IEEE Transactions
+//! on Communications, 1983, DOI 10.1109/TCOM.1983.1095851, for the pyramid; Greg Turk, "Texture Synthesis on Surfaces",
 //! SIGGRAPH 2001, DOI 10.1145/383259.383297, section 5.2, for its use.
 //!
 //! Pixel `(a, b)` of a level lies at pixel `(2a, 2b)` of the next finer level. It is the mean of the pixels around that
@@ -307,6 +307,7 @@ impl Exemplar {
         };
         let squares = || (0..size[1]).flat_map(move |y| (0..size[0]).map(move |x| square(x, y)));
         let area = f64::from(factor) * f64::from(factor);
+        // Sum in f64, in row order.
         let means = |values: &[f32], n: usize| {
             let mut means = Vec::with_capacity(size[0] as usize * size[1] as usize * n);
             for square in squares() {

@@ -63,8 +63,8 @@ impl MeshExemplar {
     /// per face. The texture is an exemplar: colors, or any planes with weights, masks and guides.
     ///
     /// The sites are matched as the pixels of an image are. Features have the same size on the target as on the source
-    /// if both have the same spacing of sites; more sites on the source make features larger. Sites next to masked
-    /// texels ([`with_mask`](Exemplar::with_mask)) are not used. [Scales](Synthesizer::with_scales) of the source have
+    /// if both have the same spacing of sites; more sites on the source make features larger. Sites next to texels
+    /// that a [mask](Exemplar::with_mask) excludes are not used. [Scales](Synthesizer::with_scales) of the source have
     /// no effect.
     ///
     /// # Errors

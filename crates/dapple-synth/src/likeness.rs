@@ -97,6 +97,7 @@ impl Planes {
         let [columns, rows] = [width - side + 1, height - side + 1];
         let mut projected = vec![0.0; columns * rows];
         for (row, sums) in projected.chunks_exact_mut(columns).enumerate() {
+            // Sum one row of patches at a time: each factor multiplies a shifted row of values.
             let mut factors = direction.iter();
             for channel in &self.channels {
                 for line in channel[row * width..].chunks_exact(width).take(side) {

@@ -151,6 +151,7 @@ impl<P: Sourced> Magnified<'_, P> {
     fn gather(&self, reaching: &[Reaching], pieces: &mut Vec<Piece<P::Place>>) {
         pieces.clear();
         for &Reaching { site, way, weight } in reaching {
+            // Predict the place at the texel.
             let frame = &self.frames.of_site[site as usize];
             let own = self.places.of_site(site as usize);
             let place = self.places.moved(own, frame.flat(way));

@@ -94,6 +94,7 @@ fn numbers(row: &str, order: Option<&[usize]>, forms: &[&[&str]]) -> Result<Vec<
         };
         numbers.push(number);
     }
+    // Check the number of columns.
     let count = numbers.len();
     let is_known = match order {
         Some(order) => order.len() == count,

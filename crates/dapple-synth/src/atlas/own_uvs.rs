@@ -80,6 +80,7 @@ fn cover(faces: &mut Raster<u32>, face: u32, corners: &[DVec2; 3]) {
     let (low, high) = (a.min(b).min(c), a.max(b).max(c));
     for row in texels(low.y, high.y, size[1]) {
         for column in texels(low.x, high.x, size[0]) {
+            // The first face to cover a texel keeps it.
             let inside = weights(*corners, center([column, row]))
                 .iter()
                 .all(|&weight| weight >= -ROUNDING);
@@ -100,6 +101,7 @@ fn spread(faces: &mut Raster<u32>, padding: u32) {
         .collect();
     let mut next: Vec<(usize, u32)> = Vec::new();
     for _ in 0..padding {
+        // Collect the free neighbors of the last ring.
         next.clear();
         for &texel in &ring {
             let face = faces.pixels()[texel];
@@ -112,6 +114,7 @@ fn spread(faces: &mut Raster<u32>, padding: u32) {
         if next.is_empty() {
             return;
         }
+        // Keep the lowest face of each texel.
         next.sort_unstable();
         next.dedup_by_key(|(texel, _)| *texel);
         for &(texel, face) in &next {

@@ -124,6 +124,7 @@ pub(super) fn stretches(atlas: &Atlas, surface: &Surface) -> Vec<f64> {
 fn reach(surface: &Surface, face: FaceIdx, [a, b, c]: [DVec2; 3]) -> f64 {
     let [pa, pb, pc] = surface.mesh().corners(face);
     let (b, c, pb, pc) = (b - a, c - a, pb - pa, pc - pa);
+    // The derivatives of the position along u and v.
     let area = b.perp_dot(c);
     let [along_u, along_v] = [pb * c.y - pc * b.y, pc * b.x - pb * c.x].map(|along| along / area);
     (0.5 * (along_u.length_squared() + along_v.length_squared())).sqrt()

@@ -274,6 +274,7 @@ impl Filler<'_> {
         let sites = hierarchy.sites();
         let mut nearest = (f64::INFINITY, u32::MAX);
         let reach = NEAR * level.spacing();
+        // Skip sites on the opposite side of a thin sheet; of equally near ones take the lowest index.
         level.grid().visit(at, reach, |site| {
             let far = sites.positions()[site.index()].distance_squared(at);
             let is_opposed = sites.normals()[site.index()].dot(out) < 0.0;

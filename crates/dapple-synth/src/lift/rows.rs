@@ -111,6 +111,7 @@ impl Reader<'_> {
                 0,
                 &mut chunk.rows,
             );
+            // Append the guides after the colors.
             let guides = level.guides.of(site as usize).iter();
             chunk
                 .rows

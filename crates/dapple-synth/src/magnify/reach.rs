@@ -194,6 +194,7 @@ impl Found {
             return n_found;
         }
         let weight = |found: usize| self.weights[found];
+        // Select the largest weights, then restore the order of the group.
         let mut largest: Vec<usize> = (0..n_found).collect();
         largest.select_nth_unstable_by(MOST, |&a, &b| {
             weight(b).total_cmp(&weight(a)).then(a.cmp(&b))

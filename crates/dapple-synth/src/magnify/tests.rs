@@ -30,7 +30,7 @@ fn atlas(plane: &Synthesizer, side: u32) -> Atlas {
     Atlas::from_uvs(plane.surface(), &uvs, [side; 2], 0).unwrap()
 }
 
-/// The place in an exemplar that is laid over the square, with its corner at an offset of two pixels.
+/// The place in an exemplar at a position of the square, whose upper left corner is at the place (2, 2).
 fn place(plane: &Synthesizer, at: DVec3) -> Vec2 {
     let spacing = plane.hierarchy().levels()[0].spacing();
     Vec2::new(
@@ -39,7 +39,7 @@ fn place(plane: &Synthesizer, at: DVec3) -> Vec2 {
     )
 }
 
-/// A texture whose sites have the pixels at the given places as sources.
+/// A texture whose sites have as sources the pixels at the places that `source` returns for their own places.
 fn texture(plane: &Synthesizer, edges: Edges, source: impl Fn(Vec2) -> Vec2) -> SurfaceTexture {
     let image = Raster::filled([SIDE; 2], 0.0).unwrap();
     let exemplar = Exemplar::from_planes(&[(&image, 1.0)], edges).unwrap();

@@ -72,6 +72,7 @@ impl PlaneTexture {
         let source = self.source(place);
         let (mut sum, mut n_values) = (0.0, 0);
         for step in (-HALF..=HALF).flat_map(|y| (-HALF..=HALF).map(move |x| [x, y])) {
+            // Skip pixels past an edge of the texture or of the exemplar.
             let beside = self.beside(place, step);
             let expected = exemplar.pixel_at([source[0] + step[0], source[1] + step[1]]);
             let (Some(beside), Some(expected)) = (beside, expected) else {

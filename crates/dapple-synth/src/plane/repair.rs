@@ -261,6 +261,7 @@ impl Hole {
             let moved = |[column, row]: [i64; 2]| pixel_of([column + offset[0], row + offset[1]]);
             let area = moved([column, row]).and_then(&area_of);
             let moved = |place| moved(place).filter(|&pixel| area_of(pixel) == area);
+            // The piece must contain a usable pixel for every site of the hole.
             if !self.sites.iter().all(|&site| moved(site).is_some()) {
                 return None;
             }

@@ -15,7 +15,7 @@ use proptest::prelude::*;
 mod guides;
 mod naive;
 
-/// An exemplar of smooth noise with two channels that wraps.
+/// An exemplar of periodic smooth noise with two channels.
 fn exemplar(size: [u32; 2], edges: Edges) -> Exemplar {
     let noise = |x: u32, y: u32, channel: u64| {
         let cell = [x % size[0] / 3, y % size[1] / 2].map(i64::from);

@@ -47,7 +47,7 @@ fn copies_are_one_piece_and_random_pixels_one_each() {
             .iter()
             .all(|&piece| piece == 0)
     );
-    // A copy of a cut exemplar is cut as well.
+    // Where the exemplar's edges are cut, sources that wrap around split the texture into pieces.
     let cut = texture([Edges::Cut; 2], Edges::Cut, |x, y| {
         [(x + 5) % 13, (y + 9) % 11]
     });

@@ -470,7 +470,7 @@ fn strips_that_are_too_wide_or_too_narrow_are_refused() {
 
 /// Repairs holes across the border of an image that is 1 inside and 0 outside. The border is `margin` pixels from the
 /// right side; the test rotates the image to each side. `half` is half of the width and height of the holes, which end
-/// two pixels before the side. Returns the number of wrong pixels for each side.
+/// at least two pixels before the side. Returns the number of wrong pixels for each side.
 fn wrong_at_borders(
     side: u32,
     margin: u32,
