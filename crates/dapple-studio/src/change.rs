@@ -1,20 +1,21 @@
-//! The difference of two texts as small changes.
+//! The difference between two texts as a list of small changes.
 
 use crate::utf16::Positions;
 use serde::{Deserialize, Serialize};
 
-/// A part of a text that is replaced. Positions are UTF-16 code units of the text before all changes.
+/// A replacement in a text. Positions are UTF-16 code units in the text before all changes.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Change {
-    /// Where the replaced part begins.
+    /// Start of the replaced part.
     pub from: usize,
-    /// Where it ends.
+    /// End of the replaced part, exclusive.
     pub to: usize,
     /// The text that replaces it.
     pub insert: String,
 }
 
-/// The changes that make one text of another: line by line where both have as many lines, otherwise in one piece.
+/// Returns the changes that turn `old` into `new`: one per changed line if both have the same number of lines,
+/// otherwise a single change.
 pub(crate) fn changes(old: &str, new: &str) -> Vec<Change> {
     let positions = Positions::new(old);
     let change = |start: usize, old_part: &str, new_part: &str| {
@@ -23,11 +24,13 @@ pub(crate) fn changes(old: &str, new: &str) -> Vec<Change> {
         let insert = new_part[before..new_part.len() - after].to_owned();
         Change { from, to, insert }
     };
+    // Trim the common prefix and suffix of the whole texts.
     let (before, after) = ends_in_common(old, new);
     if before == old.len() && old.len() == new.len() {
         return Vec::new();
     }
     let [old_middle, new_middle] = [old, new].map(|text| &text[before..text.len() - after]);
+    // With different numbers of lines, replace the rest in one piece.
     if old_middle.matches('\n').count() != new_middle.matches('\n').count() {
         return vec![change(before, old_middle, new_middle)];
     }
@@ -41,6 +44,7 @@ pub(crate) fn changes(old: &str, new: &str) -> Vec<Change> {
     if !is_in_pairs {
         return vec![change(before, old_middle, new_middle)];
     }
+    // Otherwise, compare the texts line by line.
     for (old_line, new_line) in lines {
         if old_line != new_line {
             changes.push(change(start, old_line, new_line));
@@ -50,7 +54,7 @@ pub(crate) fn changes(old: &str, new: &str) -> Vec<Change> {
     changes
 }
 
-/// The bytes that two texts have in common at their beginnings and at their ends, apart.
+/// Lengths in bytes of the common prefix and of the common suffix of two texts. The two do not overlap.
 fn ends_in_common(old: &str, new: &str) -> (usize, usize) {
     let pairs = old.chars().zip(new.chars());
     let before = pairs

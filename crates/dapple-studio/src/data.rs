@@ -1,10 +1,10 @@
-//! Values between TOML and JSON.
+//! Conversion of values between TOML and JSON.
 
 use crate::StudioError;
 use serde_json::{Map, Number, Value as Json};
 use toml_edit::{Array, InlineTable, Item, Table, Value};
 
-/// An item of TOML as JSON. Dates become text.
+/// Converts a TOML item to JSON. Dates become strings.
 pub(crate) fn json_of_item(item: &Item) -> Json {
     match item {
         Item::None => Json::Null,
@@ -14,7 +14,7 @@ pub(crate) fn json_of_item(item: &Item) -> Json {
     }
 }
 
-/// A table of TOML as JSON.
+/// Converts a TOML table to JSON.
 pub(crate) fn json_of_table(table: &Table) -> Json {
     let entries = table
         .iter()
@@ -22,7 +22,7 @@ pub(crate) fn json_of_table(table: &Table) -> Json {
     Json::Object(entries.collect())
 }
 
-/// A value of TOML as JSON.
+/// Converts a TOML value to JSON.
 pub(crate) fn json_of_value(value: &Value) -> Json {
     match value {
         Value::String(text) => text.value().as_str().into(),
@@ -40,7 +40,7 @@ pub(crate) fn json_of_value(value: &Value) -> Json {
     }
 }
 
-/// A value of JSON in TOML.
+/// Converts a JSON value to TOML.
 pub(crate) fn value_of(json: &Json) -> Result<Value, StudioError> {
     Ok(match json {
         Json::Null => return Err(StudioError::new("nothing (null) is no value of a recipe")),
@@ -63,7 +63,7 @@ fn inline_table_of(entries: &Map<String, Json>) -> Result<InlineTable, StudioErr
     Ok(table)
 }
 
-/// A table with its own lines, whose tables are in one line each.
+/// Converts a JSON object to a TOML table with a line per entry. Nested objects become inline tables.
 pub(crate) fn table_of(entries: &Map<String, Json>) -> Result<Table, StudioError> {
     let mut table = Table::new();
     for (key, value) in entries {
@@ -87,7 +87,7 @@ fn value_of_number(number: &Number) -> Result<Value, StudioError> {
         .ok_or_else(|| StudioError::new("the number is not finite"))
 }
 
-/// Makes a value equal to one of JSON, and changes as little as possible of how it is written.
+/// Sets a TOML value to a JSON value and preserves its formatting where possible.
 pub(crate) fn rewrite(old: &mut Value, json: &Json) -> Result<(), StudioError> {
     if json_of_value(old) == *json {
         return Ok(());
@@ -107,7 +107,7 @@ pub(crate) fn rewrite(old: &mut Value, json: &Json) -> Result<(), StudioError> {
         _ => {}
     }
     let mut new = value_of(json)?;
-    // What was written with a point stays so: 2.0 does not become 2.
+    // A number written with a decimal point keeps it: 2.0 does not become 2.
     if let (Value::Float(_), Json::Number(number)) = (&*old, json)
         && let Some(number) = number.as_f64()
     {
@@ -135,7 +135,7 @@ fn rewrite_list(list: &mut Array, new: &[Json]) -> Result<(), StudioError> {
     Ok(())
 }
 
-/// Puts a value into a list, written as its neighbors are.
+/// Inserts a value into an array, formatted like its neighbors.
 pub(crate) fn insert_element(list: &mut Array, index: usize, mut value: Value) {
     if !is_in_lines(list) {
         list.insert(index, value);
@@ -146,7 +146,7 @@ pub(crate) fn insert_element(list: &mut Array, index: usize, mut value: Value) {
         .get(index)
         .or_else(|| list.get(index.saturating_sub(1)));
     let prefix = neighbor.and_then(|neighbor| neighbor.decor().prefix()?.as_str());
-    // Without the comments that belong to the neighbor.
+    // Copy the neighbor's indentation without its comments.
     let indent = prefix
         .and_then(|prefix| prefix.rsplit_once('\n'))
         .map_or("", |(_, indent)| indent);
@@ -155,7 +155,7 @@ pub(crate) fn insert_element(list: &mut Array, index: usize, mut value: Value) {
     list.insert_formatted(index, value);
 }
 
-/// Takes a value out of a list.
+/// Removes an element of an array.
 pub(crate) fn remove_element(list: &mut Array, index: usize) {
     list.remove(index);
     if !is_in_lines(list) {
@@ -163,7 +163,7 @@ pub(crate) fn remove_element(list: &mut Array, index: usize) {
     }
 }
 
-/// Whether the elements of a list are on lines of their own, or have comments.
+/// Whether the elements of an array are on separate lines. An array with comments counts as well.
 fn is_in_lines(list: &Array) -> bool {
     let is_broken = |text: Option<&str>| text.is_some_and(|text| text.contains('\n'));
     is_broken(list.trailing().as_str())
@@ -174,7 +174,7 @@ fn is_in_lines(list: &Array) -> bool {
         })
 }
 
-/// Puts a space before each element of a list in one line but the first.
+/// Separates the elements of a single-line array by one space.
 fn respace(list: &mut Array) {
     for (index, value) in list.iter_mut().enumerate() {
         value

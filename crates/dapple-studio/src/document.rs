@@ -1,4 +1,4 @@
-//! A recipe as the text that it is written in.
+//! A recipe together with its TOML text.
 
 use crate::data::json_of_table;
 use crate::diagnose::{Diagnostic, of_error, of_text};
@@ -8,7 +8,7 @@ use dapple::recipe::{Recipe, RecipeError};
 use serde_json::Value as Json;
 use toml_edit::{Item, Table};
 
-/// A recipe as text, with the recipe that is read in it or the error of reading it.
+/// The text of a recipe, with the parsed recipe or the parse error.
 #[derive(Clone, Debug)]
 pub struct Document {
     text: String,
@@ -18,7 +18,7 @@ pub struct Document {
 }
 
 impl Document {
-    /// The document of a text, whatever the text is.
+    /// Creates the document of any text. The text need not be valid.
     pub fn new(text: impl Into<String>) -> Self {
         let text = text.into();
         let toml = if text.len() > dapple::recipe::MAX_TEXT {
@@ -40,22 +40,22 @@ impl Document {
         &self.text
     }
 
-    /// The recipe, or why there is none.
+    /// The parsed recipe.
     ///
     /// # Errors
     ///
-    /// The refusal of the reader of recipes.
+    /// If the text is not a valid recipe.
     pub fn recipe(&self) -> Result<&Recipe, &RecipeError> {
         self.recipe.as_ref()
     }
 
-    /// The data of the text as it is written, if it is TOML at all.
+    /// The data of the text as written, if the text is valid TOML.
     #[must_use]
     pub fn data(&self) -> Option<Json> {
         self.table().map(json_of_table)
     }
 
-    /// The mistakes of the text; none where it is a recipe.
+    /// The errors in the text. The list is empty if the text is a valid recipe.
     #[must_use]
     pub fn diagnostics(&self) -> Vec<Diagnostic> {
         self.recipe()
@@ -65,13 +65,14 @@ impl Document {
             .collect()
     }
 
-    /// The mistake that an error of a plan or a bake speaks of, with its place in the text.
+    /// Converts an error of a plan or a bake to a diagnostic with its position in the text.
     #[must_use]
     pub fn diagnostic(&self, error: &RecipeError) -> Diagnostic {
         of_error(self, error)
     }
 
-    /// Where a node is written, from its first header or key to its last value, in UTF-16 code units.
+    /// The range of a node in the text, in UTF-16 code units: from the first line of its header or key to its last
+    /// value.
     #[must_use]
     pub fn node_span(&self, name: &str) -> Option<[usize; 2]> {
         let (key, item) = self
@@ -94,7 +95,7 @@ impl Document {
     }
 }
 
-/// Makes a range wide enough for an item and all that is in it.
+/// Extends a range to include an item and everything in it.
 pub(crate) fn widen(span: &mut Range<usize>, item: &Item) {
     let mut include = |other: Option<Range<usize>>| {
         if let Some(other) = other {

@@ -1,9 +1,9 @@
-//! Refusals of what a page asked for.
+//! Errors that a page shows.
 
 use core::fmt;
 use dapple::recipe::RecipeError;
 
-/// A refusal of what a page asked for, as a sentence for people.
+/// A refused request, as a sentence for people.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct StudioError {
     message: String,
@@ -12,7 +12,7 @@ pub struct StudioError {
 }
 
 impl StudioError {
-    /// A refusal with this sentence, in lower case and without a full stop.
+    /// Creates an error with this message, which is lower case and has no full stop.
     pub fn new(message: impl Into<String>) -> Self {
         Self {
             message: message.into(),
@@ -21,27 +21,27 @@ impl StudioError {
         }
     }
 
-    /// This refusal, with what to do about it.
+    /// Adds a hint: how to avoid the error.
     #[must_use]
     pub fn with_hint(mut self, hint: impl Into<String>) -> Self {
         self.hint = Some(hint.into());
         self
     }
 
-    /// This refusal, with a word by which a program knows it.
+    /// Adds a reason code for programs.
     #[must_use]
     pub fn with_reason(self, reason: &'static str) -> Self {
         let reason = Some(reason);
         Self { reason, ..self }
     }
 
-    /// The word by which a program knows it, if it has one.
+    /// The reason code for programs, if the error has one.
     #[must_use]
     pub fn reason(&self) -> Option<&'static str> {
         self.reason
     }
 
-    /// A way around it, if one is known.
+    /// The hint on how to avoid the error, if there is one.
     #[must_use]
     pub fn hint(&self) -> Option<&str> {
         self.hint.as_deref()

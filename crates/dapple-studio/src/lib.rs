@@ -1,9 +1,11 @@
-//! A page to look at recipes while they are made: what it asks, what it gets, and the local server that serves it.
+//! Recipe editor: the messages between a page and the studio, the session of a page, its renderer, and the local
+//! server.
 //!
-//! The text of a recipe, in TOML, is the document. A [`Document`] holds it with what is read in it or wrong with it; an
-//! [`Op`] is a small change of the recipe, which [`apply`] makes as a small change of the text; a [`Graph`] is the nodes
-//! with what each is made of. A [`Session`] is the state of one page, and a [`Renderer`] draws what it shows. None of these
-//! touches files, sockets or threads. [`serve`] does, behind the feature `server`.
+//! The document is the text of a recipe, in TOML. A [`Document`] holds this text together with the parsed recipe or
+//! its errors. An [`Op`] is a small edit of the recipe, and [`apply`] carries it out as a small edit of the text. A
+//! [`Graph`] lists the nodes and the inputs of each. A [`Session`] is the state of one page, and a [`Renderer`]
+//! renders the images that the page shows. None of these uses files, sockets or threads. Only [`serve`] does, behind
+//! the feature `server`.
 //!
 //! ```
 //! use dapple_studio::{Document, Op, apply};

@@ -1,4 +1,4 @@
-//! Messages between a page and the studio. They are JSON objects with a `type`; pictures are bytes.
+//! Messages between a page and the studio. Messages are JSON objects with a `type`; images are sent as bytes.
 
 use crate::render::{MAX_SIDE, MAX_TILE};
 use crate::schema::Kind;
@@ -8,70 +8,71 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value as Json;
 use std::sync::OnceLock;
 
-/// A message of a page.
+/// A message from a page.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(tag = "type", rename_all = "snake_case", deny_unknown_fields)]
 pub enum Request {
-    /// Another recipe: one of the three.
+    /// Opens another recipe. Exactly one of the three fields must be set.
     Open {
-        /// A built-in one.
+        /// The name of a built-in recipe.
         builtin: Option<String>,
-        /// A file in the folder.
+        /// The name of a file in the folder.
         file: Option<String>,
-        /// A text of one's own.
+        /// The text of a recipe.
         text: Option<String>,
     },
     /// The whole text after a change.
     Doc {
-        /// Counts the states of the text.
+        /// Revision of the text, counted by the page.
         rev: u64,
         /// The text.
         text: String,
     },
-    /// A small change of the recipe.
+    /// A small edit of the recipe.
     Patch {
-        /// The state of the text that it belongs to.
+        /// Revision of the text that the edit applies to.
         rev: u64,
-        /// The changes, one after the other.
+        /// The edits, applied in order.
         ops: Vec<Op>,
-        /// Whether it is a part of a drag.
+        /// Whether the edit is part of a drag.
         #[serde(default)]
         drag: bool,
     },
-    /// The pictures that the page shows.
+    /// The images that the page shows.
     View(View),
-    /// A picture has been drawn, so that the next one of the map may come.
+    /// Acknowledges that the page has drawn an image, which releases the next image of the map.
     Ack {
-        /// The generation of the picture.
+        /// The generation of the image.
         generation: u32,
-        /// The number of the map.
+        /// The code of the map.
         map: u16,
     },
-    /// Asks for seam reports of the maps.
+    /// Requests seam reports of the maps.
     Seams {
         /// Columns and rows of the tile.
         size: [u32; 2],
     },
-    /// Small pictures of the built-in recipes and of those in the folder, when there is time.
+    /// Requests thumbnails of the built-in recipes and of the recipes in the folder, rendered at low priority.
     Gallery {
-        /// The longer side of a picture, in pixels.
+        /// The longer side of a thumbnail, in pixels.
         size: u32,
     },
-    /// A row of small pictures of what changes would make of the recipe, when there is time; the last one asked for counts.
+    /// Requests a strip of thumbnails that show the effect of edits, rendered at low priority. A new strip replaces
+    /// the previous one.
     Strip {
-        /// The node that is shown; the material in light by default.
+        /// The node to show. Default: the lit material.
         node: Option<String>,
-        /// The changes of each picture.
+        /// The edits of each thumbnail.
         changes: Vec<Vec<Op>>,
-        /// The longer side of a picture, in pixels.
+        /// The longer side of a thumbnail, in pixels.
         size: u32,
     },
-    /// The control points of a node.
+    /// Requests the control points of a node.
     Points {
         /// The node.
         node: String,
     },
-    /// The recipe as a program, or as text.
+    /// Requests the recipe as a program or as text.
     Code {
         /// The language.
         kind: CodeKind,
@@ -80,9 +81,9 @@ pub enum Request {
         /// The names of the maps.
         maps: Option<Vec<String>>,
     },
-    /// The files that a bake makes.
+    /// Requests the files of a bake.
     Export(Export),
-    /// Stops the exports that the page has asked for.
+    /// Stops all exports of the page.
     Stop,
     /// Writes the recipe into its folder.
     Save {
@@ -90,15 +91,15 @@ pub enum Request {
         text: String,
         /// The name of the file.
         file: String,
-        /// Whether a file that has changed is replaced.
+        /// Whether to replace a file that has changed on disk.
         #[serde(default)]
         overwrite: bool,
-        /// The hash of the file when it was read; none for a new file.
+        /// The hash of the file when it was read. `None` for a new file.
         seen: Option<String>,
     },
 }
 
-/// The pictures that a page shows.
+/// The images that a page shows.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct View {
@@ -106,19 +107,19 @@ pub struct View {
     pub size: [u32; 2],
     /// The names of the maps.
     pub maps: Vec<String>,
-    /// The part of the tile; all of it by default.
+    /// The visible part of the tile. Default: the whole tile.
     pub region: Option<Area>,
-    /// The node whose picture is wanted in place of maps.
+    /// The node to show instead of maps.
     pub node: Option<String>,
-    /// The part of a loop that has passed, from 0 to 1.
+    /// Phase of the loop, from 0 to 1.
     pub time: f64,
-    /// Whether a small picture is wanted first.
+    /// Whether to send a draft (a smaller image) first.
     pub draft: bool,
-    /// Whether a small picture of each node is wanted.
+    /// Whether to send a thumbnail of each node.
     pub thumbnails: bool,
-    /// Whether nothing is to be drawn.
+    /// Whether rendering is paused.
     pub paused: bool,
-    /// A lit preview, made exactly.
+    /// The lit preview to render on the CPU, if any.
     pub exact: Option<Exact>,
 }
 
@@ -138,7 +139,7 @@ impl Default for View {
     }
 }
 
-/// A part of a picture, in pixels.
+/// A rectangle of an image, in pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Area {
@@ -148,31 +149,31 @@ pub struct Area {
     pub size: [u32; 2],
 }
 
-/// A lit preview.
+/// A lit preview, rendered on the CPU.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Exact {
-    /// The shape that the material is on.
+    /// The shape that carries the material.
     pub shape: Shape,
 }
 
-/// The shape that a material is on.
+/// A shape that carries a material in a lit preview.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Shape {
     /// A plane of 2 x 2 tiles.
     Plane,
-    /// A ball.
+    /// A sphere.
     Sphere,
-    /// A ring.
+    /// A torus.
     Torus,
 }
 
-/// The languages in which a recipe can be had.
+/// The languages in which a recipe can be shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum CodeKind {
-    /// The text itself.
+    /// TOML, the text itself.
     Toml,
     /// JSON.
     Json,
@@ -184,105 +185,105 @@ pub enum CodeKind {
     Command,
 }
 
-/// The files of a bake.
+/// Options of an export, which makes the files of a bake.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Export {
     /// Columns and rows of the tile.
     pub size: Option<[u32; 2]>,
-    /// The names of the maps; not beside `preset`.
+    /// The names of the maps. Not allowed together with `preset`.
     pub maps: Option<Vec<String>>,
-    /// The program that the files are for.
+    /// The program that will read the files.
     pub preset: Option<String>,
-    /// The format, such as `png8`; not beside `preset`.
+    /// The format, such as `png8`. Not allowed together with `preset`.
     pub format: Option<String>,
-    /// Where green points in normal maps.
+    /// The direction of the green channel of normal maps.
     pub normal_y: Option<String>,
-    /// The number of the picture of a loop, from 1, and how many there are.
+    /// A frame of a loop: its number, starting at 1, and the number of frames.
     pub frame: Option<[u32; 2]>,
 }
 
-/// A message of the studio.
+/// A message from the studio.
 #[derive(Clone, Debug, Serialize)]
 #[serde(tag = "type", rename_all = "snake_case")]
 pub enum Reply {
-    /// The first message: the recipes, nodes and maps that this program has.
+    /// The first message: the recipes, nodes and maps that this program offers.
     Hello(Box<Hello>),
     /// A recipe that was opened.
     Document {
-        /// The state of the text: 0.
+        /// Revision of the text, always 0.
         rev: u64,
         /// The text.
         text: String,
         /// The name of the recipe.
         name: String,
-        /// The file, if it is one.
+        /// The name of the file, if the recipe was opened from one.
         file: Option<String>,
         /// The hash of the file.
         hash: Option<String>,
     },
-    /// A change of the text.
+    /// An edit of the text.
     Edits {
-        /// The new state of the text.
+        /// The revision of the text after the edit.
         rev: u64,
-        /// The changes of the text before, sorted.
+        /// The changes, sorted by position in the text before the edit.
         changes: Vec<Change>,
-        /// Whether it is a part of a drag.
+        /// Whether the edit is part of a drag.
         drag: bool,
     },
-    /// A change was not made, since the text is in another state.
+    /// An edit was rejected because the text is at another revision.
     Stale {
-        /// The state of the text here.
+        /// The current revision of the text.
         rev: u64,
     },
-    /// The mistakes of the recipe; none if all is well.
+    /// The errors in the recipe. The list is empty for a valid recipe.
     Diagnostics {
-        /// The state of the text.
+        /// Revision of the text.
         rev: u64,
-        /// The mistakes.
+        /// The errors.
         items: Vec<Diagnostic>,
     },
     /// The nodes of a recipe.
     Graph {
-        /// The state of the text.
+        /// Revision of the text.
         rev: u64,
         /// The graph.
         #[serde(flatten)]
         graph: Graph,
     },
-    /// The data of a recipe, as it is written.
+    /// The data of a recipe as written.
     Values {
-        /// The state of the text.
+        /// Revision of the text.
         rev: u64,
         /// The data.
         recipe: Json,
     },
-    /// Pictures of a generation follow.
+    /// Announces a generation whose images follow.
     Began {
         /// The generation.
         generation: u32,
         /// Columns and rows of the whole tile.
         size: [u32; 2],
-        /// The part of the tile, if it is not all of it.
+        /// The rectangle that is rendered. `None` for the whole tile.
         region: Option<Area>,
-        /// The node, if it is not the maps.
+        /// The node that is rendered. `None` for maps.
         node: Option<String>,
-        /// The part of a loop that has passed.
+        /// Phase of the loop, from 0 to 1.
         time: f64,
-        /// Whether a small picture may come first.
+        /// Whether drafts may come first.
         draft: bool,
     },
-    /// All pictures of a generation have been made.
+    /// All images of a generation, or all drafts of it, have been sent.
     Rendered {
         /// The generation.
         generation: u32,
-        /// The state of the text.
+        /// Revision of the text.
         rev: u64,
-        /// The time that drawing took, in milliseconds.
+        /// Rendering time, in milliseconds.
         ms: f64,
-        /// Whether larger pictures follow.
+        /// Whether images of full size follow.
         draft: bool,
-        /// The nodes with how long the thumbnail of each took, if there are any.
+        /// The nodes and the rendering time of their thumbnails, if thumbnails were requested.
         nodes: Option<Vec<NodeTime>>,
     },
     /// Seam reports of the maps.
@@ -292,16 +293,16 @@ pub enum Reply {
     },
     /// The control points of a node.
     Points(Box<Points>),
-    /// A program or a text.
+    /// The recipe as a program or as text.
     Code {
         /// The language.
         kind: CodeKind,
         /// The text.
         text: String,
     },
-    /// Files that were made.
+    /// The files of a finished export.
     Exported {
-        /// The name under which they lie.
+        /// The id of the export, the first part of the download addresses.
         id: String,
         /// The files.
         files: Vec<FileSize>,
@@ -310,33 +311,33 @@ pub enum Reply {
     Saved {
         /// The file.
         file: String,
-        /// Its hash.
+        /// The hash of the file.
         hash: String,
     },
-    /// The file has changed.
+    /// The open file has changed on disk.
     Disk {
         /// Its new text.
         text: String,
-        /// Its hash.
+        /// The hash of the file.
         hash: String,
-        /// Its name.
+        /// The name of the file.
         file: String,
     },
-    /// Something was refused.
+    /// A request was refused.
     Refused {
         /// The type of the request.
         what: String,
         /// The reason, as a sentence.
         message: String,
-        /// A way around it.
+        /// How to avoid the error.
         hint: Option<String>,
-        /// A word by which a program knows it: `changed_on_disk`.
+        /// A reason code for programs, such as `changed_on_disk`.
         reason: Option<&'static str>,
     },
 }
 
 impl Reply {
-    /// A refusal of a request of this type.
+    /// The refusal of a request of type `what`.
     #[must_use]
     pub fn refused(what: &str, error: &StudioError) -> Self {
         Self::Refused {
@@ -348,14 +349,14 @@ impl Reply {
     }
 }
 
-/// The recipes, kinds of nodes, maps and presets that a program has.
+/// The recipes, kinds of nodes, maps and presets that this program offers.
 #[derive(Clone, Debug, Serialize)]
 pub struct Hello {
     version: &'static str,
-    /// What the page may do.
+    /// The rights of the page.
     pub mode: Mode,
     builtins: Vec<Named>,
-    /// Recipes in the folder.
+    /// The names of the recipes in the folder.
     pub(crate) files: Vec<String>,
     schema: &'static Json,
     kinds: Vec<Kind>,
@@ -369,35 +370,35 @@ pub struct Hello {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Mode {
-    /// Everything.
+    /// All requests are allowed.
     #[default]
     Studio,
-    /// Look at a file that is changed elsewhere.
+    /// The page shows a file that is edited elsewhere and cannot save.
     Watch,
-    /// Everything but files.
+    /// The page has no access to files.
     Static,
 }
 
-/// Something with a name and a sentence about it.
+/// A name with a one-sentence description.
 #[derive(Clone, Debug, Serialize)]
 pub struct Named {
     /// The name.
     pub name: String,
-    /// A sentence.
+    /// The description.
     pub about: String,
 }
 
-/// Limits of what a page may ask for.
+/// Limits on the requests of a page.
 #[derive(Clone, Debug, Serialize)]
 struct Limits {
-    /// The longest side of a picture.
+    /// Maximum side of an image, in pixels.
     size: u32,
-    /// The longest side of a tile of which a part is shown.
+    /// Maximum side of a tile of which only a part is shown, in pixels.
     whole: u32,
 }
 
 impl Hello {
-    /// The greeting of this program, which is made once.
+    /// Returns the greeting of this program, which is built once and cached.
     #[must_use]
     pub fn new() -> Self {
         static HELLO: OnceLock<Hello> = OnceLock::new();
@@ -441,7 +442,7 @@ impl Default for Hello {
     }
 }
 
-/// A sentence about a map.
+/// A one-sentence description of a map.
 fn about(kind: MapKind) -> &'static str {
     match kind {
         MapKind::Height => "How high the surface is",
@@ -456,14 +457,14 @@ fn about(kind: MapKind) -> &'static str {
     }
 }
 
-/// The time that the thumbnail of a node took.
+/// The rendering time of a node's thumbnail.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct NodeTime {
     /// The node.
     pub name: String,
-    /// Milliseconds for its thumbnail, without what it is made of.
+    /// Rendering time of the thumbnail in milliseconds, without the node's inputs.
     pub ms: f64,
-    /// The numbers that are black and white in its thumbnail; none for colors.
+    /// The values shown as black and as white. `None` for colors.
     pub range: Option<[f32; 2]>,
 }
 
@@ -480,37 +481,37 @@ pub struct MapSeams {
 #[derive(Clone, Debug, Serialize)]
 pub struct Points {
     pub(crate) node: String,
-    /// Whether the points are in the text.
+    /// Whether the points are part of the text.
     pub(crate) editable: bool,
-    /// Whether the op `make_points` can put them there.
+    /// Whether the op `make_points` can write the points into the text.
     pub(crate) can_be_editable: bool,
-    /// The number of nets of points that the texture has; the points are those of the coarsest.
+    /// Number of layers of points in the texture. `points` belong to the coarsest layer.
     pub(crate) layers: usize,
     pub(crate) extent: [f64; 2],
     pub(crate) wrap: [bool; 2],
-    /// The points, each with its value, and with its label if it has one.
+    /// The points with their values, and their labels if they have any.
     pub(crate) points: Vec<dapple::recipe::ControlPoint>,
-    /// The values of labels; none where points have no labels.
+    /// The values of the labels. Empty if the points have no labels.
     pub(crate) values: Vec<f32>,
-    /// The indices of two points, and the way from the first to the second, each edge once.
+    /// The edges, each listed once: the indices of two points, and the vector from the first to the second.
     pub(crate) edges: Vec<(u32, u32, f64, f64)>,
 }
 
 /// A file and its length.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct FileSize {
-    /// Its name.
+    /// The name of the file.
     pub name: String,
-    /// Its bytes.
+    /// The length in bytes.
     pub bytes: usize,
 }
 
-/// A message or a picture for a page.
+/// A message or an image for a page.
 #[derive(Clone, Debug)]
 pub enum Output {
     /// A message.
     Reply(Reply),
-    /// A picture.
+    /// An image.
     Picture(Picture),
 }
 

@@ -1,4 +1,4 @@
-//! Small changes of a recipe as small changes of its text: comments, order and the way numbers are written stay.
+//! Small edits of a recipe as small edits of its text. Comments, order and number formats are preserved.
 
 mod nodes;
 mod place;
@@ -12,13 +12,13 @@ use serde_json::Value as Json;
 pub(crate) use splice::spliced;
 use toml_edit::DocumentMut;
 
-/// A part of a path: a key of a table, or an index of a list.
+/// A component of a path: a key of a table or an index of an array.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum Part {
-    /// The index of an element, from 0.
+    /// An index, starting at 0.
     Index(usize),
-    /// The name of an entry.
+    /// A key.
     Key(String),
 }
 
@@ -34,83 +34,84 @@ impl From<usize> for Part {
     }
 }
 
-/// A small change of a recipe. Paths are keys and indices as in JSON, such as `["nodes", "tint", "ramp", "colors", 2]`.
+/// A small edit of a recipe. Paths are keys and indices as in JSON, such as `["nodes", "tint", "ramp", "colors", 2]`.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(tag = "op", rename_all = "snake_case", deny_unknown_fields)]
 pub enum Op {
-    /// Gives a value to what the path leads to. Tables on the way that are not there are made.
+    /// Sets the value at a path. Missing tables on the path are created.
     Set {
-        /// The way to it from the root.
+        /// The path from the root.
         path: Vec<Part>,
         /// The value.
         value: Json,
     },
-    /// Takes an entry or an element away.
+    /// Removes an entry or an element.
     Remove {
-        /// The way to it from the root.
+        /// The path from the root.
         path: Vec<Part>,
     },
-    /// Puts an element into a list, which is made if it is not there.
+    /// Inserts an element into an array, which is created if missing.
     Insert {
-        /// The list.
+        /// The path of the array.
         path: Vec<Part>,
         /// The index of the new element.
         index: usize,
         /// The element.
         value: Json,
     },
-    /// Adds a node after all others.
+    /// Adds a node after all other nodes.
     AddNode {
-        /// Its name.
+        /// The name of the node.
         name: String,
-        /// Its kind, one of [`KINDS`](dapple::recipe::KINDS).
+        /// The kind of the node, one of [`KINDS`](dapple::recipe::KINDS).
         kind: String,
-        /// Its options.
+        /// The options of the node.
         value: Json,
     },
-    /// Takes a node away.
+    /// Removes a node.
     RemoveNode {
-        /// Its name.
+        /// The name of the node.
         name: String,
     },
-    /// Gives a node another name. Inputs that name it follow; what draws by the old name still does, this node too.
+    /// Renames a node and the inputs that refer to it. Random streams derived from the old name are kept, including
+    /// the node's own.
     RenameNode {
-        /// Its name.
+        /// The current name.
         name: String,
         /// The new name.
         to: String,
     },
-    /// Adds a copy of a node, which draws by the name of the first where it has a seed.
+    /// Adds a copy of a node. If the node has a seed, the copy uses the random stream of the original.
     DuplicateNode {
-        /// Its name.
+        /// The name of the original.
         name: String,
         /// The name of the copy.
         to: String,
     },
-    /// Gives a node an input.
+    /// Connects an input of a node.
     Connect {
         /// The node.
         node: String,
-        /// The way to the input within the node, from its kind on, such as `["mix", "by"]`.
+        /// The path of the input within the node, starting at its kind, such as `["mix", "by"]`.
         input: Vec<Part>,
-        /// A name of a node, a color or a number.
+        /// The name of a node, a color or a number.
         from: Json,
     },
-    /// Makes a PUPs texture one of points that are in the text, with the same picture.
+    /// Converts a PUPs texture to one whose control points are part of the text. The image stays the same.
     MakePoints {
         /// The node.
         node: String,
-        /// The options of the texture of points, which a [`Session`](crate::Session) fills in.
+        /// The options of the converted texture, filled in by a [`Session`](crate::Session).
         #[serde(skip)]
         points: Option<Json>,
     },
 }
 
-/// The text after some changes, one after the other.
+/// Applies edits to a text, in order, and returns the new text.
 ///
 /// # Errors
 ///
-/// If the text is no TOML, or a change does not fit it; then nothing is changed.
+/// If the text is not valid TOML or an edit does not fit it. In both cases the text is unchanged.
 pub fn apply(text: &str, ops: &[Op]) -> Result<String, StudioError> {
     let mut document: DocumentMut = text.parse().map_err(|error: toml_edit::TomlError| {
         StudioError::new(format!("the text is no TOML yet: {}", error.message()))
@@ -119,7 +120,7 @@ pub fn apply(text: &str, ops: &[Op]) -> Result<String, StudioError> {
         apply_one(&mut document, op)?;
     }
     let new = document.to_string();
-    // What is written is read again, so that no change can break the text.
+    // Parse the result again, so that no edit can break the text.
     let read: DocumentMut = new.parse().map_err(|_| not_here())?;
     if json_of_table(&read) != json_of_table(&document) {
         return Err(not_here());

@@ -1,4 +1,4 @@
-//! How well the maps of a recipe repeat.
+//! Seam reports: measure how well the maps of a recipe tile.
 
 use crate::StudioError;
 use crate::message::MapSeams;
@@ -7,7 +7,7 @@ use dapple::raster::Raster;
 use dapple::recipe::{Bake, BakeOptions, Images, MapKind, MapRows, Recipe};
 use dapple::tile::{SeamOptions, SeamReport, TileError};
 
-/// The maps that are looked at: all others are made of these.
+/// The measured maps. All other maps are derived from these.
 const MAPS: [MapKind; 4] = [
     MapKind::Height,
     MapKind::Normal,
@@ -15,7 +15,7 @@ const MAPS: [MapKind; 4] = [
     MapKind::Roughness,
 ];
 
-/// The reports of the maps of a recipe.
+/// Returns a seam report for each map of a recipe, taken from the channel with the largest seam ratio.
 pub(crate) fn report(
     recipe: &Recipe,
     images: &Images,
@@ -67,7 +67,7 @@ fn map_seams(kind: MapKind, report: &SeamReport) -> MapSeams {
     }
 }
 
-/// The numbers of a map, a raster for each channel.
+/// Splits a map into one raster per channel.
 fn channels(rows: &MapRows) -> Result<Vec<Raster<f32>>, TileError> {
     Ok(match rows {
         MapRows::Gray(raster) => vec![raster.clone()],

@@ -1,7 +1,7 @@
 //! The local server of the page.
 //!
-//! It answers on 127.0.0.1 alone, and only to a page that was opened with the secret of this run: see `guard.rs`. Each page
-//! has a session, which answers at once, and a thread that draws, of which only the newest state is kept.
+//! It listens on 127.0.0.1 only, and serves only a page that was opened with the token of this run: see `guard.rs`.
+//! Each page has a session, which answers requests, and a rendering thread, which keeps only the newest state.
 
 mod browser;
 mod connections;
@@ -35,20 +35,20 @@ use std::time::Duration;
 use tokio::net::TcpListener;
 use tokio::sync::{Notify, Semaphore};
 
-/// The program around the server. It reads images and makes files, so that they are those of its other commands.
+/// The program that runs the server. It loads images and exports files, so that both work as in its other commands.
 pub trait Host: Send + Sync {
-    /// The images that a recipe names, from its folder. The names have been checked.
+    /// Loads the images that a recipe names, from its folder. The names have been validated.
     ///
     /// # Errors
     ///
-    /// If one of them cannot be read.
+    /// If an image cannot be read.
     fn images(&self, recipe: &Recipe, folder: &Path) -> Result<Images, StudioError>;
 
-    /// The files of a bake, by their names. It ends early once `stop` is true.
+    /// Renders the files of a bake and returns them with their names. It ends early once `stop` is true.
     ///
     /// # Errors
     ///
-    /// The refusal of the bake, or that it was stopped.
+    /// If the bake is refused or was stopped.
     fn export(
         &self,
         recipe: &Recipe,
@@ -57,21 +57,21 @@ pub trait Host: Send + Sync {
         stop: &Arc<AtomicBool>,
     ) -> Result<Vec<ExportedFile>, StudioError>;
 
-    /// The picture of a lit material.
+    /// Renders the preview of a lit material.
     ///
     /// # Errors
     ///
-    /// The refusal of the bake.
+    /// If the bake is refused.
     fn preview(&self, lit: &Lit<'_>) -> Result<Raster<LinearRgb>, StudioError>;
 
-    /// The programs that files can be made for.
+    /// The presets of exports: the programs that the files can be made for.
     fn presets(&self) -> Vec<Named>;
 }
 
 /// A file of an export.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ExportedFile {
-    /// Its name, without a folder.
+    /// The name of the file, without a folder.
     pub name: String,
     /// The content of the file.
     pub bytes: Vec<u8>,
@@ -80,21 +80,21 @@ pub struct ExportedFile {
 /// Options of the server.
 #[derive(Clone, Debug, Default)]
 pub struct ServeOptions {
-    /// The port; any free one for 0, which is the default.
+    /// The port. Default: 0, any free port.
     pub port: u16,
-    /// The address of the page in browsers, where a proxy forwards it to the port.
+    /// The address of the page in browsers, for use behind a proxy that forwards to the port.
     pub public_url: Option<String>,
-    /// Whether the browser is left alone.
+    /// If true, no browser is opened.
     pub no_open: bool,
     /// Whether the server ends when the last page is closed.
     pub once: bool,
     /// The rights of pages.
     pub mode: Mode,
-    /// The recipe that a page begins with: a built-in one, or a file in the folder.
+    /// The recipe to open in every page: the name of a built-in recipe or of a file in the folder.
     pub recipe: Option<String>,
-    /// The folder of the recipes and their images; the current one by default.
+    /// The folder of the recipes and their images. Default: the current folder.
     pub folder: PathBuf,
-    /// A folder with another page than the one that is part of the program, for those who work on the page.
+    /// A folder with the files of the page, used instead of the built-in page, for developers of the page.
     pub dist: Option<PathBuf>,
 }
 
@@ -105,42 +105,42 @@ struct Shared {
     guard: Guard,
     folder: Folder,
     exports: Exports,
-    /// Values of nodes that were drawn for any page.
+    /// Cache of node values, shared by the renderers of all pages.
     memory: PlanCache,
-    /// Small pictures of recipes, by their texts and sides.
+    /// Cache of recipe thumbnails.
     gallery: Gallery,
-    /// The places of pages that are not taken.
+    /// Permits for pages.
     pages: Arc<Semaphore>,
-    /// Exports are made one after the other, whoever asks: each needs the memory of a bake.
+    /// Lock that serializes exports of all pages, since each needs the memory of a bake.
     exporting: Mutex<()>,
     way: Way,
     closed: Notify,
 }
 
-/// The most pages at once.
+/// Maximum number of simultaneous pages.
 const MOST_PAGES: usize = 16;
 
-/// How long a page may be gone before a server with `once` ends: a page that is loaded again comes back.
+/// How long a server with `once` waits for a reloaded page to reconnect before it ends.
 const GRACE: Duration = Duration::from_secs(2);
 
-/// Whether the page is part of this program. Without it the server answers, and its page says how to build it.
+/// Whether the page is built into this program. Otherwise the server sends a page that says how to build it.
 #[must_use]
 pub fn has_page() -> bool {
     page::is_built()
 }
 
-/// The texts of the licenses of other people's code in the page, if the page is part of this program.
+/// The license texts of third-party code in the page. `None` if the page is not built into this program.
 #[must_use]
 pub fn page_licenses() -> Option<&'static str> {
     page::licenses()
 }
 
-/// Serves the page until the process ends or, with [`once`](ServeOptions::once), until the last page is closed. Gives the
-/// address to `tell` as soon as it can be opened.
+/// Serves the page until the process ends. With [`once`](ServeOptions::once), serves until the last page is closed.
+/// Calls `tell` with the address as soon as the address can be opened.
 ///
 /// # Errors
 ///
-/// If the port is taken, the public URL is none, or the folder cannot be read.
+/// If the port is in use, the public URL is invalid, or the folder cannot be read.
 pub fn serve(
     options: ServeOptions,
     host: Arc<dyn Host>,
@@ -188,7 +188,7 @@ async fn run(
         way: Way::default(),
         closed: Notify::new(),
     });
-    // The first greeting is made while the browser begins.
+    // Build the greeting while the browser starts.
     drop(std::thread::spawn(Hello::new));
     tell(&url);
     if !no_open {
@@ -204,18 +204,18 @@ async fn run(
 }
 
 impl Shared {
-    /// The folder of the images of a recipe, which names none outside of it.
+    /// The folder of a recipe's images. Refuses a recipe that names images outside of the folder.
     fn of_images(&self, recipe: &Recipe) -> Result<&Path, StudioError> {
         self.folder.check_images(recipe)?;
         Ok(self.folder.path())
     }
 
-    /// The images of a recipe, from its folder alone.
+    /// Loads the images of a recipe from its folder.
     fn images(&self, recipe: &Recipe) -> Result<Images, StudioError> {
         self.host.images(recipe, self.of_images(recipe)?)
     }
 
-    /// Waits until the last page is closed, where the server ends then.
+    /// Waits until the last page is closed, if `once` is set. Otherwise never returns.
     async fn ended(&self) {
         loop {
             self.closed.notified().await;
@@ -230,7 +230,7 @@ impl Shared {
     }
 }
 
-/// Answers a request.
+/// Checks and answers an HTTP request.
 async fn answer(shared: Arc<Shared>, request: Request) -> Response {
     let mut response = match shared.guard.check(&request) {
         Err(refusal) => (StatusCode::FORBIDDEN, refusal).into_response(),

@@ -1,4 +1,4 @@
-//! The state of one page: the text, what is to be seen, and which picture of it is the newest.
+//! The state of one page: the text, the view, and the newest generation of images.
 
 use crate::change::changes;
 use crate::message::{Reply, Request, View};
@@ -8,17 +8,18 @@ use crate::{Document, StudioError, Variant, points, strip};
 use dapple::recipe::{Images, Recipe};
 use std::sync::Arc;
 
-/// Gives the images that a recipe names.
+/// Loads the images that a recipe names.
 pub type ImagesOf<'a> = &'a dyn Fn(&Recipe) -> Result<Images, StudioError>;
 
-/// The state of one page. It answers at once what needs no drawing; what is to be drawn is a [`Job`].
+/// The state of one page. Requests that need no rendering are answered immediately; rendering is returned as a
+/// [`Job`].
 #[derive(Debug)]
 pub struct Session {
     document: Arc<Document>,
     rev: u64,
     view: View,
     generation: u32,
-    /// Whether something has changed since the last job.
+    /// Whether the text, the view or an image file has changed since the last job.
     is_new: bool,
 }
 
@@ -29,7 +30,7 @@ impl Default for Session {
 }
 
 impl Session {
-    /// A page that shows nothing yet.
+    /// Creates a session with an empty text and a paused view.
     #[must_use]
     pub fn new() -> Self {
         Self {
@@ -41,19 +42,20 @@ impl Session {
         }
     }
 
-    /// The text as it is now.
+    /// The current text.
     #[must_use]
     pub fn document(&self) -> &Arc<Document> {
         &self.document
     }
 
-    /// The pictures that the page shows.
+    /// The images that the page shows.
     #[must_use]
     pub fn view(&self) -> &View {
         &self.view
     }
 
-    /// Begins with another text.
+    /// Replaces the document by another text, at revision 0. `file` is the name of the text's file and the file's
+    /// hash.
     pub fn open(&mut self, text: &str, file: Option<(String, String)>) -> Vec<Reply> {
         self.rev = 0;
         let mut replies = self.put(Document::new(text));
@@ -78,7 +80,7 @@ impl Session {
         replies
     }
 
-    /// The text of a recipe that a page asks for, if that needs no file.
+    /// Returns the text of a recipe that a page opens from a built-in name or from text, without a file.
     fn text_of(builtin: Option<&str>, text: Option<String>) -> Result<String, StudioError> {
         match (builtin, text) {
             (Some(name), None) => Ok(Recipe::builtin_text(name)?.to_owned()),
@@ -87,7 +89,7 @@ impl Session {
         }
     }
 
-    /// Takes the whole text after a change.
+    /// Replaces the whole text after an edit in the page.
     fn doc(&mut self, rev: u64, text: &str) -> Vec<Reply> {
         self.rev = rev;
         if self.document.text() == text {
@@ -96,7 +98,7 @@ impl Session {
         self.put(Document::new(text))
     }
 
-    /// Makes small changes of the text.
+    /// Applies edits to the text if `rev` is the current revision.
     fn patch(&mut self, rev: u64, ops: &[Op], drag: bool, images: ImagesOf<'_>) -> Vec<Reply> {
         if rev != self.rev {
             return vec![Reply::Stale { rev: self.rev }];
@@ -129,7 +131,7 @@ impl Session {
         replies
     }
 
-    /// Shows something else.
+    /// Changes the view. A view that differs starts a new generation.
     fn look(&mut self, view: View) {
         self.is_new |= self.view != view;
         self.view = view;
@@ -138,7 +140,7 @@ impl Session {
         }
     }
 
-    /// Answers a request that needs no file and no drawing; none for others.
+    /// Answers a request that needs no file and no rendering. Returns `None` for other requests.
     pub fn handle(&mut self, request: &Request, images: ImagesOf<'_>) -> Option<Vec<Reply>> {
         Some(match request {
             Request::Open {
@@ -159,7 +161,7 @@ impl Session {
         })
     }
 
-    /// The pictures of a [`Request::Strip`]; none of other requests.
+    /// Returns the variants of a [`Request::Strip`], at most 12. The list is empty for other requests.
     #[must_use]
     pub fn strip(&self, request: Request) -> Vec<Variant> {
         let Request::Strip {
@@ -181,7 +183,7 @@ impl Session {
         (0..).zip(changes).take(strip::MOST).map(variant).collect()
     }
 
-    /// The job of drawing the text and the view as they are, if they have changed since the last one.
+    /// Returns a job that renders the current text and view, if either has changed since the last job.
     pub fn job(&mut self) -> Option<Job> {
         core::mem::take(&mut self.is_new).then(|| Job {
             generation: self.generation,
@@ -191,13 +193,13 @@ impl Session {
         })
     }
 
-    /// Draws again, since something beside the text has changed.
+    /// Starts a new generation because something other than the text has changed, such as an image file.
     pub fn renew(&mut self) {
         self.generation = self.generation.wrapping_add(1);
         self.is_new = true;
     }
 
-    /// The changes, with the points of the nodes whose points are to be editable.
+    /// Fills the control points into every [`Op::MakePoints`] that lacks them.
     fn with_points(&self, ops: &[Op], images: ImagesOf<'_>) -> Result<Vec<Op>, StudioError> {
         let with_points = |op: &Op| {
             let Op::MakePoints { node, points: None } = op else {
@@ -214,13 +216,14 @@ impl Session {
         ops.iter().map(with_points).collect()
     }
 
+    /// Replaces the document and returns its errors or its values.
     fn put(&mut self, document: Document) -> Vec<Reply> {
         self.document = Arc::new(document);
         self.renew();
         let mut replies = Vec::new();
         let items = self.document.diagnostics();
         if !items.is_empty() {
-            // What a plan refuses is found while it is drawn.
+            // Errors of the plan are reported later, when the recipe is rendered.
             replies.push(Reply::Diagnostics {
                 rev: self.rev,
                 items,
@@ -235,7 +238,7 @@ impl Session {
     }
 }
 
-/// The name of a file without its ending.
+/// The name of a file without its extension.
 fn stem(file: &str) -> &str {
     file.rsplit_once('.').map_or(file, |(stem, _)| stem)
 }

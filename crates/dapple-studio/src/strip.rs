@@ -1,4 +1,4 @@
-//! Small pictures of what changes would make of a recipe, such as a row of values of one parameter.
+//! Strips: thumbnails that show the effect of edits, such as several values of one parameter.
 
 use crate::picture::of_values;
 use crate::render::{LIMITS, size_of};
@@ -8,30 +8,30 @@ use crate::{
 use dapple::recipe::Plan;
 use std::sync::Arc;
 
-/// The most pictures of a strip.
+/// Maximum number of thumbnails in a strip.
 pub(crate) const MOST: usize = 12;
-/// The longest side of a picture, in pixels.
+/// Maximum side of a thumbnail, in pixels.
 const MAX_SIDE: u32 = 128;
 
-/// A picture of a strip.
+/// One thumbnail of a strip.
 #[derive(Clone, Debug)]
 pub struct Variant {
-    /// The recipe, which stays as it is.
+    /// The document, which the edits leave unchanged.
     pub document: Arc<Document>,
-    /// The changes whose effect is shown.
+    /// The edits to show.
     pub changes: Vec<Op>,
-    /// The node that is shown; the material in light by default.
+    /// The node to show. Default: the lit material.
     pub node: Option<String>,
-    /// The part of a loop that has passed, from 0 to 1.
+    /// Phase of the loop, from 0 to 1.
     pub time: f64,
-    /// The index of the picture.
+    /// The index of the thumbnail in the strip.
     pub index: u16,
-    /// Its longer side, in pixels.
+    /// The longer side of the thumbnail, in pixels.
     pub side: u32,
 }
 
 impl Renderer {
-    /// Draws a picture of a strip. Changes that the recipe refuses have no picture.
+    /// Renders and sends a thumbnail of a strip. If the edits give an invalid recipe, nothing is sent.
     pub fn draw_variant(&self, variant: &Variant, world: &dyn RenderHost) {
         if let Ok((size, pixels)) = self.pixels(variant, world) {
             let shown = Shown::Strip(variant.index);

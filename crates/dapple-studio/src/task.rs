@@ -1,4 +1,4 @@
-//! What a page asks for besides pictures and takes longer than an answer at once.
+//! Slow requests other than rendering: reports, programs and exports.
 
 use crate::code::Code;
 use crate::message::{Export, Reply, Request};
@@ -6,23 +6,23 @@ use crate::{Document, ImagesOf, Session, StudioError, points, seams};
 use dapple::recipe::Recipe;
 use std::sync::Arc;
 
-/// Makes the files of a bake, and tells of them.
+/// Makes the files of a bake and returns the message that lists them.
 pub type ExportOf<'a> = &'a dyn Fn(&Recipe, &Export) -> Result<Reply, StudioError>;
 
-/// A request for a report, a program or files, with the recipe that it is about.
+/// A request for a report, a program or files, together with the document it refers to.
 #[derive(Clone, Debug)]
 pub struct Task {
     document: Arc<Document>,
     time: f64,
-    /// The name of the recipe's file, or nothing.
+    /// The name of the recipe's file. Empty if there is no file.
     file: String,
     what: &'static str,
     request: Request,
 }
 
 impl Session {
-    /// What a request asks for that takes a while; none for other requests. `file` is the name of the recipe's file, or
-    /// nothing.
+    /// Returns the task for a slow request, and `None` for other requests. `file` is the name of the recipe's file,
+    /// or empty.
     #[must_use]
     pub fn task(&self, request: &Request, file: &str) -> Option<Task> {
         let what = match request {
@@ -49,7 +49,7 @@ impl Task {
         self.what
     }
 
-    /// The answer: what was asked for, or why it is refused.
+    /// Performs the task and returns the reply: the result, or the refusal.
     #[must_use]
     pub fn answer(&self, images: ImagesOf<'_>, export: ExportOf<'_>) -> Reply {
         self.reply(images, export)

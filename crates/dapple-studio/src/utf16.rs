@@ -1,19 +1,20 @@
-//! Positions of a text in UTF-16 code units, as JavaScript counts them.
+//! Positions in a text in UTF-16 code units, as counted by JavaScript.
 
 use core::ops::Range;
 
-/// Bytes between two positions that are known.
+/// Distance in bytes between cached positions.
 const STEP: usize = 1 << 10;
 
-/// Turns bytes of a text into code units and back.
+/// Converts byte offsets of a text to UTF-16 code units.
 #[derive(Clone, Debug)]
 pub(crate) struct Positions {
-    /// The code units before every [`STEP`]th byte, or before the character that it is in; none where all is ASCII.
+    /// The number of code units before every [`STEP`]th byte, rounded down to a character boundary. Empty if the text
+    /// is ASCII.
     known: Vec<usize>,
 }
 
 impl Positions {
-    /// The positions of a text.
+    /// Builds the positions of a text.
     pub(crate) fn new(text: &str) -> Self {
         let mut known = Vec::new();
         if !text.is_ascii() {
@@ -28,7 +29,7 @@ impl Positions {
         Self { known }
     }
 
-    /// The code units before a byte of the text.
+    /// The number of code units before a byte of the text.
     pub(crate) fn units(&self, text: &str, byte: usize) -> usize {
         let byte = floor(text, byte);
         let Some(&before) = self.known.get(byte / STEP) else {
@@ -41,13 +42,13 @@ impl Positions {
         before + text[start..byte].encode_utf16().count()
     }
 
-    /// A range of bytes as code units.
+    /// Converts a range of bytes to code units.
     pub(crate) fn span(&self, text: &str, bytes: Range<usize>) -> [usize; 2] {
         [self.units(text, bytes.start), self.units(text, bytes.end)]
     }
 }
 
-/// The start of the character in which a byte lies.
+/// Rounds a byte offset down to a character boundary.
 fn floor(text: &str, byte: usize) -> usize {
     let mut byte = byte.min(text.len());
     while !text.is_char_boundary(byte) {

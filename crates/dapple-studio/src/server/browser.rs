@@ -1,8 +1,8 @@
-//! Opens the browser without showing the secret of the run to other users of the machine.
+//! Opens the browser without revealing the token of the run to other users of the machine.
 //!
-//! The arguments of a program can be read by every user, and an address is an argument of the browser. So the browser is
-//! given a file that only its owner can read, and that leads to the address, as in Jupyter (CVE-2018-8768 and the change
-//! after it).
+//! Every user can read the arguments of a process, and the address is an argument of the browser. So the browser is
+//! given a file that only its owner can read and that redirects to the address, as in Jupyter (CVE-2018-8768 and the
+//! change after it).
 
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
@@ -10,25 +10,25 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 use tempfile::{Builder, NamedTempFile, TempPath};
 
-/// A file that leads to the address of the page. It is removed when the page is there.
+/// A temporary file that redirects to the address of the page. It is removed once the page has connected.
 #[derive(Default)]
 pub(super) struct Way {
     file: Mutex<Option<TempPath>>,
 }
 
-/// The longest time for which the file is kept.
+/// Maximum lifetime of the file.
 pub(super) const LONGEST: Duration = Duration::from_secs(60);
 
 impl Way {
-    /// Opens an address in the browser of the user. Where there is none, the address was printed.
+    /// Opens an address in the user's browser. Failures are ignored, since the address is also printed.
     pub(super) fn open(&self, url: &str) {
         let Ok(file) = write(url) else { return };
-        // Also where it cannot be opened: `close` removes it.
+        // Keep the file even if the browser fails to start: `close` removes it.
         let _ = open::that_detached(&*file);
         *self.lock() = Some(file);
     }
 
-    /// Removes the file: the page is there.
+    /// Removes the file once the page has connected.
     pub(super) fn close(&self) {
         drop(self.lock().take());
     }
@@ -38,7 +38,7 @@ impl Way {
     }
 }
 
-/// Writes the file that leads to an address.
+/// Writes the file that redirects to an address.
 fn write(url: &str) -> io::Result<TempPath> {
     let url = url.replace('&', "&amp;").replace('"', "&quot;");
     let mut file = home_of_snaps()
@@ -54,7 +54,7 @@ fn write(url: &str) -> io::Result<TempPath> {
     Ok(file.into_temp_path())
 }
 
-/// Creates a file that only this user can read, under a name that nobody can guess.
+/// Creates a file with a random name that only this user can read.
 fn create(folder: &Path) -> io::Result<NamedTempFile> {
     Builder::new()
         .prefix("dapple-studio-")
@@ -62,7 +62,8 @@ fn create(folder: &Path) -> io::Result<NamedTempFile> {
         .tempfile_in(folder)
 }
 
-/// The home of a user with programs from snaps: these see neither the folder of temporary files nor hidden folders.
+/// The home folder of a user who has snaps installed. Programs from snaps cannot read the temporary folder or hidden
+/// folders.
 fn home_of_snaps() -> Option<PathBuf> {
     let home = PathBuf::from(std::env::var_os("HOME")?);
     home.join("snap").is_dir().then_some(home)

@@ -1,6 +1,7 @@
-//! The connections of the server: how many there are, and for how long one may be silent.
+//! The connections of the server, with limits on their number and on their idle time.
 //!
-//! Anybody on this machine can connect, so that connections must not use up the handles that Save and the pages need.
+//! Every process on this machine can connect. The limits keep such connections from using up the file handles that
+//! saving and the pages need.
 
 use super::{Shared, answer};
 use axum::body::Body;
@@ -14,16 +15,17 @@ use tokio::net::{TcpListener, TcpStream};
 use tokio::sync::watch::{Receiver, channel};
 use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 
-/// The most connections at once, besides the sockets of pages; others wait. A process may have 256 handles on macOS.
+/// Maximum number of simultaneous connections, not counting the sockets of pages. Further connections wait. A process
+/// may have 256 handles on macOS.
 const MOST_CONNECTIONS: usize = 128;
-/// The longest time in which the head of a request must be there, and for which a connection may be kept for another.
+/// Maximum time to receive the head of a request, and to keep an idle connection open.
 const SILENCE: Duration = Duration::from_secs(5);
-/// How long answers may take after the server has ended.
+/// Time for pending responses to finish after the server has ended.
 const LAST: Duration = Duration::from_secs(10);
-/// The pause after the system had no handle.
+/// Delay before retrying when the system has no free handle.
 const PAUSE: Duration = Duration::from_millis(100);
 
-/// Answers until the server [ends](Shared::ended).
+/// Accepts connections until the server [ends](Shared::ended).
 pub(super) async fn serve(listener: TcpListener, shared: Arc<Shared>) {
     let free = Arc::new(Semaphore::new(MOST_CONNECTIONS));
     let (open, end) = channel(());
@@ -36,12 +38,12 @@ pub(super) async fn serve(listener: TcpListener, shared: Arc<Shared>) {
         }
     }
     drop((listener, open));
-    // What takes longer is left.
+    // Wait for pending responses, and abandon those that take longer.
     let all = free.acquire_many(MOST_CONNECTIONS as u32);
     let _ = tokio::time::timeout(LAST, all).await;
 }
 
-/// The next connection with its place among those that there may be.
+/// Accepts the next connection, with a permit.
 async fn next(
     listener: &TcpListener,
     free: &Arc<Semaphore>,
@@ -55,14 +57,14 @@ async fn next(
     }
 }
 
-/// Answers the requests of a connection beside all others.
+/// Answers the requests of a connection in a separate task.
 fn answer_on(
     stream: TcpStream,
     place: Option<OwnedSemaphorePermit>,
     shared: Arc<Shared>,
     mut end: Receiver<()>,
 ) {
-    // Small messages do not wait for others.
+    // Send small messages without delay.
     let _ = stream.set_nodelay(true);
     let service = service_fn(move |request: hyper::Request<hyper::body::Incoming>| {
         let shared = shared.clone();
@@ -75,7 +77,7 @@ fn answer_on(
         .with_upgrades();
     drop(tokio::spawn(async move {
         let mut connection = std::pin::pin!(connection);
-        // A connection that fails has nobody to tell.
+        // Errors of the connection are ignored, since no one is left to receive them.
         tokio::select! {
             _ = connection.as_mut() => {}
             _ = end.changed() => {

@@ -1,4 +1,4 @@
-//! Files that were made for a page to download. They lie in memory.
+//! Exported files, kept in memory until the page downloads them.
 
 use super::ExportedFile;
 use super::page::content_type;
@@ -10,10 +10,10 @@ use axum::response::{IntoResponse as _, Response};
 use std::collections::VecDeque;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// How many exports are kept.
+/// Maximum number of exports that are kept.
 const KEPT: usize = 4;
 
-/// The last exports.
+/// The most recent exports.
 #[derive(Default)]
 pub(super) struct Exports {
     all: Mutex<Made>,
@@ -22,12 +22,12 @@ pub(super) struct Exports {
 #[derive(Default)]
 struct Made {
     count: u64,
-    /// The content of a file is shared with the downloads of it.
+    /// Exports by id, oldest first, each with its files. A file's bytes are shared with its downloads.
     exports: VecDeque<(String, Vec<(String, Bytes)>)>,
 }
 
 impl Exports {
-    /// Keeps some files, and gives the name under which they lie, with their lengths.
+    /// Stores files, and returns the id of the export with the lengths of the files.
     pub(super) fn keep(&self, files: Vec<ExportedFile>) -> (String, Vec<FileSize>) {
         let sizes = files.iter().map(|file| FileSize {
             name: file.name.clone(),
@@ -46,7 +46,7 @@ impl Exports {
         (id, sizes)
     }
 
-    /// The file of an address such as `1/rock_height.png`.
+    /// Answers a download from an address such as `1/rock_height.png`.
     pub(super) fn get(&self, address: &str) -> Response {
         let Some((id, name)) = address.split_once('/') else {
             return StatusCode::NOT_FOUND.into_response();
@@ -58,7 +58,7 @@ impl Exports {
         let Some((name, bytes)) = file else {
             return StatusCode::NOT_FOUND.into_response();
         };
-        // Names are made of plain characters: those of recipes and maps.
+        // Names consist of the names of recipes and maps. Replace characters that would break the header.
         let plain: String = name
             .chars()
             .map(|c| {
@@ -84,7 +84,7 @@ impl Exports {
     }
 }
 
-/// Whether a name of an address, with its percent signs, is that of a file.
+/// Whether a percent-encoded name of an address equals the name of a file.
 fn is_name(address: &str, name: &str) -> bool {
     super::files::decoded(address).as_deref() == Some(name)
 }

@@ -1,4 +1,4 @@
-//! The folder of the recipes: what may be read and written there, and nothing else.
+//! File access, restricted to the recipes and images of one folder.
 
 #![expect(
     clippy::disallowed_methods,
@@ -19,18 +19,19 @@ use std::io::Read as _;
 use std::path::{Component, Path, PathBuf};
 use toml_edit::DocumentMut;
 
-/// A folder, without what is hidden and what links in it lead to elsewhere.
+/// A folder of recipes. Hidden files, and links to files outside of the folder, are excluded.
 pub(super) struct Folder {
     path: PathBuf,
-    /// The recipe that the user named: it is read and written wherever it is linked from, and whatever it contains.
+    /// The recipe that the user named. It is read and written without these checks: its links may lead outside of the
+    /// folder, and its text need not be a recipe.
     named: Option<String>,
 }
 
-/// The most recipes that are listed.
+/// Maximum number of listed recipes.
 const MOST_RECIPES: usize = 500;
-/// The endings of images.
+/// File extensions of images.
 const IMAGES: [&str; 4] = ["png", "exr", "jpg", "jpeg"];
-/// The most bytes of an image that a page may see.
+/// Maximum size in bytes of an image sent to a page.
 const MOST_IMAGE_BYTES: u64 = 1 << 28;
 
 impl Folder {
@@ -52,7 +53,7 @@ impl Folder {
         &self.path
     }
 
-    /// The names of the recipes.
+    /// The names of the recipes in the folder, sorted.
     pub(super) fn recipes(&self) -> Vec<String> {
         let entries = fs::read_dir(&self.path).into_iter().flatten().flatten();
         let names = entries.filter_map(|entry| entry.file_name().into_string().ok());
@@ -68,7 +69,7 @@ impl Folder {
             .collect()
     }
 
-    /// The text of a recipe without its byte order mark, and the hash of the file.
+    /// Reads a recipe. Returns its text without the byte order mark, and the hash of the file.
     pub(super) fn read(&self, name: &str) -> Result<(String, String), StudioError> {
         let path = self.recipe(name)?;
         let cannot = |error: &dyn std::fmt::Display| {
@@ -90,7 +91,7 @@ impl Folder {
         Ok((text.to_owned(), hash))
     }
 
-    /// Writes a recipe, if the file there is still the one that was seen, and gives its hash.
+    /// Writes a recipe if the file still has the hash `seen` or `overwrite` is set. Returns the new hash.
     pub(super) fn save(
         &self,
         name: &str,
@@ -114,23 +115,23 @@ impl Folder {
                 let message = format!("{name} has changed since it was read, or is there already");
                 return Err(StudioError::new(message).with_reason("changed_on_disk"));
             }
-            // What a link leads to is replaced, and not the link.
+            // Replace the target of a link, not the link.
             path = self.recipe(name)?;
-            // The folder may permit what the permissions of the file do not.
+            // The folder may allow a replacement that the permissions of the file forbid.
             if fs::metadata(&path).is_ok_and(|found| found.permissions().readonly()) {
                 let hint = "make it writable, or save the recipe under another name";
                 let error = StudioError::new(format!("{name} is read-only"));
                 return Err(error.with_hint(hint));
             }
         }
-        // Saves of ended processes.
+        // Remove temporary files left behind by killed processes.
         dapple::image::remove_left_behind(&path);
         dapple::image::replace(&path, text.as_bytes())
             .map_err(|error| StudioError::new(format!("{name} cannot be written: {error}")))?;
         Ok(hash(text.as_bytes()))
     }
 
-    /// Refuses a recipe that names images outside of the folder.
+    /// Rejects a recipe that names images outside of the folder.
     pub(super) fn check_images(&self, recipe: &Recipe) -> Result<(), StudioError> {
         for file in recipe.image_files() {
             check_ending(file)?;
@@ -139,7 +140,7 @@ impl Folder {
         Ok(())
     }
 
-    /// The images of a recipe, and how their files were found, to know whether they have changed.
+    /// The paths of a recipe's images with the stamps of their files, for detecting changes.
     pub(super) fn image_stamps(&self, recipe: &Recipe) -> Vec<(PathBuf, Option<FileStamp>)> {
         let files = self.image_paths(recipe).into_iter();
         files
@@ -156,7 +157,7 @@ impl Folder {
         files.map(|file| self.path.join(file)).collect()
     }
 
-    /// An image, for the page.
+    /// Answers a request for an image.
     pub(super) fn image(&self, address: &str) -> Response {
         let read = || {
             let name = decoded(address)?;
@@ -173,12 +174,12 @@ impl Folder {
         }
     }
 
-    /// Whether a name is that of the recipe that the user named.
+    /// Whether a name is the recipe that the user named.
     fn is_named(&self, name: &str) -> bool {
         self.named.as_deref() == Some(name)
     }
 
-    /// The path of a recipe, wherever links lead.
+    /// The path of a recipe, with links resolved.
     fn recipe(&self, name: &str) -> Result<PathBuf, StudioError> {
         if self.is_named(name) {
             let path = self.path.join(name).canonicalize();
@@ -194,7 +195,7 @@ impl Folder {
         self.inside(Path::new(name))
     }
 
-    /// The path of a file in the folder, wherever links lead; not of one that is hidden, there or here.
+    /// The path of a file in the folder, with links resolved. Hidden files and links to hidden files are rejected.
     fn inside(&self, file: &Path) -> Result<PathBuf, StudioError> {
         let outside = |why: &str| StudioError::new(format!("{} {why}", file.display()));
         let elsewhere = "is not in the folder of the recipe";
@@ -222,14 +223,14 @@ impl Folder {
     }
 }
 
-/// Whether a part of a path begins with a dot.
+/// Whether a component of a path begins with a dot.
 fn is_hidden(path: &Path) -> bool {
     path.components()
         .any(|part| part.as_os_str().as_encoded_bytes().starts_with(b"."))
 }
 
-/// Whether a text is a recipe: it has the key `dapple`, and other programs' files in TOML have not. A text that is no
-/// TOML, as long as somebody writes it, has a line with this key before its first table.
+/// Whether a text is a recipe. A recipe has the key `dapple`, which TOML files of other programs lack. A text that is
+/// not valid TOML, for example while it is being edited, needs a line with this key before its first table.
 fn is_recipe(text: &str) -> bool {
     if let Ok(document) = text.parse::<DocumentMut>() {
         return document.contains_key("dapple");
@@ -249,7 +250,7 @@ fn no_recipe(name: &str) -> StudioError {
         .with_hint("a recipe is a file that ends in .toml and has `dapple = 1` at its top")
 }
 
-/// Refuses a name for a new recipe that means something to a system or a shell.
+/// Rejects names for new recipes that are special to a system or a shell.
 fn check_name(name: &str) -> Result<(), StudioError> {
     let is_plain = |c: char| c.is_alphanumeric() || " _-.".contains(c);
     let is_name = name.ends_with(".toml")
@@ -261,7 +262,7 @@ fn check_name(name: &str) -> Result<(), StudioError> {
         let hint = "take letters, digits, `_` and `-`, and let it end in .toml";
         return Err(wrong().with_hint(hint));
     }
-    // Windows has devices of these names, whatever follows a dot.
+    // Windows reserves these names for devices, with any extension.
     let stem = name.split('.').next().unwrap_or_default().trim_end();
     let stem = stem.to_ascii_uppercase();
     let is_numbered = ["COM", "LPT"].iter().any(|port| {
@@ -292,7 +293,7 @@ fn hash(bytes: &[u8]) -> String {
     digest.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// The text of an address with percent signs.
+/// Decodes percent-encoding.
 pub(super) fn decoded(address: &str) -> Option<String> {
     let mut bytes = Vec::new();
     let mut rest = address.as_bytes();

@@ -1,9 +1,9 @@
-//! Pictures on their way to a page: of each map one at a time, and none that is outdated.
+//! Flow control for images sent to a page: one in flight per map; stale ones are dropped.
 
 use crate::{Picture, Shown};
 use std::collections::{BTreeMap, VecDeque};
 
-/// The pictures that wait until the page has drawn those before.
+/// The images that wait for the page to acknowledge earlier ones.
 #[derive(Default)]
 pub(super) struct Flow {
     lanes: BTreeMap<Shown, Lane>,
@@ -11,13 +11,13 @@ pub(super) struct Flow {
 
 #[derive(Default)]
 struct Lane {
-    /// Whether a picture is under way.
+    /// Whether an image is in flight.
     is_busy: bool,
     waiting: VecDeque<Picture>,
 }
 
 impl Flow {
-    /// Takes a picture, and gives it back if it can be sent at once.
+    /// Queues an image. Returns it if it can be sent immediately.
     pub(super) fn put(&mut self, picture: Picture) -> Option<Picture> {
         let lane = self.lanes.entry(picture.shown).or_default();
         let is_outdated = |old: &Picture| {
@@ -32,7 +32,7 @@ impl Flow {
         Some(picture)
     }
 
-    /// Notes that a picture was drawn, and gives the next one.
+    /// Handles an acknowledgement of the page and returns the next image of the map.
     pub(super) fn drawn(&mut self, map: u16) -> Option<Picture> {
         let lane = self.lanes.iter_mut().find(|(shown, _)| shown.code() == map);
         let (_, lane) = lane?;

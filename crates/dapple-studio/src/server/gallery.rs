@@ -1,21 +1,21 @@
-//! Small pictures of the built-in recipes and of those in the folder.
+//! Thumbnails of the built-in recipes and of the recipes in the folder.
 
 use crate::{Picture, Shown, StudioError, sample};
 use dapple::recipe::{Images, Recipe};
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 
-/// Pictures that were made, by the text of the recipe and the side.
+/// A cache of thumbnails. The key is the text of the recipe and the longer side in pixels.
 #[derive(Default)]
 pub(super) struct Gallery {
     made: Mutex<BTreeMap<(String, u32), Picture>>,
 }
 
-/// The most pictures that are kept.
+/// Maximum number of cached thumbnails. A full cache is cleared.
 const KEPT: usize = 1000;
 
 impl Gallery {
-    /// The picture of a recipe.
+    /// Returns the thumbnail of a recipe, rendered on the first call.
     pub(super) fn of(
         &self,
         shown: Shown,

@@ -1,9 +1,10 @@
-//! Who may ask: only a page of this server, opened with the secret of this run.
+//! Access control: only a page of this server, opened with the token of this run, is served.
 //!
-//! A page of another site can send requests to 127.0.0.1, and by a name of its own that leads there (DNS rebinding) even
-//! read the answers. So a request must name a loopback host, which nobody else can own, with any port, since a port may
-//! be forwarded; or the host of the public URL. Its origin must be that host, and what shows anything of the user needs
-//! the secret, which is in no request that another page could see or make.
+//! A page of another site can send requests to 127.0.0.1. With a host name that resolves to 127.0.0.1 (DNS
+//! rebinding), it can even read the responses. So a request must name a loopback host, which nobody else can own, or
+//! the host of the public URL. A loopback host may have any port, since a port may be forwarded. The origin must
+//! equal that host. Everything that shows data of the user also needs the token, which no other page can read or
+//! send.
 
 use crate::StudioError;
 use axum::extract::Request;
@@ -14,23 +15,23 @@ use axum::http::{HeaderMap, HeaderName, HeaderValue, Uri};
 use std::fmt::Write as _;
 use std::net::Ipv4Addr;
 
-/// The secret of a run, and the names that the server has.
+/// The token of a run and the names of the server.
 pub(super) struct Guard {
     port: u16,
     token: String,
     public: Option<PublicUrl>,
 }
 
-/// The header in which the secret may be.
+/// The request header that carries the token.
 const TOKEN_HEADER: &str = "x-dapple-token";
 
-/// What a page may load, run and connect to: this server alone. `'self'` is the origin that the browser sees, and its
-/// sockets, whatever port is forwarded.
+/// Content security policy: a page may load, run and connect to this server only. `'self'` is the origin that the
+/// browser sees, including its sockets, whatever port is forwarded.
 const POLICY: &str = "default-src 'self'; img-src 'self' blob: data:; worker-src 'self' blob:; \
     connect-src 'self'; object-src 'none'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 
 impl Guard {
-    /// A guard with a new secret of 128 bits.
+    /// Creates a guard with a new random token of 128 bits.
     pub(super) fn new(port: u16, public_url: Option<&str>) -> Result<Self, StudioError> {
         let mut bytes = [0; 16];
         getrandom::fill(&mut bytes).map_err(|error| {
@@ -47,7 +48,7 @@ impl Guard {
         })
     }
 
-    /// The address to open. The secret is in its fragment, which browsers do not send.
+    /// The address to open. The token is in the fragment, which browsers do not send.
     pub(super) fn url(&self) -> String {
         let token = &self.token;
         match &self.public {
@@ -56,7 +57,7 @@ impl Guard {
         }
     }
 
-    /// Refuses a request from elsewhere, and says what to do.
+    /// Rejects requests from other origins, with a message that says how to proceed.
     pub(super) fn check(&self, request: &Request) -> Result<(), String> {
         let headers = request.headers();
         let path = request.uri().path();
@@ -94,7 +95,7 @@ impl Guard {
         )
     }
 
-    /// Adds the headers that keep others from using a response.
+    /// Adds security headers that keep other sites from using a response.
     pub(super) fn protect(headers: &mut HeaderMap) {
         headers.insert(CONTENT_SECURITY_POLICY, HeaderValue::from_static(POLICY));
         headers.insert(X_CONTENT_TYPE_OPTIONS, HeaderValue::from_static("nosniff"));
@@ -111,7 +112,7 @@ impl Guard {
         is_loopback(host) || self.public.as_ref().is_some_and(is_public)
     }
 
-    /// Whether an origin is that of a host, or of the public URL, whose proxy may call this server by another name.
+    /// Whether an origin equals the host or the public URL. A proxy of the public URL may send another host.
     fn is_origin_of(&self, origin: &str, host: &str) -> bool {
         let authority = ["http://", "https://"]
             .iter()
@@ -145,12 +146,12 @@ impl Guard {
     }
 }
 
-/// The address of the page in browsers, where a proxy forwards it.
+/// The address of the page in browsers, for use behind a proxy.
 struct PublicUrl {
-    /// The address of the page, which ends with a slash.
+    /// The address of the page, with a trailing slash.
     url: String,
     scheme: &'static str,
-    /// The host in lowercase, with its port unless that is the default of the scheme.
+    /// The host in lowercase, with its port unless it is the scheme's default port.
     authority: String,
 }
 
@@ -179,20 +180,20 @@ impl PublicUrl {
         })
     }
 
-    /// A host as browsers write it under the scheme of this address.
+    /// Normalizes a host as browsers do under the scheme of this address.
     fn shortened(&self, host: &str) -> String {
         shortened(self.scheme, host)
     }
 }
 
-/// A host in lowercase, without a port that is the default of its scheme.
+/// Converts a host to lowercase and removes the default port of the scheme.
 fn shortened(scheme: &str, host: &str) -> String {
     let default = if scheme == "https" { ":443" } else { ":80" };
     let host = host.to_ascii_lowercase();
     host.strip_suffix(default).unwrap_or(&host).to_owned()
 }
 
-/// Whether a host is this machine, by a name that no server of names can lead elsewhere; with any port, or none.
+/// Whether a host is a loopback name, which no DNS server can redirect, with or without a port.
 fn is_loopback(host: &str) -> bool {
     let is_port = |port: &str| !port.is_empty() && port.bytes().all(|digit| digit.is_ascii_digit());
     let name = match host.rsplit_once(':') {
@@ -206,8 +207,8 @@ fn is_loopback(host: &str) -> bool {
     name.eq_ignore_ascii_case("localhost") || name == "[::1]" || is_address(name)
 }
 
-/// Whether the browser says that a request comes from our page, or from a person: by an address that was typed, or by a
-/// link that opens the page itself, which shows nothing without the secret.
+/// Whether the browser's fetch metadata says that a request comes from our page or from the user. The user may type
+/// an address or follow a link to the page itself, which shows nothing without the token.
 fn is_from_here(headers: &HeaderMap, path: &str) -> bool {
     let of = |name: &str| headers.get(name).map(HeaderValue::as_bytes);
     let opens_page = path == "/"
@@ -216,7 +217,7 @@ fn is_from_here(headers: &HeaderMap, path: &str) -> bool {
     opens_page || matches!(of("sec-fetch-site"), None | Some(b"same-origin" | b"none"))
 }
 
-/// The only value of a header.
+/// The value of a header that occurs exactly once.
 fn one(headers: &HeaderMap, name: HeaderName) -> Option<&str> {
     let mut all = headers.get_all(name).iter();
     let value = all.next()?;
@@ -226,7 +227,7 @@ fn one(headers: &HeaderMap, name: HeaderName) -> Option<&str> {
     value.to_str().ok()
 }
 
-/// Compares in a time that does not say how much is equal.
+/// Compares two tokens of equal length in constant time.
 fn is_same(given: &str, wanted: &str) -> bool {
     let pairs = given.bytes().zip(wanted.bytes());
     let difference = pairs.fold(0, |difference, (a, b)| difference | (a ^ b));

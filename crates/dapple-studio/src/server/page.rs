@@ -1,29 +1,29 @@
-//! The files of the page, which are part of the program if they were there when it was built.
+//! The files of the page, which are embedded in the program if they existed when it was built.
 
 use axum::http::StatusCode;
 use axum::http::header::{CONTENT_ENCODING, CONTENT_TYPE};
 use axum::response::{Html, IntoResponse as _, Response};
 use std::path::Path;
 
-/// The files by their names.
+/// The embedded files and their names.
 const FILES: &[(&str, &[u8])] = include!(concat!(env!("OUT_DIR"), "/page.rs"));
 
-/// The page of a program that was built without the page.
+/// The page shown by a program that was built without the files of the page.
 const MISSING: &str = "<!doctype html><html lang=en><title>dapple studio</title><p>The page of the studio is not part \
     of this program: build it with <code>cargo xtask studio</code> in the repository of dapple, which needs Node.</p>";
 
-/// Whether the page is part of the program.
+/// Whether the page is embedded in the program.
 pub(super) fn is_built() -> bool {
     found(FILES, "index.html").is_some()
 }
 
-/// The texts of the licenses in the page.
+/// The license texts of third-party code in the page.
 pub(super) fn licenses() -> Option<&'static str> {
     let (text, _) = found(FILES, "licenses.md")?;
     std::str::from_utf8(text).ok()
 }
 
-/// A file as it is, or compressed under its name with `.gz`, and which of these it is.
+/// Finds a file, either uncompressed or under its name with `.gz`. The flag says whether the bytes are compressed.
 fn found<'a>(files: &[(&str, &'a [u8])], name: &str) -> Option<(&'a [u8], bool)> {
     files.iter().find_map(|(known, bytes)| {
         let is_compressed = known.strip_suffix(".gz") == Some(name);
@@ -31,7 +31,7 @@ fn found<'a>(files: &[(&str, &'a [u8])], name: &str) -> Option<(&'a [u8], bool)>
     })
 }
 
-/// A file of the page.
+/// Answers a request for a file of the page.
 pub(super) fn file(path: &str, dist: Option<&Path>) -> Response {
     let name = path.trim_start_matches('/');
     let name = if name.is_empty() { "index.html" } else { name };
@@ -44,7 +44,7 @@ pub(super) fn file(path: &str, dist: Option<&Path>) -> Response {
     let kind = [(CONTENT_TYPE, content_type(name))];
     match found(FILES, name) {
         Some((bytes, false)) => (kind, bytes).into_response(),
-        // Every browser reads it.
+        // Every browser decodes gzip.
         Some((bytes, true)) => (kind, [(CONTENT_ENCODING, "gzip")], bytes).into_response(),
         None => StatusCode::NOT_FOUND.into_response(),
     }
@@ -64,7 +64,7 @@ fn of_folder(name: &str, dist: &Path) -> Response {
     }
 }
 
-/// The type of a file, by its ending.
+/// The MIME type of a file, by its extension.
 pub(super) fn content_type(name: &str) -> &'static str {
     match name
         .rsplit_once('.')

@@ -1,4 +1,4 @@
-//! The socket of a page: messages in, messages and pictures out.
+//! The WebSocket of a page, which receives requests and sends replies and images.
 
 use super::Shared;
 use super::files::decoded;
@@ -18,19 +18,19 @@ use std::time::Duration;
 use tokio::sync::mpsc::unbounded_channel;
 use tokio::time::{MissedTickBehavior, interval};
 
-/// The most bytes of a message: a text of the largest recipe, with the signs that JSON adds.
+/// Maximum length of a message in bytes: the text of the largest recipe, with room for JSON escapes.
 const MAX_MESSAGE: usize = 2 * MAX_TEXT;
-/// Time between two looks at the files that a page shows.
+/// Polling interval for changes of the files that a page shows.
 const LOOK: Duration = Duration::from_millis(100);
 
-/// Makes a socket of a request.
+/// Upgrades a request to a WebSocket.
 pub(super) async fn upgrade(shared: Arc<Shared>, request: HttpRequest) -> Response {
     let (mut parts, _) = request.into_parts();
     let upgrade = match WebSocketUpgrade::from_request_parts(&mut parts, &()).await {
         Ok(upgrade) => upgrade,
         Err(refusal) => return refusal.into_response(),
     };
-    // The place is taken before the answer, so that pages that come together do not take the same one.
+    // Acquire the permit before responding, so that simultaneous pages cannot exceed the limit.
     let Ok(place) = shared.pages.clone().try_acquire_owned() else {
         return StatusCode::SERVICE_UNAVAILABLE.into_response();
     };
@@ -40,14 +40,14 @@ pub(super) async fn upgrade(shared: Arc<Shared>, request: HttpRequest) -> Respon
         .max_frame_size(MAX_MESSAGE);
     upgrade.on_upgrade(move |socket| async move {
         shared.way.close();
-        // A page that has gone says so by its socket, and there is nobody to tell.
+        // An error means that the page has disconnected, so no one is left to receive it.
         let _ = Page::serve(shared.clone(), socket, view).await;
         drop(place);
         shared.closed.notify_one();
     })
 }
 
-/// The view that an address asks for: what a page shows at first, which is drawn while the page is loaded.
+/// Parses the initial view from the query. It is rendered while the page loads.
 fn view_of(query: &str) -> Option<View> {
     let text = query
         .split('&')
@@ -55,19 +55,19 @@ fn view_of(query: &str) -> Option<View> {
     serde_json::from_str(&decoded(text)?).ok()
 }
 
-/// A page with its socket.
+/// A connected page.
 struct Page {
     shared: Arc<Shared>,
     socket: WebSocket,
     session: Session,
     worker: Worker,
     flow: Flow,
-    /// The file that is open, with the hash of what was read or written last.
+    /// The open file: its name, and its hash when it was last read or written.
     file: Option<(String, String)>,
     changes: FileChanges,
 }
 
-/// The socket has ended.
+/// The error of a closed socket.
 struct Ended;
 
 impl From<axum::Error> for Ended {
@@ -115,7 +115,7 @@ impl Page {
         }
     }
 
-    /// Says what there is, and opens what the command was given, to be seen in a view.
+    /// Sends the greeting, sets the initial view, and opens the recipe of the command line.
     async fn greet(&mut self, view: Option<View>) -> Result<(), Ended> {
         let options = &self.shared.options;
         let mut hello = Hello::new();
@@ -145,6 +145,7 @@ impl Page {
         Ok(())
     }
 
+    /// Parses and answers a message.
     async fn hear(&mut self, message: Message) -> Result<(), Ended> {
         match message {
             Message::Text(text) => match serde_json::from_str(&text) {
@@ -196,7 +197,7 @@ impl Page {
             self.say(reply).await?;
         }
         if let Some(job) = self.session.job() {
-            // Before the images are read.
+            // Record the files' state before the images are read, so that no later change is missed.
             for file in self.files() {
                 self.changes.remember(file);
             }
@@ -264,7 +265,7 @@ impl Page {
         Ok(vec![Reply::Saved { file, hash }])
     }
 
-    /// The recipes of which there are small pictures: the built-in ones, and those of the folder.
+    /// The recipes of the gallery: the built-in recipes and the recipes in the folder.
     fn samples(&self, side: u32) -> Vec<Sample> {
         let builtin = |(index, name): (u16, &str)| Sample {
             shown: Shown::Builtin(index),
@@ -285,7 +286,7 @@ impl Page {
             .collect()
     }
 
-    /// The file of the page and the images of its recipe.
+    /// The open file and the images of its recipe.
     fn files(&self) -> Vec<PathBuf> {
         let folder = &self.shared.folder;
         let file = self.file.iter().map(|(name, _)| folder.path().join(name));
@@ -296,13 +297,13 @@ impl Page {
         files
     }
 
-    /// Whether the file of the page or an image of its recipe has changed, and is quiet again.
+    /// Whether the open file or an image of its recipe has changed on disk and is no longer being written.
     fn looks_other(&mut self) -> bool {
         let files = self.files();
         self.changes.look(&files)
     }
 
-    /// Tells the page if the file or an image of it has changed.
+    /// Notifies the page if the open file has changed on disk, and renders again if the recipe has images.
     async fn compare_with_disk(&mut self) -> Result<(), Ended> {
         if let Some((file, known)) = &mut self.file
             && let Ok((text, hash)) = self.shared.folder.read(file)
@@ -326,6 +327,7 @@ impl Page {
         Ok(())
     }
 
+    /// Sends a reply, or queues an image for flow control.
     async fn pass_on(&mut self, output: Output) -> Result<(), Ended> {
         match output {
             Output::Reply(reply) => self.say(reply).await,

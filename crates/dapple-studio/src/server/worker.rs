@@ -1,5 +1,5 @@
-//! The threads of one page. One draws what the page shows: always the newest; reports that were asked for come before.
-//! The other makes the files of exports, which take long.
+//! The threads of one page. The first renders images, always for the newest state, after pending reports. The second
+//! runs exports, which take long.
 
 use super::Shared;
 use crate::message::{Export, Output, Reply};
@@ -17,27 +17,27 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 use tokio::sync::mpsc::UnboundedSender;
 
-/// The work that waits for the threads.
+/// The work queues of the threads.
 #[derive(Default)]
 struct Queue {
     job: Option<Job>,
     tasks: VecDeque<Task>,
     exports: VecDeque<Task>,
-    /// The pictures of the strip that was asked for last.
+    /// The variants of the strip that was requested last.
     variants: VecDeque<Variant>,
-    /// Small pictures for which there is time when nothing else is to be done.
+    /// Thumbnails of the gallery, rendered at the lowest priority.
     samples: VecDeque<Sample>,
     is_over: bool,
 }
 
-/// A small picture of a recipe.
+/// A request for a recipe's thumbnail.
 pub(super) struct Sample {
     pub(super) shown: Shown,
     pub(super) text: String,
     pub(super) side: u32,
 }
 
-/// The end of the threads that a page holds.
+/// The page's handle to its threads. Dropping it ends them.
 pub(super) struct Worker {
     inside: Arc<Inside>,
 }
@@ -46,23 +46,23 @@ struct Inside {
     shared: Arc<Shared>,
     queue: Mutex<Queue>,
     changed: Condvar,
-    /// The newest generation that is wanted.
+    /// The newest requested generation.
     newest: AtomicU32,
-    /// Whether the export in progress is to stop.
+    /// Whether to stop the running export.
     stop: Arc<AtomicBool>,
     start: Instant,
     output: UnboundedSender<Output>,
     images: Mutex<Loaded>,
 }
 
-/// The images of the last recipe, and how their files were found.
+/// Cached images of the last recipe, with the stamps of their files.
 #[derive(Default)]
 struct Loaded {
     stamps: Vec<(PathBuf, Option<FileStamp>)>,
     images: Images,
 }
 
-/// The most tasks that wait.
+/// Maximum number of waiting tasks.
 const MOST_TASKS: usize = 32;
 
 impl Worker {
@@ -84,7 +84,7 @@ impl Worker {
             output,
             images: Mutex::default(),
         });
-        // Its end tells the threads to end, also where the second one cannot be started.
+        // Dropping the worker ends the threads, even if the second one fails to start.
         let worker = Self { inside };
         worker.spawn("studio", Inside::run)?;
         worker.spawn("studio export", Inside::run_exports)?;
@@ -99,20 +99,20 @@ impl Worker {
         Ok(())
     }
 
-    /// Draws this next, in place of what waits and of what is being drawn.
+    /// Schedules a rendering job. It replaces the waiting job and cancels the running one.
     pub(super) fn draw(&self, job: Job) {
         self.inside.newest.store(job.generation, Ordering::SeqCst);
         self.inside.lock().job = Some(job);
         self.inside.changed.notify_all();
     }
 
-    /// Makes the pictures of a strip when there is time, in place of those of the strip before.
+    /// Schedules the variants of a strip at low priority. They replace the variants of the previous strip.
     pub(super) fn vary(&self, variants: Vec<Variant>) {
         self.inside.lock().variants = variants.into();
         self.inside.changed.notify_all();
     }
 
-    /// Makes small pictures when there is time.
+    /// Schedules thumbnails at the lowest priority.
     pub(super) fn sample(&self, samples: Vec<Sample>) {
         self.inside.lock().samples = samples.into();
         self.inside.changed.notify_all();
@@ -123,7 +123,7 @@ impl Worker {
         RenderHost::images(&*self.inside, recipe)
     }
 
-    /// Does this as well.
+    /// Queues a task, or refuses it if too many are waiting.
     pub(super) fn ask(&self, task: Task) {
         let mut queue = self.inside.lock();
         if queue.tasks.len() + queue.exports.len() >= MOST_TASKS {
@@ -141,7 +141,7 @@ impl Worker {
         self.inside.changed.notify_all();
     }
 
-    /// Stops the exports of the page, also those that wait.
+    /// Stops the running export and the waiting exports of the page.
     pub(super) fn stop_exports(&self) {
         let mut queue = self.inside.lock();
         self.inside.stop.store(true, Ordering::SeqCst);
@@ -166,7 +166,7 @@ impl Drop for Worker {
     }
 }
 
-/// The next work of the thread.
+/// The next unit of work of the rendering thread.
 enum Next {
     Draw(Job),
     Do(Task),
@@ -204,7 +204,7 @@ impl Inside {
         while let Some(task) = self.next_export() {
             let exporting = &self.shared.exporting;
             let one = exporting.lock().unwrap_or_else(PoisonError::into_inner);
-            // The page may have been closed, or the export stopped, while others were at it.
+            // The page may have been closed, or the export stopped, while other exports ran.
             if self.lock().is_over {
                 return;
             }
@@ -217,13 +217,13 @@ impl Inside {
         }
     }
 
-    /// Says that an export was stopped before it began.
+    /// Reports that an export was stopped before it began.
     fn refuse_stopped(&self, task: &Task) {
         let error = StudioError::new("the export was stopped");
         self.put(Reply::refused(task.what(), &error).into());
     }
 
-    /// Does something, and returns whether it was done. A defect in a method must not end the server while somebody works.
+    /// Runs `work` and returns whether it completed. A panic is reported to the page and does not end the server.
     fn attempt(&self, what: &str, work: impl FnOnce()) -> bool {
         let is_done = catch_unwind(AssertUnwindSafe(work)).is_ok();
         if !is_done {
@@ -233,7 +233,7 @@ impl Inside {
         is_done
     }
 
-    /// Waits for the next export; none when the page is closed.
+    /// Waits for the next export. Returns `None` when the page is closed.
     fn next_export(&self) -> Option<Task> {
         let mut queue = self.lock();
         loop {
@@ -253,6 +253,7 @@ impl Inside {
         woken.unwrap_or_else(PoisonError::into_inner)
     }
 
+    /// Waits for the next unit of work, in order of priority: tasks, the view, the strip, the gallery.
     fn next(&self) -> Option<Next> {
         let mut queue = self.lock();
         loop {
@@ -275,7 +276,7 @@ impl Inside {
         }
     }
 
-    /// Shows a small picture of a recipe. One that cannot be baked has none.
+    /// Renders and sends the thumbnail of a recipe. A recipe that cannot be baked is skipped.
     fn show(&self, sample: &Sample) {
         let Sample { shown, text, side } = sample;
         let images = |recipe: &Recipe| self.shared.images(recipe);
@@ -326,7 +327,7 @@ impl RenderHost for Inside {
     }
 
     fn put(&self, output: Output) {
-        // Where the page is gone, the thread ends soon.
+        // A send error means that the page is closed; the thread ends soon.
         let _ = self.output.send(output);
     }
 }
