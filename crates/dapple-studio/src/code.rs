@@ -1,20 +1,20 @@
-//! A recipe as a program, or as text.
+//! Converts a recipe to a program or to text.
 
 use crate::message::CodeKind;
 use crate::{Document, StudioError};
 use dapple::recipe::Recipe;
 
-/// A program or a text that is asked for.
+/// Options of a conversion to a program or to text.
 pub(crate) struct Code<'a> {
     pub(crate) kind: CodeKind,
     pub(crate) size: Option<[u32; 2]>,
     pub(crate) maps: Option<&'a [String]>,
-    /// The name of the file, or nothing.
+    /// The name of the recipe's file, or empty.
     pub(crate) name: &'a str,
 }
 
 impl Code<'_> {
-    /// The program or the text, in its language.
+    /// Returns the program or the text.
     pub(crate) fn text(&self, document: &Document, recipe: &Recipe) -> Result<String, StudioError> {
         Ok(match self.kind {
             CodeKind::Toml => document.text().to_owned(),
@@ -36,7 +36,7 @@ impl Code<'_> {
         }
     }
 
-    /// A Python program.
+    /// A Python program that bakes the recipe.
     fn python(&self, document: &Document) -> String {
         let text = document
             .text()
@@ -47,7 +47,7 @@ impl Code<'_> {
         let size = if width == height {
             width.to_string()
         } else {
-            // Arrays have rows first.
+            // Shapes of arrays have rows first.
             format!("({height}, {width})")
         };
         format!(
@@ -57,7 +57,7 @@ impl Code<'_> {
         )
     }
 
-    /// A command line for a shell.
+    /// A shell command that bakes the recipe.
     fn command(&self, document: &Document, recipe: &Recipe) -> String {
         let builtin = Recipe::builtin_names()
             .find(|name| Recipe::builtin_text(name).is_ok_and(|text| text == document.text()));
@@ -89,7 +89,7 @@ impl Code<'_> {
     }
 }
 
-/// A word for a shell.
+/// Quotes a word for a shell.
 fn quoted(word: &str) -> String {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "_-./".contains(c);
     if !word.is_empty() && !word.starts_with('-') && word.chars().all(is_plain) {

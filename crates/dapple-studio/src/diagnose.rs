@@ -1,4 +1,4 @@
-//! Mistakes of a recipe, with their places in its text.
+//! Errors in a recipe and their positions in its text.
 
 use crate::Document;
 use core::ops::Range;
@@ -6,24 +6,24 @@ use dapple::recipe::{Place, RecipeError, RecipeErrorKind};
 use serde::Serialize;
 use toml_edit::{Item, TableLike, Value};
 
-/// A mistake of a recipe, with its place in the text. Positions are UTF-16 code units.
+/// An error in a recipe with its range in the text. Positions are UTF-16 code units.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Diagnostic {
-    /// The first position of the mistake.
+    /// Start of the range.
     pub from: usize,
-    /// The position after its last.
+    /// End of the range, exclusive.
     pub to: usize,
-    /// The node, if it is in one.
+    /// The node that contains the error, if any.
     pub node: Option<String>,
-    /// A sentence that names the mistake.
+    /// The error message.
     pub message: String,
-    /// The valid word that is nearest to what is written, if one is near.
+    /// The valid word most similar to the written one, if one is similar enough.
     pub nearest: Option<String>,
-    /// A way to mend it, if one is known.
+    /// How to fix the error, if known.
     pub hint: Option<String>,
 }
 
-/// The mistake of a text that is no recipe.
+/// Returns the diagnostic of a text that is not a valid recipe.
 pub(crate) fn of_text(document: &Document, error: &RecipeError) -> Diagnostic {
     let text = document.text();
     let bytes = match error.place() {
@@ -45,7 +45,7 @@ pub(crate) fn of_text(document: &Document, error: &RecipeError) -> Diagnostic {
     diagnostic(document, bytes, node.map(str::to_owned), error)
 }
 
-/// The mistake of a recipe that was read, but is refused by a plan or a bake.
+/// Returns the diagnostic of a valid recipe that a plan or a bake refuses.
 pub(crate) fn of_error(document: &Document, error: &RecipeError) -> Diagnostic {
     if error.place().is_some() {
         return of_text(document, error);
@@ -77,7 +77,7 @@ fn diagnostic(
     }
 }
 
-/// The byte of a line and a column.
+/// Converts a line and a column to a byte offset.
 fn byte_of(text: &str, place: Place) -> usize {
     let mut lines = text.split_inclusive('\n');
     let before: usize = lines.by_ref().take(place.line - 1).map(str::len).sum();
@@ -86,7 +86,8 @@ fn byte_of(text: &str, place: Place) -> usize {
     before + column.map_or(line.trim_end().len(), |(byte, _)| byte)
 }
 
-/// The end of the word, the text or the list that begins at a byte; at least one character, if there is one.
+/// The end of the word, string or array that begins at a byte. The range has at least one character, except at the
+/// end of the text.
 fn word_end(text: &str, start: usize) -> usize {
     let rest = &text[start..];
     let Some(first) = rest.chars().next() else {
@@ -102,10 +103,11 @@ fn word_end(text: &str, start: usize) -> usize {
     start + length.max(first.len_utf8())
 }
 
-/// Where a plan was refused: the value that the error speaks of, or else the name of the node.
+/// The range of a plan's error: the value named by the error, or else the name of the node.
 fn place(document: &Document, error: &RecipeError) -> Option<Range<usize>> {
     let root = document.table()?;
     let nodes = root.get("nodes").and_then(Item::as_table_like);
+    // Find the node of the error, or else the recipe's own entry.
     let node = error.node();
     let of_node = node.and_then(|name| nodes?.get_key_value(name));
     let of_node = of_node.or_else(|| match error.kind() {
@@ -121,6 +123,7 @@ fn place(document: &Document, error: &RecipeError) -> Option<Range<usize>> {
         }
         None => (None, document_item(root, error)?),
     };
+    // Find the value that the error names.
     let found = match error.kind() {
         RecipeErrorKind::UnknownNode { name } | RecipeErrorKind::NoImage { file: name } => {
             text_in(item, name)
@@ -128,7 +131,7 @@ fn place(document: &Document, error: &RecipeError) -> Option<Range<usize>> {
         RecipeErrorKind::NotANumber { input } => text_in(item, input.trim_matches('`')),
         RecipeErrorKind::Cycle { names } => names.get(1).and_then(|name| text_in(item, name)),
         RecipeErrorKind::Range { what, range, .. } => {
-            // What the number follows from is in brackets: `(extent times frequency)`.
+            // The expression that gives the number is in parentheses: `(extent times frequency)`.
             let origin = range.split_once('(').map_or("", |(_, origin)| origin);
             words_in(item, what).or_else(|| words_in(item, origin))
         }
@@ -142,7 +145,7 @@ fn place(document: &Document, error: &RecipeError) -> Option<Range<usize>> {
     found.or_else(|| key?.span()).or_else(|| item.span())
 }
 
-/// The entry of the recipe itself that an error without a node speaks of.
+/// The top-level entry that an error without a node refers to.
 fn document_item<'a>(root: &'a toml_edit::Table, error: &RecipeError) -> Option<&'a Item> {
     match error.kind() {
         RecipeErrorKind::Range { what, .. } => root.get(what),
@@ -151,7 +154,7 @@ fn document_item<'a>(root: &'a toml_edit::Table, error: &RecipeError) -> Option<
     }
 }
 
-/// Where a text is written in an item.
+/// The range of a string value in an item.
 fn text_in(item: &Item, text: &str) -> Option<Range<usize>> {
     values(item)
         .into_iter()
@@ -159,7 +162,7 @@ fn text_in(item: &Item, text: &str) -> Option<Range<usize>> {
         .and_then(|(_, value)| value.span())
 }
 
-/// The value whose key is the longest of those in a sentence: `octaves` of "number of octaves".
+/// The range of the value with the longest key that occurs in a sentence, such as `octaves` in "number of octaves".
 fn words_in(item: &Item, sentence: &str) -> Option<Range<usize>> {
     let words: Vec<_> = sentence
         .split(|c: char| !c.is_alphanumeric() && c != '_')
@@ -174,7 +177,7 @@ fn words_in(item: &Item, sentence: &str) -> Option<Range<usize>> {
         .and_then(|(_, value)| value.span())
 }
 
-/// All values in an item that are no tables, with the keys that they have. Elements of lists have that of the list.
+/// Lists all values in an item, except tables, with their keys. An element of an array has the key of the array.
 fn values(item: &Item) -> Vec<(String, &Value)> {
     fn of_value<'a>(key: &str, value: &'a Value, all: &mut Vec<(String, &'a Value)>) {
         match value {

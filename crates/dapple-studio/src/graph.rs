@@ -1,4 +1,4 @@
-//! The nodes of a recipe and what each is made of.
+//! The nodes of a recipe and the inputs of each.
 
 use crate::schema::{Found, Role, roles};
 use crate::{Document, Part};
@@ -10,9 +10,10 @@ use serde_json::{Map, Value as Json};
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Graph {
     nodes: Vec<GraphNode>,
-    /// The inputs of the material by their names.
+    /// The inputs of the material, by name.
     material: Map<String, Json>,
-    /// The names of the nodes, each after all that it is made of; in the order of the text where there is no plan.
+    /// The names of the nodes in topological order: every node after its inputs. Without a plan, they are in the
+    /// order of the text.
     order: Vec<String>,
 }
 
@@ -21,11 +22,11 @@ pub struct Graph {
 struct GraphNode {
     name: String,
     kind: String,
-    /// Whether it makes colors, not numbers.
+    /// Whether the node produces colors rather than numbers.
     is_color: bool,
-    /// Whether it sees the whole tile.
+    /// Whether the node needs the whole tile.
     is_global: bool,
-    /// Where it is written, in UTF-16 code units.
+    /// The range of the node in the text, in UTF-16 code units.
     span: Option<[usize; 2]>,
     inputs: Vec<GraphInput>,
 }
@@ -34,16 +35,17 @@ struct GraphNode {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 struct GraphInput {
     label: String,
-    /// The way to it within the node, from its kind on.
+    /// The path of the input within the node, starting at its kind.
     path: Vec<Part>,
-    /// The node that it is, if it is one.
+    /// The node connected to the input, if any.
     node: Option<String>,
-    /// The input as it is written, or by default.
+    /// The value as written, or the default.
     value: Json,
 }
 
 impl Graph {
-    /// The graph of a document. What only a plan knows is left out without one.
+    /// Returns the graph of a document. Without a plan, `is_color` and `is_global` are false and `order` is the order
+    /// of the text.
     #[must_use]
     pub fn new(document: &Document, plan: Option<&Plan>) -> Option<Self> {
         let data = document.data()?;
@@ -115,7 +117,7 @@ fn names_in_order(document: &Document, data: &Json) -> Vec<String> {
     }
 }
 
-/// An input whose path is cut to what is after a number of parts.
+/// Converts a found input. The first `skipped` components of its path are removed.
 fn input(found: &Found<'_>, skipped: usize) -> GraphInput {
     let path = found.path[skipped..].to_vec();
     let is_node = |text: &&str| !text.starts_with('#');
@@ -131,7 +133,7 @@ fn input(found: &Found<'_>, skipped: usize) -> GraphInput {
     }
 }
 
-/// A short name of an input: its key, and the number of each list that it is in, from 1.
+/// A short label of an input: its key, followed by its 1-based indices in nested arrays.
 fn label(path: &[Part]) -> String {
     let parts = if path.len() > 1 { &path[1..] } else { path };
     let words = parts.iter().map(|part| match part {

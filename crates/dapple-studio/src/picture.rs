@@ -1,30 +1,30 @@
-//! Pictures as pages show them: 8 bits of red, green, blue and alpha.
+//! Images for pages: 8 bits each of red, green, blue and alpha.
 
 use dapple::color::{Code as _, LinearRgb, Normal};
 use dapple::raster::{Raster, parallel};
 use dapple::recipe::{self, MapKind, MapRows};
 
-/// The content of a picture.
+/// The content of an image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Shown {
     /// A map of the material.
     Map(MapKind),
-    /// The node that was asked for.
+    /// The node of the view.
     Node,
     /// A lit preview.
     Preview,
-    /// The node of this index, small.
+    /// The thumbnail of the node with this index.
     Thumbnail(u16),
-    /// The built-in recipe of this index.
+    /// The thumbnail of the built-in recipe with this index.
     Builtin(u16),
-    /// The recipe of the folder with this index.
+    /// The thumbnail of the recipe in the folder with this index.
     File(u16),
-    /// The picture of this index in the strip that was asked for last.
+    /// The thumbnail with this index in the strip that was requested last.
     Strip(u16),
 }
 
 impl Shown {
-    /// The number that stands for this content in messages.
+    /// The code of this content in messages.
     #[must_use]
     pub fn code(self) -> u16 {
         match self {
@@ -34,7 +34,7 @@ impl Shown {
                 .unwrap_or(0) as u16,
             Self::Node => 100,
             Self::Preview => 101,
-            // The numbers of thumbnails end before those of recipes.
+            // Codes of node thumbnails end below 1000, where codes of recipes begin.
             Self::Thumbnail(index) => 200 + index.min(799),
             Self::Builtin(index) => 1000 + index.min(999),
             Self::File(index) => 2000 + index.min(999),
@@ -43,34 +43,34 @@ impl Shown {
     }
 }
 
-/// A part of a picture, with 4 bytes for each pixel: red, green, blue and alpha.
+/// A part of an image, with 4 bytes per pixel: red, green, blue and alpha.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Picture {
-    /// Counts the states of the recipe and the view that were drawn.
+    /// The generation, which counts the rendered states of recipe and view.
     pub generation: u32,
-    /// The content of the picture.
+    /// The content of the image.
     pub shown: Shown,
     /// The first column and row of the part.
     pub first: [u32; 2],
-    /// Its columns and rows.
+    /// Columns and rows of the part.
     pub size: [u32; 2],
-    /// How many times smaller the picture is than was asked for.
+    /// The factor by which the image is smaller than requested.
     pub scale: u16,
-    /// Whether a larger one follows.
+    /// Whether the image is a draft, which a larger image follows.
     pub is_draft: bool,
-    /// Whether it is the last part.
+    /// Whether this is the last part.
     pub is_last: bool,
-    /// The pixels, row by row from the top.
+    /// The pixels, row by row, starting at the top.
     pub pixels: Vec<u8>,
 }
 
-/// The version of the header of pictures.
+/// Version of the header.
 const VERSION: u32 = 1;
-/// The bytes of the header.
+/// Length of the header in bytes.
 const HEADER: usize = 32;
 
 impl Picture {
-    /// A picture in one part, as large as it is wanted, of no generation of the view.
+    /// Creates an image in one part, in the requested size, with generation 0.
     pub(crate) fn whole(shown: Shown, size: [u32; 2], pixels: Vec<u8>) -> Self {
         Self {
             generation: 0,
@@ -84,7 +84,7 @@ impl Picture {
         }
     }
 
-    /// The picture as a message: a header of 32 bytes, then the pixels. Numbers are little-endian.
+    /// Encodes the image as a message: a header of 32 bytes, followed by the pixels. Numbers are little-endian.
     #[must_use]
     pub fn to_bytes(&self) -> Vec<u8> {
         let mut bytes = self.header(0, self.pixels.len());
@@ -92,7 +92,8 @@ impl Picture {
         bytes
     }
 
-    /// The picture as a message with one byte for each pixel of a gray map and three for others: alpha is always 255.
+    /// Encodes the image as a message with one byte per pixel for gray maps and three bytes otherwise. Alpha is
+    /// omitted, since it is always 255.
     #[cfg(feature = "server")]
     pub(crate) fn to_short_bytes(&self) -> Vec<u8> {
         let n_pixels = self.pixels.len() / 4;
@@ -111,7 +112,7 @@ impl Picture {
         bytes
     }
 
-    /// Whether all pixels are gray, as those of a map of numbers are.
+    /// Whether all pixels are gray, which holds for maps of numbers.
     #[cfg(feature = "server")]
     fn is_gray(&self) -> bool {
         matches!(
@@ -126,7 +127,7 @@ impl Picture {
         )
     }
 
-    /// The header, with room for pixels of this format.
+    /// The header, with capacity for the pixels of this format.
     fn header(&self, format: u16, n_bytes: usize) -> Vec<u8> {
         let mut bytes = Vec::with_capacity(HEADER + n_bytes);
         let flags = u16::from(self.is_draft) | u16::from(self.is_last) << 1;
@@ -143,7 +144,7 @@ impl Picture {
     }
 }
 
-/// The pixels of some rows of a map, with the codes that a PNG file of 8 bits has.
+/// Converts rows of a map to pixels, with the same values as an 8-bit PNG file.
 #[must_use]
 pub fn rgba(rows: &MapRows) -> Vec<u8> {
     match rows {
@@ -154,18 +155,18 @@ pub fn rgba(rows: &MapRows) -> Vec<u8> {
     }
 }
 
-/// The pixels of colors, as sRGB.
+/// Converts colors to sRGB pixels.
 pub(crate) fn of_colors(raster: &Raster<LinearRgb>) -> Vec<u8> {
     pixels(raster, |color| color.to_srgb())
 }
 
-/// The pixels of numbers, of which a range is spread from black to white.
+/// Converts numbers to gray pixels. `min` is black and `max` is white.
 fn of_numbers(raster: &Raster<f32>, [min, max]: [f32; 2]) -> Vec<u8> {
     let width = if max > min { max - min } else { 1.0 };
     pixels(raster, |&value| [u8::from_unit((value - min) / width); 3])
 }
 
-/// The pixels of a node, and the numbers that are black and white in it.
+/// Converts the values of a node to pixels. For numbers, also returns the values shown as black and white.
 pub(crate) fn of_values(values: &recipe::Picture) -> (Vec<u8>, Option<[f32; 2]>) {
     match values {
         recipe::Picture::Colors(colors) => (of_colors(colors), None),
@@ -176,7 +177,8 @@ pub(crate) fn of_values(values: &recipe::Picture) -> (Vec<u8>, Option<[f32; 2]>)
     }
 }
 
-/// From 0 to 1 where all numbers lie there and take up some of it, and from the smallest to the largest otherwise.
+/// The range of a display of numbers: 0 to 1 if all numbers lie in that range and span at least a quarter of it or
+/// are equal. Otherwise the minimum and the maximum of the finite numbers.
 fn range_of(numbers: &Raster<f32>) -> [f32; 2] {
     let finite = numbers
         .pixels()
@@ -196,7 +198,7 @@ fn range_of(numbers: &Raster<f32>) -> [f32; 2] {
     [min, max]
 }
 
-/// The pixels that a thread takes at a time.
+/// Number of pixels per parallel task.
 const CHUNK: usize = 1 << 12;
 
 fn pixels<T: Sync>(raster: &Raster<T>, code: impl Fn(&T) -> [u8; 3] + Sync) -> Vec<u8> {

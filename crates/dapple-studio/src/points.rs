@@ -1,4 +1,4 @@
-//! The control points of textures, to be looked at and to be edited.
+//! Control points of textures, for display and for editing.
 
 use crate::StudioError;
 use crate::message::Points;
@@ -7,10 +7,10 @@ use dapple::pups::ControlNet;
 use dapple::recipe::{ControlPoint, ControlPoints, Images, Node, PupsNode, Recipe};
 use serde_json::Value as Json;
 
-/// The most points that are shown.
+/// Maximum number of points that are shown.
 const MOST_POINTS: usize = 20_000;
 
-/// The control points of a node, and the edges of their graph.
+/// Returns the control points of a node and the edges of their graph.
 pub(crate) fn report(
     recipe: &Recipe,
     images: &Images,
@@ -52,7 +52,7 @@ pub(crate) fn report(
     })
 }
 
-/// The points of a net, with the labels that they have in the text where they are written one by one.
+/// The points of a net. Points that are written in the text keep their labels from the text.
 fn points(net: &ControlNet, written: Option<&ControlPoints>) -> Vec<ControlPoint> {
     let label = |index: usize| match written {
         Some(written) => written.points[index].label,
@@ -72,7 +72,7 @@ fn points(net: &ControlNet, written: Option<&ControlPoints>) -> Vec<ControlPoint
     positions.map(point).collect()
 }
 
-/// The options of a node of points with the picture of a node.
+/// Returns the options of a PUPs node of kind `points` that renders the same image as the node `node`.
 pub(crate) fn editable(recipe: &Recipe, images: &Images, node: &str) -> Result<Json, StudioError> {
     let nets = recipe.control_nets(node, images, 0.0, &LIMITS)?;
     let nets = nets.ok_or_else(|| no_points(node))?;

@@ -1,4 +1,4 @@
-//! Drawing: a plan of the recipe, a draft, the maps, the node that is looked at, and thumbnails, the newest first.
+//! Renders a job: the plan of the recipe, a draft, the maps or a node, then the thumbnails and the lit preview.
 
 use crate::message::{NodeTime, Output, Reply, Shape, View};
 use crate::picture::{of_colors, of_values};
@@ -11,27 +11,27 @@ use dapple::recipe::{
 };
 use std::sync::Arc;
 
-/// The longest side of a picture, in pixels.
+/// Maximum side of an image, in pixels.
 pub const MAX_SIDE: u32 = 4096;
-/// The longest side of a tile of which a part is shown, in pixels.
+/// Maximum side of a tile of which only a part is shown, in pixels.
 pub(crate) const MAX_TILE: u32 = 1 << 16;
-/// The longest and the shortest longer side of a draft, in pixels.
+/// Maximum and minimum of the longer side of a draft, in pixels.
 const DRAFT_SIDES: [u32; 2] = [256, 64];
-/// The milliseconds for which a draft is fast enough, and those for which a larger one is, too.
+/// Draft times in milliseconds. Above the first, the next draft is halved; below the second, it is doubled.
 const DRAFT_MS: [f64; 2] = [8.0, 2.5];
-/// The longest side of a thumbnail, in pixels.
+/// Maximum side of a thumbnail, in pixels.
 const THUMBNAIL_SIDE: u32 = 64;
-/// The most thumbnails: their numbers end before those of recipes.
+/// Maximum number of node thumbnails, which limits their codes to those below the codes of recipes.
 const MOST_THUMBNAILS: usize = 800;
-/// The pixels that are drawn before it is asked again whether they are still wanted.
+/// Pixels per band. Rendering checks between bands whether the job has been superseded.
 const BAND_PIXELS: u32 = 1 << 15;
-/// The most pixels of a part of a map: a page draws all of its picture anew for each.
+/// Pixels per sent part of a map. Parts are large because the page redraws its whole image for each.
 const SENT_PIXELS: usize = 1 << 20;
-/// The milliseconds after which parts are sent that are smaller, and their fewest pixels: where a picture that is shown
-/// smaller is divided shows a little, so that small ones never are.
+/// Time in milliseconds after which smaller parts are sent, and the pixels of such a part. Where a page scales an
+/// image down, the boundaries between parts are slightly visible, so small images are never divided.
 const LATE: (f64, usize) = (100.0, 1 << 18);
 
-/// The limits of work of a recipe in the studio.
+/// Work limits of a recipe in the studio.
 pub(crate) const LIMITS: PlanLimits = PlanLimits {
     control_points: 1 << 18,
     wavelet_cells: 1 << 22,
@@ -41,89 +41,89 @@ pub(crate) const LIMITS: PlanLimits = PlanLimits {
     pixels: 1 << 27,
 };
 
-/// Something to be drawn.
+/// A rendering job.
 #[derive(Clone, Debug)]
 pub struct Job {
-    /// Counts the states of the recipe and the view.
+    /// The generation, which counts the states of recipe and view.
     pub generation: u32,
-    /// The state of the text.
+    /// Revision of the text.
     pub rev: u64,
-    /// The recipe.
+    /// The document to render.
     pub document: Arc<Document>,
-    /// The pictures of it that the page shows.
+    /// The images that the page shows.
     pub view: View,
 }
 
-/// A material in light, which the command draws.
+/// A lit preview to be rendered by the host.
 #[derive(Clone, Copy, Debug)]
 pub struct Lit<'a> {
     /// The recipe of the material.
     pub recipe: &'a Recipe,
     /// The images that the recipe names.
     pub images: &'a Images,
-    /// The part of a loop that has passed, from 0 to 1.
+    /// Phase of the loop, from 0 to 1.
     pub time: f64,
-    /// The shape that the material is on.
+    /// The shape that carries the material.
     pub shape: Shape,
 }
 
-/// The surroundings of a renderer: images, a clock, and a receiver of what is drawn.
+/// The host of a renderer. It supplies images and a clock, and receives the output.
 pub trait RenderHost {
-    /// The images that a recipe names.
+    /// Loads the images that a recipe names.
     ///
     /// # Errors
     ///
-    /// If one of them cannot be had.
+    /// If an image cannot be loaded.
     fn images(&self, recipe: &Recipe) -> Result<Images, StudioError>;
 
-    /// The picture of a lit material; by default there is none.
+    /// Renders the preview of a lit material. By default, previews are not supported.
     ///
     /// # Errors
     ///
-    /// If there is no such picture here, or the recipe is refused.
+    /// If previews are not supported, or the recipe is refused.
     fn preview(&self, lit: &Lit<'_>) -> Result<Raster<LinearRgb>, StudioError> {
         let _ = lit;
         Err(StudioError::new("lit previews cannot be drawn here"))
     }
 
-    /// Milliseconds since some moment.
+    /// Milliseconds since an arbitrary moment.
     fn now(&self) -> f64;
 
-    /// Whether a job of this generation is still wanted.
+    /// Whether a job of this generation is still current.
     fn is_wanted(&self, generation: u32) -> bool;
 
-    /// Takes a picture or a message.
+    /// Receives an image or a message.
     fn put(&self, output: Output);
 }
 
-/// Draws jobs, and keeps what the next one may need again.
+/// Renders jobs and caches values for the next ones.
 #[derive(Debug)]
 pub struct Renderer {
     pub(crate) memory: PlanCache,
     planned: Option<Planned>,
     /// The longest side of the next draft, in pixels.
     draft_side: u32,
-    /// The last document that was reported to be without mistakes.
+    /// The last document that was reported as valid.
     told: Option<Arc<Document>>,
 }
 
-/// The most bytes of values of nodes that are kept.
+/// Maximum size of the cached node values, in bytes.
 const MEMORY: usize = 1 << 29;
 
 impl Renderer {
-    /// A renderer that keeps what it made in a memory, which others may use, too.
+    /// Creates a renderer with a cache, which other renderers may share.
     #[must_use]
     pub fn new(memory: &PlanCache) -> Self {
         Self {
             memory: memory.clone(),
             planned: None,
-            // The first picture is to be there soon, and nothing is known of the recipe yet.
+            // The first draft should appear soon, and the cost of the recipe is not known yet.
             draft_side: DRAFT_SIDES[0] / 2,
             told: None,
         }
     }
 
-    /// An empty memory for one or several renderers.
+    /// Creates an empty cache for one or more renderers.
     #[must_use]
     pub fn memory() -> PlanCache {
         PlanCache::new(MEMORY)
@@ -136,23 +136,23 @@ impl Default for Renderer {
     }
 }
 
-/// The plan of a text at a time.
+/// A cached plan with the document, the phase and the images it was made from.
 #[derive(Debug)]
 struct Planned {
     document: Arc<Document>,
     time: f64,
     plan: Arc<Plan>,
-    /// The images that it was made with.
+    /// The images of the plan.
     images: Images,
 }
 
-/// The reason why drawing ends early.
+/// The reason why rendering ends early.
 enum Stop {
-    /// Something newer is wanted.
+    /// A newer job supersedes this one.
     Outdated,
     /// The recipe was refused.
     Refused(RecipeError),
-    /// Something else was refused.
+    /// Another error occurred.
     Other(StudioError),
 }
 
@@ -169,7 +169,7 @@ impl From<StudioError> for Stop {
 }
 
 impl Renderer {
-    /// Draws a job, as far as it is wanted.
+    /// Renders a job. Returns early if a newer job supersedes it.
     pub fn draw(&mut self, job: &Job, world: &dyn RenderHost) {
         let Ok(recipe) = job.document.recipe() else {
             return;
@@ -225,7 +225,7 @@ impl Renderer {
         planned.map_or(Ok(()), |planned| pass.preview(recipe, &planned.images))
     }
 
-    /// The plan of a job.
+    /// Returns the plan of a job, from the cache if document, phase and images are unchanged.
     fn plan(
         &mut self,
         job: &Job,
@@ -260,7 +260,7 @@ impl Renderer {
     }
 }
 
-/// Whether images are the very same, without a look at their pixels.
+/// Whether two sets share the same image data. Compares pointers, not pixels.
 fn is_same(a: &Images, b: &Images) -> bool {
     let is_same = |a: &Values, b: &Values| match (a, b) {
         (Values::Numbers(a), Values::Numbers(b)) => Arc::ptr_eq(a, b),
@@ -273,7 +273,7 @@ fn is_same(a: &Images, b: &Images) -> bool {
             .all(|((a, of_a), (b, of_b))| a == b && is_same(of_a, of_b))
 }
 
-/// A plan within the limits of the studio.
+/// Creates a plan within the limits of the studio.
 pub(crate) fn planned(recipe: &Recipe, images: &Images, time: f64) -> Result<Plan, RecipeError> {
     Plan::new_within(recipe, images, time, &LIMITS)
 }
@@ -291,7 +291,7 @@ fn put_graph(job: &Job, plan: Option<&Plan>, world: &dyn RenderHost) {
     }
 }
 
-/// One drawing of a job.
+/// The rendering of one job.
 struct Pass<'a> {
     job: &'a Job,
     world: &'a dyn RenderHost,
@@ -300,7 +300,7 @@ struct Pass<'a> {
     draft_side: u32,
 }
 
-/// A region of a tile at a scale.
+/// A region of a tile at a reduced scale.
 #[derive(Clone, Copy)]
 struct Frame {
     size: [u32; 2],
@@ -328,7 +328,8 @@ impl Pass<'_> {
         );
         let draft = frame.draft(self.draft_side).filter(|_| view.draft);
         if let Some(draft) = draft {
-            // Some recipes have no smaller picture, such as those whose tiles have a whole number of pixels.
+            // Some recipes cannot be rendered at a smaller size, for example if their tiles need a whole number of
+            // pixels. Skip their draft.
             match self.draw_frame(draft, true) {
                 Ok(()) => self.choose_draft(),
                 Err(Stop::Refused(_)) => {}
@@ -338,7 +339,7 @@ impl Pass<'_> {
         self.draw_frame(frame, false)
     }
 
-    /// Makes the next draft smaller if this one was slow, and larger if it was fast.
+    /// Adapts the size of the next draft to the time of this one.
     fn choose_draft(&mut self) {
         let ms = self.world.now() - self.start;
         let ([slow, fast], [largest, smallest]) = (DRAFT_MS, DRAFT_SIDES);
@@ -349,6 +350,7 @@ impl Pass<'_> {
         }
     }
 
+    /// Validates the view and returns its frame at full size.
     fn frame(&self) -> Result<Frame, StudioError> {
         let view = &self.job.view;
         let size = view.size;
@@ -410,9 +412,11 @@ impl Pass<'_> {
         self.check_wanted()?;
         let rows = frame.region.size[1];
         let mut parts: Vec<_> = options.maps.iter().map(|_| (0, Vec::new())).collect();
+        // Rows accumulate for each map until a part is large enough to send.
         let mut sent = self.world.now();
         for band in Bake::new(self.plan, &options)? {
-            // A draft that was begun is shown: else none would be while changes come faster than it is drawn.
+            // A draft that has begun is finished. Otherwise no image would appear while changes arrive faster than
+            // drafts.
             if !is_draft {
                 self.check_wanted()?;
             }
@@ -467,7 +471,7 @@ impl Pass<'_> {
         })
     }
 
-    /// A small picture of each node.
+    /// Renders a thumbnail of each node.
     fn thumbnails(&self) -> Result<(), Stop> {
         let view = &self.job.view;
         if !view.thumbnails || view.paused {
@@ -482,7 +486,7 @@ impl Pass<'_> {
         for node in self.plan.node_names() {
             self.check_wanted()?;
             let start = self.world.now();
-            // A node that cannot be seen on its own has no thumbnail.
+            // Skip nodes that cannot be rendered on their own.
             let Ok(values) = self.plan.node_picture(node, size, None) else {
                 continue;
             };
@@ -509,7 +513,7 @@ impl Pass<'_> {
         Ok(())
     }
 
-    /// Draws the material in light, with the exact renderer.
+    /// Renders the lit preview with the host's CPU renderer.
     fn preview(&self, recipe: &Recipe, images: &Images) -> Result<(), Stop> {
         let view = &self.job.view;
         let Some(exact) = view.exact.as_ref().filter(|_| !view.paused) else {
@@ -556,7 +560,9 @@ impl Pass<'_> {
 }
 
 impl Frame {
-    /// The largest smaller picture that is a draft and whose pixels begin where those of this one do.
+    /// The frame of a draft whose longest side has at most `side` pixels. The scale is the smallest power of two from
+    /// 2 to 64 that divides all sizes and offsets, so that pixels of both frames are aligned. Returns `None` without
+    /// such a scale, or if the frame is small enough already.
     fn draft(self, side: u32) -> Option<Self> {
         let longest = self.region.size[0].max(self.region.size[1]);
         let numbers = [self.size, self.region.first, self.region.size].concat();
@@ -576,11 +582,11 @@ impl Frame {
     }
 }
 
-/// The maps of these names, each once.
+/// Parses names of maps and removes duplicates.
 ///
 /// # Errors
 ///
-/// If there is no map of one of the names.
+/// If a name is unknown.
 pub fn map_kinds(names: &[String]) -> Result<Vec<MapKind>, StudioError> {
     let mut kinds = Vec::new();
     for name in names {
@@ -593,7 +599,7 @@ pub fn map_kinds(names: &[String]) -> Result<Vec<MapKind>, StudioError> {
     Ok(kinds)
 }
 
-/// The size of a picture of a tile whose longer side has so many pixels.
+/// The size in pixels of an image of a tile whose longer side has `longest` pixels.
 pub(crate) fn size_of(extent: [f64; 2], longest: u32) -> [u32; 2] {
     let longer = extent[0].max(extent[1]);
     extent.map(|side| (side / longer * f64::from(longest)).round().max(1.0) as u32)

@@ -1,4 +1,4 @@
-//! A small picture of a recipe, to know it by: its color in light from the upper left.
+//! Thumbnails of recipes: the albedo, lit from the upper left.
 
 use crate::picture::of_colors;
 use crate::render::{planned, size_of};
@@ -6,19 +6,19 @@ use crate::{Picture, Shown, StudioError};
 use dapple::color::{Normal, NormalY};
 use dapple::recipe::{Bake, BakeOptions, Images, MapKind, MapRows, Recipe};
 
-/// The direction to the light: a unit vector to the right, up, and towards the eye.
+/// The direction to the light: a unit vector with the components right, up and toward the viewer.
 const LIGHT: [f32; 3] = [-0.48, 0.6, 0.64];
-/// The light from everywhere, and that from one side.
+/// The intensities of the ambient light and of the directional light.
 const LIGHTS: [f32; 2] = [0.35, 1.0];
 
-/// The longest side of a picture, in pixels.
+/// Maximum side of a thumbnail, in pixels.
 const MOST: u32 = 256;
 
-/// A small picture of a recipe in light, to know it by. Its longer side has `side` pixels, at most 256.
+/// Renders a lit thumbnail of a recipe. Its longer side has `side` pixels, at most 256.
 ///
 /// # Errors
 ///
-/// What the recipe refuses.
+/// If the recipe cannot be baked.
 pub fn sample(
     shown: Shown,
     recipe: &Recipe,
@@ -29,7 +29,7 @@ pub fn sample(
     Ok(Picture::whole(shown, size, pixels))
 }
 
-/// The size and the pixels of a picture whose longer side has so many pixels.
+/// Renders a lit thumbnail whose longer side has `side` pixels, and returns its size and its pixels.
 pub(crate) fn lit(
     recipe: &Recipe,
     images: &Images,
@@ -58,7 +58,7 @@ pub(crate) fn lit(
     Ok((size, of_colors(&lit)))
 }
 
-/// The brightness of a place with this normal, from 0 to 1.
+/// The brightness of a point with this normal, from 0.35 to 1.35.
 fn light(normal: &Normal) -> f32 {
     let parts = normal.to_array().into_iter().zip(LIGHT);
     let facing: f32 = parts.map(|(a, b)| a * b).sum();

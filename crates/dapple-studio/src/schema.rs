@@ -1,4 +1,4 @@
-//! What the schema of recipes says of a recipe: where inputs and seeds are, and which kinds of nodes there are.
+//! Queries on the schema of recipes: the paths of inputs and seeds, and the kinds of nodes.
 
 use crate::Part;
 use dapple::recipe::{KINDS, NEW_NODES, Recipe};
@@ -11,11 +11,11 @@ use std::sync::OnceLock;
 pub(crate) enum Role {
     /// An input: a number, a color or the name of a node.
     Input,
-    /// A seed, or a name to draw by.
+    /// A seed, or a name that a random stream is derived from.
     Seed,
 }
 
-/// A place of a recipe that has a role, with its value, or the one by default where nothing is written.
+/// A path in a recipe with its role and its value. If nothing is written there, the value is the default.
 #[derive(Clone, Debug)]
 pub(crate) struct Found<'a> {
     pub(crate) path: Vec<Part>,
@@ -24,13 +24,13 @@ pub(crate) struct Found<'a> {
     pub(crate) is_written: bool,
 }
 
-/// A kind of node, for a list to choose from.
+/// A kind of node, for a menu.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct Kind {
     name: &'static str,
-    /// Its use, such as `color`.
+    /// The group of the kind, such as `color`.
     group: &'static str,
-    /// The options that a new node of this kind begins with.
+    /// The options of a new node of this kind.
     value: Json,
 }
 
@@ -40,7 +40,7 @@ pub(crate) fn schema() -> &'static Json {
     SCHEMA.get_or_init(Recipe::schema)
 }
 
-/// The places of inputs and seeds in a recipe, written or not.
+/// Returns the inputs and seeds of a recipe, including those left at their defaults.
 pub(crate) fn roles(recipe: &Json) -> Vec<Found<'_>> {
     let mut walk = Walk::default();
     walk.value(schema(), recipe);
@@ -54,6 +54,7 @@ struct Walk<'a> {
 }
 
 impl<'a> Walk<'a> {
+    /// Walks a value together with its schema.
     fn value(&mut self, schema: &'a Json, value: &'a Json) {
         if let Some(role) = role(schema) {
             let is_used = |found: &Found<'_>| found.path == self.path;
@@ -63,7 +64,7 @@ impl<'a> Walk<'a> {
             return;
         }
         let schema = resolved(schema);
-        // A type that is nothing but an input.
+        // Follow a schema that is only a reference.
         if schema.get("$ref").is_some() {
             return self.value(schema, value);
         }
@@ -79,7 +80,7 @@ impl<'a> Walk<'a> {
                         self.within(Part::Key(key.clone()), |walk| walk.value(inner, value));
                     }
                 }
-                // A variant of another name says nothing of what is missing here.
+                // Properties of a variant that does not match this table are not missing.
                 let is_this = requirements(schema).all(|key| entries.contains_key(key));
                 if is_this {
                     self.missing(schema, entries);
@@ -96,7 +97,7 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// Notes the inputs of a table that are not written.
+    /// Records the optional inputs and seeds that a table lacks.
     fn missing(&mut self, schema: &'a Json, entries: &serde_json::Map<String, Json>) {
         let Some(Json::Object(properties)) = schema.get("properties") else {
             return;
@@ -132,7 +133,7 @@ impl<'a> Walk<'a> {
     }
 }
 
-/// The role of values of a schema that is nothing but a reference.
+/// The role of a schema that is only a reference.
 fn role(schema: &Json) -> Option<Role> {
     match schema.get("$ref")?.as_str()? {
         "#/$defs/Input" => Some(Role::Input),
@@ -141,7 +142,7 @@ fn role(schema: &Json) -> Option<Role> {
     }
 }
 
-/// The role of values that may be left out.
+/// The role of an optional value.
 fn optional_role(schema: &Json) -> Option<Role> {
     role(schema).or_else(|| schema.get("anyOf")?.as_array()?.iter().find_map(role))
 }
@@ -162,7 +163,7 @@ fn requirements(schema: &Json) -> impl Iterator<Item = &str> {
     all.into_iter().flatten().filter_map(Json::as_str)
 }
 
-/// All kinds of nodes, in the order of the reader.
+/// All kinds of nodes, in the order in which recipes list them.
 pub(crate) fn kinds() -> Vec<Kind> {
     let kind = |(name, (group, example))| Kind {
         name,

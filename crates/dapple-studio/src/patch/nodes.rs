@@ -1,4 +1,4 @@
-//! Changes of whole nodes.
+//! Edits of whole nodes.
 
 use super::{Op, Part, Place, apply_one};
 use crate::StudioError;
@@ -8,7 +8,7 @@ use dapple::recipe::KINDS;
 use serde_json::{Map, Value as Json, json};
 use toml_edit::{DocumentMut, InlineTable, Item, Key, Table, Value};
 
-/// Adds a node after all others.
+/// Adds a node after all other nodes.
 pub(super) fn add(
     document: &mut DocumentMut,
     name: &str,
@@ -23,7 +23,7 @@ pub(super) fn add(
     }
     let path = ["nodes".into(), name.into()];
     Place::Table(document.as_table_mut()).set(&path, &json!({ kind: value }))?;
-    // A blank line before it, as before all others.
+    // Separate the node from the previous one by a blank line.
     if let Some(Item::Table(node)) = document
         .get_mut("nodes")
         .and_then(|nodes| nodes.get_mut(name))
@@ -33,7 +33,7 @@ pub(super) fn add(
     Ok(())
 }
 
-/// Puts one blank line before the first header of a node, and none before the others.
+/// Sets a single blank line before the first header of a node.
 fn set_blank_line(node: &mut Table) {
     if !node.is_implicit() {
         node.decor_mut().set_prefix("\n");
@@ -46,7 +46,7 @@ fn set_blank_line(node: &mut Table) {
     }
 }
 
-/// Gives a node another name, and all inputs that name it, too. What draws by the old name still does.
+/// Renames a node and all inputs that refer to it. Its random stream stays derived from the old name.
 pub(super) fn rename(document: &mut DocumentMut, name: &str, to: &str) -> Result<(), StudioError> {
     if name == to {
         return Ok(());
@@ -78,7 +78,7 @@ pub(super) fn rename(document: &mut DocumentMut, name: &str, to: &str) -> Result
     keep_seed(document, &data, name, to)
 }
 
-/// The path of what was in a node in the node of another name.
+/// Replaces the node's name in a path.
 fn moved(mut path: Vec<Part>, name: &str, to: &str) -> Vec<Part> {
     if let [first, node, ..] = &mut path[..]
         && *first == Part::from("nodes")
@@ -89,7 +89,8 @@ fn moved(mut path: Vec<Part>, name: &str, to: &str) -> Vec<Part> {
     path
 }
 
-/// Has the node `to`, which was or is made after the node `name` of `data`, draw by the name that that one drew by.
+/// Writes seeds into the node `to` so that it draws from the same random stream as the node `name` in `data`. The
+/// node `to` is the renamed or copied node.
 fn keep_seed(
     document: &mut DocumentMut,
     data: &Json,
@@ -102,6 +103,7 @@ fn keep_seed(
             continue;
         }
         let path = moved(found.path, name, to);
+        // Drop a seed that equals the new name, keep any other seed, and write the old name where there is no seed.
         match found.value {
             Some(seed) if found.is_written && seed == to => {
                 apply_one(document, &Op::Remove { path })?;
@@ -116,7 +118,7 @@ fn keep_seed(
     Ok(())
 }
 
-/// Gives an entry of a table another name, at the same place.
+/// Renames an entry of a table and keeps its position.
 fn rename_in_table(table: &mut Table, name: &str, to: &str) {
     let keys: Vec<_> = table.iter().map(|(key, _)| key.to_owned()).collect();
     let entries: Vec<_> = keys
@@ -135,7 +137,7 @@ fn rename_in_table(table: &mut Table, name: &str, to: &str) {
     }
 }
 
-/// Adds a copy of a node, which draws by the name of the first.
+/// Adds a copy of a node. The copy draws from the random stream of the original.
 pub(super) fn duplicate(
     document: &mut DocumentMut,
     name: &str,
@@ -154,7 +156,7 @@ pub(super) fn duplicate(
     keep_seed(document, &data, name, to)
 }
 
-/// Gives a node an input.
+/// Connects an input of a node.
 pub(super) fn connect(
     document: &mut DocumentMut,
     node: &str,
@@ -189,7 +191,7 @@ pub(super) fn connect(
     root.set(&path, from)
 }
 
-/// Makes a PUPs texture one of points, each on a line of its own.
+/// Converts a PUPs texture to one with explicit points, with one point per line.
 pub(super) fn make_points(
     document: &mut DocumentMut,
     node: &str,
@@ -209,7 +211,7 @@ pub(super) fn make_points(
     let pups = pups.ok_or_else(|| no_node(node))?;
     match pups {
         Item::Table(old) if !old.is_dotted() => {
-            // The comments before the old header stay before the new one.
+            // Keep the comments above the header.
             let header = if old.is_implicit() {
                 old.iter().find_map(|(_, item)| item.as_table())
             } else {
@@ -232,7 +234,7 @@ pub(super) fn make_points(
     Ok(())
 }
 
-/// Refuses the name of a node that is there, or that no node can have.
+/// Rejects invalid names of nodes and names that are in use.
 fn check_new(document: &DocumentMut, name: &str) -> Result<(), StudioError> {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
     let is_name = name.starts_with(|c: char| c.is_ascii_alphabetic()) && name.chars().all(is_plain);
@@ -255,7 +257,7 @@ fn no_node(name: &str) -> StudioError {
     StudioError::new(format!("there is no node `{name}`"))
 }
 
-/// A path as a pointer of JSON.
+/// Converts a path to a JSON pointer.
 pub(crate) fn pointer(path: &[Part]) -> String {
     let parts = path.iter().map(|part| match part {
         Part::Index(index) => format!("/{index}"),

@@ -1,4 +1,4 @@
-//! Places of a document that is changed.
+//! Navigation and edits in a TOML document.
 
 use super::Part;
 use crate::StudioError;
@@ -6,14 +6,14 @@ use crate::data::{insert_element, json_of_item, remove_element, rewrite, table_o
 use serde_json::{Map, Value as Json};
 use toml_edit::{ArrayOfTables, InlineTable, Item, Table, Value};
 
-/// The table, the list or the value at a place of a document.
+/// A table, an array of tables or a value in a document.
 pub(super) enum Place<'a> {
     Table(&'a mut Table),
     Tables(&'a mut ArrayOfTables),
     Value(&'a mut Value),
 }
 
-/// The depth of tables that have lines of their own: `[nodes.NAME.KIND]` and `[material]`.
+/// Maximum depth of tables with their own headers, such as `[nodes.NAME.KIND]` and `[material]`.
 const DEEPEST_HEADER: usize = 3;
 
 impl<'a> Place<'a> {
@@ -26,13 +26,13 @@ impl<'a> Place<'a> {
         }
     }
 
-    /// Gives a value to what the path leads to.
+    /// Sets the value at a path. Missing tables are created.
     pub(super) fn set(self, path: &[Part], value: &Json) -> Result<(), StudioError> {
         let (last, way) = path.split_last().ok_or_else(empty)?;
         self.made(way)?.put(last, value, path.len())
     }
 
-    /// Takes what the path leads to away.
+    /// Removes the entry or element at a path.
     pub(super) fn remove(self, path: &[Part]) -> Result<(), StudioError> {
         let (last, way) = path.split_last().ok_or_else(empty)?;
         let missing = || nothing_at(last);
@@ -59,7 +59,7 @@ impl<'a> Place<'a> {
         }
     }
 
-    /// Puts an element into the list that the path leads to.
+    /// Inserts an element into the array at a path. A missing array is created.
     pub(super) fn insert(
         self,
         path: &[Part],
@@ -89,12 +89,12 @@ impl<'a> Place<'a> {
         }
     }
 
-    /// The place that a path leads to.
+    /// Follows a path.
     fn found(self, path: &[Part]) -> Result<Self, StudioError> {
         path.iter().try_fold(self, Self::step)
     }
 
-    /// The place that a path leads to, with tables made that are not there.
+    /// Follows a path and creates missing tables.
     fn made(self, path: &[Part]) -> Result<Self, StudioError> {
         let mut place = self;
         for (depth, part) in path.iter().enumerate() {
@@ -107,7 +107,7 @@ impl<'a> Place<'a> {
         Ok(place)
     }
 
-    /// Whether this is a table without such an entry.
+    /// Whether this is a table that lacks the entry.
     fn lacks(&self, part: &Part) -> bool {
         match (self, part) {
             (Self::Table(table), Part::Key(key)) => !table.contains_key(key),
@@ -116,6 +116,7 @@ impl<'a> Place<'a> {
         }
     }
 
+    /// Creates an empty table as an entry of this table: with a header down to [`DEEPEST_HEADER`], inline below.
     fn with_table(self, part: &Part, depth: usize) -> Result<Self, StudioError> {
         match (self, part) {
             (Self::Table(table), Part::Key(key)) => {
@@ -159,7 +160,7 @@ impl<'a> Place<'a> {
         }
     }
 
-    /// Gives a value to an entry of this table, or to an element of this list.
+    /// Sets an entry of this table, or an element of this array.
     fn put(self, part: &Part, json: &Json, depth: usize) -> Result<(), StudioError> {
         match (self, part) {
             (Self::Table(table), Part::Key(key)) => put_into_table(table, key, json, depth),
@@ -233,7 +234,7 @@ fn put_into_table(
     }
 }
 
-/// Makes a table equal to one of JSON.
+/// Sets a table to a JSON object.
 fn rewrite_table(
     table: &mut Table,
     entries: &Map<String, Json>,
@@ -251,7 +252,7 @@ fn rewrite_table(
     Ok(())
 }
 
-/// Gives a table a header of its own if it would be nowhere without one.
+/// Gives an empty table a header. Without one it would not be written.
 fn show(table: &mut Table) {
     if table.is_empty() {
         table.set_implicit(false);
@@ -259,7 +260,7 @@ fn show(table: &mut Table) {
     }
 }
 
-/// Puts a table into a list of tables with headers.
+/// Inserts a table into an array of tables.
 fn insert_table(tables: &mut ArrayOfTables, index: usize, table: Table) {
     let mut all: Vec<Table> = tables.iter().cloned().collect();
     tables.clear();
@@ -269,7 +270,7 @@ fn insert_table(tables: &mut ArrayOfTables, index: usize, table: Table) {
     }
 }
 
-/// Spaces out the entries of a table in one line, after one of them came or went.
+/// Reformats a single-line inline table after an entry was added or removed.
 fn tidy(table: &mut InlineTable) {
     let is_in_lines = table.to_string().contains('\n');
     if !is_in_lines {
@@ -277,7 +278,7 @@ fn tidy(table: &mut InlineTable) {
     }
 }
 
-/// Refuses a key that no recipe has, before it is written with quotation marks.
+/// Rejects keys that would need quotation marks. Recipes have no such keys.
 fn check_key(key: &str) -> Result<(), StudioError> {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
     if key.is_empty() || key.len() > 200 || !key.chars().all(is_plain) {

@@ -1,5 +1,5 @@
-//! The numbers of a document replaced where they are written, without writing the rest of its text again: what a drag of
-//! a slider or a point does many times a second.
+//! Fast path for edits that only change numbers: replaces them in the text without serializing the document again.
+//! Dragging a slider or a point causes many such edits per second.
 
 use super::{Op, Part};
 use crate::Document;
@@ -8,7 +8,8 @@ use core::ops::Range;
 use serde_json::Value as Json;
 use toml_edit::{Item, Value};
 
-/// The text after changes of numbers that are written in it: that of [`apply`](super::apply). None for other changes.
+/// Returns the text after edits of numbers that are written in it, equal to the result of [`apply`](super::apply).
+/// Returns `None` for other edits.
 pub(crate) fn spliced(document: &Document, ops: &[Op]) -> Option<String> {
     let mut parts = Vec::new();
     for op in ops {
@@ -22,7 +23,7 @@ pub(crate) fn spliced(document: &Document, ops: &[Op]) -> Option<String> {
     let mut text = String::with_capacity(old.len() + 32);
     let mut end = 0;
     for (range, number) in parts {
-        // There is no such text where a number is set twice.
+        // Overlapping ranges, from a number that is set twice, give `None`.
         text += old.get(end..range.start)?;
         text += number.as_deref().or_else(|| old.get(range.clone()))?;
         end = range.end;
@@ -31,7 +32,7 @@ pub(crate) fn spliced(document: &Document, ops: &[Op]) -> Option<String> {
     Some(text)
 }
 
-/// The value at the end of a path.
+/// The value at a path.
 fn at<'a>(document: &'a Document, path: &[Part]) -> Option<&'a Value> {
     let mut parts = path.iter();
     let Part::Key(first) = parts.next()? else {
@@ -47,8 +48,8 @@ fn at<'a>(document: &'a Document, path: &[Part]) -> Option<&'a Value> {
     item.as_value()
 }
 
-/// Adds the ranges of the numbers in a value, with what is to be written there unless they stay as they are, if the new
-/// value differs in numbers alone.
+/// Collects the ranges of all numbers in a value with their new text, or `None` for unchanged numbers. Fails if the
+/// new value differs in anything other than numbers.
 fn replace(old: &Value, new: &Json, parts: &mut Vec<(Range<usize>, Option<String>)>) -> Option<()> {
     if let (Value::Array(list), Json::Array(new)) = (old, new) {
         let mut pairs = list.iter().zip(new);
@@ -56,7 +57,7 @@ fn replace(old: &Value, new: &Json, parts: &mut Vec<(Range<usize>, Option<String
         return is_alike.then(|| pairs.try_for_each(|(old, new)| replace(old, new, parts)))?;
     }
     let number = match (old, new) {
-        // What was written with a point stays so.
+        // A number written with a decimal point keeps it.
         (Value::Float(_), Json::Number(number)) => number.as_f64()?.into(),
         (Value::Integer(_), Json::Number(_)) => value_of(new).ok()?,
         _ => return None,

@@ -1,4 +1,4 @@
-//! Changes of texts beside the same changes of their data.
+//! Compares edits of texts with the same edits of their data.
 
 use super::{Op, Part, apply, spliced};
 use crate::Document;
@@ -62,7 +62,7 @@ fn data(text: &str) -> Json {
     json_of_table(&text.parse::<DocumentMut>().unwrap())
 }
 
-/// The text with the line that has a word replaced by another line.
+/// The text with one line replaced.
 fn with_line(old: &str, new: &str) -> String {
     assert!(TEXT.contains(old), "{old}");
     TEXT.replacen(old, new, 1)
@@ -112,7 +112,7 @@ fn a_value_is_all_that_changes() {
             "{at}"
         );
     }
-    // Written otherwise, but equal.
+    // The number is formatted differently but equal, so the text stays the same.
     assert_eq!(
         apply(TEXT, &[set("nodes.sum.add.1", json!(0.5))]).unwrap(),
         TEXT
@@ -330,7 +330,7 @@ fn what_does_not_fit_is_refused_and_nothing_changes() {
     );
 }
 
-/// All paths of a value.
+/// Lists all paths in a value.
 fn paths(value: &Json, path: &mut Vec<Part>, all: &mut Vec<Vec<Part>>) {
     if !path.is_empty() {
         all.push(path.clone());
@@ -361,7 +361,7 @@ fn at<'a>(value: &'a mut Json, path: &[Part]) -> &'a mut Json {
     })
 }
 
-/// Whether values are equal, with all numbers taken as those of floating point.
+/// Whether values are equal. Integers and floating-point numbers are compared by value.
 fn are_equal(a: &Json, b: &Json) -> bool {
     match (a, b) {
         (Json::Number(a), Json::Number(b)) => a.as_f64() == b.as_f64(),
@@ -415,7 +415,7 @@ proptest! {
         *at(&mut data_after, &path) = value.clone();
         match apply(text, &[Op::Set { path: path.clone(), value }]) {
             Ok(new) => prop_assert!(are_equal(&data(&new), &data_after), "{path:?}: {new}"),
-            // What is refused is refused for a reason: an element of a list of tables that is no table.
+            // The only valid refusals concern elements of an array of tables that are not tables, and invalid keys.
             Err(error) => prop_assert!(
                 error.to_string().contains("tables") || error.to_string().contains("letters"),
                 "{path:?}: {error}"

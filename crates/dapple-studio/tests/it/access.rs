@@ -1,4 +1,4 @@
-//! Who is answered by the server, and which files a page reaches.
+//! Tests of access control: which requests the server answers and which files a page can reach.
 
 use super::server::{Page, Server, refusal, say, until};
 use serde_json::{Value, json};
@@ -7,7 +7,7 @@ use std::path::Path;
 
 const RECIPE: &str = "dapple = 1\n[material]\nheight = 0.25\n";
 
-/// The status of a socket with a host and an origin.
+/// The HTTP status of a socket upgrade with this host and origin.
 fn upgrade(server: &Server, host: &str, origin: &str) -> u16 {
     let headers = [
         format!("Host: {host}"),
@@ -93,7 +93,7 @@ fn any_name_and_port_of_this_machine_is_answered_and_no_other() {
         for port in [own.as_str(), ":9177", ""] {
             let host = format!("{name}{port}");
             assert_eq!(server.head("/", &[format!("Host: {host}")]), 200, "{host}");
-            // A proxy may speak TLS with the browser.
+            // A proxy may use TLS toward the browser.
             for scheme in ["http", "https"] {
                 let origin = format!("{scheme}://{host}");
                 assert_eq!(upgrade(&server, &host, &origin), 101, "{origin}");
@@ -123,7 +123,7 @@ fn any_name_and_port_of_this_machine_is_answered_and_no_other() {
     ] {
         let host = format!("{name}{own}");
         let answer = server.get("/", &[&format!("Host: {host}")]);
-        // Some are no hosts at all.
+        // Invalid hosts are rejected with 400.
         let is_refused = answer.starts_with("HTTP/1.1 403") || answer.starts_with("HTTP/1.1 400");
         assert!(is_refused, "{host}: {answer}");
         assert_ne!(upgrade(&server, &host, &format!("http://{host}")), 101);
@@ -143,7 +143,7 @@ fn a_public_url_is_one_more_name_for_the_page() {
     for (host, origin, status) in [
         ("studio.example", "https://studio.example", 101),
         ("STUDIO.example:443", "https://studio.example", 101),
-        // A proxy that calls the server by its own name.
+        // A proxy may send the server's own name as the host.
         ("localhost:5177", "https://studio.example", 101),
         ("localhost:5177", "http://localhost:5177", 101),
         ("localhost:5177", "http://studio.example", 403),
@@ -192,7 +192,7 @@ fn a_link_of_another_site_opens_the_page_and_nothing_else() {
     );
 }
 
-/// Opens a file, and returns its text.
+/// Opens a file and returns its text.
 fn open(page: &mut Page, file: &str) -> Value {
     say(page, &json!({ "type": "open", "file": file }));
     until(page, "document")["text"].clone()
@@ -205,7 +205,7 @@ fn save(page: &mut Page, file: &str, text: &str) {
     );
 }
 
-/// Files that are no business of a page: texts of other programs, and recipes that are hidden.
+/// Files that a page must not reach: files of other programs, and hidden recipes.
 const OTHERS: [(&str, &str); 10] = [
     (".env", "SECRET=1\n"),
     (".git/config", "[core]\n"),
@@ -222,13 +222,13 @@ const OTHERS: [(&str, &str); 10] = [
     ("under/.config/hidden.toml", RECIPE),
 ];
 
-/// A server for a folder with those files, recipes, and a hidden image.
+/// A server for a folder with these files, recipes, and a hidden image.
 fn cluttered() -> Server {
     let server = Server::new(Some("my.toml"));
     let recipes = [
         ("good.toml", RECIPE),
         ("under/good.toml", RECIPE),
-        // What somebody is writing is no TOML for a while.
+        // A recipe that is being edited is not valid TOML.
         ("half.toml", HALF),
         (".hidden.png", "image"),
     ];
@@ -257,7 +257,7 @@ fn only_recipes_are_opened_and_replaced() {
         assert_eq!(refused["what"], "save", "{name}: {refused}");
         assert_eq!(fs::read_to_string(path(name)).unwrap(), text);
     }
-    // Neither another program's file under a new name, nor a device of Windows.
+    // Files of other programs and device names of Windows are rejected as new names.
     for (name, text) in [
         ("rust-toolchain.toml", "[toolchain]\n"),
         ("con.toml", RECIPE),
@@ -343,7 +343,7 @@ fn links_within_the_folder_are_names_of_recipes_but_not_of_what_is_hidden() {
     assert_eq!(status, 404);
     say(&mut page, &json!({ "type": "open", "file": "link.toml" }));
     assert_eq!(refusal(&mut page)["what"], "open");
-    // What it leads to is replaced, and it stays a link.
+    // Saving replaces the target of the link, and the link remains.
     assert_eq!(open(&mut page, "inside.toml"), RECIPE);
     let text = "dapple = 1\n[material]\nheight = 0.5\n";
     save(&mut page, "inside.toml", text);
@@ -352,7 +352,7 @@ fn links_within_the_folder_are_names_of_recipes_but_not_of_what_is_hidden() {
     assert!(path("inside.toml").is_symlink());
 }
 
-/// Writes over a file in place.
+/// Overwrites a file in place.
 fn write(path: &Path, text: &str) {
     fs::write(path, text).unwrap();
 }
@@ -371,7 +371,7 @@ fn the_recipe_that_was_named_is_opened_followed_and_saved_through_its_link() {
     let server = Server::of(folder, Some("link.toml"), None);
     let mut page = server.page();
     assert_eq!(until(&mut page, "document")["text"], RECIPE);
-    // Written in place where the link leads, which no event of the folder tells.
+    // Writing the target of the link in place causes no event in the folder.
     let text = "dapple = 1\n[material]\nheight = 0.125\n";
     write(&real, text);
     assert_eq!(until(&mut page, "disk")["text"], text);
@@ -380,7 +380,7 @@ fn the_recipe_that_was_named_is_opened_followed_and_saved_through_its_link() {
     until(&mut page, "saved");
     assert_eq!(fs::read_to_string(&real).unwrap(), text);
     assert!(server.folder.path().join("link.toml").is_symlink());
-    // Only the one that was named.
+    // Links to other files are still rejected.
     say(&mut page, &json!({ "type": "open", "file": "other.toml" }));
     assert_eq!(refusal(&mut page)["what"], "open");
 }

@@ -1,4 +1,4 @@
-//! Limits of connections and pages, and what goes on beside an export.
+//! Tests of the limits on connections and pages, and of requests that run during an export.
 
 use super::server::{Server, say, until};
 use serde_json::json;
@@ -10,18 +10,18 @@ use std::time::{Duration, Instant};
 fn silent_connections_are_closed_and_do_not_keep_others_out() {
     let server = Server::new(None);
     let start = Instant::now();
-    // More than there may be, some of them in the middle of a request.
+    // Open more connections than the limit, half of them in the middle of a request.
     let mut silent: Vec<_> = (0..300).map(|_| server.stream()).collect();
     for stream in silent.iter_mut().step_by(2) {
         stream.write_all(b"GET / HTTP/1.1\r\nHost: 127").unwrap();
     }
     assert_eq!(server.status("/", &["Host: HOST"]), 200);
     let mut answer = Vec::new();
-    // Closed with or without an answer.
+    // The server may send a response before it closes the connection.
     let _ = silent[0].read_to_end(&mut answer);
     let text = String::from_utf8_lossy(&answer);
     assert!(!text.contains(" 200 "), "{text}");
-    // 300 connections are three rounds of 5 seconds.
+    // With a limit of 128, 300 connections take three rounds of 5 seconds.
     assert!(
         start.elapsed() < Duration::from_secs(25),
         "{:?}",
@@ -51,7 +51,7 @@ fn pages_that_come_together_share_the_places_that_there_are() {
             .count()
     };
     assert_eq!((count("101"), count("503")), (16, 44), "{statuses:?}");
-    // The places are free again when the pages are gone.
+    // The permits are free again once the pages are closed.
     drop(streams);
     let start = Instant::now();
     while server.head(&path, &upgrade()) != 101 {
@@ -84,7 +84,7 @@ fn a_page_is_drawn_while_its_export_is_made() {
         &json!({ "type": "view", "size": [16, 16], "maps": ["height"], "paused": false }),
     );
     assert_eq!(until(&mut page, "picture")["size"], json!([16, 16]));
-    // A report, too.
+    // Reports also run during an export.
     say(&mut page, &json!({ "type": "code", "kind": "toml" }));
     until(&mut page, "code");
     fs::remove_file(&wait).unwrap();

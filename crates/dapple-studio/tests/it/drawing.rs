@@ -1,4 +1,4 @@
-//! What a session draws.
+//! Tests of the images that a session renders.
 
 use crate::render_host::{Page, TestWorld, of_type, split};
 use dapple::image::{Depth, Encoding, Image, Limits, PngPixels, RowWriter, decode_image};
@@ -11,7 +11,7 @@ fn view(size: u32, maps: &[&str], draft: bool) -> serde_json::Value {
     json!({ "type": "view", "size": [size, size], "maps": maps, "draft": draft, "paused": false })
 }
 
-/// The pixels of the PNG file that a bake writes with 8 bits.
+/// The pixels that a bake writes to an 8-bit PNG file.
 fn baked(recipe: &str, kind: MapKind, side: u32) -> Vec<u8> {
     let plan = Plan::new(&Recipe::builtin(recipe).unwrap(), &Images::new(), 0.0).unwrap();
     let options = BakeOptions {
@@ -47,7 +47,7 @@ fn baked(recipe: &str, kind: MapKind, side: u32) -> Vec<u8> {
     }
 }
 
-/// The rows of all parts of a map.
+/// The pixels of all parts of a map, concatenated.
 fn joined(pictures: &[Picture], shown: Shown) -> Vec<u8> {
     let parts = pictures
         .iter()
@@ -77,7 +77,7 @@ fn pictures_are_those_of_baked_files() {
 
 #[test]
 fn large_pictures_come_in_parts_and_end_with_the_last() {
-    // By their size, and where drawing takes long.
+    // Large images are split by size, and slow ones also by time.
     for (size, pace, n_parts) in [(1280, 0.0, 2), (1280, 60.0, 6), (512, 60.0, 1)] {
         let mut page = Page::open("polka-dots");
         page.ask(view(size, &["height"], false));
@@ -171,7 +171,7 @@ fn a_strip_shows_what_changes_would_make() {
     assert_eq!(page.session.document().text(), text);
     let (_, strip) = split(world.outputs.into_inner());
     let shown: Vec<_> = strip.iter().map(|picture| picture.shown).collect();
-    // The recipe refuses the second value.
+    // The recipe rejects the second value, so its thumbnail is missing.
     assert_eq!(shown, [Shown::Strip(0), Shown::Strip(2)]);
     page.ask(json!({ "type": "patch", "rev": 0, "ops": [gain(0.75)] }));
     page.ask(
@@ -203,7 +203,8 @@ fn a_draft_that_was_begun_is_shown() {
     world.patience.set(Some(1));
     page.renderer.draw(&page.session.job().unwrap(), &world);
     let (_, pictures) = split(world.outputs.into_inner());
-    // The first draft was drawn at once, so that this one has more rows than are drawn before it is asked again.
+    // The first draft took no time, so this one is larger: it has more rows than a band, after which rendering checks
+    // for newer jobs.
     let drawn: Vec<_> = pictures
         .iter()
         .map(|picture| (picture.is_draft, picture.is_last, picture.size))

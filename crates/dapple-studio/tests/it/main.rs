@@ -1,4 +1,4 @@
-//! The studio through its public doors: sessions without a socket, and the server with one.
+//! Tests of the studio's public API: sessions without a socket, and the server with sockets.
 
 #![expect(
     clippy::disallowed_methods,

@@ -1,9 +1,9 @@
-//! What a session answers.
+//! Tests of the replies of a session.
 
 use crate::render_host::{Page, of_type};
 use serde_json::{Value, json};
 
-/// Texts that JavaScript has of positions in UTF-16.
+/// The part of a text that JavaScript finds at the UTF-16 positions of an item.
 fn part(text: &str, item: &Value) -> String {
     let units: Vec<u16> = text.encode_utf16().collect();
     let at = |name: &str| item[name].as_u64().unwrap() as usize;
@@ -61,7 +61,7 @@ fn mistakes_are_told_where_they_are_written() {
             "{item}"
         );
     }
-    // What only a plan finds out.
+    // Errors that only a plan detects.
     for (nodes, place, node) in [
         (
             "[nodes.a.noise]\nfrequency = 2.0 # é\noctaves = 99\n",

@@ -1,10 +1,10 @@
-//! Control points that are edited on the page.
+//! Tests of editing control points on the page.
 
 use crate::render_host::Page;
 use serde_json::{Value, json};
 use std::time::Instant;
 
-/// A page with the points of a cow in its text, which shows two maps.
+/// A page that shows two maps of a cow texture whose points are written in the text.
 fn page(n_points: u32) -> Page {
     let text = format!(
         "dapple = 1\nextent = [2.0, 2.0]\n[nodes.hide.pups.cow]\nspacing = {{ count = {n_points} }}\n\n[material]\nheight = \"hide\"\n"
@@ -21,7 +21,7 @@ fn page(n_points: u32) -> Page {
     page
 }
 
-/// The message of a drag of a point.
+/// The request sent while a point is dragged.
 fn moved(point: usize, [x, y]: [f64; 2], rev: u32) -> Value {
     let path = |key| json!(["nodes", "hide", "pups", "points", "points", point, key]);
     json!({
@@ -58,7 +58,7 @@ fn a_dragged_point_draws_what_its_text_draws_anew() {
 fn one_of_700_points_is_changed_in_twice_the_time_of_reading_them() {
     let mut dragged = page(700);
     let mut read = Page::default();
-    // The fastest of many: other tests run at the same time.
+    // Take the minimum of many runs, since other tests run at the same time.
     let [mut change, mut whole] = [f64::INFINITY; 2];
     let timed = |page: &mut Page, message: Value| {
         let start = Instant::now();
@@ -72,8 +72,8 @@ fn one_of_700_points_is_changed_in_twice_the_time_of_reading_them() {
         let message = json!({ "type": "doc", "rev": step, "text": text });
         whole = whole.min(timed(&mut read, message));
     }
-    // Milliseconds depend on the machine, which slows down both. A change reads the text once; reading it again, or
-    // every point for each other point, would take longer than this.
+    // Absolute times depend on the machine, so compare two times on the same machine. An edit parses the text once.
+    // Parsing it twice, or comparing all pairs of points, would exceed this bound.
     println!("{change:.1} ms to change a point, {whole:.1} ms to read the text");
     assert!(
         change < 2.0 * whole,

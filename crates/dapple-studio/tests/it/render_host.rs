@@ -1,18 +1,18 @@
-//! A world in which sessions are tested.
+//! A render host for tests of sessions.
 
 use dapple::recipe::{Images, Recipe};
 use dapple_studio::{Output, Picture, RenderHost, Renderer, Reply, Request, Session, StudioError};
 use serde_json::{Value, json};
 use std::cell::{Cell, RefCell};
 
-/// Takes what is made. A job may become unwanted after a number of outputs.
+/// Collects outputs. A job may be superseded after a number of outputs.
 #[derive(Default)]
 pub(crate) struct TestWorld {
     pub(crate) outputs: RefCell<Vec<Output>>,
     pub(crate) wanted: Cell<Option<usize>>,
-    /// How many more times a job is wanted when it asks.
+    /// The number of remaining checks for which a job counts as current. `None` for no limit.
     pub(crate) patience: Cell<Option<usize>>,
-    /// The milliseconds that pass whenever the time is asked for.
+    /// Milliseconds by which the clock advances on every query.
     pub(crate) pace: Cell<f64>,
     time: Cell<f64>,
 }
@@ -42,7 +42,7 @@ impl RenderHost for TestWorld {
     }
 }
 
-/// A page with its renderer.
+/// A session with its renderer.
 #[derive(Default)]
 pub(crate) struct Page {
     pub(crate) session: Session,
@@ -50,7 +50,7 @@ pub(crate) struct Page {
 }
 
 impl Page {
-    /// The answers to a message.
+    /// Sends a request and returns the replies.
     pub(crate) fn ask(&mut self, message: Value) -> Vec<Value> {
         let request: Request = serde_json::from_value(message).unwrap();
         let replies = self
@@ -67,7 +67,7 @@ impl Page {
         page
     }
 
-    /// Draws what is new.
+    /// Renders the pending job, if any.
     pub(crate) fn draw(&mut self) -> (Vec<Value>, Vec<Picture>) {
         let world = TestWorld::default();
         if let Some(job) = self.session.job() {
@@ -92,7 +92,7 @@ pub(crate) fn json_of(reply: &Reply) -> Value {
     serde_json::to_value(reply).unwrap()
 }
 
-/// The messages of a type.
+/// The messages of one type.
 pub(crate) fn of_type<'a>(replies: &'a [Value], name: &str) -> Vec<&'a Value> {
     replies
         .iter()

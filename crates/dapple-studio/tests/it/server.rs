@@ -1,4 +1,4 @@
-//! The server, over sockets.
+//! Tests of the server over sockets.
 
 use dapple::color::LinearRgb;
 use dapple::raster::Raster;
@@ -16,9 +16,9 @@ use std::time::{Duration, Instant};
 use tempfile::TempDir;
 use tungstenite::{Message, WebSocket};
 
-/// A program around the server that makes files with nothing in them.
+/// A host whose exports consist of a single dummy file.
 ///
-/// It waits as long as the folder has a file `wait`, or until it is stopped; then it writes a file `stopped`.
+/// An export waits while the folder has a file `wait`. If it is stopped during the wait, it writes a file `stopped`.
 struct TestHost;
 
 impl Host for TestHost {
@@ -56,7 +56,7 @@ impl Host for TestHost {
     }
 }
 
-/// A server in a folder of its own.
+/// A server for a temporary folder.
 pub(crate) struct Server {
     pub(crate) folder: TempDir,
     pub(crate) port: u16,
@@ -70,7 +70,7 @@ impl Server {
         Self::of(Self::folder(), recipe, None)
     }
 
-    /// A folder with a recipe and another text.
+    /// Creates a folder with a recipe and another text file.
     pub(crate) fn folder() -> TempDir {
         let folder = tempfile::tempdir().unwrap();
         fs::write(
@@ -82,9 +82,9 @@ impl Server {
         folder
     }
 
-    /// A server for a folder.
+    /// Starts a server for a folder.
     pub(crate) fn of(folder: TempDir, recipe: Option<&str>, public_url: Option<&str>) -> Self {
-        // What is printed with a public URL is not the port.
+        // The printed address contains the port only without a public URL, so choose a free port here.
         let free = public_url.map(|_| TcpListener::bind("127.0.0.1:0").unwrap());
         let port = free.map_or(0, |free| free.local_addr().unwrap().port());
         let options = ServeOptions {
@@ -96,7 +96,7 @@ impl Server {
             ..ServeOptions::default()
         };
         let (sender, urls) = channel();
-        // It ends with the tests.
+        // The thread ends with the test process.
         std::thread::spawn(move || {
             serve(options, Arc::new(TestHost), |url| {
                 sender.send(url.to_owned()).unwrap();
@@ -134,7 +134,7 @@ impl Server {
         stream
     }
 
-    /// The answer to a request with these headers; `HOST` and `ORIGIN` are the right ones.
+    /// Sends a request and returns the response. In headers, `HOST` and `ORIGIN` stand for the valid values.
     pub(crate) fn get(&self, path: &str, headers: &[&str]) -> String {
         let mut stream = self.stream();
         let mut request = format!("GET {path} HTTP/1.1\r\nConnection: close\r\n");
@@ -152,7 +152,7 @@ impl Server {
         String::from_utf8_lossy(&answer).into_owned()
     }
 
-    /// The status of a request, of whose answer only the head is read: what was upgraded has no end.
+    /// Sends a request and returns its status. Reads only the status line, since an upgraded connection stays open.
     pub(crate) fn head(&self, path: &str, headers: &[String]) -> u16 {
         let mut stream = self.stream();
         let request = format!("GET {path} HTTP/1.1\r\n{}\r\n\r\n", headers.join("\r\n"));
@@ -172,17 +172,17 @@ impl Server {
             .unwrap_or(0)
     }
 
-    /// A page that has been greeted.
+    /// A connected page that has received its greeting.
     pub(crate) fn page(&self) -> Page {
         self.greeted().0
     }
 
-    /// A page with its greeting.
+    /// A connected page and its greeting.
     pub(crate) fn greeted(&self) -> (Page, Value) {
         self.greeted_at("")
     }
 
-    /// A page whose address goes on with some text, and its greeting.
+    /// A connected page and its greeting. `more` is appended to the query of its address.
     pub(crate) fn greeted_at(&self, more: &str) -> (Page, Value) {
         let (port, token) = (self.port, &self.token);
         let request = tungstenite::http::Request::builder()
@@ -205,7 +205,7 @@ pub(crate) fn say(page: &mut Page, message: &Value) {
     page.send(Message::text(message.to_string())).unwrap();
 }
 
-/// The next message; pictures are acknowledged, and come as their headers.
+/// Returns the next message. Images are acknowledged and reported by their headers.
 pub(crate) fn next(page: &mut Page) -> Value {
     loop {
         match page.read().unwrap() {
@@ -224,7 +224,7 @@ pub(crate) fn next(page: &mut Page) -> Value {
     }
 }
 
-/// The next message of a type.
+/// Skips to the next message of a type.
 pub(crate) fn until(page: &mut Page, name: &str) -> Value {
     loop {
         let message = next(page);
@@ -235,7 +235,7 @@ pub(crate) fn until(page: &mut Page, name: &str) -> Value {
     }
 }
 
-/// The next refusal.
+/// Skips to the next refusal.
 pub(crate) fn refusal(page: &mut Page) -> Value {
     loop {
         let message = next(page);
@@ -253,7 +253,7 @@ fn the_view_of_the_address_is_drawn_without_a_message() {
     let picture = until(&mut page, "picture");
     assert_eq!(picture["size"], json!([32, 32]));
     assert_eq!(picture["bytes"], 32 + 32 * 32, "a byte for each pixel");
-    // What is no view is as if it were not there.
+    // An invalid view is ignored.
     let (mut page, _) = server.greeted_at("&view=%7B%22size%22:0%7D");
     until(&mut page, "document");
     say(
@@ -413,12 +413,12 @@ fn hostile_messages_do_not_end_the_server() {
     let deep = format!("x = {}{}", "[".repeat(10_000), "]".repeat(10_000));
     say(&mut page, &json!({ "type": "doc", "rev": 1, "text": deep }));
     until(&mut page, "diagnostics");
-    // What asks for more work than a page may.
+    // A recipe that exceeds the work limits is refused.
     let text = "dapple = 1\n[nodes.a.noise]\nfrequency = 100000\n[material]\nheight = \"a\"\n";
     say(&mut page, &json!({ "type": "doc", "rev": 2, "text": text }));
     say(&mut page, &json!({ "type": "view", "paused": false }));
     until(&mut page, "diagnostics");
-    // Longer than any recipe.
+    // A message longer than the limit closes the connection.
     let mut other = server.page();
     let _ = other.send(Message::text("x".repeat(9 << 20)));
     let _ = other.read();
@@ -508,7 +508,7 @@ fn exports_stop_on_request_and_with_their_page() {
     let export = json!({ "type": "export", "size": [16, 16], "maps": ["height"] });
     let mut page = server.page();
     until(&mut page, "values");
-    // One in progress and one that waits.
+    // One export runs and one waits.
     say(&mut page, &export);
     say(&mut page, &export);
     say(&mut page, &json!({ "type": "stop" }));
@@ -518,11 +518,11 @@ fn exports_stop_on_request_and_with_their_page() {
         let message = refused["message"].as_str().unwrap();
         assert!(message.contains("stopped"), "{message}");
     }
-    // A stopped page exports again.
+    // Exports work again after a stop.
     fs::remove_file(path("wait")).unwrap();
     say(&mut page, &export);
     until(&mut page, "exported");
-    // The end of a page stops its export.
+    // Closing the page stops its export.
     fs::write(path("wait"), "").unwrap();
     let _ = fs::remove_file(path("stopped"));
     say(&mut page, &export);
