@@ -1,21 +1,22 @@
-//! A job drawn in pieces: a draft, then some rows at a time, then the rest.
+//! Incremental rendering of a job: a draft, then some rows at a time, then the rest.
 //!
-//! A worker has one thread and hears nothing while it draws, so that a piece must be short. Each piece is a job of the
-//! [`Renderer`], whose plan and values stay in its memory; the page sees the messages of one job.
+//! A worker has one thread and processes no messages while it renders, so each step must be short. Each step is a job
+//! of the [`Renderer`], which caches the plan and its values. The page receives the messages of a single job.
 
 use dapple_recipe::{Images, Recipe};
 use dapple_studio::{Area, Job, Output, Picture, RenderHost, Renderer, Reply, StudioError, View};
 use std::cell::RefCell;
 
-/// The most and the fewest pixels of a piece, about.
+/// Approximate maximum and minimum number of pixels per step.
 const PIECES: [u32; 2] = [1 << 16, 1 << 13];
-/// The milliseconds for which the next piece is made smaller, and those for which it is made larger.
+/// Step times in milliseconds. Above the first, the next step is halved; below the second, it is doubled.
 const PIECE_MS: [f64; 2] = [32.0, 8.0];
 
-/// The pixels that are sent at a time: parts of a picture that is shown smaller should be few, since each is scaled alone.
+/// Minimum number of pixels per sent part of a map, except the last part. Few parts are better because a page that
+/// scales an image down scales each part separately.
 const SENT_PIXELS: usize = 1 << 18;
 
-/// How large pieces are, which follows from how long the last ones took.
+/// The number of pixels per step, adapted to the time of previous steps.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Pace {
     pixels: u32,
@@ -29,6 +30,7 @@ impl Default for Pace {
 }
 
 impl Pace {
+    /// Adapts the number of pixels to the time of the last step.
     fn follow(&mut self, ms: f64) {
         let ([most, fewest], [slow, fast]) = (PIECES, PIECE_MS);
         if ms > slow {
@@ -38,35 +40,35 @@ impl Pace {
         }
     }
 
-    /// The rows of a piece.
+    /// The number of rows per step.
     fn rows(self, area: Area) -> u32 {
         (self.pixels / area.size[0].max(1)).max(16)
     }
 }
 
-/// A job, and how far it is drawn.
+/// A job in progress.
 #[derive(Debug)]
 pub(crate) struct Drawing {
     job: Job,
     start: f64,
     next: Next,
     told: ReportedProgress,
-    /// Parts of maps that are not sent yet.
+    /// Parts of maps that have not been sent yet.
     pending: RefCell<Vec<Picture>>,
 }
 
-/// The next piece.
+/// The next step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Next {
-    /// The draft; all of it where there is no draft.
+    /// The draft. If there is no draft, the whole job.
     Draft,
-    /// The rows of the pictures from this one on.
+    /// Rows of the maps, starting at this row of the visible region.
     Rows(u32),
-    /// All that follows the pictures.
+    /// Everything after the maps, such as thumbnails.
     Rest,
 }
 
-/// What the page was told of the job.
+/// Which messages of the job the page has received.
 #[derive(Clone, Copy, Debug, Default)]
 struct ReportedProgress {
     began: bool,
@@ -80,7 +82,7 @@ impl Drawing {
         let view = &job.view;
         let area = area_of(view);
         let numbers = [view.size, area.first, area.size].concat();
-        // The pixels of a draft are at least two pixels wide.
+        // The scale of a draft is at least 2.
         let has_draft = view.draft && numbers.iter().all(|number| number % 2 == 0);
         let is_whole = view.paused || view.node.is_some() || pace.rows(area) >= area.size[1];
         Self {
@@ -96,7 +98,7 @@ impl Drawing {
         }
     }
 
-    /// Draws the next piece, and says whether there is another one.
+    /// Renders the next step. Returns whether there is another step.
     pub(crate) fn step(
         &mut self,
         renderer: &mut Renderer,
@@ -106,6 +108,7 @@ impl Drawing {
     ) -> bool {
         let area = area_of(&self.job.view);
         let mut job = self.job.clone();
+        // Restrict the job to the next step.
         let after = match self.next {
             Next::Draft if job.view.node.is_some() => Next::Rest,
             Next::Draft => Next::Rows(0),
@@ -123,7 +126,7 @@ impl Drawing {
                 }
             }
             Next::Rest => {
-                // The picture of a node spreads the values of all its pixels from black to white, and so is one piece.
+                // The image of a node needs the range of all its values, so it is rendered in a single step.
                 if job.view.node.is_none() {
                     job.view.maps.clear();
                 }
@@ -158,7 +161,7 @@ fn area_of(view: &View) -> Area {
     view.region.unwrap_or(Area { first, size })
 }
 
-/// The place of a piece: it passes on what belongs to the whole job.
+/// The render host of one step. It forwards the messages that belong to the whole job.
 struct Place<'a> {
     drawing: &'a Drawing,
     now: fn() -> f64,
@@ -176,7 +179,7 @@ impl RenderHost for Place<'_> {
     }
 
     fn is_wanted(&self, _: u32) -> bool {
-        // The draft is a piece of its own.
+        // Stop after the draft, which is a separate step.
         !(self.drawing.next == Next::Draft && self.told.borrow().draft)
     }
 
@@ -192,7 +195,8 @@ impl RenderHost for Place<'_> {
 }
 
 impl Place<'_> {
-    /// A message as the page gets it; none for those that belong to a piece alone.
+    /// Converts a message of a step to a message of the whole job. Returns `None` for messages that concern only the
+    /// step.
     fn reply(&self, mut reply: Reply) -> Option<Reply> {
         let mut told = self.told.borrow_mut();
         let is_rows = matches!(self.drawing.next, Next::Rows(_));
@@ -214,7 +218,8 @@ impl Place<'_> {
         Some(reply)
     }
 
-    /// The part of a map that is to be sent, if it is large enough or the last one.
+    /// Joins a part of a map with the pending rows above it. Returns the joined part if it is large enough or the
+    /// last one.
     fn picture(&self, mut picture: Picture) -> Option<Picture> {
         if !matches!(self.drawing.next, Next::Rows(_)) {
             return Some(picture);
@@ -242,7 +247,7 @@ impl Place<'_> {
     }
 }
 
-/// The images of a recipe: there are none here.
+/// The images of a recipe. Recipes that name images are refused, since there is no folder to read them from.
 pub(crate) fn images(recipe: &Recipe) -> Result<Images, StudioError> {
     if recipe.image_files().is_empty() {
         return Ok(Images::new());

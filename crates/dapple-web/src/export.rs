@@ -1,11 +1,11 @@
-//! The files of an export: those of `dapple bake` with the same options, byte for byte.
+//! The files of an export, with the same bytes as the files of `dapple bake` with the same options.
 
 use dapple_image::{Depth, Encoding, RowWriter};
 use dapple_recipe::{Bake, BakeOptions, Images, MapKind, Plan, Recipe};
 use dapple_studio::{Export, FileSize, MAX_SIDE, StudioError, map_kinds};
 use std::io::Cursor;
 
-/// The files that a page downloads, and what is in each.
+/// Renders the files of an export. Returns the name, length and content of each.
 pub(crate) fn files(
     recipe: &Recipe,
     export: &Export,
@@ -45,7 +45,7 @@ pub(crate) fn files(
     maps.iter().zip(writers).map(file).collect()
 }
 
-/// How files are written, and how their names end.
+/// The encoding of the files and their extension.
 fn encoding(export: &Export) -> Result<(Encoding, &'static str), StudioError> {
     let Export {
         preset: None,

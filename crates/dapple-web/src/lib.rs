@@ -1,9 +1,10 @@
-//! The studio without a server: sessions, drawing and export in a worker of the browser.
+//! The studio without a server: sessions, rendering and export in a web worker.
 //!
-//! `cargo xtask web` compiles this crate to WebAssembly and puts it beside the page of `dapple-studio`, into a folder that
-//! any host can serve. A [`Page`] is what a socket with its thread is elsewhere: it hears messages, works in steps of some
-//! milliseconds, between which a worker hears what is new, and gives what it made. `abi` is what the worker calls; it is
-//! there on `wasm32` only. The bits are those of the command: the kernels are the same, in registers of 128 bits.
+//! `cargo xtask web` compiles this crate to WebAssembly and puts it next to the page of `dapple-studio`, into a
+//! folder that any static host can serve. A [`Page`] replaces the socket and the threads of the server. It receives
+//! messages and works in steps of some milliseconds, so that the worker can process new messages between steps.
+//! Results are put into a queue. The module `abi`, on `wasm32` only, exports the functions that the worker calls. The
+//! output has the same bits as that of the command: the kernels are the same, with 128-bit registers.
 #![cfg_attr(not(target_arch = "wasm32"), forbid(unsafe_code))]
 
 #[cfg(target_arch = "wasm32")]

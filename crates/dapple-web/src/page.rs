@@ -1,4 +1,4 @@
-//! One page: its session, what waits to be done, and what was made.
+//! One page: its session, pending work, and the queue of results.
 
 use crate::drawing::{Drawing, Pace, images};
 use crate::export;
@@ -10,21 +10,21 @@ use dapple_studio::{
 use std::cell::RefCell;
 use std::collections::VecDeque;
 
-/// The most bytes of values of nodes that are kept.
+/// Maximum size of the cached node values, in bytes.
 const MEMORY: usize = 1 << 28;
 
-/// What is to be given to the page.
+/// A result for the page.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Made {
-    /// A message in JSON.
+    /// A message as JSON.
     Message(String),
-    /// A picture, with its header.
+    /// An image with its header.
     Picture(Vec<u8>),
-    /// What is in a file: those that a message `exported` names follow it in their order.
+    /// The content of an exported file. The files follow the message `exported` in the order of its list.
     File(Vec<u8>),
 }
 
-/// A page that hears messages, works in steps, and gives what it made.
+/// A page that receives messages, works in steps, and queues results.
 #[derive(Debug)]
 pub struct Page {
     now: fn() -> f64,
@@ -33,16 +33,16 @@ pub struct Page {
     tasks: VecDeque<Task>,
     drawing: Option<Drawing>,
     pace: Pace,
-    /// The pictures of the strip that was asked for last.
+    /// The variants of the strip that was requested last.
     variants: VecDeque<Variant>,
-    /// The built-in recipes of which there is no small picture yet, and the side of pictures.
+    /// Built-in recipes whose thumbnails are pending. `side` is the longer side of the thumbnails, in pixels.
     samples: VecDeque<(u16, &'static str)>,
     side: u32,
     made: VecDeque<Made>,
 }
 
 impl Page {
-    /// A page that says what there is. `now` gives milliseconds since some moment.
+    /// Creates a page and queues its greeting. `now` returns milliseconds since an arbitrary moment.
     #[must_use]
     pub fn new(now: fn() -> f64) -> Self {
         let mut page = Self {
@@ -93,7 +93,7 @@ impl Page {
         }
     }
 
-    /// Answers a request that needs files elsewhere.
+    /// Answers a request that needs files on a server.
     fn answer_here(&mut self, request: &Request) {
         let (what, message) = match request {
             Request::Gallery { size } => {
@@ -105,8 +105,7 @@ impl Page {
                 self.variants = self.session.strip(request.clone()).into();
                 return;
             }
-            // What was made is given at once.
-            // An export is done when the next message is read.
+            // Images are not flow-controlled here, and an export is complete before the next message is read.
             Request::Ack { .. } | Request::Stop => return,
             Request::Save { .. } => ("save", "recipes are not saved here, but downloaded"),
             _ => ("open", "open one of `builtin` and `text`"),
@@ -114,7 +113,7 @@ impl Page {
         self.say(&Reply::refused(what, &StudioError::new(message)));
     }
 
-    /// Does the next piece of work, and says whether there is more.
+    /// Performs the next step of work. Returns whether more work is pending.
     pub fn step(&mut self) -> bool {
         if let Some(task) = self.tasks.pop_front() {
             self.perform(&task);
@@ -138,7 +137,7 @@ impl Page {
             let picture = picture.and_then(|recipe| {
                 sample(Shown::Builtin(index), &recipe, &images(&recipe)?, self.side)
             });
-            // A recipe that cannot be baked has no picture.
+            // A recipe that cannot be baked has no thumbnail.
             if let Ok(picture) = picture {
                 self.made.push_back(Made::Picture(picture.to_bytes()));
             }
@@ -171,7 +170,7 @@ impl Page {
     }
 }
 
-/// Where small pictures beside those of the view are made.
+/// The render host of the variants of a strip.
 struct Beside<'a> {
     now: fn() -> f64,
     made: RefCell<&'a mut VecDeque<Made>>,

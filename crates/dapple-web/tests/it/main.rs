@@ -1,4 +1,4 @@
-//! The page without a server, through its public functions, on this machine.
+//! Tests of the page without a server, through its public API, on the native platform.
 
 use dapple_recipe::{Bake, BakeOptions, Images, MapKind, MapRows, Plan, PlanCache, Recipe};
 use dapple_studio::{Output, RenderHost, Renderer, Session, StudioError, View};
@@ -21,7 +21,7 @@ fn hear(page: &mut Page, message: &Value) {
     page.receive(message.to_string().as_bytes());
 }
 
-/// Does all that is to be done, and gives all that was made.
+/// Completes all pending work and returns the results.
 fn made(page: &mut Page) -> Vec<Made> {
     while page.step() {}
     core::iter::from_fn(|| page.poll()).collect()
@@ -41,7 +41,7 @@ fn of_type(made: &[Made], name: &str) -> Vec<Value> {
     messages
 }
 
-/// The pictures without drafts: the flags of each and its pixels.
+/// The flags and pixels of all images except drafts.
 fn pictures(made: &[Made]) -> Vec<(u8, &[u8])> {
     let pictures = made.iter().filter_map(|made| match made {
         Made::Picture(bytes) if bytes[30] & 1 == 0 => Some((bytes[30], &bytes[32..])),
@@ -54,7 +54,7 @@ fn view(side: u32, maps: &[&str]) -> Value {
     json!({ "type": "view", "size": [side, side], "maps": maps, "paused": false })
 }
 
-/// Keeps the pixels of what is drawn at once.
+/// A render host that collects the pixels of a job rendered in one piece.
 struct AtOnce(RefCell<Vec<u8>>);
 
 impl RenderHost for AtOnce {
