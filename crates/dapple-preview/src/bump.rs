@@ -4,26 +4,28 @@
 //! that is moved along its unit normal `n` by a small height `h` has the normal `n - (g - (g·n) n)`, with `g` the
 //! gradient of `h` in space. No parametrization of the surface is needed, so the method fits solid textures.
 //!
-//! A bumped surface lit at a slant turns dark abruptly where the smooth surface turns away. This is faded as in
-//! Alejandro Conty Estevez, Pascal Lecocq and Clifford Stein, "A Microfacet-Based Shadowing Function to Solve the Bump
-//! Terminator Problem", Ray Tracing Gems, chapter 12, 2019: by the probability that bumps of this slope see the light.
+//! A bumped surface lit at a grazing angle turns dark abruptly where the smooth surface faces away from the light.
+//! This boundary is softened by the probability that bumps of this slope see the light: Alejandro Conty Estevez,
+//! Pascal Lecocq and Clifford Stein, "A Microfacet-Based Shadowing Function to Solve the Bump Terminator Problem",
+//! Ray Tracing Gems, chapter 12, 2019.
 
 use glam::DVec3;
 
-/// The smallest cosine between a bumped normal and the direction to the eye; beyond, the bump would show its back.
+/// Minimum cosine between a bumped normal and the direction to the eye. Below it, the back of the bump would be
+/// visible.
 const FACING_MIN: f64 = 1e-3;
 
-/// The unit normal of a bumped surface, on the side of the eye.
+/// Returns the unit normal of a bumped surface, on the side of the eye.
 ///
-/// `normal` is the unit normal of the smooth surface, `gradient` that of the height, `to_eye` the unit vector to the eye;
-/// all in one space. A gradient too large to compute with has no effect.
+/// `normal` is the unit normal of the smooth surface, `gradient` the gradient of the height, and `to_eye` the unit
+/// vector to the eye, all in the same space. A gradient that overflows has no effect.
 pub(crate) fn bumped(normal: DVec3, gradient: DVec3, to_eye: DVec3) -> DVec3 {
     let along_surface = gradient - normal * gradient.dot(normal);
     let bumped = (normal - along_surface).try_normalize().unwrap_or(normal);
     facing(bumped, to_eye)
 }
 
-/// The nearest unit vector to a normal that faces the eye.
+/// Returns the unit vector nearest to `normal` that faces the eye.
 pub(crate) fn facing(normal: DVec3, to_eye: DVec3) -> DVec3 {
     let cosine = normal.dot(to_eye);
     if cosine >= FACING_MIN {
@@ -33,9 +35,10 @@ pub(crate) fn facing(normal: DVec3, to_eye: DVec3) -> DVec3 {
     lifted.try_normalize().unwrap_or(to_eye)
 }
 
-/// The fraction of the light, from 0 to 1, that bumps do not block from each other.
+/// Returns the fraction of the light, from 0 to 1, that is not blocked by neighboring bumps.
 ///
-/// `cosine` is between the smooth normal and the light, `slope` the cosine between the smooth and the bumped normal.
+/// `cosine` is the cosine between the smooth normal and the light, `slope` the cosine between the smooth and the
+/// bumped normal.
 pub(crate) fn bump_shadow(cosine: f64, slope: f64) -> f64 {
     if cosine <= 0.0 {
         return 0.0;

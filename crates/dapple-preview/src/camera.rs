@@ -1,4 +1,4 @@
-//! Cameras, and the rays through the samples of a picture.
+//! Cameras, and the rays through the samples of an image.
 
 use crate::ray::Ray;
 use crate::{PreviewError, PreviewErrorKind};
@@ -6,8 +6,8 @@ use glam::{DVec2, DVec3};
 
 /// A perspective camera: an eye that looks at a point.
 ///
-/// Row 0 of the picture is the top, where `up` points. With y up, a camera on the positive z axis that looks at the origin
-/// sees x to the right.
+/// Row 0 of the image is the top, where `up` points. With y up, a camera on the positive z axis that looks at the
+/// origin sees x to the right.
 ///
 /// # Examples
 ///
@@ -21,12 +21,11 @@ use glam::{DVec2, DVec3};
 pub struct Camera {
     /// The position of the eye, in the world.
     pub eye: DVec3,
-    /// The point that the middle of the picture shows, in the world.
+    /// The point at the center of the image, in the world.
     pub target: DVec3,
-    /// A direction that the picture shows as upward; it need not be at right angles to the view. By default +y.
+    /// The direction that appears upward in the image. It need not be perpendicular to the view. Default: +y.
     pub up: DVec3,
-    /// The angle between the top and the bottom of the picture, in radians, above 0 and below π. By default 0.7, which
-    /// is 40°.
+    /// Vertical field of view, in radians, above 0 and below π. Default: 0.7, which is 40°.
     pub vertical_fov: f64,
 }
 
@@ -42,7 +41,7 @@ impl Camera {
         }
     }
 
-    /// Turns the camera so that another direction is up.
+    /// Sets the up direction.
     #[must_use]
     pub fn with_up(self, up: DVec3) -> Self {
         Self { up, ..self }
@@ -72,7 +71,7 @@ impl Camera {
         let forward = PreviewError::direction("view of the camera", self.target - self.eye)?;
         let up = PreviewError::direction("up of the camera", self.up)?;
         let across = forward.cross(up);
-        // Closer to parallel than this, rounding would determine the direction of right.
+        // Below this angle, rounding would determine the direction of `right`.
         if across.length_squared() < 1e-24 {
             let what = "up of the camera, seen along its view,";
             return Err(PreviewError::new(PreviewErrorKind::NoDirection { what }));
@@ -100,12 +99,12 @@ pub(crate) struct View {
     /// The step of one sample down, at the distance 1.
     down: DVec3,
     middle: DVec2,
-    /// The width of a sample in the middle of the picture, at the distance 1.
+    /// Width of a sample at the center of the image, at distance 1.
     pub(crate) sample: f64,
 }
 
 impl View {
-    /// The ray through a point of the picture, counted in samples from its top left corner.
+    /// The ray through a point of the image, given in samples from the top left corner.
     pub(crate) fn ray(&self, at: DVec2) -> Ray {
         let offset = at - self.middle;
         let direction = self.forward + self.right * offset.x + self.down * offset.y;

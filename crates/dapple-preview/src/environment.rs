@@ -1,11 +1,12 @@
-//! The environment: the light from far away, visible around the scene and in mirrors.
+//! The environment: distant light, visible in the background and in mirrors.
 
 use crate::PreviewError;
 use core::fmt;
 use dapple_color::LinearRgb;
 use glam::DVec3;
 
-/// The light from far away, by its direction. It fills the background and mirrors, but does not light objects.
+/// Distant light as a function of the direction. It fills the background and appears in mirrors, but does not light
+/// objects.
 ///
 /// Up is +y.
 #[non_exhaustive]
@@ -20,10 +21,10 @@ pub enum Environment<'a> {
     Function(Box<dyn Fn(DVec3) -> LinearRgb + Send + Sync + 'a>),
 }
 
-/// A sky that changes with the height above the horizon.
+/// A sky whose color depends on the elevation above the horizon.
 ///
-/// With `y` the sine of that height, the color above the horizon is interpolated by `y (2 - y)` from the horizon to the
-/// zenith, and below it by the same factor of `-y` to the nadir.
+/// With `y` the sine of the elevation, the color above the horizon is interpolated by `y (2 - y)` from the horizon to
+/// the zenith. Below the horizon, it is interpolated by the same factor of `-y` to the nadir.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sky {
     /// The color straight down.
@@ -34,31 +35,32 @@ pub struct Sky {
     pub zenith: LinearRgb,
 }
 
-/// A disk in the sky, and a glow around it, both added to the sky.
+/// A disk in the sky with a glow around it. Both are added to the sky.
 ///
-/// Angles are measured as the chord between two unit vectors, which is the angle in radians where that is small.
+/// Angles are given as the chord between two unit vectors, which for small angles is the angle in radians.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sun {
-    /// The direction to the sun; any length but zero.
+    /// The direction to the sun. Any length except zero.
     pub toward: DVec3,
-    /// The light of the disk; 10 and more are realistic for a sun.
+    /// The light of the disk. Values of 10 and more are realistic.
     pub color: LinearRgb,
-    /// The radius of the disk, a chord, from 0 to 2. The true sun has 0.0047. The outer fifth fades.
+    /// Radius of the disk as a chord, from 0 to 2. The real sun has 0.0047. The outer fifth fades out.
     pub radius: f64,
-    /// The light of the glow in the middle of the disk. At a chord `c` it is this times `1 / (1 + (c / glow_radius)²)²`.
+    /// The light of the glow at the center of the disk. At chord `c`, it is scaled by `1 / (1 + (c /
+    /// glow_radius)²)²`.
     pub glow: LinearRgb,
     /// The chord at which the glow has fallen to a quarter, above zero.
     pub glow_radius: f64,
 }
 
 impl<'a> Environment<'a> {
-    /// An environment that is any function of a unit vector that points away from the scene.
+    /// An environment defined by a function of a unit vector that points away from the scene.
     #[must_use]
     pub fn function(light: impl Fn(DVec3) -> LinearRgb + Send + Sync + 'a) -> Self {
         Self::Function(Box::new(light))
     }
 
-    /// The light from the direction of a unit vector.
+    /// The light that arrives from the direction of a unit vector.
     #[must_use]
     pub fn light(&self, direction: DVec3) -> LinearRgb {
         match self {
@@ -97,7 +99,7 @@ impl Sun {
         let chord_sq = (direction - self.toward.normalize_or_zero()).length_squared();
         let far = chord_sq / (self.glow_radius * self.glow_radius);
         let glow = self.glow * (1.0 / ((1.0 + far) * (1.0 + far))) as f32;
-        // 1 within four fifths of the radius, 0 from the radius on.
+        // Weight of the disk before smoothing: 1 within four fifths of the radius, 0 at the radius and beyond.
         let inside = ((self.radius - chord_sq.sqrt()) / (0.2 * self.radius)).clamp(0.0, 1.0);
         if inside > 0.0 {
             glow + self.color * (inside * inside * (3.0 - 2.0 * inside)) as f32

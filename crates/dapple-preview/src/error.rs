@@ -1,14 +1,14 @@
-//! Errors of scenes and meshes.
+//! Errors of rendering and of meshes.
 
 use dapple_mesh::MeshError;
 use dapple_raster::RasterError;
 use glam::DVec3;
 
-/// The largest coordinate, length or scale of a scene; a quartic in it is far from overflow.
+/// Maximum coordinate, length or scale in a scene. A quartic of such numbers is far from overflow.
 const SIZE_MAX: f64 = 1e30;
 
 dapple_raster::error! {
-    /// An error of rendering a scene, or of making a mesh.
+    /// An error in rendering a scene or in creating a mesh.
     PreviewError,
     /// The cause of a [`PreviewError`], with the limit and the value.
     PreviewErrorKind with Range {
@@ -26,13 +26,13 @@ dapple_raster::error! {
     from {
         /// An error of the mesh.
         Mesh(MeshError),
-        /// An error of the raster: the picture has an invalid size.
+        /// An error of the raster: the image has an invalid size.
         Raster(RasterError),
     }
 }
 
 impl PreviewError {
-    /// Checks that the components of a vector are finite and not too large to compute with.
+    /// Checks that the components of a vector are finite and do not overflow in computations.
     pub(crate) fn check_vector(what: &'static str, vector: DVec3) -> Result<(), Self> {
         vector.to_array().into_iter().try_for_each(|value| {
             let holds = value.abs() <= SIZE_MAX;
@@ -40,7 +40,7 @@ impl PreviewError {
         })
     }
 
-    /// Checks that a length is above zero, and neither too small nor too large to compute with.
+    /// Checks that a length is positive and neither underflows nor overflows in computations.
     pub(crate) fn check_length(what: &'static str, value: f64) -> Result<(), Self> {
         let holds = (SIZE_MAX.recip()..=SIZE_MAX).contains(&value);
         Self::check(holds, what, value, "from 1e-30 to 1e30")

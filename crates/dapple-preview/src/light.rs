@@ -6,7 +6,7 @@ use core::f64::consts::PI;
 use dapple_color::LinearRgb;
 use glam::{DVec2, DVec3};
 
-/// A light, with its color and shadows.
+/// A light source with a color and a method for shadows.
 ///
 /// # Examples
 ///
@@ -25,7 +25,7 @@ pub struct Light {
     pub source: LightSource,
     /// The color of a white surface that is lit perpendicularly, at any distance if the light has no falloff.
     pub color: LinearRgb,
-    /// The shadows of the light. By default hard.
+    /// The method for shadows. Default: hard.
     pub shadows: Shadows,
 }
 
@@ -35,43 +35,44 @@ pub struct Light {
 pub enum LightSource {
     /// Parallel light from far away.
     Directional {
-        /// The direction *to* the light, in the world; any length but zero.
+        /// The direction to the light, in the world. Any length except zero.
         toward: DVec3,
     },
     /// Light from a point.
     Point {
         /// The position of the light, in the world.
         position: DVec3,
-        /// The falloff with the distance.
+        /// The falloff with distance.
         falloff: Falloff,
     },
 }
 
-/// The falloff of a point light with the distance.
+/// The falloff of a point light with distance.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Falloff {
-    /// No falloff: the light is as strong at any distance.
+    /// No falloff: the intensity is the same at any distance.
     #[default]
     None,
-    /// Falloff with the square of the distance. The number is the distance, in units of the world, at which the light has its
-    /// color.
+    /// Falloff with the square of the distance. The number is the distance, in units of the world, at which the light
+    /// has its color.
     InverseSquare(f64),
 }
 
-/// The method by which shadows are computed.
+/// The method for computing shadows.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/shadows.md"))]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Shadows {
     /// No shadows: the light passes through all objects.
     None,
-    /// Hard shadows, by one ray.
+    /// Hard shadows, with one ray.
     #[default]
     Hard,
-    /// Soft shadows, by rays to a disk of light; the same pattern of rays at every point, so few rays show as steps.
+    /// Soft shadows, with rays to a disk. The pattern of rays is the same at every point, so a small number of rays
+    /// is visible as steps.
     Soft {
-        /// The radius of the disk: of a point light in units of the world, of a directional one at the distance 1,
-        /// where it is the tangent of an angle.
+        /// The radius of the disk. For a point light, in units of the world. For a directional light, the disk is at
+        /// distance 1, so the radius is the tangent of an angle.
         radius: f64,
         /// The number of rays, from 1 to 1024; 16 to 64 is usual.
         rays: u32,
@@ -79,7 +80,7 @@ pub enum Shadows {
 }
 
 impl Light {
-    /// A light from far away, in the direction `toward`, with hard shadows.
+    /// A distant light in the direction `toward`, with hard shadows.
     #[must_use]
     pub fn directional(toward: DVec3, color: LinearRgb) -> Self {
         Self {
@@ -128,7 +129,7 @@ impl Light {
 }
 
 impl Shadows {
-    /// The targets of shadow rays on a disk of light.
+    /// The targets of shadow rays on a disk: a Vogel spiral, which covers equal areas.
     ///
     /// Reference: Helmut Vogel, "A better way to construct the sunflower head", Mathematical Biosciences 44, 1979.
     fn pattern(self) -> Result<Vec<DVec2>, PreviewError> {
@@ -157,12 +158,12 @@ impl Shadows {
     }
 }
 
-/// A checked light.
+/// A validated light.
 #[derive(Clone, Debug)]
 pub(crate) struct Lamp {
     source: LightSource,
     color: LinearRgb,
-    /// The points of the disk of light that shadow rays go to; none for a light without shadows.
+    /// The targets of shadow rays on the disk. Empty for a light without shadows.
     pattern: Vec<DVec2>,
 }
 
@@ -172,12 +173,12 @@ pub(crate) struct Incoming {
     pub(crate) color: LinearRgb,
     /// The unit vector to the light.
     pub(crate) toward: DVec3,
-    /// The distance to the light; infinite for a directional one.
+    /// The distance to the light. Infinite for a directional light.
     pub(crate) distance: f64,
 }
 
 impl Lamp {
-    /// The light at a point, or `None` if the point is at the light.
+    /// The light at a point. Returns `None` at the position of the light.
     pub(crate) fn incoming(&self, point: DVec3) -> Option<Incoming> {
         let color = self.color;
         match self.source {
@@ -202,7 +203,8 @@ impl Lamp {
         }
     }
 
-    /// The fraction of the light, from 0 to 1, that is not blocked; `blocked` tests a unit vector and a distance.
+    /// The fraction of the light, from 0 to 1, that is not blocked. `blocked` receives the unit direction of a shadow
+    /// ray and its length.
     pub(crate) fn visible(
         &self,
         incoming: &Incoming,

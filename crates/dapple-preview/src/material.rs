@@ -11,7 +11,7 @@ use glam::DVec3;
 
 /// The material of a surface at a point.
 ///
-/// A number that is not finite counts as zero, so that a hole in a texture is a dark spot and not NaN.
+/// A number that is not finite counts as zero, so that invalid texture values give a dark spot instead of NaN.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/material.md"))]
 ///
@@ -28,22 +28,22 @@ use glam::DVec3;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Material {
-    /// The fraction of the light that is scattered, per channel, mostly from 0 to 1.
+    /// The fraction of the light that is scattered, per channel, usually from 0 to 1.
     pub color: LinearRgb,
-    /// The light that the surface emits. By default none.
+    /// The light that the surface emits. Default: black.
     pub emission: LinearRgb,
-    /// The gradient of a height over the surface: units of height per unit of length, both in units of the object, as a
-    /// vector in its space. Its component along the normal has no effect. By default zero, which is smooth.
+    /// The gradient of a height over the surface, as a vector in the space of the object: units of height per unit of
+    /// length. Its component along the normal has no effect. Default: zero, a smooth surface.
     pub bump: DVec3,
-    /// The strength of highlights, at least 0. By default 0.
+    /// The strength of highlights, at least 0. Default: 0.
     pub specular: f32,
-    /// The exponent of highlights, at least 0: 10 is dull, 1000 sharp. By default 1.
+    /// The exponent of highlights, at least 0: 10 is dull, 1000 is sharp. Default: 1.
     pub shininess: f32,
-    /// The reflectance of the surface as a mirror. By default none.
+    /// The reflectance of the surface as a mirror. Default: none.
     pub mirror: Mirror,
 }
 
-/// The fraction of the light that comes from the mirrored direction; the rest is scattered.
+/// The fraction of the light that is reflected as by a mirror. The rest is scattered.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/mirror.md"))]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -53,8 +53,8 @@ pub enum Mirror {
     None,
     /// A fraction, from 0 to 1, that does not depend on the angle.
     Constant(f32),
-    /// Schlick's approximation. The number is the fraction at perpendicular view, from 0 to 1, which rises to 1 at grazing
-    /// angles; water has 0.02.
+    /// Schlick's approximation. The number is the reflectance at perpendicular view, from 0 to 1; it rises to 1 at
+    /// grazing angles. Water has 0.02.
     Fresnel(f32),
 }
 
@@ -100,7 +100,7 @@ impl Material {
         Self { emission, ..self }
     }
 
-    /// The material, with numbers that are not finite replaced by zero.
+    /// Replaces numbers that are not finite by zero.
     pub(crate) fn cleaned(self) -> Self {
         Self {
             color: clean(self.color),
@@ -118,7 +118,7 @@ impl Material {
 }
 
 impl Mirror {
-    /// The mirrored fraction at a cosine between the normal and the direction to the eye.
+    /// The reflectance for a cosine between the normal and the direction to the eye.
     pub(crate) fn part(self, cosine: f64) -> f32 {
         match self {
             Self::None => 0.0,
@@ -137,7 +137,7 @@ fn finite(value: f32) -> f32 {
     if value.is_finite() { value } else { 0.0 }
 }
 
-/// The color, with components that are not finite replaced by zero.
+/// Replaces components that are not finite by zero.
 pub(crate) fn clean(color: LinearRgb) -> LinearRgb {
     color.to_array().map(finite).into()
 }

@@ -6,7 +6,7 @@ use crate::{Cut, Material, PreviewError, Shape, Surface, Transform};
 use core::fmt;
 use glam::DVec3;
 
-/// A shape with a place and a look.
+/// A shape with a transform and a material.
 ///
 /// # Examples
 ///
@@ -32,7 +32,7 @@ pub struct Object<'a> {
 type Look<'a> = Box<dyn Fn(&Surface) -> Material + Send + Sync + 'a>;
 
 impl<'a> Object<'a> {
-    /// A shape at the origin of the world, with the materials that `look` returns.
+    /// Creates an object at the origin of the world, with the materials that `look` returns.
     ///
     /// `look` is called from several threads, and must depend on the surface alone.
     #[must_use]
@@ -58,7 +58,7 @@ impl<'a> Object<'a> {
         Self { transform, ..self }
     }
 
-    /// Cuts the object open; for spheres and tori only.
+    /// Cuts the object open. Only spheres and tori can be cut.
     #[must_use]
     pub fn with_cut(self, cut: Cut) -> Self {
         let cut = Some(cut);
@@ -84,7 +84,7 @@ impl fmt::Debug for Object<'_> {
     }
 }
 
-/// A checked object.
+/// A validated object.
 pub(crate) struct Placed<'a> {
     pub(crate) body: Body<'a>,
     pub(crate) placement: Placement,

@@ -1,6 +1,6 @@
-//! Scenes and their pictures: every pixel is the mean of a regular grid of samples.
+//! Scenes and their rendering: every pixel is the mean of a regular grid of samples.
 //!
-//! Reference: our own; `trace` has the lighting of a sample, after Whitted 1980.
+//! Reference: our own. The lighting of a sample, after Whitted 1980, is in `trace`.
 
 use crate::trace::{Path, World};
 use crate::{Camera, Environment, Light, Object, PreviewError};
@@ -8,9 +8,9 @@ use dapple_color::LinearRgb;
 use dapple_raster::Raster;
 use glam::DVec2;
 
-/// The largest number of samples per pixel along an axis.
+/// Maximum number of samples per pixel along each axis.
 const SUPERSAMPLING_MAX: u32 = 64;
-/// The largest number of mirror reflections of a ray.
+/// Maximum number of mirror reflections of a ray.
 const BOUNCES_MAX: u32 = 16;
 
 /// Objects, lights, and a camera.
@@ -32,22 +32,22 @@ const BOUNCES_MAX: u32 = 16;
 /// ```
 #[derive(Debug)]
 pub struct Scene<'a> {
-    /// The camera of the picture.
+    /// The camera.
     pub camera: Camera,
     /// The objects.
     pub objects: Vec<Object<'a>>,
     /// The lights.
     pub lights: Vec<Light>,
-    /// The ambient light: it comes from all directions to every point and is never blocked. By default none.
+    /// The ambient light, which reaches every point from all directions and is never blocked. Default: black.
     pub ambient: LinearRgb,
-    /// The environment, visible where there is no object. By default black.
+    /// The environment, visible where there is no object. Default: black.
     pub environment: Environment<'a>,
-    /// The number of times that a mirrored ray sees the objects, from 0 to 16; after that it sees the environment only.
-    /// By default 1.
+    /// Maximum number of mirror reflections along a ray, from 0 to 16. A ray beyond that sees only the environment.
+    /// Default: 1.
     pub bounces: u32,
 }
 
-/// The side of the regular grid of samples within a pixel, from 1 to 64: its square is the number of samples.
+/// Side of the regular grid of samples within a pixel, from 1 to 64. The number of samples is its square.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Supersampling(pub u32);
 
@@ -94,13 +94,13 @@ impl<'a> Scene<'a> {
         }
     }
 
-    /// Sets the number of reflections.
+    /// Sets the maximum number of mirror reflections along a ray.
     #[must_use]
     pub fn with_bounces(self, bounces: u32) -> Self {
         Self { bounces, ..self }
     }
 
-    /// Renders the picture, `size` columns and rows, the top row first, on all cores where the feature `rayon` is on.
+    /// Renders an image of `size` columns and rows, top row first. Runs on all cores if the feature `rayon` is on.
     ///
     /// Colors are linear, finite and not tone mapped: they may be above 1.
     ///
@@ -125,6 +125,7 @@ impl<'a> Scene<'a> {
         let grid = size.map(|pixels| f64::from(pixels) * f64::from(side));
         let view = self.camera.prepare(grid)?;
         let world = World::new(self)?;
+        // Average the samples of a pixel, row by row, in `f64`.
         let pixel = |column: u32, row: u32| {
             let corner = DVec2::new(column.into(), row.into()) * f64::from(side);
             let mut sum = [0.0_f64; 3];

@@ -1,7 +1,7 @@
 //! The shapes of a scene, and their intersection with rays.
 //!
-//! Closed shapes are intersected as solids: [`solid`] lists the stretches of a ray that are inside, [`cut`] removes
-//! some of them, and the rest begins and ends at the skin or at the flat face of a cut.
+//! Closed shapes are intersected as solids. [`solid`] lists the intervals of a ray inside the solid, and [`cut`]
+//! removes parts of them. The remaining intervals begin and end at the skin or at the flat face of a cut.
 
 mod cut;
 mod solid;
@@ -25,35 +25,35 @@ use std::sync::Arc;
 pub enum Shape {
     /// The infinite plane `y = 0`.
     Plane,
-    /// The part of the plane `y = 0` around the origin within half sizes along x and z.
+    /// A rectangle in the plane `y = 0`, centered at the origin.
     Rectangle {
-        /// Half the sides along x and z, above zero.
+        /// Half the side lengths along x and z, above zero.
         half_size: DVec2,
     },
-    /// A ball around the origin.
+    /// A sphere around the origin.
     Sphere {
         /// The radius, above zero.
         radius: f64,
     },
-    /// A ring around the y axis, in the plane `y = 0`.
+    /// A torus around the y axis, in the plane `y = 0`.
     Torus {
-        /// The radius of the circle in the middle of the tube.
+        /// The radius of the circle in the middle of the tube, above zero.
         major_radius: f64,
         /// The radius of the tube, above zero and at most the major radius.
         minor_radius: f64,
     },
-    /// A mesh of triangles.
+    /// A triangle mesh.
     Mesh(Arc<Mesh>),
 }
 
 impl Shape {
-    /// A ball around the origin.
+    /// A sphere around the origin.
     #[must_use]
     pub fn sphere(radius: f64) -> Self {
         Self::Sphere { radius }
     }
 
-    /// A ring around the y axis, from the radius of its middle circle and that of its tube.
+    /// A torus around the y axis, from the radius of the circle in the middle of its tube and the radius of the tube.
     #[must_use]
     pub fn torus(major_radius: f64, minor_radius: f64) -> Self {
         Self::Torus {
@@ -62,14 +62,14 @@ impl Shape {
         }
     }
 
-    /// A rectangle in the plane `y = 0` around the origin, from half its sides along x and z.
+    /// A rectangle in the plane `y = 0`, centered at the origin, from half its side lengths along x and z.
     #[must_use]
     pub fn rectangle(half_x: f64, half_z: f64) -> Self {
         let half_size = DVec2::new(half_x, half_z);
         Self::Rectangle { half_size }
     }
 
-    /// A mesh of triangles; pass an `Arc` to share them between objects.
+    /// A triangle mesh. Pass an `Arc` to share it between objects.
     #[must_use]
     pub fn mesh(mesh: impl Into<Arc<Mesh>>) -> Self {
         Self::Mesh(mesh.into())
@@ -119,7 +119,7 @@ impl Shape {
     }
 }
 
-/// A checked shape.
+/// A validated shape.
 #[derive(Debug)]
 pub(crate) enum Body<'a> {
     Flat { half_size: DVec2 },
@@ -127,7 +127,7 @@ pub(crate) enum Body<'a> {
     Mesh(&'a Mesh),
 }
 
-/// The intersection of a ray and a body: only the data for comparison with others.
+/// The intersection of a ray and a body, with only the data needed to find the nearest one.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Hit {
     /// The distance along the ray, above zero.
@@ -142,7 +142,7 @@ enum HitFace {
     Triangle(RayHit),
 }
 
-/// Position and normals of a body at a hit, in the space of the object. The normals may point either way.
+/// The position and normals of a body at a hit, in the space of the object. The normals may point to either side.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Detail {
     pub(crate) position: DVec3,
@@ -155,7 +155,7 @@ pub(crate) struct Detail {
 }
 
 impl Body<'_> {
-    /// The nearest point of the ray that is on the body, with a distance above zero and below `limit`.
+    /// The nearest intersection of a ray and the body, at a distance above zero and below `limit`.
     pub(crate) fn hit(&self, ray: &Ray, limit: f64) -> Option<Hit> {
         let (distance, face) = match self {
             Body::Flat { half_size } => (flat_hit(ray, *half_size)?, HitFace::Flat),
@@ -171,7 +171,7 @@ impl Body<'_> {
         (distance < limit).then_some(Hit { distance, face })
     }
 
-    /// Whether any point of the ray is on the body, with a distance above zero and below `limit`.
+    /// Whether a ray intersects the body at a distance above zero and below `limit`.
     pub(crate) fn blocks(&self, ray: &Ray, limit: f64) -> bool {
         match self {
             Body::Mesh(mesh) => mesh.is_blocked(ray, limit),
@@ -179,7 +179,7 @@ impl Body<'_> {
         }
     }
 
-    /// The position, normals and coordinates at a hit of this ray.
+    /// The position, normals and surface coordinates at a hit of this ray.
     pub(crate) fn detail(&self, ray: &Ray, hit: &Hit) -> Detail {
         let position = ray.at(hit.distance);
         match (self, hit.face) {
@@ -188,7 +188,7 @@ impl Body<'_> {
                 Detail::flat(position, normal, part, chart)
             }
             (Body::Mesh(mesh), HitFace::Triangle(hit)) => mesh.detail(position, &hit),
-            // A body has only its own kinds of hits, so the rest is a plane.
+            // The kinds of body and hit always match, so the remaining case is a plane.
             _ => {
                 let position = DVec3::new(position.x, 0.0, position.z);
                 Detail::flat(position, DVec3::Y, Part::Skin, Chart::Plane)
@@ -198,7 +198,7 @@ impl Body<'_> {
 }
 
 impl Detail {
-    /// A point where the smooth surface is the actual one.
+    /// A point of a surface without interpolated normals.
     fn flat(position: DVec3, normal: DVec3, part: Part, chart: Chart) -> Self {
         Self {
             position,
@@ -211,10 +211,10 @@ impl Detail {
     }
 }
 
-/// The distance at which a ray meets the plane `y = 0` within the rectangle.
+/// The distance at which a ray hits the rectangle in the plane `y = 0`.
 fn flat_hit(ray: &Ray, half_size: DVec2) -> Option<f64> {
     let distance = -ray.origin.y / ray.direction.y;
-    // Also false for NaN, which is a ray within the plane.
+    // The condition also fails for NaN, which results from a ray within the plane.
     if !(distance > 0.0 && distance.is_finite()) {
         return None;
     }

@@ -3,10 +3,10 @@
 use core::f64::consts::{PI, TAU};
 use glam::{DVec2, DVec3};
 
-/// A point of a surface that is to be shaded.
+/// A surface point to be shaded.
 ///
-/// Positions and normals are in the space of the object unless the text says otherwise, so that a solid texture sticks
-/// to the object. Normals are unit vectors and point to the visible side.
+/// Positions and normals are in the space of the object unless stated otherwise, so that a solid texture moves with
+/// the object. Normals are unit vectors and point to the visible side.
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub struct Surface {
@@ -14,15 +14,15 @@ pub struct Surface {
     pub position: DVec3,
     /// The position of the point, in the world.
     pub world_position: DVec3,
-    /// The normal of the smooth surface: for a mesh, interpolated from those of the corners.
+    /// The normal of the smooth surface. For a mesh, it is interpolated from the normals of the vertices.
     pub normal: DVec3,
-    /// The normal of the actual surface: for a mesh, that of the triangle.
+    /// The normal of the actual surface. For a mesh, it is the normal of the triangle.
     pub geometric_normal: DVec3,
     /// Whether the point is on the skin of the shape or on the flat face of a cut.
     pub part: Part,
-    /// The width of a sample of the picture across the ray, in units of the object: finer detail cannot be shown.
+    /// Width of an image sample perpendicular to the ray, in units of the object. Finer detail cannot be shown.
     ///
-    /// Along the slope of a surface at a grazing angle it is wider: `footprint / incidence`.
+    /// At grazing angles, a sample covers a longer piece of the surface: `footprint / incidence`.
     pub footprint: f64,
     /// The cosine of the angle between the ray and `geometric_normal`: 1 for a perpendicular view, toward 0 at grazing
     /// angles.
@@ -59,13 +59,13 @@ pub(crate) enum Chart {
 }
 
 impl Surface {
-    /// Surface coordinates (u, v), on the skin of all shapes except meshes.
+    /// Surface coordinates (u, v) on the skin of all shapes except meshes.
     ///
     /// * Plane and rectangle: x and z, in units of the object. Seen from above with -z up, u goes right and v down.
-    /// * Sphere: the angle around y from +x toward -z, and the angle from +y, as parts of a turn and of half a turn: both
-    ///   from 0 to 1, with v = 0 at the top.
-    /// * Torus: the angle around y as on a sphere, and the angle around the tube from the outside toward +y, both as parts
-    ///   of a turn, from 0 to 1.
+    /// * Sphere: the angle around y from +x toward -z in turns, and the angle from +y in half turns. Both are from 0
+    ///   to 1, with v = 0 at the top.
+    /// * Torus: the angle around y as on a sphere, and the angle around the tube from the outside toward +y. Both are
+    ///   in turns, from 0 to 1.
     #[must_use]
     pub fn uv(&self) -> Option<DVec2> {
         let at = self.position;

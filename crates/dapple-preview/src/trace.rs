@@ -15,8 +15,8 @@ use crate::{Environment, Material, PreviewError, Scene, Surface};
 use dapple_color::LinearRgb;
 use glam::DVec3;
 
-/// The distance of the start of rays from a surface, as a fraction of the largest of the numbers from which the point
-/// was computed: well above their rounding, which is about 1e-15, and too small to see.
+/// Offset of the origin of secondary rays from a surface, relative to the largest number from which the point was
+/// computed. It is well above their rounding, which is about 1e-15, and too small to see.
 const LIFT: f64 = 1e-9;
 
 /// A ray along which light is traced, and its history.
@@ -25,13 +25,13 @@ pub(crate) struct Path {
     ray: Ray,
     /// The length of the path before this ray.
     length: f64,
-    /// The width of a sample of the picture at the distance 1.
+    /// The width of an image sample at distance 1.
     sample: f64,
     bounces: u32,
 }
 
 impl Path {
-    /// A path from an eye.
+    /// Starts a path at the eye.
     pub(crate) fn new(ray: Ray, sample: f64, bounces: u32) -> Self {
         Self {
             ray,
@@ -42,7 +42,7 @@ impl Path {
     }
 }
 
-/// A checked scene.
+/// A validated scene.
 pub(crate) struct World<'a> {
     objects: Vec<Placed<'a>>,
     lamps: Vec<Lamp>,
@@ -81,7 +81,7 @@ impl<'a> World<'a> {
         })
     }
 
-    /// The light along a path; always finite.
+    /// The light along a path. The result is always finite.
     pub(crate) fn light(&self, path: &Path) -> LinearRgb {
         let light = match self.nearest(&path.ray) {
             Some((object, hit, distance)) => self.surface_light(path, object, &hit, distance),
@@ -99,11 +99,12 @@ impl<'a> World<'a> {
         clean(self.environment.light(direction))
     }
 
-    /// The first object that a ray meets; among equal distances the first of the list.
+    /// The nearest object that a ray hits. Of several at equal distances, the first in the list.
     fn nearest(&self, ray: &Ray) -> Option<(&Placed<'a>, Hit, f64)> {
         let mut best = None;
         let mut limit = f64::INFINITY;
         for object in &self.objects {
+            // Search in the space of the object, whose lengths are scaled.
             let scale = object.placement.scale;
             let own_ray = object.placement.ray_to_object(ray);
             if let Some(hit) = object
@@ -133,6 +134,7 @@ impl<'a> World<'a> {
         hit: &Hit,
         distance: f64,
     ) -> LinearRgb {
+        // Describe the hit to the material function, in the space of the object.
         let placement = &object.placement;
         let own_ray = placement.ray_to_object(&path.ray);
         let detail = seen(object.body.detail(&own_ray, hit), -own_ray.direction);
@@ -149,6 +151,7 @@ impl<'a> World<'a> {
             chart: detail.chart,
         };
         let material = (object.look)(&surface).cleaned();
+        // Tilt the normal by the bump, and move secondary rays off the surface.
         let normal = bumped(detail.normal, material.bump, -own_ray.direction);
         let geometric_normal = placement.direction_to_world(detail.geometric_normal);
         let size = position.abs().max_element().max(length);
@@ -160,9 +163,11 @@ impl<'a> World<'a> {
             position,
             shadow_origin: placement.point_to_world(detail.lit_position) + lift,
         };
+        // Combine the scattered light, the highlights and the emission.
         let part = material.mirror.part(lit.normal.dot(lit.to_eye));
         let [scattered, highlights] = self.local_light(&lit, &material);
         let mut light = scattered * (1.0 - part) + highlights + material.emission;
+        // Trace the mirrored ray. After the last bounce it sees only the environment.
         if part > 0.0 {
             let ray = Ray {
                 origin: position + lift,
@@ -182,7 +187,7 @@ impl<'a> World<'a> {
         light
     }
 
-    /// The light that a surface scatters from the lights and the ambient light, and its highlights.
+    /// The scattered light from lights and ambient light, and the highlights.
     fn local_light(&self, lit: &Lit, material: &Material) -> [LinearRgb; 2] {
         let mut scattered = times(material.color, self.ambient);
         let mut highlights = LinearRgb::BLACK;
@@ -191,12 +196,14 @@ impl<'a> World<'a> {
             let Some(incoming) = lamp.incoming(lit.position) else {
                 continue;
             };
+            // Skip lights behind the surface or hidden by its bumps.
             let toward = incoming.toward;
             let cosine = lit.normal.dot(toward);
             let seen = bump_shadow(lit.smooth.dot(toward), slope);
             if cosine <= 0.0 || seen <= 0.0 {
                 continue;
             }
+            // Trace shadow rays.
             let free = lamp.visible(&incoming, |direction, distance| {
                 let origin = lit.shadow_origin;
                 self.blocked(&Ray { origin, direction }, distance)
@@ -234,7 +241,7 @@ fn highlight(lit: &Lit, incoming: &Incoming, material: &Material) -> f32 {
     material.specular * libm::pow(cosine, material.shininess.into()) as f32
 }
 
-/// The direction of a ray after a mirror with bumps; a direction into the surface is mirrored out of it again.
+/// The direction of a ray reflected by a bumped mirror. A reflection into the surface is reflected out again.
 fn mirrored(direction: DVec3, normal: DVec3, geometric_normal: DVec3) -> DVec3 {
     let away = direction - normal * (2.0 * direction.dot(normal));
     let depth = away.dot(geometric_normal).min(0.0);

@@ -7,9 +7,9 @@ use core::fmt;
 use dapple_mesh::{Bvh, Ray, RayHit};
 use glam::DVec3;
 
-/// Triangles that share vertices, with a hierarchy of boxes around them.
+/// An indexed triangle mesh with a bounding volume hierarchy.
 ///
-/// Triangles are visible from both sides. A triangle without an area is never hit, and a mesh may be empty.
+/// Triangles are visible from both sides. Triangles of zero area are never hit. A mesh may be empty.
 ///
 /// # Examples
 ///
@@ -24,14 +24,14 @@ use glam::DVec3;
 pub struct Mesh {
     bvh: Bvh,
     mesh: dapple_mesh::Mesh,
-    /// The unit normals of the vertices, zero for a vertex without one; empty for a mesh with flat triangles.
+    /// The unit normals of the vertices, zero for a vertex without a normal. Empty for a mesh of flat triangles.
     normals: Vec<DVec3>,
 }
 
 impl Mesh {
-    /// A mesh with a normal at every vertex: the sum of those of its triangles, weighted by their areas.
+    /// Creates a mesh with a normal at every vertex: the area-weighted sum of the normals of its triangles.
     ///
-    /// Triangles are counterclockwise seen from outside; each holds three indices of vertices.
+    /// Triangles are counterclockwise seen from outside. Each consists of three vertex indices.
     ///
     /// # Errors
     ///
@@ -42,7 +42,7 @@ impl Mesh {
         Ok(Self::from_mesh(mesh))
     }
 
-    /// A mesh of flat triangles, with visible edges between them.
+    /// Creates a mesh of flat triangles, with visible edges.
     ///
     /// # Errors
     ///
@@ -56,7 +56,7 @@ impl Mesh {
         })
     }
 
-    /// A mesh of `dapple_mesh` with a normal at every vertex.
+    /// Converts a mesh of `dapple_mesh`, with a normal at every vertex.
     #[must_use]
     pub fn from_mesh(mesh: dapple_mesh::Mesh) -> Self {
         Self {
@@ -72,13 +72,13 @@ impl Mesh {
         self.mesh.faces().len()
     }
 
-    /// The nearest triangle at a distance above zero and at most `limit`; among equal distances the one with the lowest
-    /// index.
+    /// The nearest triangle at a distance above zero and at most `limit`. Of several at equal distances, the one with
+    /// the lowest index.
     pub(crate) fn first_hit(&self, ray: &Ray, limit: f64) -> Option<RayHit> {
         self.bvh.first_hit(ray, limit)
     }
 
-    /// Whether a triangle is at a distance above zero and below `limit`.
+    /// Whether a ray hits a triangle at a distance above zero and below `limit`.
     pub(crate) fn is_blocked(&self, ray: &Ray, limit: f64) -> bool {
         self.bvh.is_blocked(ray, limit)
     }

@@ -1,4 +1,4 @@
-//! The place, rotation and scale of an object in the world.
+//! The translation, rotation and scale of an object in the world.
 
 use crate::PreviewError;
 use crate::ray::Ray;
@@ -17,11 +17,11 @@ use glam::{DMat3, DQuat, DVec3};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Transform {
-    /// The position of the object's origin in the world. By default the origin.
+    /// The position of the object's origin in the world. Default: the origin.
     pub translation: DVec3,
-    /// The rotation of the object. By default none; a quaternion of another length than 1 is normalized.
+    /// The rotation of the object, normalized if its length differs from 1. Default: no rotation.
     pub rotation: DQuat,
-    /// The size of a unit of the object in units of the world, above zero. By default 1.
+    /// The size of one unit of the object in units of the world, above zero. Default: 1.
     pub scale: f64,
 }
 
@@ -32,7 +32,7 @@ impl Default for Transform {
 }
 
 impl Transform {
-    /// A translation without rotation and scale.
+    /// A translation without rotation or scaling.
     #[must_use]
     pub fn from_translation(translation: DVec3) -> Self {
         Self {
@@ -70,7 +70,7 @@ impl Transform {
     }
 }
 
-/// A checked transform, with the rotation as a matrix.
+/// A validated transform, with the rotation as a matrix.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Placement {
     translation: DVec3,
@@ -80,7 +80,7 @@ pub(crate) struct Placement {
 }
 
 impl Placement {
-    /// A direction of the world in the space of the object, of the same length.
+    /// Transforms a direction from world to object space. Its length is preserved.
     pub(crate) fn direction_to_object(&self, direction: DVec3) -> DVec3 {
         // The transpose of a rotation is its inverse.
         DVec3::new(
@@ -90,19 +90,19 @@ impl Placement {
         )
     }
 
-    /// A direction of the object in the world, of the same length.
+    /// Transforms a direction from object to world space. Its length is preserved.
     pub(crate) fn direction_to_world(&self, direction: DVec3) -> DVec3 {
         self.rotation.x_axis * direction.x
             + self.rotation.y_axis * direction.y
             + self.rotation.z_axis * direction.z
     }
 
-    /// A point of the object in the world.
+    /// Transforms a point from object to world space.
     pub(crate) fn point_to_world(&self, point: DVec3) -> DVec3 {
         self.direction_to_world(point) * self.scale + self.translation
     }
 
-    /// A ray of the world in the space of the object; distances along it are in units of the object.
+    /// Transforms a ray from world to object space, where distances along it are in units of the object.
     pub(crate) fn ray_to_object(&self, ray: &Ray) -> Ray {
         Ray {
             origin: self.direction_to_object(ray.origin - self.translation) * self.inverse_scale,

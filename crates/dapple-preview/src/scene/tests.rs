@@ -1,4 +1,4 @@
-//! Whole pictures: positions, lighting, and errors.
+//! Tests of whole images: positions, lighting and errors.
 
 use crate::{
     Camera, Cut, Environment, Light, Material, Mesh, Mirror, Object, Part, PreviewErrorKind, Scene,
@@ -13,7 +13,7 @@ use glam::{DQuat, DVec3};
 const RED: LinearRgb = LinearRgb::new(1.0, 0.0, 0.0);
 const WHITE: LinearRgb = LinearRgb::WHITE;
 
-/// A look of one color under any light.
+/// A look that emits one color regardless of the lights.
 fn glowing(color: LinearRgb) -> impl Fn(&Surface) -> Material + Send + Sync {
     move |_| Material::matte(LinearRgb::BLACK).with_emission(color)
 }
@@ -27,7 +27,7 @@ fn front() -> Camera {
     Camera::look_at(DVec3::Z * 8.0, DVec3::ZERO)
 }
 
-/// A camera above that looks at the origin, with -z up.
+/// A camera above the origin that looks down, with -z up.
 fn above() -> Camera {
     Camera::look_at(DVec3::Y * 8.0, DVec3::ZERO).with_up(DVec3::NEG_Z)
 }
@@ -36,12 +36,12 @@ fn render(scene: &Scene<'_>, size: u32) -> Raster<LinearRgb> {
     scene.render([size; 2], Supersampling(1)).unwrap()
 }
 
-/// The color in the middle of the picture.
+/// The color at the center of the image.
 fn middle(scene: &Scene<'_>) -> LinearRgb {
     render(scene, 1).pixels()[0]
 }
 
-/// A scene with all kinds of shapes, lights and looks.
+/// A scene with every kind of shape, light and look.
 fn everything() -> Scene<'static> {
     let corners = [DVec3::X, DVec3::Y, DVec3::Z, DVec3::NEG_X];
     let mesh = Mesh::smooth(&corners, &[[0, 1, 2], [2, 1, 3], [1, 0, 3]]).unwrap();
@@ -121,7 +121,7 @@ fn plane_is_lit_by_the_cosine_of_the_light() {
 
 #[test]
 fn bump_is_lit_by_the_tilted_normal_at_every_scale_and_rotation() {
-    // The normal (-3, 4, 0) / 5 is lit straight, up to the shadow of bumps on each other.
+    // The normal (-3, 4, 0) / 5 is lit perpendicularly, apart from the shadow of the bumps.
     let lit = |transform: Transform, bump: DVec3| {
         let look = move |_: &Surface| Material::matte(WHITE).with_bump(bump);
         let object = Object::new(Shape::Plane, look).with_transform(transform);
@@ -223,7 +223,7 @@ fn mirror_shows_the_environment_of_the_mirrored_direction() {
 
 #[test]
 fn mirror_shows_objects_as_often_as_it_may() {
-    // A ball hangs above a mirror, behind the eye; the environment is red.
+    // A sphere hangs above a mirror, behind the eye. The environment is red.
     let mirror = |_: &Surface| Material::matte(LinearRgb::BLACK).with_mirror(Mirror::Constant(1.0));
     let scene = |bounces| {
         Scene::new(above())
@@ -268,7 +268,8 @@ fn footprint_is_the_width_of_a_sample_in_units_of_the_object() {
     let scene = Scene::new(camera).with_object(plane);
     let picture = scene.render([5, 5], Supersampling(3)).unwrap();
     let color = picture.row(2)[2];
-    // 8 away, 2 · 0.25 · 8 = 4 high, by 15 samples, in units of 2. The samples beside the middle are a little farther.
+    // At distance 8, the image is 2 · 0.25 · 8 = 4 high and has 15 samples per column. The unit of the object is 2.
+    // Samples next to the center are slightly farther away.
     let expected = 4.0 / 15.0 / 2.0;
     assert!((color.r / expected - 1.0).abs() < 2e-3, "{color:?}");
     assert!((color.g - 1.0).abs() < 2e-3, "{color:?}");
@@ -358,7 +359,7 @@ fn degenerate_places_give_finite_pictures() {
     let corners = [DVec3::ZERO, DVec3::X, DVec3::X * 2.0, DVec3::Y];
     let slivers = Mesh::smooth(&corners, &[[0, 1, 2], [0, 0, 3], [0, 1, 3]]).unwrap();
     let empty = Mesh::flat(&[], &[]).unwrap();
-    // The eye and a light in the middle of the sphere, on the plane and at a vertex.
+    // Place the eye and a light at the center of the sphere, on the plane and at a vertex.
     let scene = Scene::new(Camera::look_at(DVec3::ZERO, DVec3::X))
         .with_object(Object::new(Shape::Plane, matte(WHITE)))
         .with_object(Object::new(Shape::sphere(1.0), matte(WHITE)))

@@ -1,8 +1,8 @@
 //! Cuts through solids, which show a solid texture inside.
 //!
-//! A cut is a convex wedge of at most two half spaces; either the inside of it stays or the outside. A ray is in a
-//! wedge along one stretch, so a cut is an operation on stretches: constructive solid geometry after Scott D. Roth,
-//! "Ray Casting for Modeling Solids", Computer Graphics and Image Processing 18(2), 1982, doi
+//! A cut is a convex wedge of at most two half-spaces. Either its inside or its outside is kept. A ray intersects a
+//! wedge in a single interval, so a cut is an operation on intervals. This is constructive solid geometry after Scott
+//! D. Roth, "Ray Casting for Modeling Solids", Computer Graphics and Image Processing 18(2), 1982, doi
 //! 10.1016/0146-664X(82)90169-1.
 
 use super::solid::{Boundary, Face, Stretch};
@@ -11,7 +11,8 @@ use crate::ray::Ray;
 use core::f64::consts::{PI, TAU};
 use glam::DVec3;
 
-/// A solid with parts cut away, in the space of the object. The faces of the cut are closed and belong to the solid.
+/// A cut that removes a part of a solid, in the space of the object. The solid remains closed: the faces of the cut
+/// belong to it.
 ///
 #[cfg_attr(doc, doc = include_str!("../../docs/cut.md"))]
 ///
@@ -31,12 +32,12 @@ use glam::DVec3;
 pub enum Cut {
     /// Keeps the points `p` with `normal · p ≤ offset` for the normalized normal.
     HalfSpace {
-        /// The direction toward the removed part; any length but zero.
+        /// The direction toward the removed part. Any length except zero.
         normal: DVec3,
         /// The distance of the face from the origin along the normal.
         offset: f64,
     },
-    /// Keeps the points whose angle around the y axis is in a range.
+    /// Keeps the points whose angle around the y axis is within a range.
     Sector {
         /// The start of the range, in radians: 0 is +x, π/2 is -z.
         start: f64,
@@ -45,10 +46,10 @@ pub enum Cut {
     },
 }
 
-/// A checked cut.
+/// A validated cut.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Wedge {
-    /// The outward unit normals and offsets of the half spaces; the second may be the first again.
+    /// The outward unit normals and offsets of the half-spaces. A single half-space is listed twice.
     faces: [(DVec3, f64); 2],
     keeps: Keeps,
 }
@@ -77,7 +78,7 @@ impl Cut {
                 let holds = sweep > 0.0 && sweep < TAU;
                 let range = "above 0 and below 2π";
                 PreviewError::check(holds, "sweep of a sector", sweep, range)?;
-                // The wedge is the smaller of the sector and the rest.
+                // Use the smaller of the sector and its complement as the wedge, which must be convex.
                 Ok(if sweep <= PI {
                     Wedge::sector(start, sweep, Keeps::Inside)
                 } else {
@@ -91,7 +92,7 @@ impl Cut {
 impl Wedge {
     /// A wedge around the y axis, of at most half a turn.
     fn sector(start: f64, sweep: f64, keeps: Keeps) -> Self {
-        // A quarter of a turn ahead of an angle, by its sine and cosine.
+        // The unit vector a quarter turn ahead of an angle.
         let ahead = |angle: f64| DVec3::new(-libm::sin(angle), 0.0, -libm::cos(angle));
         Self {
             faces: [(-ahead(start), 0.0), (ahead(start + sweep), 0.0)],
@@ -99,12 +100,12 @@ impl Wedge {
         }
     }
 
-    /// The normal of a face, either way.
+    /// The normal of a face, which may point to either side.
     pub(crate) fn normal(&self, face: usize) -> DVec3 {
         self.faces[face].0
     }
 
-    /// The stretches of a ray within a solid that the cut leaves; unused elements are `None`.
+    /// Applies the cut to the intervals of a ray within a solid. Unused elements are `None`.
     pub(crate) fn apply(&self, ray: &Ray, stretches: [Option<Stretch>; 2]) -> [Option<Stretch>; 4] {
         let wedge = self.stretch(ray);
         match (self.keeps, wedge) {
@@ -125,7 +126,7 @@ impl Wedge {
         }
     }
 
-    /// The stretch of a ray that is in all half spaces, possibly without an end.
+    /// The interval of a ray within all half-spaces, possibly infinite.
     fn stretch(&self, ray: &Ray) -> Option<Stretch> {
         let end = |distance| Boundary {
             distance,

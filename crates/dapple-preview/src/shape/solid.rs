@@ -1,34 +1,35 @@
-//! Spheres and tori as solids: the stretches of a ray that are inside.
+//! Spheres and tori as solids: the intervals of a ray that are inside.
 //!
-//! A torus is met where a quartic is zero. Along a ray from its point nearest to the center the quartic has no cubic
-//! term, and its roots are isolated by those of its derivatives, each found by Newton steps that never leave a bracket
-//! with a change of sign: Cem Yuksel, "High-Performance Polynomial Root Finding for Graphics", Proceedings of the ACM on
-//! Computer Graphics and Interactive Techniques 5(3), 2022, doi 10.1145/3543865. Only `+ − × ÷ sqrt` are used. Where a
-//! ray touches the torus in a double root, rounding decides; either answer is a stretch of next to no length.
+//! A ray intersects a torus at the roots of a quartic. Measured from the point of the ray nearest to the center, the
+//! quartic has no cubic term. The roots of its derivatives isolate its roots. Each root is found by Newton steps that
+//! stay within a bracket with a change of sign: Cem Yuksel, "High-Performance Polynomial Root Finding for Graphics",
+//! Proceedings of the ACM on Computer Graphics and Interactive Techniques 5(3), 2022, doi 10.1145/3543865. Only `+ −
+//! × ÷ sqrt` are used. Where a ray is tangent to the torus, at a double root, rounding decides. Either result is an
+//! interval of nearly zero length.
 
 use super::cut::Wedge;
 use crate::ray::Ray;
 use crate::surface::{Chart, Part};
 use glam::DVec3;
 
-/// The largest number of steps; bisection reaches neighboring numbers from any bracket of a torus in fewer.
+/// Maximum number of steps. Bisection narrows any bracket of a torus to neighboring numbers in fewer steps.
 const ROOT_STEPS_MAX: u32 = 128;
 
-/// A closed surface that fills its inside.
+/// A closed surface that bounds a solid.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Skin {
     Sphere { radius: f64 },
     Torus { major: f64, minor: f64 },
 }
 
-/// A closed surface with its inside, cut or whole.
+/// A solid, cut or whole.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Solid {
     pub(crate) skin: Skin,
     pub(crate) wedge: Option<Wedge>,
 }
 
-/// The surface through which a ray passes.
+/// The surface that a ray crosses.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Face {
     Skin,
@@ -36,14 +37,14 @@ pub(crate) enum Face {
     Cut(usize),
 }
 
-/// The place where a ray enters or leaves.
+/// The point where a ray enters or leaves a solid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Boundary {
     pub(crate) distance: f64,
     pub(crate) face: Face,
 }
 
-/// A stretch of a ray inside of a solid, of positive length.
+/// An interval of a ray inside a solid, of positive length.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Stretch {
     pub(crate) enter: Boundary,
@@ -71,7 +72,7 @@ impl Stretch {
         self.checked()
     }
 
-    /// The intersection of two stretches, if any.
+    /// The intersection of two intervals, if any.
     pub(crate) fn and(self, other: Self) -> Option<Self> {
         self.after(other.enter)?.before(other.exit)
     }
@@ -85,14 +86,15 @@ impl Solid {
             Some(wedge) if stretches[0].is_some() => wedge.apply(ray, stretches),
             _ => [stretches[0], stretches[1], None, None],
         };
-        // The stretches are in order and apart.
+        // The intervals are sorted and disjoint.
         let boundaries = stretches.iter().flatten().flat_map(|s| [s.enter, s.exit]);
         boundaries
             .into_iter()
             .find(|boundary| boundary.distance > 0.0)
     }
 
-    /// The unit normal (outward on the skin, either way on a cut), the part, and the chart of the surface.
+    /// The unit normal, the part, and the chart at a point. The normal is outward on the skin and may point to either
+    /// side on a cut.
     pub(crate) fn detail(&self, position: DVec3, face: Face) -> (DVec3, Part, Chart) {
         match (face, &self.wedge) {
             (Face::Cut(index), Some(wedge)) => (wedge.normal(index), Part::Cut, Chart::None),
@@ -105,9 +107,9 @@ impl Solid {
 }
 
 impl Skin {
-    /// The stretches of a ray inside of the solid, in order, including those behind the origin.
+    /// The intervals of a ray inside the solid, in order, including those behind the origin.
     fn stretches(&self, ray: &Ray) -> [Option<Stretch>; 2] {
-        // The point of the ray nearest to the center, from which distances are small.
+        // Measure distances from the point of the ray nearest to the center, which keeps them small.
         let middle = -ray.origin.dot(ray.direction);
         let nearest = ray.at(middle);
         let stretch = |[enter, exit]: [f64; 2]| {
@@ -150,10 +152,10 @@ impl Skin {
     }
 }
 
-/// The stretches inside of a torus of a ray that starts at its point nearest to the center.
+/// The intervals inside a torus of a ray that starts at its point nearest to the center.
 fn torus_stretches(nearest: &Ray, major: f64, minor: f64) -> [Option<[f64; 2]>; 2] {
     let [origin, direction] = [nearest.origin, nearest.direction];
-    // In units of the outer radius, within which the torus is.
+    // Scale lengths by the outer radius, the radius of the enclosing sphere.
     let unit = major + minor;
     if origin.length_squared() >= unit * unit {
         return [None; 2];
@@ -167,10 +169,11 @@ fn torus_stretches(nearest: &Ray, major: f64, minor: f64) -> [Option<[f64; 2]>; 
     if (origin.y.abs() - direction.y.abs() * reach) > minor {
         return [None; 2];
     }
+    // Find the roots between the turning points of the quartic, which alternate between entry and exit.
     let quartic = Quartic::of_torus(origin, direction, [major, minor]);
     let mut ends = [[0.0; 2]; 2];
     let (mut count, mut from) = (0, -reach);
-    // By rounding, a ray that touches the enclosing sphere may begin inside.
+    // Due to rounding, a ray that touches the enclosing sphere may begin inside.
     let mut enter = (quartic.at(from) < 0.0).then_some(from);
     for to in quartic.turns(reach).into_iter().chain([reach]) {
         let root = quartic.root([from, to]);
@@ -185,7 +188,7 @@ fn torus_stretches(nearest: &Ray, major: f64, minor: f64) -> [Option<[f64; 2]>; 
         }
         from = to;
     }
-    // By rounding, a ray that touches the enclosing sphere may end inside.
+    // Due to rounding, a ray that touches the enclosing sphere may end inside.
     if let Some(start) = enter
         && count < 2
     {
@@ -203,8 +206,7 @@ struct Quartic {
 }
 
 impl Quartic {
-    /// The quartic that is below zero where a ray is inside of a torus; the ray starts at its point nearest to the
-    /// center.
+    /// The quartic that is negative where a ray is inside a torus. The ray starts at its point nearest to the center.
     ///
     /// A point is inside if `(|p|² + R² - r²)² < 4 R² (x² + z²)`, and `|p|² = |o|² + t²` since o and d are
     /// perpendicular.
@@ -232,30 +234,33 @@ impl Quartic {
         (4.0 * t * t + 2.0 * c2) * t + c1
     }
 
-    /// The places between `-reach` and `reach`, in order, between which the quartic is monotonic.
+    /// Turning points between `-reach` and `reach`, sorted. The quartic is monotonic between them.
     fn turns(&self, reach: f64) -> [f64; 3] {
         let [_, _, c2] = self.c;
-        // The slope turns where 12 t² + 2 c2 is zero.
+        // The slope has its extrema where 12 t² + 2 c2 is zero.
         let turn = (-c2 / 6.0).max(0.0).sqrt().min(reach);
         let slope = |t: f64| (self.slope(t), 12.0 * t * t + 2.0 * c2);
         let [mut turns, brackets] = [[-reach, 0.0, reach], [-reach, -turn, turn]];
         let ends = [-turn, turn, reach];
         for (place, (from, to)) in turns.iter_mut().zip(brackets.into_iter().zip(ends)) {
-            // A slope without a root here leaves the quartic monotonic, and any place of the bracket will do.
+            // Without a root of the slope in this bracket, the quartic is monotonic there and any point of the
+            // bracket will do.
             *place = bracketed_root([from, to], slope).unwrap_or(from);
         }
         turns
     }
 
-    /// The root in a bracket in which the quartic is monotonic.
+    /// The root in a bracket in which the quartic is monotonic, if any.
     fn root(&self, bracket: [f64; 2]) -> Option<f64> {
         bracketed_root(bracket, |t| (self.at(t), self.slope(t)))
     }
 }
 
-/// The root of a function in a bracket with a change of sign; the function returns its value and its slope.
+/// The root of a function in a bracket, or `None` without a change of sign. The function returns its value and its
+/// slope.
 ///
-/// Newton steps, with a bisection where a step would leave the bracket or the bracket has hardly become shorter.
+/// Takes Newton steps. Bisects if a step would leave the bracket, and at every eighth step so that the bracket
+/// shrinks.
 fn bracketed_root([low, high]: [f64; 2], function: impl Fn(f64) -> (f64, f64)) -> Option<f64> {
     let [mut low, mut high] = [low, high];
     let [at_low, at_high] = [low, high].map(|t| function(t).0);
@@ -272,8 +277,7 @@ fn bracketed_root([low, high]: [f64; 2], function: impl Fn(f64) -> (f64, f64)) -
             high = t;
         }
         let newton = t - value / slope;
-        // This is false also for a slope of zero, which makes infinity or NaN; every eighth step bisects, so that the
-        // bracket shrinks.
+        // The condition also fails for a zero slope, which gives infinity or NaN.
         let inside = newton > low && newton < high;
         let next = if inside && step % 8 != 7 {
             newton

@@ -1,4 +1,4 @@
-//! Shapes compared with their definitions, at points along rays.
+//! Compares shapes with their definitions at points along rays.
 
 use super::{Body, Cut, Shape};
 use crate::PreviewErrorKind;
@@ -7,7 +7,7 @@ use crate::surface::Part;
 use core::f64::consts::{FRAC_PI_2, PI};
 use glam::DVec3;
 
-/// Low-discrepancy numbers from 0 to 1: multiples of powers of the root of `x⁶ = x + 1`, without their whole part.
+/// Low-discrepancy numbers from 0 to 1: the fractional parts of multiples of powers of the root of `x⁶ = x + 1`.
 fn spread(index: u32) -> [f64; 5] {
     let root = 0.881_271_497_064_361_6_f64;
     let mut power = 1.0;
@@ -17,7 +17,7 @@ fn spread(index: u32) -> [f64; 5] {
     })
 }
 
-/// A ray from a point of a cube around the origin to a point of a smaller one.
+/// A ray from a point in a cube around the origin toward a point in a smaller cube.
 fn ray(index: u32) -> Ray {
     let [a, b, c, d, e] = spread(index).map(|part| 2.0 * part - 1.0);
     let origin = DVec3::new(a, b, c) * 3.0;
@@ -26,13 +26,13 @@ fn ray(index: u32) -> Ray {
     Ray { origin, direction }
 }
 
-/// The distance of a point outside of a torus; negative inside.
+/// The signed distance of a point from a torus, negative inside.
 fn torus_distance(point: DVec3, major: f64, minor: f64) -> f64 {
     let outward = (point.x * point.x + point.z * point.z).sqrt() - major;
     (outward * outward + point.y * point.y).sqrt() - minor
 }
 
-/// Marches along rays and compares: a hit is on the surface, and no point before it is inside.
+/// Marches along rays and checks that a hit is on the surface and that no point before it is inside.
 fn compare(shape: &Shape, cut: Option<Cut>, outside: impl Fn(DVec3) -> f64) -> [u32; 2] {
     let body = shape.prepare(cut).unwrap();
     let mut found = [0; 2];
@@ -94,7 +94,7 @@ fn half_torus_hit_is_the_first_point_inside_of_a_march() {
 
 #[test]
 fn sectors_of_a_torus_hit_at_the_first_point_inside_of_a_march() {
-    // The quarter between +x and -z, and the rest.
+    // The quarter between +x and -z, and its complement.
     let in_quarter = |point: DVec3| (-point.x).max(point.z);
     let torus = |point| torus_distance(point, 1.0, 0.4);
     let shape = Shape::torus(1.0, 0.4);

@@ -1,4 +1,4 @@
-//! Normals and positions on a mesh, and the meshes that are refused.
+//! Tests of normals and positions on a mesh, and of refused meshes.
 
 use super::Mesh;
 use crate::PreviewErrorKind;
