@@ -1,25 +1,25 @@
-//! Three tori through each other.
+//! Three intersecting tori.
 
 use crate::solid::{Blend, Torus};
 use crate::{ModelError, polygonize_n};
 use dapple_mesh::Mesh;
 use glam::DVec3;
 
-/// The distance from the origin to the middle of the tubes; they meet at this distance on the axes.
+/// The distance from the origin to the center of the tubes. The tubes meet at this distance on the axes.
 pub const RING: f64 = 0.78;
 /// The radius of the tubes.
 pub const TUBE: f64 = 0.2;
 
-/// A side of the lattice that is small enough for all parts.
+/// Side of the lattice, small enough for all parts.
 const SIDE: f64 = 0.1;
 
-/// Three tori around the axes x, y and z, melted together: four tubes meet on each axis at +[`RING`] and -[`RING`].
+/// Three tori around the axes x, y and z, blended together. Four tubes meet on each axis at +[`RING`] and -[`RING`].
 ///
 /// The surface has seven handles.
 ///
 /// # Errors
 ///
-/// [`ModelErrorKind::Range`](crate::ModelErrorKind::Range) unless 16 to 2^24 triangles are wanted.
+/// [`ModelErrorKind::Range`](crate::ModelErrorKind::Range) unless `n_triangles` is from 16 to 2^24.
 pub fn blended_tori(n_triangles: usize) -> Result<Mesh, ModelError> {
     let torus = |axis| Torus {
         center: DVec3::ZERO,

@@ -13,14 +13,14 @@ pub const LEFT_EAR: DVec3 = DVec3::new(0.25, 1.05, -0.05);
 /// The end of the tail.
 pub const TAIL: DVec3 = DVec3::new(0.0, -0.68, -0.67);
 
-/// A side of the lattice that is small enough for all parts.
+/// Side of the lattice, small enough for all parts.
 const SIDE: f64 = 0.08;
 
-/// The animal: it sits upright and looks toward +z.
+/// The animal sits upright and faces +z.
 ///
 /// # Errors
 ///
-/// [`ModelErrorKind::Range`](crate::ModelErrorKind::Range) unless 16 to 2^24 triangles are wanted.
+/// [`ModelErrorKind::Range`](crate::ModelErrorKind::Range) unless `n_triangles` is from 16 to 2^24.
 pub fn bunny(n_triangles: usize) -> Result<Mesh, ModelError> {
     polygonize_n(&solid(), SIDE, n_triangles)
 }
@@ -31,7 +31,7 @@ fn solid() -> Blend {
         [0.4, 0.5, 0.42],
         [0.2, 0.0, 0.0],
     ))
-    // The head with its cheeks and its muzzle.
+    // Head, cheeks, muzzle and ears.
     .with(ellipsoid([0.0, 0.28, 0.2], [0.27, 0.26, 0.3]), 0.22)
     .with_pair(ball([0.11, 0.2, 0.36], 0.12), 0.1)
     .with(ball([0.0, 0.27, 0.47], 0.08), 0.1)
@@ -39,7 +39,7 @@ fn solid() -> Blend {
         turned([0.16, 0.76, 0.03], [0.1, 0.34, 0.055], [-0.2, 0.35, -0.2]),
         0.1,
     )
-    // Haunches, feet and paws.
+    // Haunches, feet, paws and tail.
     .with_pair(ellipsoid([0.3, -0.62, 0.0], [0.2, 0.28, 0.33]), 0.12)
     .with_pair(
         cone([0.28, -0.86, 0.05, 0.09], [0.26, -0.87, 0.46, 0.08]),

@@ -13,14 +13,14 @@ pub const FOREHEAD: DVec3 = DVec3::new(0.0, 0.6, 0.75);
 /// The middle of the back.
 pub const BACK: DVec3 = DVec3::new(0.0, 0.62, -0.25);
 
-/// A side of the lattice that is small enough for all parts.
+/// Side of the lattice, small enough for all parts.
 const SIDE: f64 = 0.045;
 
-/// The animal: it stands on four thick legs with its ears spread, and looks toward +z.
+/// The animal stands on four thick legs with its ears spread and faces +z.
 ///
 /// # Errors
 ///
-/// [`ModelErrorKind::Range`](crate::ModelErrorKind::Range) unless 16 to 2^24 triangles are wanted.
+/// [`ModelErrorKind::Range`](crate::ModelErrorKind::Range) unless `n_triangles` is from 16 to 2^24.
 pub fn elephant(n_triangles: usize) -> Result<Mesh, ModelError> {
     polygonize_n(&solid(), SIDE, n_triangles)
 }

@@ -3,7 +3,7 @@
 use dapple_mesh::MeshError;
 
 dapple_raster::error! {
-    /// An error of making a mesh of a solid.
+    /// An error in converting a solid to a mesh.
     ModelError,
     /// The cause of a [`ModelError`], with the limit and the value.
     ModelErrorKind with Range {
@@ -12,7 +12,7 @@ dapple_raster::error! {
             /// The number of edges with one face.
             edges: usize,
         } => "the surface has {edges} edges with one face, but it must be closed; the distance changes too fast";
-        /// No surface was found in the bounds.
+        /// No surface was found within the bounds.
         NoSurface => "no surface was found in the bounds of the solid";
     }
     from {

@@ -1,11 +1,12 @@
-//! Test models for textures, made of blended shapes: our own stand-ins for those of Turk's figure 5.
+//! Procedural test models for textures, made of blended shapes. They replace the models of Turk's figure 5.
 //!
-//! Each is one smooth closed surface about two units large around the origin. Animals look toward +z with y up, so that
-//! their left is +x; their modules name places on the surface to start directions from. The functions take the number
-//! of triangles, from 16 to 2^24: 10,000 to 20,000 show all detail.
+//! Each model is one smooth closed surface, about two units large and centered at the origin. Animals face +z with y
+//! up, so their left is +x. Their modules define named positions on the surface from which direction fields can
+//! start. The functions take the number of triangles, from 16 to 2^24. With 10,000 to 20,000 triangles, all details
+//! are visible.
 //!
-//! The gallery, the benchmarks, tests and examples use them; the crate is not published. [`solid`] has shapes given by
-//! distance functions, and [`polygonize()`] makes meshes of them.
+//! The gallery, the benchmarks, tests and examples use the models; the crate is not published. [`solid`] contains
+//! shapes defined by distance functions, and [`polygonize()`] converts them to meshes.
 //!
 //! ```
 //! use dapple_models::ray;

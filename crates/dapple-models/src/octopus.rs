@@ -9,10 +9,10 @@ use glam::DVec3;
 /// The top of the head.
 pub const CROWN: DVec3 = DVec3::new(0.0, 0.96, -0.16);
 
-/// A side of the lattice that is small enough for all parts.
+/// Side of the lattice, small enough for all parts.
 const SIDE: f64 = 0.05;
 
-/// The directions of the arms in the plane, at odd multiples of an eighth of half a turn: cosine and sine.
+/// The horizontal directions of the arms as cosine and sine, at odd multiples of π/8.
 const DIRECTIONS: [[f64; 2]; 8] = {
     const LONG: f64 = 0.923_879_532_511_286_7;
     const SHORT: f64 = 0.382_683_432_365_089_8;
@@ -28,7 +28,7 @@ const DIRECTIONS: [[f64; 2]; 8] = {
     ]
 };
 
-/// The points of an arm, from its root: distance outward, height, distance to its left, and radius.
+/// The points of an arm, starting at its root: distance outward, height, distance to the left, and radius.
 const ARMS: [[[f64; 4]; 7]; 2] = [
     [
         [0.06, 0.02, 0.0, 0.16],
@@ -50,11 +50,11 @@ const ARMS: [[[f64; 4]; 7]; 2] = [
     ],
 ];
 
-/// The octopus: its head is up, its eyes look toward +z, and its arms reach to all sides.
+/// The octopus has its head up, eyes facing +z, and arms spread in all directions.
 ///
 /// # Errors
 ///
-/// [`ModelErrorKind::Range`](crate::ModelErrorKind::Range) unless 16 to 2^24 triangles are wanted.
+/// [`ModelErrorKind::Range`](crate::ModelErrorKind::Range) unless `n_triangles` is from 16 to 2^24.
 pub fn octopus(n_triangles: usize) -> Result<Mesh, ModelError> {
     polygonize_n(&solid(), SIDE, n_triangles)
 }
@@ -73,7 +73,7 @@ fn solid() -> Blend {
     body
 }
 
-/// An arm in a direction of the plane.
+/// An arm in a horizontal direction.
 fn arm(points: &[[f64; 4]; 7], [x, z]: [f64; 2]) -> Tube {
     let placed =
         points.map(|[out, up, left, radius]| [out * x - left * z, up, out * z + left * x, radius]);

@@ -1,14 +1,14 @@
-//! Meshes of solids: closed, manifold and consistently wound, with triangles that are nearly equilateral.
+//! Polygonization of solids: closed, manifold and consistently wound meshes with nearly equilateral triangles.
 //!
-//! References: Akio Doi and Akio Koide, "An Efficient Method of Triangulating Equi-Valued Surfaces by Using Tetrahedral
-//! Cells", IEICE Transactions E74 (1991), for marching tetrahedra; Mario Botsch and Leif Kobbelt, "A Remeshing Approach to
-//! Multiresolution Modeling", SGP 2004, doi 10.1145/1057432.1057457, for evening the triangles out.
+//! References: Akio Doi and Akio Koide, "An Efficient Method of Triangulating Equi-Valued Surfaces by Using
+//! Tetrahedral Cells", IEICE Transactions E74 (1991), for marching tetrahedra; Mario Botsch and Leif Kobbelt, "A
+//! Remeshing Approach to Multiresolution Modeling", SGP 2004, doi 10.1145/1057432.1057457, for remeshing.
 //!
-//! The tetrahedra are those of a body-centered cubic lattice, all alike. Every tetrahedron that the surface passes
-//! through gets one or two triangles with corners on its edges, so two triangles meet at every edge whatever the solid
-//! is, which marching cubes and surface nets do not guarantee. Then the shortest edges are collapsed where that keeps
-//! the topology, edges are flipped, and vertices slide along the surface. Every vertex always lies on the surface
-//! within [`TOLERANCE`].
+//! The congruent tetrahedra of a body-centered cubic lattice are used. Every tetrahedron that the surface crosses
+//! gets one or two triangles with corners on its edges. So two triangles meet at every edge for any solid, which
+//! marching cubes and surface nets do not guarantee. Remeshing then collapses the shortest edges where the topology
+//! allows it, flips edges, and moves vertices along the surface. Every vertex lies on the surface within
+//! [`TOLERANCE`].
 
 mod sheet;
 mod tetrahedra;
@@ -19,26 +19,27 @@ use dapple_mesh::Mesh;
 use glam::DVec3;
 use sheet::Sheet;
 
-/// The largest distance of a vertex from the surface by the solid's own measure, in sides of the lattice's cells.
+/// Maximum distance of a vertex from the surface, as measured by the solid, relative to the side of the lattice's
+/// cells.
 pub const TOLERANCE: f64 = 1e-6;
 
-/// The fraction of the triangles of the lattice that is kept, so that short edges vanish.
+/// The fraction of the lattice's triangles that remains after short edges are collapsed.
 const KEPT: f64 = 0.5;
-/// The largest number of cells along an axis.
+/// Maximum number of cells along an axis.
 const CELLS_MAX: f64 = 4096.0;
-/// The largest number of triangles of a mesh.
+/// Maximum number of triangles of a mesh.
 const TRIANGLES_MAX: usize = 1 << 24;
 
-/// The mesh of a solid on a lattice of cubes with the given side.
+/// Converts a solid to a mesh, on a lattice of cubes with the given side.
 ///
-/// Parts thinner than about half a side may be missed. The edges of the mesh are about as long as the side. A solid that
-/// reaches out of its bounds is cut there.
+/// Parts thinner than about half a side may be missed. The edges of the mesh are about as long as the side. A solid
+/// that extends beyond its bounds is clipped.
 ///
 /// # Errors
 ///
 /// [`ModelErrorKind::Range`] if the side is not above 0 or below 1/4096 of the bounds, or the bounds are not finite;
-/// [`ModelErrorKind::NoSurface`] if no surface was found; [`ModelErrorKind::Open`] if the surface has holes since the distance
-/// changes faster than [`Solid::distance`] may.
+/// [`ModelErrorKind::NoSurface`] if no surface was found; [`ModelErrorKind::Open`] if the surface has holes because
+/// the distance changes faster than [`Solid::distance`] allows.
 pub fn polygonize(solid: &dyn Solid, side: f64) -> Result<Mesh, ModelError> {
     let cut = Cut::new(solid, side)?;
     let sheet = cut.sheet()?;
@@ -46,22 +47,23 @@ pub fn polygonize(solid: &dyn Solid, side: f64) -> Result<Mesh, ModelError> {
     evened(&cut, sheet, count as usize)
 }
 
-/// The mesh of a solid with a wanted number of triangles, on a lattice of cubes with the given side or smaller ones.
+/// Converts a solid to a mesh with a given number of triangles, on a lattice of cubes with the given side or smaller.
 ///
-/// The side determines which parts and holes are found, and the number how finely they are meshed. It is met exactly
-/// (one less if it is odd) unless it is too small for the shape: a mesh with a few hundred triangles may have some
-/// more.
+/// The side determines which parts and holes are found. The number of triangles determines how finely they are
+/// meshed. It is met exactly (one less if odd), unless it is too small for the shape: a mesh of a few hundred
+/// triangles may have slightly more.
 ///
 /// # Errors
 ///
-/// The errors of [`polygonize`], and [`ModelErrorKind::Range`] unless 16 to 2^24 triangles are wanted.
+/// The errors of [`polygonize`], and [`ModelErrorKind::Range`] unless `n_triangles` is from 16 to 2^24.
 pub fn polygonize_n(solid: &dyn Solid, side: f64, n_triangles: usize) -> Result<Mesh, ModelError> {
     let holds = (16..=TRIANGLES_MAX).contains(&n_triangles);
     let wanted = n_triangles as f64;
     ModelError::check(holds, "number of triangles", wanted, "from 16 to 2^24")?;
     let mut cut = Cut::new(solid, side)?;
     let mut sheet = cut.sheet()?;
-    // The number grows with the square of the lattice's fineness, and a little more where thin parts are found.
+    // The number of triangles grows with the inverse square of the side, and slightly more where thin parts are
+    // found.
     while (sheet.n_faces() as f64) * KEPT < 0.9 * wanted {
         let finer = (sheet.n_faces() as f64 * KEPT / wanted).sqrt().max(0.25);
         cut = Cut::new(solid, cut.side * finer)?;
@@ -71,7 +73,7 @@ pub fn polygonize_n(solid: &dyn Solid, side: f64, n_triangles: usize) -> Result<
     evened(&cut, sheet, n_triangles / 2 * 2)
 }
 
-/// A solid that is cut off at its bounds, with the lattice.
+/// A solid clipped at its bounds, with the side of the lattice.
 struct Cut<'a> {
     solid: &'a dyn Solid,
     bounds: [DVec3; 2],
@@ -109,7 +111,7 @@ impl<'a> Cut<'a> {
         distance.max(box_distance(self.bounds, at))
     }
 
-    /// The triangles in the tetrahedra of the lattice.
+    /// Marches the tetrahedra of the lattice.
     fn sheet(&self) -> Result<Sheet, ModelError> {
         let (positions, faces) = tetrahedra::march(self);
         if faces.is_empty() {
@@ -119,11 +121,12 @@ impl<'a> Cut<'a> {
     }
 }
 
-/// Evens out the triangles of a sheet until about `count` are left.
+/// Remeshes a sheet until about `count` triangles remain.
 fn evened(cut: &Cut, mut sheet: Sheet, count: usize) -> Result<Mesh, ModelError> {
-    /// Enough for the largest numbers: each round removes a few percent of the faces at least, until it finds none.
+    /// Maximum number of rounds. Each round removes at least a few percent of the faces until no edge can be
+    /// collapsed.
     const ROUNDS: u32 = 60;
-    /// The number of further rounds, after which the angles hardly improve.
+    /// Number of final rounds without collapses. More rounds hardly improve the angles.
     const LAST_ROUNDS: u32 = 3;
     for _ in 0..ROUNDS {
         let before = sheet.n_faces();

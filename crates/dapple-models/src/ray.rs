@@ -13,20 +13,20 @@ pub const LEFT_WING: DVec3 = DVec3::new(1.0, 0.16, 0.0);
 /// The end of the tail.
 pub const TAIL: DVec3 = DVec3::new(0.04, 0.0, -1.42);
 
-/// A side of the lattice that is small enough for all parts.
+/// Side of the lattice, small enough for all parts.
 const SIDE: f64 = 0.04;
 
-/// The stingray: it swims toward +z with its wings lifted, and its tail trails behind it.
+/// The stingray swims toward +z with its wings lifted and its tail behind it.
 ///
 /// # Errors
 ///
-/// [`ModelErrorKind::Range`](crate::ModelErrorKind::Range) unless 16 to 2^24 triangles are wanted.
+/// [`ModelErrorKind::Range`](crate::ModelErrorKind::Range) unless `n_triangles` is from 16 to 2^24.
 pub fn ray(n_triangles: usize) -> Result<Mesh, ModelError> {
     polygonize_n(&solid(), SIDE, n_triangles)
 }
 
 fn solid() -> Blend {
-    // Round from above, and then flat.
+    // Model a round disc, then flatten it.
     let disc = Blend::of(ellipsoid([0.0, 0.0, 0.18], [0.34, 0.42, 0.5]))
         .with_pair(cone([0.0, 0.0, 0.2, 0.48], [0.9, 0.0, -0.02, 0.1]), 0.25)
         .with(cone([0.0, 0.0, 0.35, 0.36], [0.0, 0.0, 0.78, 0.08]), 0.25)

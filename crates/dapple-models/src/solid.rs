@@ -1,10 +1,10 @@
-//! Solids of a few shapes that blend into each other, defined by their distance functions.
+//! Solids made of a few shapes that blend into each other, defined by distance functions.
 //!
-//! A [`Solid`] is defined by the distance of a position from its surface. Shapes are a [`Ball`], an [`Ellipsoid`], a
-//! [`RoundCone`], a [`Tube`] along a curve, a [`Torus`] and a [`RoundBox`]. [`Blend`] joins any of them with rounded
-//! seams; [`Placed`], [`Mirrored`], [`Scaled`], [`Grown`] and [`Bent`] transform a solid;
-//! [`rotation`](dapple_mesh::rotation) makes the rotation of a [`Placed`] one. [`polygonize`](crate::polygonize())
-//! makes a mesh.
+//! A [`Solid`] is defined by the distance of a position from its surface. The shapes are [`Ball`], [`Ellipsoid`],
+//! [`RoundCone`], [`Tube`] along a curve, [`Torus`] and [`RoundBox`]. [`Blend`] joins solids with rounded seams.
+//! [`Placed`], [`Mirrored`], [`Scaled`], [`Grown`] and [`Bent`] transform a solid;
+//! [`rotation`](dapple_mesh::rotation) gives the rotation of a [`Placed`] solid. [`polygonize`](crate::polygonize())
+//! converts a solid to a mesh.
 //!
 //! Reference: John C. Hart, "Sphere Tracing: A Geometric Method for the Antialiased Ray Tracing of Implicit Surfaces",
 //! The Visual Computer 12 (1996), doi 10.1007/s003710050084, for distance bounds and how they compose; the formulas of
@@ -37,21 +37,21 @@ pub use tube::Tube;
 
 use glam::DVec3;
 
-/// A part of space with an inside and an outside.
+/// A region of space, given by a distance function.
 ///
-/// Invalid sizes (negative, not finite) make a solid that is empty or odd, never a panic.
+/// Invalid sizes (negative or not finite) give an empty or distorted solid, never a panic.
 pub trait Solid: Sync {
-    /// The distance to the surface, below zero inside.
+    /// The signed distance to the surface, negative inside.
     ///
-    /// It may be inexact, but must change by at most a fifth more than the position moves: otherwise parts of the
+    /// It may be inexact. It must change by at most 1.2 times the change of the position; otherwise parts of the
     /// surface may be missed.
     fn distance(&self, at: DVec3) -> f64;
 
-    /// The low and the high corner of a box around the solid. The distance is only used inside of it.
+    /// The minimum and maximum corners of a bounding box. The distance is only used within it.
     fn bounds(&self) -> [DVec3; 2];
 }
 
-/// The distance to a box, below zero inside.
+/// The signed distance to a box, negative inside.
 pub(crate) fn box_distance([low, high]: [DVec3; 2], at: DVec3) -> f64 {
     let out = (low - at).max(at - high);
     out.max(DVec3::ZERO).length() + out.max_element().min(0.0)

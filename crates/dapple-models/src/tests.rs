@@ -1,4 +1,4 @@
-//! The models: closed, in one piece, with their number of triangles.
+//! Tests of the models: closed, connected, and with the requested number of triangles.
 
 use super::{blended_tori, bunny, elephant, octopus, ray, zebra};
 use crate::polygonize::tests::euler;

@@ -11,14 +11,14 @@ pub const MUZZLE: DVec3 = DVec3::new(0.0, 0.54, 1.13);
 /// The middle of the back.
 pub const BACK: DVec3 = DVec3::new(0.0, 0.39, -0.1);
 
-/// A side of the lattice that is small enough for all parts.
+/// Side of the lattice, small enough for all parts.
 const SIDE: f64 = 0.04;
 
-/// The animal: it stands on four legs with its head up, and looks toward +z.
+/// The animal stands on four legs with its head up and faces +z.
 ///
 /// # Errors
 ///
-/// [`ModelErrorKind::Range`](crate::ModelErrorKind::Range) unless 16 to 2^24 triangles are wanted.
+/// [`ModelErrorKind::Range`](crate::ModelErrorKind::Range) unless `n_triangles` is from 16 to 2^24.
 pub fn zebra(n_triangles: usize) -> Result<Mesh, ModelError> {
     polygonize_n(&solid(), SIDE, n_triangles)
 }
@@ -58,7 +58,7 @@ fn solid() -> Blend {
         .with(ellipsoid([0.0, 0.17, -0.46], [0.24, 0.25, 0.26]), 0.15)
         .with(ellipsoid([0.0, 0.12, 0.3], [0.22, 0.27, 0.24]), 0.15)
         .with(Tube::through(&neck), 0.12)
-        // The mane, the head and the ears.
+        // Mane, head and ears.
         .with(
             turned([0.0, 0.64, 0.5], [0.035, 0.34, 0.1], [0.67, 0.0, 0.0]),
             0.05,

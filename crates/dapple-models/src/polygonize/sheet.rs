@@ -1,34 +1,34 @@
-//! A closed surface of triangles whose connectivity changes.
+//! A closed triangle surface with editable connectivity, used for remeshing.
 
 use super::Cut;
 use crate::{ModelError, ModelErrorKind};
 use dapple_mesh::Mesh;
 use glam::DVec3;
 
-/// Triangles, each vertex with the faces around it.
+/// Triangles, with the list of incident faces of each vertex.
 pub(super) struct Sheet {
     positions: Vec<DVec3>,
     faces: Vec<[u32; 3]>,
-    /// The faces at each vertex; empty for a removed vertex.
+    /// The indices of the faces at each vertex. Empty for a removed vertex.
     fans: Vec<Vec<u32>>,
     n_faces: usize,
 }
 
-/// The vertices of a collapsed face.
+/// Marks a removed face.
 const GONE: [u32; 3] = [u32::MAX; 3];
-/// The smallest cosine between the normals of a face before and after a change.
+/// Minimum cosine between the normals of a face before and after a change.
 const TURN: f64 = 0.5;
-/// The evenness above which a face may get less even.
+/// Changes may lower the evenness of faces above this value.
 const EVEN: f64 = 0.3;
-/// The fraction of the way to the middle of its neighbors that a vertex moves.
+/// Fraction of the way to the centroid of its neighbors by which a vertex moves.
 const SLIDE: f64 = 0.8;
 
 impl Sheet {
-    /// The surface with these triangles.
+    /// Creates the surface of the given triangles.
     ///
     /// # Errors
     ///
-    /// [`ModelErrorKind::Open`] if it is not closed.
+    /// [`ModelErrorKind::Open`] if the surface is not closed.
     pub(super) fn new(positions: Vec<DVec3>, faces: Vec<[u32; 3]>) -> Result<Self, ModelError> {
         let mut fans = vec![Vec::with_capacity(8); positions.len()];
         for (index, face) in (0..).zip(&faces) {
@@ -55,7 +55,8 @@ impl Sheet {
         self.n_faces
     }
 
-    /// Collapses short edges, no two of them adjacent, until `count` faces are left.
+    /// Collapses the shortest third of the edges, shortest first, until `count` faces are left. Collapses in one call
+    /// are not adjacent.
     pub(super) fn collapse(&mut self, cut: &Cut, count: usize) {
         let mut edges: Vec<(f64, u32, u32)> = self
             .edges(|_, from, to| from < to)
@@ -78,14 +79,14 @@ impl Sheet {
         }
     }
 
-    /// Flips edges where that improves the worse of the two triangles.
+    /// Flips edges where that increases the lower evenness of the two triangles.
     pub(super) fn flip(&mut self) {
         for [a, b] in self.edges(|_, from, to| from < to) {
             self.flip_edge(a, b);
         }
     }
 
-    /// Slides every vertex along the surface toward the middle of its neighbors.
+    /// Moves every vertex along the surface toward the centroid of its neighbors.
     pub(super) fn smooth(&mut self, cut: &Cut) {
         for vertex in 0..self.positions.len() as u32 {
             let neighbors = self.neighbors(vertex);
@@ -107,7 +108,7 @@ impl Sheet {
         }
     }
 
-    /// The mesh of the remaining faces and vertices.
+    /// Converts the remaining faces and vertices to a mesh.
     pub(super) fn into_mesh(self) -> Result<Mesh, ModelError> {
         let mut numbers = vec![0; self.positions.len()];
         let mut positions = Vec::new();
@@ -124,18 +125,20 @@ impl Sheet {
         Ok(Mesh::new(positions, &faces)?)
     }
 
-    /// Moves `b` to `a` if the topology and the shape of the surface allow it.
+    /// Merges `b` into `a` at the midpoint of the edge, if the topology and the shape of the surface allow it.
     fn collapse_edge(&mut self, cut: &Cut, a: u32, b: u32) -> bool {
         let [Some(left), Some(right)] = [self.face_of(a, b), self.face_of(b, a)] else {
             return false;
         };
-        // Only the third corners of the two faces may neighbor both ends, or the surface would be pinched.
+        // Link condition: the ends may share only the opposite corners of the two faces. Otherwise the surface would
+        // become non-manifold.
         let others = self.neighbors(b);
         let shared = self.neighbors(a);
         let shared = shared.iter().filter(|next| others.contains(next)).count();
         if shared != 2 || self.fans[a as usize].len() + others.len() < 7 {
             return false;
         }
+        // Project the midpoint to the surface.
         let middle = (self.positions[a as usize] + self.positions[b as usize]) * 0.5;
         let normal = self.normal_at(&[a, b]);
         let Some(middle) = settled(cut, middle, normal) else {
@@ -144,6 +147,7 @@ impl Sheet {
         if !self.keeps_shape(&[a, b], middle, normal) {
             return false;
         }
+        // Remove the two faces of the edge and attach the others to `a`.
         self.positions[a as usize] = middle;
         for face in [left, right] {
             for vertex in self.faces[face as usize] {
@@ -158,6 +162,7 @@ impl Sheet {
         true
     }
 
+    /// Flips an edge if that increases the lower evenness of its two triangles and no face turns over.
     fn flip_edge(&mut self, a: u32, b: u32) {
         let [Some(left), Some(right)] = [self.face_of(a, b), self.face_of(b, a)] else {
             return;
@@ -186,8 +191,8 @@ impl Sheet {
         self.fans[c as usize].push(right);
     }
 
-    /// Whether the faces at `vertices` keep their orientation and their evenness if all these vertices move to one
-    /// position, where the normal is `normal`. Faces with two of the vertices are removed.
+    /// Whether the faces at `vertices` keep their orientation and evenness if all these vertices move to the position
+    /// `to` with the normal `normal`. Faces with two of the vertices are ignored, since they will be removed.
     fn keeps_shape(&self, vertices: &[u32], to: DVec3, normal: DVec3) -> bool {
         let (mut least_before, mut least_after) = (EVEN, EVEN);
         for &vertex in vertices {
@@ -210,7 +215,8 @@ impl Sheet {
                 }
                 least_after = least_after.min(evenness(after));
                 let [old, new] = [before, after].map(area_normal);
-                // The normal of a tiny face is unreliable; it is replaced by that of the faces around it.
+                // The normal of a tiny face is unreliable, so the normal of the surrounding faces is accepted as
+                // well.
                 let sides = [(old, old.length()), (normal, 1.0)];
                 let kept =
                     |&(side, length): &(DVec3, f64)| new.dot(side) >= TURN * new.length() * length;
@@ -222,7 +228,7 @@ impl Sheet {
         least_after >= least_before
     }
 
-    /// The directed edges of the faces for which `wanted` is true, in the order of the faces.
+    /// The directed edges of the faces that satisfy `wanted`, in the order of the faces.
     fn edges(&self, wanted: impl Fn(&Self, u32, u32) -> bool) -> Vec<[u32; 2]> {
         let mut edges = Vec::new();
         for &[a, b, c] in self.faces.iter().filter(|&&face| face != GONE) {
@@ -235,20 +241,20 @@ impl Sheet {
         edges
     }
 
-    /// The vertices next to a vertex; each follows it in one face.
+    /// The neighbors of a vertex: in each face, the corner after it.
     fn neighbors(&self, vertex: u32) -> Vec<u32> {
         let fan = self.fans[vertex as usize].iter();
         fan.map(|&face| next(self.faces[face as usize], vertex))
             .collect()
     }
 
-    /// The face that goes from one vertex to another.
+    /// The face with a directed edge from one vertex to another.
     fn face_of(&self, from: u32, to: u32) -> Option<u32> {
         let mut fan = self.fans[from as usize].iter().copied();
         fan.find(|&face| next(self.faces[face as usize], from) == to)
     }
 
-    /// The corner of a face that is neither of two others.
+    /// The corner of a face other than `a` and `b`.
     fn third(&self, face: u32, a: u32, b: u32) -> u32 {
         let [x, y, z] = self.faces[face as usize];
         if x != a && x != b {
@@ -270,7 +276,7 @@ impl Sheet {
         self.positions[to as usize] - self.positions[from as usize]
     }
 
-    /// The unit normal of the faces around some vertices.
+    /// The unit normal of the faces around several vertices.
     fn normal_at(&self, vertices: &[u32]) -> DVec3 {
         let mut sum = DVec3::ZERO;
         for &vertex in vertices {
@@ -283,7 +289,7 @@ impl Sheet {
     }
 }
 
-/// The corner after one of a face's corners.
+/// The corner that follows a corner of a face.
 fn next([a, b, c]: [u32; 3], corner: u32) -> u32 {
     if corner == a {
         b
@@ -294,7 +300,8 @@ fn next([a, b, c]: [u32; 3], corner: u32) -> u32 {
     }
 }
 
-/// The position where a line through a position meets the surface, if the secant method converges soon.
+/// Projects a position to the surface along a line. Returns `None` if the secant method does not converge within a
+/// few steps.
 fn settled(cut: &Cut, from: DVec3, along: DVec3) -> Option<DVec3> {
     const STEPS: u32 = 8;
     let (mut at, mut distance, mut slope) = (from, cut.distance(from), 1.0);
@@ -314,15 +321,15 @@ fn settled(cut: &Cut, from: DVec3, along: DVec3) -> Option<DVec3> {
     None
 }
 
-/// The normal of a triangle, as long as twice its area.
+/// The normal of a triangle. Its length is twice the area.
 fn area_normal([a, b, c]: [DVec3; 3]) -> DVec3 {
     (b - a).cross(c - a)
 }
 
-/// The evenness of a triangle: from 0 for one without an area to 1 for an equilateral one.
+/// The evenness of a triangle, from 0 for a degenerate triangle to 1 for an equilateral one.
 fn evenness([a, b, c]: [DVec3; 3]) -> f64 {
     let sides = (b - a).length_squared() + (c - b).length_squared() + (a - c).length_squared();
-    // Twice the area of an equilateral triangle is this fraction of the sum of its squared sides.
+    // Twice the area of an equilateral triangle, as a fraction of the sum of its squared sides.
     const EQUILATERAL: f64 = 0.288_675_134_594_812_9;
     let doubled = area_normal([a, b, c]).length();
     if sides > 0.0 {

@@ -1,4 +1,4 @@
-//! Meshes of solids: closed, manifold, and at the right place.
+//! Tests of meshes of solids: closed, manifold, and on the surface.
 
 use super::{TOLERANCE, polygonize, polygonize_n};
 use crate::ModelErrorKind;
@@ -8,7 +8,7 @@ use dapple_mesh::Mesh;
 use glam::DVec3;
 use std::collections::BTreeMap;
 
-/// The Euler characteristic of a mesh, after a check that it is closed, manifold, consistently wound and connected.
+/// The Euler characteristic of a mesh. Checks that the mesh is closed, manifold, consistently wound and connected.
 pub(crate) fn euler(mesh: &Mesh) -> i64 {
     let mut edges = BTreeMap::new();
     let mut after = vec![BTreeMap::new(); mesh.positions().len()];
@@ -62,7 +62,7 @@ fn volume(mesh: &Mesh) -> f64 {
     corners.map(|[a, b, c]| a.dot(b.cross(c)) / 6.0).sum()
 }
 
-/// The least angle of each face in degrees, sorted.
+/// The smallest angle of each face in degrees, sorted.
 fn least_angles(mesh: &Mesh) -> Vec<f64> {
     let angle = |[a, b, c]: [DVec3; 3]| libm::acos((b - a).normalize().dot((c - a).normalize()));
     let mut least: Vec<f64> = mesh
@@ -138,7 +138,7 @@ fn the_number_of_triangles_is_met() {
 
 #[test]
 fn points_of_the_lattice_on_the_surface_leave_no_slivers() {
-    // All faces of this box go through points of the lattice.
+    // All faces of this box pass through points of the lattice.
     let solid = RoundBox {
         center: DVec3::ZERO,
         half: DVec3::splat(1.0),
@@ -150,7 +150,7 @@ fn points_of_the_lattice_on_the_surface_leave_no_slivers() {
     assert!(angles[0] > 15.0, "least {}", angles[0]);
 }
 
-/// A solid of a distance function and half the width of its bounds.
+/// A solid given by a distance function and half the side of its bounds.
 struct Odd(fn(DVec3) -> f64, f64);
 
 impl Solid for Odd {

@@ -1,21 +1,22 @@
 //! Marching tetrahedra on a body-centered cubic lattice.
 //!
-//! The points of the lattice have whole-number coordinates (i, j, k) along the three short diagonals [`BASIS`]. Kuhn's six
-//! tetrahedra of the unit cube (H. W. Kuhn, "Some Combinatorial Lemmas in Topology", 1960) then become the tetrahedra of
-//! the lattice: each goes from a corner of the cube to the opposite one along three of its edges.
+//! The points of the lattice have integer coordinates (i, j, k) along the three short diagonals [`BASIS`]. Kuhn's six
+//! tetrahedra of the unit cube (H. W. Kuhn, "Some Combinatorial Lemmas in Topology", 1960) become the tetrahedra of
+//! the lattice. Each connects a corner of the cube to the opposite corner along three edges.
 
 use super::Cut;
 use crate::solid::box_distance;
 use glam::DVec3;
 
-/// The steps of the lattice in sides of a cube.
+/// The basis vectors of the lattice, in sides of a cube.
 const BASIS: [DVec3; 3] = [
     DVec3::new(-0.5, 0.5, 0.5),
     DVec3::new(0.5, -0.5, 0.5),
     DVec3::new(0.5, 0.5, -0.5),
 ];
 
-/// The corners of Kuhn's tetrahedra, as sets of steps, with a positive volume in the lattice's frame.
+/// The corners of Kuhn's tetrahedra as bit sets of basis vectors, ordered so that the volume is positive in the
+/// lattice's frame.
 const TETRAHEDRA: [[usize; 4]; 6] = [
     [0, 1, 3, 7],
     [0, 2, 6, 7],
@@ -25,23 +26,23 @@ const TETRAHEDRA: [[usize; 4]; 6] = [
     [0, 5, 1, 7],
 ];
 
-/// The number of cells along each side of the smallest blocks.
+/// Number of cells along each side of a leaf block.
 const LEAF: i64 = 4;
-/// The distance from the middle of a block to its farthest corners, in cells of the block: half the longest diagonal,
-/// √11 / 2.
+/// Distance from the center of a block to its farthest corners, in sides of the block: half the longest diagonal, √11
+/// / 2.
 const REACH: f64 = 0.5 * 1.658_312_395_177_7;
-/// The largest ratio of the change of a distance to the change of the position.
+/// Maximum ratio of the change of a distance to the change of the position.
 const STRETCH: f64 = 1.2;
 
 /// A point of the lattice.
 type Point = [i64; 3];
 
-/// Finds the surface: the positions of its vertices, and its triangles.
+/// Finds the surface. Returns the positions of its vertices, and its triangles.
 pub(super) fn march(cut: &Cut) -> (Vec<DVec3>, Vec<[u32; 3]>) {
     let mut march = March::new(cut);
     let size = march.size.unsigned_abs().next_power_of_two() as i64;
     march.block([0; 3], size.max(LEAF));
-    // Edges are numbered in the order of their keys.
+    // Number the vertices by the sorted keys of their edges.
     let mut edges: Vec<Crossing> = march.triangles.iter().flatten().copied().collect();
     edges.sort_unstable();
     edges.dedup();
@@ -51,15 +52,16 @@ pub(super) fn march(cut: &Cut) -> (Vec<DVec3>, Vec<[u32; 3]>) {
     (positions, faces.collect())
 }
 
-/// An edge of the lattice that the surface crosses: its lower point packed into a number, and the steps to the other.
+/// The key of a lattice edge that the surface crosses: the coordinates of its lower point, and the basis vectors to
+/// the other point in the lowest 3 bits.
 type Crossing = u64;
 
-/// The bits of a coordinate in a crossing.
+/// Bits per coordinate in a key.
 const BITS: u32 = 20;
 
 struct March<'a> {
     cut: &'a Cut<'a>,
-    /// The coordinates of the first point of the lattice.
+    /// The lattice coordinates of the first point.
     low: Point,
     /// The number of cells along each axis of the lattice.
     size: i64,
@@ -72,7 +74,7 @@ impl<'a> March<'a> {
             let at = corner / cut.side;
             [at.y + at.z, at.z + at.x, at.x + at.y]
         });
-        // Two cells to spare, so that all points at the border are outside.
+        // Add two cells on each side, so that all points at the border are outside.
         let first = low.map(|coordinate| coordinate.floor() as i64 - 2);
         let size = [0, 1, 2].map(|axis| high[axis].ceil() as i64 + 2 - first[axis]);
         Self {
@@ -88,11 +90,12 @@ impl<'a> March<'a> {
         (BASIS[0] * i + BASIS[1] * j + BASIS[2] * k) * self.cut.side
     }
 
-    /// Visits the blocks that the surface may pass through.
+    /// Subdivides a block recursively, down to the leaves that the surface may cross.
     fn block(&mut self, first: Point, size: i64) {
         let last = first.map(|coordinate| coordinate + size);
         let center = (self.position(first) + self.position(last)) * 0.5;
         let reach = REACH * size as f64 * self.cut.side;
+        // Skip the block if its distance bound excludes the surface.
         if box_distance(self.cut.bounds, center) > reach
             || self.cut.distance(center).abs() > STRETCH * reach
         {
@@ -109,7 +112,7 @@ impl<'a> March<'a> {
         }
     }
 
-    /// Adds the triangles of a block.
+    /// Adds the triangles of a leaf block.
     fn leaf(&mut self, first: Point) {
         const POINTS: usize = LEAF as usize + 1;
         let mut inside = [false; POINTS * POINTS * POINTS];
@@ -119,6 +122,7 @@ impl<'a> March<'a> {
         if inside.iter().all(|&point| point == inside[0]) {
             return;
         }
+        // March the cells whose corners are not all on the same side.
         for cell in points(LEAF) {
             let corners: [bool; 8] = core::array::from_fn(|steps| {
                 let [i, j, k] = sum(cell, corner(steps)).map(|coordinate| coordinate as usize);
@@ -135,7 +139,8 @@ impl<'a> March<'a> {
     /// Adds the triangles that separate the inside corners of a tetrahedron from the outside ones.
     fn tetrahedron(&mut self, cell: Point, corners: [usize; 4], inside: &[bool; 8]) {
         let n_inside = corners.iter().filter(|&&corner| inside[corner]).count();
-        // The inside corners come first. An odd number of swaps mirrors the volume, and one more restores it.
+        // Sort the inside corners first. An odd number of swaps mirrors the tetrahedron; one more swap restores its
+        // orientation.
         let (mut order, mut odd) = (corners, false);
         for left in [0, 1, 2, 0, 1, 0] {
             if !inside[order[left]] && inside[order[left + 1]] {
@@ -162,7 +167,7 @@ impl<'a> March<'a> {
         }
     }
 
-    /// The position where the surface crosses an edge.
+    /// The point where the surface crosses an edge.
     fn crossing(&self, edge: Crossing) -> DVec3 {
         let coordinate = |axis: u32| (edge >> (3 + BITS * axis) & ((1 << BITS) - 1)) as i64;
         let point = [0, 1, 2].map(coordinate);
@@ -176,10 +181,10 @@ impl<'a> March<'a> {
     }
 }
 
-/// A number between 0 and 1 at which a function is zero within a tolerance, or jumps over zero; its values at 0 and 1
-/// are `ends`, of different signs.
+/// Finds a root of a function between 0 and 1, within a tolerance, or a jump over zero. `ends` are the values at 0
+/// and 1, of opposite signs. Alternates regula falsi with bisection.
 fn root(ends: [f64; 2], tolerance: f64, value: impl Fn(f64) -> f64) -> f64 {
-    /// The largest number of steps. A third of them halve the range, which is enough for its last bits.
+    /// Maximum number of steps. A third of them bisect, which is enough to reach the last bits.
     const STEPS: u32 = 150;
     let [mut low, mut high] = [0.0, 1.0];
     let [mut at_low, mut at_high] = ends;
@@ -203,7 +208,8 @@ fn root(ends: [f64; 2], tolerance: f64, value: impl Fn(f64) -> f64) -> f64 {
     middle
 }
 
-/// The edge between two corners of a cell. The steps of one are a subset of the other's.
+/// The key of the edge between two corners of a cell. The basis vectors of one corner must be a subset of those of
+/// the other.
 fn crossing(cell: Point, from: usize, to: usize) -> Crossing {
     let point = sum(cell, corner(from & to));
     let steps = (from ^ to) as u64;
@@ -214,7 +220,7 @@ fn crossing(cell: Point, from: usize, to: usize) -> Crossing {
     packed.fold(steps, |packed, part| packed | part)
 }
 
-/// The corner of a unit cube after a set of steps.
+/// Converts a bit set of basis vectors to a corner of the unit cube.
 fn corner(steps: usize) -> Point {
     [0, 1, 2].map(|axis| (steps >> axis & 1) as i64)
 }
@@ -223,7 +229,7 @@ fn sum(a: Point, b: Point) -> Point {
     [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
 }
 
-/// The points of a cube, the first coordinate running fastest.
+/// The points of a cube, with the first coordinate varying fastest.
 fn points(size: i64) -> impl Iterator<Item = Point> {
     (0..size).flat_map(move |k| (0..size).flat_map(move |j| (0..size).map(move |i| [i, j, k])))
 }

@@ -3,12 +3,12 @@
 use super::Solid;
 use glam::{DQuat, DVec3};
 
-/// A solid that is rotated around the origin and then moved.
+/// A solid rotated around the origin, then translated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placed<S> {
     /// The solid before the transform.
     pub solid: S,
-    /// The rotation, of length 1.
+    /// The rotation, a unit quaternion.
     pub rotation: DQuat,
     /// The translation.
     pub offset: DVec3,
@@ -27,7 +27,7 @@ impl<S: Solid> Solid for Placed<S> {
     }
 }
 
-/// A solid with its left and right exchanged: x becomes -x.
+/// A solid mirrored in x: x becomes -x.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mirrored<S>(pub S);
 
@@ -45,14 +45,14 @@ impl<S: Solid> Solid for Mirrored<S> {
     }
 }
 
-/// A solid that is stretched or squashed along the axes, from the origin.
+/// A solid scaled along the axes about the origin.
 ///
-/// Its distance is at most the true one, and less where the scales differ.
+/// Its distance is a lower bound of the true distance, and smaller where the scales differ.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scaled<S> {
     /// The solid before the transform.
     pub solid: S,
-    /// The factors along the axes, above 0.
+    /// The scale factors along the axes, above 0.
     pub scale: DVec3,
 }
 
@@ -66,7 +66,7 @@ impl<S: Solid> Solid for Scaled<S> {
     }
 }
 
-/// A solid with a layer of even thickness around it, which rounds its edges.
+/// A solid with a layer of uniform thickness, which rounds its edges.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grown<S> {
     /// The solid without the layer.
@@ -88,18 +88,18 @@ impl<S: Solid> Solid for Grown<S> {
 
 /// A solid whose sides are bent up: a position at x is lifted by `lift` x².
 ///
-/// Its distance is at most the true one, and less where it is bent.
+/// Its distance is a lower bound of the true distance, and smaller where the solid is bent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bent<S> {
     solid: S,
     lift: f64,
     bounds: [DVec3; 2],
-    /// The smallest factor of distances under the bend.
+    /// Minimum factor by which the bend changes distances.
     shrink: f64,
 }
 
 impl<S: Solid> Bent<S> {
-    /// Bends a solid; `lift` is the height at x = 1, and below zero bends down.
+    /// Bends a solid. `lift` is the height at x = 1; negative values bend down.
     #[must_use]
     pub fn new(solid: S, lift: f64) -> Self {
         let [low, high] = solid.bounds();
@@ -122,7 +122,7 @@ impl<S: Solid> Bent<S> {
 
 impl<S: Solid> Solid for Bent<S> {
     fn distance(&self, at: DVec3) -> f64 {
-        // Beyond the solid the bend continues straight, so that its slope is bounded.
+        // Beyond the bounds, the bend continues linearly, so that its slope is bounded.
         let x = at.x.max(self.bounds[0].x).min(self.bounds[1].x);
         let lift = self.lift * x * (2.0 * at.x - x);
         self.solid.distance(at - DVec3::Y * lift) * self.shrink
@@ -133,7 +133,7 @@ impl<S: Solid> Solid for Bent<S> {
     }
 }
 
-/// The box around the eight corners of a box after they are moved.
+/// The bounding box of the transformed corners of a box.
 fn around_corners([low, high]: [DVec3; 2], moved: impl Fn(DVec3) -> DVec3) -> [DVec3; 2] {
     let corners = (0..8).map(|corner| {
         let part = DVec3::from_array([0, 1, 2].map(|axis| f64::from(corner >> axis & 1)));

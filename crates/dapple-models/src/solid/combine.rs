@@ -4,7 +4,7 @@ use super::{Solid, box_distance};
 use core::fmt;
 use glam::DVec3;
 
-/// Solids joined one after the other, each with a rounded seam to those before it.
+/// Solids joined in order, each with a rounded seam to the previous ones.
 pub struct Blend {
     parts: Vec<Part>,
 }
@@ -16,14 +16,14 @@ struct Part {
 }
 
 impl Blend {
-    /// One solid, to which others are joined.
+    /// Starts a blend with a single solid.
     #[must_use]
     pub fn of(solid: impl Solid + Send + 'static) -> Self {
         Self { parts: Vec::new() }.with(solid, 0.0)
     }
 
-    /// Joins a solid. The seam is rounded where the distances to the two sides differ by less than `width`, and is up to a
-    /// sixth of that thicker; 0 makes a sharp seam.
+    /// Joins a solid. The seam is rounded where the distances to the two sides differ by less than `width`, and is
+    /// thicker by at most a sixth of the width. A width of 0 gives a sharp seam.
     #[must_use]
     pub fn with(mut self, solid: impl Solid + Send + 'static, width: f64) -> Self {
         let bounds = solid.bounds();
@@ -49,7 +49,8 @@ impl Solid for Blend {
         let mut distance = f64::INFINITY;
         for part in &self.parts {
             let least = box_distance(part.bounds, at);
-            // Farther away, a part has no effect. A distance smaller than that to the box would make a step.
+            // A part farther away has no effect. The distance to the box is a lower bound, without which the distance
+            // would be discontinuous.
             if least < distance + part.width {
                 distance = blend(distance, part.solid.distance(at).max(least), part.width);
             }
@@ -79,10 +80,10 @@ impl fmt::Debug for Blend {
     }
 }
 
-/// The smaller of two distances, rounded where they differ by less than `width`.
+/// The minimum of two distances, rounded where they differ by less than `width`.
 ///
-/// Reference: Inigo Quilez, "Smooth minimum", 2013, <https://iquilezles.org/articles/smin/>: the cubic one, whose
-/// curvature has no jumps.
+/// Reference: Inigo Quilez, "Smooth minimum", 2013, <https://iquilezles.org/articles/smin/>: the cubic version, whose
+/// curvature is continuous.
 fn blend(a: f64, b: f64, width: f64) -> f64 {
     let smaller = a.min(b);
     let overlap = width - (a - b).abs();

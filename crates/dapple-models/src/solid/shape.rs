@@ -3,12 +3,12 @@
 use super::{Solid, box_distance};
 use glam::DVec3;
 
-/// A ball.
+/// A ball: the inside of a sphere.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ball {
-    /// The middle.
+    /// The center.
     pub center: DVec3,
-    /// The distance from the middle to the surface.
+    /// The radius.
     pub radius: f64,
 }
 
@@ -27,9 +27,9 @@ impl Solid for Ball {
 /// The distance is exact outside, and a lower bound of the depth inside.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ellipsoid {
-    /// The middle.
+    /// The center.
     pub center: DVec3,
-    /// The distances from the middle to the surface along each axis, above 0.
+    /// The semi-axes along x, y and z, above 0.
     pub radii: DVec3,
 }
 
@@ -49,12 +49,12 @@ impl Solid for Ellipsoid {
     }
 }
 
-/// The distance from a point outside to an ellipsoid around the origin.
+/// The distance from a point to an ellipsoid around the origin. The point is outside.
 ///
-/// The nearest point is `r² p / (r² + t)` for the t above 0 at which it lies on the ellipsoid. The function whose root
-/// is t falls with t and is convex, so Newton's steps from 0 approach it and never overshoot.
+/// The nearest point is `r² p / (r² + t)` for the t above 0 at which it lies on the ellipsoid. The function whose
+/// root is t is decreasing and convex, so Newton steps from 0 converge without overshooting.
 fn outer_distance(radii: DVec3, at: DVec3) -> f64 {
-    /// The largest number of steps, more than ever needed: each step doubles the number of digits near the root.
+    /// Maximum number of steps, more than needed: near the root, each step doubles the number of correct digits.
     const STEPS: u32 = 40;
     let squares = radii * radii;
     let mut t = 0.0;
@@ -64,7 +64,7 @@ fn outer_distance(radii: DVec3, at: DVec3) -> f64 {
         let terms = terms * terms;
         let excess = terms.element_sum() - 1.0;
         let step = excess / (2.0 * (terms * inverse).element_sum());
-        // The last bits do not matter, and NaN ends the iteration.
+        // The last bits do not matter. NaN ends the iteration.
         if excess.is_nan() || excess <= 1e-13 {
             break;
         }
@@ -73,10 +73,10 @@ fn outer_distance(radii: DVec3, at: DVec3) -> f64 {
     (at * (squares + t).recip()).length() * t
 }
 
-/// All balls along a line whose radius changes evenly: a capsule if the radii are equal.
+/// The convex hull of two balls, a cone with rounded ends. It is a capsule if the radii are equal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RoundCone {
-    /// The middles of the balls at the ends.
+    /// The centers of the balls at the ends.
     pub ends: [DVec3; 2],
     /// The radii of the balls at the ends.
     pub radii: [f64; 2],
@@ -101,9 +101,9 @@ pub(super) struct Spindle {
     axis: DVec3,
     length: f64,
     radius: f64,
-    /// The decrease of the radius along a unit of the axis.
+    /// Decrease of the radius per unit of length along the axis.
     taper: f64,
-    /// The distance along the axis by which a normal of the mantle moves per unit outward.
+    /// Displacement along the axis of a normal of the lateral surface, per unit of distance outward.
     lean: f64,
 }
 
@@ -123,7 +123,7 @@ impl Spindle {
                 lean: narrowing / (length * length - narrowing * narrowing).sqrt(),
             };
         }
-        // One of the balls holds the other.
+        // One ball contains the other.
         let bigger = if narrowing >= 0.0 { from } else { to };
         Self {
             from: bigger,
@@ -139,7 +139,7 @@ impl Spindle {
         let reach = at - self.from;
         let height = reach.dot(self.axis);
         let aside = (reach - self.axis * height).length();
-        // The foot of the normal of the mantle through the point, on the axis.
+        // The point on the axis where the normal of the lateral surface through the point starts.
         let foot = (height - aside * self.lean).clamp(0.0, self.length);
         let along = height - foot;
         (aside * aside + along * along).sqrt() - (self.radius - self.taper * foot)
@@ -149,11 +149,11 @@ impl Spindle {
 /// A torus.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Torus {
-    /// The middle of the ring.
+    /// The center of the torus.
     pub center: DVec3,
-    /// The direction through the hole, of length 1.
+    /// The unit direction of the axis of rotation.
     pub axis: DVec3,
-    /// The distance from the middle of the ring to the middle of its tube.
+    /// The radius of the circle in the middle of the tube.
     pub ring: f64,
     /// The radius of the tube.
     pub tube: f64,
@@ -168,21 +168,21 @@ impl Solid for Torus {
     }
 
     fn bounds(&self) -> [DVec3; 2] {
-        // The ring reaches less far along its axis.
+        // The circle extends less along directions closer to its axis.
         let flat = (DVec3::ONE - self.axis * self.axis).max(DVec3::ZERO);
         let reach = DVec3::new(flat.x.sqrt(), flat.y.sqrt(), flat.z.sqrt()) * self.ring + self.tube;
         [self.center - reach, self.center + reach]
     }
 }
 
-/// A box along the axes with rounded edges.
+/// An axis-aligned box with rounded edges.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RoundBox {
-    /// The middle.
+    /// The center.
     pub center: DVec3,
-    /// The distances from the middle to the faces.
+    /// The distances from the center to the faces.
     pub half: DVec3,
-    /// The radius of the edges, at most the least of `half`.
+    /// The radius of the edges, at most the smallest component of `half`.
     pub rounding: f64,
 }
 

@@ -4,9 +4,9 @@ use super::shape::Spindle;
 use super::{RoundCone, Solid};
 use glam::DVec3;
 
-/// A tube whose middle goes through given points on a smooth curve, with a radius at each.
+/// A tube around a smooth curve through given points, with a radius at each point.
 ///
-/// The curve is a Catmull-Rom spline (Catmull and Rom, "A Class of Local Interpolating Splines", 1974), cut into
+/// The curve is a Catmull-Rom spline (Catmull and Rom, "A Class of Local Interpolating Splines", 1974), divided into
 /// [`RoundCone`]s.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tube {
@@ -14,7 +14,7 @@ pub struct Tube {
     bounds: [DVec3; 2],
 }
 
-/// A part of a tube, with a ball around it.
+/// A piece of a tube with its bounding sphere.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Link {
     cone: Spindle,
@@ -22,11 +22,11 @@ struct Link {
     reach: f64,
 }
 
-/// The number of links between two points of the caller. Their angles are too small to see in figures.
+/// Number of links between two given points. The angles between them are too small to see in figures.
 const LINKS: u32 = 5;
 
 impl Tube {
-    /// The tube through these points, each `[x, y, z, radius]`; empty if there are fewer than two.
+    /// Creates the tube through points `[x, y, z, radius]`. It is empty for fewer than two points.
     #[must_use]
     pub fn through(points: &[[f64; 4]]) -> Self {
         let mut cones = Vec::new();
@@ -51,7 +51,7 @@ impl Tube {
 
 impl Solid for Tube {
     fn distance(&self, at: DVec3) -> f64 {
-        // The link that is probably the nearest is tested first, so that most others can be skipped.
+        // Evaluate the link that is probably nearest first, so that most others can be skipped.
         let (mut first, mut least_sq) = (0, f64::INFINITY);
         for (index, link) in self.links.iter().enumerate() {
             let distance_sq = (at - link.center).length_squared();
@@ -62,7 +62,7 @@ impl Solid for Tube {
         let likely = self.links.get(first);
         let mut nearest = likely.map_or(f64::INFINITY, |link| link.cone.distance(at));
         for link in &self.links {
-            // A link is no nearer than the ball around it.
+            // Skip links whose bounding sphere is farther than the nearest link.
             let least = nearest + link.reach;
             if least > 0.0 && (at - link.center).length_squared() < least * least {
                 nearest = nearest.min(link.cone.distance(at));
@@ -92,13 +92,13 @@ fn link(cone: &RoundCone) -> Link {
     }
 }
 
-/// The spline at `part`, from the second of its four points at 0 to the third at 1.
+/// Evaluates the spline between its second point, at `part` 0, and its third point, at 1.
 fn on_spline(points: &[[f64; 4]; 4], part: f64) -> [f64; 4] {
     core::array::from_fn(|number| {
         let [before, from, to, after] = points.map(|point| point[number]);
         let [start, end] = [0.5 * (to - before), 0.5 * (after - from)];
         let rest = 1.0 - part;
-        // Hermite's form.
+        // Cubic Hermite form.
         (1.0 + 2.0 * part) * rest * rest * from
             + part * rest * rest * start
             + (3.0 - 2.0 * part) * part * part * to
