@@ -1,4 +1,4 @@
-//! The steps of CI; `.ci/run` installs the tools that are missing and then runs these steps.
+//! The steps of CI. `.ci/run` installs missing tools and then runs these steps.
 
 mod exchange;
 mod fuzz;
@@ -22,23 +22,23 @@ pub(crate) enum Step {
     Clippy,
     /// The documentation, with warnings as errors.
     Doc,
-    /// The house rules, as in `cargo xtask tidy`.
+    /// The project rules, as in `cargo xtask tidy`.
     Tidy,
-    /// The texts of the licenses of other people's crates, as in `cargo xtask licenses --check`.
+    /// The license texts of third-party crates, as in `cargo xtask licenses --check`.
     Licenses,
-    /// Every published crate alone: without features, with each of its features, and the tests of threads without them.
+    /// Every published crate alone: without features, with each of its features, and tests without `rayon`.
     Features,
-    /// The package of every published crate, as a registry would get it.
+    /// The package of every published crate, as uploaded to a registry.
     Package,
-    /// Baked materials, opened by other programs if these are installed.
+    /// Baked materials, checked with other programs if these are installed.
     Exchange,
     /// The page of the studio, if Node is installed.
     Page,
-    /// The studio without a server, if the compiler can make it.
+    /// The studio without a server, if the compiler supports WebAssembly.
     Web,
     /// The Python package, if Python is installed.
     Python,
-    /// Each fuzz target for some seconds, if nightly Rust and cargo-fuzz are installed.
+    /// Each fuzz target for 10 seconds, if nightly Rust and cargo-fuzz are installed.
     Fuzz,
 }
 
@@ -85,7 +85,7 @@ impl Step {
     }
 }
 
-/// Runs steps, and stops at the first that fails.
+/// Runs steps in order and stops at the first failure.
 pub(crate) fn ci(shell: &Shell, steps: &[Step]) -> anyhow::Result<()> {
     for &step in steps {
         crate::say(&format!("== {}", step.name()));
@@ -116,7 +116,7 @@ fn run(shell: &Shell, step: Step) -> anyhow::Result<()> {
     Ok(command.run()?)
 }
 
-/// Words that people look for and that are no names here; the front page of `dapple` lists where they lead.
+/// Common search terms that are not names in the crates. The front page of `dapple` lists the items that cover them.
 const LOOKED_FOR: [&str; 12] = [
     "blue noise",
     "cellular noise",
@@ -132,8 +132,8 @@ const LOOKED_FOR: [&str; 12] = [
     "voronoi",
 ];
 
-/// Builds the documentation, and checks that its search knows the words that people look for: stable rustdoc drops the
-/// aliases of items that are exported from a private module, unless they stand at the export.
+/// Builds the documentation, and checks that its search index contains the search terms. Stable rustdoc drops the
+/// aliases of items re-exported from a private module unless they stand at the re-export.
 fn doc(shell: &Shell) -> anyhow::Result<()> {
     cmd!(shell, "cargo doc --workspace --no-deps")
         .env("RUSTDOCFLAGS", "-D warnings")
@@ -154,9 +154,9 @@ fn doc(shell: &Shell) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Checks every published crate alone, without features and with each of its features. A crate whose code is another
-/// without `rayon` is also tested without it; the code of the others is the same, and their tests compare one thread
-/// with several.
+/// Checks every published crate alone, without features and with each of its features. A crate whose own code depends
+/// on `rayon` is also tested without it. The code of other crates is the same with and without `rayon`, and their
+/// tests compare one thread with several.
 fn features(shell: &Shell) -> anyhow::Result<()> {
     let workspace = Workspace::read(shell)?;
     for member in workspace.members.iter().filter(|member| member.published) {
@@ -180,7 +180,8 @@ fn features(shell: &Shell) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Makes the packages of all published crates without building them, since the step `features` builds each crate alone.
+/// Creates the packages of all published crates without building them, since the step `features` builds each crate
+/// alone.
 fn package(shell: &Shell) -> anyhow::Result<()> {
     let workspace = Workspace::read(shell)?;
     let published = workspace.members.iter().filter(|member| member.published);
@@ -191,7 +192,7 @@ fn package(shell: &Shell) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Returns the feature sets to build: no feature, each feature alone that is more than those of other crates, and all.
+/// Returns the feature sets to build: no feature, each feature that affects the crate's own code, and all features.
 fn feature_sets(member: &Member) -> Vec<String> {
     let features = member.features.iter();
     let features: Vec<_> = features.filter(|(name, _)| *name != "default").collect();
@@ -206,12 +207,12 @@ fn feature_sets(member: &Member) -> Vec<String> {
     sets
 }
 
-/// Returns whether a feature only turns on features of other crates, so that the code of its crate is the same without it.
+/// Returns whether a feature only enables features of other crates, so that it does not affect the crate's own code.
 fn is_passed_on(parts: &[String]) -> bool {
     parts.iter().all(|part| part.contains('/'))
 }
 
-/// Prints what is skipped, or fails if `DAPPLE_NO_SKIP=1` is set.
+/// Reports a skipped step, or fails if `DAPPLE_NO_SKIP=1` is set.
 fn skip(reason: &str) -> anyhow::Result<()> {
     if std::env::var_os("DAPPLE_NO_SKIP").is_some_and(|value| value == "1") {
         bail!("{reason}; DAPPLE_NO_SKIP=1 lets nothing be skipped");

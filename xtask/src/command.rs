@@ -1,4 +1,4 @@
-//! The command line.
+//! Command line parsing.
 
 use crate::ci::Step;
 use anyhow::{anyhow, bail};
@@ -6,7 +6,7 @@ use lexopt::{Arg, Parser};
 use std::ffi::OsString;
 use std::path::PathBuf;
 
-/// The text that `cargo xtask` prints without a command.
+/// The help text, printed by `cargo xtask` without a command.
 pub(crate) const HELP: &str = "\
 The chores of dapple.
 
@@ -31,23 +31,23 @@ Usage: cargo xtask <command>
   ci [step...]          what CI runs, or some of its steps: test fmt clippy doc tidy
                       licenses features package exchange page web python fuzz";
 
-/// A command of `cargo xtask` with its arguments.
+/// A command of `cargo xtask` and its arguments.
 #[derive(Debug, PartialEq)]
 pub(crate) enum Command {
-    /// Render figures; the arguments are those of the binary `dapple-gallery`.
+    /// Render figures. The arguments are passed to the binary `dapple-gallery`.
     Gallery(Vec<OsString>),
-    /// Rewrite or compare the pictures in the documentation.
+    /// Rewrite or compare the images in the documentation.
     DocsImages {
-        /// Compare the pictures instead of rewriting them.
+        /// Compare the images instead of rewriting them.
         check: bool,
     },
-    /// Run the benchmarks; the arguments are those of the binary `dapple-bench`.
+    /// Run the benchmarks. The arguments are passed to the binary `dapple-bench`.
     Bench(Vec<OsString>),
-    /// Build the page of the studio, and open it; the arguments are those of `dapple studio`.
+    /// Build the page of the studio and open it. The arguments are passed to `dapple studio`.
     Studio(Vec<OsString>),
     /// Build the studio without a server.
     Web {
-        /// The folder.
+        /// The output folder.
         out: Option<PathBuf>,
     },
     /// Compare or rewrite the golden images.
@@ -55,12 +55,12 @@ pub(crate) enum Command {
         /// Rewrite the images instead of comparing them.
         bless: bool,
     },
-    /// Rewrite or compare the texts of the licenses of other people's crates.
+    /// Rewrite or compare the license texts of third-party crates.
     Licenses {
         /// Compare the texts instead of rewriting them.
         check: bool,
     },
-    /// Check the house rules.
+    /// Check the project rules.
     Tidy,
     /// Run steps of CI.
     Ci(Vec<Step>),
@@ -98,7 +98,7 @@ pub(crate) fn parse(mut parser: Parser) -> anyhow::Result<Command> {
     }
 }
 
-/// Returns whether `option`, the only option of a command, was given.
+/// Parses the arguments of a command with a single option, and returns whether it was given.
 fn flag(mut parser: Parser, command: &str, option: &str) -> anyhow::Result<bool> {
     let mut is_there = false;
     while let Some(argument) = parser.next()? {

@@ -1,7 +1,7 @@
-//! `cargo xtask licenses`: the texts of the licenses of other people's crates, which ship with the command and the wheel.
+//! `cargo xtask licenses`: the license texts of third-party crates, shipped with the command and the wheel.
 //!
-//! The texts are those in the packages, as Cargo has them on this machine: no service is asked and nothing is compiled, so
-//! that CI compares the whole of each file. cargo-about finds licenses in the same files, but takes minutes to compile.
+//! The texts are copied from the packages in Cargo's local cache. This needs no network and no compilation, so CI can
+//! compare the complete files. cargo-about finds licenses in the same files, but takes minutes to compile.
 
 use anyhow::{Context, bail};
 use serde_json::Value;
@@ -9,7 +9,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use xshell::{Shell, cmd};
 
-/// What ships: its manifest, its package, and the file of the texts.
+/// The shipped packages: manifest, package name, and output file.
 const SHIPPED: [(&str, &str, &str); 2] = [
     (
         "Cargo.toml",
@@ -32,7 +32,7 @@ Where a crate may be used under one of several licenses, it is used under that o
 const RULE: &str =
     "================================================================================";
 
-/// The license of MIT, for packages that name it and have no file of it.
+/// The text of the MIT license, for packages that name it but have no license file.
 const MIT: &str = "\
 Permission is hereby granted, free of charge, to any person obtaining a copy of this software and associated
 documentation files (the \"Software\"), to deal in the Software without restriction, including without limitation the
@@ -66,7 +66,7 @@ pub(crate) fn licenses(shell: &Shell, check: bool) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// The file of a package: each text once, after the crates that have it.
+/// The output for a package: each license text once, preceded by the crates that use it.
 fn texts(shell: &Shell, metadata: &Value, package: &str) -> anyhow::Result<String> {
     let mut texts: BTreeMap<String, Vec<String>> = BTreeMap::new();
     for package in shipped(metadata, package)? {
@@ -93,7 +93,7 @@ fn texts(shell: &Shell, metadata: &Value, package: &str) -> anyhow::Result<Strin
     Ok(all)
 }
 
-/// The packages of registries that are compiled into a package on any platform, by name and version.
+/// The registry packages compiled into `root` on any platform, sorted by name and version.
 fn shipped<'a>(metadata: &'a Value, root: &str) -> anyhow::Result<Vec<&'a Value>> {
     let by_id = |list: &'a Value| -> BTreeMap<&str, &Value> {
         let items = list.as_array().into_iter().flatten();
@@ -115,7 +115,7 @@ fn shipped<'a>(metadata: &'a Value, root: &str) -> anyhow::Result<Vec<&'a Value>
         let needed = nodes.get(id).and_then(|node| node["deps"].as_array());
         for dependency in needed.into_iter().flatten() {
             let mut kinds = dependency["dep_kinds"].as_array().into_iter().flatten();
-            // Without a kind it is neither of tests nor of build scripts.
+            // Normal dependencies have no kind; tests and build scripts do.
             if kinds.any(|kind| kind["kind"].is_null()) {
                 waiting.extend(dependency["pkg"].as_str());
             }
@@ -130,12 +130,12 @@ fn shipped<'a>(metadata: &'a Value, root: &str) -> anyhow::Result<Vec<&'a Value>
     Ok(shipped)
 }
 
-/// The text of the license of a package.
+/// The license text of a package.
 fn license(shell: &Shell, package: &Value) -> anyhow::Result<String> {
     let terms = package["license"].as_str().unwrap_or_default();
     let folder = Path::new(package["manifest_path"].as_str().unwrap_or_default());
     let mut files = license_files(shell, folder.parent().unwrap_or(folder))?;
-    // Of licenses to choose from, MIT's. What holds besides (AND) is kept.
+    // If MIT is one of several alternatives, use it. With AND, keep all texts.
     let may_choose = terms.contains("MIT") && (terms.contains(" OR ") || terms.contains('/'));
     let is_mit = |path: &PathBuf| name(path).contains("mit");
     if may_choose && !terms.contains(" AND ") && files.iter().any(is_mit) {
@@ -164,7 +164,7 @@ fn license(shell: &Shell, package: &Value) -> anyhow::Result<String> {
     )))
 }
 
-/// The files of licenses and notices at the top of a package.
+/// The license and notice files in the root of a package.
 fn license_files(shell: &Shell, folder: &Path) -> anyhow::Result<Vec<PathBuf>> {
     let starts = [
         "license",
@@ -185,7 +185,7 @@ fn name(path: &Path) -> String {
     name.to_string_lossy().to_lowercase()
 }
 
-/// A text without what differs between systems and editors: ends of lines, and spaces before them.
+/// Normalizes line endings and trailing white space, which differ between systems and editors.
 fn plain(text: &str) -> String {
     let lines: Vec<_> = text
         .trim_start_matches('\u{feff}')

@@ -1,6 +1,8 @@
-//! The chores of the workspace: `cargo xtask gallery`, `docs-images`, `bench`, `studio`, `web`, `golden`, `licenses`, `tidy` and `ci`.
+//! Development commands of the workspace: `cargo xtask gallery`, `docs-images`, `bench`, `studio`, `web`, `golden`,
+//! `licenses`, `tidy` and `ci`.
 //!
-//! It depends on none of our crates, so that it starts quickly; commands that need them run `cargo run --release`.
+//! It depends on no crate of the workspace, so that it compiles quickly. Commands that need one run `cargo run
+//! --release`.
 
 #![forbid(unsafe_code)]
 

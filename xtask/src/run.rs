@@ -13,14 +13,14 @@ pub(crate) fn gallery(shell: &Shell, arguments: &[OsString]) -> anyhow::Result<(
     Ok(run.quiet().run()?)
 }
 
-/// Rewrites or compares the pictures in the documentation.
+/// Rewrites or compares the images in the documentation.
 pub(crate) fn docs_images(shell: &Shell, check: bool) -> anyhow::Result<()> {
     let mut arguments = vec![OsString::from("--docs")];
     arguments.extend(check.then(|| "--check".into()));
     gallery(shell, &arguments)
 }
 
-/// Runs the benchmarks against the peers.
+/// Runs the benchmarks, including the peer libraries.
 pub(crate) fn bench(shell: &Shell, arguments: &[OsString]) -> anyhow::Result<()> {
     let run = cmd!(
         shell,
@@ -42,7 +42,7 @@ pub(crate) fn studio(shell: &Shell, arguments: &[OsString]) -> anyhow::Result<()
     Ok(run.quiet().run()?)
 }
 
-/// Gets the packages of the studio's page, and has npm build it.
+/// Installs the packages of the studio's page and builds the page.
 pub(crate) fn page(shell: &Shell, build: &[&str]) -> anyhow::Result<()> {
     let _page = shell.push_dir("crates/dapple-studio/web");
     let npm = NPM;
@@ -61,7 +61,7 @@ pub(crate) fn page(shell: &Shell, build: &[&str]) -> anyhow::Result<()> {
     Ok(cmd!(shell, "{npm} {build...}").run()?)
 }
 
-/// Compares or rewrites the golden images, which a test of the crate `dapple-tests` draws.
+/// Compares or rewrites the golden images, which a test of the crate `dapple-tests` renders.
 pub(crate) fn golden(shell: &Shell, bless: bool) -> anyhow::Result<()> {
     let test = cmd!(
         shell,

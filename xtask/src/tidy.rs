@@ -1,6 +1,6 @@
-//! `cargo xtask tidy`: the house rules that no compiler checks.
+//! `cargo xtask tidy`: the project rules that no compiler checks.
 //!
-//! A rule is a function from the [`Workspace`] to a list of violations, so each rule has a test that shows it firing on
+//! A rule is a function from the [`Workspace`] to a list of violations. Each rule has a test that shows it firing on
 //! a broken sample. `cargo test` runs all rules on the real workspace.
 
 mod documents;
@@ -42,7 +42,7 @@ const RULES: [Rule; 11] = [
     ),
 ];
 
-/// Checks every rule, and reports all violations.
+/// Checks every rule and reports all violations.
 pub(crate) fn tidy(shell: &Shell) -> anyhow::Result<()> {
     let problems = problems(&Workspace::read(shell)?);
     if problems.is_empty() {

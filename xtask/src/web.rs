@@ -1,10 +1,11 @@
-//! `cargo xtask web`: the studio as a folder of files that any host can serve, with a worker in WebAssembly.
+//! `cargo xtask web`: builds the studio as a static site with a WebAssembly worker.
 //!
-//! It needs Node, and a compiler with the standard library for `wasm32-unknown-unknown`: that of rustup after `rustup target
-//! add wasm32-unknown-unknown`, or any other that `RUSTC` names. Debian's `rustc-web` has no such library, but its source
-//! in `rust-web-src`: `RUSTC_BOOTSTRAP=1 cargo build -Zbuild-std=std,panic_abort --target wasm32-unknown-unknown` in any
-//! crate makes it, and its files `deps/*.rlib` belong into the folder that `rustc --print target-libdir` names. Its linker is
-//! `wasm-ld` of LLVM, by `CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_LINKER`.
+//! It needs Node, and a compiler with the standard library for `wasm32-unknown-unknown`. That is rustup's compiler
+//! after `rustup target add wasm32-unknown-unknown`, or any other compiler named by `RUSTC`. Debian's `rustc-web`
+//! lacks this library, but its source is in `rust-web-src`. To build it, run `RUSTC_BOOTSTRAP=1 cargo build
+//! -Zbuild-std=std,panic_abort --target wasm32-unknown-unknown` in any crate, and copy the files `deps/*.rlib` into
+//! the folder that `rustc --print target-libdir` prints. The linker is LLVM's `wasm-ld`, set by
+//! `CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_LINKER`.
 
 use crate::run;
 use anyhow::bail;
@@ -14,11 +15,11 @@ use xshell::{Shell, cmd};
 
 const TARGET: &str = "wasm32-unknown-unknown";
 
-/// How to get what is missing.
+/// Error message for a missing standard library, with the fix.
 pub(crate) const MISSING: &str = "the compiler has no standard library for WebAssembly: `rustup target add wasm32-unknown-unknown` \
     gets it, or RUSTC names another compiler";
 
-/// Builds the folder, and says what is in it.
+/// Builds the site and lists its files.
 pub(crate) fn web(shell: &Shell, out: Option<PathBuf>) -> anyhow::Result<()> {
     if !has_target(shell) {
         bail!("{MISSING}");
@@ -40,7 +41,7 @@ pub(crate) fn web(shell: &Shell, out: Option<PathBuf>) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Whether the compiler can make programs for WebAssembly.
+/// Whether the compiler has the standard library for WebAssembly.
 pub(crate) fn has_target(shell: &Shell) -> bool {
     let rustc = env::var("RUSTC").unwrap_or("rustc".into());
     let folder = cmd!(shell, "{rustc} --print target-libdir --target {TARGET}");
@@ -51,7 +52,7 @@ pub(crate) fn has_target(shell: &Shell) -> bool {
         .is_ok_and(|files| files.iter().any(is_of_std))
 }
 
-/// Compiles the program of the worker.
+/// Compiles the WebAssembly module of the worker.
 fn program(shell: &Shell) -> anyhow::Result<PathBuf> {
     let flags = env::var("RUSTFLAGS").unwrap_or_default() + " -Ctarget-feature=+simd128";
     let build = cmd!(

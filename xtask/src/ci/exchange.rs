@@ -1,4 +1,4 @@
-//! The step `exchange`: bakes materials for other programs and lets these programs check them.
+//! The step `exchange`: bakes materials for other programs and checks them with these programs.
 //!
 //! A glTF plane goes to Khronos' validator, a MaterialX document to the MaterialX library, and an array to NumPy. Each
 //! check runs if its program is installed, and is reported as skipped otherwise. They need Node with the package
@@ -9,7 +9,7 @@ use anyhow::Context;
 use std::path::{Path, PathBuf};
 use xshell::{Cmd, Shell, cmd};
 
-/// A script that validates a GLB file; errors and warnings fail.
+/// A script that validates a GLB file. It fails on errors and warnings.
 const VALIDATE_GLB: &str = "
 const { validateBytes } = require('gltf-validator');
 const bytes = new Uint8Array(require('fs').readFileSync(process.argv[1]));
@@ -58,19 +58,19 @@ assert array.flags['C_CONTIGUOUS'] and numpy.isfinite(array).all() and array.std
 print('NumPy:', array.shape, array.dtype)
 ";
 
-/// A program that checks a file.
+/// A program that validates a file.
 struct Judge {
-    /// The requirements of the program, for the message.
+    /// The requirements of the program, for messages.
     needs: &'static str,
-    /// The program and its arguments before the code.
+    /// The program and its arguments, without the code.
     program: Vec<String>,
-    /// Code that fails if the program is not installed.
+    /// Code that fails if the requirements are not installed.
     probe: &'static str,
     code: &'static str,
     file: &'static str,
 }
 
-/// Bakes a material for each judge that is installed, and runs its check.
+/// Bakes a material for each installed judge and runs its check.
 pub(super) fn exchange(shell: &Shell) -> anyhow::Result<()> {
     let python = std::env::var("PYTHON").unwrap_or_else(|_| "python3".to_owned());
     let python = || vec![python.clone(), "-c".to_owned()];
@@ -117,8 +117,8 @@ pub(super) fn exchange(shell: &Shell) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Returns the path of the command `dapple` that the workspace tests build, so that it is not built again with other
-/// features.
+/// Returns the path of the command `dapple` built by the workspace tests. Using this one avoids another build with
+/// other features.
 fn command_of_tests(shell: &Shell) -> anyhow::Result<PathBuf> {
     cmd!(shell, "cargo test --quiet --workspace --no-run")
         .quiet()

@@ -1,22 +1,22 @@
-//! The step `fuzz`: runs libFuzzer for some seconds on each target of `tests/fuzz`.
+//! The step `fuzz`: runs libFuzzer for 10 seconds on each target of `tests/fuzz`.
 //!
-//! It needs nightly Rust and cargo-fuzz and does not install them; without either, the step says so and is skipped.
-//! Crashes that libFuzzer found and the inputs that it learned stay in `target/fuzz`.
+//! It needs nightly Rust and cargo-fuzz and does not install them. Without either, the step is reported as skipped.
+//! Crashes found and inputs learned by libFuzzer are kept in `target/fuzz`.
 
 use anyhow::Context;
 use std::path::Path;
 use xshell::{Cmd, Shell, cmd};
 
-/// The number of targets that run at the same time.
+/// Number of targets that run in parallel.
 const AT_ONCE: usize = 2;
 
 /// The running time of each target, in seconds.
 const SECONDS: &str = "10";
 
-/// The time limit of one input, in seconds; most take less than a thousandth of it.
+/// Time limit per input, in seconds. Most inputs take less than a thousandth of it.
 const SECONDS_OF_AN_INPUT: &str = "10";
 
-/// The memory limit of one input, in MiB.
+/// Memory limit per input, in MiB.
 const MEMORY: &str = "2048";
 
 /// Runs every fuzz target, and stops at the first crash.
@@ -27,7 +27,7 @@ pub(super) fn fuzz(shell: &Shell) -> anyhow::Result<()> {
     }
     let folder = shell.current_dir().join("target/fuzz");
     let seeds = folder.join("seeds");
-    // Built with the whole workspace, so that the test builds are reused.
+    // Build with the whole workspace, so that the test builds are reused.
     let write_seeds = "inputs_are_written";
     cmd!(
         shell,
@@ -42,11 +42,11 @@ pub(super) fn fuzz(shell: &Shell) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Runs targets at the same time, each on one core.
+/// Runs targets in parallel, each on one core.
 fn run_together(shell: &Shell, folder: &Path, targets: &[String]) -> anyhow::Result<()> {
     std::thread::scope(|scope| {
         let runs = targets.iter().map(|target| {
-            // A shell in the same folder, since one cannot be shared.
+            // Clone the shell, since it cannot be shared between threads.
             let shell = shell.clone();
             scope.spawn(move || run(&shell, folder, target))
         });
@@ -62,22 +62,23 @@ fn run_together(shell: &Shell, folder: &Path, targets: &[String]) -> anyhow::Res
 /// A command of cargo-fuzz for the targets of this workspace.
 fn cargo_fuzz<'a>(shell: &'a Shell, command: &str, folder: &Path) -> Cmd<'a> {
     let built = folder.join("build");
-    // The address sanitizer is off: the crates have no unsafe code of their own, and it would take half of the time.
+    // The address sanitizer is off: the crates have no `unsafe` code of their own, and it would take half of the
+    // time.
     let fuzz = cmd!(
         shell,
         "cargo +nightly fuzz {command} --fuzz-dir tests/fuzz --target-dir {built} --sanitizer none"
     );
-    // It is built apart in any case, and all SIMD levels are for the tests.
+    // Do not inherit RUSTFLAGS: the build is separate anyway, and compiling all SIMD levels is for the tests.
     fuzz.quiet().env_remove("RUSTFLAGS")
 }
 
-/// Returns a sentence that names the missing tool, if there is one.
+/// Returns a message about a missing tool, if any.
 fn missing(shell: &Shell) -> Option<&'static str> {
     let works = |command: Cmd<'_>| {
         let output = command.quiet().ignore_status().ignore_stderr().output();
         output.is_ok_and(|output| output.status.success())
     };
-    // Only rustup understands `+nightly`; it must not download the toolchain.
+    // Only rustup understands `+nightly`. It must not download the toolchain.
     if !works(cmd!(shell, "cargo +nightly --version").env("RUSTUP_AUTO_INSTALL", "0")) {
         return Some("there is no nightly Rust");
     }
@@ -87,7 +88,7 @@ fn missing(shell: &Shell) -> Option<&'static str> {
     None
 }
 
-/// Returns the names of the targets, one for each file.
+/// Returns the names of the targets, one per file.
 fn targets(shell: &Shell) -> anyhow::Result<Vec<String>> {
     let files = shell.read_dir("tests/fuzz/targets")?;
     let stem = |path: &std::path::PathBuf| Some(path.file_stem()?.to_str()?.to_owned());

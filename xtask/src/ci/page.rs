@@ -1,7 +1,7 @@
-//! The step `page`: checks and builds the page of the studio, and tests it in a Chromium against the command.
+//! The step `page`: checks and builds the page of the studio, and compares it with the command in a Chromium.
 //!
-//! It needs Node 20 or newer, and access to the npm registry. Without these the step says so and is skipped; with
-//! `DAPPLE_NO_SKIP=1` it fails.
+//! It needs Node 20 or newer, and access to the npm registry. Without these, the step is reported as skipped. With
+//! `DAPPLE_NO_SKIP=1`, it fails.
 
 use super::{skip, works};
 use xshell::{Shell, cmd};

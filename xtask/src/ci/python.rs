@@ -1,10 +1,10 @@
 //! The step `python`: builds the package of `crates/dapple-python` as a wheel, installs it and tests it.
 //!
-//! It needs Python 3.11 or newer, and a Python package index for the packages that the tests use. Without these the
-//! step prints the error of pip and is skipped; with `DAPPLE_NO_SKIP=1` it fails, and so do tests that would skip
+//! It needs Python 3.11 or newer, and a Python package index for the packages that the tests use. Without these, the
+//! step prints the error of pip and is skipped. With `DAPPLE_NO_SKIP=1`, it fails, and so do tests that would skip
 //! optional packages. Blender's module `bpy` needs an older NumPy than other packages, so its tests and its
-//! documentation page have a separate environment; they are skipped if the index has no `bpy` for this Python. All
-//! files lie in `target/python`.
+//! documentation page have a separate environment. They are skipped if the index has no `bpy` for this Python. All
+//! files are in `target/python`.
 
 use super::{skip, works};
 use anyhow::{Context, bail};
@@ -38,11 +38,11 @@ pub(super) fn python(shell: &Shell) -> anyhow::Result<()> {
     let with_extras = format!("{wheel}[test,docs]");
     let (pip, python) = (main.join("pip"), main.join("python"));
     cmd!(shell, "{pip} install --quiet {with_extras}").run()?;
-    // An earlier wheel has the same version, so the installation is forced.
+    // An earlier wheel has the same version, so force the installation.
     let again = ["--quiet", "--force-reinstall", "--no-deps"];
     cmd!(shell, "{pip} install {again...} {wheel}").run()?;
     let tests = cmd!(shell, "{python} -m pytest -q -rs").env("PATH", with_first(&main)?);
-    // The command from the workspace tests, whose bits the package must reproduce.
+    // The command built by the workspace tests, whose output the package must reproduce bit for bit.
     let command = root.join("target/debug/dapple");
     if shell.path_exists(&command) {
         tests.env("DAPPLE", command).run()?;
@@ -69,7 +69,7 @@ pub(super) fn python(shell: &Shell) -> anyhow::Result<()> {
     Ok(cmd!(shell, "{python} -m pytest -q -rs -k blender {files...}").run()?)
 }
 
-/// Creates a virtual environment with some packages; returns the folder of its programs.
+/// Creates a virtual environment with some packages. Returns the folder of its programs.
 ///
 /// # Errors
 ///
@@ -85,7 +85,7 @@ fn environment(shell: &Shell, folder: &Path, packages: &[&str]) -> anyhow::Resul
     Ok(bin)
 }
 
-/// Runs a command; its standard error becomes the text of the error if it fails.
+/// Runs a command. If it fails, its standard error becomes the error message.
 fn run(command: Cmd<'_>) -> anyhow::Result<()> {
     let done = command.quiet().ignore_status().output()?;
     if !done.status.success() {
@@ -94,7 +94,7 @@ fn run(command: Cmd<'_>) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Builds the wheel and returns its path; it is the only file of its folder.
+/// Builds the wheel and returns its path. The wheel is the only file of its folder.
 fn wheel(shell: &Shell, bin: &Path, folder: &Path) -> anyhow::Result<PathBuf> {
     shell.remove_path(folder)?;
     let maturin = bin.join("maturin");

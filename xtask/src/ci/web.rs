@@ -1,13 +1,13 @@
-//! The step `web`: the studio without a server, built and compared with the command, under Node and in a Chromium.
+//! The step `web`: builds the studio without a server and compares it with the command, under Node and in a Chromium.
 //!
-//! It needs Node and a compiler for WebAssembly, which CI has not: where one is missing the step says so and is skipped, also
-//! with `DAPPLE_NO_SKIP=1`. The tests need the command that the other steps built.
+//! It needs Node and a compiler for WebAssembly, which CI lacks. Without these, the step is reported as skipped, even
+//! with `DAPPLE_NO_SKIP=1`. The tests need the command built by the other steps.
 
 use super::works;
 use crate::web::{MISSING, has_target};
 use xshell::{Shell, cmd};
 
-/// Builds and tests the folder.
+/// Builds and tests the site.
 pub(super) fn web(shell: &Shell) -> anyhow::Result<()> {
     let npm = crate::run::NPM;
     if !works(cmd!(shell, "{npm} --version").ignore_stdout()) {

@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 const FIGURES: &str = "crates/dapple-gallery/src/figures/";
 const LOCK: &str = "crates/dapple-gallery/figures.lock";
 
-/// Every crate must be on the code map.
+/// Every crate is listed in the code map.
 pub(super) fn architecture(workspace: &Workspace) -> Vec<String> {
     let named = |name: &str| workspace.architecture.contains(&format!("`{name}`"));
     let missing = workspace
@@ -18,8 +18,8 @@ pub(super) fn architecture(workspace: &Workspace) -> Vec<String> {
         .collect()
 }
 
-/// Every figure is a file `figures/<paper>/fig_<number>.rs` with a line `<hash> <paper>-fig-<number>` in figures.lock,
-/// and every line has a file. Lines are sorted.
+/// Every figure has a file `figures/<paper>/fig_<number>.rs` and a line `<hash> <paper>-fig-<number>` in
+/// figures.lock. Every line has a file. Lines are sorted.
 pub(super) fn figures(workspace: &Workspace) -> Vec<String> {
     let lines = workspace
         .figures_lock

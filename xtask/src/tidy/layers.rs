@@ -2,7 +2,7 @@
 
 use super::workspace::Workspace;
 
-/// The folder of a crate is named after it: `crates/<name>`; only `tests` and `xtask` lie at the root.
+/// A crate is in the folder `crates/<name>`. Only `tests` and `xtask` are at the root.
 pub(super) fn folders(workspace: &Workspace) -> Vec<String> {
     let misplaced = workspace.members.iter().filter(|member| {
         let rooted = ["tests", "xtask"].contains(&member.folder.as_str());
@@ -18,7 +18,8 @@ pub(super) fn folders(workspace: &Workspace) -> Vec<String> {
         .collect()
 }
 
-/// Every crate has a layer, and its dependencies in the workspace have strictly lower layers. Tests may use any crate.
+/// Every crate has a layer, and its dependencies in the workspace have strictly lower layers. Dev-dependencies are
+/// exempt.
 pub(super) fn layers(workspace: &Workspace) -> Vec<String> {
     let mut found = Vec::new();
     for member in &workspace.members {

@@ -2,13 +2,13 @@
 
 use super::workspace::{Text, Workspace};
 
-/// The largest number of lines of a file; aim at half of it.
+/// Maximum number of lines per file. Aim for half of it.
 const LINES_MAX: usize = 800;
 
-/// The layers of algorithm libraries. Layers below are foundations, layers above are programs.
+/// The layers of algorithm libraries. Lower layers are foundations, higher layers are programs.
 const ALGORITHM_LAYERS: core::ops::RangeInclusive<u64> = 1..=4;
 
-/// The first line of every file says what the file is.
+/// Every file begins with a `//!` header.
 pub(super) fn headers(workspace: &Workspace) -> Vec<String> {
     let silent = workspace
         .sources
@@ -19,7 +19,7 @@ pub(super) fn headers(workspace: &Workspace) -> Vec<String> {
         .collect()
 }
 
-/// No file is too long to read, except files of pure data, `tables.rs` and `data.rs`.
+/// Files have at most [`LINES_MAX`] lines, except files of pure data, `tables.rs` and `data.rs`.
 pub(super) fn lengths(workspace: &Workspace) -> Vec<String> {
     let long = workspace.sources.iter().filter(|source| {
         let is_table = ["/tables.rs", "/data.rs"]
@@ -37,7 +37,7 @@ pub(super) fn lengths(workspace: &Workspace) -> Vec<String> {
     .collect()
 }
 
-/// Lints are expected with a reason, never allowed; tests are not ignored; no placeholder stands for missing code.
+/// Lints are expected with a reason, never allowed. Tests are not ignored. No placeholder stands for missing code.
 pub(super) fn escapes(workspace: &Workspace) -> Vec<String> {
     let mut found = Vec::new();
     for source in &workspace.sources {
@@ -64,8 +64,8 @@ fn escape(line: &str) -> Option<&'static str> {
     }
 }
 
-/// A library file whose values are pinned by a `value_stability_*` test holds an algorithm. Its header, or that of the
-/// module it belongs to, names the source of the algorithm.
+/// A library file with a `value_stability_*` test contains an algorithm. The header of the file or of its module
+/// names the source of the algorithm.
 pub(super) fn references(workspace: &Workspace) -> Vec<String> {
     let algorithms = workspace.sources.iter().filter(|source| {
         is_of_library(workspace, source) && source.text.contains("fn value_stability_")
@@ -92,8 +92,8 @@ fn is_of_library(workspace: &Workspace, source: &Text) -> bool {
     layer.is_some_and(|layer| ALGORITHM_LAYERS.contains(layer))
 }
 
-/// Returns the file and the modules that it is part of: `src/a/b.rs`, then `src/a.rs`; and `src/lib.rs` for tests of a
-/// whole crate.
+/// Returns the file and its parent modules: `src/a/b.rs`, then `src/a.rs`. For tests of a whole crate, also
+/// `src/lib.rs`.
 fn modules(source: &Text) -> impl Iterator<Item = String> {
     let parent = |path: &String| match path.rsplit_once('/')? {
         (src, "tests.rs") if src.ends_with("/src") => Some(format!("{src}/lib.rs")),

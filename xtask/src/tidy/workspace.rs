@@ -1,4 +1,4 @@
-//! The workspace as the rules see it: data from `cargo metadata`, and the texts of files.
+//! The workspace as checked by the rules: data from `cargo metadata` and the texts of files.
 
 use anyhow::{Context, anyhow};
 use serde_json::Value;
@@ -9,7 +9,7 @@ use xshell::{Shell, cmd};
 /// The members of the workspace and the texts that the rules check.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Workspace {
-    /// The packages, one for each member.
+    /// The packages, one per member.
     pub(crate) members: Vec<Member>,
     /// The layers by crate name, from `[workspace.metadata.layers]`.
     pub(crate) layers: BTreeMap<String, u64>,
@@ -32,9 +32,9 @@ pub(crate) struct Member {
     pub(crate) manifest: String,
     /// The names of its normal and build dependencies, inside and outside the workspace.
     pub(crate) dependencies: Vec<String>,
-    /// Its features, each with what it turns on.
+    /// Its features, each with the features that it enables.
     pub(crate) features: BTreeMap<String, Vec<String>>,
-    /// Whether the package is meant for a registry.
+    /// Whether the package is published to a registry.
     pub(crate) published: bool,
     /// The names of the files directly in its folder, sorted.
     pub(crate) files: Vec<String>,
@@ -50,7 +50,7 @@ pub(crate) struct Text {
 }
 
 impl Workspace {
-    /// Reads the workspace in the shell's current folder. Missing files become empty texts.
+    /// Reads the workspace in the shell's current folder. Missing files give empty texts.
     pub(crate) fn read(shell: &Shell) -> anyhow::Result<Self> {
         let json = cmd!(
             shell,
