@@ -1,4 +1,4 @@
-// Begins the page with a way to whatever computes.
+// Starts the page with a transport to the studio.
 import '@xyflow/svelte/dist/style.css';
 import './app.css';
 import { mount } from 'svelte';

@@ -1,4 +1,4 @@
-// The state of the page, handed to all components.
+// The state of the page, shared with all components.
 import { getContext, setContext } from 'svelte';
 import type { Studio } from './studio.svelte';
 

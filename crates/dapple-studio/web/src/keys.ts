@@ -1,7 +1,7 @@
-// The keys of the page, and what they do.
+// The keyboard shortcuts of the page.
 import type { Studio } from './studio.svelte';
 
-/** The sheet of keys, by where they hold. */
+/** The list of shortcuts, grouped by context. */
 export const KEYS: { title: string; keys: [string, string][] }[] = [
   {
     title: 'Everywhere',
@@ -49,10 +49,10 @@ export const KEYS: { title: string; keys: [string, string][] }[] = [
   },
 ];
 
-/** The parts of the page that F6 goes through. */
+/** The sections of the page that F6 cycles through. */
 const PARTS = '.top button, .viewer [role=tab][aria-selected=true], .graph .add, .parameters input, .text .editor';
 
-/** Whether keys are for what has the focus: typing, choosing. */
+/** Whether the focused element uses keys itself, for typing or selecting. */
 function busy(target: EventTarget | null): boolean {
   if (!(target instanceof HTMLElement)) return false;
   if (target.shadowRoot) return true;
@@ -60,11 +60,11 @@ function busy(target: EventTarget | null): boolean {
   return input || target.closest('select, textarea, dialog, [contenteditable=true]') !== null;
 }
 
-/** What a key does; true if it did something. */
+/** Handles a key. Returns true if the key had an effect. */
 export function pressed(studio: Studio, event: KeyboardEvent): boolean {
   const { looking } = studio;
   if (event.ctrlKey || event.metaKey) return withControl(studio, event);
-  // A dialog has its own keys, also where nothing in it has the focus.
+  // A dialog handles keys itself, even if nothing in it has the focus.
   if (studio.sheet !== 'none' || event.altKey) return false;
   if (event.key === 'F6') return nextPart(event.shiftKey);
   if (busy(event.target)) return false;

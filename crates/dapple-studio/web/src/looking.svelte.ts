@@ -1,4 +1,4 @@
-// What is looked at: the kind of view, the maps, the size, the window that is zoomed into, the time.
+// The state of the view: its kind, the maps, the size, the zoomed window, and the time.
 import { FIRST, type Region, type View } from './core/protocol';
 import type { Window } from './core/pictures';
 
@@ -14,30 +14,30 @@ export const MODES = [
 
 export type Mode = (typeof MODES)[number]['id'];
 
-/** The sizes of the longer side that are offered. */
+/** Available sizes of the longer side, in pixels. */
 export const SIZES = [128, 256, 512, 1024, 2048, 4096];
 
-/** Seconds that a loop takes. */
+/** Duration of a loop, in seconds. */
 const LOOP = 4;
 
-/** Milliseconds for a picture of a loop, beyond which it takes long. */
+/** Rendering time in milliseconds above which a frame of a loop counts as slow. */
 const SLOW = 40;
 
-/** What the page shows of the recipe. */
+/** The view of the recipe. */
 export class Looking {
   mode = $state<Mode>('maps');
   maps = $state<string[]>([...FIRST.maps]);
-  /** Pixels of the longer side. */
+  /** The longer side, in pixels. */
   size = $state(FIRST.size[0]);
-  /** The window, or null where all is to fit. */
+  /** The visible window, or null to fit the whole tile. */
   window = $state.raw<Window | null>(null);
-  /** Whether a zoomed view asks for more pixels. */
+  /** Whether a zoomed view requests more pixels. */
   sharp = $state(true);
-  /** CSS pixels of a view, set by the views. */
+  /** The size of a view in CSS pixels, set by the views. */
   room = $state.raw<[number, number]>([1, 1]);
   time = $state(0);
   playing = $state(false);
-  /** How often the sides of the pictures of a loop are halved, since larger ones take too long. */
+  /** How many times the size of a loop's frames is halved because rendering is slow, at most 2. */
   coarse = $state(0);
   #late = 0;
   paused = $state(false);
@@ -45,12 +45,12 @@ export class Looking {
   dragging = $state(false);
   shape = $state<'sphere' | 'plane' | 'model'>('sphere');
   exact = $state<'sphere' | 'plane' | 'torus'>('sphere');
-  /** Width and height of the tile in units of the plane. */
+  /** Width and height of the tile, in units of the plane. */
   extent = $state.raw<[number, number]>([1, 1]);
   limit = $state(4096);
   whole = $state(4096);
 
-  /** Height over width of the tile. */
+  /** Height of the tile divided by its width. */
   get aspect(): number {
     return this.extent[1] / this.extent[0] || 1;
   }
@@ -64,29 +64,29 @@ export class Looking {
     return this.mode === 'tiled' ? 2 : 1;
   }
 
-  /** Whether more pixels are asked for where it is zoomed. */
+  /** Whether the kind of view requests more pixels when zoomed. */
   get zooms(): boolean {
     return this.mode === 'maps' || this.mode === 'node';
   }
 
-  /** The zoom at which all of it fits. */
+  /** The zoom at which the whole tile fits. */
   get fit(): number {
     const [w, h] = this.room;
     return Math.max(8, Math.min(w, h / this.aspect) / this.repeats);
   }
 
-  /** The window as it is shown. */
+  /** The window that is shown. */
   get shown(): Window {
     return this.window ?? { x: this.repeats / 2, y: this.repeats / 2, zoom: this.fit };
   }
 
-  /** The maps that this view needs. */
+  /** The maps that this kind of view needs. */
   needed(): string[] {
     if (this.mode === 'lit') return ['albedo', 'normal', 'orm', 'height'];
     return this.mode === 'maps' || this.mode === 'tiled' ? [...this.maps] : [];
   }
 
-  /** The view to be asked for. */
+  /** Returns the view to request. */
   view(selected: string | null): View {
     const { size, region } = this.#detail();
     const node = this.mode === 'node' ? selected : null;
@@ -96,7 +96,7 @@ export class Looking {
     return { size, region, maps: this.needed(), node, ...rest };
   }
 
-  /** Zooms by a factor about a point of the view, in CSS pixels from its middle. */
+  /** Zooms by a factor about a point, given in CSS pixels from the center of the view. */
   zoomBy(factor: number, [x, y]: [number, number] = [0, 0]): void {
     const now = this.shown;
     const zoom = Math.min(Math.max(now.zoom * factor, 16), 1 << 20);
@@ -105,18 +105,18 @@ export class Looking {
     this.#look({ x: now.x + px * k, y: now.y + py * k, zoom });
   }
 
-  /** Moves the view by CSS pixels. */
+  /** Moves the view by an offset in CSS pixels. */
   panBy(x: number, y: number): void {
     const now = this.shown;
     this.#look({ x: now.x - x / now.zoom, y: now.y - y / (now.zoom * this.aspect), zoom: now.zoom });
   }
 
-  /** Shows one pixel of the picture as one of the screen. */
+  /** Shows the image at one image pixel per screen pixel. */
   oneToOne(): void {
     this.window = { x: this.repeats / 2, y: this.repeats / 2, zoom: this.pixels[0] / devicePixelRatio };
   }
 
-  /** Shows or hides a map; the last one stays. */
+  /** Shows or hides a map. At least one map stays visible. */
   toggle(map: string, order: string[]): void {
     const has = this.maps.includes(map);
     if (has && this.maps.length === 1) return;
@@ -124,7 +124,7 @@ export class Looking {
     this.maps = order.filter((one) => chosen.includes(one));
   }
 
-  /** Notes how long a picture of the loop took: after some that took long the next ones are smaller. */
+  /** Records the rendering time of a loop's frame. After several slow frames, the following ones are smaller. */
   took(ms: number): void {
     this.#late = Math.max(0, this.#late + (ms > SLOW ? 1 : -1));
     if (this.#late < 3 || this.coarse === 2) return;
@@ -132,7 +132,7 @@ export class Looking {
     this.#late = 0;
   }
 
-  /** Plays the loop in time until the answer is called; a picture that is not there yet is waited for. */
+  /** Plays the loop in real time, but waits for frames that are not rendered yet. Returns a function that stops it. */
   play(isDrawn: () => boolean): () => void {
     this.coarse = this.#late = 0;
     let last = performance.now();
@@ -152,7 +152,7 @@ export class Looking {
     this.window = { x: keep(window.x), y: keep(window.y), zoom: window.zoom };
   }
 
-  /** The size and region that give each pixel of the screen one of the picture. */
+  /** The size and region that give one image pixel per screen pixel. */
   #detail(): { size: [number, number]; region: Region | null } {
     const plain = { size: sized(this.playing ? this.size >> this.coarse : this.size, this.aspect), region: null };
     const now = this.window;
@@ -166,7 +166,7 @@ export class Looking {
     return region ? { size, region } : plain;
   }
 
-  /** The pixels of the tile that are seen. */
+  /** The visible pixels of the tile. */
   #seen(now: Window, [w, h]: [number, number]): Region | null {
     const half = [this.room[0] / now.zoom / 2, this.room[1] / (now.zoom * this.aspect) / 2] as const;
     const [x0, x1] = span(now.x - half[0], now.x + half[0], w);

@@ -1,4 +1,4 @@
-// Begins the page that `dapple studio` serves. The way to the server opens while the page is loaded.
+// Entry point of the page served by `dapple studio`. The connection to the server opens while the page loads.
 import { Socket, token } from './core/transport';
 
 const page = import('./begin');

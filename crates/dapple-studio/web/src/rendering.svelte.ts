@@ -1,49 +1,52 @@
-// What was drawn: the pictures, what they cost, and whether they are those of the newest text and view.
+// The rendered images, their cost, and whether they belong to the newest text and view.
 import { Pictures, type Picture } from './core/pictures';
 import { MAP, type Began, type Frame, type Rendered, type View } from './core/protocol';
 
-/** So many generations are remembered. */
+/** Number of generations that are remembered. */
 const GENERATIONS = 8;
 
-/** The pictures of a recipe, and what is known of them. */
+/** The images of a recipe, with their statistics. */
 export class Rendering {
   readonly pictures = new Pictures();
-  /** The last report. */
+  /** The last message `rendered`. */
   last = $state.raw<Rendered | null>(null);
-  /** Milliseconds of each node. */
+  /** Rendering time of each node, in milliseconds. */
   took = $state.raw<Map<string, number>>(new Map());
-  /** The numbers that are black and white in the pictures of nodes. */
+  /** The values shown as black and as white in the images of nodes. */
   ranges = $state.raw<Map<string, [number, number] | null>>(new Map());
-  /** The pictures that newer ones are compared with. */
+  /** The images that newer ones are compared with. */
   mark = $state.raw<Map<string, Picture>>(new Map());
   #began = new Map<number, Began>();
   #view: View | null = null;
   #marking = true;
-  /** Whether the newest view was drawn, and the newest revision that was drawn in full. */
+  /**
+   * Whether the newest view was rendered in full. `#drawn` also counts drafts. `#full` is the newest revision rendered
+   * in full.
+   */
   #seen = false;
   #drawn = false;
   #full = -1;
   #generation = 0;
 
-  /** Whether a picture of the newest view has come, be it a draft. */
+  /** Whether the newest view has been rendered, at least as a draft. */
   get drawn(): boolean {
     return this.#drawn;
   }
 
-  /** Another view was asked for. */
+  /** Records a request for another view. */
   asked(view: View): void {
     this.#view = view;
     this.#seen = this.#drawn = false;
   }
 
-  /** Another recipe was opened. */
+  /** Resets the state when another recipe is opened. */
   reset(): void {
     this.pictures.forget((name) => !/^(builtin|file):/.test(name));
     this.#marking = true;
     this.#full = -1;
   }
 
-  /** Whether the full pictures are those of a revision and of the newest view. */
+  /** Whether the full-size images belong to at least this revision and to the newest view. */
   shows(rev: number): boolean {
     return this.#seen && this.#full >= rev && this.#areThere();
   }
@@ -54,7 +57,7 @@ export class Rendering {
     if (this.#began.size > GENERATIONS && oldest !== undefined) this.#began.delete(oldest);
   }
 
-  /** Takes a report; `rev` is that of the text if the report does not say. */
+  /** Handles a message `rendered`. If it has no revision, `rev` is used. */
   rendered(message: Rendered, rev: number): void {
     this.last = message;
     if (message.nodes) this.#cost(message.nodes);
@@ -69,19 +72,19 @@ export class Rendering {
     this.#marking = false;
   }
 
-  /** Keeps the pictures of now, to be compared with later ones. */
+  /** Stores the current images, for comparison with later ones. */
   markNow(): void {
     this.mark = this.pictures.snapshot();
   }
 
-  /** Takes a picture. */
+  /** Adds a frame to the image with this name. */
   picture(name: string, frame: Frame): void {
     const alone = frame.map === MAP.preview || frame.map >= MAP.thumbnail;
     const size = this.#began.get(frame.generation)?.size ?? this.#view?.size ?? [frame.w, frame.h];
     this.pictures.add(name, frame, alone ? [frame.w * frame.scale, frame.h * frame.scale] : size);
   }
 
-  /** Whether the pictures of the last report have come: one that waits for others comes after it. */
+  /** Whether all images of the last report have arrived. An image delayed by flow control arrives after the report. */
   #areThere(): boolean {
     const { node = null, exact = null, maps = [] } = this.#view ?? {};
     const names = node !== null ? ['node'] : exact ? ['preview'] : maps;
@@ -93,13 +96,14 @@ export class Rendering {
 
   #isOfView(generation: number): boolean {
     const began = this.#began.get(generation);
-    // When a loop is stopped, the last of its pictures is not the answer: a draft is yet to come.
+    // Compare `draft`, too: the last frame of a stopped loop does not answer the new view, whose draft is still to
+    // come.
     const told = (one: Began | View) => JSON.stringify([one.size, one.region, one.node, one.time, one.draft]);
     const [has, wants] = [began, this.#view].map((one) => one && told(one));
     return began === undefined || has === wants;
   }
 
-  /** Milliseconds of nodes: those of the last time they were computed, where they come from a cache now. */
+  /** Records the rendering times of nodes. A node taken from a cache keeps the time of its last computation. */
   #cost(nodes: NonNullable<Rendered['nodes']>): void {
     const cost = ({ name, ms }: { name: string; ms: number }) => (ms < 0.05 ? Math.max(ms, this.took.get(name) ?? 0) : ms);
     this.took = new Map(nodes.map((node) => [node.name, cost(node)]));

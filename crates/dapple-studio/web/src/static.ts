@@ -1,4 +1,4 @@
-// Begins the page without a server: its studio is a worker.
+// Entry point of the page without a server: the studio runs in a worker.
 import { begin } from './begin';
 import { Wasm } from './core/wasm';
 

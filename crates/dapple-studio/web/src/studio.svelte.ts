@@ -1,4 +1,4 @@
-// The state of the page: what was told by whatever computes, what is selected, and what a person asked for.
+// The state of the page: messages from the studio, the selection, and the user's requests.
 import type { Editor } from './core/editor';
 import { Draft, newGesture, StudioDocument, type TextHost } from './core/document';
 import type { Pictures } from './core/pictures';
@@ -10,13 +10,13 @@ import { recall, remember, type Unsaved } from './core/unsaved';
 import { Looking, MODES } from './looking.svelte';
 import { Rendering } from './rendering.svelte';
 
-/** A dialog or a sheet over the page. */
+/** A dialog over the page. */
 export type Sheet = 'none' | 'keys' | 'export' | 'save' | 'copy' | 'add' | 'start' | 'leave' | 'disk';
 
-/** Milliseconds for which something that was told is seen. */
+/** Display time of a status message, in milliseconds. */
 const NOTED = 6000;
 
-/** Everything that the page shows. */
+/** The whole state of the page. */
 export class Studio {
   readonly looking = new Looking();
   readonly rendering = new Rendering();
@@ -32,9 +32,9 @@ export class Studio {
   /** The path of the parameter whose help is open. */
   helped = $state('');
   said = $state('');
-  /** What was told in the last seconds. */
+  /** The current status message, cleared after some seconds. */
   noted = $state('');
-  /** Whether the full pictures are those of the text, which can be edited. */
+  /** Whether the full-size images belong to the current text, and the text can be edited. */
   settled = $state(false);
   refusal = $state.raw<{ what: string; message: string; hint: string | null } | null>(null);
   name = $state('');
@@ -43,25 +43,25 @@ export class Studio {
   history = $state.raw<[number, number]>([0, 0]);
   schemas = $derived(this.hello ? new Schemas(this.hello.schema) : null);
   readonly document: StudioDocument;
-  /** What is to be opened once a person agrees to lose changes. */
+  /** The recipe to open once the user agrees to discard changes. */
   leaving: { builtin?: string; file?: string; text?: string } | null = null;
-  /** A file that was changed by somebody else. */
+  /** The file as changed on disk by another program. */
   disk = $state.raw<{ text: string; hash: string; file: string } | null>(null);
-  /** Counts connections, so that views are asked for again. */
+  /** Counts connections, so that views are requested again after each. */
   again = $state(0);
-  /** A node to be selected as soon as it is there. */
+  /** A node to select as soon as the graph contains it. */
   wanted: string | null = null;
-  /** What an input may be: any number. */
+  /** The range of a numeric input: any number. */
   readonly free: Range = { min: -Infinity, max: Infinity, open: [false, false], integer: false, soft: null, log: false };
   #noting: ReturnType<typeof setTimeout> | undefined;
   #editor: Editor | null = null;
-  /** The text until there is an editor. */
+  /** Holds the text until the editor is loaded. */
   readonly #draft = new Draft();
-  /** The changes of a widget that is only tried. */
+  /** Collects the edits of a widget that are tried but not applied. */
   #tried: Op[] | null = null;
   #listeners = new Set<(message: Reply) => void>();
   #kept: Unsaved | null = null;
-  /** Whether the way was lost: the text here goes on, not that of the new session. */
+  /** Whether the connection was restored: the page keeps its text instead of the text of the new session. */
   #resuming = false;
 
   constructor(readonly transport: Transport) {
@@ -88,12 +88,12 @@ export class Studio {
     return this.hello?.mode === 'watch';
   }
 
-  /** Whether there is no server: files are opened and saved by the browser. */
+  /** Whether there is no server, so that the browser opens and saves files. */
   get alone(): boolean {
     return this.hello?.mode === 'static';
   }
 
-  /** The views that there are: without a server none is rendered by the command. */
+  /** The available kinds of views. The exact preview needs the command and so a server. */
   get modes(): readonly (typeof MODES)[number][] {
     return MODES.filter(({ id }) => id !== 'exact' || !this.alone);
   }
@@ -108,13 +108,13 @@ export class Studio {
     this.transport.send(message);
   }
 
-  /** Calls `then` with each message, until the answer is called. */
+  /** Calls `then` for each message. Returns a function that removes the listener. */
   listen(then: (message: Reply) => void): () => void {
     this.#listeners.add(then);
     return () => this.#listeners.delete(then);
   }
 
-  /** Gives the document its editor. */
+  /** Connects the document to its editor. */
   attach(editor: Editor): void {
     this.#draft.replay(editor);
     this.#editor = editor;
@@ -124,7 +124,7 @@ export class Studio {
     this.#settle();
   }
 
-  /** Called when the text changed, by whatever. */
+  /** Called when the text changed, for any reason. */
   textChanged(): void {
     this.changed = this.document.changed;
     const { name, file, text } = this.document;
@@ -145,7 +145,7 @@ export class Studio {
     return at(this.recipe, path);
   }
 
-  /** Changes the recipe by a widget. */
+  /** Changes the recipe from a widget. */
   patch(ops: Op[], gesture: number | null = null, drag = false): void {
     if (this.#tried) return void this.#tried.push(...ops);
     if (this.reading) return;
@@ -157,7 +157,7 @@ export class Studio {
     this.patch([{ op: 'set', path, value }], gesture, drag);
   }
 
-  /** The changes that widgets would make, which are not made. */
+  /** Returns the edits that `change` would make, without applying them. */
   tried(change: () => void): Op[] {
     const ops: Op[] = [];
     this.#tried = ops;
@@ -169,57 +169,57 @@ export class Studio {
     return ops;
   }
 
-  /** Another seed by chance. */
+  /** Sets a random seed. */
   shuffle(): void {
     this.set(['seed'], Math.floor(Math.random() * 10_000), newGesture());
   }
 
-  /** Selects a node, or the recipe; the caret follows unless it led here. */
+  /** Selects a node, or the recipe. The caret moves to the node unless `follow` is false. */
   select(name: string | null, follow = true): void {
     this.selected = name;
     const span = this.graph?.nodes.find((node) => node.name === name)?.span;
     if (follow && span) this.#editor?.goTo(span[0]);
   }
 
-  /** Selects the node after or before. */
+  /** Selects the next or the previous node. */
   step(way: number): void {
     const order = this.graph?.order ?? [];
     const now = this.selected === null ? (way > 0 ? -1 : 0) : order.indexOf(this.selected);
     this.select(order[(now + way + order.length) % order.length] ?? null);
   }
 
-  /** Selects the node that the caret is in. */
+  /** Selects the node at the caret. */
   caret(position: number): void {
     const node = this.graph?.nodes.find(({ span }) => span[0] <= position && position <= span[1]);
     if (node) this.selected = node.name;
   }
 
-  /** Shows where a problem is. */
+  /** Moves the caret to an error. */
   goTo(position: number): void {
     this.#editor?.goTo(position, true);
   }
 
-  /** Opens a recipe; the sheet asks first where changes would be lost. */
+  /** Opens a recipe and discards changes. */
   open(what: { builtin?: string; file?: string; text?: string }): void {
     this.sheet = 'none';
     this.selected = null;
     this.send({ type: 'open', ...what });
   }
 
-  /** Asks before changes are lost, then opens. */
+  /** Asks before discarding changes, then opens a recipe. */
   leave(what: { builtin?: string; file?: string; text?: string }): void {
     this.leaving = what;
     this.sheet = 'leave';
   }
 
-  /** Tells something in the line at the bottom for a while, and those who hear it. */
+  /** Shows a status message for a while and announces it to screen readers. */
   say(text: string): void {
     this.said = this.noted = text;
     clearTimeout(this.#noting);
     this.#noting = setTimeout(() => (this.noted = ''), NOTED);
   }
 
-  /** Keeps the pictures of now, to be compared with later ones. */
+  /** Stores the current images, for comparison with later ones. */
   markNow(): void {
     this.rendering.markNow();
     this.say('Marked: hold B to compare with what is seen now');
@@ -230,7 +230,7 @@ export class Studio {
     if (this.selected !== null) this.#name('duplicate_node', this.selected, this.freeName(this.selected));
   }
 
-  /** Gives the selected node another name. */
+  /** Renames the selected node. */
   rename(to: string): void {
     if (this.selected !== null) this.#name('rename_node', this.selected, to);
   }
@@ -242,7 +242,7 @@ export class Studio {
     if (pups !== undefined && entry(pups, 'points') === undefined) this.say(`A pups texture draws by its name: ${to} looks different`);
   }
 
-  /** A name for a node that no other has. */
+  /** Returns an unused name for a node. */
   freeName(wanted: string): string {
     const taken = new Set(this.graph?.order ?? []);
     const names = [wanted, ...Array.from({ length: 999 }, (_, i) => `${wanted}_${i + 2}`)];
@@ -326,13 +326,15 @@ export class Studio {
     this.send({ type: 'gallery', size: 128 });
   }
 
-  /** Goes on with the text of this page in a new session. */
+  /** Continues with the text of this page in a new session. */
   #resume(): void {
     this.#resuming = false;
     this.document.resume();
   }
 
-  /** The file changed on disk: it is followed where nothing here would be lost, else a person is asked. */
+  /**
+   * Handles a change of the file on disk. Without local changes the new text is loaded; otherwise the user is asked.
+   */
   #onDisk(message: { text: string; hash: string; file: string }): void {
     if (message.text === this.document.text) {
       Object.assign(this.document, { hash: message.hash, kept: message.text });
@@ -343,7 +345,7 @@ export class Studio {
     else this.sheet = 'disk';
   }
 
-  /** Takes the text of the file as it is on disk; undo brings back what was here. */
+  /** Loads the text of the file from disk. Undo restores the previous text. */
   takeDisk(): void {
     if (!this.disk) return;
     Object.assign(this.document, { hash: this.disk.hash, kept: this.disk.text });
@@ -353,7 +355,7 @@ export class Studio {
     this.textChanged();
   }
 
-  /** Brings back what was not saved before a reload; undo takes it away again. */
+  /** Restores unsaved changes after a reload. Undo reverts them. */
   #restore(): void {
     const kept = this.#kept;
     this.#kept = null;
@@ -383,7 +385,8 @@ export class Studio {
     if (name === null) return;
     this.rendering.picture(name, picture);
     this.#settle();
-    // At once, not when it is drawn: what is not drawn by then is replaced for nothing, and a frame is not waited for.
+    // Acknowledge on arrival rather than when the image is drawn: undrawn images are simply replaced, and the next one
+    // need not wait for a frame.
     this.send({ type: 'ack', generation: picture.generation, map: picture.map });
   }
 
@@ -398,7 +401,7 @@ export class Studio {
   }
 }
 
-/** The points, with those of before where they are the same: what did not change is not drawn again. */
+/** Reuses the previous points where they are equal, so that unchanged points are not drawn again. */
 function settle(now: Points, before: Points | null): Points {
   if (before?.node !== now.node) return now;
   const points = now.points.map((point, index) => {

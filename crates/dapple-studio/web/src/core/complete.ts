@@ -1,18 +1,21 @@
-// Completion in the text, from the schema: keys of the table that the caret is in, kinds in headings, words and names of
-// nodes between quotes.
+// Completion in the text, derived from the schema: keys of the current table, kinds in headings, and keywords and
+// names of nodes in strings.
 import type { Completion, CompletionContext, CompletionResult } from '@codemirror/autocomplete';
 import type { JsonSchema, Schemas } from './schema';
 
-/** What completion knows of. */
+/** Data for completion. */
 export interface Known {
   schemas: Schemas | null;
   nodes: string[];
 }
 
-/** What may be typed on without asking anew: while keys come fast, Enter takes what they chose. */
+/**
+ * Input that keeps the current list of completions. While keys are typed fast, Enter then accepts the highlighted
+ * item.
+ */
 const WORD = /^[\w-]*$/;
 
-/** The completions at a place of the text. */
+/** Returns the completions at a position of the text. */
 export function complete(context: CompletionContext, { schemas, nodes }: Known): CompletionResult | null {
   if (!schemas) return null;
   const line = context.state.doc.lineAt(context.pos);
@@ -28,7 +31,7 @@ export function complete(context: CompletionContext, { schemas, nodes }: Known):
   return { from: context.pos - (key[1]?.length ?? 0), options, validFor: WORD };
 }
 
-/** The heading of the table that a line is in. */
+/** The heading of the table that contains a line. */
 function tableOf(context: CompletionContext, number: number): string[] {
   for (let at = number; at > 0; at -= 1) {
     const found = context.state.doc.line(at).text.match(/^\s*\[+([\w.-]+)\]/);

@@ -1,20 +1,20 @@
-// The document: a text, its revision, and the small changes of it that are made elsewhere.
+// The document: a text, its revision, and patches to it.
 //
-// The text with its one undo history lives in an editor behind `TextHost`. A change by a widget is a patch: the other
-// side makes it a change of the text, which comes back as edits and becomes one transaction here. At most one patch is
-// on its way; of those that wait, a later one of the same gesture replaces the one before, so that the newest wins.
+// The text and its single undo history belong to an editor behind `TextHost`. A widget changes the text by a patch.
+// The studio converts the patch to edits of the text and sends them back, and they become one transaction here. At
+// most one patch is in flight. A waiting patch is replaced by a later one of the same gesture, so the newest wins.
 import type { Change, Op, Reply, Request } from './protocol';
 
 /** The editor that holds the text. */
 export interface TextHost {
   text(): string;
-  /** Applies changes; those of one gesture are a single step of undo. */
+  /** Applies changes. Changes of the same gesture form a single undo step. */
   apply(changes: Change[], gesture: number | null): void;
-  /** Begins with another text, without history. */
+  /** Replaces the text and clears the history. */
   reset(text: string): void;
 }
 
-/** The text before there is an editor, which is told of all that was done. */
+/** The text before the editor is loaded. It records all operations and replays them in the editor. */
 export class Draft implements TextHost {
   #text = '';
   #done: ((editor: TextHost) => void)[] = [];
@@ -39,7 +39,7 @@ export class Draft implements TextHost {
     this.#done = [(editor) => editor.reset(text)];
   }
 
-  /** Does in an editor what was done here. */
+  /** Replays the recorded operations in an editor. */
   replay(editor: TextHost): void {
     for (const done of this.#done) done(editor);
   }
@@ -53,22 +53,22 @@ interface Patch {
 
 let gestures = 0;
 
-/** A new gesture: a drag, or arrow keys pressed in a row. */
+/** Returns the id of a new gesture, such as a drag or a sequence of arrow keys. */
 export function newGesture(): number {
   gestures += 1;
   return gestures;
 }
 
-/** A text with its revision, kept the same here and on the other side. */
+/** A text and its revision, synchronized with the studio. */
 export class StudioDocument {
   rev = 0;
-  /** The revision at which the text last changed; patches that change nothing count up, too. */
+  /** The revision at which the text last changed. Patches without an effect also increment `rev`. */
   made = 0;
   name = '';
   file: string | null = null;
-  /** The hash of the file as it was read or written. */
+  /** The hash of the file when it was last read or written. */
   hash: string | null = null;
-  /** The text as it was opened or saved. */
+  /** The text when it was last opened or saved. */
   kept = '';
   #flight: (Patch & { base: number }) | null = null;
   #waiting: Patch[] = [];
@@ -82,12 +82,12 @@ export class StudioDocument {
     return this.host.text();
   }
 
-  /** Whether the text differs from what was opened or saved. */
+  /** Whether the text differs from the opened or saved text. */
   get changed(): boolean {
     return this.text !== this.kept;
   }
 
-  /** Whether patches are on their way. */
+  /** Whether patches are in flight or waiting. */
   get busy(): boolean {
     return this.#flight !== null || this.#waiting.length > 0;
   }
@@ -99,12 +99,12 @@ export class StudioDocument {
     this.sendText();
   }
 
-  /** Sends all of the text. */
+  /** Sends the whole text. */
   sendText(): void {
     this.send({ type: 'doc', rev: this.rev, text: this.text });
   }
 
-  /** Changes the recipe by a widget. Those of one gesture are a single step of undo. */
+  /** Changes the recipe from a widget. Changes of the same gesture form a single undo step. */
   patch(ops: Op[], gesture: number | null = null, drag = false): void {
     const last = this.#waiting.at(-1);
     if (last && gesture !== null && last.gesture === gesture) this.#waiting.pop();
@@ -112,7 +112,7 @@ export class StudioDocument {
     this.#next();
   }
 
-  /** Takes a message that concerns the text; false if it does not. */
+  /** Handles a message. Returns true if it concerns only the text. */
   receive(message: Reply): boolean {
     switch (message.type) {
       case 'document':
@@ -136,13 +136,13 @@ export class StudioDocument {
     }
   }
 
-  /** Replaces the whole text, as one step of undo. */
+  /** Replaces the whole text in a single undo step. */
   replace(text: string): void {
     this.host.apply([{ from: 0, to: this.text.length, insert: text }], null);
     this.typed();
   }
 
-  /** After the way to the other side was lost and found. */
+  /** Resumes after the connection was lost and restored. */
   resume(): void {
     this.#flight = null;
     this.sendText();
@@ -158,7 +158,7 @@ export class StudioDocument {
     this.#done();
   }
 
-  /** The patch met another text: sends ours, then the patch once more. */
+  /** Resends the text and then the patch, because the patch was based on another revision. */
   #again(rev: number): void {
     const flight = this.#flight;
     this.#flight = null;

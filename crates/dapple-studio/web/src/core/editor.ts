@@ -1,6 +1,7 @@
-// The editor of the text: CodeMirror with TOML, problems at their places, and the history of the document.
+// The text editor: CodeMirror with TOML, error markers, and the undo history of the document.
 //
-// It lives in a shadow root, so that its styles are adopted sheets, which a strict content security policy allows.
+// It is inside a shadow root, so that its styles are adopted style sheets, which a strict content security policy
+// allows.
 import { autocompletion, closeBrackets, completionKeymap } from '@codemirror/autocomplete';
 import { defaultKeymap, history, historyKeymap, redo, redoDepth, undo, undoDepth } from '@codemirror/commands';
 import { bracketMatching, HighlightStyle, StreamLanguage, syntaxHighlighting } from '@codemirror/language';
@@ -14,21 +15,21 @@ import { complete, type Known } from './complete';
 import type { TextHost } from './document';
 import type { Change, Problem } from './protocol';
 
-/** What the editor tells of. */
+/** Callbacks of the editor. */
 export interface EditorEvents {
   typed(): void;
-  /** The text changed, by whatever. */
+  /** The text changed, for any reason. */
   changed(): void;
-  /** What completion may offer. */
+  /** Returns the data for completion. */
   known(): Known;
-  /** The caret was moved by a person. */
+  /** The user moved the caret. */
   caret(position: number): void;
 }
 
 const joined = Annotation.define<boolean>();
 const remote = Annotation.define<boolean>();
 
-/** Milliseconds between keys up to which they are one step of undo. */
+/** Maximum time between keystrokes of one undo step, in milliseconds. */
 const TYPING = 500;
 
 const colors = HighlightStyle.define([
@@ -94,7 +95,7 @@ export class Editor implements TextHost {
     this.events.changed();
   }
 
-  /** Whether the text can only be read. */
+  /** Makes the text read-only or editable. */
   lock(locked: boolean): void {
     const extension = [EditorState.readOnly.of(locked), EditorView.editable.of(!locked)];
     this.view.dispatch({ effects: this.#locked.reconfigure(extension) });
@@ -108,12 +109,12 @@ export class Editor implements TextHost {
     redo(this.view);
   }
 
-  /** How many steps can be undone, and done again. */
+  /** The number of undo steps and of redo steps. */
   depth(): [number, number] {
     return [undoDepth(this.view.state), redoDepth(this.view.state)];
   }
 
-  /** Marks what is wrong. */
+  /** Marks errors in the text. */
   problems(items: Problem[]): void {
     const end = this.view.state.doc.length;
     const marks = items.map(({ from, to, message, nearest, hint }) => ({
@@ -123,11 +124,11 @@ export class Editor implements TextHost {
       message: [message, nearest && `did you mean ${nearest}?`, hint].filter(Boolean).join('\n'),
     }));
     this.view.dispatch(setDiagnostics(this.view.state, marks));
-    // The list of problems takes room: the caret is to stay in sight.
+    // The list of errors shrinks the editor, so scroll the caret back into view.
     if (marks.length > 0 && this.view.hasFocus) setTimeout(() => this.view.dispatch({ effects: EditorView.scrollIntoView(this.view.state.selection.main.head, { yMargin: 28 }) }), 30);
   }
 
-  /** Puts the caret somewhere, without telling of it. */
+  /** Moves the caret without a callback. */
   goTo(position: number, focus = false): void {
     const anchor = Math.min(position, this.view.state.doc.length);
     this.#quiet = true;
@@ -167,7 +168,10 @@ export class Editor implements TextHost {
     ];
   }
 
-  /** Whether a change joins the last step of undo: of the same gesture, or typed soon after beside it. */
+  /**
+   * Whether a change joins the last undo step: it is of the same gesture, or typed soon after it at an adjacent
+   * position.
+   */
   #joins(goesOn: boolean | undefined, near: boolean): boolean {
     if (goesOn !== undefined) this.#last = 0;
     if (goesOn !== undefined) return goesOn;

@@ -1,10 +1,10 @@
-// Pictures that arrived, by what they show, each where it lies in the tile.
+// Received images by name, with their positions in the tile.
 //
-// A picture may come in pieces. Those of the newest generation lie over the last whole picture, which leaves when the
-// last piece is there: what is seen is never less than it was.
+// An image may arrive in pieces. Pieces of the newest generation are drawn over the last complete image, which is
+// removed when the last piece has arrived. So the visible area never shrinks.
 import type { Frame, Region } from './protocol';
 
-/** Where something lies in the tile, which goes from 0 to 1 along both axes. */
+/** A rectangle in the tile, whose coordinates range from 0 to 1 along both axes. */
 export interface Rect {
   x: number;
   y: number;
@@ -12,7 +12,10 @@ export interface Rect {
   h: number;
 }
 
-/** A piece of a picture. It becomes a canvas when it is first drawn: while a slider is dragged, many never are. */
+/**
+ * A piece of an image. Its canvas is created on first use, since many pieces are never drawn while a slider is
+ * dragged.
+ */
 export class Piece {
   #canvas: HTMLCanvasElement | null = null;
 
@@ -33,27 +36,27 @@ export class Piece {
   }
 }
 
-/** Up to this width a canvas is kept in plain memory, which is faster for many small ones. */
+/** Canvases up to this width are kept in main memory, which is faster for many small ones. */
 const SMALL = 128;
 
-/** A picture: the last one of all of the tile, the last whole one, and what is there of the next. */
+/** An image: the last one that covers the tile, the last complete one, and the received pieces of the next one. */
 export interface Picture {
   base: Piece[];
   whole: Piece[];
   coming: Piece[];
   generation: number;
   draft: boolean;
-  /** The columns and rows of the whole tile at this picture's scale. */
+  /** The columns and rows of the whole tile at the scale of this image. */
   size: [number, number];
 }
 
-/** What the pictures of a generation show. */
+/** The size and region of the images of a generation. */
 export interface Shown {
   size: [number, number];
   region: Region | null;
 }
 
-/** Pictures by name, and who wants to know of them. */
+/** Images by name, with listeners. */
 export class Pictures {
   readonly #pictures = new Map<string, Picture>();
   readonly #listeners = new Map<string, Set<() => void>>();
@@ -66,19 +69,19 @@ export class Pictures {
     return [...this.#pictures.keys()];
   }
 
-  /** Calls `then` whenever the picture changes, until the answer is called. */
+  /** Calls `then` whenever the image changes. Returns a function that removes the listener. */
   listen(name: string, then: () => void): () => void {
     const all = this.#listeners.get(name) ?? new Set();
     this.#listeners.set(name, all.add(then));
     return () => all.delete(then);
   }
 
-  /** Whether anybody looks at the picture. */
+  /** Whether the image has listeners. */
   seen(name: string): boolean {
     return (this.#listeners.get(name)?.size ?? 0) > 0;
   }
 
-  /** Adds a frame; `size` is that of the whole tile, before scaling. */
+  /** Adds a frame. `size` is the size of the whole tile before scaling. */
   add(name: string, frame: Frame, size: [number, number]): void {
     const before = this.#pictures.get(name);
     const scaled: [number, number] = [Math.ceil(size[0] / frame.scale), Math.ceil(size[1] / frame.scale)];
@@ -92,7 +95,7 @@ export class Pictures {
     this.#tell(name);
   }
 
-  /** Forgets the pictures for which `which` holds. */
+  /** Removes the images whose names satisfy `which`. */
   forget(which: (name: string) => boolean): void {
     for (const name of this.names()) {
       if (!which(name)) continue;
@@ -101,7 +104,7 @@ export class Pictures {
     }
   }
 
-  /** The pictures as they are now, to be compared with later ones. */
+  /** Returns the current images, for comparison with later ones. */
   snapshot(): Map<string, Picture> {
     return new Map(this.#pictures);
   }
@@ -116,14 +119,16 @@ function pieceOf(frame: Frame, [width, height]: [number, number]): Piece {
   return new Piece(rect, frame.w, frame.h, frame.pixels);
 }
 
-/** The window of the tile that is seen: its middle, and how many CSS pixels wide the tile is. */
+/** The visible window of the tile: its center in the tile, and the width of the tile in CSS pixels. */
 export interface Window {
   x: number;
   y: number;
   zoom: number;
 }
 
-/** Draws a picture into a canvas: `window` says which part, `repeats` how often the tile lies side by side. */
+/**
+ * Draws the part of an image given by `window` into a canvas. The tile is repeated `repeats` times along each axis.
+ */
 export function draw(target: HTMLCanvasElement, picture: Picture, window: Window, aspect: number, repeats: number): void {
   const context = target.getContext('2d');
   if (!context) return;
@@ -132,7 +137,7 @@ export function draw(target: HTMLCanvasElement, picture: Picture, window: Window
   const left = Math.round(target.width / 2 - window.x * w);
   const top = Math.round(target.height / 2 - window.y * h);
   context.clearRect(0, 0, target.width, target.height);
-  // What a whole picture hides is not drawn.
+  // Skip pieces that are hidden by a complete image.
   const below = covers(picture.whole) ? [] : picture.base;
   for (let row = 0; row < repeats; row += 1) {
     for (let column = 0; column < repeats; column += 1) {
@@ -143,7 +148,7 @@ export function draw(target: HTMLCanvasElement, picture: Picture, window: Window
   }
 }
 
-/** Draws a piece with its edges on whole pixels, so that neighbors meet. */
+/** Draws a piece with its edges rounded to whole pixels, so that adjacent pieces meet. */
 function place(context: CanvasRenderingContext2D, piece: Piece, tile: Rect): void {
   const x = Math.round(tile.x + piece.rect.x * tile.w);
   const y = Math.round(tile.y + piece.rect.y * tile.h);
@@ -154,7 +159,7 @@ function place(context: CanvasRenderingContext2D, piece: Piece, tile: Rect): voi
   context.drawImage(piece.canvas, x, y, w, h);
 }
 
-/** Whether pieces cover all of the tile. */
+/** Whether pieces cover the whole tile. */
 function covers(pieces: Piece[]): boolean {
   return pieces.reduce((area, { rect }) => area + rect.w * rect.h, 0) > 0.999;
 }

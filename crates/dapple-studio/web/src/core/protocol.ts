@@ -1,16 +1,16 @@
-// Messages between the page and whatever computes: a process behind a socket, or a worker.
+// Messages between the page and the studio, which is a process behind a socket or a worker.
 //
-// Text messages are JSON objects with a `type`; pictures are binary, with a header of 32 bytes. Positions in texts are
-// UTF-16 code units, as JavaScript counts them.
+// Text messages are JSON objects with a `type`. Images are binary messages with a header of 32 bytes. Positions in
+// texts are UTF-16 code units, as counted by JavaScript.
 import type { JsonSchema } from './schema';
 
 /** A JSON value. */
 export type Json = null | boolean | number | string | Json[] | { [key: string]: Json };
 
-/** Keys and array indices down to a value of the recipe, such as `["nodes", "grain", "noise", "gain"]`. */
+/** The path of a value in the recipe: keys and array indices, such as `["nodes", "grain", "noise", "gain"]`. */
 export type Path = (string | number)[];
 
-/** A small change of the recipe. */
+/** A small edit of the recipe. */
 export type Op =
   | { op: 'set'; path: Path; value: Json }
   | { op: 'remove'; path: Path }
@@ -22,18 +22,18 @@ export type Op =
   | { op: 'connect'; node: string; input: Path; from: Json }
   | { op: 'make_points'; node: string };
 
-/** Pixels of a tile: the first, and how many there are. */
+/** A rectangle of the tile in pixels: its first column and row, and its size. */
 export interface Region {
   first: [number, number];
   size: [number, number];
 }
 
-/** The shape of the exact preview. */
+/** Options of the exact preview, which the command renders. */
 export interface Exact {
   shape: 'sphere' | 'plane' | 'torus';
 }
 
-/** What is to be seen; always all of it. */
+/** The complete description of the images that a page shows. */
 export interface View {
   size: [number, number];
   maps: string[];
@@ -46,7 +46,7 @@ export interface View {
   exact: Exact | null;
 }
 
-/** What a page shows at first: it asks for it before its parts are there. The order is that of `Looking.view`. */
+/** The initial view, requested before the page is loaded. The fields have the same order as in `Looking.view`. */
 export const FIRST: View = {
   size: [512, 512],
   region: null,
@@ -59,7 +59,7 @@ export const FIRST: View = {
   exact: null,
 };
 
-/** What the page asks. */
+/** A message from the page. */
 export type Request =
   | { type: 'open'; builtin?: string; file?: string; text?: string }
   | { type: 'doc'; rev: number; text: string }
@@ -75,32 +75,32 @@ export type Request =
   | { type: 'stop' }
   | { type: 'save'; text: string; file: string; overwrite: boolean; seen: string | null };
 
-/** What a recipe can be copied as. */
+/** The formats in which a recipe can be copied. */
 export type CodeKind = 'toml' | 'json' | 'rust' | 'python' | 'command';
 
-/** Options of an export, as those of `dapple bake`. */
+/** Options of an export, as in `dapple bake`. */
 export interface ExportOptions {
   size: [number, number];
   maps?: string[];
   preset?: string;
-  /** Such as `png8`; not beside a preset. */
+  /** The format, such as `png8`. Not allowed together with a preset. */
   format?: string;
 }
 
-/** A node that recipes may have. */
+/** A kind of node. */
 export interface Kind {
   name: string;
   group: string;
   value?: Json;
 }
 
-/** A name with what it means. */
+/** A name with its description. */
 export interface Named {
   name: string;
   about: string;
 }
 
-/** The first message: what there is. */
+/** The first message: the recipes, nodes and maps that the studio offers. */
 export interface Hello {
   type: 'hello';
   version: string;
@@ -115,7 +115,7 @@ export interface Hello {
   open: string | null;
 }
 
-/** A text that was opened. */
+/** The reply to opening a text. */
 export interface Opened {
   type: 'document';
   rev: number;
@@ -125,14 +125,14 @@ export interface Opened {
   hash: string | null;
 }
 
-/** A part of a text that another replaces. */
+/** A replacement in a text. */
 export interface Change {
   from: number;
   to: number;
   insert: string;
 }
 
-/** Something wrong with the text, and where. */
+/** An error in the text, with its range. */
 export interface Problem {
   from: number;
   to: number;
@@ -183,9 +183,9 @@ export interface Points {
   type: 'points';
   node: string;
   editable: boolean;
-  /** Whether the points can be put into the text. */
+  /** Whether the points can be written into the text. */
   can_be_editable: boolean;
-  /** The number of nets of points; the points are those of the coarsest. */
+  /** The number of layers of points. `points` belong to the coarsest layer. */
   layers: number;
   extent: [number, number];
   wrap: [boolean, boolean];
@@ -195,13 +195,13 @@ export interface Points {
   edges: [number, number, number, number][];
 }
 
-/** How a map joins where the tile repeats. */
+/** The seam report of a map. */
 export interface Seam {
   name: string;
   text: string;
 }
 
-/** What the page is told. */
+/** A message from the studio. */
 export type Reply =
   | Hello
   | Opened
@@ -220,7 +220,7 @@ export type Reply =
   | { type: 'disk'; text: string; hash: string; file: string }
   | { type: 'refused'; what: string; message: string; hint: string | null; reason?: string };
 
-/** The pictures of a generation follow: what they show. */
+/** Announces a generation whose images follow. */
 export interface Began {
   type: 'began';
   generation: number;
@@ -232,7 +232,7 @@ export interface Began {
   draft: boolean;
 }
 
-/** All pictures of a generation are there. */
+/** All images of a generation have been sent. */
 export interface Rendered {
   type: 'rendered';
   generation: number;
@@ -242,10 +242,10 @@ export interface Rendered {
   nodes: { name: string; ms: number; range?: [number, number] | null }[] | null;
 }
 
-/** Numbers of maps that are none of `hello.maps`. */
+/** Codes of images other than maps. Maps are coded by their index in `hello.maps`. */
 export const MAP = { node: 100, preview: 101, thumbnail: 200, builtin: 1000, file: 2000, strip: 3000 } as const;
 
-/** A picture, or a window of one. */
+/** An image, or a part of one. */
 export interface Frame {
   generation: number;
   map: number;
@@ -253,21 +253,21 @@ export interface Frame {
   y: number;
   w: number;
   h: number;
-  /** The picture is the tile's size divided by this. */
+  /** The factor by which the image is smaller than the tile. */
   scale: number;
   draft: boolean;
   last: boolean;
   pixels: Uint8ClampedArray<ArrayBuffer>;
 }
 
-/** Bytes before the pixels of a picture. */
+/** Length of an image's header in bytes. */
 const HEADER = 32;
-/** Bytes of a pixel in each format: with alpha, without, and gray. */
+/** Bytes per pixel of each format: with alpha, without alpha, and gray. */
 const WIDTHS = [4, 3, 1];
-/** An alpha of 255; processors that browsers run on have it in the highest byte. */
+/** An alpha of 255. It is in the highest byte, since browsers run on little-endian processors. */
 const OPAQUE = 0xff000000;
 
-/** The picture of a binary message. */
+/** Decodes a binary message to an image. */
 export function frame(bytes: ArrayBuffer): Frame {
   if (bytes.byteLength < HEADER) throw new Error('a picture is too short');
   const head = new DataView(bytes);
@@ -292,7 +292,7 @@ export function frame(bytes: ArrayBuffer): Frame {
   };
 }
 
-/** Pixels of one or three bytes as red, green, blue and alpha. */
+/** Converts pixels of one or three bytes to red, green, blue and alpha. */
 function widened(bytes: Uint8Array<ArrayBuffer>, width: number): Uint8ClampedArray<ArrayBuffer> {
   const pixels = new Uint32Array(bytes.length / width);
   if (width === 1) for (let i = 0; i < pixels.length; i += 1) pixels[i] = OPAQUE | ((bytes[i] as number) * 0x010101);

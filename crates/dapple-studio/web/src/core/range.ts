@@ -1,7 +1,7 @@
-// The range that a slider shows, which is narrower than what is allowed, and how numbers are rounded and written.
+// Ranges of sliders, which are narrower than the allowed ranges, and rounding and formatting of numbers.
 import type { Range } from './schema';
 
-/** What a slider goes through. */
+/** The range of a slider and its step. */
 export interface Slide {
   low: number;
   high: number;
@@ -9,7 +9,7 @@ export interface Slide {
   log: boolean;
 }
 
-/** Ranges for numbers by their names, where the schema allows far more than anybody wants. */
+/** Usual ranges of numbers by name, where the schema allows far more than is useful. */
 const USUAL: [RegExp, number, number][] = [
   [/^(roughness|metallic|height|by|mask|fade|weight|radius|gain|persistence|jitter|strength|probability|probabilities|width|contrast|opacity)$/, 0, 1],
   [/^frequency$/, 0.25, 64],
@@ -26,10 +26,10 @@ const USUAL: [RegExp, number, number][] = [
   [/^(margin|frozen|levels)$/, 0, 64],
 ];
 
-/** Past this ratio a range is too wide for a slider. */
+/** Maximum width of an allowed range that is used as the range of a slider. */
 const WIDE = 100;
 
-/** The range of a slider for a number of this name that is `value` now. */
+/** Returns the slider range for a number with this name whose current value is `value`. */
 export function slide(range: Range, key: string, value: number, fallback: number | undefined): Slide {
   const usual = USUAL.find(([name]) => name.test(key));
   const bounded = Number.isFinite(range.min) && Number.isFinite(range.max) && range.max - range.min <= WIDE;
@@ -50,7 +50,10 @@ function around(value: number): [number, number] {
   return value < 0 ? [-Math.abs(size), Math.abs(size)] : [0, Math.abs(size)];
 }
 
-/** The next of 1, 2, 5, 10, … away from zero, for numbers past 1; the number itself otherwise. */
+/**
+ * Rounds numbers of magnitude above 1 away from zero to the next 1, 2, 5, 10, and so on. Smaller numbers are
+ * unchanged.
+ */
 function nice(value: number): number {
   const size = Math.abs(value);
   if (size <= 1) return value;
@@ -59,50 +62,56 @@ function nice(value: number): number {
   return Math.sign(value) * round;
 }
 
-/** A step of about a two hundredth, as a power of ten times 1, 2 or 5. */
+/** A step of about 1/200 of a span: a power of ten times 1, 2 or 5. */
 export function stepOf(span: number): number {
   const raw = Math.abs(span) / 200 || 0.01;
   const ten = 10 ** Math.floor(Math.log10(raw));
   return tidy(([1, 2, 5, 10].find((one) => one * ten >= raw * 0.999) ?? 10) * ten);
 }
 
-/** The number without the noise of floating point. */
+/** Rounds a number to 6 digits, which removes floating-point noise. */
 export function tidy(value: number): number {
   return Number(value.toPrecision(6));
 }
 
-/** Where a value lies in a slider, from 0 to 1. */
+/** The position of a value on a slider, from 0 to 1. */
 export function toSlider({ low, high, log }: Slide, value: number): number {
   const t = log ? Math.log(Math.max(value, low) / low) / Math.log(high / low) : (value - low) / (high - low);
   return Math.min(1, Math.max(0, t));
 }
 
-/** The value at a place of a slider, rounded. */
+/** The rounded value at a position of a slider. */
 export function fromSlider({ low, high, step, log }: Slide, t: number): number {
   if (!log) return tidy(Math.min(high, Math.max(low, Math.round((low + t * (high - low)) / step) * step)));
   const value = low * (high / low) ** t;
   return step === 1 ? Math.round(value) : Number(value.toPrecision(value < 1 ? 2 : 3));
 }
 
-/** A number as it is shown. */
+/** Formats a number for display. */
 export function shown(value: number): string {
   return Number.isFinite(value) ? String(tidy(value)) : '';
 }
 
-/** Frequencies at which a tile that repeats holds a whole number of cells: multiples of `unit` over its side. */
+/**
+ * Frequencies at which a wrapping tile contains a whole number of cells: multiples of `unit` / `side`, at least
+ * `least` / `side`.
+ */
 export interface Whole {
   unit: number;
   side: number;
   least: number;
 }
 
-/** The nearest number of whole cells. */
+/** Rounds a frequency to the nearest one with a whole number of cells. */
 export function snapped(value: number, whole: Whole | null): number {
   if (!whole) return value;
   return Math.max(whole.least, Math.round((value * whole.side) / whole.unit) * whole.unit) / whole.side;
 }
 
-/** What a frequency must be whole for, if the sides have a common measure; wavelets need an even number, from 4 on. */
+/**
+ * The valid frequencies for wrapping sides, if all sides are multiples of the shortest. Wavelets need an even number
+ * of cells, at least 4.
+ */
 export function wholeCells(sides: number[], wavelet: boolean): Whole | null {
   const side = Math.min(...sides);
   if (sides.length === 0 || sides.some((one) => Math.abs(one / side - Math.round(one / side)) > 1e-9)) return null;

@@ -1,10 +1,10 @@
-// What a widget needs to know of a value, from the JSON Schema of recipes.
+// Derives the widgets of values from the JSON Schema of recipes.
 //
-// A schema becomes a `Shape`: one of few kinds that a widget each exists for. References are followed, descriptions
-// and defaults beside a reference win, values that may be null or left out are optional.
+// A schema is converted to a `Shape`, one of a few kinds with a widget each. References are followed. Descriptions and
+// defaults next to a reference take precedence. Values that may be null or omitted are optional.
 import type { Json } from './protocol';
 
-/** A JSON Schema, as far as that of recipes goes. */
+/** The subset of JSON Schema that recipes use. */
 export interface JsonSchema {
   $ref?: string;
   $defs?: Record<string, JsonSchema>;
@@ -31,27 +31,27 @@ export interface JsonSchema {
   'x-dapple'?: { unit?: string; soft?: [number, number]; scale?: string; widget?: string };
 }
 
-/** The numbers that are allowed, and those that a slider shows. */
+/** The allowed range of a number, and the range of its slider. */
 export interface Range {
   min: number;
   max: number;
-  /** Whether the ends themselves are allowed. */
+  /** Whether each end of the range is excluded. */
   open: [boolean, boolean];
   integer: boolean;
   soft: [number, number] | null;
   log: boolean;
 }
 
-/** One choice of several. */
+/** A variant of a union. */
 export interface Variant {
   label: string;
   about: string;
-  /** The key of the table that the variant is, or null for a plain value. */
+  /** The key of the table that is the variant, or null for a plain value. */
   key: string | null;
   schema: JsonSchema;
 }
 
-/** A part of a table. */
+/** A property of a table. */
 export interface Part {
   key: string;
   about: string;
@@ -60,7 +60,7 @@ export interface Part {
   fallback: Json | undefined;
 }
 
-/** What kind of value a schema allows. */
+/** The kinds of values that a schema allows. */
 export type Shape =
   | { kind: 'number'; range: Range; unit: string }
   | { kind: 'boolean' }
@@ -77,20 +77,20 @@ const named: Record<string, Shape> = {
   Tile: { kind: 'nothing' },
 };
 
-/** Names of numbers that are looked at by their ratio, such as frequencies. */
+/** Names of numbers that get logarithmic sliders, such as frequencies. */
 const RATIOS = /^(frequency|spacing|density|distance|distances|count|relief|feature_size|extent)$/;
 
-/** Parts that come first, in this order. */
+/** Properties that are listed first, in this order. */
 const FIRST = [
   'input', 'inputs', 'from', 'to', 'by', 'x', 'y', 'height', 'albedo', 'roughness', 'metallic', 'relief', 'value',
   'basis', 'spacing', 'frequency', 'octaves', 'gain', 'lacunarity', 'scatter', 'metric', 'name', 'extent', 'wrap',
 ];
 
-/** Reads schemas with the definitions of one document. */
+/** Reads schemas and resolves references to the definitions of one document. */
 export class Schemas {
   constructor(readonly root: JsonSchema) {}
 
-  /** The schema without reference, `null` taken away. */
+  /** Resolves references and removes `null` from a schema. */
   plain(schema: JsonSchema): JsonSchema {
     const name = definition(schema);
     if (name !== null) {
@@ -105,7 +105,7 @@ export class Schemas {
     return schema;
   }
 
-  /** What kind of value it is. `key` is the name of the value, for the range of sliders. */
+  /** Returns the shape of a value. `key` is its name, which determines the range of its slider. */
   shape(schema: JsonSchema, key = ''): Shape {
     const name = this.name(schema);
     if (name !== null && named[name]) return named[name];
@@ -128,7 +128,10 @@ export class Schemas {
     return { kind: ramp ? 'ramp' : 'table', parts };
   }
 
-  /** The parts of a table, without those that are not to be used. `given` is the table where none is written. */
+  /**
+   * Returns the properties of a table, except deprecated ones. Their defaults come from `given`, the default of the
+   * table, if it has them.
+   */
   parts(schema: JsonSchema, given?: Json): Part[] {
     const all = this.plain(schema);
     return Object.entries(all.properties ?? {})
@@ -143,18 +146,18 @@ export class Schemas {
       .sort((a, b) => rank(a) - rank(b));
   }
 
-  /** The variants of a union. */
+  /** Returns the variants of a union. */
   variants(schema: JsonSchema): Variant[] {
     const all = this.plain(schema);
     return (all.oneOf ?? all.anyOf ?? []).flatMap((one) => this.#variant(one));
   }
 
-  /** The variant that a value is of. */
+  /** Finds the variant of a value. */
   variantOf(variants: Variant[], value: Json | undefined): Variant | undefined {
     return variants.find((variant) => this.#is(variant, value));
   }
 
-  /** A smallest valid value. */
+  /** Returns a minimal valid value. */
   sample(schema: JsonSchema, key = ''): Json {
     const all = this.plain(schema);
     if (all.default !== undefined && all.default !== null) return all.default;
@@ -195,13 +198,13 @@ export class Schemas {
     }
   }
 
-  /** A smallest valid value of a variant. */
+  /** Returns a minimal valid value of a variant. */
   variantSample(variant: Variant): Json {
     const inner = this.sample(variant.schema);
     return variant.key === null ? inner : { [variant.key]: inner };
   }
 
-  /** The name of the definition that a schema refers to, through `null`. */
+  /** The name of the definition that a schema refers to, even if the value may also be `null`. */
   name(schema: JsonSchema): string | null {
     const direct = definition(schema);
     if (direct !== null) return direct;
@@ -241,23 +244,26 @@ export class Schemas {
   }
 }
 
-/** The value below a key or index. */
+/** The entry of a value at a key or index. */
 export function entry(value: Json | undefined, key: string | number): Json | undefined {
   if (typeof value !== 'object' || value === null) return undefined;
   return Array.isArray(value) ? value[Number(key)] : value[key];
 }
 
-/** The value at the end of a path. */
+/** The value at a path. */
 export function at(value: Json | undefined, path: (string | number)[]): Json | undefined {
   return path.reduce<Json | undefined>((inner, key) => entry(inner, key), value);
 }
 
-/** A key as words. */
+/** Converts a key to words. */
 export function words(key: string): string {
   return key.replaceAll('_', ' ');
 }
 
-/** The order of parts: what goes in, what is told of most often, the rest by name, what is rarely given. */
+/**
+ * Sort key of properties: listed names first, then required ones, those with a default, those without, and the seed
+ * last.
+ */
 function rank({ key, required, fallback }: Part): number {
   const first = FIRST.indexOf(key);
   if (first >= 0) return first;
@@ -291,7 +297,7 @@ function numberShape(all: JsonSchema, key: string): Shape {
   return { kind: 'number', range: { min, max, open, integer, soft: hint?.soft ?? null, log }, unit };
 }
 
-/** The unit that a description tells of. */
+/** The unit named in a description, or an empty string. */
 function unitOf(about: string): string {
   if (/radians/.test(about)) return 'rad';
   if (/in pixels|how many (more )?pixels/i.test(about)) return 'px';

@@ -1,15 +1,15 @@
-// Recipes that leave the page: as a file, or as an address that holds the text.
+// Shares recipes outside of the page: as a file, or as a link that contains the text.
 
 const TEXT = '#toml=';
 
-/** Has the browser save a text. */
+/** Downloads a text as a file. */
 export function download(text: string, file: string): void {
   const url = URL.createObjectURL(new Blob([text], { type: 'application/toml' }));
   Object.assign(document.createElement('a'), { href: url, download: file }).click();
   setTimeout(() => URL.revokeObjectURL(url), 1000);
 }
 
-/** The address of this page with a text in it, compressed. */
+/** Returns a link to this page that contains a compressed text. */
 export async function linkTo(text: string): Promise<string> {
   const bytes = new Uint8Array(await through(new CompressionStream('deflate-raw'), text).arrayBuffer());
   const letters = Array.from(bytes, (byte) => String.fromCharCode(byte)).join('');
@@ -17,7 +17,7 @@ export async function linkTo(text: string): Promise<string> {
   return location.origin + location.pathname + TEXT + code;
 }
 
-/** The text that the fragment of an address holds; null for another fragment. */
+/** Returns the text in the fragment of a link, or null if there is none. */
 export async function textOf(fragment: string): Promise<string | null> {
   if (!fragment.startsWith(TEXT)) return null;
   try {

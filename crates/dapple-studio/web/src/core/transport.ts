@@ -1,28 +1,28 @@
-// What carries messages: here a WebSocket to `dapple studio`, and in wasm.ts a worker with WebAssembly. Nothing else in the
-// page knows which.
+// Transports of messages: here a WebSocket to `dapple studio`, and in wasm.ts a WebAssembly worker. The rest of the
+// page is independent of the transport.
 import type { Frame, Reply, Request, View } from './protocol';
 import { FIRST, frame } from './protocol';
 
-/** A way to whatever computes. */
+/** A connection to the studio. */
 export interface Transport {
-  /** The view that was asked for before there was a page, if one was. */
+  /** The view that was requested before the page was loaded, if any. */
   readonly first: View | null;
   send(message: Request): void;
-  /** Called with each message. */
+  /** Called for each message. */
   onmessage: (message: Reply) => void;
-  /** Called with each picture. */
+  /** Called for each image. */
   onpicture: (picture: Frame) => void;
-  /** Called when the way opens and closes. */
+  /** Called when the connection opens, closes or is refused. */
   onstate: (state: 'open' | 'closed' | 'refused') => void;
   /** The address of an exported file. */
   exportUrl(id: string, name: string): string;
   close(): void;
 }
 
-/** Milliseconds between two tries to connect again. */
+/** Delay in milliseconds before reconnecting. */
 const AGAIN = 1000;
 
-/** The token of the address, which leaves it at once; kept until the tab closes. */
+/** Returns the token from the address, and removes it from the address. The token is stored until the tab closes. */
 export function token(): string {
   const kept = 'dapple-token';
   const given = location.hash.replace(/^#(t=)?/, '');
@@ -33,7 +33,10 @@ export function token(): string {
   return sessionStorage.getItem(kept) ?? '';
 }
 
-/** A socket to the server that the page came from. It asks for the first view at once; what arrives waits for the page. */
+/**
+ * A socket to the server of the page. It requests the initial view at once. Messages that arrive early wait for the
+ * page.
+ */
 export class Socket implements Transport {
   readonly first = FIRST;
   onmessage: (message: Reply) => void = () => {};
@@ -43,16 +46,16 @@ export class Socket implements Transport {
   #waiting: Request[] = [];
   #closed = false;
   #again: ReturnType<typeof setTimeout> | undefined;
-  /** Whether it was open once: a page that comes back asks again for what it shows. */
+  /** Whether the socket was open before. After reconnecting, the page requests its current view itself. */
   #opened = false;
 
-  /** `ready` is over when there is a page, which hears. */
+  /** `ready` resolves when the page is loaded and can receive messages. */
   constructor(
     private token: string,
     private readonly ready: Promise<void>,
   ) {
     this.#connect();
-    // The address of a new run, pasted into this tab, differs from that of the last one in what follows # alone.
+    // The address of a new run, pasted into this tab, may differ from the last one only in its fragment.
     addEventListener('hashchange', () => this.#renew());
   }
 
@@ -70,7 +73,7 @@ export class Socket implements Transport {
     this.#socket?.close();
   }
 
-  /** Goes on with the token of the address, if it is another one. */
+  /** Reconnects with the token in the address, if it differs. */
   #renew(): void {
     const given = token();
     if (given === this.token || this.#closed) return;
@@ -83,7 +86,7 @@ export class Socket implements Transport {
 
   #connect(): void {
     const view = this.#opened ? '' : `&view=${encodeURIComponent(JSON.stringify(FIRST))}`;
-    // Beside the page, since a proxy may have put it below a path.
+    // The path is relative, since a proxy may serve the page below a path.
     const url = new URL(`ws?t=${encodeURIComponent(this.token)}${view}`, location.href);
     url.protocol = location.protocol === 'https:' ? 'wss:' : 'ws:';
     const socket = (this.#socket = new WebSocket(url));
@@ -112,7 +115,7 @@ export class Socket implements Transport {
   }
 }
 
-/** Whether there is a server: where it refuses the socket, it has another secret. */
+/** Whether the server responds. If it does but refuses the socket, the token is wrong. */
 async function answers(): Promise<boolean> {
   try {
     return (await fetch(location.pathname, { method: 'HEAD' })).ok;

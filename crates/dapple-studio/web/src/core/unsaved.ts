@@ -1,6 +1,6 @@
-// Changes that were not saved, kept over a reload of the page in this tab.
+// Unsaved changes, kept in this tab across a reload of the page.
 
-/** A text that differs from what was opened, and of which recipe. */
+/** An unsaved text and the recipe that it belongs to. */
 export interface Unsaved {
   name: string;
   file: string | null;
@@ -8,11 +8,11 @@ export interface Unsaved {
 }
 
 const KEY = 'dapple-unsaved';
-/** Milliseconds after the last change until it is kept. */
+/** Delay in milliseconds from the last change until it is stored. */
 const BREATH = 300;
 let waiting: ReturnType<typeof setTimeout> | undefined;
 
-/** Keeps changes; null forgets them. */
+/** Stores the unsaved changes after a delay. Null removes them. */
 export function remember(changes: () => Unsaved | null): void {
   clearTimeout(waiting);
   waiting = setTimeout(() => {
@@ -22,7 +22,7 @@ export function remember(changes: () => Unsaved | null): void {
   }, BREATH);
 }
 
-/** What was kept before the reload. */
+/** Returns the changes stored before the reload. */
 export function recall(): Unsaved | null {
   const kept = sessionStorage.getItem(KEY);
   return kept === null ? null : (JSON.parse(kept) as Unsaved);

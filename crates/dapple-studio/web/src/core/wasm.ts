@@ -1,11 +1,11 @@
-// A way to the studio in WebAssembly, in a worker. The address may name a recipe: `#marble` or `?recipe=marble` a built-in
-// one, and `#toml=…` holds the text of any.
+// The transport to the studio in WebAssembly, in a worker. The address may name a recipe: `#marble` or
+// `?recipe=marble` for a built-in recipe, or `#toml=…` with the text of any recipe.
 import type { Reply, Request } from './protocol';
 import { frame } from './protocol';
 import { download, textOf } from './share';
 import type { Transport } from './transport';
 
-/** What the worker sends: a picture, a message with the files that it names, or why there is no program. */
+/** A result of the worker: an image, a message with the files that it lists, or the error of loading the module. */
 type Sent = ArrayBuffer | { reply: Reply; files: ArrayBuffer[] } | { failed: string };
 
 /** The studio in a worker of this page. */
@@ -50,7 +50,7 @@ export class Wasm implements Transport {
     this.onmessage(reply);
   }
 
-  /** Says what there is, and opens the recipe of the address. */
+  /** Forwards the greeting and opens the recipe of the address. */
   async #greet(hello: Reply & { type: 'hello' }): Promise<void> {
     const first = this.#greeted ? null : await named(hello.builtins.map(({ name }) => name));
     this.#greeted = true;
@@ -60,7 +60,7 @@ export class Wasm implements Transport {
     if (first) this.send({ type: 'open', ...first });
   }
 
-  /** Keeps the files of an export in place of those of the last one. */
+  /** Stores the files of an export, replacing the previous ones, and returns the id of the export. */
   #keep(names: string[], files: ArrayBuffer[]): string {
     for (const url of this.#urls.values()) URL.revokeObjectURL(url);
     const id = String((this.#exports += 1));
@@ -74,7 +74,7 @@ export class Wasm implements Transport {
   }
 }
 
-/** The recipe that the address names, if there is one. */
+/** The recipe in the address, if any. */
 async function named(builtins: string[]): Promise<{ builtin?: string; text?: string } | null> {
   const text = await textOf(location.hash);
   if (text !== null) return { text };

@@ -1,7 +1,9 @@
-// The worker of the page without a server: the studio in WebAssembly. It processes messages and works between them.
+// The worker of the page without a server: runs the studio in WebAssembly and processes messages between steps of
+// work.
 //
-// It receives the address of the program first, then messages. It sends messages and pictures; files of an export come with
-// the message that names them. Where the program fails, a new one begins, and the page goes on with its own text.
+// It receives the address of the module first, then messages. It sends messages and images. The files of an export are
+// sent with the message that lists them. After a failure of the module, a new instance starts, and the page keeps its
+// own text.
 import type { Reply, Request } from './protocol';
 
 /** The exports of the WebAssembly module: see crates/dapple-web/src/abi.rs. */
@@ -15,7 +17,7 @@ interface Module {
   reply_length(): number;
 }
 
-/** Milliseconds within which a second failure ends it. */
+/** Time in milliseconds within which a second failure is final. */
 const AGAIN = 5000;
 const [MESSAGE, PICTURE] = [1, 2];
 
@@ -23,7 +25,7 @@ let program: WebAssembly.Module | null = null;
 let module: Module | null = null;
 let failed = -Infinity;
 const waiting: Request[] = [];
-// A message to itself comes after those of the page that came before.
+// A message that the worker sends to itself is queued after the pending messages of the page.
 const { port1: bell, port2: rope } = new MessageChannel();
 let rung = false;
 
@@ -56,7 +58,7 @@ function send(module: Module, message: Request): void {
   module.receive();
 }
 
-/** Gives the page what was made. */
+/** Sends all queued results to the page. */
 function give(module: Module): void {
   const bytesOfReply = () => module.memory.buffer.slice(module.reply(), module.reply() + module.reply_length()) as ArrayBuffer;
   for (let kind = module.poll(); kind !== 0; kind = module.poll()) {
@@ -69,7 +71,7 @@ function give(module: Module): void {
   }
 }
 
-/** Runs a part of the program; after a failure another one begins. */
+/** Calls the module. After a failure, a new instance starts. */
 function attempt(part: (module: Module) => void): void {
   if (!module) return;
   try {

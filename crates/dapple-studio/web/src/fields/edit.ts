@@ -1,11 +1,11 @@
-// How widgets change the recipe: an edit names a path, and tables that were not written yet come with their defaults.
+// Edits of the recipe by widgets. An edit names a path; a table that is not written yet is created with its defaults.
 import type { Json, Path } from '../core/protocol';
 import type { Part, Shape } from '../core/schema';
 
-/** Sets a value of the recipe, or takes it away where the value is undefined. */
+/** Sets a value of the recipe, or removes it if the value is undefined. */
 export type Edit = (path: Path, value: Json | undefined, gesture?: number | null, drag?: boolean) => void;
 
-/** What every widget is given. */
+/** Properties of every widget. */
 export interface FieldProps {
   schema: import('../core/schema').JsonSchema;
   path: Path;
@@ -17,13 +17,13 @@ export interface FieldProps {
   edit: Edit;
 }
 
-/** What the widgets of lists and unions are given. */
+/** Properties of the widgets of lists and unions. */
 export interface InnerProps<K extends Shape['kind']> extends Omit<FieldProps, 'schema' | 'about' | 'required'> {
   shape: Extract<Shape, { kind: K }>;
   depth: number;
 }
 
-/** The value with another at the end of a path. */
+/** Returns a copy of a value in which the value at a path is replaced. */
 export function setIn(value: Json | undefined, path: Path, inner: Json | undefined): Json {
   const [key, ...rest] = path;
   if (key === undefined) return inner ?? null;
@@ -37,8 +37,8 @@ export function setIn(value: Json | undefined, path: Path, inner: Json | undefin
 }
 
 /**
- * Edits below a value that may not be written yet. Its default becomes what is written, without the parts that are the
- * same when they are left out.
+ * Edits within a value that may not be written yet. In that case its default is written, without the properties that
+ * equal their defaults.
  */
 export function within(edit: Edit, path: Path, value: Json | undefined, fallback: Json | undefined, parts: Part[] = []): Edit {
   if (value !== undefined || fallback === undefined || fallback === null) return edit;

@@ -1,19 +1,19 @@
-// Where the nodes of a recipe lie in a drawing.
+// Layout of the graph of nodes.
 import dagre from '@dagrejs/dagre';
 import type { Graph } from '../core/protocol';
 
-/** The size of a node in the drawing, and the gaps between nodes. */
+/** The size of a node in the graph, and the height of an input row. */
 export const NODE = { width: 150, height: 50, row: 11 };
 
-/** How high a node with so many inputs is. */
+/** The height of a node with this number of inputs. */
 export function heightOf(inputs: number): number {
   return Math.max(NODE.height, 8 + inputs * NODE.row);
 }
 
-/** The name of the node that stands for the material. */
+/** The name of the node that represents the material. */
 export const MATERIAL = '#material';
 
-/** Where nodes lie, from left to right; the same graph always lies the same. */
+/** Positions of the nodes, laid out from left to right. Equal graphs have equal layouts. */
 export function layout(graph: Graph): Map<string, { x: number; y: number }> {
   const drawing = new dagre.graphlib.Graph();
   drawing.setGraph({ rankdir: 'LR', nodesep: 12, ranksep: 40, marginx: 8, marginy: 8 });

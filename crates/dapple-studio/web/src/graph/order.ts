@@ -1,7 +1,7 @@
-// What depends on what in a recipe.
+// Dependencies between the nodes of a recipe.
 import type { Graph } from '../core/protocol';
 
-/** The node and all nodes that are made of it. */
+/** Returns a node and all nodes that depend on it. */
 export function reachable(graph: Graph, from: string): Set<string> {
   const found = new Set([from]);
   const waiting = [from];
@@ -15,13 +15,13 @@ export function reachable(graph: Graph, from: string): Set<string> {
   return found;
 }
 
-/** Whether the material is made of a node. */
+/** Whether the material depends on a node. */
 export function isUsed(graph: Graph, name: string): boolean {
   const all = reachable(graph, name);
   return Object.values(graph.material).some(({ node }) => node !== null && all.has(node));
 }
 
-/** Nodes and edges, without values: what the drawing depends on. */
+/** Serializes nodes and edges without values, which determine the layout. */
 export function topology(graph: Graph): string {
   const edges = graph.nodes.map((node) => [node.name, node.kind, node.inputs.map((input) => [input.label, input.node])]);
   return JSON.stringify([edges, Object.entries(graph.material).map(([map, input]) => [map, input.node])]);

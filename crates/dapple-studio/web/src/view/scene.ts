@@ -1,8 +1,8 @@
-// The material in light, by WebGL: maps that arrived become textures of a physically based material.
+// Renders the lit material with WebGL: received maps become textures of a physically based material.
 //
-// Normals are in tangent space; occlusion, roughness and metallic come packed as in glTF; albedo is sRGB and all else
-// linear. Heights displace the surface by the relief of the recipe. The surroundings are made here: a sky that gets
-// lighter upward and three soft boxes.
+// Normals are in tangent space. Occlusion, roughness and metallic are packed as in glTF. Albedo is sRGB, all other
+// maps are linear. Heights displace the surface by the relief of the recipe. The environment is generated: a sky that
+// gets brighter toward the top, and three soft boxes.
 import {
   AmbientLight, BackSide, BoxGeometry, type BufferGeometry, Color, DataTexture, DirectionalLight,
   LinearFilter, LinearMipmapLinearFilter, Mesh, MeshBasicMaterial, MeshStandardMaterial, NeutralToneMapping, NoColorSpace, PerspectiveCamera, PlaneGeometry,
@@ -12,22 +12,22 @@ import {
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import type { Picture } from '../core/pictures';
 
-/** How a material lies on a shape. */
+/** How a material is applied to a shape. */
 export interface Lay {
   shape: 'sphere' | 'plane' | 'model';
   repeat: number;
-  /** Height of the largest displacement over the width of the tile. */
+  /** Height of the largest displacement divided by the width of the tile. */
   relief: number;
   displaced: boolean;
   aspect: number;
-  /** Whether the green of normals points down. */
+  /** Whether the green channel of normals points down. */
   flipped: boolean;
 }
 
 /** The maps of the scene. */
 export const LIT = ['albedo', 'normal', 'orm', 'height'] as const;
 
-/** A scene in a canvas; draws only when something changed. */
+/** A scene in a canvas, redrawn only after changes. */
 export class LitScene {
   readonly #renderer: WebGLRenderer;
   readonly #scene = new Scene();
@@ -37,12 +37,12 @@ export class LitScene {
   readonly #mesh = new Mesh<BufferGeometry, MeshStandardMaterial>(new SphereGeometry(1, 64, 32), this.#material);
   readonly #light = new DirectionalLight(0xfff4e2, 1.9);
   readonly #textures = new Map<string, DataTexture>();
-  /** The level of the height's smaller copies whose pixels are as far apart as the vertices. */
+  /** The mipmap level of the height map whose texels are as far apart as the vertices. */
   readonly #level = { value: 0 };
   #model: BufferGeometry | null = null;
   #shape = '';
   #waiting = 0;
-  /** Frames drawn so far. */
+  /** The number of drawn frames. */
   frames = 0;
 
   constructor(canvas: HTMLCanvasElement) {
@@ -67,7 +67,7 @@ uniform float displacementLevel;`);
     this.#controls.update();
   }
 
-  /** Takes a new picture of a map. */
+  /** Updates the texture of a map. */
   take(name: string, picture: Picture | undefined): void {
     const pixels = picture && joined(picture);
     if (!pixels) return;
@@ -84,7 +84,7 @@ uniform float displacementLevel;`);
     this.later();
   }
 
-  /** Lays the material on a shape. */
+  /** Applies the material to a shape. */
   lay(lay: Lay): void {
     const geometry = `${lay.shape} ${lay.displaced} ${lay.aspect}`;
     if (geometry !== this.#shape) this.#build(lay);
@@ -101,7 +101,7 @@ uniform float displacementLevel;`);
     this.later();
   }
 
-  /** Shows a model of one's own from a GLB or OBJ file. */
+  /** Loads a model from a GLB or OBJ file of the user. */
   async load(file: File): Promise<void> {
     const found: BufferGeometry[] = [];
     const collect = (object: unknown) => object instanceof Mesh && found.push((object as Mesh).geometry);
@@ -119,7 +119,7 @@ uniform float displacementLevel;`);
     this.#shape = '';
   }
 
-  /** Turns the light, in turns. */
+  /** Rotates the light about the vertical axis. The angle is in turns. */
   turnLight(turn: number): void {
     const angle = turn * 2 * Math.PI;
     this.#light.position.set(Math.sin(angle) * 3.2, 2.6, Math.cos(angle) * 3.2);
@@ -127,7 +127,7 @@ uniform float displacementLevel;`);
     this.later();
   }
 
-  /** Turns the view by keys, in radians. */
+  /** Rotates the view from the keyboard. Angles are in radians. */
   orbit(x: number, y: number): void {
     const at = this.#camera.position.clone();
     const radius = at.length();
@@ -145,7 +145,7 @@ uniform float displacementLevel;`);
     this.later();
   }
 
-  /** Draws at the next frame. */
+  /** Schedules a redraw for the next frame. */
   later(): void {
     this.#waiting ||= requestAnimationFrame(() => {
       this.#waiting = 0;
@@ -182,13 +182,15 @@ uniform float displacementLevel;`);
   }
 }
 
-/** How many faces a shape has along its width and height. */
+/** The number of segments of a shape along its width and height. */
 function segments({ shape, displaced }: Lay): [number, number] {
   if (shape === 'sphere') return displaced ? [320, 160] : [128, 64];
   return displaced ? [256, 256] : [1, 1];
 }
 
-/** Moves a vertex by the height about it: of all pixels up to the next vertex, so that steep borders are not jagged. */
+/**
+ * Displaces a vertex by the height averaged over the texels between vertices, so that steep borders are not jagged.
+ */
 const DISPLACEMENT = `
 #ifdef USE_DISPLACEMENTMAP
   float height = textureLod(displacementMap, vDisplacementMapUv, displacementLevel).x;
@@ -196,7 +198,7 @@ const DISPLACEMENT = `
 #endif
 `;
 
-/** The pixels of a picture, the first row at the bottom as WebGL counts them; null while pieces are missing. */
+/** The pixels of an image, top row first; the texture flips the rows. Returns null while pieces are missing. */
 function joined(picture: Picture): Uint8ClampedArray<ArrayBuffer> | null {
   const [w, h] = picture.size;
   const pieces = picture.whole;
@@ -246,7 +248,7 @@ function count(geometry: BufferGeometry): number {
   return geometry.getAttribute('position')?.count ?? 0;
 }
 
-/** A model about the origin, of the size of the sphere. */
+/** Centers a model at the origin and scales it to about the size of the sphere. */
 function fitted(geometry: BufferGeometry): BufferGeometry {
   geometry.center();
   geometry.computeBoundingSphere();
