@@ -47,7 +47,7 @@ impl Code<'_> {
         let size = if width == height {
             width.to_string()
         } else {
-            // Shapes of arrays have rows first.
+            // Array shapes list rows first.
             format!("({height}, {width})")
         };
         format!(
@@ -59,6 +59,7 @@ impl Code<'_> {
 
     /// A shell command that bakes the recipe.
     fn command(&self, document: &Document, recipe: &Recipe) -> String {
+        // Name the recipe by its file, by its built-in name if the text is unchanged, or by a file to be saved.
         let builtin = Recipe::builtin_names()
             .find(|name| Recipe::builtin_text(name).is_ok_and(|text| text == document.text()));
         let own = format!(

@@ -68,12 +68,14 @@ impl Graph {
                 inputs: inputs.collect(),
             })
         };
+        // List the nodes in the order of the text.
         let names = names_in_order(document, &data);
         let all = data.get("nodes").and_then(Json::as_object);
         let nodes = names
             .iter()
             .filter_map(|name| node(all?.get_key_value(name)?));
         let nodes: Vec<_> = nodes.collect();
+        // List the inputs of the material.
         let of_material = |found: &&Found<'_>| {
             found.role == Role::Input && found.path.first() == Some(&"material".into())
         };

@@ -40,7 +40,7 @@ pub enum Request {
     },
     /// The images that the page shows.
     View(View),
-    /// Acknowledges that the page has drawn an image, which releases the next image of the map.
+    /// Acknowledges an image, which releases the next image of the map.
     Ack {
         /// The generation of the image.
         generation: u32,
@@ -393,7 +393,7 @@ pub struct Named {
 struct Limits {
     /// Maximum side of an image, in pixels.
     size: u32,
-    /// Maximum side of a tile of which only a part is shown, in pixels.
+    /// Maximum side of a tile that is shown in part, in pixels.
     whole: u32,
 }
 

@@ -54,7 +54,7 @@ pub struct Picture {
     pub first: [u32; 2],
     /// Columns and rows of the part.
     pub size: [u32; 2],
-    /// The factor by which the image is smaller than requested.
+    /// Reduction factor relative to the requested size.
     pub scale: u16,
     /// Whether the image is a draft, which a larger image follows.
     pub is_draft: bool,
@@ -128,6 +128,9 @@ impl Picture {
     }
 
     /// The header, with capacity for the pixels of this format.
+    ///
+    /// Byte offsets: 0 version, 4 generation, 8 content code, 10 format (0 with alpha, 1 without, 2 gray), 12 first
+    /// column, 16 first row, 20 columns, 24 rows, 28 scale, 30 flags (1 draft, 2 last part).
     fn header(&self, format: u16, n_bytes: usize) -> Vec<u8> {
         let mut bytes = Vec::with_capacity(HEADER + n_bytes);
         let flags = u16::from(self.is_draft) | u16::from(self.is_last) << 1;

@@ -28,6 +28,7 @@ pub(crate) fn report(
     let graph = net
         .graph()
         .map_err(|error| StudioError::new(error.to_string()))?;
+    // Convert each edge to two indices and a vector.
     let edge = |(from, axis): (dapple::points::PointIdx, dapple::graph::Axis)| {
         (from.0, axis.to.0, axis.vector.x, axis.vector.y)
     };

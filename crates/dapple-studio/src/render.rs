@@ -13,7 +13,7 @@ use std::sync::Arc;
 
 /// Maximum side of an image, in pixels.
 pub const MAX_SIDE: u32 = 4096;
-/// Maximum side of a tile of which only a part is shown, in pixels.
+/// Maximum side of a tile that is shown in part, in pixels.
 pub(crate) const MAX_TILE: u32 = 1 << 16;
 /// Maximum and minimum of the longer side of a draft, in pixels.
 const DRAFT_SIDES: [u32; 2] = [256, 64];
@@ -200,6 +200,7 @@ impl Renderer {
                 return Err(error);
             }
         };
+        // Render the draft and the full images.
         let mut pass = Pass {
             job,
             world,
@@ -209,6 +210,7 @@ impl Renderer {
         };
         let drawn = pass.draw();
         self.draft_side = pass.draft_side;
+        // Send the graph and the empty list of errors once per document.
         let is_told = |told: &Arc<Document>| Arc::ptr_eq(told, &job.document);
         let is_new = !self.told.as_ref().is_some_and(is_told);
         if is_new {
@@ -220,6 +222,7 @@ impl Renderer {
             let (rev, items) = (job.rev, Vec::new());
             world.put(Reply::Diagnostics { rev, items }.into());
         }
+        // Render the thumbnails and the lit preview last.
         pass.thumbnails()?;
         let planned = self.planned.as_ref();
         planned.map_or(Ok(()), |planned| pass.preview(recipe, &planned.images))

@@ -37,6 +37,7 @@ pub(crate) fn lit(
 ) -> Result<([u32; 2], Vec<u8>), StudioError> {
     let mut recipe = recipe.clone();
     recipe.material.normal_y = NormalY::OpenGl;
+    // Bake the albedo and the normals.
     let plan = planned(&recipe, images, 0.0)?;
     let size = size_of(recipe.extent, side);
     let maps = vec![MapKind::Albedo, MapKind::Normal];
@@ -53,6 +54,7 @@ pub(crate) fn lit(
     else {
         return Err(StudioError::new("a map was not baked"));
     };
+    // Light every pixel.
     let lit = colors.zip_map(&normals, |&color, normal| color * light(normal));
     let lit = lit.map_err(|error| StudioError::new(error.to_string()))?;
     Ok((size, of_colors(&lit)))

@@ -68,6 +68,7 @@ impl<'a> Walk<'a> {
         if schema.get("$ref").is_some() {
             return self.value(schema, value);
         }
+        // Walk all variants of a union.
         for branch in branches(schema) {
             self.value(branch, value);
         }
@@ -80,7 +81,7 @@ impl<'a> Walk<'a> {
                         self.within(Part::Key(key.clone()), |walk| walk.value(inner, value));
                     }
                 }
-                // Properties of a variant that does not match this table are not missing.
+                // Only a variant whose required keys are present can have missing properties.
                 let is_this = requirements(schema).all(|key| entries.contains_key(key));
                 if is_this {
                     self.missing(schema, entries);

@@ -26,6 +26,7 @@ pub(crate) fn report(
             "a side of a picture is from 1 to {MAX_SIDE} pixels"
         )));
     }
+    // Bake the maps of the whole tile.
     let plan = planned(recipe, images, 0.0)?;
     let options = BakeOptions {
         size,
@@ -33,11 +34,13 @@ pub(crate) fn report(
         ..BakeOptions::default()
     };
     let maps = Bake::new(&plan, &options)?.whole_maps()?;
+    // Measure the seams along the wrapping axes only.
     let axes = SeamOptions {
         axes: recipe.wrap,
         ..SeamOptions::default()
     };
     let report = |(kind, rows): &(MapKind, MapRows)| {
+        // Measure every channel and keep the report with the largest ratio.
         let worst = channels(rows)?
             .into_iter()
             .map(|channel| SeamReport::of(&channel, &axes));

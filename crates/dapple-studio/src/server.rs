@@ -120,7 +120,7 @@ struct Shared {
 /// Maximum number of simultaneous pages.
 const MOST_PAGES: usize = 16;
 
-/// How long a server with `once` waits for a reloaded page to reconnect before it ends.
+/// Time for a reloaded page to reconnect before a server with `once` ends.
 const GRACE: Duration = Duration::from_secs(2);
 
 /// Whether the page is built into this program. Otherwise the server sends a page that says how to build it.
@@ -167,6 +167,7 @@ async fn run(
                 .with_hint("leave --port out for any free one")
         })?;
     let port = listener.local_addr().map_or(port, |address| address.port());
+    // Set up access control and the folder of recipes.
     let guard = Guard::new(port, options.public_url.as_deref())?;
     let url = guard.url();
     let named = options.recipe.as_deref();
@@ -191,6 +192,7 @@ async fn run(
     // Build the greeting while the browser starts.
     drop(std::thread::spawn(Hello::new));
     tell(&url);
+    // Open the browser, and remove its temporary file after a while.
     if !no_open {
         shared.way.open(&url);
         let shared = shared.clone();

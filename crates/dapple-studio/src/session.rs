@@ -104,6 +104,7 @@ impl Session {
             return vec![Reply::Stale { rev: self.rev }];
         }
         let old = self.document.text();
+        // Use the fast path for edits of numbers, and the general one otherwise.
         let new = match spliced(&self.document, ops) {
             Some(new) => Ok(new),
             None => self
@@ -118,6 +119,7 @@ impl Session {
             Ok(new) => new,
             Err(error) => return vec![Reply::refused("patch", &error)],
         };
+        // Report the edits, then replace the document.
         let changes = changes(old, &new);
         self.rev += 1;
         let mut replies = vec![Reply::Edits {

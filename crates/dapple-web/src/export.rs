@@ -23,6 +23,7 @@ pub(crate) fn files(
         maps: maps.clone(),
         ..BakeOptions::default()
     };
+    // Write the maps band by band, each to a buffer.
     let writer = |kind: &MapKind| {
         RowWriter::new(Cursor::new(Vec::new()), size, kind.content(), encoding).map_err(told)
     };

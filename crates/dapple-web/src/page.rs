@@ -115,6 +115,7 @@ impl Page {
 
     /// Performs the next step of work. Returns whether more work is pending.
     pub fn step(&mut self) -> bool {
+        // In order of priority: tasks, the view, the strip, the gallery.
         if let Some(task) = self.tasks.pop_front() {
             self.perform(&task);
         } else if let Some(mut drawing) = self.drawing.take() {

@@ -67,6 +67,7 @@ pub(super) fn rename(document: &mut DocumentMut, name: &str, to: &str) -> Result
         }
         _ => return Err(no_node(name)),
     }
+    // Rename the references in inputs.
     for found in roles(&data) {
         let is_named = found.value.and_then(Json::as_str) == Some(name);
         if found.role == Role::Input && found.is_written && is_named {
@@ -176,6 +177,7 @@ pub(super) fn connect(
     {
         return Err(no_node(node));
     }
+    // An index just past the end of an array appends an input.
     let mut path: Vec<Part> = vec!["nodes".into(), node.into()];
     path.extend_from_slice(input);
     let root = Place::Table(document.as_table_mut());
@@ -197,6 +199,7 @@ pub(super) fn make_points(
     node: &str,
     options: &Map<String, Json>,
 ) -> Result<(), StudioError> {
+    // Put each point on a separate line.
     let mut table = table_of(options)?;
     if let Some(Item::Value(Value::Array(points))) = table.get_mut("points") {
         for point in points.iter_mut() {

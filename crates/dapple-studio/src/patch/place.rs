@@ -240,6 +240,7 @@ fn rewrite_table(
     entries: &Map<String, Json>,
     depth: usize,
 ) -> Result<(), StudioError> {
+    // Remove entries that the object lacks, then write the others.
     let gone = table.iter().map(|(key, _)| key.to_owned());
     let gone: Vec<_> = gone.filter(|key| !entries.contains_key(key)).collect();
     for key in gone {

@@ -18,6 +18,7 @@ pub(crate) fn spliced(document: &Document, ops: &[Op]) -> Option<String> {
         };
         replace(at(document, path)?, value, &mut parts)?;
     }
+    // Copy the text and replace the ranges in order.
     parts.sort_by_key(|(range, _)| range.start);
     let old = document.text();
     let mut text = String::with_capacity(old.len() + 32);

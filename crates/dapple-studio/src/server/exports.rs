@@ -1,4 +1,4 @@
-//! Exported files, kept in memory until the page downloads them.
+//! Exported files, kept in memory for download.
 
 use super::ExportedFile;
 use super::page::content_type;

@@ -99,6 +99,7 @@ impl Folder {
         seen: Option<&str>,
         overwrite: bool,
     ) -> Result<String, StudioError> {
+        // Validate the name and the text.
         if !self.is_named(name) {
             check_name(name)?;
             if !is_recipe(text) {
@@ -109,6 +110,7 @@ impl Folder {
             return Err(StudioError::new("the text is longer than 4 MiB"));
         }
         let mut path = self.path.join(name);
+        // Detect changes by other programs.
         if fs::symlink_metadata(&path).is_ok() {
             let (_, hash) = self.read(name)?;
             if !overwrite && seen != Some(&hash) {

@@ -15,7 +15,7 @@ pub(super) struct Gallery {
 const KEPT: usize = 1000;
 
 impl Gallery {
-    /// Returns the thumbnail of a recipe, rendered on the first call.
+    /// Returns the thumbnail of a recipe from the cache, or renders it.
     pub(super) fn of(
         &self,
         shown: Shown,

@@ -3,8 +3,8 @@
 //! A page of another site can send requests to 127.0.0.1. With a host name that resolves to 127.0.0.1 (DNS
 //! rebinding), it can even read the responses. So a request must name a loopback host, which nobody else can own, or
 //! the host of the public URL. A loopback host may have any port, since a port may be forwarded. The origin must
-//! equal that host. Everything that shows data of the user also needs the token, which no other page can read or
-//! send.
+//! match that host or the public URL. Everything that shows data of the user also needs the token, which no other
+//! page can read or send.
 
 use crate::StudioError;
 use axum::extract::Request;
@@ -61,9 +61,11 @@ impl Guard {
     pub(super) fn check(&self, request: &Request) -> Result<(), String> {
         let headers = request.headers();
         let path = request.uri().path();
+        // Check the host, which stops DNS rebinding.
         let Some(host) = one(headers, HOST).filter(|host| self.is_ours(host)) else {
             return Err(self.wrong_host());
         };
+        // Check the origin, which is required for sockets.
         match one(headers, ORIGIN) {
             Some(origin) if !self.is_origin_of(origin, host) => {
                 return Err(
@@ -79,9 +81,11 @@ impl Guard {
             }
             _ => {}
         }
+        // Check the fetch metadata of the browser.
         if !is_from_here(headers, path) {
             return Err("The request comes from another site.\n".to_owned());
         }
+        // Require the token for all data of the user.
         let is_open = !["/ws", "/export/", "/image/"]
             .iter()
             .any(|start| path.starts_with(start));

@@ -52,6 +52,7 @@ pub(super) fn file(path: &str, dist: Option<&Path>) -> Response {
 
 #[expect(clippy::disallowed_methods, reason = "for those who work on the page")]
 fn of_folder(name: &str, dist: &Path) -> Response {
+    // Reject hidden files and `..`.
     let is_plain = name
         .split('/')
         .all(|part| !part.is_empty() && !part.starts_with('.'));

@@ -1,4 +1,4 @@
-//! The WebSocket of a page, which receives requests and sends replies and images.
+//! The socket of a page, which receives requests and sends replies and images.
 
 use super::Shared;
 use super::files::decoded;
@@ -23,7 +23,7 @@ const MAX_MESSAGE: usize = 2 * MAX_TEXT;
 /// Polling interval for changes of the files that a page shows.
 const LOOK: Duration = Duration::from_millis(100);
 
-/// Upgrades a request to a WebSocket.
+/// Upgrades a request to a socket.
 pub(super) async fn upgrade(shared: Arc<Shared>, request: HttpRequest) -> Response {
     let (mut parts, _) = request.into_parts();
     let upgrade = match WebSocketUpgrade::from_request_parts(&mut parts, &()).await {
@@ -165,6 +165,7 @@ impl Page {
     }
 
     async fn answer(&mut self, request: Request) -> Result<(), Ended> {
+        // Handle flow control and slow requests.
         if let Request::Ack { map, .. } = request {
             return match self.flow.drawn(map) {
                 Some(picture) => self.show(&picture).await,
@@ -181,6 +182,7 @@ impl Page {
             return Ok(());
         }
         let images = |recipe: &Recipe| self.worker.images(recipe);
+        // Answer the others immediately.
         let replies = match self.session.handle(&request, &images) {
             Some(replies) => {
                 if let Request::Open { .. } = request {

@@ -253,7 +253,7 @@ export interface Frame {
   y: number;
   w: number;
   h: number;
-  /** The factor by which the image is smaller than the tile. */
+  /** Reduction factor of the image relative to the tile. */
   scale: number;
   draft: boolean;
   last: boolean;
