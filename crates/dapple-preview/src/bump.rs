@@ -44,6 +44,7 @@ pub(crate) fn bump_shadow(cosine: f64, slope: f64) -> f64 {
         return 0.0;
     }
     let tangent_sq = |cosine: f64| (1.0 - cosine * cosine).max(0.0) / (cosine * cosine).max(1e-12);
+    // Evaluate the GGX masking function with the roughness that matches the slope of the bump.
     let roughness_sq = (0.125 * tangent_sq(slope)).clamp(0.0, 1.0);
     2.0 / (1.0 + (1.0 + roughness_sq * tangent_sq(cosine)).sqrt())
 }

@@ -68,6 +68,7 @@ impl Camera {
             fov,
             "from 1e-9 to below π",
         )?;
+        // Build an orthonormal frame: forward, right and down.
         let forward = PreviewError::direction("view of the camera", self.target - self.eye)?;
         let up = PreviewError::direction("up of the camera", self.up)?;
         let across = forward.cross(up);
@@ -77,6 +78,7 @@ impl Camera {
             return Err(PreviewError::new(PreviewErrorKind::NoDirection { what }));
         }
         let right = across.normalize();
+        // Scale right and down to one sample at distance 1.
         let sample = 2.0 * libm::tan(0.5 * fov) / samples[1];
         Ok(View {
             eye: self.eye,

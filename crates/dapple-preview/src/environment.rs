@@ -46,8 +46,8 @@ pub struct Sun {
     pub color: LinearRgb,
     /// Radius of the disk as a chord, from 0 to 2. The real sun has 0.0047. The outer fifth fades out.
     pub radius: f64,
-    /// The light of the glow at the center of the disk. At chord `c`, it is scaled by `1 / (1 + (c /
-    /// glow_radius)²)²`.
+    /// The light of the glow at the center of the disk. At chord `c`, it is scaled by
+    /// `1 / (1 + (c / glow_radius)²)²`.
     pub glow: LinearRgb,
     /// The chord at which the glow has fallen to a quarter, above zero.
     pub glow_radius: f64,

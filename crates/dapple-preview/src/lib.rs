@@ -45,12 +45,12 @@
 //! # Limits
 //!
 //! * Supersampling is from 1 to 64, and a ray has at most 16 mirror reflections.
-//! * Light between surfaces is not simulated, since the previews are for textures. Shadows are.
+//! * Indirect light is not simulated, since the previews are for textures. Shadows are.
 //! * Spheres and tori can be cut open. Planes and meshes cannot.
-//! * The world is right-handed with y up; a camera on the positive z axis sees x to the right. Lengths are in units of
-//!   the world, or of the object where the text says so, and angles in radians. Row 0 of an image is the top.
+//! * The world is right-handed with y up; a camera on the positive z axis sees x to the right. Lengths are in units
+//!   of the world, or of the object where stated. Angles are in radians. Row 0 of an image is the top.
 //! * Colors are linear and not tone mapped. Clamp values above 1 yourself.
-//! * The crate knows no textures and touches no file. It does not use the GPU.
+//! * The crate contains no textures, accesses no files, and does not use the GPU.
 //! * Values are computed with `+ − × ÷ sqrt floor` and `libm` only. An image has the same bits on every platform and
 //!   any number of threads if the closures do.
 //!
@@ -61,9 +61,9 @@
 //!
 //! # How it works
 //!
-//! One ray per sample of a regular grid finds the nearest shape: planes and spheres by a formula, tori by the roots of
-//! their quartic, meshes by a hierarchy of boxes. A texture's gradient tilts the normal (Blinn 1978), shadow rays test
-//! the lights, and a mirror sends a ray that sees the other objects and the environment.
+//! One ray per sample of a regular grid finds the nearest shape: planes and spheres by a formula, tori by the roots
+//! of their quartic, meshes by a bounding volume hierarchy. A texture's gradient tilts the normal (Blinn 1978),
+//! shadow rays test the lights, and a mirror sends a ray that sees the other objects and the environment.
 
 #![forbid(unsafe_code)]
 

@@ -148,6 +148,8 @@ impl Shadows {
         let what = "number of shadow rays";
         let holds = (1..=1024).contains(&rays);
         PreviewError::check(holds, what, rays.into(), "from 1 to 1024")?;
+        // Vogel's spiral: the radius grows with the square root of the index, and each point turns by the golden
+        // angle.
         let golden_angle = PI * (3.0 - 5_f64.sqrt());
         let point = |ray: u32| {
             let out = radius * ((f64::from(ray) + 0.5) / f64::from(rays)).sqrt();
@@ -213,6 +215,7 @@ impl Lamp {
         if self.pattern.is_empty() {
             return 1.0;
         }
+        // Count the shadow rays to the disk that are not blocked.
         let [right, up] = frame(incoming.toward);
         let reach = match self.source {
             LightSource::Directional { .. } => 1.0,

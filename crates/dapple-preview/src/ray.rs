@@ -4,7 +4,7 @@ pub(crate) use dapple_mesh::Ray;
 
 use glam::DVec3;
 
-/// Two unit vectors at right angles to a unit vector and to each other.
+/// Returns two unit vectors perpendicular to a unit vector and to each other.
 ///
 /// Reference: Tom Duff et al., "Building an Orthonormal Basis, Revisited", Journal of Computer Graphics Techniques 6(1),
 /// 2017.

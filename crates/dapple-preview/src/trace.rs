@@ -1,8 +1,8 @@
 //! Ray tracing: the light along a ray.
 //!
 //! Reference: Turner Whitted, "An Improved Illumination Model for Shaded Display", Communications of the ACM 23(6),
-//! 1980, doi 10.1145/358876.358882: a ray to every light tests for shadows, and a ray in the mirrored direction samples
-//! the reflection. There is no light between surfaces and no transparency.
+//! 1980, doi 10.1145/358876.358882: a ray to every light tests for shadows, and a ray in the mirrored direction
+//! samples the reflection. Indirect light and transparency are not simulated.
 
 use crate::bump::{bump_shadow, bumped, facing};
 use crate::light::{Incoming, Lamp};
@@ -87,7 +87,7 @@ impl<'a> World<'a> {
             Some((object, hit, distance)) => self.surface_light(path, object, &hit, distance),
             None => self.background(path.ray.direction),
         };
-        // Very large numbers in materials and lights overflow; they are clamped to very bright.
+        // Materials and lights with very large numbers overflow. Clamp to finite numbers.
         let finite = |part: f32| match part {
             part if part.is_nan() => 0.0,
             part => part.clamp(f32::MIN, f32::MAX),
@@ -236,6 +236,7 @@ fn highlight(lit: &Lit, incoming: &Incoming, material: &Material) -> f32 {
     if material.specular <= 0.0 {
         return 0.0;
     }
+    // The half vector between the directions to the eye and to the light.
     let half = (lit.to_eye + incoming.toward).normalize_or_zero();
     let cosine = lit.normal.dot(half).clamp(0.0, 1.0);
     material.specular * libm::pow(cosine, material.shininess.into()) as f32
@@ -243,6 +244,7 @@ fn highlight(lit: &Lit, incoming: &Incoming, material: &Material) -> f32 {
 
 /// The direction of a ray reflected by a bumped mirror. A reflection into the surface is reflected out again.
 fn mirrored(direction: DVec3, normal: DVec3, geometric_normal: DVec3) -> DVec3 {
+    // Reflect at the bumped normal, then reflect any part that points into the actual surface.
     let away = direction - normal * (2.0 * direction.dot(normal));
     let depth = away.dot(geometric_normal).min(0.0);
     (away - geometric_normal * (2.0 * depth)).normalize_or(geometric_normal)

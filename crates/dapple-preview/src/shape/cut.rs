@@ -143,6 +143,7 @@ impl Wedge {
                 distance: -outside / speed,
                 face: Face::Cut(index),
             };
+            // The ray leaves the half-space if `speed` is positive, and enters it if negative.
             stretch = if speed > 0.0 {
                 stretch.before(boundary)?
             } else if speed < 0.0 {

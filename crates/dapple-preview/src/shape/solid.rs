@@ -3,9 +3,9 @@
 //! A ray intersects a torus at the roots of a quartic. Measured from the point of the ray nearest to the center, the
 //! quartic has no cubic term. The roots of its derivatives isolate its roots. Each root is found by Newton steps that
 //! stay within a bracket with a change of sign: Cem Yuksel, "High-Performance Polynomial Root Finding for Graphics",
-//! Proceedings of the ACM on Computer Graphics and Interactive Techniques 5(3), 2022, doi 10.1145/3543865. Only `+ −
-//! × ÷ sqrt` are used. Where a ray is tangent to the torus, at a double root, rounding decides. Either result is an
-//! interval of nearly zero length.
+//! Proceedings of the ACM on Computer Graphics and Interactive Techniques 5(3), 2022, doi 10.1145/3543865. The only
+//! operations are `+ − × ÷ sqrt`. Where a ray is tangent to the torus, at a double root, rounding decides. Either
+//! result is an interval of nearly zero length.
 
 use super::cut::Wedge;
 use crate::ray::Ray;
@@ -166,10 +166,11 @@ fn torus_stretches(nearest: &Ray, major: f64, minor: f64) -> [Option<[f64; 2]>; 
         return [None; 2];
     }
     let reach = reach_sq.sqrt();
+    // Skip rays that stay above or below the torus within the enclosing sphere.
     if (origin.y.abs() - direction.y.abs() * reach) > minor {
         return [None; 2];
     }
-    // Find the roots between the turning points of the quartic, which alternate between entry and exit.
+    // Find the roots between the turning points of the quartic. They are entries and exits in turn.
     let quartic = Quartic::of_torus(origin, direction, [major, minor]);
     let mut ends = [[0.0; 2]; 2];
     let (mut count, mut from) = (0, -reach);
@@ -267,6 +268,7 @@ fn bracketed_root([low, high]: [f64; 2], function: impl Fn(f64) -> (f64, f64)) -
     if (at_low < 0.0) == (at_high < 0.0) {
         return None;
     }
+    // Narrow the bracket to the side with the change of sign, then step.
     let rises = at_low < 0.0;
     let mut t = 0.5 * (low + high);
     for step in 0..ROOT_STEPS_MAX {
