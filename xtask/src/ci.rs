@@ -168,6 +168,7 @@ fn features(shell: &Shell) -> anyhow::Result<()> {
             )
             .run()?;
         }
+        // Test without threads where that is different code.
         let rayon = member.features.get("rayon");
         if rayon.is_some_and(|parts| !is_passed_on(parts)) {
             cmd!(

@@ -107,6 +107,7 @@ fn shipped<'a>(metadata: &'a Value, root: &str) -> anyhow::Result<Vec<&'a Value>
     );
     let found = packages.iter().find(|(_, package)| package["name"] == root);
     let (root, _) = found.with_context(|| format!("there is no package {root}"))?;
+    // Follow normal dependencies from the root.
     let (mut seen, mut waiting) = (BTreeSet::new(), vec![*root]);
     while let Some(id) = waiting.pop() {
         if !seen.insert(id) {
@@ -148,6 +149,7 @@ fn license(shell: &Shell, package: &Value) -> anyhow::Result<String> {
     if !texts.is_empty() {
         return Ok(texts.join("\n\n"));
     }
+    // Without license files, compose the MIT license from the names of the authors.
     if !terms.contains("MIT") {
         bail!("the package has no license file");
     }

@@ -2,10 +2,10 @@
 //!
 //! It needs Node, and a compiler with the standard library for `wasm32-unknown-unknown`. That is rustup's compiler
 //! after `rustup target add wasm32-unknown-unknown`, or any other compiler named by `RUSTC`. Debian's `rustc-web`
-//! lacks this library, but its source is in `rust-web-src`. To build it, run `RUSTC_BOOTSTRAP=1 cargo build
-//! -Zbuild-std=std,panic_abort --target wasm32-unknown-unknown` in any crate, and copy the files `deps/*.rlib` into
-//! the folder that `rustc --print target-libdir` prints. The linker is LLVM's `wasm-ld`, set by
-//! `CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_LINKER`.
+//! lacks this library, but its source is in `rust-web-src`. To build it, run
+//! `RUSTC_BOOTSTRAP=1 cargo build -Zbuild-std=std,panic_abort --target wasm32-unknown-unknown` in any crate, and copy
+//! the files `deps/*.rlib` into the folder that `rustc --print target-libdir` prints. The linker is LLVM's `wasm-ld`,
+//! set by `CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_LINKER`.
 
 use crate::run;
 use anyhow::bail;

@@ -1,4 +1,4 @@
-//! A rounded animal with long ears.
+//! A bunny: a rounded animal with long ears.
 
 use crate::parts::{ball, cone, ellipsoid, turned};
 use crate::solid::Blend;

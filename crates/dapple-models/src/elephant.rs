@@ -1,4 +1,4 @@
-//! A large animal with a trunk.
+//! An elephant: a large animal with a trunk.
 
 use crate::parts::{ball, cone, ellipsoid, turned};
 use crate::solid::{Blend, Grown, Tube};

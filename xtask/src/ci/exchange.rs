@@ -97,6 +97,7 @@ pub(super) fn exchange(shell: &Shell) -> anyhow::Result<()> {
             file: "rock.npy",
         },
     ];
+    // Report judges that are not installed.
     let (here, missing): (Vec<_>, Vec<_>) = judges.iter().partition(|judge| judge.is_here(shell));
     for judge in missing {
         crate::say(&format!("skipped: there is no {}", judge.needs));

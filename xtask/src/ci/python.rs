@@ -33,6 +33,7 @@ pub(super) fn python(shell: &Shell) -> anyhow::Result<()> {
         "cargo clippy --quiet --release --locked -- -D warnings"
     )
     .run()?;
+    // Build and install the wheel, then run the tests and build the documentation.
     let wheel = wheel(shell, &main, &folder.join("wheels"))?;
     let wheel = wheel.display().to_string();
     let with_extras = format!("{wheel}[test,docs]");
@@ -54,6 +55,7 @@ pub(super) fn python(shell: &Shell) -> anyhow::Result<()> {
         "{python} -m mkdocs build --quiet --strict --site-dir {folder}/site"
     )
     .run()?;
+    // Repeat the tests for Blender in a separate environment.
     let wants = ["bpy==4.5.*", "pytest", "trimesh", "pillow"];
     let blender = match environment(shell, &folder.join("blender"), &wants) {
         Ok(blender) => blender,

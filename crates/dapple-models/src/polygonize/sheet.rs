@@ -20,7 +20,7 @@ const GONE: [u32; 3] = [u32::MAX; 3];
 const TURN: f64 = 0.5;
 /// Changes may lower the evenness of faces above this value.
 const EVEN: f64 = 0.3;
-/// Fraction of the way to the centroid of its neighbors by which a vertex moves.
+/// Step of a vertex, as a fraction of the distance to the centroid of its neighbors.
 const SLIDE: f64 = 0.8;
 
 impl Sheet {
@@ -97,6 +97,7 @@ impl Sheet {
             let sum: DVec3 = neighbors.iter().fold(DVec3::ZERO, |sum, &next| {
                 sum + self.positions[next as usize]
             });
+            // Move within the tangent plane, then project to the surface.
             let normal = self.normal_at(&[vertex]);
             let slide = (sum / neighbors.len() as f64 - at) * SLIDE;
             let slide = slide - normal * slide.dot(normal);
@@ -167,6 +168,7 @@ impl Sheet {
         let [Some(left), Some(right)] = [self.face_of(a, b), self.face_of(b, a)] else {
             return;
         };
+        // The edge a–b would become the edge c–d between the opposite corners, which must not exist yet.
         let [c, d] = [self.third(left, a, b), self.third(right, a, b)];
         if c == d || self.face_of(c, d).is_some() || self.face_of(d, c).is_some() {
             return;
@@ -176,6 +178,7 @@ impl Sheet {
             [[[a, b, c], [b, a, d]], [[a, d, c], [d, b, c]]].map(|faces| faces.map(corners));
         let worse = |faces: [[DVec3; 3]; 2]| evenness(faces[0]).min(evenness(faces[1]));
         let normal = area_normal(before[0]) + area_normal(before[1]);
+        // Compare evenness and orientation of both triangles before and after.
         let turned = after.iter().any(|&face| {
             let new = area_normal(face);
             new.dot(normal) <= TURN * new.length() * normal.length()
@@ -183,6 +186,7 @@ impl Sheet {
         if turned || worse(after) <= 1.0001 * worse(before) {
             return;
         }
+        // Rewire the two faces.
         self.fans[a as usize].retain(|&face| face != right);
         self.fans[b as usize].retain(|&face| face != left);
         self.faces[left as usize] = [a, d, c];

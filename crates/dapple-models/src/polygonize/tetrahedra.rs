@@ -28,8 +28,8 @@ const TETRAHEDRA: [[usize; 4]; 6] = [
 
 /// Number of cells along each side of a leaf block.
 const LEAF: i64 = 4;
-/// Distance from the center of a block to its farthest corners, in sides of the block: half the longest diagonal, √11
-/// / 2.
+/// Distance from the center of a block to its farthest corners, in sides of the block. It is half of the longest
+/// diagonal, √11 / 2.
 const REACH: f64 = 0.5 * 1.658_312_395_177_7;
 /// Maximum ratio of the change of a distance to the change of the position.
 const STRETCH: f64 = 1.2;
@@ -70,6 +70,7 @@ struct March<'a> {
 
 impl<'a> March<'a> {
     fn new(cut: &'a Cut<'a>) -> Self {
+        // Convert the bounds to lattice coordinates.
         let [low, high] = cut.bounds.map(|corner| {
             let at = corner / cut.side;
             [at.y + at.z, at.z + at.x, at.x + at.y]
@@ -124,6 +125,7 @@ impl<'a> March<'a> {
         }
         // March the cells whose corners are not all on the same side.
         for cell in points(LEAF) {
+            // Look up the corners in the samples of the block.
             let corners: [bool; 8] = core::array::from_fn(|steps| {
                 let [i, j, k] = sum(cell, corner(steps)).map(|coordinate| coordinate as usize);
                 inside[(k * POINTS + j) * POINTS + i]
@@ -169,6 +171,7 @@ impl<'a> March<'a> {
 
     /// The point where the surface crosses an edge.
     fn crossing(&self, edge: Crossing) -> DVec3 {
+        // Unpack the ends of the edge.
         let coordinate = |axis: u32| (edge >> (3 + BITS * axis) & ((1 << BITS) - 1)) as i64;
         let point = [0, 1, 2].map(coordinate);
         let ends = [point, sum(point, corner(edge as usize & 7))].map(|end| self.position(end));

@@ -94,7 +94,7 @@ pub struct Bent<S> {
     solid: S,
     lift: f64,
     bounds: [DVec3; 2],
-    /// Minimum factor by which the bend changes distances.
+    /// Factor applied to distances: a lower bound of their change by the bend.
     shrink: f64,
 }
 

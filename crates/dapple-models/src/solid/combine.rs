@@ -49,8 +49,8 @@ impl Solid for Blend {
         let mut distance = f64::INFINITY;
         for part in &self.parts {
             let least = box_distance(part.bounds, at);
-            // A part farther away has no effect. The distance to the box is a lower bound, without which the distance
-            // would be discontinuous.
+            // Parts farther away have no effect and are skipped. The distance to the box is a lower bound; a smaller
+            // value would make the result discontinuous where a part is skipped.
             if least < distance + part.width {
                 distance = blend(distance, part.solid.distance(at).max(least), part.width);
             }

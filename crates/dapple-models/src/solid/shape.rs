@@ -113,6 +113,7 @@ impl Spindle {
         let [first, last] = cone.radii;
         let length = (to - from).length();
         let narrowing = first - last;
+        // Neither ball contains the other.
         if narrowing.abs() < length {
             return Self {
                 from,

@@ -96,7 +96,7 @@ fn distances_change_no_faster_than_the_position() {
         for at in positions() {
             for other in [last, at + DVec3::new(1e-3, -2e-3, 1.5e-3)] {
                 let change = (solid.distance(at) - solid.distance(other)).abs();
-                // The slack is that of rounding.
+                // The tolerance covers rounding.
                 let most = (at - other).length() + 1e-9;
                 assert!(change <= most, "{name} at {at} and {other}: {change}");
             }
@@ -124,7 +124,7 @@ fn distance_of_an_ellipsoid_equals_the_nearest_of_many_points() {
     let outside = |at: &DVec3| ((*at - center) / radii).length() > 1.0;
     let on = |at: DVec3| center + radii * at.normalize();
     for at in positions().filter(outside).take(100) {
-        // Starts from the best of coarse points, with ever smaller random steps.
+        // Random search for the nearest point, with steps of decreasing size.
         let mut best = on(at);
         let mut reach = 1.0;
         for _ in 0..8 {
@@ -152,7 +152,7 @@ fn distance_of_a_round_cone_equals_that_of_many_balls() {
         });
         let slow = balls.fold(f64::INFINITY, f64::min);
         let fast = cone().distance(at);
-        // The balls are 3e-4 apart; on the axis the distance has an edge there.
+        // The balls are 3e-4 apart, and the distance has a crease there on the axis.
         assert!((fast - slow).abs() < 2e-4, "{at}: {fast}, {slow}");
     }
 }
