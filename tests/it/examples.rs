@@ -4,7 +4,6 @@
 use std::fs;
 use std::path::Path;
 
-const LIB: &str = include_str!("../../crates/dapple/src/lib.rs");
 const README: &str = include_str!("../../crates/dapple/README.md");
 
 /// Returns the names of the examples in order, with their texts.
@@ -34,12 +33,8 @@ fn examples_are_numbered_from_one() {
 }
 
 #[test]
-fn examples_are_listed_in_the_umbrella() {
+fn examples_are_listed_in_the_readme_of_the_umbrella() {
     for (name, _) in examples() {
-        assert!(
-            LIB.contains(&format!("//! | `{name}` |")),
-            "the documentation of `dapple` does not list {name}"
-        );
         assert!(
             README.contains(&format!("| [`{name}`](examples/{name}.rs) |")),
             "the README of `dapple` does not list {name}"
