@@ -11,7 +11,7 @@ use dapple_graph::delaunay;
 use dapple_hash::Seed;
 use dapple_points::PointSet;
 use dapple_pups::{Pups, PupsOptions};
-use dapple_raster::{Field as _, Raster, Window};
+use dapple_raster::{Field as _, FieldExt as _, Raster, Window};
 
 const NATURAL_NEIGHBOR: Case = Case {
     group: "pups",

@@ -51,7 +51,7 @@ pub(super) fn run(bench: &mut Bench) -> Result<()> {
         )?;
     }
     let tile = WaveletNoise::<2>::new(N_CELLS, SEED)?;
-    let one = one_by_one(|at: [f64; 2]| tile.sample(at.into()));
+    let one = one_by_one(|at: [f64; 2]| tile.sample(at));
     let perlin = noise_functions_perlin_2;
     beside_perlin(bench, &NOISE, N_CELLS, one, perlin, confirm_spread)
 }
