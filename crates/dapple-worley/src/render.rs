@@ -1,18 +1,23 @@
 //! Rendering of windows of a plane.
 //!
-//! The window is cut into bands of rows, which are distributed over threads, and blocks of columns. The feature points
-//! of a block and its neighborhood are generated once ([`table`]). Only these tables depend on the number of axes
-//! ([`basis`]). For each square of up to 64 × 64 pixels, and then for each of its tiles ([`square`]), the points that
-//! may be among the nearest are selected: the candidates ([`cull`], [`flat`], then [`candidates`]). Only these are
-//! compared at the pixels of the tile, sixteen side by side ([`kernel`]; [`track`] also finds which points they are).
-//! Slices of a volume that lie near one another share their candidates. Where a tile needs points further away than its
-//! neighborhood reaches, the neighborhood grows; where that would not be exact, single positions are searched. Where
-//! cells have few pixels, points are sorted by the pixels near to them ([`bins`]), and compared at all of these
-//! ([`splat`]). For the distance to the edge of the Voronoi cell, the cells are drawn one by one ([`edge`]).
+//! The window is cut into bands of rows, which are distributed over threads, and each band into blocks of columns. The
+//! feature points of a block and its neighborhood are generated once ([`table`]). Only these tables depend on the
+//! number of axes ([`basis`]).
 //!
-//! The parts that run in registers are stages with only memory between them, so that each is compiled only for the
-//! parameters it depends on, and once: most for any metric, the inner loops for the usual ones and their usual depths
-//! ([`levels`](crate::levels)).
+//! A block is divided into squares of up to 64 × 64 pixels, and a square into tiles ([`square`]). For each square, and
+//! then for each of its tiles, points that cannot be among the nearest are culled ([`cull`], [`flat`], then
+//! [`candidates`]); the rest are the candidates. The pixels of a tile are compared with its candidates only, sixteen
+//! pixels side by side ([`kernel`]; [`track`] also identifies the nearest points). Neighboring slices of a volume share
+//! their candidates. Where a tile needs points beyond its neighborhood, the neighborhood grows; where coordinates in it
+//! would no longer be exact, each pixel is searched on its own.
+//!
+//! Where cells have few pixels, points are sorted into bins of pixels ([`bins`]), and each tile is compared with all
+//! points of the bins around it ([`splat`]). For the distance to the edge of the Voronoi cell, the cells are drawn one
+//! by one ([`edge`]).
+//!
+//! SIMD code is split into stages that communicate through memory. Each stage is compiled only for the parameters that
+//! it depends on, and only once: most stages for any metric, the inner loops for the common metrics and numbers of
+//! nearest points ([`levels`](crate::levels)).
 
 mod area;
 mod basis;
@@ -40,23 +45,23 @@ use std::sync::Arc;
 
 pub(crate) use basis::Basis;
 
-/// The number of pixels in a register.
+/// Number of pixels (`f32`) in a register.
 pub(crate) const LANES: usize = 16;
 
-/// The number of `f64` in a register.
+/// Number of `f64` in a register.
 const F64_LANES: usize = LANES / 2;
 
-/// The largest number of rows of a band.
+/// Maximum number of rows of a band.
 const BAND_ROWS: usize = 64;
 
-/// The largest number of columns of a block: the wider blocks are, the less is done twice at their borders.
+/// Maximum number of columns of a block. The wider the blocks, the less work is repeated at their borders.
 const BLOCK_COLUMNS: usize = 512;
 
-/// The smallest number of columns of a block that has more cells than [`MANY_CELLS`].
+/// Minimum number of columns of a block that has more cells than [`MANY_CELLS`].
 const FEW_COLUMNS: usize = BLOCK_COLUMNS / 4;
 
-/// The number of cells of a block and around it from which on wide blocks lose more than they gain: the points of so
-/// many fill the second cache of a core.
+/// Number of cells of a block and its neighborhood above which narrower blocks are faster: their points fill the
+/// second-level cache of a core.
 const MANY_CELLS: u128 = 1 << 12;
 
 /// A window of a plane through the basis.
@@ -65,24 +70,24 @@ pub(crate) struct Picture<'a> {
     pub(crate) basis: &'a dyn Basis,
     pub(crate) section: Section,
     pub(crate) window: &'a Window,
-    /// The factor by which positions are multiplied.
+    /// Factor from positions of the window to coordinates of the lattice.
     pub(crate) frequency: f64,
 }
 
-/// The rows of a band, by the kind of their contents.
+/// Output rows of a band, by the quantity to compute.
 pub(crate) enum Output<'a> {
-    /// The values of a texture.
+    /// Values of a texture.
     Values(Values, Vec<&'a mut [f32]>),
-    /// The nearest points; the number of elements is the number of points.
+    /// Nearest points, one element for each rank: F1, F2, and so on.
     Features(Vec<FeatureRows<'a>>),
-    /// The gradients of a texture, their components one after the other.
+    /// Gradients of a texture, with interleaved components.
     Gradients(Tone, Vec<&'a mut [f32]>),
-    /// The distances to the edges of Voronoi cells.
+    /// Distances to the edges of the Voronoi cells.
     Edges(Vec<&'a mut [f32]>),
 }
 
 impl Output<'_> {
-    /// The greatest n for which `F_n` is needed.
+    /// The largest n for which `F_n` is needed.
     fn depth(&self) -> usize {
         match self {
             Self::Values(Values { tone, .. }, _) | Self::Gradients(tone, _) => tone.depth(),
@@ -91,7 +96,7 @@ impl Output<'_> {
         }
     }
 
-    /// Whether ids are needed.
+    /// Whether the ids of points are needed.
     fn wants_ids(&self) -> bool {
         match self {
             Self::Features(features) => features.iter().any(FeatureRows::wants_ids),
@@ -101,12 +106,12 @@ impl Output<'_> {
 }
 
 impl Picture<'_> {
-    /// The number of bands of the window.
+    /// Number of bands of the window.
     pub(crate) fn n_bands(&self) -> usize {
         self.window.size[1].div_ceil(BAND_ROWS as u32) as usize
     }
 
-    /// The rows of each band of a view; no bands without a view.
+    /// Iterator over the bands of a view, each a list of its rows; empty without a view.
     pub(crate) fn bands<'v, T>(
         &self,
         view: Option<RasterViewMut<'v, T>>,
@@ -117,12 +122,12 @@ impl Picture<'_> {
         bands.map(|band| band.into_rows().collect())
     }
 
-    /// Fills the bands of the window, on all cores where the feature `rayon` is on.
+    /// Renders the bands of the window, in parallel with the feature `rayon`.
     pub(crate) fn render(&self, bands: Vec<Output<'_>>) {
         render_stack(vec![(*self, bands)]);
     }
 
-    /// The coordinates of the columns; shared with the picture before, if they are the same.
+    /// The coordinates of the columns, shared with the preceding picture if they are equal.
     fn columns(&self, before: Option<(&Self, &Arc<Line>)>) -> Arc<Line> {
         match before {
             Some((before, columns)) if before.section.is_same_along(0, &self.section) => {
@@ -134,14 +139,14 @@ impl Picture<'_> {
         }
     }
 
-    /// The coordinates of `n` rows from `first` on along an axis; shared with the picture before, if they are the same.
+    /// The coordinates of `n` rows from `first` on along an axis, shared with the preceding picture if they are equal.
     fn rows(&self, axis: usize, first: usize, n: usize, before: Option<&Band<'_>>) -> Arc<Line> {
         match before {
             Some(before) if before.picture.section.is_same_along(axis, &self.section) => {
                 before.rows[axis].clone()
             }
             _ => {
-                // Where all rows are at the same place, one row is enough. (Zero times infinity is no place.)
+                // Where all rows have the same coordinate, compute it once. (Zero times infinity is not a coordinate.)
                 let last = self.window.row_y((first + n) as u32 - 1);
                 let is_level = self.section.v[axis] == 0.0 && last.is_finite();
                 let mut line = self.line(axis, if is_level { 1 } else { n as u32 }, |row| {
@@ -153,8 +158,8 @@ impl Picture<'_> {
         }
     }
 
-    /// The coordinates of columns or rows along one axis. They equal those of [`place`](Self::place) if the plane is
-    /// upright, since the other part of the position then adds zero.
+    /// The coordinates of `len` columns or rows along one axis. If the plane is upright, they equal those of
+    /// [`place`](Self::place), since the other component of the position then adds zero.
     fn line(&self, axis: usize, len: u32, position: impl Fn(u32) -> [f64; 2]) -> Line {
         let coordinate = |index| self.section.coordinate(axis, position(index)) * self.frequency;
         let mut places: Vec<_> = (0..len)
@@ -165,7 +170,7 @@ impl Picture<'_> {
         Line { places, is_finite }
     }
 
-    /// The place of a pixel.
+    /// The lattice coordinates of a pixel; `None` if they are not finite or out of range.
     fn place(&self, column: usize, row: usize) -> Option<FlatPlace> {
         let position = self.window.position(column as u32, row as u32);
         let mut place = FlatPlace {
@@ -180,17 +185,20 @@ impl Picture<'_> {
     }
 }
 
-/// The number of pictures of a stack that one thread fills, so that they share tables and candidates.
+/// Maximum number of pictures of a stack that one thread renders together, with shared tables and candidates.
 const STACK: usize = 16;
 
-/// Renders several pictures of the same basis, frequency and window, on all cores where the feature `rayon` is on.
+/// Renders several pictures of one basis, frequency and window, in parallel with the feature `rayon`.
 pub(crate) fn render_stack<'a>(stack: Vec<(Picture<'a>, Vec<Output<'a>>)>) {
+    // Share the column coordinates of equal pictures.
     let mut pictures: Vec<(Picture<'a>, Arc<Line>, Vec<Output<'a>>)> = Vec::new();
     for (picture, bands) in stack {
         let before = pictures.last();
         let columns = picture.columns(before.map(|(before, columns, _)| (before, columns)));
         pictures.push((picture, columns, bands));
     }
+    // Make one job for each band of up to `STACK` pictures. Bands are popped from the end, so the last band comes
+    // first.
     let mut jobs = Vec::new();
     for pictures in pictures.chunks_mut(STACK) {
         for index in (0..pictures[0].0.n_bands()).rev() {
@@ -210,7 +218,7 @@ pub(crate) fn render_stack<'a>(stack: Vec<(Picture<'a>, Vec<Output<'a>>)>) {
     });
 }
 
-/// Fills the same band of several pictures. Neighbors that are slices of a volume are filled together.
+/// Renders one band of several pictures. Consecutive slices of a volume are rendered together.
 fn render_bands(
     level: Level,
     mut bands: &[Band<'_>],
@@ -219,6 +227,7 @@ fn render_bands(
 ) {
     let mut outs = &mut outs[..];
     while let Some(first) = bands.first() {
+        // Take the longest run of bands that are slices of a volume.
         let n = bands
             .iter()
             .take_while(|band| first.is_slice(band))
@@ -232,6 +241,7 @@ fn render_bands(
             level,
             range: start..n_columns.min(start + width),
         };
+        // Halve the blocks until the points of one fit into the cache.
         let mut width = BLOCK_COLUMNS;
         while width > FEW_COLUMNS && block(0, width).has_many_cells() {
             width /= 2;
@@ -255,7 +265,7 @@ struct Band<'a> {
 }
 
 impl<'a> Band<'a> {
-    /// The band with this index; `before` is the band of another picture, with which coordinates are shared.
+    /// Makes the band with this index. Coordinates are shared with `before`, the same band of the preceding picture.
     fn new(picture: Picture<'a>, index: usize, columns: Arc<Line>, before: Option<&Self>) -> Self {
         let first = index * BAND_ROWS;
         let n_rows = BAND_ROWS.min(picture.window.size[1] as usize - first);
@@ -270,7 +280,7 @@ impl<'a> Band<'a> {
         }
     }
 
-    /// Whether this band and another one are slices along the first two axes with the same columns and rows.
+    /// Whether this band and another one are slices along the first two axes with equal columns and rows.
     fn is_slice(&self, other: &Self) -> bool {
         let is_flat = |band: &Self| band.picture.section.row_axis() == Some(1);
         is_flat(self)
@@ -280,15 +290,15 @@ impl<'a> Band<'a> {
     }
 }
 
-/// The coordinates of columns or rows along one axis: the cell, and the steps within it.
+/// The coordinates of columns or rows along one axis: for each, the cell and the steps within it.
 struct Line {
     places: Vec<(i64, i32)>,
-    /// Whether all coordinates have a place.
+    /// Whether all coordinates are finite and in range.
     is_finite: bool,
 }
 
 impl Line {
-    /// The first and the last cell of a range of coordinates.
+    /// The smallest and the largest cell of a range of coordinates.
     fn cells(&self, range: core::ops::Range<usize>) -> [i64; 2] {
         let [a, b] = [self.places[range.start].0, self.places[range.end - 1].0];
         [a.min(b), a.max(b)]

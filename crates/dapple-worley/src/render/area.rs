@@ -1,4 +1,4 @@
-//! Areas: parts of a block, such as squares, tiles, and remainders of these.
+//! Areas of pixels: a block, its squares and tiles, and parts of them.
 
 use core::ops::Range;
 
@@ -11,7 +11,7 @@ pub(super) struct Area {
 }
 
 impl Area {
-    /// The parts of the area with at most the given numbers of columns and rows.
+    /// Divides the area into parts with at most the given numbers of columns and rows.
     pub(super) fn parts(&self, size: [usize; 2]) -> Parts<'_> {
         Parts {
             column: self.columns.start,
@@ -21,17 +21,17 @@ impl Area {
         }
     }
 
-    /// Whether the area has more columns or rows than given.
+    /// Whether the area has more columns or more rows than the given size.
     pub(super) fn is_larger(&self, [width, height]: [usize; 2]) -> bool {
         self.columns.len() > width || self.rows.len() > height
     }
 }
 
-/// The parts of an area, row by row.
+/// Iterator over the parts of an area, row by row.
 pub(super) struct Parts<'a> {
     area: &'a Area,
     size: [usize; 2],
-    /// The first column of the next part.
+    /// First column of the next part.
     column: usize,
     row: usize,
 }

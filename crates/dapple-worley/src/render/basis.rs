@@ -1,4 +1,4 @@
-//! The interface between rendering and a basis, for any number of axes.
+//! The interface between rendering and a basis of any number of axes.
 
 use crate::dispatch::DimensionDispatch as _;
 use crate::fixed::{FlatPlace, MOST_AXES, Place, first_axes};
@@ -7,7 +7,8 @@ use crate::search::Hit;
 use crate::{Dimensions, MAX_NEAREST, Metric, Space, Worley};
 use core::fmt;
 
-/// A basis in the form that rendering uses, whatever the number of axes. Places and vectors have zeros along the missing
+/// A basis in the form that rendering uses, independent of the number of axes. Places and vectors are zero along
+/// missing
 /// axes.
 pub trait Basis: Sync + fmt::Debug {
     /// The metric of the basis.
@@ -16,7 +17,7 @@ pub trait Basis: Sync + fmt::Debug {
     /// The feature points of the basis.
     fn lattice(&self) -> &Lattice;
 
-    /// The nearest points of a place, nearest first; at most four.
+    /// Finds the nearest points of a place, nearest first; at most four.
     fn nearest(&self, place: &FlatPlace, hits: &mut [Hit<MOST_AXES>]);
 
     /// The distance from a place to the nearest edge of its Voronoi cell.
@@ -53,7 +54,7 @@ where
     }
 }
 
-/// A place without the coordinates of the missing axes.
+/// Removes the coordinates of the missing axes from a place.
 fn own_axes<const N: usize>(place: &FlatPlace) -> Place<N> {
     Place {
         cell: first_axes(place.cell),

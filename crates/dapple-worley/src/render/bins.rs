@@ -1,9 +1,9 @@
-//! Feature points sorted by the pixels near to them.
+//! Feature points sorted into bins of pixels.
 //!
-//! The pixels of a block are covered by tiles of 4 × 4. A point lies in a column as wide as a tile, and in a row of half
-//! tiles. Points are sorted by these, column by column, so that those near to a tile are a run in each of the columns near
-//! it: an odd number of columns, which are those of the tiles, or an even number, which begin in the middle of tiles. The
-//! terms of a point are computed once, for the pixels of all the tiles that may need it.
+//! The pixels of a block are covered by tiles of 4 × 4. A bin is as wide as a tile and half as high. Points are sorted
+//! by bin, column of bins by column, so the points near a tile are one contiguous run in each of the columns around it.
+//! If their number is odd, the columns of bins are aligned with the tiles; if it is even, they begin in the middle of
+//! tiles. The terms of a point are computed once, for the pixel columns of all tiles that are compared with it.
 
 use super::LANES;
 use super::table::{CellBox, numbers, row_words};
@@ -15,102 +15,104 @@ use crate::metric::{Exact, General, Kernel, Measure};
 use dapple_raster::simd::{baseline, dispatch};
 use fearless_simd::{Level, f32x4, f32x16, i32x4, i32x16, mask32x16, prelude::*, u32x16};
 
-/// The number of columns and of rows of a tile.
+/// Number of columns and of rows of a tile.
 pub(super) const TILE: usize = 4;
 
-/// The number of rows of half a tile.
+/// Number of rows of half a tile, the height of a bin.
 pub(super) const HALF: usize = TILE / 2;
 
-/// The number of pixels beside a tile in so many columns.
+/// Number of pixels to the left and to the right of a tile that `columns` columns of bins cover.
 pub(super) const fn beyond(columns: usize) -> usize {
     HALF * (columns - 1)
 }
 
-/// The range of points that a tile is compared with.
+/// The rectangle of bins that a tile is compared with.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Reach {
-    /// The number of columns.
+    /// Number of columns of bins.
     pub(super) columns: usize,
-    /// The number of rows of half tiles on either side.
+    /// Number of rows of bins above the tile, and the number below it.
     pub(super) halves: usize,
-    /// The largest joint key along the axes across the picture.
+    /// Largest accumulated key along the axes across the picture.
     pub(super) key: f32,
 }
 
 /// The coordinates of the pixels of a block.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Grid {
-    /// The number of axes of the space.
+    /// Number of axes of the space.
     pub(super) n_axes: usize,
     pub(super) metric: Metric,
     pub(super) reach: Reach,
-    /// The lower corner of the cell from which coordinates are counted.
+    /// Lower corner of the cell from which coordinates are counted.
     pub(super) origin: [i64; MOST_AXES],
-    /// The coordinates of the first pixel.
+    /// Coordinates of the first pixel, in steps.
     pub(super) first: [i32; MOST_AXES],
-    /// The numbers of columns and rows.
+    /// Numbers of columns and rows.
     pub(super) size: [usize; 2],
-    /// The steps from one column to the next, and from one row to the next.
+    /// Distance from one column to the next, and from one row to the next, in steps.
     pub(super) pixel: [f32; 2],
     /// The axis along which rows differ.
     pub(super) row_axis: usize,
 }
 
-/// A point, with its terms for the columns of `TILES` tiles.
+/// A point, with its terms at the columns of `TILES` tiles.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
 pub(super) struct Point<const TILES: usize> {
-    /// The terms for the columns of the tiles near it.
+    /// Terms at the pixel columns of the tiles near the point.
     pub(super) terms: [[f32; TILE]; TILES],
-    /// The coordinate along the axis of the rows, in steps.
+    /// Coordinate along the axis of the rows, in steps.
     pub(super) row: i32,
-    /// The accumulated terms along the axes across the picture.
+    /// Accumulated terms along the axes across the picture.
     pub(super) across: f32,
 }
 
-/// Memory for points, by the number of tiles that they have terms for.
+/// Scratch memory for points, by the number of tiles that their terms cover.
 #[derive(Debug, Default)]
 pub(super) struct PointLists {
-    /// Those that are compared with two or three columns of tiles.
+    /// Points for two or three columns of bins.
     pub(super) three: Vec<Point<3>>,
     pub(super) five: Vec<Point<5>>,
 }
 
-/// The points of a block in the order of their places, and the limits within which a row of tiles reads them.
+/// The points of a block sorted by bin, with the parameters for reading the run of a row of tiles.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Runs<'a, const TILES: usize> {
     pub(super) metric: Metric,
     /// Whether there are axes across the picture.
     pub(super) is_deep: bool,
-    /// The key from which on keys may be wrong.
+    /// Keys at or above this value may be wrong.
     pub(super) limit: f32,
+    /// Index of the first point of each bin.
     pub(super) starts: &'a [u32],
+    /// Number of rows of bins.
     pub(super) n_halves: usize,
-    /// The number of half tiles above and below a tile from which its points are taken.
+    /// Number of rows of bins above the tile, and the number below it.
     pub(super) halves: usize,
     pub(super) points: &'a [Point<TILES>],
-    /// The coordinates of the rows.
+    /// Coordinates of the rows, in steps.
     pub(super) rows: &'a [i32],
 }
 
-/// The feature points near to the pixels of a block, first in the order of their cells, then sorted by place.
+/// The feature points near the pixels of a block, first in the order of their cells, then sorted by bin.
 #[derive(Debug)]
 pub(super) struct Bins {
-    /// The number of points.
+    /// Number of points.
     len: usize,
-    /// The coordinates of the points along the axes of the picture, in the order of the cells.
+    /// Coordinates of the points along the axes of the picture, in steps, in the order of the cells.
     steps: [Vec<i32>; 2],
-    /// The accumulated terms of the points along the other axes, in the order of the cells; they stay zero in the plane,
-    /// since all blocks of a memory belong to one basis.
+    /// Accumulated terms of the points along the other axes, in the order of the cells. They stay zero in the plane,
+    /// since one `Bins` serves a single basis.
     across: Vec<f32>,
-    /// The places of the points, in the order of the cells: the column in the upper half of the word, the index of the
-    /// place in the lower half, which is enough for the 2^12 half tiles of a block and those beside it.
+    /// Bins of the points, in the order of the cells: the column in the upper half of the word, the index of the bin in
+    /// the lower half. 16 bits are enough for the 2^12 bins of a block and those around it.
     places: Vec<u32>,
-    /// The number of rows of half tiles with points.
+    /// Number of rows of bins.
     n_halves: usize,
-    /// The index of the first point of each place, and at the end the number of points.
+    /// Index of the first point of each bin; the last element is the number of points.
     starts: Vec<u32>,
-    /// The coordinates of the columns, including those of the tiles beside the block.
+    /// Coordinates of the pixel columns in steps, including those of the tiles to the left and right of the block.
     columns: Vec<i32>,
 }
 
@@ -127,14 +129,14 @@ impl Bins {
         }
     }
 
-    /// Clears the bins for another block with these columns and number of rows.
+    /// Clears the bins for a block with the given column coordinates and number of rows.
     pub(super) fn clear(&mut self, columns: &[i32], height: usize, reach: Reach) {
         let width = columns.len();
         let n_columns = width.div_ceil(TILE) + reach.columns - 1;
         self.n_halves = 2 * height.div_ceil(TILE) + 2 * reach.halves;
         self.starts.clear();
         self.starts.resize(n_columns * self.n_halves + 2, 0);
-        // The columns past the ends are not used; a point may have terms for one tile more than is compared with it.
+        // The padding is not read for pixels, but a point may have terms for one tile more than is compared with it.
         let more = 2 * beyond(reach.columns);
         self.columns.clear();
         self.columns.resize(more, 0);
@@ -143,7 +145,7 @@ impl Bins {
         self.columns.resize(end, 0);
     }
 
-    /// Generates the points of `cells` that any tile is compared with.
+    /// Generates the points of `cells` that are within reach of a tile.
     pub(super) fn collect(
         &mut self,
         level: Level,
@@ -154,7 +156,7 @@ impl Bins {
         dispatch!(level, simd => self.collect_by(simd, lattice, cells, grid));
     }
 
-    /// Generates points in registers.
+    /// SIMD implementation of [`collect`](Self::collect).
     #[inline(always)]
     fn collect_by<S: Simd>(&mut self, simd: S, lattice: &Lattice, cells: &CellBox, grid: &Grid) {
         self.len = 0;
@@ -168,6 +170,7 @@ impl Bins {
                 let sixteen = SixteenCells::new(simd, lattice, words);
                 cell[0] = cells.first[0] + first as i64;
                 let mut numbers = numbers(lattice, &sixteen, cell);
+                // Cells past the end of the row have no points.
                 numbers[LANES.min(side - first)..].fill(0);
                 let numbers = u32x16::from_slice(simd, &numbers);
                 self.add(lattice, &sixteen, numbers, cell, grid);
@@ -175,7 +178,7 @@ impl Bins {
         }
     }
 
-    /// Adds those of the points of sixteen cells that any tile is compared with.
+    /// Appends the points of sixteen cells that are within reach of a tile.
     #[inline(always)]
     fn add<S: Simd>(
         &mut self,
@@ -192,6 +195,7 @@ impl Bins {
             row_axis,
             ..
         } = *grid;
+        // Reserve memory for the largest possible number of points.
         let most = numbers.reduce_max();
         let room = self.len + (most as usize + 1) * LANES;
         if self.places.len() < room {
@@ -205,6 +209,7 @@ impl Bins {
         let lanes = i32x16::from_slice(simd, &ASCENDING) << STEP_BITS;
         let n_columns = (grid.size[0].div_ceil(TILE) + reach.columns - 1) as u32;
         for index in 0..most {
+            // Generate one point of each cell, and its coordinates from the first pixel.
             let steps = cells.flat_steps(u32x16::splat(simd, index), lattice);
             let mut points = [lanes; MOST_AXES];
             for axis in 0..MOST_AXES {
@@ -212,6 +217,7 @@ impl Bins {
                 let ahead = steps[axis].bitcast::<i32x16<S>>() + (corner - grid.first[axis]);
                 points[axis] = if axis == 0 { ahead + lanes } else { ahead };
             }
+            // Select the coordinate along the rows, and accumulate the terms of the axes across the picture.
             let [x, mut rows, ..] = points;
             let is_deep = lattice.n_axes > 2;
             let mut across = f32x16::splat(simd, 0.0);
@@ -224,6 +230,7 @@ impl Bins {
                     across = General(metric).accumulate(terms, across);
                 }
             }
+            // Find the bins, and keep the points that exist and lie in the rectangle of bins.
             let column = bin(x, grid.pixel[0], TILE, beyond(reach.columns));
             let half = bin(rows, grid.pixel[1], HALF, HALF * reach.halves);
             let mut matters = numbers.simd_gt(index)
@@ -244,7 +251,7 @@ impl Bins {
         }
     }
 
-    /// Appends the selected ones of sixteen points.
+    /// Appends the points selected by a mask.
     #[inline(always)]
     fn push<S: Simd>(&mut self, matters: mask32x16<S>, steps: [i32x16<S>; 2], place: u32x16<S>) {
         let to = self.len..self.len + LANES;
@@ -255,7 +262,7 @@ impl Bins {
         self.len += matters.to_bitmask().count_ones() as usize;
     }
 
-    /// Counts the points of each place, which gives the index at which each place begins.
+    /// Counts the points of each bin, and accumulates the counts to the index of each bin's first point.
     pub(super) fn count(&mut self) {
         for &place in &self.places[..self.len] {
             self.starts[index(place) + 2] += 1;
@@ -267,7 +274,7 @@ impl Bins {
         }
     }
 
-    /// Sorts the points by place; `rows` are the coordinates of the rows, and `points` is memory to work in.
+    /// Sorts the points by bin into `points`. `rows` are the coordinates of the rows.
     pub(super) fn runs<'a, const TILES: usize>(
         &'a mut self,
         level: Level,
@@ -289,7 +296,7 @@ impl Bins {
         }
     }
 
-    /// Sorts the points by place, and computes their terms.
+    /// Sorts the points by bin, and computes their terms.
     fn sort<const TILES: usize>(
         &mut self,
         level: Level,
@@ -305,7 +312,7 @@ impl Bins {
         }
     }
 
-    /// Sorts the points by place, and computes their terms in registers.
+    /// SIMD implementation of [`sort`](Self::sort).
     #[inline(always)]
     fn sort_by<S: Simd, M: Measure, const TILES: usize>(
         &mut self,
@@ -326,10 +333,12 @@ impl Bins {
             .iter()
             .zip(&rows[..self.len])
             .zip(&self.across[..self.len]);
+        // Counting sort: the next free slot of the bin.
         for (((&column, &row), &across), &place) in from.zip(&self.places[..self.len]) {
             let start = &mut self.starts[index(place) + 1];
             let point = &mut points[*start as usize];
             *start += 1;
+            // Compute the terms at the columns of the tiles near the bin.
             let columns = &self.columns[TILE * (place >> 16) as usize..][..TILE * TILES];
             let mut places = [f32x4::splat(simd, 0.0); TILES];
             for tile in 0..TILES {
@@ -346,12 +355,11 @@ impl Bins {
     }
 }
 
-/// The numbers of the lanes.
+/// Indices of the lanes.
 const ASCENDING: [i32; LANES] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15];
 
-/// The groups of `pixels` pixels in which sixteen points lie, from their distances to the middle of the first pixel.
-/// The first group begins `before` pixels before that pixel. The result for a point before it may be the first group or a
-/// very large number.
+/// Groups of `pixels` pixels in which sixteen points lie, from their offsets to the center of the first pixel. Group 0
+/// begins `before` pixels before that pixel. A point before group 0 gives either 0 or a very large number.
 #[inline(always)]
 fn bin<S: Simd>(ahead: i32x16<S>, pixel: f32, pixels: usize, before: usize) -> u32x16<S> {
     let group = pixels as f32;
@@ -360,7 +368,7 @@ fn bin<S: Simd>(ahead: i32x16<S>, pixel: f32, pixels: usize, before: usize) -> u
     bins.to_int::<i32x16<S>>().bitcast()
 }
 
-/// The index of a place.
+/// The index of a bin, from its packed word.
 #[inline(always)]
 fn index(place: u32) -> usize {
     (place & 0xFFFF) as usize

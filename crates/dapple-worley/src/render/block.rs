@@ -1,4 +1,4 @@
-//! A block: a few columns of a band, whose feature points are generated once.
+//! Blocks: some columns of a band, whose feature points are generated once.
 
 use super::area::Area;
 use super::bins::{Bins, PointLists};
@@ -19,57 +19,58 @@ use crate::worley::cell_value;
 use core::ops::Range;
 use fearless_simd::Level;
 
-/// The largest number of cells of a block with its neighborhood; with more cells, a pixel is larger than a cell.
+/// Maximum number of cells of a block with its neighborhood; with more cells, a pixel is larger than a cell.
 pub(super) const MOST_CELLS: u128 = 1 << 16;
 
-/// The largest number of cells along an axis, so that steps fit into 32 bits.
+/// Maximum number of cells along an axis, so that steps fit into 32 bits.
 pub(super) const LONGEST_SIDE: usize = 1000;
 
-/// The largest distance, in steps, of slices that are filled together.
+/// Maximum distance between slices that are rendered together, in steps.
 const DEEPEST: i32 = STEPS * 5 / 16;
 
-/// A few columns of a band.
+/// Some columns of a band.
 pub(super) struct Block<'a> {
-    /// The band of the block, or the bands of several slices with the same columns and rows.
+    /// The band of the block, or the bands of several slices with equal columns and rows.
     pub(super) bands: &'a [Band<'a>],
     pub(super) level: Level,
-    /// The columns of the block, in the window.
+    /// Columns of the block, in the window.
     pub(super) range: Range<usize>,
 }
 
-/// Per-thread scratch memory, kept from block to block.
+/// Per-thread scratch memory, reused from block to block.
 pub(super) struct Memory {
     pub(super) table: Table,
-    /// The points near a square whose neighborhood had to grow.
+    /// Points around a square whose neighborhood had to grow.
     pub(super) wide_table: Table,
-    /// Whether the candidates come from the wide table.
+    /// Whether the candidates come from `wide_table`.
     pub(super) is_wide: bool,
-    /// The candidates of a square, and the corner in the plane of the picture from which their coordinates are counted,
-    /// in steps.
+    /// Candidates of a square, as points of the space and of the picture.
     pub(super) list: PointList,
     pub(super) square: FlatPoints,
+    /// Origin of the coordinates of `square`, in steps from the lower corner of the table.
     pub(super) low: [i32; MOST_AXES],
-    /// The candidates of a tile.
+    /// Candidates of a tile, as points of the space and of the picture.
     pub(super) tile_list: PointList,
     pub(super) tile: FlatPoints,
     pub(super) candidates: Vec<Candidate>,
     pub(super) lookup: Lookup,
     pub(super) dominance: Dominance,
-    /// Pixels that need points further away.
+    /// Pixels that need points beyond the neighborhood.
     pub(super) unknown: Vec<Area>,
-    /// The planes between a feature point and its neighbors, and the distances to edges that are drawn already.
+    /// Planes between a feature point and its neighbors.
     pub(super) neighbors: Neighbors,
     pub(super) planes: Planes,
+    /// Distances to edges that are already drawn.
     pub(super) values: Vec<f32>,
     pub(super) runs: Vec<Range<usize>>,
-    /// The points sorted by the pixels near to them.
+    /// Points sorted into bins of pixels, in the order of their cells.
     pub(super) bins: Bins,
-    /// The same points in the order of their places.
+    /// Points of `bins`, sorted by bin.
     pub(super) points: PointLists,
-    /// The coordinates of the columns of the block and, along the other axes, of the rows of the band, in steps from
-    /// the lower corner of the table. The last one is repeated to fill a register.
+    /// Coordinates of the block's columns and, along the other axes, of the band's rows, in steps from the lower corner
+    /// of the table. The last one is repeated to fill a register.
     pub(super) lines: [Vec<i32>; MOST_AXES],
-    /// The coordinates of several slices, along the axes across them.
+    /// Coordinates of several slices along the axes across them, in steps.
     pub(super) slices: Vec<[i32; MOST_AXES]>,
     n_axes: usize,
 }
@@ -101,7 +102,7 @@ impl Memory {
         }
     }
 
-    /// The box of the pixels of an area, in some of the slices.
+    /// The bounds of the pixels of an area, in all of its slices.
     #[inline]
     pub(super) fn pixel_box(&self, area: &Area) -> PixelBox {
         let mut pixels = PixelBox {
@@ -131,7 +132,7 @@ impl Memory {
     fn deep_axis(&self) -> Option<usize> {
         let (first, last) = (self.slices.first()?, self.slices.last()?);
         let axes = 2..self.n_axes;
-        // Slices at the same place differ along no axis; the third one is as good as any.
+        // Slices at the same place differ along no axis; the third axis is then as good as any.
         Some(
             axes.clone()
                 .find(|&axis| first[axis] != last[axis])
@@ -139,7 +140,7 @@ impl Memory {
         )
     }
 
-    /// Stores the coordinates of the columns of a block and the rows of its band, from the lower corner of some cells.
+    /// Stores the coordinates of a block's columns and its band's rows, in steps from the lower corner of `cells`.
     pub(super) fn take_lines(&mut self, block: &Block<'_>, cells: &CellBox) {
         self.n_axes = cells.n_axes;
         let band = &block.bands[0];
@@ -173,7 +174,7 @@ impl Memory {
 }
 
 impl Block<'_> {
-    /// Fills the pixels of the block; `outs` have the rows of its bands.
+    /// Renders the pixels of the block; `outs` are the rows of its bands.
     pub(super) fn render(&self, outs: &mut [Output<'_>], memory: &mut Memory) {
         let mut first = 0;
         while first < self.bands.len() {
@@ -188,7 +189,7 @@ impl Block<'_> {
         }
     }
 
-    /// The number of slices, from the first one on, that can share one list of candidates.
+    /// Number of slices, from `first` on, that can share one list of candidates.
     fn n_together(&self, first: usize, out: &Output<'_>) -> usize {
         if first + 1 == self.bands.len() {
             return 1;
@@ -218,7 +219,7 @@ impl Block<'_> {
         bands.iter().take_while(is_near).count().max(1)
     }
 
-    /// The number of nearest points that the inner loops find: one, two or four for values, otherwise two or four.
+    /// Number of nearest points that the inner loops find: one, two or four for values, otherwise two or four.
     fn depth(out: &Output<'_>) -> usize {
         match (out, out.depth()) {
             (Output::Values(..), 1) => 1,
@@ -227,19 +228,19 @@ impl Block<'_> {
         }
     }
 
-    /// A guess of the distance of the points that the pixels in the middle need.
+    /// A guess of the distance of the nearest points of pixels in the middle of the block.
     fn guess(&self, out: &Output<'_>) -> Guess {
         let Picture { basis, section, .. } = self.bands[0].picture;
         Guess::new(basis, self.middle(), section.n_axes, Self::depth(out))
     }
 
-    /// The parameters of the method for small cells, if it can be used.
+    /// Parameters of the method for small cells, if it applies.
     fn splat(&self, out: &Output<'_>, guess: Guess) -> Option<Splat> {
         let is_values = matches!(out, Output::Values(..));
         Splat::new(self, Self::depth(out), guess.distance).filter(|_| is_values)
     }
 
-    /// Fills the pixels of slices that share their candidates.
+    /// Renders the pixels of slices that share their candidates.
     fn render_together(&self, outs: &mut [Output<'_>], memory: &mut Memory) {
         if let Output::Edges(rows) = &mut outs[0] {
             self.edges(rows, memory);
@@ -253,7 +254,7 @@ impl Block<'_> {
         let guess = self.guess(&outs[0]);
         let splat = self.splat(&outs[0], guess);
         let reach = splat.map_or(0, |splat| splat.reach.ceil() as i32);
-        // Powers are so slow that lanes gain nothing, except for values.
+        // Powers are so slow that SIMD gains nothing, except for values.
         let is_single = !is_values && metric.is_slow();
         let cells = self.cells(guess.ring.max(reach));
         let Some(cells) = cells.filter(|_| !is_single) else {
@@ -261,23 +262,25 @@ impl Block<'_> {
             return;
         };
         memory.take_lines(self, &cells);
+        // Use the method for small cells if pixels are evenly spaced.
         let splat = splat.filter(|splat| splat.is_even(&memory.lines));
         if let (Output::Values(values, rows), Some(splat)) = (&mut outs[0], &splat) {
             splat.render(self, &cells, values, rows, memory);
             return;
         }
-        // The previous picture may have left the points of the same cells.
+        // The table of the previous picture may cover the same cells.
         if !memory.table.has(&cells, wants_ids) {
             memory.table.wants_ids = wants_ids;
             memory.table.fill(self.level, basis.lattice(), cells);
         }
         memory.square.wants_numbers = !is_values;
         memory.tile.wants_numbers = !is_values;
+        // Otherwise, select candidates for squares and tiles.
         let plan = Plan {
             depth,
             guess,
             metric,
-            // The terms of the axes across the picture are joined before those of the rows.
+            // The terms of the axes across the picture are accumulated before those of the rows.
             row_axis: section
                 .row_axis()
                 .filter(|&axis| section.n_axes < 4 || axis == 1),
@@ -287,7 +290,7 @@ impl Block<'_> {
         self.squares(plan, outs, memory);
     }
 
-    /// All pixels of the block.
+    /// The area of all pixels of the block.
     pub(super) fn all(&self) -> Area {
         Area {
             columns: 0..self.range.len(),
@@ -296,7 +299,7 @@ impl Block<'_> {
         }
     }
 
-    /// The cell in the middle.
+    /// The cell of the pixel in the middle.
     pub(super) fn middle(&self) -> [i64; MOST_AXES] {
         let mut middle = [0; MOST_AXES];
         let band = &self.bands[0];
@@ -307,7 +310,7 @@ impl Block<'_> {
         middle
     }
 
-    /// The cells whose points the block needs, if a table can hold them.
+    /// The cells of the block's pixels and `ring` cells around them, if a table can hold them.
     pub(super) fn cells(&self, ring: i32) -> Option<CellBox> {
         let band = &self.bands[0];
         let is_finite = band.columns.is_finite && band.rows.iter().all(|rows| rows.is_finite);
@@ -339,13 +342,13 @@ impl Block<'_> {
         is_small.then_some(cells)
     }
 
-    /// Whether the block and the cells around it have more cells than [`MANY_CELLS`].
+    /// Whether the block and its neighborhood have more cells than [`MANY_CELLS`].
     pub(super) fn has_many_cells(&self) -> bool {
         self.cells(1)
             .is_none_or(|cells| cells.n_cells() > MANY_CELLS)
     }
 
-    /// Fills pixels one by one.
+    /// Renders pixels by one search each.
     pub(super) fn one_by_one(&self, area: &Area, outs: &mut [Output<'_>]) {
         for slice in area.slices.clone() {
             for row in area.rows.clone() {
@@ -356,7 +359,7 @@ impl Block<'_> {
         }
     }
 
-    /// Fills one pixel of a slice: a column of the window, a row of the band.
+    /// Renders one pixel of a slice; `column` is a column of the window, `row` a row of the band.
     pub(super) fn one(&self, slice: usize, column: usize, row: usize, out: &mut Output<'_>) {
         let band = &self.bands[slice];
         let Picture { basis, section, .. } = band.picture;

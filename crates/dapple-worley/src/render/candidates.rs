@@ -1,4 +1,4 @@
-//! The candidates of a tile, and their terms at its pixels.
+//! Candidates of a tile, and their terms at its pixels.
 
 use super::LANES;
 use super::area::Area;
@@ -16,12 +16,14 @@ impl Memory {
     /// Selects the candidates of a tile from those of its square, and computes their terms.
     pub(super) fn candidates(&mut self, level: Level, area: &Area, square: &Square) {
         let (plan, low) = (&square.plan, &square.pixels.low);
+        // Remove dominated points from the candidates of the square.
         if plan.culls_dominated(level) {
             let cuboid = self.cuboid(area, square);
             let dominance = &mut self.dominance;
             self.tile
                 .take_undominated(level, plan.metric, &self.square, &cuboid, dominance);
         } else {
+            // Otherwise, cull by bounds, and project the remaining points to the picture.
             let pixels = self.pixel_box(area);
             let mut moved = pixels;
             for axis in 0..pixels.n_axes {
@@ -60,8 +62,10 @@ impl Memory {
         self.terms(level, area, square, None);
     }
 
-    /// Computes the terms of a tile: those of its columns, and unless there are several slices, those of its rows; or,
-    /// for one of several slices at a place in steps from the lower corner of the square, those of the rows there.
+    /// Computes the terms of a tile's candidates at its columns and, unless there are several slices, at its rows.
+    ///
+    /// With `slice`, computes only the terms at the rows of this slice, which is given as steps from the lower corner
+    /// of the square.
     pub(super) fn terms(&mut self, level: Level, area: &Area, square: &Square, slice: Option<i32>) {
         let plan = &square.plan;
         measured!(level, plan.metric, (simd, measure) => {
@@ -78,7 +82,7 @@ impl Memory {
         });
     }
 
-    /// The box of the pixels of a tile, from the lower corner of its square.
+    /// The bounds of a tile's pixels, in cells from the lower corner of its square.
     fn cuboid(&self, area: &Area, square: &Square) -> Cuboid {
         let mut cuboid = square.cuboid;
         if square.is_tile {
@@ -95,7 +99,7 @@ impl Memory {
         cuboid
     }
 
-    /// Computes the terms of the columns of a tile.
+    /// Computes the terms at the columns of a tile.
     #[inline(always)]
     fn column_terms<S: Simd, M: Measure>(
         &mut self,
@@ -115,7 +119,7 @@ impl Memory {
         }
     }
 
-    /// Computes the terms of the rows of a tile in one slice, given in steps from the lower corner of a square. Rows
+    /// Computes the terms at the rows of a tile in one slice, given as steps from the lower corner of the square. Rows
     /// differ along the second axis.
     #[inline(always)]
     fn slice_terms<S: Simd, M: Measure>(
@@ -131,11 +135,13 @@ impl Memory {
         let FlatPoints { y, z, rest, .. } = &self.tile;
         for start in (0..self.tile.len).step_by(LANES) {
             let at = start..start + LANES;
+            // Add the terms of the slice to those of the other axes, for sixteen candidates.
             let [terms] = measure.terms([place - f32x16::from_slice(simd, &z[at.clone()])]);
             let rest = measure.accumulate(terms, f32x16::from_slice(simd, &rest[at.clone()]));
             let mut rests = [0.0; LANES];
             rest.store_slice(&mut rests);
             let n = LANES.min(self.tile.len - start);
+            // Add the terms of the rows.
             for first in (0..area.rows.len()).step_by(LANES) {
                 let places = places(simd, &line[first..], square.pixels.low[1]);
                 let points = y[at.clone()][..n].iter().zip(&rests);
@@ -148,7 +154,7 @@ impl Memory {
         }
     }
 
-    /// Computes the terms of the rows of a tile that differ along one axis.
+    /// Computes the terms at the rows of a tile, where rows differ along one axis.
     #[inline(always)]
     fn row_terms<S: Simd, M: Measure>(
         &mut self,
@@ -171,7 +177,7 @@ impl Memory {
         }
     }
 
-    /// Computes the terms of the rows of a tile that differ along several axes.
+    /// Computes the terms at the rows of a tile, where rows differ along several axes.
     #[inline(always)]
     fn slanted_terms<S: Simd, M: Measure>(
         &mut self,
@@ -196,7 +202,7 @@ impl Memory {
     }
 }
 
-/// Sixteen coordinates of a line, in cells from the lower corner of a square.
+/// Sixteen coordinates of `line`, in cells from `low`, the lower corner of a square.
 #[inline(always)]
 fn places<S: Simd>(simd: S, line: &[i32], low: i32) -> f32x16<S> {
     (i32x16::from_slice(simd, &line[..LANES]) - low).to_float::<f32x16<S>>() * STEP
