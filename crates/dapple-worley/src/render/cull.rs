@@ -1,9 +1,13 @@
-//! Culling: which feature points matter to a box of pixels. These are its candidates.
+//! Culling: selects the feature points that can be among the nearest of some pixel in a box, its candidates.
 //!
-//! A point can be among the `K` nearest of some pixel only if it is nearer to the box than a bound. There are two: the
-//! `K`-th smallest of the distances from the points to their furthest corner of the box, which always holds and is
-//! best for small boxes; and a guess, which is best for large ones, and holds if the distances that result are below
-//! it. The candidates of small boxes are taken from those of a larger box about them.
+//! A point is a candidate if its smallest distance to the box is at most a bound. There are two bounds:
+//!
+//! * The `K`-th smallest of the points' distances to the farthest corner of the box. It always holds, and is best for
+//!   small boxes.
+//! * A guess of the `K`-th smallest distance. It is best for large boxes, and holds for pixels whose resulting
+//!   distances are below it.
+//!
+//! The candidates of a small box are selected from those of a larger box around it.
 
 use super::LANES;
 use crate::Metric;
@@ -13,7 +17,7 @@ use crate::metric::Measure;
 use core::ops::Range;
 use fearless_simd::{Level, f32x16, i32x16, mask32x16, prelude::*, u32x16};
 
-/// The box around some pixels, in steps from the lower corner of a table.
+/// The bounds of some pixels, in steps from the lower corner of a table.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PixelBox {
     pub(super) n_axes: usize,
@@ -22,8 +26,8 @@ pub(super) struct PixelBox {
 }
 
 impl PixelBox {
-    /// The cells of the table within `ring` cells of those that the box touches, as the first and the last along each
-    /// axis. They may reach past the table.
+    /// The range of cells within `ring` cells of the cells that the box touches, as first and last cell along each axis
+    /// of the table. The range may exceed the table.
     pub(super) fn cells(&self, ring: i32) -> [[i32; MOST_AXES]; 2] {
         let mut cells = [[0; MOST_AXES]; 2];
         for axis in 0..self.n_axes {
@@ -33,7 +37,7 @@ impl PixelBox {
         cells
     }
 
-    /// The distance from the box to the nearest place outside of these cells, in steps.
+    /// The distance from the box to the border of a range of cells, in steps.
     pub(super) fn border(&self, [first, last]: [[i32; MOST_AXES]; 2]) -> i32 {
         let mut border = i32::MAX;
         for axis in 0..self.n_axes {
@@ -44,7 +48,7 @@ impl PixelBox {
         border
     }
 
-    /// The squared distance of a point from the box, in cells.
+    /// The squared Euclidean distance from a point to the box, in cells; 0 inside.
     pub(super) fn distance_sq(&self, point: &[i32; MOST_AXES]) -> f32 {
         let mut sum = 0.0;
         for axis in 0..self.n_axes {
@@ -65,15 +69,15 @@ impl PixelBox {
     }
 }
 
-/// Feature points, axis by axis.
+/// Feature points, one array of coordinates for each axis.
 #[derive(Debug)]
 pub(super) struct PointList {
     pub(super) len: usize,
-    /// The coordinates along each axis, in steps from the lower corner of the table, padded by a register.
+    /// Coordinates along each axis, in steps from the lower corner of the table; padded by a register.
     pub(super) steps: [Vec<i32>; MOST_AXES],
-    /// The indices of the points in the table, if needed.
+    /// Indices of the points in the table, if needed.
     pub(super) numbers: Vec<u32>,
-    /// Scratch memory for the smallest keys of points.
+    /// Scratch memory for the smallest keys of points in the box.
     near: Vec<f32>,
 }
 
@@ -81,9 +85,9 @@ pub(super) struct PointList {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Points<'a> {
     pub(super) steps: &'a [Vec<i32>; MOST_AXES],
-    /// The indices of the points in the table, unless they are consecutive.
+    /// Indices of the points in the table; `None` if they are consecutive.
     pub(super) numbers: Option<&'a [u32]>,
-    /// The ranges of points to select from.
+    /// Ranges of points to select from.
     pub(super) runs: &'a [Range<usize>],
     pub(super) wants_numbers: bool,
 }
@@ -91,13 +95,13 @@ pub(super) struct Points<'a> {
 /// The criterion for candidates.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Keep {
-    /// The points that can be among the given number of nearest ones; bounds are multiplied by the rounding slack.
+    /// Points that can be among the given number of nearest ones; the bound is multiplied by the rounding slack.
     Nearest(usize, f32),
-    /// The points whose smallest key is at most this.
+    /// Points whose smallest key in the box is at most this value.
     Within(f32),
 }
 
-/// The box, the metric and the criterion for which points are culled.
+/// The parameters for culling points.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cull<'a> {
     pub(super) metric: Metric,
@@ -115,7 +119,7 @@ impl PointList {
         }
     }
 
-    /// The points of the list, to be culled again.
+    /// The points of the list in the form that culling reads.
     pub(super) fn points<'a>(&'a self, run: &'a Range<usize>, wants_numbers: bool) -> Points<'a> {
         Points {
             steps: &self.steps,
@@ -125,14 +129,14 @@ impl PointList {
         }
     }
 
-    /// Appends those of some points that are candidates, in their order.
+    /// Replaces the list by the candidates among some points, in their order.
     pub(super) fn cull(&mut self, level: Level, cull: Cull<'_>, points: Points<'_>) {
         measured!(level, cull.metric, (simd, measure) => {
             self.cull_by(simd, measure, cull, points);
         });
     }
 
-    /// Culls points in registers.
+    /// SIMD implementation of [`cull`](Self::cull).
     #[inline(always)]
     fn cull_by<S: Simd, M: Measure>(
         &mut self,
@@ -149,6 +153,7 @@ impl PointList {
         if self.near.len() < room {
             self.near.resize(room.next_power_of_two(), 0.0);
         }
+        // Compute the smallest and largest key of each point in the box; keep the least of the largest keys per lane.
         for run in points.runs {
             for start in run.clone().step_by(LANES) {
                 let (key, far) = cull.pixels.keys(simd, measure, points.steps, start);
@@ -159,12 +164,14 @@ impl PointList {
                 at += LANES;
             }
         }
+        // Find the bound on the smallest keys.
         let bound = match cull.keep {
             Keep::Within(bound) => bound,
             Keep::Nearest(depth, rounding_slack) => smallest_but(depth - 1, least) * rounding_slack,
         };
-        // With an infinite bound, padding must still be left out.
+        // Padding has infinite keys, and must be culled even if the bound is infinite.
         let bound = bound.min(f32::MAX);
+        // Append the points within the bound.
         let mut at = 0;
         for run in points.runs {
             for start in run.clone().step_by(LANES) {
@@ -175,7 +182,7 @@ impl PointList {
         }
     }
 
-    /// Clears the list, and reserves memory for some points; returns their number.
+    /// Clears the list, and reserves memory for some points; returns the reserved length.
     fn make_room(&mut self, points: Points<'_>, n_axes: usize) -> usize {
         self.len = 0;
         let slots = points.runs.iter().map(|run| run.len().div_ceil(LANES));
@@ -191,7 +198,7 @@ impl PointList {
         room
     }
 
-    /// Appends the selected ones of sixteen points.
+    /// Appends the points selected by a mask.
     #[inline(always)]
     fn push<S: Simd>(
         &mut self,
@@ -219,7 +226,7 @@ impl PointList {
     }
 }
 
-/// The numbers of the lanes.
+/// Indices of the lanes.
 const ASCENDING: [u32; LANES] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15];
 
 /// A mask of the first `n` lanes, at most sixteen.
@@ -248,7 +255,7 @@ impl PixelBox {
             let steps = i32x16::from_slice(simd, &steps[axis][start..start + LANES]);
             let ahead = (steps - low).to_float::<f32x16<S>>() * STEP;
             let past = ahead - (high - low) as f32 * STEP;
-            // Terms are not below zero, so that the first ones are the initial keys.
+            // Terms are at least zero, so accumulating onto zero keeps the first ones.
             let [near, far] = measure.terms([past.max(-ahead).max(zero), ahead.max(-past)]);
             near_key = measure.accumulate(near, near_key);
             far_key = measure.accumulate(far, far_key);
@@ -257,9 +264,10 @@ impl PixelBox {
     }
 }
 
-/// The smallest number in the lanes after the `n` smallest are removed; a larger one, if some are equal.
+/// The smallest number in the lanes after the `n` smallest are removed. Equal numbers are removed together, which may
+/// give a larger result.
 ///
-/// Each lane holds the distance of another point, so it bounds that of the point in this place of the order.
+/// Each lane holds the largest key of a different point, so at least `n + 1` points have keys up to the result.
 #[inline(always)]
 fn smallest_but<S: Simd>(n: usize, mut far: f32x16<S>) -> f32 {
     for _ in 0..n {

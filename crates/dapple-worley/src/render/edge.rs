@@ -1,16 +1,17 @@
 //! Rendering of the distance to the edge of the Voronoi cell.
 //!
-//! The cells with pixels in a block are drawn one by one. Between the feature point of a cell and each other one there
-//! is a plane halfway ([`planes`](super::planes)). The distance from such a plane, below zero beyond it, is linear
-//! along a row of pixels. The smallest of these distances is the distance to the edge, and it is above zero in the cell
-//! only: so no pixel needs to know its nearest point first, and a cell may be drawn larger than it is.
+//! The cells with pixels in a block are drawn one by one. A bisecting plane lies halfway between the feature point of a
+//! cell and each other point ([`planes`](super::planes)). The signed distance to such a plane, negative beyond it, is
+//! linear along a row of pixels. The smallest of these distances is the distance to the edge, and it is positive only
+//! inside the cell. So the nearest point of a pixel need not be known first, and a superset of the cell may be drawn.
 //!
-//! For each cell, the nearest planes give an outline of it, and with that a ball that its pixels lie in. Planes that
-//! are further than another from all of the ball are left out, which leaves about as many as the cell has edges.
+//! For each cell, the nearest planes give an outline, and the outline gives a ball that contains the cell's pixels.
+//! Planes that are farther than another one from the whole ball are left out. About as many remain as the cell has
+//! edges.
 //!
-//! Distances are computed in `f64`. A pixel is drawn only where their rounding leaves no doubt which `f32` is the
-//! nearest to its value, and that no point is as near as its own by the `f32` keys that [`Worley::edge_distance`]
-//! compares. The few others are searched on their own.
+//! Distances are computed in `f64`. A pixel is drawn only if their rounding error cannot change the `f32` nearest to
+//! its value, and if no other point can be as near by the `f32` keys that [`Worley::edge_distance`] compares. The few
+//! other pixels are searched on their own.
 //!
 //! [`Worley::edge_distance`]: crate::Worley::edge_distance
 
@@ -25,36 +26,36 @@ use core::ops::Range;
 use dapple_raster::simd::dispatch;
 use fearless_simd::{f32x16, f64x8, i32x16, prelude::*};
 
-/// The distance of two rows of values in memory; a row may end anywhere in a register.
+/// Length of a row of values in memory; the last register of a row may be incomplete.
 const STRIDE: usize = BLOCK_COLUMNS + LANES;
 
-/// The distances within which neighbors of a point are searched, as multiples of the guess of the distance of the
-/// nearest points: first the smaller one, then the larger one if that was not enough.
+/// Distances within which neighbors of a point are searched, as multiples of the guessed distance of the nearest
+/// points. The larger one is used if the smaller one was not enough.
 const REACHES: [f32; 2] = [1.7, 2.6];
 
-/// The longest vector to a neighbor, in cells: vectors up to one and a half times as long are exact in `f32`.
+/// Maximum length of a vector to a neighbor, in cells: vectors up to one and a half times as long are exact in `f32`.
 const LONGEST_REACH: f32 = 5.0;
 
-/// The ring of cells around a block in which points are needed, as a multiple of the cells that the guess reaches over:
-/// from a pixel to its nearest point, and from there to the neighbors.
+/// Number of rings of cells around a block in which points are needed, as a multiple of the guess's ring. They cover
+/// the distance from a pixel to its nearest point, and from there to the neighbors.
 const RINGS: i32 = 4;
 
-/// The coordinates of the pixels of a block.
+/// The coordinates of a block's pixels.
 struct Pixels<'a> {
     n_rows: usize,
     n_columns: usize,
-    /// The coordinates of the columns, and of the rows along the other axes, in steps.
+    /// Coordinates of the columns, and of the rows along the other axes, in steps.
     lines: &'a [Vec<i32>; MOST_AXES],
-    /// The number of columns per cell; negative, if coordinates fall from column to column.
+    /// Number of columns per cell; negative if coordinates decrease from column to column.
     columns_per_cell: f32,
-    /// The largest distance of a column from its even position, in columns.
+    /// Maximum offset of a column from its evenly spaced position, in columns.
     unevenness: f32,
-    /// The smallest and the largest coordinate of the columns, from the first one, in cells.
+    /// Smallest and largest coordinate of the columns, from the first one, in cells.
     ends: [f32; 2],
 }
 
 impl Block<'_> {
-    /// Fills the pixels of the block with distances to edges.
+    /// Renders the distances from the block's pixels to the edges.
     pub(super) fn edges(&self, out: &mut [&mut [f32]], memory: &mut Memory) {
         let Picture { basis, section, .. } = self.bands[0].picture;
         // An edge lies between two points.
@@ -67,12 +68,14 @@ impl Block<'_> {
             }
             return;
         };
+        // Generate the points, and draw the cells over values that mark unknown pixels.
         memory.take_lines(self, &cells);
         memory.table.wants_ids = false;
         memory.table.fill(self.level, basis.lattice(), cells);
         memory.values.clear();
         memory.values.resize(out.len() * STRIDE, -1.0);
         dispatch!(self.level, simd => self.draw_cells(simd, guess, memory));
+        // Copy the values; search the pixels that are still marked (negative) on their own.
         for (row, (out, values)) in out.iter_mut().zip(memory.values.chunks(STRIDE)).enumerate() {
             let out = &mut out[self.range.clone()];
             out.copy_from_slice(&values[..out.len()]);
@@ -88,7 +91,7 @@ impl Block<'_> {
         }
     }
 
-    /// The value of a single pixel.
+    /// Searches the value of a single pixel.
     #[cold]
     pub(super) fn edge(&self, column: usize, row: usize) -> f32 {
         let band = &self.bands[0];
@@ -96,7 +99,7 @@ impl Block<'_> {
         place.map_or(f32::NAN, |place| band.picture.basis.edge_distance(&place))
     }
 
-    /// Draws the cells in which pixels may lie.
+    /// Draws the cells that can contain pixels of the block.
     #[inline(always)]
     fn draw_cells<S: Simd>(&self, simd: S, guess: Guess, memory: &mut Memory) {
         let whole = memory.pixel_box(&self.all());
@@ -114,9 +117,11 @@ impl Block<'_> {
         table.runs(whole.cells(guess.ring), runs);
         for index in runs.iter().cloned().flatten() {
             let point = table.point(index);
+            // Skip points that are too far away to have pixels.
             if whole.distance_sq(&point) > guess.distance * guess.distance {
                 continue;
             }
+            // Draw the cell from the neighbors within the smaller reach, or else within the larger one.
             for reach in REACHES {
                 let reach = (reach * guess.distance).min(LONGEST_REACH);
                 let steps = (reach / STEP) as i32;
@@ -124,7 +129,7 @@ impl Block<'_> {
                     break;
                 };
                 let is_alone = neighbors.find(simd, table, point, reach, around);
-                // Where two points coincide, the whole cell is edge.
+                // Where two points coincide, all of their cell is at distance zero from an edge.
                 if !is_alone || neighbors.hide(simd, &whole) {
                     break;
                 }
@@ -141,7 +146,7 @@ impl<'a> Pixels<'a> {
     fn new(lines: &'a [Vec<i32>; MOST_AXES], [n_columns, n_rows]: [usize; 2]) -> Self {
         let columns = &lines[0][..n_columns];
         let extent = (columns[n_columns - 1] - columns[0]) as f32;
-        // Where all columns lie at one place, any of them may be the one.
+        // Where all columns have the same coordinate, any of them may be in the cell.
         let [columns_per_step, mut unevenness] = match extent {
             0.0 => [0.0, n_columns as f32],
             _ => [(n_columns - 1) as f32 / extent, 0.0],
@@ -160,7 +165,7 @@ impl<'a> Pixels<'a> {
         }
     }
 
-    /// Draws a cell; returns whether its neighbors are all that matter.
+    /// Draws a cell; returns whether the neighbors within reach determine it.
     #[inline(always)]
     fn draw<S: Simd>(
         &self,
@@ -169,12 +174,13 @@ impl<'a> Pixels<'a> {
         planes: &mut Planes,
         values: &mut [f32],
     ) -> bool {
+        // Find the columns of each row that the cell can contain.
         let mut outline = Outline {
             starts: [0; BAND_ROWS],
             ends: [0; BAND_ROWS],
             radius_sq: -1.0,
         };
-        // The first row that may have pixels, and the one past the last.
+        // The first row that can have pixels, and the one past the last.
         let mut rows = [self.n_rows, 0];
         for first in (0..self.n_rows).step_by(LANES) {
             if self.outline(simd, neighbors, first, &mut outline) {
@@ -184,6 +190,7 @@ impl<'a> Pixels<'a> {
         if outline.radius_sq < 0.0 {
             return true;
         }
+        // Select the planes that matter for these pixels, and draw them row by row.
         neighbors.pick(simd, outline.radius_sq, planes);
         let sight = Sight::new(neighbors, planes, outline.radius_sq);
         let mut is_enough = true;
@@ -210,8 +217,8 @@ impl<'a> Pixels<'a> {
         is_enough
     }
 
-    /// Finds the columns in which sixteen rows may have pixels of a cell, and the distances of these from its point.
-    /// Returns whether the rows are near enough to have any.
+    /// Finds the range of columns that can be in the cell for each of sixteen rows, and extends the radius of the cell
+    /// by them. Returns whether any of the rows is near enough to the point to have pixels.
     #[inline(always)]
     fn outline<S: Simd>(
         &self,
@@ -223,6 +230,7 @@ impl<'a> Pixels<'a> {
         let zero = f32x16::splat(simd, 0.0);
         let mut rest = [zero; MOST_AXES];
         let mut rest_sq = zero;
+        // The vector from the point to the rows, along the axes past the first.
         for axis in 1..neighbors.n_axes {
             let steps = i32x16::from_slice(simd, &self.lines[axis][first..first + LANES]);
             rest[axis] = (steps - neighbors.point[axis]).to_float::<f32x16<S>>() * STEP;
@@ -232,6 +240,7 @@ impl<'a> Pixels<'a> {
         if !rest_sq.simd_le(half * half).any_true() {
             return false;
         }
+        // Clip the rows by the planes of the inner neighbors.
         let [mut low, mut high] = [zero - half, zero + half];
         for &plane in &neighbors.inner {
             let mut ahead = zero + (neighbors.distances[plane] + SLACK);
@@ -239,7 +248,7 @@ impl<'a> Pixels<'a> {
                 ahead += rest[axis] * neighbors.normals[axis][plane];
             }
             let normal = neighbors.normals[0][plane];
-            // Planes along the row need a crossing, too; this moves them by less than the slack.
+            // A plane parallel to the row needs a crossing, too; this change moves planes by less than the slack.
             let normal = normal.abs().max(SLACK / 8.0).copysign(normal);
             let crossing = ahead * (-1.0 / normal);
             let [at_low, at_high] = if normal > 0.0 {
@@ -250,6 +259,7 @@ impl<'a> Pixels<'a> {
             low = low.max(crossing + at_low);
             high = high.min(crossing + at_high);
         }
+        // Convert the ends to columns.
         let corner = (neighbors.point[0] - self.lines[0][0]) as f32 * STEP;
         let a = (low + corner) * self.columns_per_cell;
         let b = (high + corner) * self.columns_per_cell;
@@ -260,6 +270,7 @@ impl<'a> Pixels<'a> {
         let to = first..first + LANES;
         (start.to_int::<i32x16<S>>()).store_slice(&mut outline.starts[to.clone()]);
         (end.to_int::<i32x16<S>>()).store_slice(&mut outline.ends[to]);
+        // Extend the radius to the ends of the rows.
         let from = f32x16::splat(simd, self.ends[0] - corner);
         let (low, high) = (low.max(from), high.min(self.ends[1] - corner));
         let radius_sq = rest_sq + (low * low).max(high * high) + SLACK;
@@ -269,28 +280,29 @@ impl<'a> Pixels<'a> {
     }
 }
 
-/// The pixels that may lie in a cell.
+/// The pixels that can be in a cell.
 struct Outline {
-    /// In each row, the first column and the one past the last.
+    /// For each row, the first column and the one past the last.
     starts: [i32; BAND_ROWS],
     ends: [i32; BAND_ROWS],
-    /// The largest squared distance from the point in cells; below zero, if there are no pixels.
+    /// Largest squared distance of the pixels from the point, in cells; negative if there are no pixels.
     radius_sq: f32,
 }
 
 /// A row of pixels and the planes of a cell.
 struct Along<'a> {
-    /// The coordinates of the columns and of the point along the row, in steps.
+    /// Coordinates of the columns, in steps.
     steps: &'a [i32],
+    /// Coordinate of the point along the row, in steps.
     point: i32,
-    /// The squared distance from the point along the other axes.
+    /// Squared distance of the row from the point along the other axes, in cells.
     rest_sq: f32,
     planes: &'a Planes,
     sight: &'a Sight,
 }
 
 impl Along<'_> {
-    /// Draws some pixels of the row; returns whether the planes are all that matter to them.
+    /// Draws some pixels of the row; returns whether the planes determine them.
     #[inline(always)]
     fn draw<S: Simd>(&self, simd: S, columns: Range<usize>, values: &mut [f32]) -> bool {
         let (planes, sight) = (self.planes, self.sight);
@@ -299,6 +311,7 @@ impl Along<'_> {
         let mut is_enough = true;
         for start in columns.clone().step_by(LANES) {
             let at = start..start + LANES;
+            // The smallest distance to a plane, in `f64`.
             let steps = i32x16::from_slice(simd, &self.steps[at.clone()]) - self.point;
             let ways = steps.to_float::<f32x16<S>>() * STEP;
             let (left, right) = ways.widen();
@@ -307,6 +320,7 @@ impl Along<'_> {
                 nearest[0] = nearest[0].min(left * normal + offset);
                 nearest[1] = nearest[1].min(right * normal + offset);
             }
+            // Draw the pixels of the cell whose value is certain.
             let low = (nearest[0] - sight.error).narrow(nearest[1] - sight.error);
             let high = (nearest[0] + sight.error).narrow(nearest[1] + sight.error);
             let is_own = low.simd_gt(sight.least) & lanes_before(simd, columns.end - start);
@@ -324,24 +338,24 @@ impl Along<'_> {
 
 /// The limits within which the distances of a cell are reliable, in cells.
 struct Sight {
-    /// The largest error of a distance.
+    /// Maximum error of a distance.
     error: f64,
-    /// The distance to an edge up to which the search may find another point the nearest.
+    /// Distance to an edge up to which rounded keys may make another point the nearest.
     least: f32,
-    /// The largest sum of the distance to an edge and the distance to the point; past it, a plane beyond the reach may
-    /// be nearer.
+    /// Maximum sum of the distance to an edge and the distance to the point. Above it, a plane beyond the reach may be
+    /// nearer.
     half: f32,
-    /// The squared distance to the point past which a plane that was not selected may be nearer.
+    /// Squared distance to the point above which a plane that was not selected may be nearer.
     radius_sq: f32,
 }
 
 impl Sight {
-    /// The limits for a cell. Distances of the planes are sums of products with normals, and the relevant ones are at
-    /// most half of the reach. They take fewer than sixteen roundings, including those of
-    /// [`Worley::edge_distance`](crate::Worley::edge_distance), each of at most 2⁻⁵³ of that.
+    /// Computes the limits for a cell. Distances to planes are sums of products with normals, and the relevant ones are
+    /// at most half of the reach. They take fewer than sixteen roundings, including those of
+    /// [`Worley::edge_distance`](crate::Worley::edge_distance), each of at most 2⁻⁵³ of that distance.
     ///
-    /// A key of the search is the square of a distance to five roundings at most, each of 2⁻²⁴ of it. Squares of two
-    /// distances differ by twice the distance between the points, times that from the plane.
+    /// A key of the search is a squared distance with at most five roundings, each of at most 2⁻²⁴ of it. The squared
+    /// distances to two points differ by twice the distance between the points, times the distance from the plane.
     fn new(neighbors: &Neighbors, planes: &Planes, radius_sq: f32) -> Self {
         let half = neighbors.reach / 2.0;
         let key_error = f64::from(half * half) / f64::from(1 << 20);

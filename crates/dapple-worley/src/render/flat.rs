@@ -1,14 +1,15 @@
-//! Candidates as points of the picture's plane, and the removal of those that others dominate.
+//! Candidates projected to the picture, and removal of dominated candidates.
 //!
-//! The axes across the picture add the same amount to the keys of a point at all pixels. So a point is flat: a column,
-//! a row, and the rest.
+//! The axes across the picture add the same amount to the keys of a point at all pixels. So three numbers describe a
+//! point: its column, its row, and the accumulated terms of the other axes.
 //!
-//! Where terms are added up, the difference of the keys of two points is a sum over the axes, and along each axis it is
-//! monotonic, since terms are convex. So its smallest value in a rectangle is the sum of the smaller ones of the two
-//! ends. If that is above zero, the one point *dominates* the other: it is nearer in the whole rectangle. A point that
-//! `K` others dominate is not among the `K` nearest of any pixel.
+//! If a key is a sum of terms, the difference between the keys of two points is a sum over the axes. Along each axis
+//! the difference is monotonic, since terms are convex. Its smallest value in a rectangle is therefore the sum, over
+//! the axes, of the smaller of its values at the two ends. If this sum is above zero, the one point *dominates* the
+//! other: it is nearer in the whole rectangle. A point that `K` others dominate is not among the `K` nearest of any
+//! pixel.
 //!
-//! This removes about half of the points that remain after bounds for each point alone.
+//! This removes about half of the points that remain after culling by bounds for each point alone.
 
 use super::LANES;
 use super::cull::{PixelBox, PointList, lanes_before};
@@ -18,7 +19,7 @@ use crate::levels::{is_wide, measured, wide};
 use crate::metric::{Exact, Measure};
 use fearless_simd::{Level, f32x16, i32x16, mask32x16, prelude::*, u32x16};
 
-/// A rectangle of pixels along the axes of the columns and of the rows, and of slices across them, in cells.
+/// The bounds of some pixels along the axes of the columns, of the rows, and of the slices, in cells.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cuboid {
     pub(super) low: [f32; 3],
@@ -27,19 +28,19 @@ pub(super) struct Cuboid {
     pub(super) is_deep: bool,
 }
 
-/// The criterion for dominated points, and memory for the test.
+/// The criterion for dominated points, and scratch memory for the test.
 #[derive(Debug)]
 pub(super) struct Dominance {
-    /// The number of others that must dominate a point to remove it.
+    /// Number of dominators that a point needs to be removed.
     pub(super) depth: usize,
-    /// The distance from the middle of the rectangle within which points are tested as dominators: farther ones
-    /// dominate few.
+    /// Distance from the center of the rectangle within which points are tested as dominators, in cells. Points farther
+    /// away dominate few.
     pub(super) distance: f32,
     /// Scratch memory for the dominators.
     dominators: Dominators,
 }
 
-/// Whether dominated points can be removed: they are where terms are added up, in wide registers.
+/// Whether dominated points can be removed, which needs a metric whose terms are added and wide registers.
 pub(super) fn culls_dominated(level: Level, metric: Metric) -> bool {
     is_wide(level) && metric.is_exact_sum()
 }
@@ -53,7 +54,7 @@ impl Dominance {
         }
     }
 
-    /// The largest key at the far corner of a point that is tested as a dominator.
+    /// Largest key at the far corner of the rectangle for a point that is tested as a dominator.
     #[inline(always)]
     fn nearby(&self, metric: Metric, cuboid: &Cuboid) -> f32 {
         let sides = [0, 1, 2].map(|axis| cuboid.high[axis] - cuboid.low[axis]);
@@ -62,19 +63,19 @@ impl Dominance {
     }
 }
 
-/// The allowance for rounding, relative to the largest key of a point: there are fewer than 64 roundings in its key, in
-/// that of another point, and in their comparison, and each of them is of at most 2⁻²⁴ of that. (Another point with
-/// larger terms does not dominate in any case.)
+/// Allowance for rounding, relative to the largest key of a point. The keys of two points and their comparison take
+/// fewer than 64 roundings, each of at most 2⁻²⁴ of that key. (A second point with larger terms does not dominate in
+/// any case.)
 const SPARE: f32 = 128.0 / (1 << 24) as f32;
 
-/// Sixteen points, with their terms in a rectangle.
+/// Sixteen points, with their terms at the ends of a rectangle.
 #[derive(Clone, Copy)]
 struct Seen<S: Simd> {
-    /// The terms at the low and at the high end of the three axes; unused along the third if there is one slice.
+    /// Terms at the low and at the high end of the three axes; unused along the third if there is one slice.
     ends: [[f32x16<S>; 2]; 3],
-    /// The terms of the other axes, accumulated.
+    /// Accumulated terms of the other axes.
     rest: f32x16<S>,
-    /// The largest keys in the rectangle.
+    /// Largest keys in the rectangle.
     far: f32x16<S>,
 }
 
@@ -98,13 +99,13 @@ impl<S: Simd> Seen<S> {
     }
 }
 
-/// Points that may dominate others.
+/// Points that are tested as dominators.
 #[derive(Debug)]
 struct Dominators {
     len: usize,
-    /// The terms at the low and at the high end of the three axes.
+    /// Terms at the low and at the high end of the three axes.
     ends: [[Vec<f32>; 2]; 3],
-    /// The terms of the other axes, accumulated.
+    /// Accumulated terms of the other axes.
     rest: Vec<f32>,
 }
 
@@ -118,7 +119,7 @@ impl Dominators {
         }
     }
 
-    /// Clears the list, and reserves memory for `n` points and a register more.
+    /// Clears the list, and reserves memory for `n` points and one more register.
     #[inline(always)]
     fn clear(&mut self, n: usize) {
         self.len = 0;
@@ -131,7 +132,7 @@ impl Dominators {
         }
     }
 
-    /// Appends the selected ones of sixteen points.
+    /// Appends the points selected by a mask.
     #[inline(always)]
     fn push<S: Simd, const DEEP: bool>(&mut self, seen: &Seen<S>, mask: mask32x16<S>) {
         let to = self.len..self.len + LANES;
@@ -147,7 +148,7 @@ impl Dominators {
         self.len += mask.to_bitmask().count_ones() as usize;
     }
 
-    /// The number of points that dominate each of sixteen points.
+    /// For each of sixteen points, counts the points that dominate it.
     #[inline(always)]
     fn count<S: Simd, const DEEP: bool>(&self, seen: &Seen<S>) -> u32x16<S> {
         let mut number = u32x16::splat(seen.far.simd, 0);
@@ -158,6 +159,7 @@ impl Dominators {
         let (front, back) = (&front[..n], &back[..n]);
         let [across, down, deep] = seen.ends;
         let lowered = seen.rest - seen.far * SPARE;
+        // The smallest difference of the keys in the rectangle, reduced by the allowance for rounding.
         for index in 0..n {
             let across = (across[0] - left[index]).min(across[1] - right[index]);
             let down = (down[0] - top[index]).min(down[1] - bottom[index]);
@@ -171,26 +173,26 @@ impl Dominators {
     }
 }
 
-/// The axes of space along which a picture's rows, and several slices, differ. Columns differ along the first.
+/// The axes of space along which rows and several slices differ. Columns differ along the first axis.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PictureAxes {
     pub(super) rows: usize,
     pub(super) slices: Option<usize>,
 }
 
-/// Feature points in the plane of the picture.
+/// Feature points projected to the picture.
 #[derive(Debug)]
 pub(super) struct FlatPoints {
     pub(super) len: usize,
-    /// The coordinates along the axes of the columns and of the rows, in cells from a corner that is less than 8 cells
-    /// away, and therefore exact. They are padded by a register.
+    /// Coordinates along the axes of the columns and of the rows, in cells from a corner. The corner is less than 8
+    /// cells away, so they are exact. They are padded by a register.
     pub(super) x: Vec<f32>,
     pub(super) y: Vec<f32>,
-    /// The coordinates along the axis across several slices.
+    /// Coordinates along the axis across several slices, in cells.
     pub(super) z: Vec<f32>,
-    /// The terms of the other axes, accumulated.
+    /// Accumulated terms of the other axes.
     pub(super) rest: Vec<f32>,
-    /// The indices of the points in the table, if needed.
+    /// Indices of the points in the table, if needed.
     pub(super) numbers: Vec<u32>,
     pub(super) wants_numbers: bool,
 }
@@ -224,8 +226,7 @@ impl FlatPoints {
         }
     }
 
-    /// Appends all points of a list, with coordinates counted from the lower corner of some pixels. The rows of the
-    /// picture differ along `row_axis`, and several slices along `deep_axis`.
+    /// Replaces the points by those of a list, with coordinates from the lower corner of some pixels.
     pub(super) fn flatten(
         &mut self,
         level: Level,
@@ -239,7 +240,7 @@ impl FlatPoints {
         });
     }
 
-    /// Flattens points in registers.
+    /// SIMD implementation of [`flatten`](Self::flatten).
     #[inline(always)]
     fn flatten_by<S: Simd, M: Measure>(
         &mut self,
@@ -253,6 +254,7 @@ impl FlatPoints {
         self.len = points.len;
         for start in (0..points.len).step_by(LANES) {
             let at = start..start + LANES;
+            // Accumulate the terms of the axes across the picture.
             let mut rest = f32x16::splat(simd, 0.0);
             for axis in (1..pixels.n_axes).rev() {
                 if axis != axes.rows && Some(axis) != axes.slices {
@@ -260,6 +262,7 @@ impl FlatPoints {
                     rest = measure.accumulate(term, rest);
                 }
             }
+            // Store the coordinates along the axes of the picture.
             places(simd, points, pixels, 0, start).store_slice(&mut self.x[at.clone()]);
             let rows = places(simd, points, pixels, axes.rows, start);
             rows.store_slice(&mut self.y[at.clone()]);
@@ -274,8 +277,8 @@ impl FlatPoints {
         }
     }
 
-    /// Selects the points that fewer than `depth` others dominate in a cuboid. Only for metrics whose terms are added
-    /// up.
+    /// Selects the points that fewer than `dominance.depth` others dominate in a cuboid. Only for metrics whose terms
+    /// are added.
     pub(super) fn take_undominated(
         &mut self,
         level: Level,
@@ -291,8 +294,7 @@ impl FlatPoints {
         });
     }
 
-    /// Selects the points that fewer than `depth` others dominate; compiled for one slice or, where `DEEP`, for
-    /// several.
+    /// SIMD implementation of [`take_undominated`](Self::take_undominated); `DEEP` means several slices.
     #[inline(always)]
     fn take_undominated_axes<S: Simd, const DEEP: bool>(
         &mut self,
@@ -306,11 +308,13 @@ impl FlatPoints {
         let nearby = dominance.nearby(metric, cuboid);
         let dominators = &mut dominance.dominators;
         dominators.clear(points.len);
+        // Collect the points near the rectangle as dominators.
         for start in (0..points.len).step_by(LANES) {
             let seen = Seen::new::<DEEP>(Exact(metric), cuboid, points.lanes(simd, start));
             let is_there = lanes_before(simd, points.len - start);
             dominators.push::<S, DEEP>(&seen, seen.far.simd_le(nearby) & is_there);
         }
+        // Keep the points with fewer than `depth` dominators.
         for start in (0..points.len).step_by(LANES) {
             let lanes = points.lanes(simd, start);
             let seen = Seen::new::<DEEP>(Exact(metric), cuboid, lanes);
@@ -347,7 +351,7 @@ impl FlatPoints {
     }
 }
 
-/// The coordinates of sixteen points of a list along an axis, from the lower corner of some pixels.
+/// Coordinates of sixteen points of a list along an axis, in cells from the lower corner of some pixels.
 #[inline(always)]
 fn places<S: Simd>(
     simd: S,

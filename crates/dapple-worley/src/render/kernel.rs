@@ -1,4 +1,4 @@
-//! The inner loop: the smallest keys of sixteen pixels side by side, for several rows at once.
+//! The inner loop for values: the smallest keys of sixteen pixels side by side, for several rows at once.
 
 use super::LANES;
 use crate::metric::Measure;
@@ -6,39 +6,39 @@ use crate::sink::Values;
 use core::ops::Range;
 use fearless_simd::{f32x16, prelude::*};
 
-/// The largest number of columns and of rows of a tile: two registers.
+/// Maximum number of columns and of rows of a tile: two registers.
 pub(super) const TILE: usize = 2 * LANES;
 
-/// The terms of a point that may be among the nearest, at the pixels of a tile: those of the columns, and those of all
-/// other axes together for each row. Elements after the last column or row are unused.
+/// The terms of a candidate at the pixels of a tile: one for each column, and the accumulated terms of all other axes
+/// for each row. Elements after the last column or row are unused.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Candidate {
     pub(super) columns: [f32; TILE],
     pub(super) rows: [f32; TILE],
 }
 
-/// Some rows of a tile.
+/// Some rows of a tile, and the parameters for rendering them.
 #[derive(Debug)]
 pub(super) struct Rows<'a> {
-    /// The rows of the tile, in the band.
+    /// Rows of the tile, in the band.
     pub(super) rows: Range<usize>,
-    /// The columns, in the window: at most [`LANES`], or [`TILE`].
+    /// Columns, in the window: at most [`LANES`], or exactly [`TILE`].
     pub(super) columns: Range<usize>,
-    /// Which of the registers of a tile's columns comes first, 0 or 1; 0, if there are two.
+    /// Index of the first register of the tile's columns, 0 or 1; 0 if both are rendered.
     pub(super) register: usize,
     pub(super) candidates: &'a [Candidate],
-    /// The key from which on keys may be wrong.
+    /// Keys at or above this value may be wrong.
     pub(super) limit: f32,
     pub(super) values: &'a Values,
 }
 
 impl Rows<'_> {
-    /// Fills pixels row by row, and returns the first row with a key that reaches the limit, or the end of the rows.
+    /// Renders pixels row by row, and returns the first row with a key that reaches the limit, or the end of the rows.
     ///
     /// `depth` is the number of nearest points to find, at most `K`.
     ///
-    /// Square roots take long, but meanwhile the processor compares the next few rows: not too many at once, so that it
-    /// can look that far ahead.
+    /// Rows are rendered in groups: square roots have a long latency, during which the processor compares the next
+    /// rows. The groups are small enough for it to look that far ahead.
     #[inline(always)]
     pub(super) fn fill<S: Simd, M: Measure, const K: usize>(
         &self,
@@ -58,7 +58,7 @@ impl Rows<'_> {
         }
     }
 
-    /// Fills one register of columns, or a part of it, as [`fill`](Self::fill) does.
+    /// Renders up to one register of columns, as [`fill`](Self::fill) does.
     #[inline(always)]
     pub(super) fn fill_register<S: Simd, M: Measure, const K: usize>(
         &self,
@@ -75,7 +75,7 @@ impl Rows<'_> {
         }
     }
 
-    /// Fills groups of `R` rows and `C` registers of columns; `C = 0` stands for a part of a register.
+    /// Renders groups of `R` rows and `C` registers of columns; `C = 0` stands for a part of a register.
     #[inline(always)]
     pub(super) fn fill_groups<
         S: Simd,
@@ -96,10 +96,11 @@ impl Rows<'_> {
         let out = &mut out[self.rows.clone()];
         for (group, out) in out.chunks_mut(R).enumerate() {
             let mut best = [[empty; 2]; R];
+            // Find the K smallest keys of each pixel of the group.
             for candidate in self.candidates {
                 let row_terms = &candidate.rows.as_chunks::<R>().0[group];
                 for part in 0..C.max(1) {
-                    // The remainder shows the compiler that this is within bounds.
+                    // The remainder proves to the compiler that the index is within bounds.
                     let register = (register + part) % 2;
                     let columns = &candidate.columns.as_chunks::<LANES>().0[register];
                     let column_terms = f32x16::from_slice(simd, columns);
@@ -110,6 +111,7 @@ impl Rows<'_> {
                     }
                 }
             }
+            // Stop at the first group that has a key at or above the limit.
             let mut worst = best[0][0][K - 1];
             for row in 0..R {
                 for part in 0..C.max(1) {
@@ -119,6 +121,7 @@ impl Rows<'_> {
             if !worst.simd_lt(self.limit).all_true() {
                 return self.rows.start + group * R;
             }
+            // Convert the keys to values, and store them.
             for row in 0..R {
                 let Some(out) = out.get_mut(row) else {
                     break;
@@ -139,8 +142,8 @@ impl Rows<'_> {
     }
 }
 
-/// `K` sorted keys before any point is compared, of which the last `depth` are in use and hold `nothing`: the others
-/// stay zero, which is below all keys.
+/// `K` sorted keys before any comparison. The last `depth` are in use and hold `nothing`; the others stay zero, below
+/// all keys.
 #[inline(always)]
 pub(super) fn empty<S: Simd, const K: usize>(
     simd: S,
@@ -156,7 +159,7 @@ pub(super) fn empty<S: Simd, const K: usize>(
     keys
 }
 
-/// Inserts one more key in its order, and drops the largest.
+/// Inserts a key into `K` sorted keys, and drops the largest.
 #[inline(always)]
 fn insert<S: Simd, const K: usize>(best: &mut [f32x16<S>; K], key: f32x16<S>) {
     for rank in (1..K).rev() {
@@ -165,8 +168,8 @@ fn insert<S: Simd, const K: usize>(best: &mut [f32x16<S>; K], key: f32x16<S>) {
     best[0] = lesser(best[0], key);
 }
 
-/// The smaller of two numbers. Floats of at least zero are in the order of their bits, and most processors compare
-/// whole numbers faster.
+/// The smaller of two numbers that are at least zero. The bits of such floats have the same order, and most processors
+/// compare integers faster.
 #[inline(always)]
 pub(super) fn lesser<S: Simd, V: SimdFloat<S, Element = f32>>(a: V, b: V) -> V {
     if floats_are_faster(a.token()) {
@@ -176,6 +179,7 @@ pub(super) fn lesser<S: Simd, V: SimdFloat<S, Element = f32>>(a: V, b: V) -> V {
     }
 }
 
+/// The larger of two numbers that are at least zero; see [`lesser`].
 #[inline(always)]
 pub(super) fn greater<S: Simd, V: SimdFloat<S, Element = f32>>(a: V, b: V) -> V {
     if floats_are_faster(a.token()) {
@@ -185,7 +189,7 @@ pub(super) fn greater<S: Simd, V: SimdFloat<S, Element = f32>>(a: V, b: V) -> V 
     }
 }
 
-/// Whether floats are compared faster than whole numbers: SSE2 has no minimum of 32-bit whole numbers.
+/// Whether floats are compared faster than integers: SSE2 has no minimum of 32-bit integers.
 #[inline(always)]
 fn floats_are_faster<S: Simd>(simd: S) -> bool {
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]

@@ -1,5 +1,4 @@
-//! The planes halfway between a feature point and its neighbors, and the selection of those that bound its Voronoi
-//! cell.
+//! Bisecting planes between a feature point and its neighbors, and the selection of those that bound its Voronoi cell.
 
 use super::cull::{PixelBox, lanes_before};
 use super::table::Table;
@@ -8,28 +7,28 @@ use crate::fixed::{MOST_AXES, STEP};
 use core::ops::Range;
 use fearless_simd::{f32x16, f64x8, i32x16, mask32x16, prelude::*};
 
-/// A bound of the error of distances in `f32`, in cells.
+/// Bound on the error of distances in `f32`, in cells.
 pub(super) const SLACK: f32 = 1.0 / (1 << 14) as f32;
 
-/// The part of the reach within which neighbors are used for the outline of the cell.
+/// Fraction of the reach within which neighbors are used for the outline of the cell.
 const INNER: f32 = 0.75;
 
-/// The neighbors of a feature point, and the planes halfway to them in `f32`; padded by a register.
+/// The neighbors of a feature point and their bisecting planes, in `f32`; padded by a register.
 #[derive(Debug)]
 pub(super) struct Neighbors {
     pub(super) n_axes: usize,
-    /// The feature point, in steps from the corner of the table.
+    /// Coordinates of the feature point, in steps from the corner of the table.
     pub(super) point: [i32; MOST_AXES],
-    /// The distance within which all neighbors are included, in cells.
+    /// Distance within which all neighbors are included, in cells.
     pub(super) reach: f32,
-    /// The vectors from the neighbors to the point in cells, axis by axis, and their squared lengths.
+    /// Vectors from the neighbors to the point in cells, axis by axis, and their squared lengths.
     ways: [Vec<f32>; MOST_AXES],
     lengths_sq: Vec<f32>,
     len: usize,
-    /// Unit normals towards the point, and distances from it in cells.
+    /// Unit normals of the planes, towards the point, and distances of the planes from the point in cells.
     pub(super) normals: [Vec<f32>; MOST_AXES],
     pub(super) distances: Vec<f32>,
-    /// The neighbors that are used for the outline of the cell.
+    /// Indices of the neighbors that are used for the outline of the cell.
     pub(super) inner: Vec<usize>,
 }
 
@@ -42,7 +41,8 @@ pub(super) struct Planes {
     pub(super) normals: [Vec<f64>; MOST_AXES],
     /// Distances from the point, in cells.
     distances: Vec<f64>,
-    /// The distances from the place where a row of pixels has the first coordinate of the point, in cells.
+    /// For the current row of pixels, distances of the planes from the position in the row with the first coordinate of
+    /// the point, in cells.
     pub(super) offsets: Vec<f64>,
 }
 
@@ -61,8 +61,8 @@ impl Neighbors {
         }
     }
 
-    /// Finds the neighbors of a point of a table up to `reach` cells away; `runs` include all of these. Returns whether
-    /// no other point is in the same place.
+    /// Finds the neighbors of a point of a table up to `reach` cells away, among the points of `runs`. Returns whether
+    /// no other point coincides with it.
     #[inline(always)]
     pub(super) fn find<S: Simd>(
         &mut self,
@@ -86,6 +86,7 @@ impl Neighbors {
                     ways[axis] = steps.to_float::<f32x16<S>>() * STEP;
                     length_sq += ways[axis] * ways[axis];
                 }
+                // The point itself has the distance zero.
                 let is_apart = length_sq.simd_gt(0.0);
                 let is_there = lanes_before(simd, run.end - start);
                 n_there += (is_there & !is_apart).to_bitmask().count_ones();
@@ -111,7 +112,7 @@ impl Neighbors {
         }
     }
 
-    /// Appends the selected ones of sixteen points.
+    /// Appends the points selected by a mask.
     #[inline(always)]
     fn push<S: Simd>(
         &mut self,
@@ -129,11 +130,12 @@ impl Neighbors {
         self.len += mask.to_bitmask().count_ones() as usize;
     }
 
-    /// Whether a single neighbor is nearer to all of a box than the point is; only the part of the box within half of
-    /// the reach counts.
+    /// Whether a single neighbor is nearer than the point to the whole box. Only the part of the box within half of the
+    /// reach counts.
     #[inline(always)]
     pub(super) fn hide<S: Simd>(&self, simd: S, pixels: &PixelBox) -> bool {
         let half = self.reach / 2.0;
+        // Clip the box to the ball of half the reach around the point.
         let spare_sq = half * half - pixels.distance_sq(&self.point);
         let [mut low, mut high] = [[0.0_f32; MOST_AXES]; 2];
         for axis in 0..self.n_axes {
@@ -143,6 +145,7 @@ impl Neighbors {
             let widest = libm::sqrtf((spare_sq + gap * gap).max(0.0));
             (low[axis], high[axis]) = (from.max(-widest), to.min(widest));
         }
+        // Test whether the whole box lies beyond the bisecting plane of a neighbor.
         for start in (0..self.len).step_by(LANES) {
             let at = start..start + LANES;
             let mut ahead = f32x16::from_slice(simd, &self.lengths_sq[at.clone()]) * 0.5;
@@ -158,7 +161,7 @@ impl Neighbors {
         false
     }
 
-    /// Computes the planes of the neighbors.
+    /// Computes the bisecting planes of the neighbors.
     #[inline(always)]
     pub(super) fn make_planes<S: Simd>(&mut self, simd: S) {
         self.inner.clear();
@@ -182,9 +185,10 @@ impl Neighbors {
         }
     }
 
-    /// Selects the planes that matter within some distance of the point, into `planes`. A plane does not matter if
-    /// another one is nearer to all of that ball, which is so if it is nearer to the point by more than the difference
-    /// of the normals times the radius.
+    /// Selects the planes that can be the nearest within a given radius of the point, into `planes`.
+    ///
+    /// A plane is left out if another one is nearer to the whole ball. This holds if the other plane is nearer to the
+    /// point by more than the difference of the two unit normals times the radius.
     #[inline(always)]
     pub(super) fn pick<S: Simd>(&self, simd: S, radius_sq: f32, planes: &mut Planes) {
         planes.clear(self.n_axes, self.len);
@@ -196,6 +200,7 @@ impl Neighbors {
                 normals[axis] = f32x16::from_slice(simd, &self.normals[axis][at.clone()]);
             }
             let mut matters = lanes_before(simd, self.len - start);
+            // Compare with the planes of the inner neighbors.
             for &other in &self.inner {
                 let nearer = distances - self.distances[other];
                 let mut apart_sq = f32x16::splat(simd, SLACK);
@@ -206,6 +211,7 @@ impl Neighbors {
                 let is_worse = (nearer * nearer).simd_gt(apart_sq * radius_sq);
                 matters &= !(is_worse & nearer.simd_gt(0.0));
             }
+            // Store the neighbors whose planes remain.
             let mut matters = matters.to_bitmask();
             while matters != 0 {
                 let index = start + matters.trailing_zeros() as usize;
@@ -243,7 +249,7 @@ impl Planes {
         }
     }
 
-    /// Computes the planes from the vectors to the neighbors, which `normals` hold at first.
+    /// Computes the planes from the vectors to the neighbors, which are stored in `normals` at first.
     #[inline(always)]
     fn make<S: Simd>(&mut self, simd: S) {
         for start in (0..self.len).step_by(F64_LANES) {
@@ -263,8 +269,8 @@ impl Planes {
         }
     }
 
-    /// Computes the offsets for a row; `rest` is the vector from the point to there along the axes past the first, in
-    /// cells.
+    /// Computes the offsets for a row of pixels. `rest` is the vector from the point to the row along the axes past the
+    /// first, in cells.
     #[inline(always)]
     pub(super) fn take_row<S: Simd>(&mut self, simd: S, rest: &[f64; MOST_AXES]) {
         for start in (0..self.len).step_by(F64_LANES) {
@@ -278,7 +284,7 @@ impl Planes {
         }
     }
 
-    /// The smallest distance of a plane from the point, in cells.
+    /// Smallest distance of a plane from the point, in cells.
     pub(super) fn least(&self) -> f64 {
         let distances = self.distances[..self.len].iter();
         distances.copied().fold(f64::INFINITY, f64::min)

@@ -1,9 +1,9 @@
-//! Rendering of small cells: every feature point is compared at the few tiles near it.
+//! Rendering of small cells: every tile is compared with all feature points of a rectangle around it.
 //!
-//! Where a cell has only a few pixels, culling points for each tile takes longer than comparing them. So tiles have 4 ×
-//! 4 pixels, a register, and each is compared with all points in a rectangle around it ([`bins`](super::bins)). This
-//! includes all points nearer to a pixel than the edge of the rectangle, and the pixel's keys are right if the `K`-th is
-//! smaller than that.
+//! Where a cell has only a few pixels, culling points for each tile takes longer than comparing them. So tiles have
+//! 4 × 4 pixels, one register, and each is compared with all points in the bins around it ([`bins`](super::bins)). The
+//! bins include all points nearer to a pixel than the edge of their rectangle. So the keys of a pixel are exact if the
+//! `K`-th is smaller than the key of that distance.
 
 use super::bins::{Grid, HALF, Reach, Runs, TILE, beyond};
 use super::block::{Block, Memory};
@@ -18,44 +18,46 @@ use crate::sink::{ValueLanes, Values};
 use dapple_raster::simd::baseline;
 use fearless_simd::{Level, f32x4, f32x16, i32x4, prelude::*};
 
-/// The largest distance of a pixel from its even position, in pixels: well below the room that [`SURE`] leaves.
+/// Maximum offset of a pixel from its evenly spaced position, in pixels: well below the margin that [`SURE`] leaves.
 const UNEVEN: f32 = 0.001;
 
-/// The reliable part of the distance from a tile to the edge of the rectangle around it: the place of a point among the
-/// pixels is rounded.
+/// Reliable fraction of the distance from a tile to the edge of the rectangle around it: the positions of points
+/// relative to the pixels are rounded.
 const SURE: f32 = 0.999;
 
-/// The largest reach, in cells, of the rectangle around a tile: coordinates that differ by less are exact in `f32`.
+/// Maximum reach of the rectangle around a tile, in cells: coordinates that differ by less are exact in `f32`.
 const FARTHEST: f32 = 8.0;
 
-/// The largest ratio of the reach to the distance that is needed: past it, single positions are searched as fast.
+/// Maximum ratio of the reach to the needed distance. Above it, searching each pixel on its own is as fast.
 const MOST_WASTE: f32 = 10.0;
 
-/// The numbers of columns of points that a tile may be compared with; the first only for flat sums, the most usual case.
+/// Numbers of columns of bins that a tile may be compared with. The first is used only for flat sums, the most common
+/// case.
 const COLUMNS: [usize; 3] = [2, 3, 5];
 
-/// The largest number of half tiles above and below a tile from which points are taken.
+/// Upper limit, exclusive, for the number of rows of bins above a tile, and for the number below it.
 const MOST_HALVES: usize = 8;
 
-/// The distance along the axes across the picture within which points are taken, as a multiple of the guess: searching
-/// a pixel on its own takes as long as comparing hundreds of points.
+/// Distance along the axes across the picture within which points are taken, as a multiple of the guess. Searching a
+/// pixel on its own takes as long as comparing hundreds of points.
 const SPARE: f32 = 1.1;
 
 /// The parameters of the method for small cells, for a block.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Splat {
-    /// The number of columns of points that a tile is compared with, and of half tiles above and below it.
+    /// Number of columns of bins that a tile is compared with, and of rows of bins on either side of it.
     around: [usize; 2],
-    /// The distance from any pixel within which all points are compared, in cells.
+    /// Distance from any pixel within which all points are compared, in cells.
     pub(super) reach: f32,
-    /// Steps from one column to the next, and from one row to the next along the axis that goes with the rows.
+    /// Distance from one column to the next, and from one row to the next along `row_axis`, in steps.
     pixel: [f32; 2],
-    /// The axis along which rows differ.
+    /// Axis along which rows differ.
     row_axis: usize,
 }
 
 impl Splat {
-    /// The parameters for a block whose pixels need `depth` points, as far away as `distance`, if the method can be used.
+    /// Chooses the parameters for a block whose pixels need their `depth` nearest points, up to `distance` cells away.
+    /// Returns `None` if the method does not apply.
     pub(super) fn new(block: &Block<'_>, depth: usize, distance: f32) -> Option<Self> {
         let Picture { section, basis, .. } = &block.bands[0].picture;
         let row_axis = section.row_axis()?;
@@ -70,11 +72,12 @@ impl Splat {
             (section.u[0] * x * frequency) as f32,
             (section.v[row_axis] * y * frequency) as f32,
         ];
-        // A tile begins half a pixel before its first pixel.
+        // A tile begins half a pixel before the center of its first pixel.
         let reach = |pixel: f32, pixels: usize| (pixels as f32 + 0.5) * pixel.abs() * SURE;
         let useful = distance..FARTHEST.min(MOST_WASTE * distance);
         let is_flat_sum = section.n_axes == 2 && basis.metric().is_exact_sum();
         let is_usual = is_flat_sum && depth <= 2 && is_wide(block.level);
+        // Take the fewest columns and rows of bins that reach far enough.
         for &columns in &COLUMNS[usize::from(!is_usual)..] {
             let along_row = reach(pixel[0], beyond(columns));
             let halves = (1..MOST_HALVES).find(|halves| reach(pixel[1], HALF * halves) >= distance);
@@ -97,7 +100,7 @@ impl Splat {
         None
     }
 
-    /// Whether pixels are as evenly spaced as tiles need it: far from zero, rounding of `f64` may make them uneven.
+    /// Whether pixels are spaced evenly enough for tiles. Far from zero, rounding of `f64` may make them uneven.
     pub(super) fn is_even(&self, lines: &[Vec<i32>; MOST_AXES]) -> bool {
         let is_even = |axis: usize, pixel: f32| {
             let line = &lines[axis][..lines[axis].len() - LANES];
@@ -109,7 +112,7 @@ impl Splat {
         is_even(0, self.pixel[0]) && is_even(self.row_axis, self.pixel[1])
     }
 
-    /// Fills the pixels of a block; its lines are counted from the corner of `cells`.
+    /// Renders the pixels of a block; its coordinates are counted from the lower corner of `cells`.
     pub(super) fn render(
         &self,
         block: &Block<'_>,
@@ -145,9 +148,11 @@ impl Splat {
             pixel: self.pixel,
             row_axis: self.row_axis,
         };
+        // Generate the points, and sort them by bin.
         bins.clear(&lines[0][..block.range.len()], block.bands[0].n_rows, reach);
         bins.collect(block.level, basis.lattice(), &near, &grid);
         bins.count();
+        // Render the tiles with the loop for the number of columns of bins.
         let rows = &lines[self.row_axis];
         if columns < 5 {
             let runs = bins.runs(block.level, &grid, rows, &mut points.three);
@@ -173,7 +178,7 @@ impl Splat {
     }
 }
 
-/// Fills the pixels of a block from its points, row of tiles by row of tiles.
+/// Renders the pixels of a block from its points, one row of tiles at a time.
 fn fill_block<const SLOTS: usize>(
     block: &Block<'_>,
     runs: Runs<'_, SLOTS>,
@@ -186,6 +191,7 @@ fn fill_block<const SLOTS: usize>(
     let mut whole_tiles = [[0.0; BLOCK_COLUMNS]; TILE];
     let mut unknown = [0; BLOCK_COLUMNS / TILE];
     for (tile_row, out) in out.chunks_mut(TILE).enumerate() {
+        // Render incomplete tiles into a copy of whole tiles.
         let is_whole = out.len() == TILE && range.len().is_multiple_of(TILE);
         if !is_whole {
             for (pixels, out) in whole_tiles.iter_mut().zip(&*out) {
@@ -209,6 +215,7 @@ fn fill_block<const SLOTS: usize>(
                 out[range.clone()].copy_from_slice(&pixels[..range.len()]);
             }
         }
+        // Search the pixels whose keys reach the limit on their own.
         for (tile, &unknown) in unknown[..n_tiles].iter().enumerate() {
             let mut rest = unknown;
             while rest != 0 {
@@ -229,17 +236,17 @@ fn fill_block<const SLOTS: usize>(
 
 /// A row of tiles.
 struct TileRow<'a> {
-    /// The index of the row of tiles in the band.
+    /// Index of the row of tiles in the band.
     index: usize,
     values: &'a Values,
-    /// The rows of pixels.
+    /// Rows of pixels.
     pixels: [&'a mut [f32]; TILE],
-    /// For each tile, a bit for each pixel whose keys reach the limit; these are not filled.
+    /// For each tile, a mask of the pixels whose keys reach the limit; their values are not stored.
     unknown: &'a mut [u16],
 }
 
-/// Fills a row of tiles from the points in two columns, which are taken in the plane, for sums and one or two nearest points,
-/// and where registers are wide.
+/// Renders a row of tiles from two columns of bins: in the plane, for sums, one or two nearest points, and wide
+/// registers.
 fn fill_two(level: Level, runs: Runs<'_, 3>, tiles: &mut TileRow<'_>) {
     let sum = Additive(runs.metric);
     let _done = match tiles.values.tone.depth() {
@@ -248,7 +255,7 @@ fn fill_two(level: Level, runs: Runs<'_, 3>, tiles: &mut TileRow<'_>) {
     };
 }
 
-/// Fills a row of tiles from the points in three columns.
+/// Renders a row of tiles from three columns of bins.
 fn fill_three(level: Level, runs: Runs<'_, 3>, tiles: &mut TileRow<'_>) {
     let sum = Additive(runs.metric);
     let done = match tiles.values.tone.depth() {
@@ -262,7 +269,7 @@ fn fill_three(level: Level, runs: Runs<'_, 3>, tiles: &mut TileRow<'_>) {
     }
 }
 
-/// Fills a row of tiles from the points in as many columns as they have terms for, with the loop that is compiled for the
+/// Renders a row of tiles from as many columns of bins as points have terms for, with the loop that is compiled for the
 /// metric and the number of nearest points.
 fn fill_any<const TILES: usize>(level: Level, runs: Runs<'_, TILES>, tiles: &mut TileRow<'_>) {
     let depth = match tiles.values.tone.depth() {
@@ -294,9 +301,10 @@ fn fill_any<const TILES: usize>(level: Level, runs: Runs<'_, TILES>, tiles: &mut
     }
 }
 
-/// Fills a row of tiles; `depth` is the number of nearest points to find, at most `K`, and `DEEP` is true if there may be
-/// axes across the picture. The `TILES` tiles that one column of points matters to are held in registers; points have terms
-/// for `SLOTS` tiles.
+/// Renders a row of tiles. Each column of bins is compared with `TILES` tiles, which are held in registers.
+///
+/// `depth` is the number of nearest points to find, at most `K`. Points have terms for `SLOTS` tiles. `DEEP` means that
+/// there may be axes across the picture.
 #[inline(always)]
 fn fill<
     S: Simd,
@@ -320,13 +328,14 @@ fn fill<
     let last = first + TILE / HALF + 2 * runs.halves;
     for column in 0..tiles.unknown.len() + TILES - 1 {
         let starts = &runs.starts[column * runs.n_halves..];
+        // Compare the points of this column of bins with the tiles around it.
         for point in &runs.points[starts[first] as usize..starts[last] as usize] {
             let ahead = (rows - point.row).to_float::<f32x4<S>>() * STEP;
             let [mut rows] = measure.terms([ahead]);
             if DEEP {
                 rows = measure.accumulate(rows, f32x4::splat(simd, point.across));
             }
-            // Each of the four numbers is repeated four times.
+            // Repeat each of the four row terms four times.
             let rows = f32x16::block_splat(rows);
             let rows = rows.zip_low(rows);
             let rows = rows.zip_low(rows);
@@ -340,6 +349,7 @@ fn fill<
                 }
             }
         }
+        // The first tile has been compared with all of its columns. Store it, and shift the others.
         if let Some(tile) = (column + 1).checked_sub(TILES) {
             tiles.put(measure, &values, best[0], runs.limit, tile);
         }

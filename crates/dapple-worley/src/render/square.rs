@@ -1,8 +1,8 @@
 //! Squares of up to 64 × 64 pixels and their tiles of up to 32 × 32: from candidates to values.
 //!
-//! The candidates of a square are selected from the table, and those of each of its tiles from the square's. Where a
-//! key reaches the edge of the neighborhood that the candidates come from, the pixels are filled again from a larger
-//! one.
+//! The candidates of a square are selected from the table, and those of a tile from the candidates of its square. Where
+//! a key reaches the border of the neighborhood that the candidates come from, the pixels are rendered again from a
+//! larger neighborhood.
 
 use super::area::Area;
 use super::block::{Block, Memory};
@@ -20,17 +20,18 @@ use core::ops::Range;
 use dapple_raster::simd::baseline;
 use fearless_simd::Level;
 
-/// A guess of the distance of the nearest points, which few of them exceed.
+/// A guess of the distance to the nearest points; few pixels exceed it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Guess {
+    /// The guess, in cells.
     pub(super) distance: f32,
-    /// The number of cells that the distance reaches over.
+    /// Number of cells that the distance spans, rounded up; at least 1.
     pub(super) ring: i32,
 }
 
 impl Guess {
-    /// The guess for `depth` points: a ball of that size has so many points on average that fewer than `depth` are
-    /// unlikely, about one in 250.
+    /// Makes the guess for the `depth` nearest points: the radius of a ball that holds fewer than `depth` points with a
+    /// probability of about 1 in 250.
     pub(super) fn new(
         basis: &dyn Basis,
         middle: [i64; MOST_AXES],
@@ -51,18 +52,18 @@ impl Guess {
     }
 }
 
-/// The parameters with which a block is filled.
+/// The parameters for rendering a block.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Plan {
-    /// The greatest n for which `F_n` is needed.
+    /// The largest n for which `F_n` is needed.
     pub(super) depth: usize,
     pub(super) guess: Guess,
     pub(super) metric: Metric,
-    /// The axis of the rows, if the terms of all other axes can be accumulated before those of the rows.
+    /// Axis of the rows, if the terms of all other axes can be accumulated before those of the rows.
     pub(super) row_axis: Option<usize>,
-    /// The numbers of columns and rows of a tile.
+    /// Numbers of columns and rows of a tile.
     pub(super) tile: [usize; 2],
-    /// The axis along which slices differ, if there are several.
+    /// Axis along which slices differ, if there are several.
     pub(super) deep_axis: Option<usize>,
 }
 
@@ -72,7 +73,7 @@ impl Plan {
         Keep::Nearest(self.depth, self.metric.rounding_slack())
     }
 
-    /// The box of pixels, in cells from its lower corner.
+    /// The bounds of some pixels, in cells from their lower corner.
     fn cuboid(&self, pixels: &PixelBox) -> Cuboid {
         let mut high = [0.0; 3];
         for (high, axis) in high
@@ -90,49 +91,50 @@ impl Plan {
         }
     }
 
-    /// Whether values are filled by a kernel that takes two registers of columns at once.
+    /// Whether values are rendered by a kernel that takes two registers of columns at once.
     fn has_wide_kernel(&self, level: Level) -> bool {
         is_wide(level) && self.depth <= 2 && self.metric.is_exact_sum()
     }
 
-    /// Whether dominated points are removed from the candidates of a rectangle.
+    /// Whether dominated points are removed from the candidates.
     pub(super) fn culls_dominated(&self, level: Level) -> bool {
         self.row_axis.is_some() && culls_dominated(level, self.metric)
     }
 }
 
-/// A square, after its candidates are selected.
+/// A square with selected candidates.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Square {
     pub(super) pixels: PixelBox,
-    /// The box of its pixels, from its lower corner.
+    /// Bounds of its pixels, in cells from its lower corner.
     pub(super) cuboid: Cuboid,
     /// Whether the square is a single tile.
     pub(super) is_tile: bool,
-    /// The key from which on keys may be wrong.
+    /// Keys at or above this value may be wrong.
     pub(super) limit: f32,
     pub(super) plan: Plan,
 }
 
-/// The numbers of columns and rows of the squares, and of their tiles.
+/// Sizes of squares and of their tiles, as numbers of columns and rows; largest first.
 const SIZES: [[[usize; 2]; 2]; 3] = [
     [[64, 64], [32, 32]],
     [[32, 32], [32, 16]],
     [[16, 16], [16, 16]],
 ];
 
-/// The largest width of a square, in steps: in wider ones, almost all points matter.
+/// Maximum width of a square, in steps. In wider squares, almost all points are candidates.
 const WIDEST_SQUARE: i32 = STEPS + STEPS / 2;
 
-/// The largest number of cells that a square and its neighborhood span, so that coordinates in it are exact in `f32`.
+/// Maximum number of cells that a square and its neighborhood span, so that coordinates in it are exact in `f32`.
 const SPAN: i32 = 8;
 
-/// The region from which feature points for a square are taken.
+/// The region from which the feature points of a square are taken.
 #[derive(Clone, Copy, Debug)]
 struct Neighborhood {
-    /// The number of cells on every side of those that the square touches.
+    /// Number of cells around those that the square touches.
     ring: i32,
-    /// The distance from the square within which points are selected; `None` selects all that could matter.
+    /// Distance from the square within which points are selected, in cells; `None` selects all that can be among the
+    /// nearest.
     guess: Option<f32>,
 }
 
@@ -143,7 +145,7 @@ impl Neighborhood {
         (0..pixels.n_axes).all(|axis| last[axis] - first[axis] < SPAN)
     }
 
-    /// The next larger neighborhood.
+    /// The next larger neighborhood: first without the guess, then with one more ring of cells.
     fn grown(self) -> Self {
         Self {
             ring: self.ring + i32::from(self.guess.is_none()),
@@ -153,7 +155,7 @@ impl Neighborhood {
 }
 
 impl Block<'_> {
-    /// Fills the pixels of the block.
+    /// Renders the pixels of the block, square by square.
     pub(super) fn squares(&self, mut plan: Plan, outs: &mut [Output<'_>], memory: &mut Memory) {
         let all = self.all();
         let extent = |size: [usize; 2]| {
@@ -161,6 +163,7 @@ impl Block<'_> {
             first.map_or(0, |first| memory.pixel_box(&first).extent())
         };
         let fits = |[square, _]: &[[usize; 2]; 2]| extent(*square) <= WIDEST_SQUARE;
+        // Choose the largest squares that are narrow enough.
         let mut neighborhood = Neighborhood {
             ring: plan.guess.ring,
             guess: None,
@@ -168,11 +171,11 @@ impl Block<'_> {
         let square;
         [square, plan.tile] = SIZES.into_iter().find(fits).unwrap_or_else(|| {
             neighborhood.guess = Some(plan.guess.distance);
-            // Whether the pixels are far apart.
+            // Wider squares use the guess as the bound; their tiles are lower if pixels are far apart.
             let is_widest = extent([LANES, 1]) as f32 * STEP >= 1.5;
             [[LANES, LANES / if is_widest { 4 } else { 2 }]; 2]
         });
-        // Where the kernel only finds one or two keys, more candidates cost less than more tiles.
+        // Where the kernel finds only one or two keys, more candidates cost less than more tiles.
         let is_short = plan.depth <= 2 && matches!(outs[0], Output::Values(..));
         if is_short && plan.deep_axis.is_none() && square == [TILE; 2] {
             plan.tile = square;
@@ -182,7 +185,7 @@ impl Block<'_> {
         }
     }
 
-    /// Fills the pixels of a square.
+    /// Renders the pixels of a square.
     fn square(
         &self,
         area: &Area,
@@ -212,12 +215,13 @@ impl Block<'_> {
         if memory.unknown.is_empty() {
             return;
         }
+        // Render the rows that need farther points again, from a larger neighborhood.
         for part in core::mem::take(&mut memory.unknown) {
             self.square(&part, neighborhood.grown(), plan, outs, memory);
         }
     }
 
-    /// Selects the candidates of a square from a table; all keys below the returned limit are right.
+    /// Selects the candidates of a square from a table. Keys below the returned limit are exact.
     fn pick(
         &self,
         area: &Area,
@@ -228,10 +232,12 @@ impl Block<'_> {
     ) -> f32 {
         let metric = plan.metric;
         let cells = pixels.cells(neighborhood.ring);
+        // Keys are exact up to the border of the neighborhood and up to the guess.
         let border = metric.term(pixels.border(cells) as f32 * STEP);
         let guess = neighborhood.guess.map(|guess| metric.term(guess));
         let limit = metric.tightened(guess.map_or(border, |guess| guess.min(border)));
         let mut moved = *pixels;
+        // Generate the points of a neighborhood that exceeds the table of the block.
         memory.is_wide = neighborhood.ring > plan.guess.ring;
         let table = if memory.is_wide {
             let corner = memory.table.cells;
@@ -249,6 +255,7 @@ impl Block<'_> {
         } else {
             &memory.table
         };
+        // Cull by bounds, then remove dominated points.
         memory.low = moved.low;
         table.runs(moved.cells(neighborhood.ring), &mut memory.runs);
         let points = Points {
@@ -286,7 +293,7 @@ impl Block<'_> {
         limit
     }
 
-    /// Fills the pixels of a tile from the candidates of its square.
+    /// Renders the pixels of a tile from the candidates of its square.
     fn tile(&self, area: &Area, square: &Square, outs: &mut [Output<'_>], memory: &mut Memory) {
         let plan = square.plan;
         memory.candidates(self.level, area, square);
@@ -303,6 +310,7 @@ impl Block<'_> {
             TILE if is_values && plan.has_wide_kernel(self.level) => [TILE; 2],
             _ => [LANES, TILE],
         };
+        // Render slice by slice. Rows that need farther points are collected in `unknown`.
         for slice in area.slices.clone() {
             if let Some(deep_axis) = plan.deep_axis {
                 let place = memory.slices[slice][deep_axis] - square.pixels.low[deep_axis];
@@ -329,8 +337,8 @@ impl Block<'_> {
         }
     }
 
-    /// Fills one or two registers of columns of a tile, and returns the first row with a key that reaches the limit, or
-    /// the end of the rows.
+    /// Renders one or two registers of columns of a tile, and returns the first row with a key that reaches the limit,
+    /// or the end of the rows.
     fn fill_part(&self, part: Part<'_>, out: &mut Output<'_>, memory: &Memory) -> usize {
         match out {
             Output::Values(values, out) => {
@@ -340,7 +348,7 @@ impl Block<'_> {
         }
     }
 
-    /// Fills values, with the loop that is compiled for the metric and the number of nearest points.
+    /// Renders values with the loop that is compiled for the metric and the number of nearest points.
     fn fill_values(&self, part: Part<'_>, rows: &Rows<'_>, out: &mut [&mut [f32]]) -> usize {
         let (level, Plan { metric, depth, .. }) = (self.level, part.square.plan);
         let (sum, exact) = (Additive(metric), Exact(metric));
@@ -367,7 +375,7 @@ impl Block<'_> {
         })
     }
 
-    /// Fills features or gradients, which need the identity of the nearest points.
+    /// Renders features or gradients, which need the identity of the nearest points.
     fn fill_tracked(&self, part: Part<'_>, out: &mut Output<'_>, memory: &Memory) -> usize {
         let (level, area) = (self.level, part.area);
         let Plan { metric, depth, .. } = part.square.plan;
@@ -403,7 +411,7 @@ impl Block<'_> {
         })
     }
 
-    /// The rows of a part, for the kernel.
+    /// The parameters of the kernel for a part of a tile.
     fn rows_of<'a>(&self, part: Part<'_>, values: &'a Values, memory: &'a Memory) -> Rows<'a> {
         Rows {
             rows: part.area.rows.clone(),
@@ -421,7 +429,7 @@ impl Block<'_> {
         left + area.columns.start..left + area.columns.end
     }
 
-    /// Stores the nearest points of a row of pixels.
+    /// Stores the nearest points of a row of pixels. Pixels whose order of points is unknown are searched on their own.
     fn put(&self, slice: usize, found: &Found, out: &mut Output<'_>) {
         match out {
             Output::Features(features) => found.put(&self.bands[slice], features),
@@ -446,7 +454,7 @@ impl Block<'_> {
     }
 }
 
-/// Stores the gradients of some pixels of a row, one after the other.
+/// Stores the gradients of some pixels of a row with interleaved components.
 fn put_gradients<const N: usize>(tone: &Tone, metric: Metric, found: &Found, out: &mut [f32]) {
     for (lane, out) in out.as_chunks_mut::<N>().0.iter_mut().enumerate() {
         *out = tone.gradient(metric, &found.vectors::<N>(lane));
@@ -457,7 +465,7 @@ fn put_gradients<const N: usize>(tone: &Tone, metric: Metric, found: &Found, out
 #[derive(Clone, Copy)]
 struct Part<'a> {
     area: &'a Area,
-    /// Which of the registers of the tile's columns comes first.
+    /// Index of the first register of the tile's columns.
     register: usize,
     square: &'a Square,
 }

@@ -1,4 +1,4 @@
-//! Tables of the feature points of a box of cells, generated once and then looked up.
+//! Tables of the feature points in a box of cells, generated once and then looked up.
 
 use super::LANES;
 use crate::fixed::{MOST_AXES, STEP_BITS};
@@ -22,7 +22,7 @@ impl CellBox {
         (self.last[axis] - self.first[axis] + 1) as usize
     }
 
-    /// This box, extended by `by` cells on every side.
+    /// The box extended by `by` cells on every side.
     pub(super) fn widened(mut self, by: i64) -> Self {
         for axis in 0..self.n_axes {
             self.first[axis] -= by;
@@ -31,7 +31,8 @@ impl CellBox {
         self
     }
 
-    /// The rows of cells along the first axis: the parts of the words of its cells, and the first cell.
+    /// Iterator over the rows of cells along the first axis: for each, the row's part of the cell words, and its first
+    /// cell.
     pub(super) fn rows(
         &self,
         lattice: &Lattice,
@@ -51,7 +52,7 @@ impl CellBox {
         })
     }
 
-    /// The number of cells; the largest number of the type, if it overflows.
+    /// Number of cells; saturates at the largest `u128`.
     pub(super) fn n_cells(&self) -> u128 {
         let sides = self.first.iter().zip(self.last);
         sides
@@ -60,22 +61,22 @@ impl CellBox {
     }
 }
 
-/// The number of points of a cell that are copied without a look at their count.
+/// Number of points of a cell that are copied without checking their count.
 const USUAL: usize = 4;
 
-/// The feature points of a box of cells, row by row of cells.
+/// The feature points in a box of cells, by row of cells.
 #[derive(Debug)]
 pub(super) struct Table {
     pub(super) cells: CellBox,
-    /// The index of the first point of each cell, and at the end the number of points.
+    /// Index of the first point of each cell; the last element is the number of points.
     starts: Vec<u32>,
     /// Scratch memory for the points of sixteen cells.
     scratch: Vec<u32>,
-    /// The coordinates along each axis, in steps from the lower corner of the box, padded by a whole register.
+    /// Coordinates along each axis, in steps from the lower corner of the box; padded by a register.
     pub(super) steps: [Vec<i32>; MOST_AXES],
     /// Whether ids are needed.
     pub(super) wants_ids: bool,
-    /// The ids of the points, if needed.
+    /// Ids of the points, if needed.
     pub(super) ids: Vec<u64>,
 }
 
@@ -96,17 +97,17 @@ impl Table {
         }
     }
 
-    /// Whether the table holds the points of these cells, with or without ids.
+    /// Whether the table holds exactly these cells, with or without ids as requested.
     pub(super) fn has(&self, cells: &CellBox, with_ids: bool) -> bool {
         !self.starts.is_empty() && self.cells == *cells && self.wants_ids == with_ids
     }
 
-    /// Generates the points of `cells`, which are at most 1000 along each axis.
+    /// Generates the points of `cells`, of which there are at most 1000 along each axis.
     pub(super) fn fill(&mut self, level: Level, lattice: &Lattice, cells: CellBox) {
         dispatch!(level, simd => self.fill_by(simd, lattice, cells));
     }
 
-    /// Generates the points of cells in registers.
+    /// SIMD implementation of [`fill`](Self::fill).
     #[inline(always)]
     fn fill_by<S: Simd>(&mut self, simd: S, lattice: &Lattice, cells: CellBox) {
         self.cells = cells;
@@ -129,7 +130,7 @@ impl Table {
         }
     }
 
-    /// Adds the points of up to sixteen cells side by side.
+    /// Appends the points of up to sixteen cells side by side.
     #[inline(always)]
     fn add<S: Simd>(
         &mut self,
@@ -148,6 +149,7 @@ impl Table {
         let most = numbers[..n_cells].iter().copied().fold(0, u32::max);
         let mut scratch = core::mem::take(&mut self.scratch);
         scratch.resize(most.max(USUAL as u32) as usize * n_axes * LANES, 0);
+        // Generate the points of all sixteen cells, one point per cell at a time.
         for index in 0..most {
             let steps = cells.flat_steps(u32x16::splat(simd, index), lattice);
             for axis in 0..MOST_AXES {
@@ -157,6 +159,7 @@ impl Table {
                 }
             }
         }
+        // Compact the points, cell by cell, and shift them to the corners of their cells.
         let start = *self.starts.last().unwrap_or(&0) as usize;
         for axis in 0..n_axes {
             let room = start + most as usize * LANES + LANES;
@@ -171,7 +174,7 @@ impl Table {
                 let from = |index: usize| {
                     scratch[(index * n_axes + axis) * LANES + lane].cast_signed() + shift
                 };
-                // Most cells have no more points than this; the next cell overwrites what is too much.
+                // Most cells have at most `USUAL` points; the next cell overwrites the surplus.
                 let to = &mut steps[end..end + number.max(USUAL)];
                 for index in 0..USUAL {
                     to[index] = from(index);
@@ -183,6 +186,7 @@ impl Table {
                 shift += along;
             }
         }
+        // Record where each cell's points begin.
         let mut end = start as u32;
         for number in &numbers[..n_cells] {
             end += number;
@@ -194,7 +198,7 @@ impl Table {
         }
     }
 
-    /// Adds the ids of the points of up to sixteen cells with these numbers of points.
+    /// Appends the ids of the points of up to sixteen cells with the given numbers of points.
     #[inline(always)]
     fn add_ids<S: Simd>(&mut self, simd: S, hashes: CellHashes<S>, numbers: &[u32]) {
         let most = numbers.iter().copied().fold(0, u32::max);
@@ -218,7 +222,7 @@ impl Table {
         }
     }
 
-    /// The place of a point, in steps from the lower corner of the box.
+    /// Coordinates of a point, in steps from the lower corner of the box.
     pub(super) fn point(&self, index: usize) -> [i32; MOST_AXES] {
         let mut point = [0; MOST_AXES];
         for axis in 0..self.cells.n_axes {
@@ -233,7 +237,7 @@ impl Table {
             .all(|axis| first[axis] >= 0 && (last[axis] as usize) < self.cells.side(axis))
     }
 
-    /// The points of the cells within `reach` steps of a point along each axis, if the table holds these cells.
+    /// Ranges of points in the cells within `reach` steps of a point along each axis; `None` if the table lacks a cell.
     pub(super) fn around<'a>(
         &self,
         point: &[i32; MOST_AXES],
@@ -248,7 +252,7 @@ impl Table {
         Some(runs)
     }
 
-    /// The points of the cells from `first` to `last` along each axis, row by row.
+    /// Collects the ranges of points in the cells from `first` to `last` along each axis, one for each row of cells.
     pub(super) fn runs(&self, [first, last]: [[i32; MOST_AXES]; 2], runs: &mut Vec<Range<usize>>) {
         let n_axes = self.cells.n_axes;
         runs.clear();
@@ -268,7 +272,7 @@ impl Table {
         }
     }
 
-    /// The points of the cells `columns` (along the first axis) of a row of cells, as a range.
+    /// Range of points in the given columns (along the first axis) of a row of cells.
     #[inline(always)]
     fn run(&self, row: usize, columns: Range<usize>) -> Range<usize> {
         let first = row * self.cells.side(0);
@@ -276,7 +280,7 @@ impl Table {
     }
 }
 
-/// The numbers of points of sixteen cells, the first of which is `cell`.
+/// Numbers of points of sixteen cells along the first axis, starting at `cell`.
 #[inline(always)]
 pub(super) fn numbers<S: Simd>(
     lattice: &Lattice,
@@ -295,7 +299,7 @@ pub(super) fn numbers<S: Simd>(
     numbers
 }
 
-/// The words of sixteen cells of a row, from the parts of the row and of all columns.
+/// The words of sixteen cells of a row, combined from the parts of the row and of the columns.
 #[inline(always)]
 pub(super) fn row_words<S: Simd>(
     simd: S,

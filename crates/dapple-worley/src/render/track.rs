@@ -1,7 +1,7 @@
-//! The inner loop of pictures that need the identity of the nearest feature points.
+//! The inner loop for outputs that need the identity of the nearest feature points.
 //!
-//! Keys hold the number of their candidate in the low bits, as in [`many`](crate::many). If the other bits do not tell
-//! the order of two of the nearest points, the pixel is searched on its own.
+//! Keys store the index of their candidate in the low bits, as in [`many`](crate::many). If the remaining bits do not
+//! determine the order of the nearest points, the pixel is searched on its own.
 
 use super::flat::FlatPoints;
 use super::kernel::{Candidate, empty, greater, lesser};
@@ -16,13 +16,13 @@ use crate::worley::cell_value;
 use core::ops::Range;
 use fearless_simd::{f32x16, i32x16, prelude::*, u8x64, u32x16};
 
-/// The candidates of a tile, to look up those that are the nearest.
+/// The candidates of a tile, to look up the nearest by index.
 #[derive(Debug)]
 pub(super) struct Lookup {
     n_axes: usize,
-    /// The coordinates along each axis, in cells from a corner of the tile; padded to whole registers.
+    /// Coordinates along each axis, in cells from a corner of the tile; padded to whole registers.
     coordinates: [Vec<f32>; MOST_AXES],
-    /// The ids, if they are needed.
+    /// Ids of the candidates, if needed.
     ids: Vec<u64>,
 }
 
@@ -58,55 +58,55 @@ impl Lookup {
     }
 }
 
-/// Some rows of a tile.
+/// Some rows of a tile, and the parameters for rendering them.
 #[derive(Debug)]
 pub(super) struct TrackedRows<'a> {
-    /// The rows of the tile, in the band.
+    /// Rows of the tile, in the band.
     pub(super) rows: Range<usize>,
-    /// The columns, in the window; at most [`LANES`].
+    /// Columns, in the window; at most [`LANES`].
     pub(super) columns: Range<usize>,
-    /// Which of the registers of a tile's columns they are, 0 or 1.
+    /// Index of the register of the tile's columns, 0 or 1.
     pub(super) register: usize,
-    /// The coordinates of the columns, in steps, and those of the band's rows along the other axes.
+    /// Coordinates of the columns and, along the other axes, of the band's rows, in steps.
     pub(super) lines: [&'a [i32]; MOST_AXES],
-    /// The corner from which the candidates' coordinates are counted.
+    /// Corner from which the candidates' coordinates are counted, in steps.
     pub(super) low: [i32; MOST_AXES],
     pub(super) candidates: &'a [Candidate],
     pub(super) lookup: &'a Lookup,
-    /// The key from which on keys may be wrong.
+    /// Keys at or above this value may be wrong.
     pub(super) limit: f32,
 }
 
-/// The nearest points of the pixels of a row. The numbers come first, so that registers do not lie across cache lines.
+/// The nearest points of the pixels of a row. Arrays come first, so that registers do not cross cache lines.
 #[repr(C, align(64))]
 pub(super) struct Found {
     pub(super) distances: [[f32; LANES]; MAX_NEAREST],
-    /// The components of the vectors, one after the other.
+    /// Vectors with interleaved components.
     pub(super) vectors: [[f32; MOST_AXES * LANES]; MAX_NEAREST],
     pub(super) ids: [[u64; LANES]; MAX_NEAREST],
-    /// A bit for each lane whose order is unknown.
+    /// A bit for each lane in which the order of points is unknown.
     pub(super) unknown: u64,
     pub(super) row: usize,
     pub(super) columns: Range<usize>,
     pub(super) n_axes: usize,
-    /// The number of nearest points for each pixel.
+    /// Number of nearest points for each pixel.
     depth: usize,
 }
 
-/// The smallest keys of sixteen pixels, with the numbers of their candidates in the low bits.
+/// The smallest keys of sixteen pixels, with the indices of their candidates in the low bits.
 struct Keys<S: Simd, const K: usize> {
-    /// The keys of the nearest points, after some ranks that are not in use.
+    /// Keys of the nearest points in the last `depth` ranks; earlier ranks are unused.
     best: [u32x16<S>; K],
-    /// The smallest key of all other points.
+    /// Smallest key of all other points.
     next: u32x16<S>,
-    /// The bits that hold the numbers.
+    /// Mask of the bits that hold the index.
     mask: u32,
-    /// The number of ranks that are not in use.
+    /// Number of unused ranks.
     unused: usize,
 }
 
 impl TrackedRows<'_> {
-    /// Finds the `depth` nearest points row by row, at most `K`, and returns the first row with a key that reaches the
+    /// Finds the `depth` nearest points row by row, at most `K`. Returns the first row with a key that reaches the
     /// limit, or the end of the rows.
     #[inline(always)]
     pub(super) fn fill<S: Simd, M: Measure, const K: usize>(
@@ -128,6 +128,7 @@ impl TrackedRows<'_> {
         };
         let columns = i32x16::from_slice(simd, &self.lines[0][..LANES]);
         let mut places = [(columns - self.low[0]).to_float::<f32x16<S>>() * STEP; MOST_AXES];
+        // The number of low bits that an index needs.
         let n_bits = usize::BITS - self.candidates.len().leading_zeros();
         let mask = (1_u32 << n_bits) - 1;
         for row in self.rows.clone() {
@@ -135,11 +136,13 @@ impl TrackedRows<'_> {
                 let ahead = self.lines[axis][row] - self.low[axis];
                 places[axis] = f32x16::splat(simd, ahead as f32 * STEP);
             }
+            // Find the nearest candidates; stop at the first row with a key at or above the limit.
             let keys = self.smallest::<S, M, K>(simd, measure, depth, row, mask);
             let last = (keys.best[K - 1] | mask).bitcast::<f32x16<S>>();
             if !last.simd_lt(self.limit).all_true() {
                 return row;
             }
+            // Look up the features of the nearest candidates.
             found.row = row;
             found.unknown = 0;
             match found.n_axes {
@@ -152,7 +155,8 @@ impl TrackedRows<'_> {
         self.rows.end
     }
 
-    /// The keys of the `depth` nearest points, and of the next one, with the numbers of their candidates in the low bits.
+    /// Finds the keys of the `depth` nearest points and of the next one, with the indices of their candidates in the
+    /// low bits.
     #[inline(always)]
     fn smallest<S: Simd, M: Measure, const K: usize>(
         &self,
@@ -171,6 +175,7 @@ impl TrackedRows<'_> {
             let columns = f32x16::from_slice(simd, columns);
             let row_term = f32x16::splat(simd, candidate.rows[row]);
             let key = measure.accumulate(columns, row_term);
+            // Replace the low bits by the index, and insert the key.
             let coded = (key.to_bits() & !mask) | number as u32;
             let mut coded = f32x16::from_bits(coded);
             for best in &mut best {
@@ -209,13 +214,14 @@ impl TrackedRows<'_> {
             } else {
                 keys.next
             };
+            // The order of two points is unknown if their keys are equal without the low bits.
             let is_unknown = (best | mask).simd_ge(after | mask);
             found.unknown |= is_unknown.to_bitmask();
             self.look_up::<S, M, N>(measure, places, best & mask, found, rank - unused);
         }
     }
 
-    /// Looks up distances, vectors and ids of the nearest points with a rank.
+    /// Looks up distances, vectors and ids of the nearest points of one rank.
     #[inline(always)]
     fn look_up<S: Simd, M: Measure, const N: usize>(
         &self,
@@ -249,7 +255,7 @@ impl TrackedRows<'_> {
     }
 }
 
-/// Stores the components of sixteen vectors one after the other.
+/// Stores sixteen vectors with interleaved components.
 #[inline(always)]
 fn interleave<S: Simd>(parts: &[f32x16<S>], out: &mut [f32; MOST_AXES * LANES]) {
     let out = out.as_chunks_mut::<LANES>().0;
@@ -279,11 +285,11 @@ fn interleave<S: Simd>(parts: &[f32x16<S>], out: &mut [f32; MOST_AXES * LANES]) 
     }
 }
 
-/// The numbers of a table at sixteen indices. The table is padded to a whole register.
+/// Elements of a table at sixteen indices. The table is padded to a whole register.
 #[inline(always)]
 fn look_up<S: Simd>(simd: S, table: &[f32], indices: u32x16<S>) -> f32x16<S> {
     if table.len() <= LANES {
-        // Each index selects four bytes.
+        // Expand each index to the indices of its four bytes.
         let bytes = indices * 0x0404_0404 + 0x0302_0100;
         return f32x16::from_slice(simd, table).swizzle_dyn(bytes.bitcast::<u8x64<S>>());
     }
@@ -294,7 +300,7 @@ fn look_up<S: Simd>(simd: S, table: &[f32], indices: u32x16<S>) -> f32x16<S> {
 }
 
 impl Found {
-    /// Stores the row of a band in memory, except for the unknown pixels.
+    /// Stores the row in the views of a band. The values of unknown pixels are replaced afterwards.
     pub(super) fn put(&self, band: &Band<'_>, features: &mut [FeatureRows<'_>]) {
         let columns = self.columns.clone();
         let n = columns.len();
@@ -321,7 +327,7 @@ impl Found {
         }
     }
 
-    /// Stores the positions of the nearest points with a rank, their components one after the other.
+    /// Stores the positions of the nearest points of one rank, with interleaved components.
     fn put_positions(&self, band: &Band<'_>, rank: usize, out: &mut [f64]) {
         let vectors = self.vectors[rank].chunks(self.n_axes);
         let pixels = self.columns.clone().zip(out.chunks_mut(self.n_axes));
@@ -336,7 +342,7 @@ impl Found {
         }
     }
 
-    /// The vectors of a lane, nearest first.
+    /// Vectors of one lane, nearest point first.
     pub(super) fn vectors<const N: usize>(&self, lane: usize) -> [[f32; N]; MAX_NEAREST] {
         let mut vectors = [[0.0; N]; MAX_NEAREST];
         for rank in 0..self.depth {
