@@ -1,9 +1,7 @@
-//! Entry points without generic parameters, so that the code for two, three and four axes is compiled in this crate
-//! only.
+//! Entry points that compile the code for two, three and four axes in this crate only.
 //!
-//! A function with the number of axes as a parameter is compiled again in every crate that calls it. The public
-//! functions are therefore thin, and all heavy code is called through the functions of this module, which have no
-//! parameter.
+//! A function with the number of axes as a parameter is compiled again in every crate that calls it. So the public
+//! functions are thin, and call all heavy code through the functions of this module, which have no generic parameters.
 
 use crate::fixed::Place;
 use crate::lattice::Lattice;
@@ -18,21 +16,20 @@ pub trait DimensionDispatch<const N: usize>: Sized {
     /// The basis in the form that rendering uses.
     fn basis(worley: &Worley<N>) -> &dyn Basis;
 
-    /// The nearest points of a place, nearest first; at most four.
+    /// Finds the nearest points of a place, nearest first; at most four.
     fn nearest(metric: Metric, lattice: &Lattice, place: &Place<N>, hits: &mut [Hit<N>]);
 
-    /// All points of a place whose keys are at most that of `distance`, in no particular order.
+    /// Finds all points whose keys are at most the key of `distance`, unordered.
     fn within(metric: Metric, lattice: &Lattice, place: &Place<N>, distance: f32) -> Vec<Hit<N>>;
 
-    /// Finds the nearest points of the positions of a group; returns a bit for each position for which they are
-    /// certain.
+    /// Finds the nearest points of the positions of a group; returns a bit for each position whose points are certain.
     fn search_group(worley: &Worley<N>, level: Level, group: &mut Group<N>) -> u64;
 }
 
 macro_rules! compiled_for {
     ($($n:literal $nearest:path),*) => {$(
         impl DimensionDispatch<$n> for Dimensions {
-            // Inlined elsewhere, the conversion would compile there all that rendering calls.
+            // If this conversion were inlined into another crate, all code of rendering would be compiled there again.
             #[inline(never)]
             fn basis(worley: &Worley<$n>) -> &dyn Basis {
                 worley

@@ -1,20 +1,21 @@
-//! Fixed-point positions: a cell and a whole number of steps within it.
+//! Fixed-point positions: a cell and an integer number of steps within it.
 //!
-//! All methods use these coordinates. A coordinate is rounded down to a multiple of 2^-21 of a cell, and so are the
-//! coordinates of feature points. Their differences are then exact whole numbers, wherever they are and from whichever
-//! corner they are counted, and only the difference is rounded, once, to `f32` (below 8 cells not even that). So the
-//! single position, the many positions and the window agree to the last bit, and a picture at 1e9 is as sharp as at 0.
+//! All search methods use these coordinates. A coordinate is rounded down to a multiple of 2^-21 of a cell; the
+//! coordinates of feature points are such multiples, too. So differences are exact integers, wherever the points are
+//! and whichever corner they are counted from. Only the difference is rounded to `f32`, once; below 8 cells it is exact
+//! even then. So searches of one position, of many positions and of a window agree to the last bit, and an image at 1e9
+//! is as sharp as at 0.
 
-/// The binary logarithm of the steps of a cell.
+/// Binary logarithm of the number of steps in a cell.
 pub(crate) const STEP_BITS: u32 = 21;
 
-/// The steps of a cell, along each axis.
+/// Number of steps in a cell, along each axis.
 pub(crate) const STEPS: i32 = 1 << STEP_BITS;
 
-/// The size of a step, in cells.
+/// Size of a step, in cells.
 pub(crate) const STEP: f32 = 1.0 / STEPS as f32;
 
-/// The farthest coordinate that has a cell: the neighbors of a cell must be whole numbers too.
+/// Largest magnitude of a coordinate, in cells: the neighbors of its cell must be integers that fit into `i64`, too.
 pub(crate) const FARTHEST: f64 = (1_u64 << 62) as f64;
 
 /// A position: the cell that it is in, and the steps from the cell's lower corner, `0..STEPS`.
@@ -27,11 +28,11 @@ pub struct Place<const N: usize> {
 /// A place in a space with any number of axes; the coordinates of missing axes are zero.
 pub(crate) type FlatPlace = Place<MOST_AXES>;
 
-/// The most axes of a space.
+/// Maximum number of axes of a space.
 pub(crate) const MOST_AXES: usize = 4;
 
 impl<const N: usize> Place<N> {
-    /// The place of a position in cells, or `None` if a coordinate is not finite or further out than 2^62.
+    /// The place of a position in cells; `None` if a coordinate is not finite or its magnitude is above 2^62.
     #[inline]
     pub(crate) fn new(position: [f64; N]) -> Option<Self> {
         let mut place = Self {
@@ -45,7 +46,7 @@ impl<const N: usize> Place<N> {
     }
 }
 
-/// The cell of a coordinate and the steps from its lower edge.
+/// Splits a coordinate into its cell and the steps from the cell's lower edge; `None` as in [`Place::new`].
 #[inline]
 pub(crate) fn split(coordinate: f64) -> Option<(i64, i32)> {
     // This comparison is false for NaN.
@@ -57,18 +58,18 @@ pub(crate) fn split(coordinate: f64) -> Option<(i64, i32)> {
     let truncated = coordinate as i64;
     let floor = truncated - i64::from(truncated as f64 > coordinate);
     let steps = ((coordinate - floor as f64) * f64::from(STEPS)) as i32;
-    // Just below a whole number the difference can be rounded up to a whole cell.
+    // Just below an integer, the difference can be rounded up to a whole cell.
     let carry = steps >> STEP_BITS;
     Some((floor + i64::from(carry), steps - (carry << STEP_BITS)))
 }
 
-/// The components along the axes of a space.
+/// The components along the axes of a space with `N` axes.
 #[inline(always)]
 pub(crate) fn first_axes<T: Copy, const N: usize>(parts: [T; MOST_AXES]) -> [T; N] {
     core::array::from_fn(|axis| parts[axis])
 }
 
-/// A number of steps as cells, rounded to `f32` once.
+/// Converts steps to cells, rounded to `f32` once.
 #[inline(always)]
 pub(crate) fn cells(steps: i64) -> f32 {
     steps as f32 * STEP

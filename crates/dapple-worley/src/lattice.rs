@@ -1,8 +1,8 @@
-//! The feature points of each cell, generated from a hash of the cell, without any storage.
+//! The feature points of each cell, generated from a hash of the cell without any storage.
 //!
-//! A cell has two words. Each is the exclusive or of the hashes of the cell's coordinates, so that a search computes
-//! those of a few rows and columns and combines them. The first word, mixed, draws how many points there are; from
-//! both, the position of each point is drawn by adding a constant for every point and mixing. As the state of a
+//! The hash of a cell is two words. Each word is the exclusive or of one hash for each coordinate. So a search computes
+//! the hashes of a few rows and columns, and combines them. The mixed first word draws the number of points. The
+//! position of each point is drawn from both words, by adding a constant for every point and mixing. As the state of a
 //! [`CellHash`], the words give the id of point `i` at counter `2^31 + i`. With a period, a cell has the words of the
 //! cell that it repeats.
 
@@ -18,27 +18,28 @@ use dapple_hash::{
 use fearless_simd::{prelude::*, u32x16};
 use std::sync::Arc;
 
-/// The constants that are added to the two words of a cell for each of its points: odd, so that no sum comes twice.
+/// Constants added to the two words of a cell for each of its points. They are odd, so all sums differ.
 pub(crate) const STRIDES: [u32; 2] = [0x9E37_79B9, 0xC2B2_AE3D];
 
-/// The counter of the id of point 0.
+/// Counter of the id of point 0.
 pub(crate) const IDS: u32 = 1 << 31;
 
-/// Feature points in unit cells, by seed.
+/// The feature points of all unit cells, generated from a seed.
 #[derive(Clone, Debug)]
 pub struct Lattice {
-    /// The number of axes: 2, 3 or 4.
+    /// Number of axes: 2, 3 or 4.
     pub(crate) n_axes: usize,
-    /// The hashes of the two words of cells.
+    /// Hashes of the two words of cells.
     pub(crate) hashes: [LatticeHash<MOST_AXES>; 2],
-    /// The keys of `hashes` for three cells along each axis, in lanes.
+    /// Keys of `hashes` for three cells along each axis, one in each lane.
     pub(crate) lane_keys: [[u32; LANES]; 2],
+    /// Distribution of the number of points per cell.
     pub(crate) counts: PoissonCounts,
-    /// The density if it varies, which replaces `counts`.
+    /// Varying density; replaces `counts`.
     pub(crate) density: Option<Density>,
-    /// The jitter, in parts of [`JITTER_PARTS`].
+    /// Jitter, in units of 1/[`JITTER_PARTS`].
     pub(crate) jitter: u32,
-    /// The number of cells after which each axis repeats; 0 if it does not.
+    /// Period along each axis, in cells; 0 for an axis that does not repeat.
     pub(crate) period: [u32; MOST_AXES],
 }
 
@@ -75,16 +76,16 @@ impl Lattice {
         hashes.map(|hash| core::array::from_fn(|lane| hash.key(lane / 3 % MOST_AXES)))
     }
 
-    /// The parts of the words of a cell that its coordinate along an axis, or the one that it repeats, contributes.
+    /// The hash parts that a cell's coordinate along an axis contributes to its two words, after wrapping.
     #[inline(always)]
     pub(crate) fn parts(&self, axis: usize, cell: i64) -> [u32; 2] {
         let cell = self.wrap(axis, cell);
-        // Not mapped: that would be a call.
+        // No `map` here: it would compile to a call.
         let [first, second] = &self.hashes;
         [first.part(axis, cell), second.part(axis, cell)]
     }
 
-    /// The coordinate of the cell that a cell repeats, along one axis.
+    /// Wraps a cell's coordinate along an axis by the period.
     #[inline]
     pub(crate) fn wrap(&self, axis: usize, cell: i64) -> i64 {
         match self.period[axis] {
@@ -93,14 +94,14 @@ impl Lattice {
         }
     }
 
-    /// The number of bits for the index of a point in its cell, with one density.
+    /// Number of bits for the index of a point in its cell, if the density is constant.
     #[inline]
     pub(crate) fn index_bits(&self) -> u32 {
         u32::BITS - self.counts.range().end().leading_zeros()
     }
 
-    /// The coordinates along one axis of a cell and of its neighbors on the side `nearer`, -1 or 1, and on the other one,
-    /// or of those that they repeat.
+    /// Wrapped coordinates along one axis of a cell, of its neighbor on the side `nearer` (-1 or 1), and of the
+    /// neighbor on the other side.
     #[inline(always)]
     pub(crate) fn cells_around(&self, axis: usize, cell: i64, nearer: i64) -> [i64; 3] {
         let period = i64::from(self.period[axis]);
@@ -116,7 +117,7 @@ impl Lattice {
         [own, wrapped(own + nearer), wrapped(own - nearer)]
     }
 
-    /// Whether cells beyond `ring` rings only repeat those within.
+    /// Whether all cells beyond `ring` rings are repeats of cells within.
     pub(crate) fn repeats_within(&self, ring: i64) -> bool {
         let mut periods = self.period[..self.n_axes]
             .iter()
@@ -124,7 +125,7 @@ impl Lattice {
         periods.all(|period| period > 0 && period <= 2 * ring + 1)
     }
 
-    /// The words of a cell.
+    /// The two hash words of a cell.
     #[inline]
     pub(crate) fn words<const N: usize>(&self, cell: [i64; N]) -> [u32; 2] {
         (0..N).fold([0; 2], |words, axis| {
@@ -132,7 +133,7 @@ impl Lattice {
         })
     }
 
-    /// The place of a point in its cell, in steps, from the words of the cell.
+    /// The position of a point in its cell, in steps, from the words of the cell.
     #[inline]
     pub(crate) fn steps<const N: usize>(&self, words: [u32; 2], index: u32) -> [i32; N] {
         let word = |which: usize| {
@@ -142,7 +143,7 @@ impl Lattice {
         steps([word(0), word(1)], self.jitter).map(u32::cast_signed)
     }
 
-    /// Calls `each` with every point of a cell: its steps from the cell's lower corner, and its name.
+    /// Calls `each` with every point of a cell: its steps from the cell's lower corner, and its identity.
     #[inline]
     pub(crate) fn visit<const N: usize>(
         &self,
@@ -165,7 +166,7 @@ impl Lattice {
         }
     }
 
-    /// The number of points of a cell, from its first word.
+    /// Number of points of a cell, from its first word.
     #[inline]
     pub(crate) fn count(&self, cell: &[i64], word: u32) -> u32 {
         match &self.density {
@@ -174,7 +175,7 @@ impl Lattice {
         }
     }
 
-    /// The mean number of points per cell, near a cell.
+    /// Mean number of points per cell, near a cell.
     pub(crate) fn mean(&self, cell: &[i64]) -> f64 {
         match &self.density {
             None => self.counts.mean(),
@@ -182,7 +183,7 @@ impl Lattice {
         }
     }
 
-    /// The density in the middle of a cell, or of the cell that it repeats.
+    /// The density at the center of a cell, after wrapping, clamped to the allowed range.
     pub(crate) fn density_at(&self, density: &Density, cell: &[i64]) -> f64 {
         let mut middle = [0.5; MOST_AXES];
         for (axis, (middle, &cell)) in middle.iter_mut().zip(cell).enumerate() {
@@ -199,7 +200,7 @@ impl Lattice {
 /// A density that varies in space.
 #[derive(Clone)]
 pub(crate) struct Density {
-    /// Feature points per cell at a position, whose coordinates along missing axes do not matter.
+    /// Feature points per cell at a position; ignores the coordinates along missing axes.
     pub(crate) of: Arc<dyn Fn([f64; MOST_AXES]) -> f64 + Send + Sync>,
 }
 
@@ -209,14 +210,14 @@ impl fmt::Debug for Density {
     }
 }
 
-/// The words of a cell with these parts and those of the other axes.
+/// Combines the words of a cell with the hash parts of one more axis.
 #[inline(always)]
 pub(crate) fn both<W: BitXor<Output = W> + Copy>(words: [W; 2], parts: [W; 2]) -> [W; 2] {
     [words[0] ^ parts[0], words[1] ^ parts[1]]
 }
 
-/// The parts that the coordinates along an axis contribute to the words of cells, in lanes: see [`Lattice::parts`].
-/// The coordinates are wrapped already.
+/// The hash parts that cell coordinates along an axis contribute, in lanes; see [`Lattice::parts`]. The coordinates
+/// must be wrapped.
 #[inline(always)]
 pub(crate) fn parts_each<S: Simd, const C: usize>(
     simd: S,
@@ -228,12 +229,12 @@ pub(crate) fn parts_each<S: Simd, const C: usize>(
     lattice_part_pairs(simd, [first.key(axis), second.key(axis)], cells)
 }
 
-/// The words of sixteen cells, one in each lane.
+/// Hash words and numbers of points of sixteen cells, one in each lane.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SixteenCells<S: Simd> {
     /// The two words of each cell.
     pub(crate) words: [u32x16<S>; 2],
-    /// The number of points of each cell, with one density.
+    /// Number of points of each cell, if the density is constant.
     pub(crate) counts: u32x16<S>,
 }
 
@@ -244,7 +245,7 @@ impl<S: Simd> SixteenCells<S> {
         cells
     }
 
-    /// Several registers of cells at once, as [`new`](Self::new) makes one: their operations run in step.
+    /// Makes several registers of cells at once, like [`new`](Self::new); their operations are interleaved.
     #[inline(always)]
     pub(crate) fn new_each<const C: usize>(
         simd: S,
@@ -262,6 +263,7 @@ impl<S: Simd> SixteenCells<S> {
         if lattice.counts.thresholds().is_empty() {
             return cells;
         }
+        // Draw the number of points: count the thresholds that the mixed first word reaches.
         let mut draws = words;
         for i in 0..C {
             draws[i][1] = draws[i][0];
@@ -277,7 +279,7 @@ impl<S: Simd> SixteenCells<S> {
         cells
     }
 
-    /// The largest number of points of the cells.
+    /// Maximum number of points of the cells.
     #[inline(always)]
     pub(crate) fn most(&self, lattice: &Lattice) -> u32 {
         if lattice.counts.thresholds().is_empty() {
@@ -286,8 +288,7 @@ impl<S: Simd> SixteenCells<S> {
         self.counts.reduce_max()
     }
 
-    /// The steps of one point of each cell along the axes of the lattice, from the lower corner of the cell; zero along
-    /// missing axes.
+    /// The position of one point of each cell, in steps from the lower corner of the cell; zero along missing axes.
     #[inline(always)]
     pub(crate) fn flat_steps(&self, index: u32x16<S>, lattice: &Lattice) -> [u32x16<S>; MOST_AXES] {
         let words = self.words_of(index);
@@ -316,14 +317,14 @@ impl<S: Simd> SixteenCells<S> {
         words
     }
 
-    /// The steps of one point of each cell, from the lower corner of the cell.
+    /// The position of one point of each cell, in steps from the lower corner of the cell.
     #[inline(always)]
     pub(crate) fn steps<const N: usize>(&self, index: u32x16<S>, jitter: u32) -> [u32x16<S>; N] {
         steps(self.words_of(index), jitter)
     }
 
-    /// The points of several registers of cells at once, as [`steps`](Self::steps) makes those of one: their operations
-    /// run in step.
+    /// The positions of points in several registers of cells at once, like [`steps`](Self::steps); their operations are
+    /// interleaved.
     #[inline(always)]
     pub(crate) fn steps_each<const N: usize, const C: usize>(
         cells: [Self; C],
@@ -345,7 +346,7 @@ impl<S: Simd> SixteenCells<S> {
     }
 }
 
-/// The operations on 32 random bits, in one number or in sixteen lanes.
+/// Operations on 32 random bits, in one integer or in sixteen lanes.
 pub(crate) trait Word:
     Copy
     + Shr<u32, Output = Self>
@@ -368,9 +369,9 @@ impl<W> Word for W where
 {
 }
 
-/// The steps along each axis from the lower corner of the cell, from 64 random bits.
+/// Converts 64 random bits to steps along each axis from the lower corner of the cell.
 ///
-/// With two and three axes all steps are equally likely; with four, every 32nd.
+/// With two and three axes every step is equally likely; with four axes only every 32nd step occurs.
 #[inline(always)]
 pub(crate) fn steps<W: Word, const N: usize>([high, low]: [W; 2], jitter: u32) -> [W; N] {
     let mut steps = [high; N];
@@ -385,7 +386,7 @@ pub(crate) fn steps<W: Word, const N: usize>([high, low]: [W; 2], jitter: u32) -
             _ => ((low & 0xFFFF) << 5) + 16,
         };
         if jitter < JITTER_PARTS {
-            // The mean of the position and the middle; the sum stays below 2^32.
+            // Weighted mean of the position and the center of the cell; the sum stays below 2^32.
             let middle = STEPS as u32 / 2 * (JITTER_PARTS - jitter);
             *steps = (*steps * jitter + middle) >> JITTER_PARTS.ilog2();
         }

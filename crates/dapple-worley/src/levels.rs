@@ -1,10 +1,11 @@
 //! The SIMD levels that code is compiled for.
 //!
-//! Where registers are wide, as on nearly all x86-64 processors since 2013, the inner loops are compiled for each way to
-//! accumulate and for the usual numbers of nearest points. For all others there is one loop of each kind, for any metric
-//! and number. It also serves Minkowski's metric everywhere, which is so slow that wide registers gain nothing.
+//! On processors with wide registers (nearly all x86-64 processors since 2013), the inner loops are compiled for each
+//! way to accumulate terms and for the common numbers of nearest points. All other cases share one loop of each kind,
+//! for any metric and number. Minkowski's metric uses that loop everywhere, since it is so slow that wide registers
+//! gain nothing.
 
-/// Runs an operation in wide registers and returns its result, if the level has them.
+/// Runs an operation in wide registers and returns `Some` of its result; `None` if the level has no wide registers.
 #[cfg(target_arch = "x86_64")]
 macro_rules! wide {
     ($level:expr, $simd:ident => $op:expr) => {{
@@ -40,7 +41,7 @@ pub(crate) fn is_wide(level: fearless_simd::Level) -> bool {
     level.as_avx2().is_some()
 }
 
-/// Whether a level has wide registers: those of the level count as wide.
+/// Whether a level has wide registers; here, every level has.
 #[cfg(not(target_arch = "x86_64"))]
 pub(crate) fn is_wide(_: fearless_simd::Level) -> bool {
     true

@@ -1,12 +1,12 @@
 //! Search for many scattered positions: sixteen at a time, one in each lane.
 //!
-//! Every lane visits the cell of its position and the neighbors. The nearer neighbors matter to most lanes, and all
-//! lanes visit them together. The farther ones matter to few: those left to visit are collected in a list for a whole
-//! group of positions, and then the list fills the lanes.
+//! Every lane visits the cell of its position and the neighbors. Most lanes need the nearer neighbors, so all lanes
+//! visit them together. Few lanes need the farther ones. These visits are collected in a list for a whole group of
+//! positions, and the list then fills the lanes.
 //!
-//! During the search, the low bits of a key hold the code of its point, so that one minimum and one maximum sort both
-//! at once. The order of two points whose keys agree in the other bits is then unknown. A position with such points, or
-//! one that needs more than the neighbors, is searched again on its own.
+//! During the search, the low bits of a key store the code of its point. So one minimum and one maximum sort keys and
+//! codes at once. The order of two points whose keys agree in the other bits is then unknown. A position with such
+//! points, or one that needs cells beyond the neighbors, is searched again on its own.
 
 use crate::fixed::{MOST_AXES, STEP, STEPS};
 use crate::lattice::{IDS, Lattice, SixteenCells, both, parts_each};
@@ -17,81 +17,87 @@ use crate::{MAX_NEAREST, Metric, Worley};
 use dapple_hash::CellHashes;
 use fearless_simd::{Level, f32x16, i32x16, mask32x16, prelude::*, u32x16, u64x8};
 
-/// The number of positions of a group.
+/// Number of positions of a group.
 pub(crate) const GROUP: usize = 4 * LANES;
 
-/// The key of no point: the largest number. (Infinity with a code in its low bits would not be a number.)
+/// Key of a missing point: the largest finite number. (Infinity with a code in its low bits would be NaN.)
 pub(crate) const NOTHING: u32 = f32::MAX.to_bits();
 
-/// The parameters of a search, and the use of the low bits of a key.
+/// The parameters of a search, and the layout of the low bits of a key.
 #[derive(Clone, Copy)]
 pub(crate) struct Search<'a> {
     pub(crate) lattice: &'a Lattice,
     pub(crate) exact: Exact,
-    /// The number of bits for the index of a point in its cell; above are the two bits of each axis.
+    /// Number of bits for the index of a point in its cell. Two bits for each axis follow above.
     pub(crate) index_bits: u32,
-    /// The mask of all bits of the code.
+    /// Mask of all bits of the code.
     pub(crate) code_mask: u32,
 }
 
-/// A group of positions, and the memory for the search for their nearest points.
+/// A group of positions, with the memory for searching their nearest points.
 #[derive(Debug)]
 pub struct Group<const N: usize> {
-    /// The number of nearest points to find: 1, 2 or 4.
+    /// Number of nearest points to find: 1, 2 or 4.
     depth: usize,
-    /// The number of ranks of `best` before these, which are not in use and stay zero.
+    /// Number of unused ranks at the beginning of `best`, which stay zero.
     unused: usize,
-    /// The positions, of which only the first `len` are in use.
+    /// Positions in cells, axis by axis; only the first `len` are in use.
     pub(crate) positions: [[f64; GROUP]; N],
     pub(crate) len: usize,
     /// A bit for each position that has a place.
     has_place: u64,
+    /// Cells of the positions, as low and high words.
     cells: [[[u32; GROUP]; 2]; N],
+    /// Steps of the positions within their cells.
     steps: [[i32; GROUP]; N],
+    /// Own cells and nearer neighbors of the current register.
     near: [Near; MOST_NEAR],
+    /// Farther neighbors that are still to be visited.
     visits: Visits,
-    /// The keys of the nearest points so far.
+    /// Keys of the nearest points so far.
     best: [[u32; GROUP]; MAX_NEAREST],
-    /// The smallest key of all other points.
+    /// Smallest key of all other points.
     next: [u32; GROUP],
+    /// Nearest points that the last search found, by rank.
     points: [Points<N>; MAX_NEAREST],
 }
 
-/// The own cells of a register of places, or one of the neighbors on the nearer sides.
+/// The own cells of a register of places, or the neighbors at one of the nearer sides.
 #[derive(Clone, Copy, Debug)]
 struct Near {
     words: [[u32; LANES]; 2],
     counts: [u32; LANES],
-    /// The largest number of points of the cells.
+    /// Maximum number of points of the cells.
     most: u32,
 }
 
-/// The number of own cells and nearer neighbors in four dimensions.
+/// Number of own cells and nearer neighbors in four dimensions.
 const MOST_NEAR: usize = 1 << 4;
 
 /// The farther neighbors that are still to be visited.
 #[derive(Debug)]
 struct Visits {
-    /// The visits: the low bits hold a neighbor and the bits from [`PLACE_SHIFT`] on a place of the group.
+    /// The visits. The low bits hold the code of a neighbor; the bits from [`PLACE_SHIFT`] on hold an index in the
+    /// group.
     list: [u32; FULL + (MOST_FAR + 1) * LANES],
     len: usize,
 }
 
-/// The lowest bit of the place in [`Visits::list`].
+/// Lowest bit of the index in the group, in [`Visits::list`].
 const PLACE_SHIFT: u32 = 8;
 
-/// The length above which the list is worked off early; 2-D and 3-D groups hardly ever exceed it.
+/// Length above which the list is processed early; groups in 2-D and 3-D hardly ever exceed it.
 const FULL: usize = 512;
 
-/// The number of farther neighbors in four dimensions.
+/// Number of farther neighbors in four dimensions.
 const MOST_FAR: usize = 81 - MOST_NEAR;
 
-/// The `k`-th nearest points of all places of a group.
+/// The points of one rank for all places of a group.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Points<const N: usize> {
-    /// The distances, in cells.
+    /// Distances, in cells.
     pub(crate) distances: [f32; GROUP],
-    /// The vectors from the points to the places, in cells.
+    /// Vectors from the points to the places, in cells.
     pub(crate) vectors: [[f64; GROUP]; N],
     pub(crate) ids: [u64; GROUP],
 }
@@ -138,14 +144,14 @@ impl<const N: usize> Group<N> {
         }
     }
 
-    /// The nearest points that the last search found, nearest first.
+    /// Points that the last search found, nearest first.
     pub(crate) fn points(&self) -> &[Points<N>] {
         &self.points[..self.depth]
     }
 
-    /// Finds the nearest points of the positions; returns a bit for each position for which they are certain.
+    /// Finds the nearest points of the positions; returns a bit for each position whose points are certain.
     pub(crate) fn search(&mut self, worley: &Worley<N>, level: Level) -> u64 {
-        // Powers are so slow that lanes gain nothing, and the counts of a varying density are drawn one by one.
+        // Powers are so slow that SIMD gains nothing, and the counts of a varying density are drawn one by one.
         let is_scalar = worley.metric.is_slow();
         if is_scalar || worley.lattice.density.is_some() {
             return 0;
@@ -158,7 +164,7 @@ impl<const N: usize> Group<N> {
 
     /// Finds the nearest points with the loop that is compiled for their number.
     fn search_by_depth(&mut self, search: Search<'_>, level: Level) -> Option<u64> {
-        // Positions of four dimensions are rare, and have one loop.
+        // Four-dimensional positions are rare, and share one loop.
         if const { N < MOST_AXES } && self.depth == 1 {
             return wide!(level, simd => self.search_with::<_, 1>(simd, search));
         }
@@ -170,7 +176,7 @@ impl<const N: usize> Group<N> {
 
     #[inline(always)]
     fn search_with<S: Simd, const K: usize>(&mut self, simd: S, search: Search<'_>) -> u64 {
-        // Where sixteen lanes need several registers of the processor, these are in step already.
+        // Where sixteen lanes take several registers of the processor, their operations are interleaved already.
         if const { <S::u32s as SimdBase<S>>::LEN < LANES } {
             return self.search_in_step::<S, K, 1>(simd, search);
         }
@@ -180,7 +186,7 @@ impl<const N: usize> Group<N> {
     /// Looks up the ids, distances and vectors of the nearest points.
     #[inline(always)]
     fn finish_with<S: Simd>(&mut self, simd: S, search: Search<'_>) {
-        // The memory has registers past the last position, too; their contents do not matter.
+        // The memory has registers past the last position, too; their contents are ignored.
         let registers = 0..self.len.div_ceil(LANES) * self.depth;
         if const { <S::u32s as SimdBase<S>>::LEN < LANES } {
             for first in registers {
@@ -193,7 +199,7 @@ impl<const N: usize> Group<N> {
         }
     }
 
-    /// Searches the nearest points of all registers; hashes are made for `C` registers at a time.
+    /// Searches the nearest points of all registers; hashes are computed for `C` registers at a time.
     #[inline(always)]
     fn search_in_step<S: Simd, const K: usize, const C: usize>(
         &mut self,
@@ -203,6 +209,7 @@ impl<const N: usize> Group<N> {
         let n_registers = self.len.div_ceil(LANES);
         self.unused = K - self.depth;
         self.has_place = 0;
+        // Visit the nearer neighbors of each register; process the list when it is full, and at the end.
         for register in 0..n_registers {
             self.visit_near::<S, K, C>(simd, search, register);
             if register + 1 == n_registers || self.visits.len > FULL {
@@ -211,6 +218,7 @@ impl<const N: usize> Group<N> {
                 }
             }
         }
+        // Find the positions whose points are certain.
         let mut holds = 0;
         for register in 0..n_registers {
             holds |= self.holds::<S, K>(simd, search, register) << (register * LANES);
@@ -218,7 +226,7 @@ impl<const N: usize> Group<N> {
         holds & self.has_place
     }
 
-    /// Visits the nearer neighbors of a register, and puts the others on the list.
+    /// Visits the nearer neighbors of a register, and appends the farther ones to the list.
     #[inline(always)]
     fn visit_near<S: Simd, const K: usize, const C: usize>(
         &mut self,
@@ -226,6 +234,7 @@ impl<const N: usize> Group<N> {
         search: Search<'_>,
         register: usize,
     ) {
+        // Split the positions, and hash the own cells and nearer neighbors.
         let (places, has_place) = Places::new(simd, &self.positions, register);
         self.has_place |= has_place << (register * LANES);
         places.store(&mut self.cells, &mut self.steps, register);
@@ -234,6 +243,7 @@ impl<const N: usize> Group<N> {
         let numbers = u32x16::from_slice(simd, &ASCENDING) + (register * LANES) as u32;
         let mut found = Found::<S, K>::new(simd, self.unused);
         for &neighbor in cells_by_distance::<N>() {
+            // Skip neighbors that are farther than the nearest points so far.
             let neighbor = u32::from(neighbor);
             let mut gap = gaps[N - 1][digit(neighbor, N - 1)];
             for axis in (0..N - 1).rev() {
@@ -250,6 +260,7 @@ impl<const N: usize> Group<N> {
             if matters.all_false() {
                 continue;
             }
+            // Compare the points of the neighbor.
             let mut origins = places.steps;
             for axis in 0..N {
                 if digit(neighbor, axis) > 0 {
@@ -264,14 +275,14 @@ impl<const N: usize> Group<N> {
             let codes = u32x16::splat(simd, neighbor << search.index_bits);
             found.look(search, &points, &origins, codes, near.most);
         }
+        // Store the keys found so far.
         for rank in 0..K {
             store(found.best[rank], &mut self.best[rank], register);
         }
         store(found.next, &mut self.next, register);
     }
 
-    /// Computes the hashes of the nearer neighbors early, so that the processor knows in time how many points to
-    /// expect.
+    /// Computes the hashes of the nearer neighbors early, so that the processor knows the numbers of points in time.
     #[inline(always)]
     fn hash_near<S: Simd, const C: usize>(
         &mut self,
@@ -310,6 +321,7 @@ impl<const N: usize> Group<N> {
     #[inline(always)]
     fn visit_far<S: Simd, const K: usize>(&mut self, simd: S, search: Search<'_>) {
         let (visits, n_visits) = self.visits.take();
+        // Gather the places of the visits.
         let mut cells = [[[0; LANES]; 2]; N];
         let mut steps = [[0; LANES]; N];
         let mut reach = [0; LANES];
@@ -322,6 +334,7 @@ impl<const N: usize> Group<N> {
             }
             reach[lane] = self.best[K - 1][place];
         }
+        // Compare the points of their neighbors.
         let places = Places::load(simd, &cells, &steps, 0);
         let neighbors = u32x16::from_slice(simd, &visits) & ((1 << PLACE_SHIFT) - 1);
         let [cells] = Places::neighbors_each(simd, search.lattice, &[places], [neighbors]);
@@ -332,6 +345,7 @@ impl<const N: usize> Group<N> {
         let codes = neighbors << search.index_bits;
         let most = points.most(search.lattice);
         found.look(search, &points, &cells.origins, codes, most);
+        // Insert the keys that can be among the nearest.
         let reach = u32x16::from_slice(simd, &reach) | search.code_mask;
         let mut matters = found.best[0].simd_le(reach).to_bitmask();
         let mut best = [[0; LANES]; K];
@@ -351,7 +365,7 @@ impl<const N: usize> Group<N> {
         }
     }
 
-    /// Inserts the key of a point in its order.
+    /// Inserts the key of a point into the sorted keys of a place.
     #[inline(always)]
     fn insert<const K: usize>(&mut self, place: usize, mut coded: u32) {
         for best in &mut self.best[..K] {
@@ -366,6 +380,7 @@ impl<const N: usize> Group<N> {
     #[inline(always)]
     fn holds<S: Simd, const K: usize>(&self, simd: S, search: Search<'_>, register: usize) -> u64 {
         let mask = search.code_mask;
+        // Points beyond the neighbors must be farther than the last key, and the order of keys must be known.
         let last = load(simd, &self.best[K - 1], register) | mask;
         let places = Places::load(simd, &self.cells, &self.steps, register);
         let border = border(simd, search.exact, &places);
@@ -382,8 +397,8 @@ impl<const N: usize> Group<N> {
         holds.to_bitmask()
     }
 
-    /// Looks up `C` registers of the nearest points, starting with register `first`: first all ranks of the first
-    /// register, then of the second, and so on.
+    /// Looks up `C` registers of nearest points, starting at register `first`. The ranks of a position's register are
+    /// consecutive: first all ranks of the first one, then of the second, and so on.
     #[inline(always)]
     fn finish<S: Simd, const C: usize>(&mut self, simd: S, search: Search<'_>, first: usize) {
         let lattice = search.lattice;
@@ -391,6 +406,7 @@ impl<const N: usize> Group<N> {
         let (shift, ranks) = (self.depth.trailing_zeros(), self.depth - 1);
         let mut places = [Places::load(simd, &self.cells, &self.steps, first >> shift); C];
         let [mut neighbors, mut index] = [[u32x16::splat(simd, 0); C]; 2];
+        // Decode the neighbor and the index of the point.
         for i in 0..C {
             let (register, rank) = ((first + i) >> shift, (first + i) & ranks);
             places[i] = Places::load(simd, &self.cells, &self.steps, register);
@@ -399,6 +415,7 @@ impl<const N: usize> Group<N> {
             neighbors[i] = code >> search.index_bits;
             index[i] = code & ((1 << search.index_bits) - 1);
         }
+        // Compute the ids and positions of the points.
         let cells = Places::neighbors_each(simd, lattice, &places, neighbors);
         let mut words = [cells[0].words; C];
         let mut hashes = [CellHashes::of_words(words[0]); C];
@@ -448,7 +465,7 @@ impl<const N: usize> Points<N> {
 }
 
 impl Visits {
-    /// Appends the selected ones of sixteen visits to the list.
+    /// Appends the visits selected by a mask to the list.
     #[inline(always)]
     fn push<S: Simd>(&mut self, visits: u32x16<S>, which: mask32x16<S>) {
         let visits = visits.compress(which);
@@ -467,18 +484,18 @@ impl Visits {
     }
 }
 
-/// The place of a visit.
+/// The index in the group of a visit's place.
 #[inline(always)]
 fn place(visit: u32) -> usize {
-    // All places are below this; the operation tells the compiler so.
+    // All indices are below `GROUP`; the remainder proves it to the compiler.
     (visit >> PLACE_SHIFT) as usize % GROUP
 }
 
-/// The nearest points of sixteen places.
+/// The keys of the nearest points of sixteen places.
 pub(crate) struct Found<S: Simd, const K: usize> {
-    /// The smallest keys, after some ranks that are not in use and stay zero.
+    /// Smallest keys, after some unused ranks that stay zero.
     best: [u32x16<S>; K],
-    /// The smallest key of all other points.
+    /// Smallest key of all other points.
     next: u32x16<S>,
 }
 
@@ -502,7 +519,7 @@ impl<S: Simd, const K: usize> Found<S, K> {
     #[inline(always)]
     pub(crate) fn pop(&mut self) -> u32 {
         let least = self.best[0].reduce_min();
-        // All codes differ, so that this is one lane.
+        // All codes differ, so only one lane has this key.
         let is_least = self.best[0].simd_eq(least);
         for rank in 1..K {
             self.best[rank - 1] = is_least.select(self.best[rank], self.best[rank - 1]);
@@ -511,8 +528,8 @@ impl<S: Simd, const K: usize> Found<S, K> {
         least
     }
 
-    /// Compares the points of a cell in each lane. The places are given relative to the cells, `codes` are the codes
-    /// without index, and no cell has more points than `most`.
+    /// Compares the points of one cell in each lane. `origins` are the places relative to the cells, `codes` the codes
+    /// without index, and `most` is the maximum number of points of a cell.
     #[inline(always)]
     pub(crate) fn look<const N: usize>(
         &mut self,
@@ -526,6 +543,7 @@ impl<S: Simd, const K: usize> Found<S, K> {
         for index in 0..most {
             let index = u32x16::splat(simd, index);
             let point: [_; N] = points.steps(index, search.lattice.jitter);
+            // Replace the low bits of the key by the code, and insert it.
             let key = search.exact.keys(vector(origins, &point));
             let coded = (key.bitcast::<u32x16<S>>() & !search.code_mask) | (codes | index);
             let is_there = points.counts.simd_gt(index);
@@ -540,7 +558,7 @@ impl<S: Simd, const K: usize> Found<S, K> {
     }
 }
 
-/// The vector from a point to the place, in steps, where both are relative to the lower corner of the point's cell.
+/// The vector from a point to the place, in steps; both are relative to the lower corner of the point's cell.
 #[inline(always)]
 pub(crate) fn vector<S: Simd, const N: usize>(
     origins: &[i32x16<S>; N],
@@ -553,7 +571,7 @@ pub(crate) fn vector<S: Simd, const N: usize>(
     vector
 }
 
-/// For each axis, the terms of the distances to the own cell, to the nearer and to the other neighbor, in steps.
+/// For each axis, the terms of the distances to the own cell, the nearer and the farther neighbor, in steps.
 #[inline(always)]
 fn gaps<S: Simd, const N: usize>(
     simd: S,
@@ -570,7 +588,7 @@ fn gaps<S: Simd, const N: usize>(
     gaps
 }
 
-/// A lower bound of the keys of all points beyond the neighbors, in steps.
+/// A lower bound on the keys of all points beyond the neighbors, in steps.
 #[inline(always)]
 fn border<S: Simd, const N: usize>(simd: S, exact: Exact, places: &Places<S, N>) -> f32x16<S> {
     let mut nearest = i32x16::splat(simd, STEPS);
@@ -581,17 +599,17 @@ fn border<S: Simd, const N: usize>(simd: S, exact: Exact, places: &Places<S, N>)
     exact.terms([(nearest + STEPS).to_float()])[0]
 }
 
-/// The bits of the neighbors that are not on the nearer side, along any axis.
+/// Bits that are set in the code of a neighbor that is on the farther side along some axis.
 const FARTHER: u32 = 0b1010_1010;
 
-/// The index in [`Group::near`] of a neighbor on the nearer sides: one bit for each axis, the first lowest.
+/// The index in [`Group::near`] of a neighbor on the nearer sides: one bit for each axis, the first axis lowest.
 #[inline(always)]
 fn near_index<const N: usize>(neighbor: u32) -> usize {
     (0..N).fold(0, |index, axis| index | digit(neighbor, axis) << axis)
 }
 
-/// The parts of the columns of own cells and nearer neighbors, and of their rows, with one bit for each axis but the
-/// first.
+/// The hash parts of the columns (own cell and nearer neighbor) and the combined parts of the rows. The index of a row
+/// has one bit for each axis but the first.
 #[inline(always)]
 fn columns_and_rows<S: Simd, const N: usize>(
     simd: S,
@@ -611,5 +629,5 @@ fn columns_and_rows<S: Simd, const N: usize>(
     (columns, rows)
 }
 
-/// The numbers of the lanes.
+/// Indices of the lanes.
 const ASCENDING: [u32; LANES] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15];

@@ -1,7 +1,7 @@
-//! The search for the nearest points of one position, with a cell in each lane.
+//! Search for the nearest points of one position, with one cell in each lane.
 //!
-//! Keys are coded as in [`many`](crate::many). A position whose nearest points are not certain is left to the search by
-//! rings: one with points so far away that other cells matter, or with two points at nearly the same distance.
+//! Keys are coded as in [`many`](crate::many). If the nearest points are not certain, the search by rings is used:
+//! where two points are at nearly the same distance, or where other cells can contain a nearer point.
 
 use crate::Metric;
 use crate::fixed::{Place, STEP, STEPS};
@@ -15,13 +15,13 @@ use dapple_hash::mix32_pairs;
 use dapple_raster::simd;
 use fearless_simd::{i32x16, mask32x16, prelude::*, u32x16};
 
-/// The number of cells in lanes: the own cell and the neighbors that are nearest on average. The few neighbors that are
-/// left out are far from the place along at least two axes.
+/// Number of visited cells: the own cell and the neighbors that are nearest on average. The few neighbors left out are
+/// on the farther side along at least two axes.
 const fn n_visited(n_axes: usize) -> usize {
     [0, 0, 8, 24][n_axes]
 }
 
-/// The nearest points of a place in the plane or in space, nearest first; at most four.
+/// Finds the nearest points of a place in the plane or in space, nearest first; at most four.
 pub(crate) fn nearest<const N: usize>(
     lattice: &Lattice,
     metric: Metric,
@@ -57,13 +57,13 @@ fn finds<const N: usize>(
     is_certain.unwrap_or(false)
 }
 
-/// The own cell of a place and its neighbors: for each axis, the own cell, the nearer and the other neighbor.
+/// The cell of a place and its neighbors. For each axis: the own cell, the nearer and the farther neighbor.
 struct Around<const N: usize> {
-    /// The cells, or those that they repeat.
+    /// Coordinates of the cells, wrapped by the period.
     cells: [[i64; 3]; N],
-    /// The place, in steps from the lower edges of the cells.
+    /// Coordinates of the place, in steps from the lower edges of the cells.
     origins: [[i32; 3]; N],
-    /// The steps to the own cell, to the nearer and to the other neighbor.
+    /// Distances to the own cell, to the nearer and to the farther neighbor, in steps.
     sides: [[i32; 3]; N],
 }
 
@@ -86,7 +86,7 @@ impl<const N: usize> Around<N> {
         around
     }
 
-    /// The parts of the two words of all cells: three numbers for each axis.
+    /// The hash parts of all cells for both words: three numbers for each axis.
     #[inline(always)]
     fn parts<S: Simd>(&self, simd: S, lattice: &Lattice) -> [[u32; LANES]; 2] {
         let mut words = [0; LANES];
@@ -96,7 +96,7 @@ impl<const N: usize> Around<N> {
                 let cell = self.cells[axis][which];
                 words[3 * axis + which] = cell as u32;
             }
-            // The coordinates are whole numbers of 32 bits with a sign.
+            // The fast path needs coordinates that are signed 32-bit integers.
             is_near &= match lattice.period[axis] {
                 0 => self.cells[axis][0].unsigned_abs() < (1 << 31) - 1,
                 period => period <= 1 << 31,
@@ -125,7 +125,7 @@ impl<const N: usize> Around<N> {
         parts
     }
 
-    /// The words of the cells, and the place in steps from their lower edges, in `C` registers.
+    /// The hash words of the cells, and the place in steps from their lower corners, in `C` registers.
     #[inline(always)]
     fn lanes<S: Simd, const C: usize>(&self, simd: S, lattice: &Lattice) -> Lanes<S, N, C> {
         let mut words = [[u32x16::splat(simd, 0); 2]; C];
@@ -160,7 +160,7 @@ impl<const N: usize> Around<N> {
         }
     }
 
-    /// Visits cells that have one point each.
+    /// Searches cells that have one point each.
     #[inline(always)]
     fn search_single<S: Simd, const C: usize>(
         &self,
@@ -171,6 +171,7 @@ impl<const N: usize> Around<N> {
         let lanes = self.lanes::<S, C>(simd, search.lattice);
         let mut keys = [u32x16::splat(simd, NOTHING); C];
         let mut vectors = [[[0.0; 8]; N]; 4];
+        // Compute the vector and the key of the point in each cell.
         for register in 0..C {
             let index = u32x16::splat(simd, 0);
             let point: [_; N] = lanes.cells[register].steps(index, search.lattice.jitter);
@@ -186,6 +187,7 @@ impl<const N: usize> Around<N> {
             }
         }
         for hit in &mut *hits {
+            // Remove the smallest key for each hit.
             let mut least = keys[0].reduce_min();
             for register in 1..C {
                 least = least.min(keys[register].reduce_min());
@@ -196,10 +198,11 @@ impl<const N: usize> Around<N> {
                 lanes_of_least |= is_least.to_bitmask() << (register * LANES);
                 keys[register] = is_least.select(u32x16::splat(simd, NOTHING), keys[register]);
             }
-            // The order of points with one key is decided by their ids.
+            // Points with equal keys are ordered by id, in the search by rings.
             if !lanes_of_least.is_power_of_two() {
                 return false;
             }
+            // Look up the vector and the identity of the point.
             let number = lanes_of_least.trailing_zeros() as usize % n_visited(N);
             let (half, lane) = (number / 8, number % 8);
             for axis in 0..N {
@@ -212,7 +215,7 @@ impl<const N: usize> Around<N> {
         true
     }
 
-    /// Visits cells with any number of points.
+    /// Searches cells with any number of points.
     #[inline(always)]
     fn search_several<S: Simd, const K: usize, const C: usize>(
         &self,
@@ -223,6 +226,7 @@ impl<const N: usize> Around<N> {
         let (index_bits, code_mask) = (search.index_bits, search.code_mask);
         let mut lanes = self.lanes::<S, C>(simd, search.lattice);
         let mut found = Found::<S, K>::new(simd, 0);
+        // Compare the points of all visited cells.
         for register in 0..C {
             let numbers = u32x16::from_slice(simd, &const { numbers() }[register]);
             let cells = &mut lanes.cells[register];
@@ -232,13 +236,14 @@ impl<const N: usize> Around<N> {
             let codes = numbers << index_bits;
             found.look(search, cells, &lanes.origins[register], codes, most);
         }
+        // Decode the smallest keys one by one.
         let mut coded = found.pop();
         for rank in 0..K {
             let Some(hit) = hits.get_mut(rank) else {
                 break;
             };
             let next = found.pop();
-            // The order of keys that differ in their codes alone is not known. Missing points are alike, too.
+            // The order of keys that differ only in their codes is unknown. Missing points compare equal, too.
             if coded | code_mask == next | code_mask {
                 return false;
             }
@@ -252,7 +257,7 @@ impl<const N: usize> Around<N> {
         true
     }
 
-    /// A lower bound of the keys of all points of cells that are not visited.
+    /// A lower bound on the keys of all points of cells that are not visited.
     #[inline(always)]
     fn border(&self, metric: Metric) -> f32 {
         let mut border = self.outer_border(metric);
@@ -262,7 +267,7 @@ impl<const N: usize> Around<N> {
         border
     }
 
-    /// A lower bound of the keys of all points of a neighbor.
+    /// A lower bound on the keys of all points of a neighbor.
     #[inline(always)]
     fn gap(&self, metric: Metric, neighbor: u8) -> f32 {
         let mut sides = [0.0; N];
@@ -272,7 +277,7 @@ impl<const N: usize> Around<N> {
         metric.key(sides)
     }
 
-    /// A lower bound of the keys of all points beyond the neighbors.
+    /// A lower bound on the keys of all points beyond the neighbors.
     #[inline(always)]
     fn outer_border(&self, metric: Metric) -> f32 {
         let mut nearest = STEPS;
@@ -282,7 +287,7 @@ impl<const N: usize> Around<N> {
         metric.term((nearest + STEPS) as f32 * STEP)
     }
 
-    /// A point of a neighbor with these words.
+    /// The hit for a point of a neighbor, whose words are given.
     #[inline(always)]
     fn hit(&self, search: Search<'_>, neighbor: u8, words: [u32; 2], index: u32) -> Hit<N> {
         let steps: [i32; N] = search.lattice.steps(words, index);
@@ -297,7 +302,7 @@ impl<const N: usize> Around<N> {
     }
 }
 
-/// Visits the other neighbors where they matter; returns whether no other cell does.
+/// Visits the remaining neighbors that can contain a nearer point. Returns whether no cell beyond them can.
 #[cold]
 fn visit_rest<const N: usize>(search: Search<'_>, place: &Place<N>, hits: &mut [Hit<N>]) -> bool {
     let Search { lattice, exact, .. } = search;
@@ -325,9 +330,9 @@ fn visit_rest<const N: usize>(search: Search<'_>, place: &Place<N>, hits: &mut [
 /// The cells of a search, one in each lane.
 struct Lanes<S: Simd, const N: usize, const C: usize> {
     cells: [SixteenCells<S>; C],
-    /// The place, in steps from the lower corners of the cells.
+    /// Coordinates of the place, in steps from the lower corners of the cells.
     origins: [[i32x16<S>; N]; C],
-    /// The words of the cells in memory, eight at a time.
+    /// Words of the cells in memory, eight at a time.
     halves: [[[u32; 8]; 2]; 4],
 }
 
@@ -340,15 +345,15 @@ impl<S: Simd, const N: usize, const C: usize> Lanes<S, N, C> {
     }
 }
 
-/// Whether the cells of a register are visited. What is known of the others is not computed where a register of the
-/// processor has eight lanes.
+/// Mask of the visited cells of a register. On processors with registers of eight lanes, the compiler removes the
+/// computations of the other cells.
 #[inline(always)]
 fn is_visited<S: Simd, const N: usize>(simd: S, register: usize) -> mask32x16<S> {
     let numbers = u32x16::from_slice(simd, &const { numbers() }[register]);
     numbers.simd_lt(n_visited(N) as u32)
 }
 
-/// Searches for at most `K` points, or for any number of them in cells with one point each if `K` is 0.
+/// Searches up to `K` points, or with `K` = 0 any number of points in cells that have one point each.
 #[inline(always)]
 fn search_by_axes<S: Simd, const N: usize, const K: usize>(
     simd: S,
@@ -367,7 +372,7 @@ fn search_by_axes<S: Simd, const N: usize, const K: usize>(
     is_certain && (reach < around.border(search.exact.0) || visit_rest(search, place, hits))
 }
 
-/// The code of each cell along each axis, see [`places`](crate::places), in two registers.
+/// The code of each cell along each axis, in two registers; see [`places`](crate::places).
 const fn digits<const N: usize>() -> [[[u32; LANES]; 2]; N] {
     let mut digits = [[[0; LANES]; 2]; N];
     let cells = cells_by_distance::<N>();
@@ -383,7 +388,7 @@ const fn digits<const N: usize>() -> [[[u32; LANES]; 2]; N] {
     digits
 }
 
-/// The numbers of the cells, in two registers.
+/// The indices of the cells, in two registers.
 const fn numbers() -> [[u32; LANES]; 2] {
     let mut numbers = [[0; LANES]; 2];
     let mut number = 0;
@@ -394,7 +399,7 @@ const fn numbers() -> [[u32; LANES]; 2] {
     numbers
 }
 
-/// One of three numbers for each lane, from an index on.
+/// Selects one of the three numbers of `of` from index `from` on, in each lane.
 #[inline(always)]
 fn pick<S: Simd>(digits: u32x16<S>, of: &[u32], from: usize) -> u32x16<S> {
     let own = u32x16::splat(digits.simd, of[from]);

@@ -1,41 +1,41 @@
 //! Sixteen places side by side, one in each lane, and the neighbors of their cells.
 //!
-//! Neighbors are coded by two bits for each axis: 0 for the own cell, 1 for the neighbor on the nearer side, 2 for the
-//! other one.
+//! The code of a neighbor has two bits for each axis: 0 for the own cell, 1 for the neighbor on the nearer side, 2 for
+//! the neighbor on the farther side.
 
 use crate::fixed::{STEPS, split};
 use crate::lattice::{Lattice, both, parts_each};
 use fearless_simd::{f64x8, i32x16, prelude::*, u32x16, u64x8};
 
-/// The number of places in a register.
+/// Number of places in a register.
 pub(crate) const LANES: usize = 16;
 
-/// The low and the high word of sixteen whole numbers.
+/// The low and the high words of sixteen 64-bit integers.
 pub(crate) type Words<S> = [u32x16<S>; 2];
 
 /// Sixteen places, axis by axis.
 #[derive(Clone, Copy)]
 pub(crate) struct Places<S: Simd, const N: usize> {
-    /// The own cells.
+    /// Cells of the places.
     pub(crate) cells: [Words<S>; N],
-    /// The steps within the cells.
+    /// Steps within the cells.
     pub(crate) steps: [i32x16<S>; N],
 }
 
-/// A cell for each of sixteen places.
+/// One cell for each of sixteen places.
 #[derive(Clone, Copy)]
 pub(crate) struct Cells<S: Simd, const N: usize> {
-    /// The words of the cells.
+    /// Hash words of the cells.
     pub(crate) words: Words<S>,
-    /// The places, in steps from the lower corners of the cells.
+    /// Coordinates of the places, in steps from the lower corners of the cells.
     pub(crate) origins: [i32x16<S>; N],
 }
 
-/// All numbers of `f64` between this and twice this are whole, and their low bits hold the difference from this number.
+/// 1.5 · 2^52. All `f64` within a quarter of it are integers, whose low bits hold the difference from this number.
 const WHOLE: f64 = (3_u64 << 51) as f64;
 
 impl<S: Simd, const N: usize> Places<S, N> {
-    /// The places of a register of positions, and a bit for each lane that has one; other lanes hold arbitrary places.
+    /// Splits a register of positions into places, with a bit for each lane that has one; other lanes are arbitrary.
     #[inline(always)]
     pub(crate) fn new<const LEN: usize>(
         simd: S,
@@ -93,14 +93,14 @@ impl<S: Simd, const N: usize> Places<S, N> {
         }
     }
 
-    /// The direction of the neighbor on the nearer side, along an axis: -1 or 1.
+    /// The direction of the neighbor on the nearer side along an axis: -1 or 1.
     #[inline(always)]
     pub(crate) fn nearer(&self, simd: S, axis: usize) -> i32x16<S> {
         let [one, minus_one] = [i32x16::splat(simd, 1), i32x16::splat(simd, -1)];
         self.steps[axis].simd_lt(STEPS / 2).select(minus_one, one)
     }
 
-    /// The coordinates of the cells shifted along an axis, or of the cells that these repeat.
+    /// The coordinates of the cells shifted along an axis, wrapped by the period.
     #[inline(always)]
     pub(crate) fn shifted(&self, lattice: &Lattice, axis: usize, shift: i32x16<S>) -> Words<S> {
         let [low, high] = self.cells[axis];
@@ -115,7 +115,7 @@ impl<S: Simd, const N: usize> Places<S, N> {
         words
     }
 
-    /// A neighbor of each place, or its own cell, for several registers in step.
+    /// The neighbor of each place with the given code, for several registers whose operations are interleaved.
     #[inline(always)]
     pub(crate) fn neighbors_each<const C: usize>(
         simd: S,
@@ -130,6 +130,7 @@ impl<S: Simd, const N: usize> Places<S, N> {
         for axis in (0..N).rev() {
             let mut words = [places[0].cells[axis]; C];
             for i in 0..C {
+                // Decode the offset of the neighbor along the axis.
                 let digit = (neighbors[i] >> (2 * axis as u32)) & 3;
                 let nearer = places[i].nearer(simd, axis);
                 let zero = i32x16::splat(simd, 0);
@@ -139,6 +140,7 @@ impl<S: Simd, const N: usize> Places<S, N> {
                 let from = shift * i32x16::splat(simd, STEPS);
                 cells[i].origins[axis] = places[i].steps[axis] - from;
             }
+            // Combine the hash parts of the axis.
             let parts = parts_each(simd, lattice, axis, words);
             for i in 0..C {
                 cells[i].words = both(cells[i].words, parts[i]);
@@ -159,7 +161,7 @@ pub(crate) fn store<S: Simd>(lanes: u32x16<S>, words: &mut [u32], register: usiz
     lanes.store_slice(&mut words[register * LANES..][..LANES]);
 }
 
-/// The cells of sixteen coordinates, the steps from their lower edges, and a bit for each that has a place; see
+/// Splits sixteen coordinates into cells and steps from their lower edges, with a bit for each that has a place; see
 /// [`split`].
 #[inline(always)]
 fn split_lanes<S: Simd>(simd: S, coordinates: &[f64; LANES]) -> (Words<S>, i32x16<S>, u64) {
@@ -168,6 +170,7 @@ fn split_lanes<S: Simd>(simd: S, coordinates: &[f64; LANES]) -> (Words<S>, i32x1
     if !(is_near(halves[0]) && is_near(halves[1])) {
         return split_each(simd, coordinates);
     }
+    // Adding `WHOLE` moves the integer part to the low bits of the number.
     let mut cells = [u32x16::splat(simd, 0); 2];
     let mut steps = halves;
     for half in 0..2 {
@@ -178,7 +181,7 @@ fn split_lanes<S: Simd>(simd: S, coordinates: &[f64; LANES]) -> (Words<S>, i32x1
     }
     let [a, b] = cells;
     let steps: i32x16<S> = steps[0].narrow(steps[1]).to_int();
-    // Just below a whole number the difference can be rounded up to a whole cell.
+    // Just below an integer, the difference can be rounded up to a whole cell.
     let carries = steps.simd_eq(STEPS);
     let cell = [a.unzip_low(b), a.unzip_high(b)];
     let [low, high] = next(cell);
@@ -190,7 +193,7 @@ fn split_lanes<S: Simd>(simd: S, coordinates: &[f64; LANES]) -> (Words<S>, i32x1
     )
 }
 
-/// Cells and steps of sixteen coordinates, one by one, for those that are very large, or not finite.
+/// Splits sixteen coordinates one by one, where some are very large or not finite.
 #[inline(never)]
 fn split_each<S: Simd>(simd: S, coordinates: &[f64; LANES]) -> (Words<S>, i32x16<S>, u64) {
     let mut words = [[0; LANES]; 2];
@@ -212,7 +215,7 @@ fn split_each<S: Simd>(simd: S, coordinates: &[f64; LANES]) -> (Words<S>, i32x16
     (words, i32x16::from_slice(simd, &steps), has_place)
 }
 
-/// The cells after the given ones.
+/// The cells after the given ones, along one axis.
 #[inline(always)]
 fn next<S: Simd>([low, high]: Words<S>) -> Words<S> {
     let next = low + 1;
@@ -220,7 +223,7 @@ fn next<S: Simd>([low, high]: Words<S>) -> Words<S> {
     [next, carries.select(high + 1, high)]
 }
 
-/// The cells that the given cells repeat.
+/// Wraps the coordinates of cells by the period.
 #[inline(never)]
 fn wrap<S: Simd>(lattice: &Lattice, axis: usize, [mut low, mut high]: Words<S>) -> Words<S> {
     for lane in 0..LANES {
@@ -237,7 +240,7 @@ pub(crate) const fn digit(cell: u32, axis: usize) -> usize {
     (cell >> (2 * axis) & 3) as usize
 }
 
-/// The own cell and its neighbors, sorted by their mean distance.
+/// Codes of a cell and its neighbors, sorted by mean distance.
 pub(crate) const fn cells_by_distance<const N: usize>() -> &'static [u8] {
     const TWO: [u8; 9] = sorted_cells(2);
     const THREE: [u8; 27] = sorted_cells(3);
@@ -249,12 +252,12 @@ pub(crate) const fn cells_by_distance<const N: usize>() -> &'static [u8] {
     }
 }
 
-/// All cells with `n_axes` axes, in the order of the mean of their squared distance.
+/// Codes of all cells with `n_axes` axes, sorted by mean squared distance.
 const fn sorted_cells<const LEN: usize>(n_axes: u32) -> [u8; LEN] {
     let mut cells = [0; LEN];
     let mut len = 0;
     let mut wanted = 0;
-    // The mean squares of the distances to the nearer and to the other neighbor, 1/12 and 7/12, are as 1 to 7.
+    // Mean squared distances to the nearer and to the farther neighbor are 1/12 and 7/12: a ratio of 1 to 7.
     while len < LEN {
         let mut cell = 0_u32;
         while cell < 1 << (2 * n_axes) {

@@ -1,16 +1,15 @@
 //! The exact search for the nearest feature points of one position, by rings of cells.
 //!
-//! Cells are visited in rings of growing size around the position's own; cells of a ring that lie too far away are
-//! skipped, and the search ends when no cell outside can hold a nearer point. Points that the caller has placed are
-//! searched in the same way ([`by_rings`]), in rings of bins. Worley visits the 26 neighbors and stops
-//! ("A Cellular Texture Basis Function", SIGGRAPH 1996, <https://doi.org/10.1145/237170.237267>); that misses points
-//! now and then, and more often the higher n is.
+//! Cells are visited in rings of growing size around the cell of the position. Cells of a ring that are too far away
+//! are skipped, and the search ends when no cell outside can contain a nearer point. Points placed by the caller are
+//! searched in the same way ([`by_rings`]), in rings of bins. Worley visits the 26 neighbors and stops ("A Cellular
+//! Texture Basis Function", SIGGRAPH 1996, <https://doi.org/10.1145/237170.237267>). This misses points now and then,
+//! and more often the higher n is.
 //!
-//! Bounds are computed from the same exact differences, terms and joins as the keys themselves. Rounding does not
-//! turn a smaller sum into a larger one, so a bound never excludes a point wrongly, and needs no margin.
+//! Bounds are computed from the same exact differences, terms and sums as the keys themselves. Rounding is monotonic,
+//! so a bound never excludes a point wrongly and needs no margin.
 //!
-//! Of two points at the same distance, the one with the smaller id comes first, so that the result does not depend
-//! on the order in which they were found.
+//! Points at equal distances are ordered by id, so the result does not depend on the order in which they are found.
 
 use crate::fixed::{Place, STEP, STEPS, cells};
 use crate::lattice::{IDS, Lattice, both};
@@ -35,9 +34,10 @@ impl PointId {
     }
 }
 
-/// A point that a search has found.
+/// A feature point that a search has found.
 #[derive(Clone, Copy, Debug)]
 pub struct Hit<const N: usize> {
+    /// Key of the distance from the position to the point.
     pub(crate) key: f32,
     /// The vector from the feature point to the position, in cells.
     pub(crate) vector: [f32; N],
@@ -46,14 +46,14 @@ pub struct Hit<const N: usize> {
 }
 
 impl<const N: usize> Hit<N> {
-    /// The result for a position without a place.
+    /// The result for a position without a place: NaN.
     pub(crate) const NOWHERE: Self = Self {
         key: f32::NAN,
         vector: [f32::NAN; N],
         name: None,
     };
 
-    /// The absence of a point: infinitely far away.
+    /// A missing point, infinitely far away.
     pub(crate) const NONE: Self = Self {
         key: f32::INFINITY,
         vector: [f32::INFINITY; N],
@@ -61,12 +61,12 @@ impl<const N: usize> Hit<N> {
     };
 }
 
-/// The largest number of cells that a search goes away. The least density makes a void of that size less likely than
-/// 2^-200 even in two dimensions.
+/// Maximum ring of a search, in cells. At the smallest density, a void of this size has a probability below 2^-200 even
+/// in two dimensions.
 const LAST_RING: i64 = 96;
 
-/// Finds the `n` nearest points, at most four, in rings of growing size. `visit` adds the points of a ring, and returns a
-/// lower bound of the keys of all points beyond it: infinity, if there are none.
+/// Finds the `n` nearest points, at most four, in rings of growing size. `visit` adds the points of a ring, and returns
+/// a lower bound on the keys of all points beyond it, or infinity if there are none.
 #[inline(always)]
 pub(crate) fn by_rings<const N: usize>(
     n: usize,
@@ -83,7 +83,7 @@ pub(crate) fn by_rings<const N: usize>(
     ranking
 }
 
-/// The nearest points of a place, nearest first; at most four.
+/// Finds the nearest points of a place, nearest first; at most four.
 pub(crate) fn nearest<const N: usize>(
     lattice: &Lattice,
     metric: Metric,
@@ -97,7 +97,7 @@ pub(crate) fn nearest<const N: usize>(
         place,
     };
     let ranking = by_rings(hits.len(), metric, |ring, ranking| {
-        // The own cell and the ring around it are visited at once.
+        // Visit the cell of the place and the ring around it at once.
         let ring = ring + 1;
         if ring == 1 {
             search.neighbors(ranking);
@@ -108,6 +108,7 @@ pub(crate) fn nearest<const N: usize>(
                 }
             });
         }
+        // Stop where all further cells are repeats of empty ones, or at the maximum ring.
         let is_empty = ranking.hits[0].name.is_none() && lattice.repeats_within(ring);
         if is_empty || ring == LAST_RING {
             return f32::INFINITY;
@@ -117,7 +118,7 @@ pub(crate) fn nearest<const N: usize>(
     hits.copy_from_slice(ranking.hits());
 }
 
-/// All points of a place whose keys are at most that of `distance`, in no particular order.
+/// Finds all points whose keys are at most the key of `distance`, unordered.
 pub(crate) fn within<const N: usize>(
     lattice: &Lattice,
     metric: Metric,
@@ -148,12 +149,12 @@ pub(crate) fn within<const N: usize>(
     hits
 }
 
-/// The nearest points so far, nearest first.
+/// The nearest points found so far, nearest first.
 pub(crate) struct Ranking<const N: usize> {
     hits: [Hit<N>; MAX_NEAREST],
-    /// The number of points to find.
+    /// Number of points to find.
     len: usize,
-    /// The key from which on further points do not matter.
+    /// Keys above this value cannot enter the ranking.
     reach: f32,
 }
 
@@ -170,12 +171,12 @@ impl<const N: usize> Ranking<N> {
         &self.hits[..self.len]
     }
 
-    /// The key from which on further points do not matter.
+    /// Keys above this value cannot enter the ranking.
     pub(crate) fn reach(&self) -> f32 {
         self.reach
     }
 
-    /// Inserts a point in its order.
+    /// Inserts a point if it is among the nearest.
     #[inline(always)]
     pub(crate) fn add(&mut self, hit: Hit<N>, id: impl Fn(PointId) -> u64) {
         if hit.key <= self.reach {
@@ -200,7 +201,7 @@ impl<const N: usize> Ranking<N> {
     }
 }
 
-/// The order of hits: by key, then by id; repeats of one point, by their vectors.
+/// Orders hits by key, then by id; repeats of one point by their vectors.
 #[inline]
 pub(crate) fn order<const N: usize>(
     a: &Hit<N>,
@@ -213,7 +214,7 @@ pub(crate) fn order<const N: usize>(
     }
 }
 
-/// The order of hits with one key.
+/// Orders hits with equal keys.
 #[cold]
 fn order_of_equal<const N: usize>(a: &Hit<N>, b: &Hit<N>, id: impl Fn(PointId) -> u64) -> Ordering {
     let [a_id, b_id] = [a, b].map(|hit| hit.name.map(&id));
@@ -222,18 +223,18 @@ fn order_of_equal<const N: usize>(a: &Hit<N>, b: &Hit<N>, id: impl Fn(PointId) -
         .then(parts.fold(Ordering::Equal, |order, (a, b)| order.then(b.total_cmp(a))))
 }
 
-/// The number of cells that are hashed side by side.
+/// Number of cells whose points are added in one batch.
 const BATCH: usize = 4;
 
-/// The own cell of a place and its neighbors: for each axis, the own cell, the nearer and the other neighbor.
+/// The cell of a place and its neighbors. For each axis: the own cell, the nearer and the farther neighbor.
 struct Around<const N: usize> {
-    /// The cells, or those that they repeat.
+    /// Coordinates of the cells, wrapped by the period.
     cells: [[i64; 3]; N],
-    /// The place, in steps from the lower edges of the cells.
+    /// Coordinates of the place, in steps from the lower edges of the cells.
     origins: [[i32; 3]; N],
-    /// The terms of the distances to the cells.
+    /// Terms of the distances to the cells.
     gaps: [[f32; 3]; N],
-    /// The parts of the words of the cells.
+    /// Hash parts of the cells' words.
     parts: [[[u32; 2]; 3]; N],
 }
 
@@ -266,7 +267,7 @@ impl<const N: usize> Around<N> {
         around
     }
 
-    /// A lower bound of the keys of all points of a neighbor.
+    /// A lower bound on the keys of all points of a neighbor.
     #[inline(always)]
     fn gap(&self, metric: Metric, neighbor: u8) -> f32 {
         let gap = |axis: usize| self.gaps[axis][digit(neighbor.into(), axis)];
@@ -286,8 +287,8 @@ struct Search<'a, const N: usize> {
 }
 
 impl<const N: usize> Search<'_, N> {
-    /// Adds the points of the own cell of the place and of its neighbors to a ranking, those of the cells that are
-    /// nearest on average first.
+    /// Adds the points of the place's cell and of its neighbors to a ranking. Cells are visited in the order of their
+    /// mean distance.
     fn neighbors(&self, ranking: &mut Ranking<N>) {
         let rounding_slack = self.metric.rounding_slack();
         let around = Around::new(self);
@@ -307,8 +308,8 @@ impl<const N: usize> Search<'_, N> {
         self.batch(&around, &batch[..n], ranking);
     }
 
-    /// Adds the points of some neighbors to a ranking. Their hashes are computed first, side by side: the processor does
-    /// not know the number of points of a cell before, and guesses it badly.
+    /// Adds the points of a few neighbors to a ranking. The hashes of a batch can be computed in parallel: a cell's
+    /// number of points is unknown before, and the processor predicts it badly.
     #[inline]
     fn batch(&self, around: &Around<N>, neighbors: &[u8], ranking: &mut Ranking<N>) {
         let rounding_slack = self.metric.rounding_slack();
@@ -322,6 +323,7 @@ impl<const N: usize> Search<'_, N> {
             let words = (0..N).fold([0; 2], |words, axis| {
                 both(words, around.parts[axis][digit(axis)])
             });
+            // Add the points with their exact vectors and keys.
             self.lattice.visit_words(cell, words, |steps, name| {
                 let mut vector = [0.0; N];
                 for axis in 0..N {
@@ -334,13 +336,13 @@ impl<const N: usize> Search<'_, N> {
         }
     }
 
-    /// The cell that is `shift` cells from the place's own.
+    /// The coordinates of the cell with an offset of `shift` cells from the place's own.
     #[inline(always)]
     fn shifted(&self, shift: [i64; N]) -> [i64; N] {
         core::array::from_fn(|axis| self.place.cell[axis] + shift[axis])
     }
 
-    /// The hit of a point in the cell that is `shift` cells from the place's own.
+    /// The hit for a point in the cell with an offset of `shift` cells from the place's own.
     #[inline(always)]
     fn hit(&self, shift: [i64; N], steps: [i32; N], name: PointId) -> Hit<N> {
         let mut vector = [0.0; N];
@@ -355,15 +357,15 @@ impl<const N: usize> Search<'_, N> {
         }
     }
 
-    /// Calls `each` with the cells that are `ring` cells away along their furthest axis, and with lower bounds of the
-    /// keys of their points.
+    /// Calls `each` with the offset of every cell of a ring, and with a lower bound on the keys of its points. The
+    /// largest component of these offsets is `ring` cells.
     fn ring(&self, ring: i64, mut each: impl FnMut([i64; N], f32)) {
         let mut shift = [-ring; N];
         loop {
             if shift.iter().any(|part| part.abs() == ring) {
                 each(shift, self.gap(shift));
             }
-            // Advances to the next cell, the first axis fastest; inside of the ring, straight to its other side.
+            // Advance to the next cell, the first axis fastest. Skip the interior of the ring.
             let inside = shift[1..].iter().all(|part| part.abs() < ring);
             shift[0] += if inside && shift[0] == -ring {
                 2 * ring.max(1)
@@ -382,7 +384,7 @@ impl<const N: usize> Search<'_, N> {
         }
     }
 
-    /// Calls `each` with the points of a cell.
+    /// Calls `each` with the points of the cell with an offset of `shift` cells.
     #[inline(always)]
     fn cell(&self, shift: [i64; N], mut each: impl FnMut(Hit<N>)) {
         self.lattice.visit(self.shifted(shift), |steps, name| {
@@ -390,7 +392,7 @@ impl<const N: usize> Search<'_, N> {
         });
     }
 
-    /// A lower bound of the keys of all points of a cell.
+    /// A lower bound on the keys of all points of the cell with an offset of `shift` cells.
     #[inline]
     fn gap(&self, shift: [i64; N]) -> f32 {
         let mut gap = [0.0; N];
@@ -406,7 +408,7 @@ impl<const N: usize> Search<'_, N> {
         self.metric.key(gap)
     }
 
-    /// A lower bound of the keys of all points beyond the visited rings.
+    /// A lower bound on the keys of all points beyond `ring` rings.
     fn border(&self, ring: i64) -> f32 {
         let sides = self.place.steps.map(|steps| steps.min(STEPS - steps));
         let nearest = sides.into_iter().fold(STEPS, i32::min);

@@ -10,13 +10,13 @@ use fearless_simd::{f32x16, prelude::*};
 /// A combination of distances, mapped to a range: `shift + W1·F1 + W2·F2 + …`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Tone {
-    /// The coefficients, scaled to the range.
+    /// Coefficients of the distances, scaled to the range.
     pub(crate) weights: Combination,
     pub(crate) shift: f32,
 }
 
 impl Tone {
-    /// The combination without a range.
+    /// The combination without a mapping to a range.
     pub(crate) fn plain(combination: Combination) -> Self {
         Self {
             weights: combination,
@@ -24,7 +24,7 @@ impl Tone {
         }
     }
 
-    /// This tone with values mapped so that `range` becomes 0 to 1.
+    /// Maps the values so that `range` becomes 0 to 1.
     pub(crate) fn with_range(self, [low, high]: [f32; 2]) -> Result<Self, WorleyError> {
         let extent = high - low;
         WorleyError::check(
@@ -36,12 +36,12 @@ impl Tone {
         let weights = self.weights.coefficients().map(|weight| weight / extent);
         Ok(Self {
             weights: Combination::new(weights),
-            // Adding zero avoids -0, to which adding zero later would make a difference.
+            // Adding zero turns -0 into 0; otherwise adding zero later would change the bits.
             shift: (self.shift - low) / extent + 0.0,
         })
     }
 
-    /// The greatest n for which `F_n` is needed.
+    /// The largest n for which `F_n` is needed.
     pub(crate) fn depth(&self) -> usize {
         self.weights.depth()
     }
@@ -55,7 +55,7 @@ impl Tone {
         self.of(&hits.map(|hit| worley.metric.distance(hit.key)))
     }
 
-    /// The value for distances, at least [`Tone::depth`] of them.
+    /// The value for the given distances, at least [`Tone::depth`] of them.
     pub(crate) fn of(&self, distances: &[f32]) -> f32 {
         let mut sum = self.shift;
         for (&weight, &distance) in self.weights.coefficients().iter().zip(distances) {
@@ -67,16 +67,16 @@ impl Tone {
     }
 }
 
-/// Writes a combination into rows of values: it replaces them or, times a weight, is added to them.
+/// Output of a combination into rows of values: replaces them, or is added to them with a weight.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Values {
     pub(crate) tone: Tone,
-    /// The weight with which values are added to those in memory; `None` replaces them.
+    /// Weight of the values that are added to the output; `None` replaces the output.
     pub(crate) weight: Option<f32>,
 }
 
 impl Values {
-    /// Writes the value at a place; NaN where there is no place.
+    /// Writes the value at a place; NaN without a place.
     pub(crate) fn put_one(&self, basis: &dyn Basis, place: Option<FlatPlace>, out: &mut f32) {
         let value = place.map_or(f32::NAN, |place| {
             let mut hits = [Hit::NONE; MAX_NEAREST];
@@ -95,7 +95,7 @@ impl Values {
         };
     }
 
-    /// The weights in the form for sixteen pixels at a time, for `K` keys of which the last `depth` are in use.
+    /// Broadcasts the parameters to sixteen lanes, for `K` keys of which the last `depth` are in use.
     #[inline(always)]
     pub(crate) fn lanes<S: Simd, const K: usize>(&self, simd: S, depth: usize) -> ValueLanes<S, K> {
         let coefficients = self.tone.weights.coefficients();
@@ -117,14 +117,14 @@ impl Values {
     }
 }
 
-/// [`Values`], in every lane.
+/// The parameters of [`Values`], broadcast to all lanes.
 #[derive(Clone, Copy)]
 pub(crate) struct ValueLanes<S: Simd, const K: usize> {
     shift: f32x16<S>,
     weights: [f32x16<S>; K],
-    /// For each weight, whether it is not zero.
+    /// For each weight, whether it is nonzero.
     counts: [bool; K],
-    /// Whether values are added to those in memory.
+    /// Whether values are added to the output.
     pub(crate) is_added: bool,
     weight: f32x16<S>,
 }
@@ -135,7 +135,7 @@ impl<S: Simd, const K: usize> ValueLanes<S, K> {
     pub(crate) fn put<M: Measure>(&self, measure: M, keys: [f32x16<S>; K], out: &mut [f32]) {
         let mut values = self.shift;
         for rank in 0..K {
-            // A single weight is zero only in a combination without any, where it adds zero.
+            // With K = 1, a weight of zero adds zero; it occurs only in a combination without any weight.
             if K == 1 || self.counts[rank] {
                 values += measure.distances(keys[rank]) * self.weights[rank];
             }

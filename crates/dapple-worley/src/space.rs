@@ -4,7 +4,7 @@ use crate::dispatch::DimensionDispatch;
 use core::fmt;
 use glam::{DVec2, DVec3, DVec4};
 
-/// A marker on which [`Space`] names the vector type for a known number of axes.
+/// Marker type on which [`Space`] is implemented for each number of axes.
 #[derive(Debug)]
 pub struct Dimensions;
 

@@ -8,7 +8,7 @@ use crate::{Dimensions, Metric, Scatter, Space, Vector, WorleyError};
 use dapple_hash::{Seed, unit_f32};
 use std::sync::Arc;
 
-/// The greatest n for which the basis has `F_n`.
+/// Maximum n for which the basis computes `F_n`.
 pub const MAX_NEAREST: usize = 4;
 
 /// Worley's basis in two dimensions.
@@ -17,7 +17,7 @@ pub type Worley2 = Worley<2>;
 /// Worley's basis in three dimensions.
 pub type Worley3 = Worley<3>;
 
-/// Worley's basis in four dimensions, for textures that move: a period along the fourth axis makes a loop.
+/// Worley's basis in four dimensions, for animated textures: a period along the fourth axis makes a loop.
 pub type Worley4 = Worley<4>;
 
 /// Worley's cellular basis: feature points scattered over unit cells, and the distances to the nearest of them.
@@ -50,17 +50,17 @@ pub struct Worley<const N: usize> {
 #[cfg_attr(doc, doc = include_str!("../docs/feature.md"))]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Feature<V> {
-    /// The distance in cells: zero or more. NaN if the position has no place, see [`Worley::sample`].
+    /// Distance in cells, at least zero. NaN if the position has no place; see [`Worley::sample`].
     pub distance: f32,
-    /// The vector from the feature point to the position, in cells. For the Euclidean metric, this vector over the
+    /// Vector from the feature point to the position, in cells. For the Euclidean metric, this vector divided by the
     /// distance is the gradient of the distance; see [`Metric::gradient`].
     pub vector: V,
-    /// The id of the point: 64 random bits, the same from every position.
+    /// Id of the point: 64 random bits that do not depend on the position.
     pub id: u64,
 }
 
 impl<V> Feature<V> {
-    /// A random number in `[0, 1)` that belongs to the feature point: the same all over its Voronoi cell.
+    /// A random number in `[0, 1)` for the feature point; constant in its Voronoi cell.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/cell-value.md"))]
     #[must_use]
@@ -69,7 +69,7 @@ impl<V> Feature<V> {
     }
 }
 
-/// The random number of the feature point with an id, in `[0, 1)`.
+/// The random number in `[0, 1)` of the feature point with the given id.
 pub(crate) fn cell_value(id: u64) -> f32 {
     unit_f32((id >> 32) as u32)
 }
@@ -77,9 +77,9 @@ pub(crate) fn cell_value(id: u64) -> f32 {
 /// A feature point of a cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CellPoint<V> {
-    /// The position relative to the lower corner of the cell: each component in `[0, 1)`.
+    /// Position relative to the lower corner of the cell; components are in `[0, 1)`.
     pub offset: V,
-    /// The id of the point: 64 random bits, as in [`Feature::id`].
+    /// Id of the point: 64 random bits, as in [`Feature::id`].
     pub id: u64,
 }
 
@@ -87,7 +87,7 @@ impl<const N: usize> Worley<N>
 where
     Dimensions: Space<N>,
 {
-    /// The basis with a Poisson-distributed number of points per cell, the Euclidean metric, and no period.
+    /// Creates a basis with a Poisson-distributed number of points per cell, the Euclidean metric, and no period.
     #[must_use]
     pub fn new(seed: Seed) -> Self {
         let scatter = Scatter::default();
@@ -99,7 +99,7 @@ where
         }
     }
 
-    /// This basis with the feature points of another seed.
+    /// This basis with another seed for the feature points.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/with-seed.md"))]
     #[must_use]
@@ -111,7 +111,7 @@ where
         }
     }
 
-    /// This basis with another scatter, and one density everywhere.
+    /// This basis with another scatter and a constant density.
     ///
     /// # Errors
     ///
@@ -140,11 +140,12 @@ where
         self.with_scatter(Scatter::Poisson { density })
     }
 
-    /// This basis with a density that varies in space: small, dense cells here, large ones there.
+    /// This basis with a density that varies in space, so cells are small where it is high.
     ///
-    /// `density` is called with the middle of each cell, and returns the mean number of feature points per cell. The
-    /// result is clamped to 1/64 to 64, and NaN counts as 1/64. The numbers of points are not clamped, so the mean is
-    /// the density itself. The search goes as far as necessary; it is slower than with one density.
+    /// `density` is called with the center of each cell, and returns the mean number of feature points per cell. The
+    /// result is clamped to 1/64 to 64; NaN counts as 1/64. The number of points in a cell is not clamped, so its mean
+    /// is the density itself. The search visits as many rings of cells as needed; it is slower than with a constant
+    /// density.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/with-varying-density.md"))]
     ///
@@ -184,12 +185,12 @@ where
         })
     }
 
-    /// The number of cells after which each axis repeats.
+    /// Period along each axis, in cells; `None` for an axis that does not repeat.
     pub(crate) fn period(&self) -> [Option<f64>; N] {
         self.periods().map(|cells| cells.map(f64::from))
     }
 
-    /// Makes the feature points repeat after a number of cells along each axis; `None` along an axis that does not
+    /// Repeats the feature points after a whole number of cells along each axis; `None` for an axis that does not
     /// repeat.
     ///
     /// The repeat is exact, without blending. Repeats of a point are separate points with one id, so with a period of
@@ -219,7 +220,7 @@ where
         self.seed
     }
 
-    /// The number of cells after which the feature points repeat along each axis.
+    /// Period of the feature points along each axis, in cells; `None` for an axis that does not repeat.
     #[must_use]
     pub fn periods(&self) -> [Option<u32>; N] {
         core::array::from_fn(|axis| match self.lattice.period[axis] {
@@ -228,7 +229,7 @@ where
         })
     }
 
-    /// The metric in which distances are measured.
+    /// The metric of the distances.
     #[must_use]
     pub fn metric(&self) -> Metric {
         self.metric
@@ -250,9 +251,9 @@ where
 
     /// The `K` nearest feature points of a position, nearest first; `K` is from 1 to 4.
     ///
-    /// Points at the same distance are in the order of their ids. A position with a coordinate that is not finite, or
-    /// further out than 2^62, has no place: its distances and vectors are NaN and its ids 0. Where a short period of
-    /// unclamped points has no point at all, distances and vectors are infinite and ids 0.
+    /// Points at equal distances are ordered by id. A position has no place if a coordinate is not finite or its
+    /// magnitude is above 2^62: its distances and vectors are NaN, and its ids 0. Where a short period of unclamped
+    /// points contains no point at all, distances and vectors are infinite, and ids 0.
     #[must_use]
     #[inline]
     pub fn sample<const K: usize>(&self, position: impl Into<[f64; N]>) -> [Feature<Vector<N>>; K] {
@@ -268,7 +269,7 @@ where
             id: 0,
         }; K];
         if let Some(place) = Place::new(position.into()) {
-            // Not mapped: that would be a call for each.
+            // No `map` here: it would compile to a call for each hit.
             let hits = self.hits::<K>(&place);
             for (feature, hit) in features.iter_mut().zip(hits) {
                 *feature = self.feature(hit);
@@ -277,7 +278,7 @@ where
         features
     }
 
-    /// The feature points of a cell, in no particular order. All other results follow from them.
+    /// The feature points of a cell, unordered. All other results follow from them.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/cell-points.md"))]
     #[must_use]
@@ -302,14 +303,14 @@ where
         hits
     }
 
-    /// The `n` nearest points of a place, at most four; the rest are absent.
+    /// The `n` nearest points of a place, at most four; the remaining elements are [`Hit::NONE`].
     pub(crate) fn nearest_hits(&self, n: usize, place: &Place<N>) -> [Hit<N>; MAX_NEAREST] {
         let mut hits = [Hit::NONE; MAX_NEAREST];
         Dimensions::nearest(self.metric, &self.lattice, place, &mut hits[..n]);
         hits
     }
 
-    /// The distances of a place to its `K` nearest points.
+    /// The distances from a place to its `K` nearest points.
     pub(crate) fn distances<const K: usize>(&self, place: &Place<N>) -> [f32; K] {
         self.hits::<K>(place)
             .map(|hit| self.metric.distance(hit.key))
@@ -329,5 +330,5 @@ where
     }
 }
 
-/// The largest error of a coordinate, in cells: positions are rounded down to whole steps.
+/// Maximum rounding error of a coordinate, in cells: positions are rounded down to whole steps.
 pub const POSITION_STEP: f32 = STEP;
