@@ -25,7 +25,7 @@ impl<const N: usize> Worley<N>
 where
     Dimensions: Space<N>,
 {
-    /// The texture whose value is the random number of the Voronoi cell, in `[0, 1)`.
+    /// The texture of the cells' random numbers, in `[0, 1)`.
     #[must_use]
     pub fn cell_values(&self) -> CellValues<N> {
         CellValues {
@@ -38,7 +38,7 @@ impl<const N: usize> CellValues<N>
 where
     Dimensions: Space<N>,
 {
-    /// The values at the pixel centers of a window of a plane, into memory of its size.
+    /// Renders the values at the pixel centers of a window of a plane into `out`.
     ///
     /// # Errors
     ///
@@ -84,7 +84,7 @@ where
     }
 }
 
-/// The random number of a feature point, or NaN for a position without a place.
+/// The random number of a feature point; NaN for a position without a place.
 fn value(distance: f32, id: u64) -> f32 {
     if distance.is_nan() {
         return f32::NAN;

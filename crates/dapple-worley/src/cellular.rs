@@ -31,7 +31,7 @@ impl<const N: usize> Worley<N>
 where
     Dimensions: Space<N>,
 {
-    /// The texture whose values are a combination of the distances.
+    /// The texture of a combination of the distances.
     #[must_use]
     pub fn combine(&self, combination: Combination) -> Cellular<N> {
         Cellular {
@@ -51,16 +51,16 @@ where
         &self.worley
     }
 
-    /// The value at a position. NaN if the position has no place, see [`Worley::sample`].
+    /// The value at a position. NaN if the position has no place; see [`Worley::sample`].
     #[must_use]
     pub fn value(&self, position: impl Into<[f64; N]>) -> f32 {
         let place = Place::new(position.into());
         place.map_or(f32::NAN, |place| self.tone.at(&self.worley, &place))
     }
 
-    /// The gradient of the value at a position, per cell: the combination of the gradients of the distances.
+    /// The gradient of the value at a position, per cell: the combination of the distances' gradients.
     ///
-    /// It jumps on the borders between cells. All components are NaN if the position has no place.
+    /// It is discontinuous at the borders between cells. All components are NaN if the position has no place.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/gradient.md"))]
     #[must_use]
@@ -72,7 +72,7 @@ where
         Vector::<N>::from(gradient.map(f64::from))
     }
 
-    /// The values at the pixel centers of a window of a plane, into memory of its size.
+    /// Renders the values at the pixel centers of a window of a plane into `out`.
     ///
     /// # Errors
     ///
@@ -86,17 +86,17 @@ where
         self.render_slices(window, vec![(*plane, out)])
     }
 
-    /// Fills several planes, such as the slices of a volume. Neighboring slices share their feature points, which is
-    /// faster than filling them one by one, most of all if they are close together.
+    /// Renders several planes, such as the slices of a volume. Neighboring slices share their feature points, which is
+    /// faster than rendering them one by one, most of all if they are close together.
     ///
     /// # Errors
     ///
-    /// [`SizeMismatch`](dapple_raster::RasterErrorKind::SizeMismatch) if a view has another size than the window; all
-    /// views are unchanged then.
+    /// [`SizeMismatch`](dapple_raster::RasterErrorKind::SizeMismatch) if the size of a view is not that of the window;
+    /// all views are unchanged then.
     ///
     /// # Examples
     ///
-    /// A volume of 32 slices, as rasters that lie one below the other:
+    /// A volume of 32 slices, stacked vertically in one raster:
     ///
     /// ```
     /// use dapple_worley::{Combination, Plane, Worley3, hash::Seed};
@@ -139,7 +139,7 @@ where
         bands.map(|rows| Output::Values(values, rows)).collect()
     }
 
-    /// The range of the values without the lowest and the highest thousandth, measured at `n` random positions.
+    /// Measures the range of the values at `n` random positions, without the lowest and the highest thousandth.
     ///
     /// # Errors
     ///
@@ -148,17 +148,19 @@ where
         measure_range(seed, n, |position: [f64; N]| self.value(position))
     }
 
-    /// This texture with values mapped so that about 0 to 1 is their range. The ranges come from a table of
-    /// measurements for [the combinations that have a name](Combination::NAMED), the default scatter and
-    /// [`Scatter::Jittered`](crate::Scatter::Jittered) with a jitter of 1, and every metric but Minkowski's. One value in a thousand lies below 0,
-    /// and one above 1.
+    /// Maps the values so that their range is about 0 to 1: one value in a thousand is below 0, and one above 1.
+    ///
+    /// The ranges come from a table of measurements for [named combinations](Combination::NAMED), the default scatter
+    /// and
+    /// [`Scatter::Jittered`](crate::Scatter::Jittered) with a jitter of 1, and every metric but Minkowski's.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/normalized.md"))]
     ///
     /// # Errors
     ///
-    /// [`NoRange`](crate::WorleyErrorKind::NoRange) for all other textures, and for one that has a range already; use
-    /// [`measure_range`](Self::measure_range) and [`with_range`](Self::with_range) for these.
+    /// [`NoRange`](crate::WorleyErrorKind::NoRange) for all other textures, and if a range is already set; for these,
+    /// use
+    /// [`measure_range`](Self::measure_range) and [`with_range`](Self::with_range).
     pub fn normalized(self) -> Result<Self, WorleyError> {
         let Worley {
             metric, scatter, ..
@@ -174,13 +176,13 @@ where
         self.with_range(range)
     }
 
-    /// This texture with values mapped so that `range` becomes 0 to 1. Values beyond it are not clamped.
+    /// Maps the values so that `range` becomes 0 to 1. Values outside of it are not clamped.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/with-range.md"))]
     ///
     /// # Errors
     ///
-    /// [`Range`](crate::WorleyErrorKind::Range) if the range is not finite, or empty.
+    /// [`Range`](crate::WorleyErrorKind::Range) if the range is empty or not finite.
     pub fn with_range(self, range: [f32; 2]) -> Result<Self, WorleyError> {
         Ok(Self {
             tone: self.tone.with_range(range)?,
@@ -232,7 +234,7 @@ where
     }
 }
 
-/// Renders windows of space by a function that fills several planes of one window.
+/// Renders windows of space, by a function that renders several planes of one window.
 pub(crate) fn render_windows<'v, const N: usize>(
     windows: &[Window<N>],
     outs: Vec<RasterViewMut<'v, f32>>,
@@ -243,7 +245,7 @@ where
 {
     RasterError::check_length(outs.len(), windows.len())?;
     let mut slices = windows.iter().zip(outs).peekable();
-    // Planes of the same pixels share their columns and rows.
+    // Render consecutive windows with equal pixels together.
     while let Some((first, out)) = slices.next() {
         let flat = first.in_plane();
         let mut stack = vec![(Plane::of_window(first), out)];
@@ -255,14 +257,14 @@ where
     Ok(())
 }
 
-/// The range of some values without the lowest and the highest thousandth.
+/// Measures the range of values at random positions, without the lowest and the highest thousandth.
 pub(crate) fn measure_range<const N: usize>(
     seed: Seed,
     n: u32,
     value: impl Fn([f64; N]) -> f32,
 ) -> Result<[f32; 2], WorleyError> {
-    /// Random positions lie within this many cells of the origin: many cells, and `f64` is still finer than a step
-    /// there.
+    /// Random positions are within this many cells of the origin. This covers many cells, and `f64` is still finer than
+    /// a step there.
     const EXTENT: f64 = (1 << 20) as f64;
     WorleyError::check(
         n >= 1000,

@@ -63,13 +63,12 @@ impl Combination {
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/combination-f4-minus-f3.md"))]
     pub const F4_MINUS_F3: Self = Self::new([0.0, 0.0, -1.0, 1.0]);
-    /// `2·F3 − F2 − F1`, a combination that the paper names.
+    /// `2·F3 − F2 − F1`, a combination from Worley's paper.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/combination-two-f3-minus-f2-minus-f1.md"))]
     pub const TWO_F3_MINUS_F2_MINUS_F1: Self = Self::new([-1.0, -1.0, 2.0, 0.0]);
 
-    /// The combinations that have a name. Their ranges are known: see
-    /// [`Cellular::normalized`](crate::Cellular::normalized).
+    /// The named combinations. Their ranges are known; see [`Cellular::normalized`](crate::Cellular::normalized).
     pub const NAMED: [(&'static str, Self); 11] = [
         ("F1", Self::F1),
         ("F2", Self::F2),
@@ -98,16 +97,16 @@ impl Combination {
         self.coefficients
     }
 
-    /// The greatest n for which `F_n` has a coefficient that is not zero; 1 if all are zero.
+    /// The largest n for which the coefficient of `F_n` is nonzero; 1 if all are zero.
     #[must_use]
     pub fn depth(&self) -> usize {
         let last = self.coefficients.iter().rposition(|&part| part != 0.0);
         last.map_or(1, |last| last + 1)
     }
 
-    /// The combination of the first distances, at least [`depth`](Self::depth) of them.
+    /// The combination of the given distances, at least [`depth`](Self::depth) of them.
     ///
-    /// Distances with the coefficient zero are skipped. The sum goes from F1 up.
+    /// Distances with a coefficient of zero are skipped. Terms are added from F1 up.
     #[must_use]
     #[inline]
     pub fn of(&self, distances: &[f32]) -> f32 {

@@ -20,7 +20,7 @@ use dapple_raster::{Field, RasterError, RasterViewMut, Window};
 /// ```
 #[derive(Clone, Debug)]
 pub struct EdgeDistances<const N: usize> {
-    /// The basis, with the Euclidean metric.
+    /// The basis, with the metric set to Euclidean.
     pub(crate) worley: Worley<N>,
 }
 
@@ -28,7 +28,7 @@ impl<const N: usize> Worley<N>
 where
     Dimensions: Space<N>,
 {
-    /// The texture whose value is the distance to the nearest edge of the Voronoi cell.
+    /// The texture of the distances to the nearest edge of the Voronoi cell.
     #[must_use]
     pub fn edge_distances(&self) -> EdgeDistances<N> {
         let worley = Self {
@@ -49,7 +49,7 @@ where
         self.worley.edge_distance(position)
     }
 
-    /// The values at the pixel centers of a window of a plane, into memory of its size.
+    /// Renders the values at the pixel centers of a window of a plane into `out`.
     ///
     /// # Errors
     ///

@@ -7,16 +7,16 @@ dapple_raster::error! {
     WorleyError,
     /// The cause of a [`WorleyError`], with the limit and the value.
     WorleyErrorKind with Range {
-        /// The number of values is not the number of positions.
+        /// The numbers of values and positions differ.
         Length {
-            /// The number of values.
+            /// Number of values.
             length: usize,
-            /// The number of values needed.
+            /// Number of values needed.
             needed: usize,
         } => "there is room for {length} values, but {needed} are needed";
-        /// No range has been measured for a texture.
+        /// No measured range for a texture.
         NoRange {
-            /// What has been measured in its place.
+            /// Textures that have a measured range.
             measured: &'static str,
         } => "there is no range for this texture, but for {measured}: `measure_range` finds one, and `with_range` sets it";
     }

@@ -7,7 +7,7 @@ use crate::sink::Tone;
 use crate::{Cellular, Dimensions, MAX_NEAREST, Plane, Space, Worley};
 use dapple_raster::{RasterError, RasterViewMut, Window};
 
-/// Output views for one of the nearest feature points; a view that is `None` is not computed.
+/// Output views for one of the nearest feature points. Outputs that are `None` are not computed.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/feature.md"))]
 ///
@@ -28,19 +28,19 @@ use dapple_raster::{RasterError, RasterViewMut, Window};
 pub struct FeatureView<'a, const N: usize> {
     /// Distances, in cells.
     pub distance: Option<RasterViewMut<'a, f32>>,
-    /// The vectors from the feature points to the pixels, in cells.
+    /// Vectors from the feature points to the pixels, in cells.
     pub vector: Option<RasterViewMut<'a, [f32; N]>>,
-    /// The positions of the feature points, in cells.
+    /// Positions of the feature points, in cells.
     pub position: Option<RasterViewMut<'a, [f64; N]>>,
-    /// The ids of the feature points.
+    /// Ids of the feature points.
     pub id: Option<RasterViewMut<'a, u64>>,
-    /// The random numbers of the feature points, in `[0, 1)`: see [`Feature::cell_value`](crate::Feature::cell_value).
-    /// NaN at a pixel without a place.
+    /// Random numbers of the feature points, in `[0, 1)`; see [`Feature::cell_value`](crate::Feature::cell_value). NaN
+    /// at a pixel without a place.
     pub cell_value: Option<RasterViewMut<'a, f32>>,
 }
 
 impl<const N: usize> Default for FeatureView<'_, N> {
-    /// A view without any output.
+    /// Makes a view without outputs.
     fn default() -> Self {
         Self {
             distance: None,
@@ -52,13 +52,13 @@ impl<const N: usize> Default for FeatureView<'_, N> {
     }
 }
 
-/// The rows of a band, for one of the nearest points; empty for outputs that are not computed.
+/// The rows of a band, for one of the nearest points. Outputs that are not computed have no rows.
 #[derive(Debug, Default)]
 pub(crate) struct FeatureRows<'a> {
     pub(crate) distance: Vec<&'a mut [f32]>,
-    /// The components of the vectors, one after the other.
+    /// Vectors with interleaved components.
     pub(crate) vector: Vec<&'a mut [f32]>,
-    /// The components of the positions, one after the other.
+    /// Positions with interleaved components.
     pub(crate) position: Vec<&'a mut [f64]>,
     pub(crate) id: Vec<&'a mut [u64]>,
     pub(crate) cell_value: Vec<&'a mut [f32]>,
@@ -71,7 +71,7 @@ impl FeatureRows<'_> {
     }
 }
 
-/// The coordinate of a feature point in cells along one axis, from that of a pixel and from the vector between them.
+/// Coordinate of a feature point along one axis, in cells, from the coordinate of a pixel and the vector between them.
 pub(crate) fn position((cell, steps): (i64, i32), way: f32) -> f64 {
     cell as f64 + f64::from(steps) * f64::from(STEP) - f64::from(way)
 }
@@ -80,8 +80,8 @@ impl<const N: usize> Worley<N>
 where
     Dimensions: Space<N>,
 {
-    /// Renders the `K` nearest feature points at the pixel centers of a window of a plane, into memory of its size.
-    /// Equals [`sample`](Self::sample) there, bit for bit. `K` is from 1 to 4, and the nearest point comes first.
+    /// Renders the `K` nearest feature points at the pixel centers of a window of a plane, nearest point first. The
+    /// results equal those of [`sample`](Self::sample), bit for bit. `K` is from 1 to 4.
     ///
     /// # Errors
     ///
@@ -110,6 +110,7 @@ where
                 window.check_size(size)?;
             }
         }
+        // Collect the rows of each band from the views.
         let picture = self.feature_picture(plane, window);
         let n_bands = picture.n_bands();
         let mut bands: Vec<Vec<FeatureRows<'_>>> = Vec::new();
@@ -152,8 +153,8 @@ impl<const N: usize> Cellular<N>
 where
     Dimensions: Space<N>,
 {
-    /// Renders the gradients at the pixel centers of a window of a plane, into memory of its size. Equals
-    /// [`gradient`](Self::gradient) there, bit for bit.
+    /// Renders the gradients at the pixel centers of a window of a plane into `out`. The results equal those of
+    /// [`gradient`](Self::gradient), bit for bit.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/gradient.md"))]
     ///
@@ -175,13 +176,13 @@ where
     }
 }
 
-/// Rows of vectors as rows of their components.
+/// Converts rows of vectors to rows of interleaved components.
 pub(crate) fn flattened<T, const N: usize>(rows: Vec<&mut [[T; N]]>) -> Vec<&mut [T]> {
     rows.into_iter().map(|row| row.as_flattened_mut()).collect()
 }
 
 impl Tone {
-    /// The gradient, from the vectors from the nearest points.
+    /// The gradient of the combination, for the given vectors from the nearest points.
     #[inline]
     pub(crate) fn gradient<const N: usize>(
         &self,

@@ -1,12 +1,12 @@
-//! Fractal sums: the same texture at several scales, on top of each other.
+//! Fractal sums: a texture added up at several scales.
 //!
 //! Worley sums `G_n(x) = Σ 2^-i F_n(2^i x)` for `i` from 0 to 5, of `F_n` and of their combinations ("A Cellular
-//! Texture Basis Function", SIGGRAPH 1996, <https://doi.org/10.1145/237170.237267>). His octaves are literally one
-//! field, which shows where they agree: at the origin all have the same center. Here each octave has a seed of its own
-//! by default; [`Octaves::paper`] is the paper's sum.
+//! Texture Basis Function", SIGGRAPH 1996, <https://doi.org/10.1145/237170.237267>). His octaves are scaled copies of
+//! one field, which is visible where they coincide: at the origin all have the same center. Here each octave has its
+//! own seed by default; [`Octaves::paper`] is the sum of the paper.
 //!
-//! With a period, octave `i` repeats after `lacunarity^i` times as many of its own cells, so that the sum repeats with
-//! the period of the first octave and no octave more often.
+//! With a period, octave `i` repeats after `lacunarity^i` times as many of its own cells. So the sum repeats with the
+//! period of the first octave, and no octave repeats more often.
 
 use crate::cellular::{measure_range, render_windows};
 use crate::dispatch::DimensionDispatch as _;
@@ -17,7 +17,7 @@ use crate::{Cellular, Dimensions, Plane, Space, Vector, Worley, WorleyError};
 use dapple_hash::Seed;
 use dapple_raster::{Field, Gradient, RasterError, RasterViewMut, Window};
 
-/// Options of a fractal sum: the number of octaves and how they differ.
+/// Options of a fractal sum: the number of octaves, and their ratios and seeds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -25,26 +25,26 @@ use dapple_raster::{Field, Gradient, RasterError, RasterViewMut, Window};
     serde(default, deny_unknown_fields)
 )]
 pub struct Octaves {
-    /// The number of octaves: from 1 to 32; 6 by default.
+    /// Number of octaves: from 1 to 32; 6 by default.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/octaves-count.md"))]
     pub count: u32,
-    /// The ratio of the frequencies of an octave and the one before: from 1 to 16; 2 by default.
+    /// Ratio of the frequencies of successive octaves: from 1 to 16; 2 by default.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/octaves-lacunarity.md"))]
     pub lacunarity: f64,
-    /// The ratio of the heights of an octave and the one before: from -1 to 1; ½ by default.
+    /// Ratio of the amplitudes of successive octaves: from -1 to 1; ½ by default.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/octaves-gain.md"))]
     #[cfg_attr(feature = "serde", serde(alias = "persistence"))]
     pub gain: f64,
-    /// Whether the octaves are one field; each has its own by default.
+    /// Seeds of the octaves: own seeds by default.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/octave-seeds.md"))]
     pub seeds: OctaveSeeds,
 }
 
-/// Whether the octaves of a fractal sum are one field or have feature points of their own.
+/// Whether the octaves of a fractal sum share a seed.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/octave-seeds.md"))]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -54,15 +54,16 @@ pub struct Octaves {
     serde(rename_all = "snake_case")
 )]
 pub enum OctaveSeeds {
-    /// All octaves are the same field, as in the paper. They all have the same center at the origin.
+    /// All octaves are the same field, as in the paper, and have the same center at the origin.
     Same,
-    /// Every octave has feature points of its own.
+    /// Every octave has its own feature points.
     #[default]
     Own,
 }
 
 impl Default for Octaves {
-    /// Six octaves with feature points of their own, each twice as fine and half as high as the one before.
+    /// Six octaves with their own feature points, each with twice the frequency and half the amplitude of the one
+    /// before.
     fn default() -> Self {
         Self {
             count: 6,
@@ -74,7 +75,8 @@ impl Default for Octaves {
 }
 
 impl Octaves {
-    /// The paper's sum: six octaves of one and the same field, each twice as fine and half as high as the one before.
+    /// The paper's sum: six octaves of the same field, each with twice the frequency and half the amplitude of the one
+    /// before.
     #[must_use]
     pub fn paper() -> Self {
         Self {
@@ -100,15 +102,19 @@ impl Octaves {
 #[derive(Clone, Debug)]
 pub struct CellularFractal<const N: usize> {
     octaves: Vec<Octave<N>>,
-    /// The combination of the first octave and the one of the others; the sum is mapped to the range last.
+    /// Combination of the distances in every octave.
     tone: Tone,
+    /// Mapping of the sum to a range, as a combination with one coefficient.
     range: Tone,
 }
 
 #[derive(Clone, Debug)]
 struct Octave<const N: usize> {
+    /// The basis of the octave, with its own seed and period.
     worley: Worley<N>,
+    /// Frequency relative to the first octave.
     frequency: f64,
+    /// Amplitude relative to the first octave.
     weight: f32,
 }
 
@@ -116,12 +122,12 @@ impl<const N: usize> Cellular<N>
 where
     Dimensions: Space<N>,
 {
-    /// The sum of this texture at several scales.
+    /// The sum of this texture over several octaves.
     ///
     /// # Errors
     ///
-    /// [`Range`](crate::WorleyErrorKind::Range) if one of the octaves' numbers is out of its range, if the basis has a
-    /// period and the lacunarity is not a whole number, or if a period gets longer than 2^32 - 1 cells.
+    /// [`Range`](crate::WorleyErrorKind::Range) if an option is out of its range, if the basis has a period and the
+    /// lacunarity is not an integer, or if the period of an octave is above 2^32 - 1 cells.
     pub fn fractal(&self, octaves: Octaves) -> Result<CellularFractal<N>, WorleyError> {
         let Octaves {
             count,
@@ -190,7 +196,7 @@ impl<const N: usize> CellularFractal<N>
 where
     Dimensions: Space<N>,
 {
-    /// The value at a position. NaN if the position, or that of an octave, has no place, see [`Worley::sample`].
+    /// The value at a position. NaN if the position has no place in one of the octaves; see [`Worley::sample`].
     #[must_use]
     pub fn value(&self, position: impl Into<[f64; N]>) -> f32 {
         let position: [f64; N] = position.into();
@@ -204,7 +210,7 @@ where
         self.value_of(sum)
     }
 
-    /// The value of a sum of octaves. All NaNs have the same bits.
+    /// Maps a sum of octaves to the range. All NaNs have the same bits.
     fn value_of(&self, sum: f32) -> f32 {
         if sum.is_nan() {
             return f32::NAN;
@@ -232,7 +238,7 @@ where
         Vector::<N>::from(sum)
     }
 
-    /// The values at the pixel centers of a window of a plane, into memory of its size.
+    /// Renders the values at the pixel centers of a window of a plane into `out`.
     ///
     /// # Errors
     ///
@@ -246,12 +252,12 @@ where
         self.render_slices(window, vec![(*plane, out)])
     }
 
-    /// Fills several planes, such as the slices of a volume: see [`Cellular::render_slices`].
+    /// Renders several planes, such as the slices of a volume; see [`Cellular::render_slices`].
     ///
     /// # Errors
     ///
-    /// [`SizeMismatch`](dapple_raster::RasterErrorKind::SizeMismatch) if a view has another size than the window; all
-    /// views are unchanged then.
+    /// [`SizeMismatch`](dapple_raster::RasterErrorKind::SizeMismatch) if the size of a view is not that of the window;
+    /// all views are unchanged then.
     pub fn render_slices(
         &self,
         window: &Window,
@@ -263,6 +269,7 @@ where
         for (_, out) in &mut slices {
             out.fill(0.0);
         }
+        // Add the octaves one by one to all slices.
         for octave in &self.octaves {
             let values = Values {
                 tone: self.tone,
@@ -281,6 +288,7 @@ where
             });
             render_stack(stack.collect());
         }
+        // Map the sums to the range.
         let rows = slices.iter_mut().flat_map(|(_, out)| out.rows_mut());
         for value in rows.flatten() {
             *value = self.value_of(*value);
@@ -288,7 +296,7 @@ where
         Ok(())
     }
 
-    /// The range of the values without the lowest and the highest thousandth, measured at `n` random positions.
+    /// Measures the range of the values at `n` random positions, without the lowest and the highest thousandth.
     ///
     /// # Errors
     ///
@@ -297,11 +305,11 @@ where
         measure_range(seed, n, |position: [f64; N]| self.value(position))
     }
 
-    /// This texture with values mapped so that `range` becomes 0 to 1. Values beyond it are not clamped.
+    /// Maps the values so that `range` becomes 0 to 1. Values outside of it are not clamped.
     ///
     /// # Errors
     ///
-    /// [`Range`](crate::WorleyErrorKind::Range) if the range is not finite, or empty.
+    /// [`Range`](crate::WorleyErrorKind::Range) if the range is empty or not finite.
     pub fn with_range(self, range: [f32; 2]) -> Result<Self, WorleyError> {
         Ok(Self {
             range: self.range.with_range(range)?,
@@ -350,7 +358,7 @@ where
         })
     }
 
-    /// The number of cells of the first octave after which the sum repeats; the other octaves repeat by then too.
+    /// Period of the sum, in cells of the first octave. All octaves repeat with it.
     fn period(&self) -> [Option<f64>; N] {
         let first = self.octaves.first();
         first.map_or([None; N], |octave| octave.worley.period())
@@ -372,7 +380,7 @@ impl<const N: usize> Octave<N> {
         Place::new(self.scaled(position))
     }
 
-    /// A position in cells of this octave.
+    /// Converts a position to cells of this octave.
     fn scaled(&self, position: [f64; N]) -> [f64; N] {
         position.map(|part| part * self.frequency)
     }

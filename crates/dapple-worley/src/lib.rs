@@ -21,7 +21,7 @@
 //! let image = cracks.to_raster(&window)?;
 //! assert_eq!(image.row(3)[5], cracks.value(window.position(5, 3)));
 //!
-//! // Right angles, in place of round cells.
+//! // Right angles instead of round cells.
 //! let hull = worley.with_metric(Metric::Manhattan)?.combine(Combination::F1);
 //! # assert!(hull.value([0.25, 0.75]) >= 0.0);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
@@ -46,9 +46,9 @@
 //! Times are from one thread of a server processor (AMD EPYC with AVX-512), with three points per cell unless the table
 //! says one.
 //!
-//! On top of F1 to F4 are [`Combination`]s, [`CellularFractal`] sums, [`Profile`]s for bumps, [`Radial`] cells for
-//! spheres, colors for cells ([`CellValues`], [`Feature::cell_value`]), and [`Worley::smooth_f1`]. A [`FeatureSet`] is
-//! the same basis over points that you have placed.
+//! Built on F1 to F4: [`Combination`]s, [`CellularFractal`] sums, [`Profile`]s for bumps, [`Radial`] cells for spheres,
+//! colors for cells ([`CellValues`], [`Feature::cell_value`]), and [`Worley::smooth_f1`]. A [`FeatureSet`] is the same
+//! basis over points placed by the caller.
 //!
 //! # Features
 //!
@@ -59,20 +59,21 @@
 //!
 //! # Limits
 //!
-//! * Positions are `f64` and in cells, distances are `f32` and in cells. A position is rounded down to
-//!   [`POSITION_STEP`]. It is as sharp at 1e9 as at 0. Past 2^62, and where it is not finite, distances are NaN.
+//! * Positions are `f64`, distances `f32`, both in cells. A position is rounded down to a multiple of
+//! [`POSITION_STEP`];
+//!   it is as precise at 1e9 as at 0. Past 2^62, and for positions that are not finite, distances are NaN.
 //! * Nearest points are exact for every metric: no neighbor is missed, so F1 to F4 are continuous.
-//! * One search gives at most 4 points ([`MAX_NEAREST`]).
+//! * One search finds at most 4 points ([`MAX_NEAREST`]).
 //! * The density is from 1/64 to 64 points per cell, clamped to 1 to 9 points in a cell by default. Minkowski's
 //!   exponent is from 1 to 10.
 //! * Periods are whole numbers of cells, exact, per axis.
-//! * [`Cellular::normalized`] knows the ranges of [named combinations](Combination::NAMED) with the default scatter or
-//!   full jitter. Others are measured by [`Cellular::measure_range`].
-//! * The bits are the same on every platform, for every SIMD level and any number of threads.
+//! * [`Cellular::normalized`] has the ranges of [named combinations](Combination::NAMED) with the default scatter or
+//!   full jitter. [`Cellular::measure_range`] measures others.
+//! * The bits are the same on every platform, at every SIMD level and with any number of threads.
 //!
 //! # Without std
 //!
-//! Not possible today. `floor` and `sqrt` of `f64` are methods of std, and `dapple-raster` has threads, locks and the
+//! Not supported. `floor` and `sqrt` of `f64` are methods of std, and `dapple-raster` uses threads, locks and the
 //! detection of SIMD levels of std.
 //!
 //! # Reference

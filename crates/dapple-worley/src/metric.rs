@@ -1,16 +1,16 @@
 //! Metrics: Euclidean, Manhattan, Chebyshev and Minkowski.
 //!
 //! Worley proposes the Manhattan metric for rigid rectangular regions ("A Cellular Texture Basis Function", SIGGRAPH
-//! 1996, <https://doi.org/10.1145/237170.237267>). All four accumulate one term for each axis, so that a picture
-//! can compute the terms of a column and of a row once. While searching, points are compared by the *key*, which
-//! grows with the distance and is cheaper: the square, for the Euclidean metric.
+//! 1996, <https://doi.org/10.1145/237170.237267>). All four metrics accumulate one term for each axis, so rendering can
+//! compute the terms of a column and of a row once. Searches compare points by the *key*, a monotone stand-in for the
+//! distance that is cheaper to compute: the squared distance, for the Euclidean metric.
 //!
-//! Terms are accumulated from the last axis to the first, in this order everywhere, so that the bits agree.
+//! Terms are accumulated from the last axis to the first, in the same order everywhere, so that the bits agree.
 
 use crate::{WorleyError, WorleyErrorKind};
 use fearless_simd::{f32x16, prelude::*};
 
-/// The metric: how the distance between two positions is measured.
+/// A metric: defines the distance between two positions.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/metric.md"))]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -32,11 +32,11 @@ pub enum Metric {
     Minkowski(f32),
 }
 
-/// The largest exponent: beyond it, the powers of a step and of 16 cells do not both fit into `f32`.
+/// Maximum exponent: above it, the powers of a step and of 16 cells do not both fit into `f32`.
 const LARGEST_EXPONENT: f32 = 10.0;
 
 impl Metric {
-    /// The metrics without an exponent, with the names that recipes and the command use.
+    /// The metrics without a parameter, with their names in recipes and the command.
     pub const NAMED: [(&'static str, Self); 3] = [
         ("euclidean", Self::Euclidean),
         ("manhattan", Self::Manhattan),
@@ -63,9 +63,10 @@ impl Metric {
         self.distance(self.key(vector))
     }
 
-    /// The gradient of the length at a vector; zero at the zero vector.
+    /// The gradient of the length with respect to the vector; zero at the zero vector.
     ///
-    /// Its parts lie in `[-1, 1]`. For [`Metric::Chebyshev`] it points along the longest axis, the first of several.
+    /// Its components are in `[-1, 1]`. For [`Metric::Chebyshev`] it is along the longest axis, the first if several
+    /// are.
     #[inline]
     #[must_use]
     pub fn gradient<const N: usize>(self, vector: [f32; N]) -> [f32; N] {
@@ -101,34 +102,34 @@ fn sign(part: f32) -> f32 {
     }
 }
 
-// A metric is the sum, or the largest, of one *term* for each axis. That is the *key* of a vector, which is compared in
-// place of the distance: the squared distance, for the Euclidean metric. Keys are never below zero, and they do not
-// shrink when a difference grows; `rounding_slack` says how far rounding may break that.
+// A metric accumulates one *term* for each axis: the sum of the terms, or the largest. The result is the *key* of a
+// vector, which is compared instead of the distance: the squared distance, for the Euclidean metric. Keys are at least
+// zero, and do not decrease when a difference grows; `rounding_slack` bounds the exceptions that rounding causes.
 impl Metric {
-    /// The factor that turns a key into a bound that holds despite rounding.
+    /// Factor that turns a key into a bound that is valid despite rounding.
     #[inline]
     pub(crate) fn rounding_slack(self) -> f32 {
         match self {
-            // `powf` is good to an ulp or two, so larger differences can have smaller powers by as much; this is 80
-            // ulps.
+            // `powf` is accurate to an ulp or two, so a larger difference can have a power that is smaller by as much.
+            // The factor allows 80 ulps.
             Self::Minkowski(_) => 1.000_01,
             Self::Euclidean | Self::Manhattan | Self::Chebyshev => 1.0,
         }
     }
 
-    /// Whether a key is the sum of terms that are rounded once at most.
+    /// Whether a key is a sum of terms that are each rounded at most once.
     #[inline(always)]
     pub(crate) fn is_exact_sum(self) -> bool {
         matches!(self, Self::Euclidean | Self::Manhattan)
     }
 
-    /// Whether terms are so slow that registers gain nothing.
+    /// Whether terms are so slow to compute that SIMD gains nothing.
     #[inline]
     pub(crate) fn is_slow(self) -> bool {
         matches!(self, Self::Minkowski(_))
     }
 
-    /// The term of a difference along one axis, which is also the key of a vector along that axis.
+    /// The term of a difference along one axis; also the key of a vector along that axis.
     #[inline(always)]
     pub(crate) fn term(self, difference: f32) -> f32 {
         match self {
@@ -158,7 +159,7 @@ impl Metric {
         }
     }
 
-    /// The distance for a key.
+    /// Converts a key to a distance.
     #[inline(always)]
     pub(crate) fn distance(self, key: f32) -> f32 {
         match self {
@@ -168,28 +169,28 @@ impl Metric {
         }
     }
 
-    /// A bound for exact keys, tightened so that it holds for rounded ones.
+    /// Tightens a bound for exact keys so that it is valid for rounded keys.
     #[inline]
     pub(crate) fn tightened(self, bound: f32) -> f32 {
         bound / self.rounding_slack()
     }
 }
 
-/// The inner loops that render with a metric where registers are wide.
+/// The inner loops that a metric uses in wide registers.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Kernel {
-    /// The loops with [`Squares`].
+    /// Loops with [`Squares`].
     Squares,
-    /// The loops with [`Additive`].
+    /// Loops with [`Additive`].
     Sum,
-    /// The loops with [`Longest`].
+    /// Loops with [`Longest`].
     Longest,
-    /// No loops of its own: [`General`] is as fast.
+    /// No loops for wide registers, since [`General`] is as fast.
     General,
 }
 
 impl Metric {
-    /// The inner loops that render with this metric where registers are wide.
+    /// The inner loops that this metric uses in wide registers.
     #[inline]
     pub(crate) fn kernel(self) -> Kernel {
         match self {
@@ -202,12 +203,12 @@ impl Metric {
     }
 }
 
-/// A metric on registers, for the inner loops; by default any but Minkowski's.
+/// A metric on registers, for the inner loops. The default methods support all metrics but Minkowski's.
 pub(crate) trait Measure: Copy {
-    /// The metric, which may be known at compile time.
+    /// The metric, a compile-time constant for some types.
     fn metric(self) -> Metric;
 
-    /// The terms of the differences in several registers.
+    /// Computes the terms of the differences in several registers.
     #[inline(always)]
     fn terms<S: Simd, V: SimdFloat<S, Element = f32>, const C: usize>(
         self,
@@ -219,7 +220,7 @@ pub(crate) trait Measure: Copy {
                     differences[i] *= differences[i];
                 }
             }
-            // The powers are taken by `General`.
+            // Powers are computed by `General`.
             Metric::Manhattan | Metric::Chebyshev | Metric::Minkowski(_) => {
                 for i in 0..C {
                     differences[i] = differences[i].abs();
@@ -229,7 +230,7 @@ pub(crate) trait Measure: Copy {
         differences
     }
 
-    /// Accumulates one more term into the keys of a register.
+    /// Accumulates one more term into the keys.
     #[inline(always)]
     fn accumulate<S: Simd, V: SimdFloat<S, Element = f32>>(self, terms: V, keys: V) -> V {
         match self.metric() {
@@ -238,17 +239,17 @@ pub(crate) trait Measure: Copy {
         }
     }
 
-    /// The distances for these keys.
+    /// Converts keys to distances.
     #[inline(always)]
     fn distances<S: Simd>(self, keys: f32x16<S>) -> f32x16<S> {
         match self.metric() {
             Metric::Euclidean => keys.sqrt(),
-            // The roots are taken by `General`.
+            // Roots are computed by `General`.
             Metric::Manhattan | Metric::Chebyshev | Metric::Minkowski(_) => keys,
         }
     }
 
-    /// The keys of sixteen vectors.
+    /// Computes the keys of sixteen vectors.
     #[inline(always)]
     fn keys<S: Simd, const N: usize>(self, differences: [f32x16<S>; N]) -> f32x16<S> {
         let terms = self.terms(differences);
@@ -260,7 +261,7 @@ pub(crate) trait Measure: Copy {
     }
 }
 
-/// A metric other than Minkowski's. (A function call for its terms would leave a loop no registers.)
+/// A metric other than Minkowski's. (A function call for terms would spill all registers of a loop.)
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Exact(pub(crate) Metric);
 
@@ -271,7 +272,7 @@ impl Measure for Exact {
     }
 }
 
-/// The Euclidean or the Manhattan metric, whose terms are added up.
+/// The Euclidean or the Manhattan metric, whose terms are added.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Additive(pub(crate) Metric);
 
@@ -287,7 +288,7 @@ impl Measure for Additive {
     }
 }
 
-/// The Euclidean metric known at compile time, for loops so short that a test for the metric takes time.
+/// The Euclidean metric as a compile-time constant, for loops so short that testing the metric takes time.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Squares;
 
@@ -309,7 +310,7 @@ impl Measure for Longest {
     }
 }
 
-/// Any metric: Minkowski's goes through memory, lane by lane.
+/// Any metric. Minkowski's is computed lane by lane, through memory.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct General(pub(crate) Metric);
 
@@ -342,16 +343,15 @@ impl Measure for General {
     }
 }
 
-/// The factor by which differences are scaled before their power, so that a step and 16 cells are about as far from the
-/// ends of the range of `f32`.
+/// Factor on differences before their power. It centers the powers of a step and of 16 cells in the range of `f32`.
 const MINKOWSKI_SCALE: f32 = 256.0;
 
-/// The term of the Minkowski metric.
+/// The term of the Minkowski metric for a difference.
 fn power(difference: f32, p: f32) -> f32 {
     libm::powf(difference.abs() * MINKOWSKI_SCALE, p)
 }
 
-/// The distance of the Minkowski metric.
+/// The distance of the Minkowski metric for a key.
 fn root(key: f32, p: f32) -> f32 {
     libm::powf(key, 1.0 / p) * (1.0 / MINKOWSKI_SCALE)
 }
@@ -370,7 +370,7 @@ fn root_each(keys: &mut [f32], p: f32) {
     }
 }
 
-/// Changes the lanes of a register one by one, through memory.
+/// Applies a function to the lanes of a register one by one, through memory.
 #[inline(always)]
 fn each_lane<S: Simd, V: SimdFloat<S, Element = f32>>(
     lanes: V,

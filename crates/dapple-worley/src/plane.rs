@@ -4,7 +4,7 @@ use crate::fixed::MOST_AXES;
 use crate::{Dimensions, Space, Vector};
 use dapple_raster::Window;
 
-/// A plane through space, in which pictures lie. Its position `[x, y]` is `origin + x·u + y·v`.
+/// A plane through space, on which images are rendered. Its position `[x, y]` is `origin + x·u + y·v`.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/plane.md"))]
 ///
@@ -21,11 +21,12 @@ pub struct Plane<const N: usize>
 where
     Dimensions: Space<N>,
 {
-    /// The position of `[0, 0]`.
+    /// Position of `[0, 0]` in space.
     pub origin: Vector<N>,
-    /// The vector from `[0, 0]` to `[1, 0]`. Rendering is fastest if it goes along the first axis, and `v` does not.
+    /// Vector from `[0, 0]` to `[1, 0]`. Rendering is fastest if `u` is along the first axis and `v` is orthogonal to
+    /// it.
     pub u: Vector<N>,
-    /// The vector from `[0, 0]` to `[0, 1]`.
+    /// Vector from `[0, 0]` to `[0, 1]`.
     pub v: Vector<N>,
 }
 
@@ -48,7 +49,7 @@ where
         }
     }
 
-    /// The plane in which a window of space lies.
+    /// The plane that contains a window of space.
     pub(crate) fn of_window(window: &Window<N>) -> Self {
         let mut origin = window.position(0, 0);
         origin[..2].fill(0.0);
@@ -65,7 +66,7 @@ where
         }))
     }
 
-    /// This plane in the form that rendering uses, for any number of axes.
+    /// Converts the plane to the form that rendering uses, for any number of axes.
     pub(crate) fn section(&self) -> Section {
         let flat = |part: Vector<N>| {
             let mut parts = [0.0; MOST_AXES];
@@ -81,7 +82,7 @@ where
     }
 }
 
-/// A [`Plane`] with any number of axes; the components of missing axes are zero.
+/// A [`Plane`] with any number of axes. Components along missing axes are zero.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Section {
     pub(crate) n_axes: usize,
@@ -91,7 +92,7 @@ pub(crate) struct Section {
 }
 
 impl Section {
-    /// One coordinate of a position of the plane.
+    /// One coordinate in space of a position of the plane.
     #[inline]
     pub(crate) fn coordinate(&self, axis: usize, [x, y]: [f64; 2]) -> f64 {
         self.origin[axis] + (self.u[axis] * x + self.v[axis] * y)
@@ -103,7 +104,7 @@ impl Section {
         parts(self) == parts(other)
     }
 
-    /// The only axis along which rows differ, if there is exactly one, and it is not the first.
+    /// The axis along which rows differ, if there is exactly one and it is not the first.
     pub(crate) fn row_axis(&self) -> Option<usize> {
         let mut axes = (0..self.n_axes).filter(|&axis| self.v[axis] != 0.0);
         axes.next()
@@ -120,7 +121,7 @@ impl<const N: usize> Default for Plane<N>
 where
     Dimensions: Space<N>,
 {
-    /// The plane along the first two axes, where the others are zero.
+    /// The plane along the first two axes, with zero along the others.
     fn default() -> Self {
         Self::slice(Vector::<N>::from([0.0; N]))
     }

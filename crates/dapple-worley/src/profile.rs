@@ -1,10 +1,10 @@
 //! Cross-sections of bumps: raised spots and inset channels.
 //!
 //! Worley makes "raised spots or inset channels" of F1 and of F2 − F1 ("A Cellular Texture Basis Function", SIGGRAPH
-//! 1996, <https://doi.org/10.1145/237170.237267>), as is usual with noise. A profile turns such a value into a height;
-//! its slope times the gradient of the value is the gradient of the height, which is what bends a normal (James F.
-//! Blinn, "Simulation of Wrinkled Surfaces", SIGGRAPH 1978, <https://doi.org/10.1145/965139.507101>).
-//! Both profiles are smooth, so that their normals have no creases of their own.
+//! 1996, <https://doi.org/10.1145/237170.237267>), as is usual with noise. A profile converts such a value to a height.
+//! Its slope times the gradient of the value is the gradient of the height, which perturbs a normal (James F. Blinn,
+//! "Simulation of Wrinkled Surfaces", SIGGRAPH 1978, <https://doi.org/10.1145/965139.507101>). Both profiles are
+//! smooth, so they add no creases to the normals.
 
 use crate::{WorleyError, WorleyErrorKind};
 
@@ -32,16 +32,16 @@ use crate::{WorleyError, WorleyErrorKind};
 )]
 #[non_exhaustive]
 pub enum Profile {
-    /// A dome with height 1 where the value is 0, and height 0 from `radius` on: `(1 − (value / radius)²)²`. With F1, a
-    /// raised spot about every feature point.
+    /// A dome: height 1 at the value 0, and height 0 from the value `radius` on: `(1 − (value / radius)²)²`. With F1, a
+    /// raised spot around every feature point.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/profile-spots.md"))]
     Spots {
         /// Half of the width of a spot, in the units of the value: above 0.
         radius: f32,
     },
-    /// A channel with height 0 where the value is 0, and height 1 from `width` on: `3 t² − 2 t³` with `t = value /
-    /// width`. With F2 − F1, channels between raised stones; with F1, round pits.
+    /// A channel: height 0 at the value 0, and height 1 from the value `width` on: `3 t² − 2 t³` with
+    /// `t = value / width`. With F2 − F1, channels between raised stones; with F1, round pits.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/profile-channels.md"))]
     Channels {
@@ -71,7 +71,7 @@ impl Profile {
         Ok(Self::Channels { width })
     }
 
-    /// Checks the numbers of a profile that was read, or made without a constructor.
+    /// Checks the parameters of a profile that was deserialized or made without a constructor.
     ///
     /// # Errors
     ///
@@ -83,7 +83,7 @@ impl Profile {
         }
     }
 
-    /// The height for a value of the texture: from 0 to 1.
+    /// The height for a value of the texture, from 0 to 1.
     #[must_use]
     pub fn height(self, value: f32) -> f32 {
         match self {
@@ -98,7 +98,7 @@ impl Profile {
         }
     }
 
-    /// The derivative of the height by the value.
+    /// The derivative of the height with respect to the value.
     #[must_use]
     pub fn slope(self, value: f32) -> f32 {
         match self {

@@ -2,34 +2,34 @@
 //!
 //! Worley mentions that "a radial coordinate version can cover spheres, creating a surface similar to the Death Star"
 //! ("A Cellular Texture Basis Function", SIGGRAPH 1996, <https://doi.org/10.1145/237170.237267>), and gives no formula.
-//! Here a position `[x, y, z]` goes to cells along three axes,
+//! Here a position `[x, y, z]` is mapped to cells along three axes:
 //!
-//! * `n · φ / 2π`, with the azimuth `φ = atan2(y, x)` and `n` whole cells around, after which the cells repeat exactly;
-//! * `m · θ / π`, with the polar angle `θ` from the north pole on +z, and `m` cells from pole to pole;
-//! * `k · r`, with the radius `r`, and `k` cells per unit;
+//! * `n · φ / 2π`, with the azimuth `φ = atan2(y, x)` and `n` whole cells around the axis, the exact period;
+//! * `m · θ / π`, with the polar angle `θ` from the north pole at +z, and `m` cells from pole to pole;
+//! * `k · r`, with the radius `r`, and `k` cells per unit.
 //!
-//! and the distance is the metric of the basis between such triples. On the equator of the sphere of radius `r`, a cell
-//! is `2πr/n` by `πr/m` by `1/k` large; toward the poles cells get narrower, and at a pole all azimuths meet, so that
-//! the texture is not continuous there (as a map of the Earth is not). On the axis the azimuth is taken as 0.
+//! Distances are those of the basis's metric between such triples. On the equator of the sphere of radius `r`, the size
+//! of a cell is `2πr/n` by `πr/m` by `1/k`. Toward the poles cells get narrower. At a pole all azimuths meet, so the
+//! texture is not continuous there, like a map of the Earth. On the axis the azimuth is defined as 0.
 //!
-//! The gradient is transformed back to `[x, y, z]` by the derivatives of the three coordinates. That of the azimuth
-//! grows without bound toward the axis; on the axis itself, and at the center, the undefined parts are left out.
+//! The gradient is transformed back to `[x, y, z]` by the derivatives of the three coordinates. The derivative of the
+//! azimuth is unbounded toward the axis. On the axis and at the center, undefined terms are left out.
 
 use crate::{Cellular, Worley3, WorleyError};
 use core::f64::consts::{PI, TAU};
 use glam::DVec3;
 
-/// The number of cells of a radial texture along each axis.
+/// Numbers of cells of a radial texture along each axis.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/radial-cells.md"))]
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct RadialCells {
-    /// Whole cells around the axis: at least 1.
+    /// Number of whole cells around the axis: at least 1.
     pub around: u32,
-    /// Cells from pole to pole: above 0. Half as many as around make square cells on the equator.
+    /// Number of cells from pole to pole: above 0. Half of `around` makes square cells on the equator.
     pub polar: f64,
-    /// Cells per unit of radius: 0, for no change along the radius, or more.
+    /// Number of cells per unit of radius: at least 0. With 0, the texture is constant along the radius.
     pub radial: f64,
 }
 
@@ -54,7 +54,7 @@ pub struct Radial {
 }
 
 impl Radial {
-    /// The texture over radial cells. It replaces the period of the basis.
+    /// Maps a texture to radial cells. The period of its basis is replaced.
     ///
     /// # Errors
     ///
@@ -85,13 +85,13 @@ impl Radial {
         })
     }
 
-    /// The basis, whose positions are [`cell_position`](Self::cell_position)s.
+    /// The basis of the texture; its positions are [`cell_position`](Self::cell_position)s.
     #[must_use]
     pub fn worley(&self) -> &Worley3 {
         self.texture.worley()
     }
 
-    /// The position in cells along azimuth, polar angle and radius.
+    /// Converts a position to cells along azimuth, polar angle and radius.
     #[must_use]
     pub fn cell_position(&self, position: impl Into<DVec3>) -> DVec3 {
         let at = position.into();
@@ -109,13 +109,13 @@ impl Radial {
         )
     }
 
-    /// The value at a position. NaN if it is not finite.
+    /// The value at a position. NaN if the position is not finite.
     #[must_use]
     pub fn value(&self, position: impl Into<DVec3>) -> f32 {
         self.texture.value(self.cell_position(position))
     }
 
-    /// The gradient of the value in `[x, y, z]`, per unit.
+    /// The gradient of the value with respect to `[x, y, z]`.
     #[must_use]
     pub fn gradient(&self, position: impl Into<DVec3>) -> DVec3 {
         let at = position.into();
@@ -127,6 +127,7 @@ impl Radial {
         let of_cells = self.texture.gradient(self.cell_position(at));
         let (axial_sq, radius_sq) = (at.x * at.x + at.y * at.y, at.length_squared());
         let mut gradient = DVec3::ZERO;
+        // Add the derivatives of the azimuth and of the polar angle, which are defined off the axis.
         if axial_sq > 0.0 {
             let azimuth = DVec3::new(-at.y, at.x, 0.0) / axial_sq;
             gradient += azimuth * (of_cells.x * f64::from(around) / TAU);
@@ -134,6 +135,7 @@ impl Radial {
             let angle = DVec3::new(at.x * at.z / axial, at.y * at.z / axial, -axial) / radius_sq;
             gradient += angle * (of_cells.y * polar / PI);
         }
+        // Add the derivative of the radius.
         if radius_sq > 0.0 {
             gradient += at / libm::sqrt(radius_sq) * (of_cells.z * radial);
         }

@@ -1,12 +1,13 @@
 //! The ranges of the named combinations.
 //!
-//! As Worley did ("A Cellular Texture Basis Function", SIGGRAPH 1996, <https://doi.org/10.1145/237170.237267>), they
-//! were measured once, for each scatter, each metric and each number of axes: but for one value in a thousand at either
-//! end. `cargo xtask gallery --ranges` measures them again and prints the table.
+//! As in Worley's paper ("A Cellular Texture Basis Function", SIGGRAPH 1996,
+//! <https://doi.org/10.1145/237170.237267>), they were measured once: for each scatter, each metric and each number of
+//! axes. They leave out one value in a thousand at either end. `cargo xtask gallery --ranges` measures them again and
+//! prints the table.
 
 use crate::{Combination, Metric, Scatter};
 
-/// The scatters of the table.
+/// The scatters in the table.
 pub(crate) const SCATTERS: [Scatter; 2] = [
     Scatter::Poisson {
         density: Scatter::DENSITY,
@@ -14,7 +15,8 @@ pub(crate) const SCATTERS: [Scatter; 2] = [
     Scatter::Jittered { jitter: 1.0 },
 ];
 
-/// The low and the high end for each of [`SCATTERS`], for each of [`Metric::NAMED`], for 2, 3 and 4 axes, for each of
+/// Low and high end of the range, indexed by [`SCATTERS`], by [`Metric::NAMED`], by the number of axes (2, 3, 4), and
+/// by
 /// [`Combination::NAMED`].
 #[rustfmt::skip]
 const RANGES: [[[[[f32; 2]; Combination::NAMED.len()]; 3]; Metric::NAMED.len()]; SCATTERS.len()] = [
@@ -54,7 +56,7 @@ const RANGES: [[[[[f32; 2]; Combination::NAMED.len()]; 3]; Metric::NAMED.len()];
     ],
 ];
 
-/// The range of a combination, or what has been measured, where that is something else.
+/// The range of a combination; otherwise, a description of the textures that have a measured range.
 pub(crate) fn range(
     n_axes: usize,
     metric: Metric,

@@ -4,7 +4,7 @@ use crate::{WorleyError, WorleyErrorKind};
 use core::ops::RangeInclusive;
 use dapple_hash::PoissonCounts;
 
-/// The number of feature points in a cell, and their distribution in it.
+/// The distribution of the number of feature points in a cell, and of their positions in it.
 ///
 /// # Examples
 ///
@@ -23,39 +23,39 @@ use dapple_hash::PoissonCounts;
 )]
 #[non_exhaustive]
 pub enum Scatter {
-    /// Worley's scatter: a Poisson-distributed number of points, each at a uniform position. The number is clamped to 1
-    /// to 9, as in the paper, which moves its mean; see [`Scatter::mean`].
+    /// Worley's scatter: a Poisson-distributed number of points with uniform positions. The number is clamped to 1 to
+    /// 9, as in the paper. Clamping changes the mean; see [`Scatter::mean`].
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/scatter-poisson.md"))]
     Poisson {
-        /// Feature points per cell on average, before clamping: from 1/64 to 64.
+        /// Mean number of feature points per cell before clamping: from 1/64 to 64.
         density: f64,
     },
-    /// Poisson-distributed points without a least or a largest number: a cell may be empty, and the points have no
-    /// trace of the grid.
+    /// A Poisson-distributed number of points without clamping. A cell may be empty, and the points show no trace of
+    /// the grid.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/scatter-unclamped.md"))]
     Unclamped {
-        /// Feature points per cell on average: from 1/64 to 64.
+        /// Mean number of feature points per cell: from 1/64 to 64.
         density: f64,
     },
     /// One point in each cell, as in most other libraries. The grid is visible.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/scatter-jittered.md"))]
     Jittered {
-        /// The distance of the point from the middle: from 0, a regular grid, to 1, anywhere in its cell. It is rounded
-        /// to a multiple of 1/1024.
+        /// Maximum offset of the point from the center of its cell: from 0, a regular grid, to 1, anywhere in its cell.
+        /// It is rounded to a multiple of 1/1024.
         jitter: f64,
     },
 }
 
-/// The clamped counts of the paper.
+/// Range to which the paper clamps the number of points.
 const CLAMPED: RangeInclusive<u32> = 1..=9;
 
-/// The least and the largest density.
+/// Smallest and largest density.
 pub(crate) const DENSITIES: RangeInclusive<f64> = 1.0 / 64.0..=64.0;
 
-/// The number of steps from 0 to 1 to which a jitter is rounded.
+/// Number of steps from 0 to 1 to which a jitter is rounded.
 pub(crate) const JITTER_PARTS: u32 = 1024;
 
 impl Default for Scatter {
@@ -68,12 +68,12 @@ impl Default for Scatter {
 }
 
 impl Scatter {
-    /// The default density. Worley found his program fastest at about 3, and so is this one: for the same number of
-    /// feature points in a picture of F2 − F1, in 2-D and 3-D, 1 takes 1.4 to 2 times as long, 2 up to 1.3 times, and 4
-    /// to 8 between 0.9 and 1.4 times.
+    /// Default density, 3 points per cell. Worley found his program fastest at about 3, and so is this one. For the
+    /// same number of feature points in an image of F2 − F1, in 2-D and 3-D, a density of 1 takes 1.4 to 2 times as
+    /// long, 2 takes up to 1.3 times, and 4 to 8 take 0.9 to 1.4 times as long.
     pub const DENSITY: f64 = 3.0;
 
-    /// The mean number of feature points of a cell: the density after clamping.
+    /// Mean number of feature points of a cell, after clamping.
     ///
     /// # Errors
     ///
@@ -82,13 +82,13 @@ impl Scatter {
         Ok(self.counts()?.mean())
     }
 
-    /// The table of counts of the default scatter.
+    /// The distribution of counts of the default scatter.
     pub(crate) fn default_counts() -> PoissonCounts {
         let counts = PoissonCounts::new(Self::DENSITY, CLAMPED);
         counts.unwrap_or_else(|_| unreachable!("the default density is in its range"))
     }
 
-    /// The table of counts of this scatter.
+    /// The distribution of counts of this scatter.
     pub(crate) fn counts(self) -> Result<PoissonCounts, WorleyError> {
         let (density, range) = match self {
             Self::Poisson { density } => (density, CLAMPED),
@@ -116,7 +116,7 @@ impl Scatter {
         PoissonCounts::new(density, range).map_err(|_| refused())
     }
 
-    /// The jitter in parts of [`JITTER_PARTS`].
+    /// The jitter, in units of 1/[`JITTER_PARTS`].
     pub(crate) fn jitter(self) -> u32 {
         match self {
             Self::Jittered { jitter } => (jitter * f64::from(JITTER_PARTS)).round() as u32,

@@ -12,8 +12,8 @@ impl<const N: usize> Worley<N>
 where
     Dimensions: Space<N>,
 {
-    /// The `K` nearest feature points of each of many positions. Equals [`sample`](Self::sample) for each, bit for bit,
-    /// and is several times as fast. Positions may lie anywhere and come in any order.
+    /// Finds the `K` nearest feature points of each of many positions, in any order. The results equal those of
+    /// [`sample`](Self::sample), bit for bit, and take a fraction of the time.
     ///
     /// # Errors
     ///
@@ -43,7 +43,7 @@ where
             );
         };
         WorleyError::check_length(features.len(), positions.len())?;
-        // Three are hardly faster than four, but take as long to compile.
+        // A loop for three points is hardly faster than the one for four, but takes as long to compile.
         let depth = if K == 3 { MAX_NEAREST } else { K };
         self.each_group(depth, positions, |range, holds, points| {
             let positions = &positions[range.clone()];
@@ -51,6 +51,7 @@ where
             if holds != 0 {
                 put(points, features);
             }
+            // Search the remaining positions on their own.
             let mut again = u64::MAX >> (64 - positions.len()) & !holds;
             while again != 0 {
                 let place = again.trailing_zeros() as usize;
@@ -61,7 +62,7 @@ where
         Ok(())
     }
 
-    /// The values of a combination at many positions.
+    /// Computes the values of a combination at many positions.
     pub(crate) fn tones(
         &self,
         tone: &Tone,
@@ -85,7 +86,7 @@ where
         });
     }
 
-    /// Calls `put` with the index of each position, and the distance and the id of the nearest point.
+    /// Calls `put` with the index of each position, and the distance and the id of its nearest point.
     pub(crate) fn nearest_of_many(
         &self,
         positions: &[impl Copy + Into<[f64; N]>],
@@ -104,8 +105,8 @@ where
         });
     }
 
-    /// Calls `found` with each group of positions, a bit for each position whose nearest points are certain, and these
-    /// points: 1, 2 or 4 of them.
+    /// Calls `found` for each group of positions, with the range of their indices, a bit for each position whose
+    /// nearest points are certain, and these points: 1, 2 or 4 for each position.
     fn each_group(
         &self,
         depth: usize,
@@ -128,7 +129,7 @@ where
     }
 }
 
-/// Writes the features of the nearest points, place by place.
+/// Writes the features of the nearest points, position by position.
 fn put<const N: usize, const K: usize>(
     points: &[Points<N>],
     features: &mut [[Feature<Vector<N>>; K]],

@@ -1,18 +1,18 @@
 //! Feature points placed by the caller.
 //!
 //! Worley suggests that "object geometry might be used to disperse pre-computed feature spots" ("A Cellular Texture
-//! Basis Function", SIGGRAPH 1996, <https://doi.org/10.1145/237170.237267>), as Turk does. Here F1 to F4 are found over
-//! any list of points, through a grid of bins with about two points each.
+//! Basis Function", SIGGRAPH 1996, <https://doi.org/10.1145/237170.237267>), as Turk does. Here F1 to F4 are searched
+//! among any list of points, through a grid of bins with about two points each.
 //!
-//! Differences are taken in `f64` and rounded once to `f32`, so that the unit of positions is the caller's own.
+//! Differences are computed in `f64` and rounded once to `f32`, so positions may have any unit.
 
 use crate::search::{Hit, PointId, Ranking, by_rings};
 use crate::{Dimensions, Feature, MAX_NEAREST, Metric, Space, Vector, WorleyError};
 
-/// The mean number of points of a bin.
+/// Mean number of points of a bin.
 const POINTS_PER_BIN: f64 = 2.0;
 
-/// Feature points that the caller has placed.
+/// Feature points placed by the caller.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/feature-set.md"))]
 ///
@@ -28,20 +28,21 @@ const POINTS_PER_BIN: f64 = 2.0;
 /// ```
 #[derive(Clone, Debug)]
 pub struct FeatureSet<const N: usize> {
-    /// The points, bin by bin, and within a bin by index.
+    /// Points with their indices, sorted by bin and then by index.
     points: Vec<([f64; N], u32)>,
-    /// The index of the first point of each bin, and at the end the number of points; the first axis is fastest.
+    /// Index of the first point of each bin, the first axis fastest; the last element is the number of points.
     starts: Vec<u32>,
     bins: Bins<N>,
     metric: Metric,
 }
 
-/// A grid of bins over the points, or over a period.
+/// A grid of bins that covers the points or, along an axis that wraps, the period.
 #[derive(Clone, Copy, Debug)]
 struct Bins<const N: usize> {
     origin: [f64; N],
-    /// The size of a bin.
+    /// Size of a bin.
     size: [f64; N],
+    /// Number of bins along each axis.
     count: [u32; N],
     wraps: [bool; N],
 }
@@ -50,12 +51,12 @@ impl<const N: usize> FeatureSet<N>
 where
     Dimensions: Space<N>,
 {
-    /// The basis over `points`, which repeats after `period` along each axis that has one. The id of a point is its
-    /// index.
+    /// Creates a basis over `points`, which repeats after `period` along each axis that has one. The id of a point is
+    /// its index.
     ///
     /// # Errors
     ///
-    /// [`Range`](crate::WorleyErrorKind::Range) if a coordinate or a period is not finite, a period is not above 0, or
+    /// [`Range`](crate::WorleyErrorKind::Range) if a coordinate or a period is not finite, a period is not positive, or
     /// there are 2^32 points or more.
     pub fn new(points: &[Vector<N>], period: [Option<f64>; N]) -> Result<Self, WorleyError> {
         let check = WorleyError::check;
@@ -83,6 +84,7 @@ where
                 "finite and above 0",
             )?;
         }
+        // Wrap the points, and sort them by bin.
         for place in &mut places {
             for (coordinate, period) in place.iter_mut().zip(period) {
                 if let Some(period) = period {
@@ -104,6 +106,7 @@ where
             .iter()
             .map(|&count| count as usize)
             .product::<usize>();
+        // Accumulate the counts of points to the first index of each bin.
         let mut starts = vec![0; n_bins + 1];
         for &(bin, _) in &order {
             starts[bin + 1] += 1;
@@ -137,8 +140,8 @@ where
 
     /// The `K` nearest feature points of a position, nearest first; `K` is from 1 to 4.
     ///
-    /// Points at the same distance are in the order of their indices. Where there are fewer points, the rest are
-    /// infinitely far away, with the id `u64::MAX`. A position that is not finite gives NaN and the same id.
+    /// Points at equal distances are ordered by index. If there are fewer than `K` points, the rest are infinitely far
+    /// away, with the id `u64::MAX`. A position that is not finite gives NaN and the same id.
     #[must_use]
     pub fn sample<const K: usize>(&self, position: impl Into<[f64; N]>) -> [Feature<Vector<N>>; K] {
         const {
@@ -166,8 +169,8 @@ where
         })
     }
 
-    /// Finds the `n` nearest points. Bins are visited in growing boxes around the position's own, until no bin outside
-    /// can hold a nearer point.
+    /// Finds the `n` nearest points. Bins are visited in rings around the bin of the position, until no bin outside can
+    /// contain a nearer point.
     fn nearest(&self, n: usize, mut position: [f64; N]) -> Ranking<N> {
         let bins = &self.bins;
         for axis in 0..N {
@@ -181,6 +184,7 @@ where
                 return f32::INFINITY;
             }
             let [first, last] = bins.reach(center, ring);
+            // Visit the bins of the ring, the first axis fastest.
             let mut bin = first;
             loop {
                 if (0..N).any(|axis| (bin[axis] - center[axis]).abs() == ring) {
@@ -194,13 +198,13 @@ where
             }
             match bins.border(position, [first, last]) {
                 f32::INFINITY => f32::INFINITY,
-                // The key of a large finite distance may overflow.
+                // The key of a large finite distance may overflow to infinity.
                 border => self.metric.term(border).min(f32::MAX),
             }
         })
     }
 
-    /// Inserts the points of a bin into a ranking.
+    /// Adds the points of a bin to a ranking.
     fn visit(&self, position: [f64; N], bin: [i64; N], ranking: &mut Ranking<N>) {
         let bins = &self.bins;
         let turns: [i64; N] =
@@ -242,7 +246,7 @@ impl<const N: usize> Bins<N> {
                 None => (0.0, 0.0),
             };
         }
-        // As many bins along the longest axis as cubes would have, and in proportion along the others.
+        // Choose cubic bins by the wanted number, with at least one bin along each axis.
         let wanted = (points.len() as f64 / POINTS_PER_BIN).max(1.0);
         let longest = extent.iter().copied().fold(0.0, f64::max);
         let mut side = longest;
@@ -272,12 +276,12 @@ impl<const N: usize> Bins<N> {
         }
     }
 
-    /// The extent of the bins along an axis: the period, if it wraps.
+    /// Extent of the bins along an axis; equals the period if the axis wraps.
     fn period(&self, axis: usize) -> f64 {
         self.size[axis] * f64::from(self.count[axis])
     }
 
-    /// The bin of a coordinate, or the nearest one.
+    /// The bin that contains a coordinate, or the nearest bin.
     fn bin(&self, axis: usize, coordinate: f64) -> u32 {
         let bin = (coordinate - self.origin[axis]) / self.size[axis];
         // Coordinates below the first bin, and NaN from an extent of zero, go to the first.
@@ -290,7 +294,7 @@ impl<const N: usize> Bins<N> {
         })
     }
 
-    /// The first and the last bins within `ring` bins of one: past the ends only where the axis wraps.
+    /// The first and the last bin within `ring` bins of `center`. They exceed the grid only along axes that wrap.
     fn reach(&self, center: [i64; N], ring: i64) -> [[i64; N]; 2] {
         let mut reach = [center; 2];
         for axis in 0..N {
@@ -305,7 +309,7 @@ impl<const N: usize> Bins<N> {
         reach
     }
 
-    /// The distance from a position to the region beyond these bins; infinite, if there is none.
+    /// A lower bound on the distance from a position to the points beyond these bins; infinite if there are none.
     fn border(&self, position: [f64; N], [first, last]: [[i64; N]; 2]) -> f32 {
         let mut border = f64::INFINITY;
         for axis in 0..N {
@@ -317,7 +321,7 @@ impl<const N: usize> Bins<N> {
                 border = border.min(edge(last[axis] + 1) - position[axis]);
             }
         }
-        // Edges are rounded, and so are differences of points beyond them; bins are visited once more if in doubt.
+        // Edges are rounded, and so are differences to points beyond them. The margin visits one more ring if in doubt.
         let scale = position
             .iter()
             .fold(0.0, |scale: f64, part| scale.max(part.abs()));
@@ -330,10 +334,10 @@ impl<const N: usize> Bins<N> {
     }
 }
 
-/// The coordinate in `[0, period)` that is equivalent to `coordinate`.
+/// Wraps a coordinate to `[0, period)`.
 fn wrap(coordinate: f64, period: f64) -> f64 {
     let wrapped = coordinate - (coordinate / period).floor() * period;
-    // Rounding can leave it just outside.
+    // Rounding can put the result just outside.
     if (0.0..period).contains(&wrapped) {
         wrapped
     } else {

@@ -1,7 +1,7 @@
-//! Measures of the Voronoi cells of the feature points: distance to the edge, inscribed sphere, smooth F1.
+//! Measures of the Voronoi cells: distance to the edge, radius of the inscribed sphere, smooth F1.
 //!
-//! The distance to the edge and the radius of the sphere are those known from Blender's Voronoi texture; here they are
-//! exact. The smooth F1 is our own definition, since the usual ones depend on the order of the points.
+//! The distance to the edge and the radius of the sphere are known from Blender's Voronoi texture; here they are exact.
+//! The smooth F1 is our own definition, since the usual ones depend on the order of the points.
 
 use crate::dispatch::DimensionDispatch as _;
 use crate::fixed::{Place, STEP, STEPS};
@@ -12,11 +12,11 @@ impl<const N: usize> Worley<N>
 where
     Dimensions: Space<N>,
 {
-    /// The distance from a position to the nearest edge of its Voronoi cell, in cells: zero or more.
+    /// The distance from a position to the nearest edge of its Voronoi cell, in cells; at least zero.
     ///
-    /// It is Euclidean, whatever the metric of the basis: the smallest distance to a plane halfway between the nearest
-    /// feature point and another. Unlike F2 − F1, it measures the same on wide and on narrow cells. It is NaN for a
-    /// position without a place, see [`sample`](Self::sample).
+    /// It is Euclidean for every metric of the basis: the smallest distance to a bisecting plane between the nearest
+    /// feature point and another point. Unlike F2 − F1, it has the same scale in wide and in narrow cells. NaN for a
+    /// position without a place; see [`sample`](Self::sample).
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/edge-distance.md"))]
     #[must_use]
@@ -34,8 +34,9 @@ where
             return f32::INFINITY;
         }
         let [first, second] = pair.map(|hit| hit.vector.map(f64::from));
-        // The plane halfway to a point at the distance d is at least (d − F1) / 2 away.
+        // A point at distance d has its bisecting plane at least (d − F1) / 2 away.
         let reach = length(first) + 2.0 * to_plane(first, second);
+        // Take the nearest plane of all points within this distance.
         let hits = Dimensions::within(metric, lattice, place, (reach * 1.000_001) as f32);
         let mut all: Vec<_> = hits.iter().map(|hit| hit.vector.map(f64::from)).collect();
         if let Some(own) = all.iter().position(|&vector| vector == first) {
@@ -45,10 +46,10 @@ where
         planes.fold(to_plane(first, second), f64::min).max(0.0) as f32
     }
 
-    /// The radius of the largest sphere about the feature point nearest to a position that stays in its Voronoi cell,
-    /// in cells: half of the distance from that point to its own nearest neighbor, in the metric of the basis.
+    /// The radius of the largest sphere around the nearest feature point that is inside its Voronoi cell, in cells. It
+    /// is half of the distance from that point to its own nearest neighbor, in the metric of the basis.
     ///
-    /// NaN for a position without a place, see [`sample`](Self::sample).
+    /// NaN for a position without a place; see [`sample`](Self::sample).
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/sphere-radius.md"))]
     #[must_use]
@@ -60,6 +61,7 @@ where
         if hit.name.is_none() {
             return f32::INFINITY;
         }
+        // Search again from the feature point; its nearest point is the point itself.
         let mut point = place;
         for axis in 0..N {
             let steps = i64::from(place.steps[axis]) - i64::from((hit.vector[axis] / STEP) as i32);
@@ -70,12 +72,12 @@ where
         0.5 * neighbor
     }
 
-    /// F1 without creases, in cells; within the distance `radius`, neighboring cells blend into each other.
+    /// F1 without creases, in cells: neighboring cells are blended within the distance `radius`.
     ///
-    /// It is the value `s` that solves `Σ max(0, 1 + (s − d) / radius)³ = 1` over the distances `d` of all feature
-    /// points. So it lies between F1 − `radius` and F1, equals F1 where no second point is within `radius` of it, and
-    /// has two continuous derivatives wherever the distances have. Only points nearer than F1 + `radius` count, and
-    /// they are summed in the order of their distances and ids. NaN for a position without a place, see
+    /// The value is the solution `s` of `Σ max(0, 1 + (s − d) / radius)³ = 1`, summed over the distances `d` of all
+    /// feature points. It is between F1 − `radius` and F1. It equals F1 where no second point has a distance below F1 +
+    /// `radius`. It has two continuous derivatives wherever the distances have. Only points nearer than F1 + `radius`
+    /// contribute; they are summed in the order of their distances and ids. NaN for a position without a place; see
     /// [`sample`](Self::sample).
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/smooth-f1.md"))]
@@ -112,10 +114,10 @@ where
     }
 }
 
-/// The solution of the sum of [`Worley::smooth_f1`], by Newton's method.
+/// Solves the equation of [`Worley::smooth_f1`] by Newton's method.
 ///
-/// The sum is convex and grows with `s`, and is at least 1 at the smallest distance, so that the steps from there go
-/// down and never past the solution.
+/// The sum is convex, increases with `s`, and is at least 1 at the smallest distance. So the steps from there decrease
+/// and never pass the solution.
 fn smooth_minimum(distances: &[f64], radius: f64) -> f64 {
     let mut s = distances.first().copied().unwrap_or(f64::INFINITY);
     for _ in 0..64 {
@@ -126,7 +128,7 @@ fn smooth_minimum(distances: &[f64], radius: f64) -> f64 {
             slope += 3.0 * part * part / radius;
         }
         let next = s - (sum - 1.0) / slope;
-        // NaN is not smaller, and ends the loop as well.
+        // The comparison is false for NaN, which ends the loop, too.
         if next < s {
             s = next;
         } else {
@@ -136,12 +138,12 @@ fn smooth_minimum(distances: &[f64], radius: f64) -> f64 {
     s
 }
 
-/// The distance of a position from the plane halfway between two points, from the vectors from the points to it.
+/// The distance of a position from the bisecting plane of two points, given the vectors from the points to it.
 fn to_plane<const N: usize>(first: [f64; N], other: [f64; N]) -> f64 {
     let between: [f64; N] = core::array::from_fn(|axis| first[axis] - other[axis]);
     let [near, far] = [first, other].map(|way| dot(way, way));
     let apart = length(between);
-    // Two coinciding points have an edge between them everywhere.
+    // Coinciding points have no plane; every position counts as on their edge.
     if apart > 0.0 {
         (far - near) / (2.0 * apart)
     } else {
