@@ -1,43 +1,43 @@
-//! A grid of bins that says which control points can have a weight where.
+//! A grid of bins that lists the control points that can have a weight in each bin.
 //!
-//! Every bin lists the control points, and images of them, whose supports reach into it, in the order in which weights
-//! are summed; so the time for a position does not depend on the number of points. The grid covers the domain. On an
-//! axis that does not wrap, the bins of the border reach out as far as there are positions.
+//! Every bin lists the instances whose supports intersect it, in the order of summation. So the time for a position
+//! does not depend on the number of points. The grid covers the domain. On an axis that does not wrap, the bins at the
+//! border extend to the farthest evaluated positions.
 //!
-//! With many points, that time is spent waiting for memory, and the less there is of it, the more of it is near. So a bin
-//! has 16 bytes, and the numbers in it lead to records that lie in strips, column by column: the candidates of a position
-//! are near each other whatever the order of the points.
+//! With many points, evaluation waits for memory, so the data is compact and local. A bin has 16 bytes. Its numbers
+//! refer to records, which are sorted by strips of bins and by column. So the candidates of a position are near each
+//! other in memory, whatever the order of the points.
 
 use crate::net::{AxisBlock, BLOCK, Instance, Net};
 use glam::DVec2;
 
-/// How many bins there are for each instance: more bins, fewer candidates in each, and more memory. With 3, a position has
-/// some 7 candidates, of which 4 have a weight, and mostly no more than a bin holds.
+/// Number of bins for each instance. More bins mean fewer candidates in each, and more memory. With 3, a position has
+/// about 7 candidates, 4 of them with a weight, and mostly no more than fit into a bin.
 const BINS_PER_INSTANCE: f64 = 3.0;
 
-/// The most bins along one axis.
+/// Maximum number of bins along one axis.
 const BINS_LIMIT: f64 = 16_384.0;
 
-/// How many rows of bins make a strip.
+/// Number of rows of bins in a strip.
 const STRIP: usize = 4;
 
-/// How many candidates are evaluated together.
+/// Number of candidates that are evaluated together.
 pub(crate) const GROUP: usize = 8;
 
-/// Up to eight candidates, in their order, as the places of their records in the strips about the bin; or where else to
-/// look.
+/// Up to eight candidates, in order, as the indices of their records relative to the strip's base; or the index of a
+/// list elsewhere.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(16))]
 struct Bin([u16; GROUP]);
 
 impl Bin {
-    /// Stands for no candidate.
+    /// Marks an unused slot.
     const NONE: u16 = u16::MAX;
-    /// Stands first in a bin that has candidates with more axes than a block holds, more candidates than eight, or some
-    /// that are too far away; the two halves of where they are listed follow.
+    /// First element of a bin whose candidates are listed in `crowded`: one has more axes than a block holds, there are
+    /// more than eight, or a record is too far from the base. The next two elements are the halves of the list's index.
     const ELSEWHERE: u16 = Self::NONE - 1;
 
-    /// The bin with some candidates, whose records are counted from `base`; nothing if they do not fit.
+    /// Packs candidates into a bin, with records counted from `base`; `None` if they do not fit.
     fn of(candidates: &[u32], base: u32) -> Option<Self> {
         let mut bin = Self([Self::NONE; GROUP]);
         for (index, &candidate) in candidates.iter().enumerate() {
@@ -50,54 +50,56 @@ impl Bin {
 
     fn elsewhere(start: u32) -> Self {
         let mut bin = Self([Self::NONE; GROUP]);
-        // Cut into its halves.
+        // Split the index into its halves.
         bin.0[..3].copy_from_slice(&[Self::ELSEWHERE, start as u16, (start >> 16) as u16]);
         bin
     }
 }
 
-/// Marks a candidate with more axes than a block holds. In the memory of any machine there are less than 2^30 instances.
+/// Bit that marks a candidate with more axes than a block holds. Fewer than 2^30 instances fit into memory.
 const LONG: u32 = 1 << 30;
 
-/// Ends the candidates of a crowded bin.
+/// Marks the end of a crowded bin's candidates.
 const END: u32 = u32::MAX;
 
-/// Up to eight candidates, ready to be evaluated.
+/// Up to eight candidates, ready for evaluation.
 pub(crate) struct Candidates {
-    /// Their records; the first of all where there is no candidate.
+    /// Their records; 0 in unused slots.
     pub(crate) records: [u32; GROUP],
-    /// One for a candidate, zero for none.
+    /// 1 for a candidate, 0 for an unused slot.
     pub(crate) ones: [f32; GROUP],
-    /// Which have more axes than a block holds, as bits.
+    /// A bit for each candidate with more axes than a block holds.
     pub(crate) long: u32,
-    /// Leads to the candidates that come after them.
+    /// Index in `crowded` of the next candidates, if there are more.
     pub(crate) next: Option<u32>,
 }
 
-/// The grid, and what it knows of instances: their records.
+/// The grid of bins, and the records of the instances.
 #[derive(Debug)]
 pub(crate) struct Bins {
+    /// Numbers of columns and rows of bins.
     size: [usize; 2],
     origin: DVec2,
-    /// Bins per unit of length.
+    /// Bins per unit of length, along each axis.
     per_unit: DVec2,
     bins: Vec<Bin>,
-    /// Where the records of each strip of bins are counted from.
+    /// For each strip of bins, the record from which its bins count.
     bases: Vec<u32>,
-    /// The candidates of bins that cannot hold them, each followed by [`END`].
+    /// Candidates of bins that are listed outside of them, each list followed by [`END`].
     crowded: Vec<u32>,
-    /// The first axes of each record.
+    /// First block of axes of each record.
     pub(crate) axes: Vec<AxisBlock>,
     pub(crate) centers: Vec<DVec2>,
-    /// The places of the records among the instances.
+    /// Indices of the records' instances.
     pub(crate) instances: Vec<u32>,
-    /// The control points of the records.
+    /// Control points of the records.
     pub(crate) points: Vec<u32>,
 }
 
 impl Bins {
     pub(crate) fn new(net: &Net) -> Self {
         let size = net.domain.size;
+        // Choose square bins, as many as there should be for the instances.
         let side = (size.x * size.y / (net.instances.len() as f64 * BINS_PER_INSTANCE)).sqrt();
         let count = |axis: usize| (size[axis] / side).ceil().clamp(1.0, BINS_LIMIT);
         let counts = DVec2::new(count(0), count(1));
@@ -119,7 +121,7 @@ impl Bins {
         bins
     }
 
-    /// The first candidates at a position (which [`Net::local`] has brought into range).
+    /// The first candidates at a position in the range of [`Net::local`].
     #[inline(always)]
     pub(crate) fn first_candidates(&self, position: DVec2) -> Candidates {
         let row = self.bin(1, position.y);
@@ -143,7 +145,7 @@ impl Bins {
         }
     }
 
-    /// The candidates of a crowded bin, from a place in their list on.
+    /// The next candidates of a crowded bin, from an index in `crowded` on.
     pub(crate) fn next_candidates(&self, start: u32) -> Candidates {
         let mut candidates = Candidates {
             records: [0; GROUP],
@@ -166,16 +168,16 @@ impl Bins {
         candidates
     }
 
-    /// The bin of a coordinate along an axis; what lies outside belongs to the border.
+    /// The bin of a coordinate along an axis; positions outside belong to the bins at the border.
     #[inline(always)]
     fn bin(&self, axis: usize, coordinate: f64) -> usize {
-        // A negative number becomes zero.
+        // The conversion turns negative numbers into zero.
         let bin = (coordinate - self.origin[axis]) * self.per_unit[axis];
         // There are at most 2^14 bins along an axis.
         (bin as u32 as usize).min(self.size[axis] - 1)
     }
 
-    /// Makes the records, strip by strip. Returns the record of each instance.
+    /// Makes the records, sorted by strip, column and row. Returns the record of each instance.
     fn place_records(&mut self, net: &Net) -> Vec<u32> {
         let key = |instance: &Instance| {
             let [column, row] = [0, 1].map(|axis| self.bin(axis, instance.center[axis]));
@@ -196,7 +198,7 @@ impl Bins {
         places
     }
 
-    /// Lists the candidates of every bin, in the order of the instances: those of bin `b` are
+    /// Lists the candidates of every bin in the order of the instances. Those of bin `b` are
     /// `candidates[offsets[b]..offsets[b + 1]]`.
     fn list_candidates(&self, net: &Net, places: &[u32]) -> (Vec<u32>, Vec<u32>) {
         let mut entries = Vec::new();
@@ -217,6 +219,7 @@ impl Bins {
                 }
             }
         }
+        // Counting sort: accumulate the counts, and place the candidates.
         for bin in 1..offsets.len() {
             offsets[bin] += offsets[bin - 1];
         }
@@ -229,19 +232,19 @@ impl Bins {
         (offsets, candidates)
     }
 
-    /// Packs the candidates of bins, and lists those that do not fit.
+    /// Packs the candidates into bins, and appends those that do not fit to `crowded`.
     fn pack(&mut self, offsets: &[u32], candidates: &[u32]) {
         let of = |bin: usize| &candidates[offsets[bin] as usize..offsets[bin + 1] as usize];
         let n_bins = self.size[0] * self.size[1];
         let per_strip = self.size[0] * STRIP;
         for strip in (0..n_bins).step_by(per_strip) {
             let bins = strip..(strip + per_strip).min(n_bins);
-            // A mark makes a number larger.
+            // Marked candidates are larger than all others, so they do not affect the minimum.
             let base = bins.clone().flat_map(of).min().map_or(0, |&least| least);
             self.bases.push(base);
             for bin in bins {
                 let packed = Bin::of(of(bin), base).unwrap_or_else(|| {
-                    // In the memory of any machine there are less than 2^32 of them.
+                    // Fewer than 2^32 candidates fit into memory.
                     let start = self.crowded.len() as u32;
                     self.crowded.extend_from_slice(of(bin));
                     self.crowded.push(END);
@@ -252,7 +255,7 @@ impl Bins {
         }
     }
 
-    /// Whether the support of an instance reaches into a bin, or may do so.
+    /// Whether the support of an instance may intersect a bin: no axis has `u <= 0` at all four corners.
     fn touches(&self, net: &Net, instance: &Instance, bin: [usize; 2]) -> bool {
         let [x, y] = [0, 1].map(|axis| {
             self.ends(net, axis, bin[axis])
@@ -271,11 +274,11 @@ impl Bins {
             .all(|block| (0..BLOCK).all(|slot| can_weigh(block, slot)))
     }
 
-    /// Where a bin begins and ends along an axis.
+    /// Bounds of a bin along an axis, with a margin for rounding.
     fn ends(&self, net: &Net, axis: usize, bin: usize) -> [f64; 2] {
         let (origin, size) = (net.domain.origin[axis], net.domain.size[axis]);
         let side = 1.0 / self.per_unit[axis];
-        // Rounding may put a position into the neighboring bin.
+        // Rounding may assign a position to the neighboring bin.
         let slack = side * 1e-6 + (origin.abs() + size) * 1e-15;
         let start = origin + side * bin as f64 - slack;
         let end = origin + side * (bin + 1) as f64 + slack;

@@ -1,10 +1,10 @@
-//! Textures from control points: noise, turbulence, cells, and the coats of cows and giraffes; smooth, tileable,
-//! editable point by point.
+//! Textures from control points: noise, turbulence, cells, and the coats of cows and giraffes. They are smooth and
+//! tileable, and can be edited point by point.
 //!
-//! Control points lie in the plane and are connected by a graph. The edges at a control point are its axes; a position
-//! is projected onto each of them, every projection gives an axial weight, and their product is the weight of the
-//! control point. [`Pups`] holds such a net. [`Texture`] gives the control points values and interpolates them;
-//! [`Pups::strongest`] gives every position the label of its strongest control point.
+//! Control points in the plane are connected by a graph. The edges at a control point are its axes. A position is
+//! projected onto each axis, every projection gives an axial weight, and the product of the axial weights is the weight
+//! of the control point. [`Pups`] is such a net. [`Texture`] interpolates values of the control points;
+//! [`Pups::strongest`] gives each position the label of its strongest control point.
 //!
 //! ```
 //! use dapple_pups::hash::Seed;
@@ -56,13 +56,14 @@
 //!
 //! * Textures are in the plane. They repeat exactly along each axis on which their domain wraps.
 //! * The progressions do not repeat from left to right.
-//! * Control points are at least 1e-9 of the domain's larger side apart. A domain is from 1e-18 to 1e18 large.
+//! * The distance of control points is at least 1e-9 of the domain's larger side. The size of a domain is from 1e-18 to
+//!   1e18.
 //! * Positions are `f64`, values `f32`.
-//! * The bits are the same on every machine, for every SIMD level and any number of threads.
+//! * The bits are the same on every machine, at every SIMD level and with any number of threads.
 //!
 //! # Without std
 //!
-//! Not possible today. Parts of a net that are made on demand are in a `OnceLock` of std, `floor` and `sqrt` of `f64`
+//! Not supported. Parts of a net that are computed on demand are in a `OnceLock` of std, `floor` and `sqrt` of `f64`
 //! are methods of std, and `dapple-graph`, `dapple-points` and `dapple-raster` need std.
 //!
 //! # Reference

@@ -1,14 +1,15 @@
-//! The control net: control points with their axes, made ready for evaluation.
+//! The control net: control points and their scaled axes, prepared for evaluation.
 //!
 //! Reference: Jack Caron and David Mould, "Partition of Unity Parametrics for Texture Synthesis", Graphics Interface
 //! 2013, section 2.
 //!
-//! An axis `v` of a control point `c`, scaled by `s`, projects a position `x` to `p = (x − c)·v / (s |v|²)`. With
-//! `a = v / (s |v|²)` and `d = (x − c)` rounded to single precision, what the evaluation needs is `u = 1 − p`, computed
-//! as `(1 − a_y d_y) − a_x d_x`: that grouping is the frame rule of this crate, and every path keeps it.
+//! An axis `v` of a control point `c`, scaled by `s`, projects a position `x` to `p = (x − c)·v / (s |v|²)`. Let
+//! `a = v / (s |v|²)`, and let `d` be `x − c` rounded to single precision. The evaluation needs `u = 1 − p`, computed
+//! as
+//! `(1 − a_y d_y) − a_x d_x`. Every code path of this crate uses this grouping, so that the bits agree.
 //!
-//! On a wrapped axis a control point acts through its periodic images as well. Each image whose support reaches into
-//! the domain is an [`Instance`]; positions are brought into the domain first, so that a texture repeats exactly.
+//! On a wrapped axis, the periodic images of a control point have weights, too. Each image whose support intersects the
+//! domain is an [`Instance`]. Positions are first wrapped into the domain, so a texture repeats exactly.
 
 use crate::bins::Bins;
 use crate::support::{fading, has_gap, padded_box};
@@ -19,20 +20,20 @@ use fearless_simd::{f32x8, prelude::*};
 use glam::DVec2;
 use std::sync::OnceLock;
 
-/// The number of points that are added to a net before it is asked again whether it is still wanted.
+/// Number of points that are added to a net between two checks for cancellation.
 const POINTS: u32 = 1 << 13;
 
-/// How many axes are evaluated together.
+/// Number of axes that are evaluated together.
 pub(crate) const BLOCK: usize = 8;
 
-/// On an axis that does not wrap, positions further out than this many domain sizes are evaluated at this distance,
-/// where the texture has long become constant along every ray that single precision can tell.
+/// Maximum distance of evaluated positions from the origin of an axis that does not wrap, in domain sizes. Positions
+/// farther out are clamped to it: there, the texture is constant along every ray that single precision distinguishes.
 const FAR: f64 = 1_048_576.0;
 
-/// No support reaches further than this many periods.
+/// Maximum distance that a support extends, in periods.
 const IMAGES_LIMIT: f64 = 64.0;
 
-/// Eight axes side by side; unused ones are zero, which projects every position to 0 and so weighs 1.
+/// Eight axes in registers. Unused slots are zero: they project every position to 0 and have the weight 1.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(align(64))]
 pub(crate) struct AxisBlock {
@@ -41,7 +42,7 @@ pub(crate) struct AxisBlock {
 }
 
 impl AxisBlock {
-    /// The slots that hold an axis, as bits.
+    /// A bit for each slot that holds an axis.
     #[inline(always)]
     pub(crate) fn slots<S: Simd>(&self, simd: S) -> u32 {
         let (x, y) = (
@@ -49,53 +50,53 @@ impl AxisBlock {
             f32x8::from_slice(simd, &self.y),
         );
         let is_used = (x.abs() + y.abs()).simd_gt(f32x8::splat(simd, 0.0));
-        // Eight lanes, eight bits.
+        // Eight lanes give eight bits.
         is_used.to_bitmask() as u32
     }
 }
 
-/// Exponents of the axial weights of a block: below 1 for axes that fade, which a block has first or not at all.
+/// Exponents of the axial weights of a block. They are below 1 for axes that fade, which come first in their block.
 pub(crate) type Exponents = [f32; BLOCK];
 
-/// A control point, or one of its periodic images; one cache line.
+/// A control point or one of its periodic images; fills one cache line.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
 pub(crate) struct Instance {
-    /// Where it is.
+    /// Position of the control point or image.
     pub(crate) center: DVec2,
-    /// The smallest box around its support; infinite where the support is.
+    /// Bounds of its support; infinite where the support is unbounded.
     pub(crate) min: DVec2,
     pub(crate) max: DVec2,
-    /// The control point.
+    /// Index of the control point.
     pub(crate) point: u32,
-    /// Its axes: the first block, and how many.
+    /// Blocks of its axes: index of the first, and number.
     first_block: u32,
     n_blocks: u32,
 }
 
-/// The graph that a net is made of.
+/// The kind of graph that a net is built from.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum GraphKind {
-    /// It is the Delaunay graph of the points, so there are no axes that could close a support.
+    /// The Delaunay graph of the points, so there are no axes to add where a support is open.
     Delaunay,
-    /// It may be any graph.
+    /// Any graph.
     Any,
 }
 
-/// Everything that the weights depend on.
+/// All data that weights depend on.
 #[derive(Debug)]
 pub(crate) struct Net {
     pub(crate) domain: Domain,
     pub(crate) options: PupsOptions,
-    /// Control points and their images, in the order in which weights are summed: by point, then by image.
+    /// Control points and their images in the order of summation: by point, then by image.
     pub(crate) instances: Vec<Instance>,
-    /// The axes of all points, point by point: first those that do not fade, then, in blocks of their own, those that do.
+    /// Axes of all points, point by point: first the axes that do not fade, then those that do, in separate blocks.
     blocks: Vec<AxisBlock>,
-    /// The exponents of the axial weights of each block; empty where no axis fades.
+    /// Exponents of the axial weights of each block; empty if no axis fades.
     exponents: Vec<Exponents>,
     /// ε times the orientation in the plane, for each point; empty without orientations.
     pub(crate) shifts: Vec<[f32; 2]>,
-    /// For single positions; made when the first is asked for.
+    /// Bins for evaluating single positions; computed on first use.
     bins: OnceLock<Bins>,
 }
 
@@ -119,6 +120,7 @@ impl Net {
                 PupsError::check_wanted(is_cancelled)?;
             }
             axes.clear();
+            // Add Delaunay axes if the graph may leave the support open.
             axes.extend(graph.axes(point).iter().map(|axis| axis.vector));
             if kind == GraphKind::Any && has_gap(&axes) {
                 close_gap(point, &mut axes, points, &mut closing, is_cancelled)?;
@@ -128,7 +130,7 @@ impl Net {
         Ok(net)
     }
 
-    /// The net of `n_points` points, to which they are to be added in their order.
+    /// Creates a net for `n_points` points, which must be added in order.
     pub(crate) fn empty(
         domain: Domain,
         options: PupsOptions,
@@ -158,7 +160,7 @@ impl Net {
         })
     }
 
-    /// Adds the next point, given the vectors of its axes in their order.
+    /// Adds the next point; `axes` are the vectors of its axes, in order.
     pub(crate) fn push(
         &mut self,
         point: PointIdx,
@@ -171,19 +173,19 @@ impl Net {
         Ok(())
     }
 
-    /// Which control points can have a weight where.
+    /// Bins with the control points that can have a weight in them.
     #[inline]
     pub(crate) fn bins(&self) -> &Bins {
         self.bins.get_or_init(|| Bins::new(self))
     }
 
-    /// The axes of a control point.
+    /// The axes of an instance.
     #[inline(always)]
     pub(crate) fn blocks(&self, instance: &Instance) -> &[AxisBlock] {
         &self.blocks[instance.first_block as usize..][..instance.n_blocks as usize]
     }
 
-    /// The exponents of the blocks of a control point; none where no axis of the net fades.
+    /// The exponents of an instance's blocks; empty if no axis of the net fades.
     #[inline(always)]
     pub(crate) fn exponents(&self, instance: &Instance) -> &[Exponents] {
         if self.exponents.is_empty() {
@@ -192,8 +194,8 @@ impl Net {
         &self.exponents[instance.first_block as usize..][..instance.n_blocks as usize]
     }
 
-    /// A coordinate along `axis` as the evaluation takes it: in the domain where it wraps, and not too far out where it
-    /// does not. What is not finite stays so.
+    /// A coordinate in the range of the evaluation: wrapped into the domain on an axis that wraps, else clamped. NaN if
+    /// it is not finite.
     #[inline]
     pub(crate) fn local(&self, axis: usize, coordinate: f64) -> f64 {
         if !coordinate.is_finite() {
@@ -206,11 +208,12 @@ impl Net {
         coordinate.clamp(origin - FAR * size, origin + FAR * size)
     }
 
-    /// Adds the axes of the next point, scaled.
+    /// Adds the scaled axes of the next point.
     fn push_axes(&mut self, point: PointIdx, axes: &[DVec2]) -> Result<(), PupsError> {
         if self.options.fade == 0.0 {
             return self.push_blocks(point, axes);
         }
+        // Separate the axes that fade, and store them in their own blocks.
         let exponents = fading(axes, self.options.fade);
         let of = |is_fading: bool| {
             let all = axes.iter().zip(&exponents);
@@ -234,9 +237,9 @@ impl Net {
         Ok(())
     }
 
-    /// Adds blocks of axes of the next point, scaled; one without axes if there are none.
+    /// Adds blocks of scaled axes for the next point; one empty block if there are no axes.
     fn push_blocks(&mut self, point: PointIdx, axes: &[DVec2]) -> Result<(), PupsError> {
-        // With this limit, no product of an axis and a position leaves the range of single precision.
+        // With this limit, products of axes and positions are in the range of single precision.
         let limit = self.domain.size.max_element() * 1e-9;
         for chunk in axes.chunks(BLOCK) {
             let mut block = AxisBlock::default();
@@ -257,13 +260,13 @@ impl Net {
             self.blocks.push(block);
         }
         if axes.is_empty() {
-            // A point by itself rules everywhere; its block weighs 1.
+            // A point without axes has the weight 1 everywhere, as an empty block gives it.
             self.blocks.push(AxisBlock::default());
         }
         Ok(())
     }
 
-    /// Adds the images of the next point whose supports reach into the domain.
+    /// Adds the images of the next point whose supports intersect the domain.
     fn push_instances(
         &mut self,
         point: PointIdx,
@@ -271,7 +274,7 @@ impl Net {
         axes: &[DVec2],
         first_block: usize,
     ) {
-        // A graph whose axes do not fit into 2^32 blocks does not fit into memory.
+        // More than 2^32 blocks of axes do not fit into memory.
         let n_blocks = (self.blocks.len() - first_block) as u32;
         let first_block = first_block as u32;
         let (min, max) = padded_box(axes, self.options.axis_scale);
@@ -292,7 +295,7 @@ impl Net {
         }
     }
 
-    /// The periods by which a support can be moved and still reach into the domain.
+    /// Offsets, in periods, at which a support intersects the domain.
     fn image_range(
         &self,
         axis: usize,
@@ -304,7 +307,7 @@ impl Net {
             return 0..=0;
         }
         let (origin, size) = (self.domain.origin[axis], self.domain.size[axis]);
-        // A support with an axis to the point's own image is at most two axis scales wide, in periods.
+        // With an axis to the point's own image, a support is at most two axis scales wide, in periods.
         let first = ((origin - center - max) / size).ceil().max(-IMAGES_LIMIT);
         let last = ((origin + size - center - min) / size)
             .floor()
@@ -315,8 +318,8 @@ impl Net {
 
 /// Adds the Delaunay axes of a point whose own axes leave its support open.
 ///
-/// On the hull of points that do not wrap, the Delaunay axes leave it open too; there it stays so, and the point rules
-/// as far as the plane goes.
+/// On the hull of points that do not wrap, the support remains open: the point has a weight on an unbounded part of the
+/// plane.
 fn close_gap(
     point: PointIdx,
     axes: &mut Vec<DVec2>,

@@ -1,21 +1,21 @@
-//! How the axial weights of a control point are multiplied up.
+//! Products of the axial weights of a control point.
 
 use crate::net::BLOCK;
 use crate::weight::{AxialWeight, Lane};
 use fearless_simd::prelude::*;
 
-/// The product of the axial weights of up to [`BLOCK`] axes, taken in one after another.
+/// Incremental product of the axial weights of up to [`BLOCK`] axes.
 ///
-/// An axis with `u = 1` changes no bit of the result, whether it is taken in or left out. Axes are given by `−u`, in
-/// `[−1, 0]`, since it takes one operation less.
+/// An axis with `u = 1` does not change the bits of the result, so it may be included or left out. Axes are given as
+/// `−u`, in `[−1, 0]`, which saves one operation.
 pub(crate) trait Profile: Copy + Send + Sync {
-    /// Takes in the first axis.
+    /// Starts a product with the first axis.
     fn first<V: Lane>(self, minus_u: V) -> (V, V);
 
-    /// Takes in another axis.
+    /// Multiplies by the weight of another axis.
     fn step<V: Lane>(self, q: V, t: V, minus_u: V) -> (V, V);
 
-    /// The product, after `n` axes, at least one.
+    /// The product of `n` axes, at least one.
     fn finish<V: Lane>(self, q: V, t: V, n: usize) -> V;
 
     /// The weight of one axis.
@@ -25,7 +25,7 @@ pub(crate) trait Profile: Copy + Send + Sync {
         self.finish(q, t, 1)
     }
 
-    /// The product of the axes of a block, used or not.
+    /// The product of all axes of a block; unused slots have the weight 1.
     #[inline(always)]
     fn product<V: Lane>(self, minus_u: [V; BLOCK]) -> V {
         let (mut q, mut t) = self.first(minus_u[0]);
@@ -36,8 +36,8 @@ pub(crate) trait Profile: Copy + Send + Sync {
     }
 }
 
-/// `−u`, from `a_x d_x` and `1 − a_y d_y`: −1 at the control point and behind it, zero (of any sign) at the end of the
-/// axis and beyond.
+/// `−u`, from `a_x d_x` and `1 − a_y d_y`: −1 at the control point and behind it, zero (of either sign) at the end of
+/// the axis and beyond.
 #[inline(always)]
 pub(crate) fn minus_u<S: Simd, V: SimdFloat<S, Element = f32>>(simd: S, along: V, rest: V) -> V {
     let unbounded = along - rest;
@@ -45,13 +45,13 @@ pub(crate) fn minus_u<S: Simd, V: SimdFloat<S, Element = f32>>(simd: S, along: V
         let [least, most] = [-1.0, 0.0].map(|bound| V::splat(simd, bound));
         return unbounded.max(least).min(most);
     }
-    // As whole numbers, which more units of a processor can compare, negative numbers come after positive ones and grow
-    // with their distance from zero.
+    // Compare as integers, which more execution units of a processor can do. In this order, negative floats follow
+    // positive ones and increase with their distance from zero.
     let [zero, minus_one] = [-0.0_f32, -1.0].map(|bound| V::Bits::splat(simd, bound.to_bits()));
     V::from_bits(unbounded.to_bits().max(zero).min(minus_one))
 }
 
-/// The cubic of equation 1, `u² (3 − 2u)`, as two products: `q = Π −u` and `t = Π (3/2 − u)`, so that an axis costs three
+/// The cubic of equation 1, `u² (3 − 2u)`, as two products: `q = Π −u` and `t = Π (3/2 − u)`. An axis takes three
 /// operations. `W = q² · t · 2^n`, where the power of two is exact.
 #[derive(Clone, Copy)]
 pub(crate) struct Cubic;
@@ -74,7 +74,7 @@ impl Profile for Cubic {
     }
 }
 
-/// Any axial weight, by its formula.
+/// Any axial weight, computed by its formula.
 impl Profile for AxialWeight {
     #[inline(always)]
     fn first<V: Lane>(self, minus_u: V) -> (V, V) {

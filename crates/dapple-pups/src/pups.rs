@@ -12,9 +12,9 @@ use fearless_simd::prelude::*;
 use glam::DVec2;
 use std::sync::Arc;
 
-/// Control points, their axes, and with them a weight for every control point at every position.
+/// Control points with their axes, which give every control point a weight at every position.
 ///
-/// Cheap to clone: clones share the net. [`texture`](Self::texture) gives the control points values.
+/// Cheap to clone: clones share the net. [`texture`](Self::texture) interpolates values of the control points.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/pups.md"))]
 ///
@@ -36,29 +36,29 @@ pub struct Pups {
 }
 
 impl Pups {
-    /// The net of the Delaunay triangulation of `points`, with default options: the paper's own.
+    /// Builds the net of the Delaunay triangulation of `points`, with default options, as in the paper.
     ///
     /// # Errors
     ///
-    /// What [`delaunay_with`](Self::delaunay_with) refuses.
+    /// The errors of [`delaunay_with`](Self::delaunay_with).
     pub fn delaunay(points: &PointSet) -> Result<Self, PupsError> {
         Self::delaunay_with(points, PupsOptions::default())
     }
 
-    /// The net of the Delaunay triangulation of `points`.
+    /// Builds the net of the Delaunay triangulation of `points`.
     ///
     /// # Errors
     ///
-    /// What [`new`](Self::new) refuses, and [`Graph`](crate::PupsErrorKind::Graph) if there is no triangulation.
+    /// The errors of [`new`](Self::new), and [`Graph`](crate::PupsErrorKind::Graph) if there is no triangulation.
     pub fn delaunay_with(points: &PointSet, options: PupsOptions) -> Result<Self, PupsError> {
         Self::delaunay_cancellable(points, options, &|| false)
     }
 
-    /// The net of [`delaunay_with`](Self::delaunay_with), unless `is_cancelled` returns true.
+    /// Builds the net of [`delaunay_with`](Self::delaunay_with), unless `is_cancelled` returns true.
     ///
     /// # Errors
     ///
-    /// Those of [`delaunay_with`](Self::delaunay_with), and [`Cancelled`](crate::PupsErrorKind::Cancelled).
+    /// The errors of [`delaunay_with`](Self::delaunay_with), and [`Cancelled`](crate::PupsErrorKind::Cancelled).
     pub fn delaunay_cancellable(
         points: &PointSet,
         options: PupsOptions,
@@ -68,7 +68,7 @@ impl Pups {
         Self::of_delaunay(points, &graph, options, is_cancelled)
     }
 
-    /// The net of a graph that is the Delaunay triangulation of `points`.
+    /// Builds the net of a graph that is the Delaunay triangulation of `points`.
     pub(crate) fn of_delaunay(
         points: &PointSet,
         graph: &Graph,
@@ -82,29 +82,29 @@ impl Pups {
         })
     }
 
-    /// The net of any graph over `points`.
+    /// Builds the net of any graph over `points`.
     ///
-    /// With a graph that contains the Delaunay triangulation, the support of a control point is its Voronoi cell scaled
-    /// by `2 · axis_scale`. With another graph it is the polygon that the point's own axes leave, which still contains
-    /// that cell, so that every position has a weight. Where two neighboring axes of a point are half a turn or more
-    /// apart, its Delaunay axes are added, so that no support is open that need not be. On the hull of points on
-    /// axes that do not wrap, supports are open, and the texture is defined on all of the plane.
+    /// If the graph contains the Delaunay triangulation, the support of a control point is its Voronoi cell scaled by
+    /// `2 · axis_scale`. With another graph, it is the polygon bounded by the point's own axes, which still contains
+    /// that cell, so every position has a weight. Where two neighboring axes of a point are 180° or more apart, its
+    /// Delaunay axes are added, which closes the support if possible. On the hull of points on axes that do not wrap,
+    /// supports are unbounded, and the texture is defined on the whole plane.
     ///
     /// # Errors
     ///
-    /// [`NoPoints`](crate::PupsErrorKind::NoPoints) without points, [`Count`](crate::PupsErrorKind::Count) if the
-    /// graph has another number of points, [`ShortAxis`](crate::PupsErrorKind::ShortAxis) for points closer than 1e-9
-    /// of the domain's larger side, [`Range`](crate::PupsErrorKind::Range) if the domain is smaller than 1e-18 or larger
-    /// than 1e18, and what [`PupsOptions::check`] refuses.
+    /// [`NoPoints`](crate::PupsErrorKind::NoPoints) without points, [`Count`](crate::PupsErrorKind::Count) if the graph
+    /// has another number of points, [`ShortAxis`](crate::PupsErrorKind::ShortAxis) for points closer than 1e-9 of the
+    /// domain's larger side, [`Range`](crate::PupsErrorKind::Range) if the domain is smaller than 1e-18 or larger than
+    /// 1e18, and the errors of [`PupsOptions::check`].
     pub fn new(points: &PointSet, graph: &Graph, options: PupsOptions) -> Result<Self, PupsError> {
         Self::new_cancellable(points, graph, options, &|| false)
     }
 
-    /// The net of [`new`](Self::new), unless `is_cancelled` returns true.
+    /// Builds the net of [`new`](Self::new), unless `is_cancelled` returns true.
     ///
     /// # Errors
     ///
-    /// Those of [`new`](Self::new), and [`Cancelled`](crate::PupsErrorKind::Cancelled).
+    /// The errors of [`new`](Self::new), and [`Cancelled`](crate::PupsErrorKind::Cancelled).
     pub fn new_cancellable(
         points: &PointSet,
         graph: &Graph,
@@ -118,7 +118,7 @@ impl Pups {
         })
     }
 
-    /// The net that was made of `points`.
+    /// Wraps a net that was built from `points`.
     pub(crate) fn of_net(net: Net, points: PointSet) -> Self {
         Self {
             net: Arc::new(net),
@@ -126,7 +126,7 @@ impl Pups {
         }
     }
 
-    /// The number of control points.
+    /// Number of control points.
     #[must_use]
     pub fn n_points(&self) -> usize {
         self.points.len()
@@ -138,33 +138,33 @@ impl Pups {
         &self.points
     }
 
-    /// The domain of the control points, which says where the texture repeats.
+    /// The domain of the control points, which determines the period of the texture.
     #[must_use]
     pub fn domain(&self) -> &Domain {
         &self.net.domain
     }
 
-    /// The options that the net was made with.
+    /// The options of the net.
     #[must_use]
     pub fn options(&self) -> &PupsOptions {
         &self.net.options
     }
 
-    /// A scalar texture: `values` holds the value of each control point.
+    /// Makes a scalar texture from `values`, one for each control point.
     ///
     /// # Errors
     ///
-    /// [`Count`](crate::PupsErrorKind::Count) if there is not one value for each control point,
-    /// [`Range`](crate::PupsErrorKind::Range) if one is not finite.
+    /// [`Count`](crate::PupsErrorKind::Count) if the number of values is not the number of control points,
+    /// [`Range`](crate::PupsErrorKind::Range) if a value is not finite.
     pub fn texture(&self, values: Vec<f32>) -> Result<Texture, PupsError> {
         Texture::new(self.clone(), values)
     }
 
-    /// A texture of vectors, such as colors: `values` holds the vector of each control point.
+    /// Makes a texture of vectors, such as colors, from `values`, one vector for each control point.
     ///
     /// # Errors
     ///
-    /// What [`texture`](Self::texture) refuses.
+    /// The errors of [`texture`](Self::texture).
     pub fn vector_texture<const N: usize>(
         &self,
         values: Vec<[f32; N]>,
@@ -172,11 +172,11 @@ impl Pups {
         VectorTexture::new(self.clone(), values)
     }
 
-    /// The weight of a control point at a position as equation 2 has it, or equation 4 with orientations: from 0 outside of
-    /// its support to 1 at the control point.
+    /// The weight of a control point at a position, by equation 2, or by equation 4 with orientations: 0 outside of its
+    /// support, 1 at the control point.
     ///
-    /// Where several periodic images of the control point reach the position, it is the largest of their weights. It is
-    /// NaN at a position that is not finite, and 0 for an index that no control point has.
+    /// Where supports of several periodic images of the control point contain the position, the largest of their
+    /// weights counts. The weight is NaN at a position that is not finite, and 0 for an index without a control point.
     #[must_use]
     pub fn weight(&self, point: PointIdx, position: DVec2) -> f32 {
         let Some(position) = self.local(position) else {
@@ -195,8 +195,8 @@ impl Pups {
 
     /// The control points with a weight at a position, and their weights, which sum to 1.
     ///
-    /// They come in their order; on a small torus a control point may come more than once, for its images. Nothing
-    /// comes at a position that is not finite.
+    /// They are ordered by index. On a small torus a control point may occur several times, once for each periodic
+    /// image. The list is empty at a position that is not finite.
     #[must_use]
     pub fn weights(&self, position: DVec2) -> Vec<(PointIdx, f32)> {
         let Some(position) = self.local(position) else {
@@ -219,10 +219,10 @@ impl Pups {
         weights
     }
 
-    /// The control point with the largest weight at a position; of equals, the first. This is what gives a position
-    /// its label.
+    /// The control point with the largest weight at a position; the first if several are equal. It determines the label
+    /// of the position.
     ///
-    /// Nothing at a position that is not finite.
+    /// `None` at a position that is not finite.
     #[must_use]
     pub fn strongest(&self, position: DVec2) -> Option<PointIdx> {
         let position = self.local(position)?;
@@ -239,8 +239,8 @@ impl Pups {
         Some(PointIdx(point))
     }
 
-    /// The control point with the largest weight at every pixel center of a window: [`strongest`](Self::strongest),
-    /// and `PointIdx(u32::MAX)` where a position is not finite.
+    /// Renders the control point with the largest weight at every pixel center of a window; see
+    /// [`strongest`](Self::strongest). The result is `PointIdx(u32::MAX)` where a position is not finite.
     ///
     /// # Errors
     ///
@@ -256,12 +256,12 @@ impl Pups {
         Ok(())
     }
 
-    /// The labels of the pixels of a window, where `label` holds the label of each control point.
+    /// Renders the labels of the pixels of a window; `labels` has the label of each control point.
     ///
     /// # Errors
     ///
-    /// [`Count`](crate::PupsErrorKind::Count) if there is not one label for each control point,
-    /// [`Raster`](crate::PupsErrorKind::Raster) for a window of a bad size or with positions that are not finite.
+    /// [`Count`](crate::PupsErrorKind::Count) if the number of labels is not the number of control points,
+    /// [`Raster`](crate::PupsErrorKind::Raster) for a window of invalid size or with positions that are not finite.
     pub fn label_raster<L: Copy>(
         &self,
         window: &Window,
@@ -270,6 +270,7 @@ impl Pups {
         PupsError::check_count("labels", labels.len(), self.n_points())?;
         let mut strongest = Raster::filled(window.size, PointIdx(u32::MAX))?;
         self.render_strongest(window, strongest.view_mut())?;
+        // A position that is not finite has no control point.
         if let Some(at) = strongest
             .pixels()
             .iter()
@@ -287,7 +288,7 @@ impl Pups {
         Ok(strongest.map(|point| labels[point.index()]))
     }
 
-    /// The position as the evaluation takes it, or nothing if it is not finite.
+    /// The position in the range of the evaluation (see [`Net::local`]); `None` if it is not finite.
     #[inline]
     pub(crate) fn local(&self, position: DVec2) -> Option<DVec2> {
         if self.net.domain.contains(position) {
@@ -298,11 +299,11 @@ impl Pups {
     }
 }
 
-/// Where the weights sum to less than this, the nearest control point rules alone: with orientations near full
-/// strength, single precision may have nothing left to divide by.
+/// Smallest sum of weights for interpolation. Below it, the value of the nearest control point is used alone: with
+/// orientations near full strength, the sum may underflow in single precision.
 pub(crate) const LEAST_TOTAL: f32 = 1e-30;
 
-/// Keeps the largest weight and whose it is, as the bits of a number.
+/// Sink that keeps the largest weight and its control point, stored as the bits of an `f32`.
 struct Strongest;
 
 impl Sink for Strongest {
@@ -327,7 +328,7 @@ impl Sink for Strongest {
         sums: &mut [f32],
         lane: usize,
     ) {
-        // Selecting moves bits and does not compute with them.
+        // `select` moves bits and does not compute with them.
         let point = V::splat(simd, f32::from_bits(point));
         for row in 0..N {
             let at = row * Self::PLANES * LANES + lane;

@@ -1,9 +1,9 @@
-//! Many positions at once: windows of the plane.
+//! Rendering of windows of the plane.
 //!
-//! The window is cut where it crosses a period, so that coordinates go one way within a piece, and then into bands of
-//! rows. For every band, the control points that reach into it are taken in their order, and each adds its
-//! weights to the pixels that its support can touch. Bands share nothing but what they read, so they can run on any
-//! number of threads.
+//! The window is cut at the ends of periods, so that coordinates are monotonic within a piece, and then into bands of
+//! rows. For every band, the control points whose supports intersect it are visited in order. Each adds its weights to
+//! the pixels that its support can touch. Bands share only data that they read, so any number of threads can render
+//! them.
 
 use crate::line::{Line, runs};
 use crate::net::{Instance, Net};
@@ -19,17 +19,18 @@ use dapple_raster::{parallel, simd};
 use fearless_simd::{Level, prelude::*};
 use glam::DVec2;
 
-/// How many numbers a band is summed in, at most, so that they stay in the second cache of a core: 512 KiB.
+/// Maximum number of floats in the sums of a band, so that they fit into the second-level cache of a core: 512 KiB.
 const BAND_NUMBERS: usize = 1 << 17;
 
-/// The most rows of a band; bands are what threads share out.
+/// Maximum number of rows of a band. Bands are the units of work of threads.
 const BAND_ROWS: usize = 64;
 
-/// Fills the rows of a window, on all cores where the feature `rayon` is on.
+/// Renders the rows of a window, in parallel with the feature `rayon`.
 ///
-/// `rows` are those of the window, each with as many values as the sink makes of a pixel, times the width.
+/// Each row has [`Sink::per_pixel`] values for each pixel.
 pub(crate) fn render<K: Sink>(net: &Net, window: &Window, sink: &K, rows: &mut [&mut [K::Value]]) {
     let level = simd::level();
+    // Compute the coordinates, and cut them where a period ends.
     let xs: Vec<f64> = (0..window.size[0])
         .map(|column| net.local(0, window.column_x(column)))
         .collect();
@@ -42,6 +43,7 @@ pub(crate) fn render<K: Sink>(net: &Net, window: &Window, sink: &K, rows: &mut [
         .collect();
     let height = BAND_NUMBERS / Planes::<K>::per_row(xs.len());
     let height = height.clamp(ROWS, BAND_ROWS);
+    // Collect the instances of each band, and split the rows.
     let mut bands = Vec::new();
     let mut rest = rows;
     for run in runs(&ys) {
@@ -65,11 +67,11 @@ pub(crate) fn render<K: Sink>(net: &Net, window: &Window, sink: &K, rows: &mut [
     });
 }
 
-/// A stretch of columns or rows whose coordinates go one way.
+/// A run of columns or rows whose coordinates are monotonic.
 struct Lane {
-    /// Where it lies in the window.
+    /// Range of the columns or rows in the window.
     range: Range<usize>,
-    /// The coordinates, and then the last one again, for what is computed beyond it.
+    /// Coordinates, padded with the last one for registers that extend beyond it.
     padded: Vec<f64>,
     line: Line,
 }
@@ -90,19 +92,19 @@ impl Lane {
     }
 }
 
-/// A few rows of the picture, and what reaches into them.
+/// Some rows of the image, with the instances whose supports intersect them.
 struct Band<'a, 'rows, K: Sink> {
     net: &'a Net,
     sink: &'a K,
     columns: &'a [Lane],
-    /// Indices of instances, in their order.
+    /// Indices of instances, ascending.
     members: Vec<u32>,
     ys: Lane,
     rows: &'a mut [&'rows mut [K::Value]],
 }
 
 impl<K: Sink> Band<'_, '_, K> {
-    /// Fills the rows; `planes` is memory to work in.
+    /// Renders the rows; `planes` is scratch memory.
     fn render(mut self, level: Level, planes: &mut Planes<K>) {
         for columns in self.columns {
             if !columns.is_finite() || !self.ys.is_finite() {
@@ -122,7 +124,7 @@ impl<K: Sink> Band<'_, '_, K> {
         }
     }
 
-    /// Adds up the weights of all members.
+    /// Adds up the weights of all instances of the band.
     #[inline(always)]
     fn splat<S: Simd, P: Profile>(
         &self,
@@ -141,12 +143,13 @@ impl<K: Sink> Band<'_, '_, K> {
         for &member in &self.members {
             let instance = &self.net.instances[member as usize];
             let Instance { min, max, .. } = *instance;
+            // Find the pixels that the support can touch.
             let rows = self.ys.line.touched(min.y, max.y);
             let columns = columns.line.touched(min.x, max.x);
             if rows.is_empty() || columns.is_empty() {
                 continue;
             }
-            // A window has less than 2^32 columns and rows.
+            // A window has fewer than 2^32 columns and rows.
             let footprint = Footprint {
                 column: columns.start as u32,
                 row: rows.start as u32,
@@ -164,7 +167,7 @@ impl<K: Sink> Band<'_, '_, K> {
         }
     }
 
-    /// Turns sums into values.
+    /// Converts sums to values.
     #[inline(always)]
     fn resolve<S: Simd>(&mut self, simd: S, columns: &Lane, planes: &mut Planes<K>) {
         let Range { start, end } = columns.range;
@@ -183,7 +186,7 @@ impl<K: Sink> Band<'_, '_, K> {
         }
     }
 
-    /// Marks pixels whose positions are not finite.
+    /// Writes the value for undefined pixels where positions are not finite.
     fn leave_undefined(&mut self, columns: &Range<usize>) {
         let per_pixel = self.sink.per_pixel();
         for row in self.rows.iter_mut() {
@@ -193,7 +196,7 @@ impl<K: Sink> Band<'_, '_, K> {
     }
 }
 
-/// The instances that reach into each band of `height` rows, in their order.
+/// Indices of the instances whose supports intersect each band of `height` rows, ascending.
 fn band_members(net: &Net, ys: &[f64], height: usize) -> Vec<Vec<u32>> {
     let mut members = vec![Vec::new(); ys.len().div_ceil(height)];
     let line = Line::new(ys);

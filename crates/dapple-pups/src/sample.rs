@@ -1,7 +1,8 @@
-//! The weights at one position.
+//! Weights at a single position.
 //!
-//! Candidates are evaluated in groups of eight: their axes are projected eight at a time, and then turned, so that a
-//! register holds the same axis of all candidates and the products of all of them go on side by side.
+//! Candidates are evaluated in groups of eight. Their axes are projected, eight axes of one candidate at a time. The
+//! registers are then transposed so that each holds one axis of all candidates, and the products of all candidates are
+//! computed in parallel.
 
 use crate::bins::{Bins, Candidates, GROUP};
 use crate::net::{AxisBlock, Exponents, Net};
@@ -14,13 +15,13 @@ use dapple_raster::simd::dispatch;
 use fearless_simd::{f32x4, f32x8, prelude::*};
 use glam::DVec2;
 
-/// Takes the records and the weights of a group of candidates.
+/// Callback with the records and the weights of a group of candidates.
 type TakeGroup<'a> = dyn FnMut(&[u32; GROUP], &[f32; GROUP]) + 'a;
 
 impl Net {
-    /// Calls `take(state, record, weight)`, which gives the next state, for every candidate at a position that is in
-    /// range, in the order in which weights are summed; `record` is its place in the [`Bins`]. Some weights are zero:
-    /// which ones cannot be foreseen, so that leaving them out costs more than it saves.
+    /// Folds the weights of all candidates at a position: calls `take(state, record, weight)`, which returns the next
+    /// state, in the order of summation. The position must be in range; `record` is an index in the [`Bins`]. Some
+    /// weights are zero. Skipping them costs more than it saves, since they are unpredictable.
     #[inline]
     pub(crate) fn fold_weights<A: Copy>(
         &self,
@@ -36,8 +37,8 @@ impl Net {
         state
     }
 
-    /// Calls `take` with the records and weights of one group of candidates after the other; compiled once, whatever is
-    /// made of the weights.
+    /// Calls `take` with the records and weights of each group of candidates. Not generic, so it is compiled once for
+    /// all uses of the weights.
     fn for_each_group(&self, position: DVec2, take: &mut TakeGroup<'_>) {
         match self.options.weight {
             AxialWeight::Cubic => {
@@ -49,10 +50,10 @@ impl Net {
         }
     }
 
-    /// The control point nearest to a position; of equals, the first.
+    /// The control point nearest to a position; the first if several are equal.
     pub(crate) fn nearest(&self, position: DVec2) -> u32 {
         let bins = self.bins();
-        // The support of the nearest control point covers the position, so there is one; the first is only for form.
+        // The support of the nearest control point contains the position, so one is found; the initial index is unused.
         let mut nearest = (f64::INFINITY, 0);
         let mut candidates = bins.first_candidates(position);
         loop {
@@ -89,7 +90,7 @@ impl Net {
         }
     }
 
-    /// The weights of some candidates; zero where there is none.
+    /// Weights of a group of candidates; zero in unused lanes.
     #[inline(always)]
     fn weights_of<S: Simd, P: Profile>(
         &self,
@@ -99,6 +100,7 @@ impl Net {
         candidates: &Candidates,
         position: DVec2,
     ) -> [f32; GROUP] {
+        // Project the position onto the axes of the first block of each candidate.
         let mut projections = [f32x8::splat(simd, 0.0); GROUP];
         let mut offsets = [[0.0; GROUP]; 2];
         for lane in 0..GROUP {
@@ -106,12 +108,14 @@ impl Net {
             let (axes, center) = (&bins.axes[record], bins.centers[record]);
             let offset = [position.x - center.x, position.y - center.y].map(|axis| axis as f32);
             projections[lane] = project(simd, axes, offset);
-            // Kept apart, so that the position comes in as two numbers: together, it would wait for being written.
+            // Separate arrays let the compiler pass both numbers in registers; a pair would wait for a store.
             (offsets[0][lane], offsets[1][lane]) = (offset[0], offset[1]);
         }
+        // Multiply the axial weights of all candidates.
         let weights = profile.product(transposed(projections));
         let weights = weights * f32x8::from_slice(simd, &candidates.ones);
         let mut weights: [f32; GROUP] = weights.into();
+        // Apply further blocks of axes and orientations, candidate by candidate.
         if candidates.long != 0 || !self.shifts.is_empty() {
             for lane in 0..GROUP {
                 let record = candidates.records[lane] as usize;
@@ -137,7 +141,7 @@ fn project<S: Simd>(simd: S, axes: &AxisBlock, [x, y]: [f32; 2]) -> f32x8<S> {
     minus_u(simd, f32x8::from_slice(simd, &axes.x) * x, rest)
 }
 
-/// The weight of a control point, given that of its first block of axes.
+/// Multiplies the weight of a control point's first block of axes by the weights of its other blocks.
 #[inline(always)]
 fn go_on<S: Simd, P: Profile>(
     simd: S,
@@ -157,7 +161,7 @@ fn go_on<S: Simd, P: Profile>(
     weight
 }
 
-/// The product of the axial weights of a block of axes that fade.
+/// Product of the axial weights of a block of fading axes.
 #[inline(always)]
 fn faded<S: Simd, P: Profile>(
     simd: S,
@@ -176,11 +180,11 @@ fn faded<S: Simd, P: Profile>(
     product
 }
 
-/// Register `i` of the result holds lane `i` of every register.
+/// Transposes eight registers: register `i` of the result holds lane `i` of every register.
 #[inline(always)]
 fn transposed<S: Simd>(rows: [f32x8<S>; GROUP]) -> [f32x8<S>; GROUP] {
     let mut from = rows;
-    // Merging the two halves of the registers like a deck of cards, three times, turns them.
+    // Interleaving the two halves of the registers (a perfect shuffle) three times transposes them.
     for _ in 0..3 {
         let mut to = from;
         for i in 0..GROUP / 2 {
@@ -192,7 +196,7 @@ fn transposed<S: Simd>(rows: [f32x8<S>; GROUP]) -> [f32x8<S>; GROUP] {
     from
 }
 
-/// Equation 4 for one weight.
+/// Applies equation 4 to one weight.
 #[inline(always)]
 fn shifted<S: Simd>(simd: S, weight: f32, shift: [f32; 2], [x, y]: [f32; 2]) -> f32 {
     let (weight, x) = (f32x4::splat(simd, weight), f32x4::splat(simd, x));

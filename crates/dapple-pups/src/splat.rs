@@ -1,9 +1,9 @@
-//! The weights of control points, added to a band of pixels.
+//! Adds the weights of control points to a band of pixels.
 //!
-//! The pixels that a support can touch are taken in tiles: as wide as a register, from its first row on. The axes that
-//! matter in a tile are picked, and their weights multiplied up in all of its rows at once. Columns of tiles begin where
-//! registers of the whole band do: sums that lie across two cache lines, or across the sums that were stored before,
-//! take longer than all that is saved.
+//! The pixels that a support can touch are processed in tiles as wide as a register, starting at the support's first
+//! row. For each tile, the axes that matter are selected, and their weights are multiplied in all rows of the tile at
+//! once. Columns of tiles are aligned with the registers of the whole band. Otherwise, sums would cross cache lines or
+//! overlap earlier stores, which costs more time than tighter tiles save.
 
 use crate::net::{AxisBlock, BLOCK, Exponents, Instance};
 use crate::power::powers;
@@ -13,41 +13,41 @@ use crate::sink::{Planes, Sink};
 use crate::tile::{Strip, Tile, Tiles};
 use fearless_simd::prelude::*;
 
-/// Columns of the widest tile: a register at the widest level.
+/// Maximum number of columns of a tile: a register at the widest level.
 pub(crate) const LANES: usize = 16;
 
-/// Rows of the highest tile: with two numbers a pixel they fill half of 32 registers.
+/// Maximum number of rows of a tile: with two numbers for each pixel, they fill half of 32 registers.
 pub(crate) const ROWS: usize = 8;
 
-/// Rows of a tile where there are 16 registers, or where the support is small.
+/// Number of rows of a tile on processors with 16 registers, and for small supports.
 const FEW_ROWS: usize = ROWS / 2;
 
-/// Supports up to so many columns wide are taken in smaller tiles: of larger ones, too much would lie outside of them.
+/// Maximum width of supports that use small tiles, in columns. Too much of a large tile would be outside of them.
 const NARROW: u32 = 64;
 
-/// The pixels of a band, and what becomes of weights there.
+/// The pixels of a band, and the sink for their weights.
 pub(crate) struct Splatter<'a, P, K> {
     pub(crate) profile: P,
     pub(crate) sink: &'a K,
-    /// The coordinates of columns, with the last one again for as long as a tile can reach out.
+    /// Coordinates of the columns, padded with the last one for tiles that extend beyond it.
     pub(crate) xs: &'a [f64],
-    /// The coordinates of rows, likewise.
+    /// Coordinates of the rows, padded with the last one for tiles that extend beyond it.
     pub(crate) ys: &'a [f64],
 }
 
-/// A control point, or image of one, with all that its weights depend on.
+/// An instance of a control point, with all data that its weights depend on.
 #[derive(Clone, Copy)]
 pub(crate) struct Member<'a> {
     pub(crate) instance: &'a Instance,
     pub(crate) blocks: &'a [AxisBlock],
-    /// The exponents of the blocks; empty where no axis fades.
+    /// Exponents of the blocks; empty if no axis fades.
     pub(crate) exponents: &'a [Exponents],
-    /// ε times the orientation in the plane, where there are orientations.
+    /// ε times the orientation in the plane, if there are orientations.
     pub(crate) shift: Option<[f32; 2]>,
     pub(crate) footprint: Footprint,
 }
 
-/// The pixels of a band that a support can touch: the first, and how many columns and rows.
+/// The rectangle of pixels of a band that a support can touch.
 #[derive(Clone, Copy)]
 pub(crate) struct Footprint {
     pub(crate) column: u32,
@@ -57,7 +57,7 @@ pub(crate) struct Footprint {
 }
 
 impl Footprint {
-    /// The first column of the first tile, which is `width` columns wide.
+    /// The first column of the first tile, for tiles of `width` columns.
     #[inline(always)]
     fn first_column(&self, width: usize) -> usize {
         self.column as usize / width * width
@@ -65,7 +65,7 @@ impl Footprint {
 }
 
 impl<P: Profile, K: Sink> Splatter<'_, P, K> {
-    /// Adds the weights of a control point to the planes; `tiles` is memory to work in.
+    /// Adds the weights of a control point to the planes; `tiles` is scratch memory.
     #[inline(always)]
     pub(crate) fn add<S: Simd>(
         &self,
@@ -74,7 +74,7 @@ impl<P: Profile, K: Sink> Splatter<'_, P, K> {
         tiles: &mut Tiles,
         planes: &mut Planes<K>,
     ) {
-        // Where registers have 16 lanes, there are 32 of them.
+        // Processors whose registers have 16 lanes have 32 registers.
         if S::f32s::LEN == LANES && member.footprint.n_columns > NARROW {
             self.add_tiles::<S, ROWS>(simd, member, tiles, planes);
         } else {
@@ -82,7 +82,7 @@ impl<P: Profile, K: Sink> Splatter<'_, P, K> {
         }
     }
 
-    /// Adds the weights, in tiles as wide as a register and `N` rows high.
+    /// Adds the weights in tiles as wide as a register and `N` rows high.
     #[inline(always)]
     fn add_tiles<S: Simd, const N: usize>(
         &self,
@@ -91,6 +91,7 @@ impl<P: Profile, K: Sink> Splatter<'_, P, K> {
         tiles: &mut Tiles,
         planes: &mut Planes<K>,
     ) {
+        // Extend the footprint to whole tiles.
         let footprint = &member.footprint;
         let (column, row) = (footprint.first_column(S::f32s::LEN), footprint.row as usize);
         let n_columns = (footprint.column + footprint.n_columns) as usize - column;
@@ -102,6 +103,7 @@ impl<P: Profile, K: Sink> Splatter<'_, P, K> {
             (&self.xs[column..column + n_columns], S::f32s::LEN),
             &self.ys[row..row + n_rows],
         );
+        // Visit the tiles in the order of their number of axes.
         tiles.sort(simd);
         let mut place = [0; 2];
         while let Some(tile) = tiles.next(simd, &mut place) {
@@ -122,10 +124,12 @@ impl<P: Profile, K: Sink> Splatter<'_, P, K> {
         let x = S::f32s::from_slice(simd, &tiles.x(tile)[..S::f32s::LEN]);
         let strips = tiles.strips(tile);
         let mut weights = [S::f32s::splat(simd, 1.0); N];
+        // Multiply the active axes of the first block.
         if tile.active != 0 {
             let ax = &member.blocks[0].x;
             weights = self.products(simd, &strips[0], ax, tile.active, x);
         }
+        // Multiply all axes of the other blocks.
         let blocks = strips.iter().zip(member.blocks).enumerate().skip(1);
         for (index, (strip, block)) in blocks {
             let products: [S::f32s; N] = match member.exponents.get(index) {
@@ -138,11 +142,13 @@ impl<P: Profile, K: Sink> Splatter<'_, P, K> {
                 weights[row] *= products[row];
             }
         }
+        // Apply the orientation.
         if let Some(shift) = member.shift {
             let mut y = [0.0; N];
             y.copy_from_slice(&strips[0].y[..N]);
             weights = shift_weights(simd, &weights, shift, x, &y);
         }
+        // Add the weights to the sums of the tile.
         let footprint = &member.footprint;
         let column = footprint.first_column(S::f32s::LEN) + tile.column as usize * S::f32s::LEN;
         let row = footprint.row as usize + tile.strip as usize * N;
@@ -151,7 +157,7 @@ impl<P: Profile, K: Sink> Splatter<'_, P, K> {
         self.sink.add(simd, point, &weights, sums, lane);
     }
 
-    /// The products of the axial weights of a block of axes that fade, in `N` rows.
+    /// Products of the axial weights of a block of fading axes, in `N` rows.
     #[inline(always)]
     fn faded<S: Simd, V: SimdFloat<S, Element = f32>, const N: usize>(
         &self,
@@ -181,7 +187,7 @@ impl<P: Profile, K: Sink> Splatter<'_, P, K> {
         products
     }
 
-    /// The products of the axial weights of a block, in `N` rows. At least one axis is `active`.
+    /// Products of the axial weights of a block, in `N` rows. At least one axis must be `active`.
     #[inline(always)]
     fn products<S: Simd, V: SimdFloat<S, Element = f32>, const N: usize>(
         &self,
@@ -215,13 +221,13 @@ impl<P: Profile, K: Sink> Splatter<'_, P, K> {
     }
 }
 
-/// A bit for each axis of a block.
+/// Bits of all axes of a block.
 const ALL_AXES: u32 = (1 << BLOCK) - 1;
 
-/// The place of the lowest bit, which is taken away.
+/// Removes the lowest bit, and returns its index.
 #[inline(always)]
 fn take_lowest(bits: &mut u32) -> usize {
-    // The remainder tells the compiler what is known of eight bits.
+    // The remainder proves to the compiler that the index is below `BLOCK`.
     let lowest = bits.trailing_zeros() as usize % BLOCK;
     *bits &= bits.wrapping_sub(1);
     lowest

@@ -1,4 +1,4 @@
-//! Values at the control points, interpolated (equation 3).
+//! Interpolation of values at the control points (equation 3).
 
 use crate::bins::Bins;
 use crate::pups::LEAST_TOTAL;
@@ -11,11 +11,11 @@ use fearless_simd::prelude::*;
 use glam::DVec2;
 use std::sync::OnceLock;
 
-/// A scalar texture: at every position the mean of the control points' values, weighted after equation 3.
+/// A scalar texture: at every position, the weighted mean of the control points' values (equation 3).
 ///
-/// Its values lie between the smallest and the largest value of a control point, but for the rounding of single
-/// precision. With an axis scale of at most 1 it has, at a control point, that point's value. At a position that is
-/// not finite it is NaN.
+/// Values are between the smallest and the largest value of a control point, up to rounding in single precision. With
+/// an axis scale of at most 1, the value at a control point is that point's value. It is NaN at a position that is not
+/// finite.
 ///
 /// # Examples
 ///
@@ -36,7 +36,7 @@ pub struct Texture {
     values: Values,
 }
 
-/// A texture of vectors, such as colors: [`Texture`] for `N` numbers at once.
+/// A texture of vectors, such as colors: a [`Texture`] with `N` components.
 #[derive(Clone, Debug)]
 pub struct VectorTexture<const N: usize> {
     values: Values,
@@ -48,7 +48,7 @@ impl Texture {
         Ok(Self { values })
     }
 
-    /// The net that the values belong to.
+    /// The net of the control points.
     #[must_use]
     pub fn pups(&self) -> &Pups {
         &self.values.pups
@@ -88,7 +88,7 @@ impl<const N: usize> VectorTexture<N> {
         Ok(Self { values })
     }
 
-    /// The net that the values belong to.
+    /// The net of the control points.
     #[must_use]
     pub fn pups(&self) -> &Pups {
         &self.values.pups
@@ -108,7 +108,7 @@ impl<const N: usize> VectorTexture<N> {
         vector
     }
 
-    /// The vectors at the pixel centers of a window, into memory of its size.
+    /// Renders the vectors at the pixel centers of a window into `out`.
     ///
     /// # Errors
     ///
@@ -124,12 +124,12 @@ impl<const N: usize> VectorTexture<N> {
         Ok(())
     }
 
-    /// The vectors at the pixel centers of a window, as a new raster.
+    /// Renders the vectors at the pixel centers of a window to a new raster.
     ///
     /// # Errors
     ///
     /// [`Empty`](dapple_raster::RasterErrorKind::Empty) or [`TooLarge`](dapple_raster::RasterErrorKind::TooLarge) if
-    /// the window has a bad size.
+    /// the size of the window is invalid.
     pub fn to_raster(&self, window: &Window) -> Result<Raster<[f32; N]>, RasterError> {
         let mut raster = Raster::filled(window.size, [0.0; N])?;
         self.render(window, raster.view_mut())?;
@@ -137,21 +137,21 @@ impl<const N: usize> VectorTexture<N> {
     }
 }
 
-/// The values of the control points of a net, `width` numbers each.
+/// The values of the control points of a net, with `width` numbers each.
 ///
-/// The width is a number, not a parameter of the type: what is done with values is compiled here, and in no crate that uses
-/// vectors of some width.
+/// The width is a field, not a parameter of the type, so that the code for values is compiled in this crate only, not
+/// in every crate that uses vectors.
 #[derive(Clone, Debug)]
 struct Values {
     pups: Pups,
     width: usize,
     by_point: Vec<f32>,
-    /// The values in the order of the records of the [`Bins`]; made when the first position is asked for.
+    /// Values in the order of the records of the [`Bins`]; computed on first use.
     by_record: OnceLock<Vec<f32>>,
 }
 
 impl Values {
-    /// Refuses columns of another length, and numbers that are not finite.
+    /// Checks the number of values, and that all numbers are finite.
     fn new(pups: Pups, width: usize, by_point: Vec<f32>) -> Result<Self, PupsError> {
         PupsError::check_count("values", by_point.len() / width, pups.n_points())?;
         if let Some(&number) = by_point.iter().find(|number| !number.is_finite()) {
@@ -179,7 +179,7 @@ impl Values {
         &self.by_point[point as usize * self.width..][..self.width]
     }
 
-    /// The weighted mean at one position, summed as [`Mean`] does.
+    /// The weighted mean at one position, summed in the order of [`Mean`].
     fn sample(&self, position: DVec2, mean: &mut [f32]) {
         let Some(position) = self.pups.local(position) else {
             mean.fill(f32::NAN);
@@ -203,6 +203,7 @@ impl Values {
                 total + weight
             }),
         };
+        // If the weights underflow, use the nearest control point.
         if total < LEAST_TOTAL {
             mean.copy_from_slice(self.of_point(net.nearest(position)));
         } else {
@@ -210,7 +211,7 @@ impl Values {
         }
     }
 
-    /// The weighted means at the pixel centers of a window.
+    /// Renders the weighted means at the pixel centers of a window, up to three components at a time.
     fn render(&self, window: &Window, rows: &mut [&mut [f32]]) {
         let mut first = 0;
         while first < self.width {
@@ -228,13 +229,13 @@ impl Values {
     }
 }
 
-/// Sums up weights, and weights times `N` numbers of each value.
+/// Sink that sums weights, and weights times `N` components of each value.
 pub(crate) struct Mean<'a, const N: usize> {
-    /// The numbers of all values, one value after the other.
+    /// Components of all values, interleaved.
     values: &'a [f32],
-    /// How many numbers a value has.
+    /// Number of components of a value.
     width: usize,
-    /// Which of them is the first of the `N`.
+    /// Index of the first of the `N` components.
     first: usize,
 }
 
@@ -247,7 +248,7 @@ impl<'a, const N: usize> Mean<'a, N> {
         }
     }
 
-    /// The numbers of a control point.
+    /// The `N` components of a control point's value.
     #[inline(always)]
     fn of_point(&self, point: u32) -> &[f32] {
         &self.values[point as usize * self.width + self.first..][..N]
@@ -294,6 +295,7 @@ impl<const N: usize> Sink for Mean<'_, N> {
         values: &mut [f32],
         nearest: impl Fn(usize) -> u32,
     ) {
+        // Divide the sums by the total weights.
         let totals = &sums[..LANES];
         if N == 1 && self.width == 1 && values.len() == LANES {
             divide(simd, &sums[LANES..2 * LANES], totals, values);
@@ -305,6 +307,7 @@ impl<const N: usize> Sink for Mean<'_, N> {
                 }
             }
         }
+        // If the weights of a pixel underflow, use the nearest control point.
         if is_any_below(simd, totals, LEAST_TOTAL) {
             for (pixel, vector) in values.chunks_exact_mut(self.width).enumerate() {
                 if totals[pixel] < LEAST_TOTAL {
@@ -320,14 +323,14 @@ impl<const N: usize> Sink for Mean<'_, N> {
     }
 }
 
-/// Adds a register to numbers, from `at` on.
+/// Adds a register to the numbers from index `at` on.
 #[inline(always)]
 fn add<S: Simd, V: SimdFloat<S, Element = f32>>(simd: S, sums: &mut [f32], at: usize, summand: V) {
     let sums = &mut sums[at..at + V::LEN];
     (V::from_slice(simd, sums) + summand).store_slice(sums);
 }
 
-/// Divides number by number.
+/// Divides sums by totals, element by element.
 #[inline(always)]
 fn divide<S: Simd>(simd: S, sums: &[f32], totals: &[f32], quotients: &mut [f32]) {
     let n = S::f32s::LEN;
@@ -338,7 +341,7 @@ fn divide<S: Simd>(simd: S, sums: &[f32], totals: &[f32], quotients: &mut [f32])
     }
 }
 
-/// Whether one of the numbers is below a limit.
+/// Whether any number is below a limit.
 #[inline(always)]
 fn is_any_below<S: Simd>(simd: S, numbers: &[f32], limit: f32) -> bool {
     let limit = S::f32s::splat(simd, limit);

@@ -1,23 +1,22 @@
-//! The tiles of a band as seen from a control point, and which of its axes matter in each.
+//! The tiles of a band relative to a control point, and the axes that matter in each tile.
 //!
-//! An axis whose `u` is 1 over a whole tile is left out, which changes no bit; a control point with an axis whose `u` is
-//! 0 over a whole tile has no weight there. Both are decided with the very numbers that the pixels would get: `u` is
-//! computed by subtractions and products, whose rounding is monotonic, so the corners of the tile have the least and the
-//! most.
+//! An axis whose `u` is 1 in a whole tile is left out, which does not change a bit. A control point with an axis whose
+//! `u` is 0 in a whole tile has no weight there. Both tests use the same numbers as the pixels: `u` is computed by
+//! subtractions and products, whose rounding is monotonic, so its extremes are at the corners of the tile.
 //!
-//! What depends on columns only, or on rows only, is computed once for all tiles. Where there are many, they come out in
-//! the order of how many axes matter in them: then the processor foresees where the loop over axes ends, which it cannot
-//! when the numbers follow each other at random. Where there are few, all axes are taken to matter, for the same reason.
+//! Terms that depend only on columns or only on rows are computed once for all tiles. If there are many tiles, they are
+//! sorted by their number of axes. The processor can then predict the end of the loop over axes, which it cannot if the
+//! numbers alternate at random. If there are few tiles, all axes count as relevant, for the same reason.
 //!
-//! Here, as in the rest of the evaluation, registers pass through plain loops only: a closure in an iterator or an array's
-//! `map` is compiled for the baseline processor if it is not inlined, and then costs more than what it does.
+//! In all of the evaluation, registers are processed by plain loops only. A closure in an iterator or in an array's
+//! `map` is compiled for the baseline processor if it is not inlined, and then costs more than the work that it does.
 
 use crate::net::{AxisBlock, BLOCK};
 use crate::splat::{LANES, ROWS};
 use fearless_simd::{f32x8, f64x4, prelude::*};
 use glam::DVec2;
 
-/// Up to so many tiles are not worth sorting.
+/// Maximum number of tiles that are not worth sorting.
 const FEW: usize = 8;
 
 /// The tiles that the support of a control point can touch.
@@ -25,15 +24,15 @@ const FEW: usize = 8;
 pub(crate) struct Tiles {
     columns: Vec<Column>,
     n_columns: usize,
-    /// The rows of tiles, for each block of axes.
+    /// Rows of tiles, with one element for each block of axes.
     strips: Vec<Strip>,
     n_strips: usize,
     n_blocks: usize,
-    /// The axes of the first block, as bits.
+    /// A bit for each axis of the first block.
     axes: u32,
-    /// The tiles by their number of axes, in a stretch for each number that is as long as there are tiles.
+    /// Tiles sorted by their number of axes. Each number has a section with room for all tiles.
     sorted: Vec<Tile>,
-    /// How much of each stretch is used.
+    /// Number of tiles in each section.
     lengths: [usize; STRETCHES],
 }
 
@@ -41,45 +40,45 @@ pub(crate) struct Tiles {
 #[derive(Clone, Copy, Default)]
 #[repr(align(64))]
 struct Column {
-    /// The offsets from the control point, as many as a tile has columns.
+    /// Offsets from the control point, one for each column of the tile.
     x: [f32; LANES],
-    /// The least and the most of `a_x d_x` over them, for every axis of the first block.
+    /// Minimum and maximum of `a_x d_x` over the columns, for every axis of the first block.
     least: [f32; BLOCK],
     most: [f32; BLOCK],
 }
 
-/// A row of tiles, as one block of axes has it.
+/// A row of tiles, for one block of axes.
 #[derive(Clone, Copy, Default)]
 #[repr(align(64))]
 pub(crate) struct Strip {
     /// `1 − a_y d_y`, for every axis and row.
     pub(crate) rest: [[f32; ROWS]; BLOCK],
-    /// Its least and its most over the rows, for every axis.
+    /// Minimum and maximum of `rest` over the rows, for every axis.
     least: [f32; BLOCK],
     most: [f32; BLOCK],
-    /// The offsets from the control point.
+    /// Offsets from the control point, one for each row.
     pub(crate) y: [f32; ROWS],
 }
 
 /// A tile in which the control point may have a weight.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Tile {
-    /// Its place among the columns and rows of tiles.
+    /// Column and row of the tile, in tiles.
     pub(crate) column: u32,
     pub(crate) strip: u32,
-    /// The axes of the first block to compute with, as bits: all that matter, or none.
+    /// Bits of the axes of the first block to multiply: all that matter, or none.
     pub(crate) active: u32,
 }
 
-/// A stretch for every number of axes, and one for tiles without a weight.
+/// Number of sections: one for every number of axes, and one for tiles without a weight.
 const STRETCHES: usize = BLOCK + 2;
 
-/// The last stretch.
+/// Index of the section for tiles without a weight.
 const NOTHING: usize = BLOCK + 1;
 
 impl Tiles {
-    /// Goes to the tiles of a control point, given its axes and center; `xs` are the coordinates of columns from the first
-    /// tile on, `width` to a tile, and `ys` those of rows, `H` to a tile.
+    /// Computes the tiles of a control point, given its axes and center. `xs` are the coordinates of the columns from
+    /// the first tile on, with `width` for each tile, and `ys` those of the rows, with `H` for each tile.
     #[inline(always)]
     pub(crate) fn enter<S: Simd, const H: usize>(
         &mut self,
@@ -110,13 +109,13 @@ impl Tiles {
         }
     }
 
-    /// Whether there are so few tiles that they are not worth sorting.
+    /// Whether there are too few tiles to be worth sorting.
     #[inline(always)]
     fn are_few(&self) -> bool {
         self.n_columns * self.n_strips <= FEW
     }
 
-    /// Sorts the tiles by how many axes matter, if they are worth it.
+    /// Sorts the tiles by their number of axes that matter, if there are enough.
     #[inline(always)]
     pub(crate) fn sort<S: Simd>(&mut self, simd: S) {
         if self.are_few() {
@@ -128,6 +127,7 @@ impl Tiles {
         }
         self.lengths = [0; STRETCHES];
         let columns = &self.columns[..self.n_columns];
+        // Append each tile to the section of its number of axes.
         for strip in 0..self.n_strips {
             let rest = self.strips[strip * self.n_blocks].ends(simd);
             for (column, ends) in columns.iter().enumerate() {
@@ -148,8 +148,8 @@ impl Tiles {
         }
     }
 
-    /// The next tile with a weight after sorting. `place` leads there: a row and a column of tiles where there are few, else
-    /// a stretch and a place in it, both from 0 on.
+    /// The next tile with a weight, after sorting. The position of the iteration, initially zero, is a row and a column
+    /// of tiles if there are few, otherwise a section and an index in it.
     #[inline(always)]
     pub(crate) fn next<S: Simd>(&self, simd: S, [outer, inner]: &mut [usize; 2]) -> Option<Tile> {
         if self.are_few() {
@@ -162,7 +162,7 @@ impl Tiles {
                 let rest = self.strips[strip * self.n_blocks].ends(simd);
                 let (active, has_weight) = self.columns[column].active_axes(simd, rest);
                 if has_weight {
-                    // All axes if any matters. There are less than 2^32 columns and rows of pixels.
+                    // Use all axes if any matters. There are fewer than 2^32 columns and rows of pixels.
                     return Some(Tile {
                         column: column as u32,
                         strip: strip as u32,
@@ -183,13 +183,13 @@ impl Tiles {
         None
     }
 
-    /// The offsets of the columns of a tile.
+    /// Offsets of the columns of a tile from the control point.
     #[inline(always)]
     pub(crate) fn x(&self, tile: Tile) -> &[f32; LANES] {
         &self.columns[tile.column as usize].x
     }
 
-    /// The rows of a tile, as each block of axes has them.
+    /// The rows of a tile, for each block of axes.
     #[inline(always)]
     pub(crate) fn strips(&self, tile: Tile) -> &[Strip] {
         &self.strips[tile.strip as usize * self.n_blocks..][..self.n_blocks]
@@ -214,15 +214,15 @@ impl Column {
         left.max(right).store_slice(&mut self.most);
     }
 
-    /// Which axes of the first block matter in a tile of this column, as bits, and whether none of them leaves it without
-    /// a weight. `rest` are the [ends](Strip::ends) of its row.
+    /// Bits of the axes of the first block that matter in a tile of this column, and whether the control point has a
+    /// weight there. `rest` are the [ends](Strip::ends) of the tile's row.
     #[inline(always)]
     fn active_axes<S: Simd>(&self, simd: S, rest: [f32x8<S>; 2]) -> (u32, bool) {
         let least = rest[0] - f32x8::from_slice(simd, &self.most);
         let most = rest[1] - f32x8::from_slice(simd, &self.least);
         let active = least.simd_lt(f32x8::splat(simd, 1.0)).to_bitmask();
         let without = most.simd_le(f32x8::splat(simd, 0.0)).to_bitmask();
-        // Eight lanes, eight bits.
+        // Eight lanes give eight bits.
         (active as u32, without == 0)
     }
 }
@@ -253,7 +253,7 @@ impl Strip {
         }
     }
 
-    /// The least and the most of `1 − a_y d_y`, for every axis.
+    /// Minimum and maximum of `1 − a_y d_y`, for every axis.
     #[inline(always)]
     fn ends<S: Simd>(&self, simd: S) -> [f32x8<S>; 2] {
         [
@@ -263,7 +263,7 @@ impl Strip {
     }
 }
 
-/// The offsets of eight coordinates from a control point.
+/// Offsets of eight coordinates from a control point.
 #[inline(always)]
 fn offsets<S: Simd>(simd: S, coordinates: &[f64], center: f64) -> f32x8<S> {
     let low = f64x4::from_slice(simd, &coordinates[..4]) - center;

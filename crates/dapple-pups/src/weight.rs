@@ -1,17 +1,17 @@
-//! Axial weights (equation 1) and what replaces them.
+//! Axial weights: equation 1 and its alternatives.
 //!
-//! An axial weight is a function of `u = 1 − p`, where `p` is the projection of a position onto an axis as a fraction
-//! of the axis: 1 at the control point and behind it, 0 at the end of the axis and beyond. Whatever replaces the
-//! cubic keeps three promises, on which everything else rests:
+//! An axial weight is a function of `u = 1 − p`, where `p` is the projection of a position onto an axis, as a fraction
+//! of the axis: 1 at the control point and behind it, 0 at the end of the axis and beyond. All alternatives to the
+//! cubic have three properties that the rest of the crate relies on:
 //!
-//! * it is 1 at `u = 1` and 0 at `u = 0`, *exactly, in the arithmetic used*: so the texture interpolates its control
-//!   points, a support ends where it should, and axes that lie behind can be left out without changing a bit;
-//! * it is positive in between: so the weights of a position never cancel, and the denominator of equation 3 is at
-//!   least the weight of the nearest control point, in which every factor is at least the weight at `u = 1 − 1/(2s)`
-//!   for an axis scale of `s`;
-//! * its slope is zero at both ends: so the clamps of the projection leave no crease.
+//! * They are 1 at `u = 1` and 0 at `u = 0`, *exactly, in the arithmetic used*. So the texture interpolates its control
+//!   points, supports have exact ends, and axes whose `u` is 1 can be left out without changing a bit.
+//! * They are positive in between. So the weights of a position never cancel, and the denominator of equation 3 is at
+//!   least the weight of the nearest control point. Every factor of that weight is at least the axial weight at
+//!   `u = 1 − 1/(2s)`, for an axis scale of `s`.
+//! * Their slope is zero at both ends. So clamping the projection causes no crease.
 //!
-//! The functions are written once, for one number and for a register of them alike.
+//! The functions are generic over one number and a register of numbers.
 
 use core::ops::{Add, Mul, Sub};
 
@@ -88,7 +88,7 @@ impl AxialWeight {
         }
     }
 
-    /// The derivative of the weight by `u`, in `[0, 1]`.
+    /// The derivative of the weight with respect to `u`, in `[0, 1]`.
     pub(crate) fn slope(self, u: f64) -> f64 {
         let cubic_slope = 6.0 * u * (1.0 - u);
         match self {
@@ -105,7 +105,7 @@ impl AxialWeight {
     }
 }
 
-/// A number, or a register of numbers: what the formulas of this crate compute with.
+/// A number or a register of numbers, on which the formulas of this crate operate.
 pub(crate) trait Lane:
     Copy
     + Add<Output = Self>
@@ -134,7 +134,7 @@ fn cubic<V: Lane>(u: V) -> V {
     u * u * (u * -2.0 + 3.0)
 }
 
-/// `T_n(x)` by its recurrence. At 1 every step gives exactly 1, at −1 exactly ±1.
+/// `T_n(x)` by its recurrence. The result is exact at the ends: 1 at 1, and ±1 at −1.
 #[inline(always)]
 fn chebyshev<V: Lane>(n: u32, x: V) -> V {
     let mut former = x * 0.0 + 1.0;
@@ -145,8 +145,8 @@ fn chebyshev<V: Lane>(n: u32, x: V) -> V {
     latter
 }
 
-/// `T_n(2u − 1)` and its derivative by `u`: twice `n` times the Chebyshev polynomial of the second kind of degree
-/// `n − 1`.
+/// `T_n(2u − 1)` and its derivative with respect to `u`: `2n` times the Chebyshev polynomial of the second kind of
+/// degree `n − 1`.
 fn swing(n: u32, u: f64) -> (f64, f64) {
     let x = 2.0 * u - 1.0;
     let (mut former, mut latter) = ([1.0, 0.0], [x, 1.0]);
