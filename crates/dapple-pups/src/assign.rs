@@ -4,9 +4,9 @@
 //! 2013, section 3: control points get their attributes "randomly, according to spatial location or graph connectivity,
 //! or according to a reference image".
 //!
-//! Every function returns a column: one value, label or vector for each control point, in their order. What is random
-//! depends on the seed and the index of the point alone, so a point that keeps its index keeps its attribute. Give each
-//! column a seed of its own: [`Seed::child`](dapple_hash::Seed::child).
+//! Every function returns a column: one value, label or vector for each control point, in order. Random attributes
+//! depend only on the seed and the index of the point, so a point that keeps its index keeps its attribute. Use a
+//! separate seed for each column: [`Seed::child`](dapple_hash::Seed::child).
 
 mod groups;
 mod labels;

@@ -1,8 +1,8 @@
-//! A texture whose control points are inserted, moved, removed and changed one by one, as in an editor.
+//! A texture whose control points can be inserted, moved, removed and changed one by one, as in an editor.
 //!
-//! An edit changes the weights of the point, and of those that it is or was connected to, within their supports; nothing
-//! else. So an edit says in which rectangles it has changed the texture, and the net of a window is made of the points whose
-//! supports reach into it, in their order, which gives the bits of the whole net.
+//! An edit changes the weights of the point, and of all points that it is or was connected to, within their supports.
+//! So an edit returns the rectangles in which it changed the texture. The net of a window is built from the points
+//! whose supports intersect it, in order, which gives the bits of the whole net.
 
 use crate::net::Net;
 use crate::support::padded_box;
@@ -17,18 +17,18 @@ use dapple_raster::{RasterViewMut, Window};
 use glam::{DVec2, DVec3};
 use std::sync::Arc;
 
-/// The most copies of a rectangle in a picture that are told apart.
+/// Maximum number of copies of a rectangle in an image that get separate windows.
 const COPIES_LIMIT: f64 = 64.0;
 
-/// A texture of control points that can be edited: at any time that of [`control_points`](crate::control_points) for the
+/// A texture of control points that can be edited. It always equals [`control_points`](crate::control_points) of the
 /// same points, bit for bit.
 ///
-/// An index is the place in [`points`](Self::points): a new point comes last, and when a point is removed, those after it
-/// move up by one, as in a list.
+/// An index is a position in [`points`](Self::points). A new point is appended. When a point is removed, the indices
+/// after it decrease by one, as in a list.
 ///
-/// An edit of some points among many, and drawing what it changed, takes no longer than among few, where the domain wraps
-/// along both axes. Along an axis that does not wrap, supports of points at the border have no end: windows are then made of all
-/// points.
+/// The time for an edit of a few points, and for rendering the changed windows, does not depend on the number of
+/// points, if the domain wraps along both axes. Along an axis that does not wrap, supports of points at the border are
+/// unbounded, and windows are rendered from all points.
 ///
 /// # Examples
 ///
@@ -50,17 +50,17 @@ const COPIES_LIMIT: f64 = 64.0;
 /// ```
 #[derive(Clone, Debug)]
 pub struct EditablePups {
-    /// The points as they are now, each with its own orientation, if they have any.
+    /// Current points, each with its own orientation if there are orientations.
     options: ControlPoints,
     graph: EditableDelaunay,
-    /// No support reaches further than this.
+    /// Maximum extent of the supports from their points, along each axis.
     reach: DVec2,
 }
 
-/// A rectangle of the plane, outside of which an edit changed nothing.
+/// A rectangle of the plane that contains all changes of an edit.
 ///
-/// Along an axis that wraps, it begins in the domain, and where it ends past it, goes on at its beginning. It is infinite
-/// where the supports of points on a border that does not wrap have no end.
+/// Along an axis that wraps, it starts in the domain, and the part past the domain's end continues at its start. It is
+/// infinite where the supports of points at a border that does not wrap are unbounded.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Changed {
     /// The corner with the smallest coordinates.
@@ -70,18 +70,19 @@ pub struct Changed {
 }
 
 impl EditablePups {
-    /// A texture to edit. Orientations that the options give become those of the points.
+    /// Creates an editable texture. Orientations of the options are assigned to the points.
     ///
     /// # Errors
     ///
-    /// Those of [`control_points`](crate::control_points), and [`Conflict`](PupsErrorKind::Conflict) for points that move.
+    /// The errors of [`control_points`](crate::control_points), and [`Conflict`](PupsErrorKind::Conflict) for points
+    /// that move.
     pub fn new(mut options: ControlPoints, seed: Seed) -> Result<Self, PupsError> {
         if options.net.motion.is_some() {
             let rule = "points with a `motion` cannot be edited; edit them without it";
             return Err(PupsError::new(PupsErrorKind::Conflict { rule }));
         }
         let points = options.point_set()?;
-        // Refuses all that a texture refuses.
+        // Check everything that a texture checks.
         let field = crate::control_points(&options, seed)?;
         let nets = field.nets();
         let orientations = nets[0].orientations();
@@ -101,13 +102,13 @@ impl EditablePups {
         Ok(editable)
     }
 
-    /// The points, by their index.
+    /// The points, in the order of their indices.
     #[must_use]
     pub fn points(&self) -> &[ControlPoint] {
         &self.options.points
     }
 
-    /// The options that make the same texture anew.
+    /// The options that make an equal texture.
     #[must_use]
     pub fn options(&self) -> &ControlPoints {
         &self.options
@@ -119,15 +120,18 @@ impl EditablePups {
         self.graph.to_graph()
     }
 
-    /// Adds a point after the last one.
+    /// Appends a point.
     ///
     /// # Errors
     ///
-    /// [`Graph`](PupsErrorKind::Graph) for a position outside of the domain or at another point,
-    /// [`ShortAxis`](PupsErrorKind::ShortAxis) for one too close to another, [`Range`](PupsErrorKind::Range) for a value that
-    /// is not finite or an orientation without a length, [`Conflict`](PupsErrorKind::Conflict) for an orientation where points
-    /// have none, or none where they have one, and for a point that has not either a value or a label,
-    /// [`Count`](PupsErrorKind::Count) for a label without a value. Nothing has changed then.
+    /// * [`Graph`](PupsErrorKind::Graph) for a position outside of the domain or at another point
+    /// * [`ShortAxis`](PupsErrorKind::ShortAxis) for a position too close to another point
+    /// * [`Range`](PupsErrorKind::Range) for a value that is not finite or an orientation without a length
+    /// * [`Conflict`](PupsErrorKind::Conflict) if only the new point or only the other points have an orientation, or
+    ///   if the point does not have exactly one of value and label
+    /// * [`Count`](PupsErrorKind::Count) for a label without a value
+    ///
+    /// The texture is unchanged after an error.
     pub fn insert(&mut self, point: ControlPoint) -> Result<Vec<Changed>, PupsError> {
         self.check(&point)?;
         let at = DVec2::new(point.x, point.y);
@@ -141,12 +145,13 @@ impl EditablePups {
         Ok(self.changed(&stars, [at; 2]))
     }
 
-    /// Moves a point; along wrapped axes it may go past the end of the domain.
+    /// Moves a point. Along wrapped axes, the position may be past the end of the domain.
     ///
     /// # Errors
     ///
-    /// [`Graph`](PupsErrorKind::Graph) for a position outside of the domain or at another point, or if there is no such
-    /// point, and [`ShortAxis`](PupsErrorKind::ShortAxis) for one too close to another. Nothing has changed then.
+    /// [`Graph`](PupsErrorKind::Graph) for a position outside of the domain or at another point, or for an invalid
+    /// index, and [`ShortAxis`](PupsErrorKind::ShortAxis) for a position too close to another point. The texture is
+    /// unchanged after an error.
     pub fn move_to(&mut self, point: PointIdx, position: DVec2) -> Result<Vec<Changed>, PupsError> {
         let former = self.graph.star(point)?.center;
         let stars = self.graph.move_to(point, position)?;
@@ -159,12 +164,12 @@ impl EditablePups {
         Ok(self.changed(&stars, [former, position]))
     }
 
-    /// Takes a point away; those after it move up by one.
+    /// Removes a point; the indices after it decrease by one.
     ///
     /// # Errors
     ///
-    /// [`Graph`](PupsErrorKind::Graph) if there is no such point, and [`NoPoints`](PupsErrorKind::NoPoints) if it is the last
-    /// one. Nothing has changed then.
+    /// [`Graph`](PupsErrorKind::Graph) for an invalid index, and [`NoPoints`](PupsErrorKind::NoPoints) for the only
+    /// remaining point. The texture is unchanged after an error.
     pub fn remove(&mut self, point: PointIdx) -> Result<Vec<Changed>, PupsError> {
         let at = self.graph.star(point)?.center;
         if self.options.points.len() == 1 {
@@ -176,12 +181,12 @@ impl EditablePups {
         Ok(self.changed(&stars, [at; 2]))
     }
 
-    /// Gives a point a value of its own, in place of another or of a label, and an orientation.
+    /// Sets the value of a point, which replaces its previous value or label, and its orientation.
     ///
     /// # Errors
     ///
-    /// [`Graph`](PupsErrorKind::Graph) if there is no such point, and those of [`insert`](Self::insert) for a value and an
-    /// orientation. Nothing has changed then.
+    /// [`Graph`](PupsErrorKind::Graph) for an invalid index, and the errors of [`insert`](Self::insert) for a value and
+    /// an orientation. The texture is unchanged after an error.
     pub fn set(
         &mut self,
         point: PointIdx,
@@ -201,7 +206,7 @@ impl EditablePups {
         Ok(self.changed(&[star], [at; 2]))
     }
 
-    /// The parts of a picture that have changed: windows of its pixels, which may overlap.
+    /// Windows of an image's pixels that contain the changed rectangles. They may overlap.
     #[must_use]
     pub fn windows(&self, changed: &[Changed], picture: &Window) -> Vec<Window> {
         let mut windows = Vec::new();
@@ -210,7 +215,7 @@ impl EditablePups {
             for &(row, n_rows) in &rows {
                 for &(column, n_columns) in &columns {
                     let first = [i64::from(column), i64::from(row)];
-                    // A part of a window is a window.
+                    // A crop of a window is a window.
                     windows.extend(picture.crop(first, [n_columns, n_rows]));
                 }
             }
@@ -218,20 +223,21 @@ impl EditablePups {
         windows
     }
 
-    /// Fills a window with the values of the texture.
+    /// Renders the values of the texture in a window.
     ///
     /// # Errors
     ///
-    /// [`Raster`](PupsErrorKind::Raster) if `out` has another size than the window.
+    /// [`Raster`](PupsErrorKind::Raster) if the size of `out` is not that of the window.
     pub fn render(&self, window: &Window, out: RasterViewMut<'_, f32>) -> Result<(), PupsError> {
         Ok(self.field(window)?.render(window, out)?)
     }
 
-    /// The texture in a window: of the points whose supports reach into it.
+    /// The texture of the points whose supports intersect a window.
     fn field(&self, window: &Window) -> Result<Arc<dyn NetField>, PupsError> {
         let [width, height] = window.size;
         let corners = [[0, 0], [width.max(1) - 1, height.max(1) - 1]];
         let [first, last] = corners.map(|[x, y]| DVec2::from(window.position(x, y)));
+        // Select the points, and build their net in the order of their indices.
         let (low, high) = (first.min(last) - self.reach, first.max(last) + self.reach);
         let points = self.graph.points_in(low, high);
         let given = points
@@ -255,7 +261,7 @@ impl EditablePups {
             .texture(Pups::of_net(net, points), values)
     }
 
-    /// Refuses what a point cannot hold.
+    /// Checks the value and the orientation of a point.
     fn check(&self, point: &ControlPoint) -> Result<(), PupsError> {
         for value in self.options.numbers([point])? {
             let (finite, value) = (value.is_finite(), f64::from(value));
@@ -272,7 +278,7 @@ impl EditablePups {
         self.options.net.pups_options(orientation).check(1)
     }
 
-    /// Refuses stars with axes that are too short, and takes note of how far the others reach.
+    /// Checks that no axis of the stars is too short, and extends the reach by their supports.
     fn check_stars(&mut self, point: PointIdx, stars: &[Star]) -> Result<(), PupsError> {
         let options = self.options.net.pups_options(None);
         let mut net = Net::empty(*self.graph.domain(), options, 0)?;
@@ -294,7 +300,7 @@ impl EditablePups {
         }
     }
 
-    /// The rectangles around the supports of stars near the two places of an edit: one if they overlap.
+    /// The bounds of the supports of stars near the two positions of an edit; a single rectangle if they overlap.
     fn changed(&self, stars: &[Star], places: [DVec2; 2]) -> Vec<Changed> {
         let domain = self.graph.domain();
         let [here, there] = places.map(|place| domain.wrap(place));
@@ -322,7 +328,7 @@ impl EditablePups {
         found.map(|changed| changed.begun_in(domain)).collect()
     }
 
-    /// The first pixel and the number of pixels of a picture, along an axis, in each image of a rectangle.
+    /// For each image of a rectangle, the first pixel and the number of pixels of `picture` along an axis.
     fn pixels(&self, changed: &Changed, picture: &Window, axis: usize) -> Vec<(u32, u32)> {
         let domain = self.graph.domain();
         let n_pixels = picture.size[axis];
@@ -333,6 +339,7 @@ impl EditablePups {
         };
         let (low, high) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
         let (min, max) = (changed.min[axis], changed.max[axis]);
+        // Find the periodic copies that intersect the image.
         let mut copies = (0.0, 0.0);
         if domain.wrap[axis] {
             let size = domain.size[axis];
@@ -348,7 +355,7 @@ impl EditablePups {
         while copy <= copies.1 {
             let shift = copy * domain.size[axis];
             let at = [min, max].map(|end| (end + shift - ends[0]) / per_pixel);
-            // A pixel more on either side, for rounding; the conversion saturates.
+            // Add a pixel on either side for rounding; the conversion saturates.
             let first = (at[0].min(at[1]) - 1.0).floor().max(0.0);
             let end = (at[0].max(at[1]) + 2.0).ceil().min(f64::from(n_pixels));
             if first < end {
@@ -361,7 +368,7 @@ impl EditablePups {
 }
 
 impl Changed {
-    /// The rectangle around two.
+    /// The bounds of both rectangles.
     fn joined(&self, other: &Self) -> Self {
         Self {
             min: self.min.min(other.min),
@@ -369,7 +376,7 @@ impl Changed {
         }
     }
 
-    /// The rectangle with its beginning in the domain; all of an axis that wraps if it is that long.
+    /// The rectangle shifted to start in the domain; the whole axis if it wraps and the rectangle is at least as long.
     fn begun_in(mut self, domain: &Domain) -> Self {
         for axis in (0..2).filter(|&axis| domain.wrap[axis]) {
             let (origin, size) = (domain.origin[axis], domain.size[axis]);

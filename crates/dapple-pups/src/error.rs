@@ -1,4 +1,4 @@
-//! Why a texture was refused.
+//! Errors of partition-of-unity textures.
 
 use crate::Range;
 use dapple_graph::{GraphError, GraphErrorKind, IsCancelled};
@@ -6,57 +6,57 @@ use dapple_points::{PointsError, PointsErrorKind};
 use dapple_raster::RasterError;
 
 dapple_raster::error! {
-    /// Why a partition-of-unity texture was refused, or could not be made.
+    /// An error of a partition-of-unity texture: an option out of its limits, or a failed construction.
     PupsError,
-    /// The limit that was broken.
+    /// The cause of a [`PupsError`], with the limit and the value.
     PupsErrorKind with Range {
-        /// There is no control point, so there is nothing to interpolate.
+        /// No control points, so there is nothing to interpolate.
         NoPoints => "there is no control point";
-        /// The graph, or a column of attributes, belongs to another number of points.
+        /// A graph or a column of attributes for another number of points.
         Count {
-            /// The things that were counted.
+            /// The kind of elements.
             what: &'static str,
-            /// How many there are.
+            /// Number of elements given.
             count: usize,
-            /// How many were needed.
+            /// Number of elements needed.
             needed: usize,
         } => "there are {count} {what}, but {needed} are needed";
-        /// An axis is so short that single precision cannot divide by its length.
+        /// An axis too short to divide by its length in single precision.
         ShortAxis {
-            /// The point that the axis belongs to.
+            /// Index of the axis's control point.
             point: u32,
-            /// The length of the axis.
+            /// Length of the axis.
             length: f64,
-            /// The shortest length that is accepted in this domain.
+            /// Minimum length in this domain.
             limit: f64,
         } => "an axis of point {point} has length {length}, but the limit is {limit}";
-        /// An axis of the domain has to wrap around, and does not.
+        /// An axis of the domain that must wrap, but does not.
         NotWrapped {
-            /// The axis: 0 for x, 1 for y.
+            /// Index of the axis: 0 for x, 1 for y.
             axis: usize,
         } => "axis {axis} of the domain must wrap around, but does not";
-        /// The spacing of points has to be the same everywhere, and is not.
+        /// A spacing of points that varies, but must be constant.
         SpacingVaries => "the spacing of nested points must be the same everywhere";
-        /// Two options exclude each other, or one needs another.
+        /// Two options that exclude each other, or an option without another one that it needs.
         Conflict {
-            /// The rule, as a sentence without a full stop.
+            /// The violated rule, as a sentence without a period.
             rule: &'static str,
         } => "{rule}";
-        /// The callback of the caller asked to stop.
+        /// Cancelled by the caller's callback.
         Cancelled => "the callback asked to stop";
     }
     from {
-        /// The points could not be made.
+        /// An error of making the points.
         Points(PointsError),
-        /// The graph could not be made.
+        /// An error of making the graph.
         Graph(GraphError),
-        /// The raster or the window was refused.
+        /// An error of the raster or the window.
         Raster(RasterError),
     }
 }
 
 impl PupsError {
-    /// Fails if the caller asked to stop.
+    /// Returns an error if the caller's callback cancels.
     pub(crate) fn check_wanted(is_cancelled: &IsCancelled) -> Result<(), Self> {
         match is_cancelled() {
             true => Err(Self::new(PupsErrorKind::Cancelled)),
@@ -64,7 +64,7 @@ impl PupsError {
         }
     }
 
-    /// The error of making points or a graph, which is [`PupsErrorKind::Cancelled`] if the caller asked to stop.
+    /// Converts an error of making points or a graph; cancellation becomes [`PupsErrorKind::Cancelled`].
     pub(crate) fn of_part(error: impl Into<Self>) -> Self {
         let error = error.into();
         let is_cancelled = match error.kind() {
@@ -78,12 +78,12 @@ impl PupsError {
         }
     }
 
-    /// Refuses a number outside of a range.
+    /// Checks that a number is in a range.
     pub(crate) fn check_in(range: Range, what: &'static str, value: f64) -> Result<(), Self> {
         Self::check(range.holds(value), what, value, range.text)
     }
 
-    /// Refuses a column of another length.
+    /// Checks the number of elements of a column.
     pub(crate) fn check_count(what: &'static str, count: usize, needed: usize) -> Result<(), Self> {
         if count == needed {
             Ok(())

@@ -1,11 +1,11 @@
 //! The gradient of a texture, in closed form.
 //!
-//! With `W = Π A(u_r)` the gradient of a weight is `∇W = Σ_r A'(u_r) ∇u_r Π_{s≠r} A(u_s)`, where `∇u_r = −a_r` inside of
-//! `[0, 1]` and zero where the projection is clamped (there `A'` is zero anyway). With an orientation, `w' = w^e`, so that
-//! `∇w' = e w^(e−1) ∇w + w' ln w ∇e`; an axis that fades has `∇A^e = e A^(e−1) ∇A`. For equation 3,
+//! With `W = Π A(u_r)`, the gradient of a weight is `∇W = Σ_r A'(u_r) ∇u_r Π_{s≠r} A(u_s)`. Here `∇u_r = −a_r` inside
+//! `[0, 1]`, and zero where the projection is clamped (`A'` is zero there anyway). With an orientation, `w' = w^e`, so
+//! `∇w' = e w^(e−1) ∇w + w' ln w ∇e`. For an axis that fades, `∇A^e = e A^(e−1) ∇A`. For equation 3,
 //! `∇T = Σ (T_i − T) ∇W_i / Σ W_i`.
 //!
-//! It is computed in double precision, one position at a time.
+//! It is computed in double precision, for one position at a time.
 
 use crate::net::{AxisBlock, BLOCK, Instance, Net};
 use crate::pups::LEAST_TOTAL;
@@ -14,10 +14,10 @@ use dapple_raster::{FieldExt as _, Raster, RasterError, Window};
 use glam::DVec2;
 
 impl Texture {
-    /// The gradient at a position: the change of the value per unit of x and of y.
+    /// The gradient of the value at a position, per unit of x and of y.
     ///
-    /// Where the texture has no gradient (on the border of a support, with orientations of strength ½ or more) it is the
-    /// one of the side that has no weight. At a position that is not finite both numbers are NaN.
+    /// At the border of a support, with orientations of strength ½ or more, the texture is not differentiable. The
+    /// gradient there is that of the side without a weight. At a position that is not finite, both components are NaN.
     ///
     /// # Examples
     ///
@@ -55,12 +55,12 @@ impl Texture {
         }
     }
 
-    /// The gradients at the pixel centers of a window, for normal maps.
+    /// The gradients at the pixel centers of a window, for example for normal maps.
     ///
     /// # Errors
     ///
     /// [`Empty`](dapple_raster::RasterErrorKind::Empty) or [`TooLarge`](dapple_raster::RasterErrorKind::TooLarge) if
-    /// the window has a bad size.
+    /// the size of the window is invalid.
     pub fn gradient_raster(&self, window: &Window) -> Result<Raster<[f32; 2]>, RasterError> {
         Raster::from_window(window, |position| {
             self.gradient(position).as_vec2().to_array()
@@ -98,7 +98,7 @@ fn axial(weight: AxialWeight, block: &AxisBlock, slot: usize, offset: DVec2) -> 
     (weight.value(u), axis * -weight.slope(u))
 }
 
-/// An axial weight and its gradient, of an axis that fades.
+/// The axial weight and its gradient for an axis that fades, from those without fading.
 fn faded((value, slope): (f64, DVec2), exponent: f64) -> (f64, DVec2) {
     if value <= 0.0 {
         return (0.0, DVec2::ZERO);
@@ -107,7 +107,7 @@ fn faded((value, slope): (f64, DVec2), exponent: f64) -> (f64, DVec2) {
     (faded, slope * (exponent * faded / value))
 }
 
-/// Equation 4 and its gradient.
+/// The weight after equation 4, and its gradient.
 fn shifted(weight: f64, gradient: DVec2, shift: DVec2, offset: DVec2) -> (f64, DVec2) {
     let distance = offset.length();
     if distance == 0.0 || weight <= 0.0 {
@@ -115,7 +115,7 @@ fn shifted(weight: f64, gradient: DVec2, shift: DVec2, offset: DVec2) -> (f64, D
     }
     let direction = offset / distance;
     let k = shift.dot(direction);
-    // How K changes: the part of the shift that lies across the direction, per distance.
+    // The gradient of K: the component of the shift orthogonal to the direction, divided by the distance.
     let k_slope = (shift - direction * k) / distance;
     let (exponent, slope) = if k >= 0.0 {
         (1.0 - k, -k_slope)

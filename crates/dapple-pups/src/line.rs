@@ -1,14 +1,14 @@
-//! Coordinates of columns or rows: where they go one way, and which of them an interval touches.
+//! Coordinates of columns or rows: monotonic runs, and the coordinates that an interval touches.
 
 use core::ops::Range;
 
-/// Coordinates that go evenly from the first to the last.
+/// Evenly spaced coordinates.
 pub(crate) struct Line {
     first: f64,
-    /// Coordinates per unit of length, negative where they descend; nothing where they are not even.
+    /// Coordinates per unit of length, negative if they descend; `None` if they are not evenly spaced.
     per_unit: Option<f64>,
     count: usize,
-    /// How far a coordinate may be from its even place, in pixels.
+    /// Maximum offset of a coordinate from its evenly spaced position, in pixels.
     slack: f64,
 }
 
@@ -16,7 +16,7 @@ impl Line {
     pub(crate) fn new(coordinates: &[f64]) -> Self {
         let (first, count) = (coordinates[0], coordinates.len());
         let last = coordinates[count - 1];
-        // Coordinates that are out of range were all brought to the same place, at either end.
+        // Coordinates out of range were clamped to the same position, at either end.
         let goes = |index: usize| coordinates[index] != coordinates[index - 1];
         let even = count > 1 && goes(1) && goes(count - 1);
         let per_unit = even.then(|| (count - 1) as f64 / (last - first));
@@ -30,24 +30,24 @@ impl Line {
         }
     }
 
-    /// The coordinates that an interval touches, or may touch.
+    /// Indices of the coordinates that an interval touches; may include a neighbor on either side.
     #[inline(always)]
     pub(crate) fn touched(&self, min: f64, max: f64) -> Range<usize> {
         let Some(per_unit) = self.per_unit else {
             return 0..self.count;
         };
         let [a, b] = [(min - self.first) * per_unit, (max - self.first) * per_unit];
-        // As an index, a negative number becomes zero, and a fraction is cut off.
+        // The conversion to an index turns negative numbers into zero, and truncates.
         let start = (a.min(b) + 1.0 - self.slack) as usize;
         let end = ((a.max(b) + 1.0 + self.slack) as usize).min(self.count);
         start..end
     }
 }
 
-/// The longest stretches in which coordinates go one way, as they do until a period ends. What is not finite stands by
-/// itself.
+/// Divides coordinates into maximal monotonic runs, which end where a period ends. A coordinate that is not finite is a
+/// run of its own.
 ///
-/// The way is the one that makes fewer stretches: where a period ends, two neighbors go the other way.
+/// All runs ascend or all descend, whichever gives fewer runs.
 pub(crate) fn runs(coordinates: &[f64]) -> Vec<Range<usize>> {
     let ascending = stretches(coordinates, |last, next| next >= last);
     let descending = stretches(coordinates, |last, next| next <= last);
@@ -58,7 +58,7 @@ pub(crate) fn runs(coordinates: &[f64]) -> Vec<Range<usize>> {
     }
 }
 
-/// The longest stretches in which every coordinate but the first goes on from the one before.
+/// Divides coordinates into maximal runs in which `goes_on` holds between successive coordinates.
 fn stretches(coordinates: &[f64], goes_on: impl Fn(f64, f64) -> bool) -> Vec<Range<usize>> {
     let mut stretches = Vec::new();
     let mut start = 0;
@@ -94,7 +94,7 @@ mod tests {
                     |index: i32| ((f64::from(first + index) + 0.5) * step).rem_euclid(1.0);
                 let coordinates: Vec<f64> = (0..300).map(coordinate).collect();
                 let n_runs = runs(&coordinates).len();
-                // 300 columns of a period of 256 lie in two or three periods.
+                // 300 columns with a period of 256 touch two or three periods.
                 assert!(
                     n_runs <= 3,
                     "{n_runs} runs, in steps of {step} from column {first} on"

@@ -3,7 +3,7 @@
 use crate::{AxialWeight, PupsError, Range, range};
 use glam::DVec3;
 
-/// How the weights of control points are computed.
+/// Options for the weights of control points.
 ///
 /// # Examples
 ///
@@ -22,37 +22,38 @@ use glam::DVec3;
     serde(default, deny_unknown_fields)
 )]
 pub struct PupsOptions {
-    /// The length of every axis as a multiple of its edge: above ½, at most 16; 1 by default, 2 in figure 4b.
+    /// Length of every axis as a multiple of its edge: above ½, at most 16; 1 by default, 2 in figure 4b.
     ///
-    /// Up to 1 the texture passes through the values of its control points; above it approximates them. The support of
+    /// Up to 1 the texture interpolates the values of its control points; above 1 it approximates them. The support of
     /// a control point is its Voronoi cell scaled by twice this number, so on average `4 · axis_scale²` control points
-    /// have a weight at a position. At ½ the supports would be the Voronoi cells themselves, and on their borders
-    /// nothing would have a weight.
+    /// have a weight at a position. At ½ the supports would be the Voronoi cells themselves, and at their borders no
+    /// control point would have a weight.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/axis-scale.md"))]
     pub axis_scale: f64,
-    /// How the weight falls off along an axis; equation 1 by default.
+    /// Falloff of the weight along an axis; equation 1 by default.
     pub weight: AxialWeight,
-    /// Orientations, which shift weights after equation 4; none by default.
+    /// Orientations, which shift weights by equation 4; none by default.
     pub orientation: Option<Orientation>,
-    /// How short the border that an axis leaves on the Voronoi cell of its control point is beside its edge when the axis
-    /// begins to fade, from 0 to 1; 0 by default, which is never. For points that move it is 0.25.
+    /// Ratio of border to edge below which an axis fades, from 0 to 1; 0 by default, which disables fading. For points
+    /// that move it is 0.25. The border of an axis is its side of the Voronoi cell of its control point.
     ///
-    /// When points move, edges of a Delaunay triangulation appear and disappear, and with them axes, all at once. An edge
-    /// does so while its border has no length. With `fade`, the axial weight has the exponent
-    /// `min(1, border / (fade · edge))`, which takes the axis away before the edge disappears, so that a texture changes
-    /// as little as its points move. A pixel has no weight where it had none, and elsewhere more than it had, so that the
-    /// weights of a position still sum to 1. At a short border a weight ends steeply, but between other axes, at which it has all
-    /// but ended: at 0.25, one that is a thousandth of its axis inside has a share below 1e-4, at 1 of up to 2 %. With a graph that is not the Delaunay graph, the cell is the polygon about
-    /// the point that its own axes leave at half their length.
+    /// When points move, edges of the Delaunay triangulation appear and disappear, and their axes with them. An edge
+    /// does so while the length of its border is zero. With `fade`, the axial weight has the exponent
+    /// `min(1, border / (fade · edge))`. It removes the influence of the axis before the edge disappears, so the
+    /// texture changes as little as its points move. Fading never gives a pixel a weight where it had none; it
+    /// increases weights elsewhere, and the weights of a position still sum to 1. At a short border a weight ends
+    /// steeply, but between other axes, where it is almost zero: at 0.25, a position that is a thousandth of its axis
+    /// inside has a share below 1e-4, at 1 a share of up to 2 %. With a graph that is not the Delaunay graph, the cell
+    /// is the polygon around the point that its own axes bound at half their length.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "is_never"))]
     pub fade: f64,
 }
 
-/// The [`fade`](PupsOptions::fade) at which textures of points that move have no jumps that one sees.
+/// The [`fade`](PupsOptions::fade) for moving points, at which textures have no visible jumps.
 pub(crate) const MOVING_FADE: f64 = 0.25;
 
-/// Whether no axis fades.
+/// Whether fading is disabled.
 #[cfg(feature = "serde")]
 #[expect(
     clippy::trivially_copy_pass_by_ref,
@@ -62,21 +63,21 @@ pub(crate) fn is_never(fade: &f64) -> bool {
     *fade == 0.0
 }
 
-/// The orientations of the control points, and how strongly they shift the weights (equation 4).
+/// Orientations of the control points, with the strength by which they shift the weights (equation 4).
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Orientation {
-    /// ε, in `[0, 1)`; the paper's default is 0.5.
+    /// Strength ε, in `[0, 1)`; 0.5 in the paper.
     ///
-    /// Below ½ the texture keeps its continuous gradient. From ½ on it has a kink at the border of a support where the
-    /// orientation points straight away from the control point: there the weight falls like `(1 − p)^(2 − 2ε)`. Near 1
-    /// weights that look the other way all but vanish, and so does the denominator of equation 3: where it falls below
-    /// 1e-30, the value of the nearest control point is taken.
+    /// Below ½ the gradient of the texture is continuous. From ½ on, the texture has a kink at the border of a support
+    /// where the orientation points directly away from the control point: there the weight falls like `(1 − p)^(2 −
+    /// 2ε)`. Near 1, weights on the opposite side almost vanish, and so does the denominator of equation 3. Where it is
+    /// below 1e-30, the value of the nearest control point is used.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/strength.md"))]
     pub strength: f64,
-    /// One vector for each control point, or a single one for all. They are scaled to length 1; x and y lie in the
-    /// plane of the texture, and z takes strength away without a direction.
+    /// One vector for each control point, or a single one for all. They are normalized. Components x and y are in the
+    /// plane of the texture; z reduces the strength without adding a direction.
     pub vectors: Vec<DVec3>,
 }
 
@@ -92,7 +93,7 @@ impl Default for PupsOptions {
 }
 
 impl Orientation {
-    /// Orientations with the paper's default strength of 0.5.
+    /// Creates orientations with the paper's strength, 0.5.
     #[must_use]
     pub fn new(vectors: Vec<DVec3>) -> Self {
         Self {
@@ -108,23 +109,23 @@ impl Orientation {
     }
 }
 
-/// Lengths of axes as multiples of their edges. From one half down, supports would not cover the plane.
+/// Range of [`PupsOptions::axis_scale`]. At ½ and below, supports would not cover the plane.
 pub(crate) const AXIS_SCALE: Range = range!(above 0.5 to 16);
-/// ε of equation 4.
+/// Range of ε in equation 4.
 pub(crate) const STRENGTH: Range = range!(from 0 below 1);
-/// Borders beside edges at which axes begin to fade.
+/// Range of [`PupsOptions::fade`].
 pub(crate) const FADE: Range = range!(from 0 to 1);
-/// Dips of an axial weight.
+/// Range of the number of dips of an axial weight.
 pub(crate) const DIPS: Range = range!(from 1 to 16);
 
 impl PupsOptions {
-    /// Refuses options that break a limit, for a texture of `n_points` control points.
+    /// Checks the options for a texture of `n_points` control points.
     ///
     /// # Errors
     ///
-    /// [`Range`](crate::PupsErrorKind::Range) if the axis scale is not in `(½, 16]`, a weight's parameters, the fade or the
-    /// strength are outside of their ranges, or a vector has no length; [`Count`](crate::PupsErrorKind::Count) if the
-    /// number of vectors is neither 1 nor that of the points.
+    /// [`Range`](crate::PupsErrorKind::Range) if the axis scale is not in `(½, 16]`, if a parameter of the weight, the
+    /// fade or the strength is out of its range, or if a vector has no length. [`Count`](crate::PupsErrorKind::Count)
+    /// if the number of vectors is neither 1 nor the number of points.
     pub fn check(&self, n_points: usize) -> Result<(), PupsError> {
         PupsError::check_in(AXIS_SCALE, "axis scale", self.axis_scale)?;
         PupsError::check_in(FADE, "fade of the axes", self.fade)?;
@@ -162,10 +163,10 @@ impl PupsOptions {
 }
 
 impl Orientation {
-    /// The largest length of a shift: with it no exponent of equation 4 divides by zero, even after rounding.
+    /// Maximum length of a shift. With it, no exponent of equation 4 divides by zero, even after rounding.
     const LONGEST_SHIFT: f64 = 1.0 - 1e-6;
 
-    /// ε times the part of the orientation that lies in the plane, for point `index`.
+    /// ε times the component of the orientation in the plane, for point `index`.
     pub(crate) fn shift(&self, index: usize) -> [f32; 2] {
         let vector = self.vectors[if self.vectors.len() == 1 { 0 } else { index }];
         let shift = vector.truncate() * (self.strength / vector.length());

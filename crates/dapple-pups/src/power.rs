@@ -1,13 +1,12 @@
-//! Powers of numbers in `[0, 1]`, the same bits at every SIMD level.
+//! Powers of numbers in `[0, 1]`, with the same bits at every SIMD level.
 //!
-//! `w^e = 2^(e · log₂ w)`, with two polynomials whose coefficients minimize the largest error (fitted in double
-//! precision; the errors are stated beside them). Only sums, products and integer operations are used. The result is
-//! within `4e-6 · (1 + e) + 1e-7 · e · |log₂ w|` of the true power, relative to it, where that is above 1e-30 and `w`
-//! is a normal number.
+//! `w^e = 2^(e · log₂ w)`, with two polynomials whose coefficients minimize the maximum error (fitted in double
+//! precision; their comments state the errors). Only sums, products and integer operations are used. The relative error
+//! of the result is at most `4e-6 · (1 + e) + 1e-7 · e · |log₂ w|`, for powers above 1e-30 of normal numbers `w`.
 
 use fearless_simd::prelude::*;
 
-/// `log₂(1 + x) = x · P(x)` for `x` from `√½ − 1` to `√2 − 1`, up to 2.3e-6.
+/// `log₂(1 + x) = x · P(x)` for `x` from `√½ − 1` to `√2 − 1`, with an error up to 2.3e-6.
 const LOG2: [f32; 6] = [
     1.442_712_9,
     -0.721_135_85,
@@ -17,36 +16,38 @@ const LOG2: [f32; 6] = [
     -0.206_722_7,
 ];
 
-/// `2^f = 1 + f · P(f)` for `f` from −½ to ½, up to 2.7e-6.
+/// `2^f = 1 + f · P(f)` for `f` from −½ to ½, with an error up to 2.7e-6.
 const EXP2: [f32; 4] = [0.693_121_55, 0.240_220_22, 0.055_919_46, 0.009_681_896];
 
-/// Below this exponent the result is zero, for all that matters.
+/// Binary exponents below this are clamped to it; the result is then negligible.
 const LEAST_EXPONENT: f32 = -126.0;
 
-/// `bases` to the power of `exponents`: bases in `[0, 1]`, exponents at least 0. Zero stays zero, one stays one.
+/// Raises `bases` in `[0, 1]` to the powers `exponents`, at least 0. Zero and one are fixed points.
 ///
-/// Every step is taken for all of them before the next step, which would have to wait for the one before it.
+/// Each step is computed for all elements before the next step, which hides its latency.
 #[inline(always)]
 pub(crate) fn powers<S: Simd, V: SimdFloat<S, Element = f32>, const N: usize>(
     simd: S,
     bases: &[V; N],
     exponents: &[V; N],
 ) -> [V; N] {
-    /// The bits of √½, where the mantissas begin.
+    /// Bits of √½, where the range of mantissas begins.
     const SQRT_HALF: u32 = 0x3F35_04F3;
     const ONE: u32 = 0x3F80_0000;
-    /// Added to a whole number below 2^23, it makes the bits of 2^23 and that number.
+    /// Added to an integer below 2^23, it gives the bits of the float 2^23 plus that integer.
     const WHOLE: u32 = 0x4B00_0000;
-    /// Added to a number, it leaves its nearest whole number in the lowest bits.
+    /// Added to a float, it leaves the nearest integer in the lowest bits.
     const ROUND: f32 = 12_582_912.0;
 
     let mut x = *bases;
     let mut scaled = *bases;
+    // Split each base into a binary exponent and a mantissa from √½ to √2.
     for i in 0..N {
         let bits = bases[i].to_bits() + (ONE - SQRT_HALF);
         x[i] = V::from_bits((bits & 0x007F_FFFF) + SQRT_HALF) - 1.0;
         scaled[i] = V::from_bits((bits >> 23) | WHOLE) - (8_388_608.0 + 127.0);
     }
+    // Compute `e · log₂ w`, and split it into the nearest integer and a fraction.
     let logarithms = polynomials(simd, LOG2, &x);
     let mut rounded = x;
     for i in 0..N {
@@ -55,6 +56,7 @@ pub(crate) fn powers<S: Simd, V: SimdFloat<S, Element = f32>, const N: usize>(
         rounded[i] = scaled[i] + ROUND;
         scaled[i] -= rounded[i] - ROUND;
     }
+    // Compute 2 to the fraction, and add the integer to the exponent's bits.
     let fractions = polynomials(simd, EXP2, &scaled);
     let zero = V::splat(simd, 0.0);
     for i in 0..N {
@@ -65,7 +67,7 @@ pub(crate) fn powers<S: Simd, V: SimdFloat<S, Element = f32>, const N: usize>(
     x
 }
 
-/// Horner's scheme, the constant first in `coefficients`.
+/// Horner's scheme; the constant is first in `coefficients`.
 #[inline(always)]
 fn polynomials<S: Simd, V: SimdFloat<S, Element = f32>, const DEGREE: usize, const N: usize>(
     simd: S,

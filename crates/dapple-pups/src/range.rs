@@ -1,27 +1,28 @@
-//! Ranges of options, each in one place: for the check, for the text of an error, and for the schema of recipes.
+//! Ranges of options, each defined once: for the check, the text of the error, and the schema of recipes.
 
 use core::ops::{Bound, RangeBounds as _};
 
-/// The numbers that an option may have; all of them are finite.
+/// The range of an option, which contains only finite numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Range {
-    /// The least number, or what it is above.
+    /// Lower bound.
     pub least: Bound<f64>,
-    /// The largest number, or what it is below.
+    /// Upper bound.
     pub most: Bound<f64>,
-    /// The range as the end of "it must be".
+    /// Text that completes "it must be" in an error message.
     pub text: &'static str,
 }
 
 impl Range {
-    /// Whether a number lies in the range.
+    /// Whether a number is in the range.
     #[must_use]
     pub fn holds(&self, number: f64) -> bool {
         number.is_finite() && (self.least, self.most).contains(&number)
     }
 }
 
-/// Makes a [`Range`] and its text: `finite`, `above 0`, `above 0 to 1`, `at least 1`, `from 1 to 16` or `from 0 below 1`.
+/// Makes a [`Range`] with its text: `finite`, `above 0`, `above 0 to 1`, `at least 1`, `from 1 to 16` or
+/// `from 0 below 1`.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! range {

@@ -1,14 +1,14 @@
-//! The textures of section 3, each in one call.
+//! The textures of section 3, each as one function.
 //!
 //! Reference: Jack Caron and David Mould, "Partition of Unity Parametrics for Texture Synthesis", Graphics Interface
 //! 2013, section 3.
 //!
-//! A recipe is a function of its options and a seed: it places control points, gives them attributes and returns a
-//! texture. By default each has the paper's parameters, on the paper's torus `[-1, 1]²`, and repeats with its period.
-//! Each can progress: the spacing of the points and the probability of a label may depend on the position. A
-//! progression from left to right belongs on a domain that does not wrap in x.
+//! A recipe is a function of its options and a seed: it places control points, assigns attributes, and returns a
+//! texture. By default, a recipe has the paper's parameters, is defined on the paper's torus `[-1, 1]²`, and repeats
+//! with its period. The spacing of the points and the probability of a label may depend on the position, for a
+//! progression. A progression from left to right needs a domain that does not wrap in x.
 //!
-//! To add a recipe, write a file that implements [`PupsRecipe`] for its options, and a line in the table of
+//! To add a recipe, write a file that implements [`PupsRecipe`] for its options, and add a line to the table of
 //! [`recipes!`](crate::recipes!).
 
 mod label_texture;
@@ -58,32 +58,32 @@ use dapple_hash::Seed;
 use dapple_points::Domain;
 use std::sync::Arc;
 
-/// The options of a texture, as far as all textures are alike. `Image` is what a texture follows: nothing, or a
+/// The common interface of the options of all textures. `Image` is the input of the texture: nothing, or a
 /// [`ReferenceImage`](crate::ReferenceImage).
 pub trait PupsRecipe<Image = ()>: Clone + Default {
-    /// Whether the texture has a color at each position, not a number.
+    /// Whether the values are colors instead of numbers.
     const IS_COLOR: bool = false;
 
-    /// Where the control points lie. A default that does not wrap along an axis is that of a texture that changes along
-    /// it, and belongs on such domains.
+    /// The domain of the control points. If the default does not wrap along an axis, the texture changes along it, and
+    /// needs such a domain.
     fn domain_mut(&mut self) -> &mut Domain;
 
-    /// How the control points are weighted, and how they move.
+    /// Options for the weights and the motion of the control points.
     fn net_mut(&mut self) -> &mut NetOptions;
 
-    /// About how many control points the texture has, rather too many than too few, without placing them. It may be
+    /// Estimated number of control points, computed without placing them; rather too large than too small. It may be
     /// infinite.
     fn expected_points(&self) -> f64;
 
-    /// The texture, with values from 0 to 1 where they are random.
+    /// Makes the texture, with values from 0 to 1 if they are random.
     ///
     /// # Errors
     ///
-    /// Those of the function that makes the texture alone.
+    /// The errors of the function that makes the texture.
     fn build(&self, image: &Image, seed: Seed) -> Result<PupsField, PupsError>;
 }
 
-/// A texture of any kind, as a function of the plane.
+/// A texture of numbers or colors in the plane.
 #[derive(Clone)]
 pub enum PupsField {
     /// A number at each position.
@@ -107,8 +107,8 @@ impl core::fmt::Debug for PupsField {
     }
 }
 
-/// The table of all recipes, given to another macro: for each its name as data, a name in Rust, and its options. Those that
-/// follow an image are in `Referenced`, which the caller defines.
+/// The table of all recipes, passed to another macro: the name as data, the name in Rust, and the options of each.
+/// Recipes that need an image are in `Referenced`, which the caller defines.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! recipes {

@@ -1,4 +1,4 @@
-//! Schemas of options that have more than one form as data, and of those that are not ours.
+//! Schemas of options with several forms as data, and of foreign types.
 
 use crate::{Range, Spacing};
 use core::ops::Bound;
@@ -6,10 +6,10 @@ use schemars::transform::Transform;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use std::borrow::Cow;
 
-/// The domain of a texture, which recipes of materials know from their tile.
+/// Schema of a texture's domain, which recipes of materials take from their tile.
 pub(crate) struct Tile;
 
-/// A number that may depend on the position.
+/// Schema of a number that may depend on the position.
 pub(crate) struct Variable;
 
 impl JsonSchema for Tile {
@@ -26,7 +26,7 @@ impl JsonSchema for Tile {
     }
 }
 
-/// A vector in the plane, or in space.
+/// Schema of a vector in the plane or in space.
 pub(crate) struct Direction;
 
 impl JsonSchema for Direction {
@@ -57,7 +57,7 @@ struct RampTable {
     end: f64,
 }
 
-/// A table with one entry.
+/// Schema of a table with one entry.
 fn table(name: &str, inner: &Schema) -> Schema {
     json_schema!({
         "type": "object", "properties": { name: inner },

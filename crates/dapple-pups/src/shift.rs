@@ -3,14 +3,15 @@
 use crate::power::powers;
 use fearless_simd::prelude::*;
 
-/// A summand of squared distances that keeps them above zero; it changes no distance above 1e-15.
+/// Added to squared distances to keep them above zero; it changes no distance above 1e-15.
 const LEAST_SQUARE: f32 = f32::MIN_POSITIVE;
 
-/// `w^(1 − K)` where the position lies on the side of the orientation, `w^(1 / (1 + K))` on the other; `shift` is ε times
-/// the orientation in the plane, `x` and `y` lead from the control point to the positions, a register in each row.
+/// Applies equation 4: `w^(1 − K)` where the position is on the side of the orientation, `w^(1 / (1 + K))` on the
+/// other.
 ///
-/// With `n = ε (x − c)·v` and `d = |x − c|` both exponents are `(d − max(n, 0)) / (d + min(n, 0))`. At the control
-/// point itself the angle has no meaning; there the weight is 1 and stays so.
+/// `shift` is ε times the orientation in the plane. `x` and `y` are the offsets of the positions from the control
+/// point, one register for each row. With `n = ε (x − c)·v` and `d = |x − c|`, both exponents are
+/// `(d − max(n, 0)) / (d + min(n, 0))`. At the control point the angle is undefined; the weight there remains 1.
 #[inline(always)]
 pub(crate) fn shift_weights<S: Simd, V: SimdFloat<S, Element = f32>, const ROWS: usize>(
     simd: S,

@@ -1,25 +1,25 @@
-//! Sums over the weights of a band, and the memory that they are made in.
+//! Sinks for the weights of a band, and the memory for their sums.
 
 use crate::splat::LANES;
 use core::marker::PhantomData;
 use fearless_simd::prelude::*;
 
-/// Takes the weights of a band and sums them up.
+/// A sink that sums the weights of a band.
 ///
-/// Weights are added to planes of numbers, which begin at zero; when all control points have been taken in, the planes
-/// are resolved into values.
+/// Weights are added to planes of numbers that start at zero. After the weights of all control points are added, the
+/// planes are resolved to values.
 pub(crate) trait Sink: Sync {
     /// The value of a pixel.
     type Value: Copy + Send;
 
-    /// How many planes there are.
+    /// Number of planes.
     const PLANES: usize;
 
-    /// How many values there are to a pixel.
+    /// Number of values for each pixel.
     fn per_pixel(&self) -> usize;
 
-    /// Takes in the weights of control point `point` in `N` rows of a tile. `sums` holds [`LANES`] numbers of every plane
-    /// for each row, of which those from `lane` on are the tile's.
+    /// Adds the weights of control point `point` in `N` rows of a tile. `sums` holds [`LANES`] numbers of every plane
+    /// for each row; the tile's numbers start at `lane`.
     fn add<S: Simd, V: SimdFloat<S, Element = f32>, const N: usize>(
         &self,
         simd: S,
@@ -29,8 +29,8 @@ pub(crate) trait Sink: Sync {
         lane: usize,
     );
 
-    /// Makes the values of up to [`LANES`] pixels in a row, given as many numbers of every plane. `nearest(i)` is the
-    /// control point nearest to pixel `i`, for where no weight is left.
+    /// Computes the values of up to [`LANES`] pixels in a row from their numbers in every plane. `nearest(i)` returns
+    /// the control point nearest to pixel `i`, for pixels whose weights underflow.
     fn resolve<S: Simd>(
         &self,
         simd: S,
@@ -39,19 +39,19 @@ pub(crate) trait Sink: Sync {
         nearest: impl Fn(usize) -> u32,
     );
 
-    /// Marks the values of pixels whose positions are not finite.
+    /// Writes the value for pixels whose positions are not finite.
     fn leave_undefined(&self, values: &mut [Self::Value]);
 }
 
-/// The numbers that a band is summed in.
+/// The sums of a band.
 ///
-/// They lie in columns of [`LANES`] pixels: row by row, and plane by plane in every row, each on its own cache line. So
-/// what a tile needs is in one piece.
+/// They are stored in columns of [`LANES`] pixels: row by row, and plane by plane within a row, each on its own cache
+/// line. So the sums of a tile are contiguous.
 pub(crate) struct Planes<K> {
     numbers: Vec<f32>,
-    /// Where the first cache line begins.
+    /// Offset of the first cache line in `numbers`.
     origin: usize,
-    /// Rows of pixels.
+    /// Number of rows of pixels.
     height: usize,
     sink: PhantomData<fn(&K)>,
 }
@@ -68,18 +68,18 @@ impl<K> Default for Planes<K> {
 }
 
 impl<K: Sink> Planes<K> {
-    /// How many numbers a row of pixels has.
+    /// Number of sums for a row of pixels.
     pub(crate) fn per_row(width: usize) -> usize {
         width.next_multiple_of(LANES) * K::PLANES
     }
 
-    /// Zeroes the numbers of `height` rows of `width` pixels.
+    /// Sets the sums of `height` rows of `width` pixels to zero.
     pub(crate) fn clear(&mut self, width: usize, height: usize) {
         self.height = height;
         self.numbers.clear();
         self.numbers
             .resize(Self::per_row(width) * height + LANES, 0.0);
-        // Where this is not possible, it is only slower.
+        // If the memory cannot be aligned, it is only slower.
         self.origin = self
             .numbers
             .as_ptr()
@@ -87,7 +87,8 @@ impl<K: Sink> Planes<K> {
             .min(LANES);
     }
 
-    /// The numbers of `n_rows` rows that `column` lies in, and its place in each row.
+    /// The sums of `n_rows` rows in the column of [`LANES`] pixels that contains `column`, and the index of `column` in
+    /// it.
     #[inline(always)]
     pub(crate) fn rows(
         &mut self,

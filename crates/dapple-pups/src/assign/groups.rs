@@ -1,8 +1,9 @@
-//! Groups of points that the graph connects (figure 9b).
+//! Groups of points connected by the graph (figure 9b).
 //!
 //! The paper groups points "into clusters of three or four points" and does not say how. Here groups grow one after
-//! another, each from the free point that has the fewest free neighbors, and by such points, so that few are left in
-//! corners. Where some are left, they and one or two groups around them are divided anew by an exhaustive search.
+//! another. Each starts at the free point with the lowest number of free neighbors, and adds such points, so that few
+//! points remain isolated. Remaining points are merged with one or two groups around them, and the region is divided
+//! again by an exhaustive search.
 
 mod divide;
 
@@ -13,19 +14,20 @@ use dapple_points::PointIdx;
 use divide::divide;
 use std::collections::BTreeSet;
 
-/// How many points a group can be asked to have.
+/// Range of the number of points of a group.
 pub(crate) const POINTS_PER_CELL: Range = range!(from 1 to 16);
 
-/// A label for every point, the same for the points of a group, from 0 without gaps.
+/// Returns the label of the group of every point; labels are consecutive numbers from 0.
 ///
-/// Every point is in one group, the edges of the graph connect each group, and a group has between `sizes[0]` and
-/// `sizes[1]` points, each such number with the same chance as long as there is room. A smaller group is left over only
-/// where no division of it and two groups around it has the sizes asked for: where the number of points in a
-/// connected part of the graph is no sum of them (5 points in groups of three or four), or at a loose end of the graph.
+/// Every point is in one group, and every group is connected by edges of the graph. A group has between `sizes[0]` and
+/// `sizes[1]` points; each number is equally probable while enough free points are adjacent. A smaller group remains
+/// only if no division of it and two groups around it has valid sizes. This occurs where the number of points in a
+/// connected part of the graph is not a sum of valid sizes (5 points in groups of three or four), or at a loose end of
+/// the graph.
 ///
 /// # Errors
 ///
-/// [`Range`](crate::PupsErrorKind::Range) if the sizes are not between 1 and 16, or descend.
+/// [`Range`](crate::PupsErrorKind::Range) if the sizes are not from 1 to 16, or are in descending order.
 ///
 /// # Examples
 ///
@@ -54,7 +56,7 @@ pub fn grouped_labels(graph: &Graph, sizes: [u32; 2], seed: Seed) -> Result<Vec<
     Ok(labels(&groups, neighbors.len()))
 }
 
-/// The neighbors of each point, whichever way an edge goes, without the point itself.
+/// The neighbors of each point over edges in either direction, without the point itself.
 fn neighbors(graph: &Graph) -> Vec<Vec<u32>> {
     let mut neighbors = vec![Vec::new(); graph.n_points()];
     for point in 0..graph.n_points() as u32 {
@@ -71,13 +73,14 @@ fn neighbors(graph: &Graph) -> Vec<Vec<u32>> {
     neighbors
 }
 
-/// The points that have no group yet.
+/// The state of growing groups: the free points, which have no group yet.
 struct Growth<'a> {
     neighbors: &'a [Vec<u32>],
-    /// How many free neighbors a point has; none of a point that has a group.
+    /// Number of free neighbors of each free point; `None` for points in a group.
     free_neighbors: Vec<Option<u32>>,
+    /// Random rank of each point.
     ranks: Vec<u64>,
-    /// The free points: those with the fewest free neighbors first, then by random rank.
+    /// Free points, ordered by their number of free neighbors, then by random rank.
     queue: BTreeSet<(u32, u64, u32)>,
 }
 
@@ -101,7 +104,7 @@ impl<'a> Growth<'a> {
         Some((free, self.ranks[point as usize], point))
     }
 
-    /// Takes a point out of the free ones.
+    /// Removes a point from the free points, and updates its neighbors.
     fn take(&mut self, point: u32) {
         if let Some(key) = self.key(point) {
             self.queue.remove(&key);
@@ -127,7 +130,7 @@ impl<'a> Growth<'a> {
         groups
     }
 
-    /// A group of up to `size` points around `first`.
+    /// Grows a group of up to `size` points from `first`.
     fn grow(&mut self, first: u32, size: usize) -> Vec<u32> {
         let mut group = vec![first];
         self.take(first);
@@ -146,7 +149,7 @@ impl<'a> Growth<'a> {
     }
 }
 
-/// Divides groups that are too small anew, together with one or two groups around them.
+/// Divides groups that are too small again, together with one or two groups around them.
 fn mend(neighbors: &[Vec<u32>], groups: &mut Vec<Vec<u32>>, sizes: [u32; 2]) {
     let mut group_of = vec![0; neighbors.len()];
     for (index, group) in groups.iter().enumerate() {
@@ -158,13 +161,14 @@ fn mend(neighbors: &[Vec<u32>], groups: &mut Vec<Vec<u32>>, sizes: [u32; 2]) {
         if groups[small].len() >= sizes[0] as usize {
             continue;
         }
+        // Try the regions from small to large.
         for region in regions(neighbors, groups, &group_of, small) {
             let points: Vec<u32> = region.iter().flat_map(|&g| groups[g].clone()).collect();
             let Some(parts) = divide(neighbors, &points, sizes) else {
                 continue;
             };
             region.iter().for_each(|&group| groups[group].clear());
-            // Emptied groups take the parts, further parts are further groups.
+            // Store the parts in the emptied groups, and append further parts.
             let mut homes = region.into_iter();
             for part in parts {
                 let home = homes.next().unwrap_or(groups.len());
@@ -181,7 +185,7 @@ fn mend(neighbors: &[Vec<u32>], groups: &mut Vec<Vec<u32>>, sizes: [u32; 2]) {
     }
 }
 
-/// A group with one group beside it, then with two.
+/// Regions of a group with one adjacent group, then with two.
 fn regions(
     neighbors: &[Vec<u32>],
     groups: &[Vec<u32>],
@@ -208,7 +212,7 @@ fn regions(
     regions
 }
 
-/// Labels in the order of the first point of each group.
+/// Converts groups to labels, in the order of each group's first point.
 fn labels(groups: &[Vec<u32>], n_points: usize) -> Vec<u32> {
     let mut order: Vec<&Vec<u32>> = groups.iter().filter(|group| !group.is_empty()).collect();
     order.sort_by_key(|group| group.iter().min());

@@ -1,4 +1,4 @@
-//! Labels: one for each point, random ones, and binary ones whose probability depends on the position.
+//! Labels: unique, random, or binary with a probability that depends on the position.
 
 use super::values::random_value;
 use crate::PupsError;
@@ -6,7 +6,7 @@ use dapple_hash::{Seed, hash1};
 use dapple_points::PointSet;
 use dapple_raster::Varying;
 
-/// A label of its own for every point: each is a cell.
+/// A unique label for every point, so each is a cell.
 #[must_use]
 pub fn own_labels(n_points: usize) -> Vec<u32> {
     (0..).take(n_points).collect()
@@ -28,9 +28,9 @@ pub fn random_labels(n_points: usize, n_labels: u32, seed: Seed) -> Result<Vec<u
     Ok((0..n_points as i64).map(label).collect())
 }
 
-/// Binary labels: 1 with the probability that is given for the position of a point, else 0.
+/// Binary labels: 1 with the given probability at the position of a point, else 0.
 ///
-/// This is the "logic that depends on spatial location" of figure 17; with 0.5 everywhere it is the cow's coin.
+/// This is the "logic that depends on spatial location" of figure 17. A probability of 0.5 gives the labels of the cow.
 ///
 /// # Errors
 ///

@@ -1,7 +1,7 @@
 //! Orientations: unit vectors in space that shift the weights of control points (equation 4).
 //!
-//! Random ones are uniform on the sphere: by Archimedes' theorem the height is uniform in `[-1, 1]`, and so is the
-//! angle around it. Sines and cosines are `libm`'s, so the bits are the same everywhere.
+//! Random orientations are uniform on the sphere: by Archimedes' theorem, both the height in `[-1, 1]` and the azimuth
+//! are uniform. Sines and cosines are `libm`'s, so the bits are the same on every machine.
 
 use crate::PupsError;
 use core::f64::consts::TAU;
@@ -24,9 +24,9 @@ pub fn random_orientations(n_points: usize, seed: Seed) -> Vec<DVec3> {
     (0..n_points as i64).map(vector).collect()
 }
 
-/// Unit vectors in the plane that point away from `center`, by the shortest way around the wrapped axes.
+/// Unit vectors in the plane that point away from `center`, along the shortest path across wrapped axes.
 ///
-/// A point at the center itself gets the z axis, which has no direction in the plane.
+/// A point at the center gets the z axis, which has no direction in the plane.
 ///
 /// # Errors
 ///
@@ -47,7 +47,7 @@ pub fn outward_orientations(points: &PointSet, center: DVec2) -> Result<Vec<DVec
     Ok(points.positions().iter().map(vector).collect())
 }
 
-/// Unit vectors in the plane at an angle that depends on the position: in radians, from the x axis towards the y axis.
+/// Unit vectors in the plane at an angle that depends on the position, in radians, from the x axis towards the y axis.
 ///
 /// # Errors
 ///
@@ -66,7 +66,7 @@ pub fn angle_orientations(points: &PointSet, angle: &Varying) -> Result<Vec<DVec
     points.positions().iter().map(vector).collect()
 }
 
-/// The vectors that a function of the position has at the points; their length does not matter, but must not be zero.
+/// The vectors of a function of the position, at the points. They may have any length but zero.
 #[must_use]
 pub fn field_orientations(points: &PointSet, field: impl Fn(DVec2) -> DVec3) -> Vec<DVec3> {
     points.positions().iter().map(|&at| field(at)).collect()
@@ -111,7 +111,7 @@ pub enum Orientations {
 }
 
 impl Orientations {
-    /// The vectors for these points: one for each, one for all, or none at all.
+    /// The vectors for the points: one for each, a single one for all, or `None`.
     ///
     /// # Errors
     ///

@@ -10,18 +10,18 @@ use dapple_points::{Domain, PointSet};
 use dapple_raster::{Raster, Wrap};
 use glam::DVec2;
 
-/// A grayscale image with intensities from 0 (black) to 1 (white), to take labels from.
+/// A grayscale image with intensities from 0 (black) to 1 (white), as a source of labels.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReferenceImage {
     intensities: Raster<f32>,
 }
 
 impl ReferenceImage {
-    /// Takes an image after a look at every pixel.
+    /// Creates a reference image, after checking every pixel.
     ///
     /// # Errors
     ///
-    /// [`Range`](crate::PupsErrorKind::Range) if an intensity is not between 0 and 1, or not a number.
+    /// [`Range`](crate::PupsErrorKind::Range) if an intensity is not from 0 to 1, or NaN.
     pub fn new(intensities: Raster<f32>) -> Result<Self, PupsError> {
         for &intensity in intensities.pixels() {
             PupsError::check(
@@ -40,8 +40,8 @@ impl ReferenceImage {
         &self.intensities
     }
 
-    /// The intensity of the pixel at a position, where the image covers `domain`; past an edge it repeats if the domain
-    /// wraps there, and else goes on with its last pixel.
+    /// The intensity of the pixel at a position. The image covers `domain`. Beyond an edge it repeats if the domain
+    /// wraps, and otherwise its border pixels are extended.
     #[must_use]
     pub fn intensity(&self, domain: &Domain, position: DVec2) -> f32 {
         let uv = (domain.wrap(position) - domain.origin) / domain.size;

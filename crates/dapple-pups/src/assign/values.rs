@@ -5,7 +5,7 @@ use dapple_hash::{Seed, hash1, unit_f32};
 use dapple_points::PointSet;
 use dapple_raster::{Field, FieldExt as _, Varying};
 
-/// Independent random values, uniform in `[0, 1)`: those of the paper's noise.
+/// Independent random values, uniform in `[0, 1)`, as in the paper's noise.
 ///
 /// # Examples
 ///
@@ -17,22 +17,22 @@ use dapple_raster::{Field, FieldExt as _, Varying};
 /// ```
 #[must_use]
 pub fn random_values(n_points: usize, seed: Seed) -> Vec<f32> {
-    // A set has at most 2^31 points, so the index fits.
+    // A set has at most 2^31 points, so indices fit into `i64`.
     (0..n_points as i64)
         .map(|index| random_value(seed, index))
         .collect()
 }
 
-/// A number in `[0, 1)` for the point, cell or label with this index.
+/// A random number in `[0, 1)` for the index of a point, a cell or a label.
 pub(crate) fn random_value(seed: Seed, index: i64) -> f32 {
     unit_f32((hash1(seed, [index], 0) >> 32) as u32)
 }
 
-/// The values that a function of the position has at the points.
+/// The values of a function of the position, at the points.
 ///
 /// # Errors
 ///
-/// [`Range`](crate::PupsErrorKind::Range) if one of them is not finite in single precision.
+/// [`Range`](crate::PupsErrorKind::Range) if a value is not finite in single precision.
 pub fn varying_values(points: &PointSet, value: &Varying) -> Result<Vec<f32>, PupsError> {
     let values: Vec<f32> = points
         .positions()
@@ -42,18 +42,18 @@ pub fn varying_values(points: &PointSet, value: &Varying) -> Result<Vec<f32>, Pu
     check_finite(values)
 }
 
-/// The values of a field at the points: any texture can be the input of the next.
+/// The values of a field at the points. Any texture can be the field.
 ///
 /// # Errors
 ///
-/// [`Range`](crate::PupsErrorKind::Range) if one of them is not finite.
+/// [`Range`](crate::PupsErrorKind::Range) if a value is not finite.
 pub fn field_values(points: &PointSet, field: &dyn Field) -> Result<Vec<f32>, PupsError> {
     let mut values = vec![0.0; points.len()];
     field.sample_many(points.positions(), &mut values)?;
     check_finite(values)
 }
 
-/// The vectors, such as colors, that a palette has for the labels; past its end it starts again.
+/// The vectors of a palette, such as colors, for the labels; labels past its end wrap around.
 ///
 /// # Errors
 ///

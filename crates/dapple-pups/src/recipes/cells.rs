@@ -1,4 +1,4 @@
-//! Cells (section 3.2): of one control point each (figure 9a), or of a few that the graph connects (figure 9b).
+//! Cells (section 3.2): of one control point each (figure 9a), or of a few connected control points (figure 9b).
 
 use crate::{
     LabelTexture, NetOptions, PupsError, PupsField, PupsRecipe, Spacing, grouped_labels,
@@ -40,7 +40,7 @@ impl Default for CellsOptions {
 }
 
 impl CellsOptions {
-    /// Cells of three or four points each, as in figure 9b; else the defaults.
+    /// Options for cells of three or four points each, as in figure 9b; otherwise the defaults.
     #[must_use]
     pub fn of_three_or_four() -> Self {
         Self {
@@ -50,15 +50,14 @@ impl CellsOptions {
     }
 }
 
-/// Cells with a label each, from 0, and a random value in `[0, 1)`.
+/// Makes cells, each with a label from 0 on and a random value in `[0, 1)`.
 ///
 #[cfg_attr(doc, doc = include_str!("../../docs/cells.md"))]
 ///
 /// # Errors
 ///
-/// [`Points`](crate::PupsErrorKind::Points) for points that cannot be placed, [`Range`](crate::PupsErrorKind::Range)
-/// for a number of points per cell outside of its range, and what [`PupsOptions::check`](crate::PupsOptions::check)
-/// refuses.
+/// [`Points`](crate::PupsErrorKind::Points) if points cannot be placed, [`Range`](crate::PupsErrorKind::Range) if a
+/// number of points per cell is out of its range, and the errors of [`PupsOptions::check`](crate::PupsOptions::check).
 ///
 /// # Examples
 ///

@@ -1,7 +1,7 @@
 //! Cellular noise in layers (section 3.2, figure 10): cells of several sizes, summed.
 //!
 //! "We created 4 layers of cellular textures of increasing density and summed them; higher densities have lower
-//! amplitude." The paper does not give the numbers; by default we take those of equation 5.
+//! amplitude." The paper does not give the numbers; the defaults are those of equation 5.
 
 use super::octaves::{check_series, expected_in_series};
 
@@ -57,13 +57,13 @@ impl Default for CellularNoiseOptions {
     }
 }
 
-/// Layers of [`cells`] and, as a field, their sum: between 0 and 1.875 by default.
+/// Makes layers of [`cells`]; as a field, their sum, which is between 0 and 1.875 by default.
 ///
 #[cfg_attr(doc, doc = include_str!("../../docs/cellular-noise.md"))]
 ///
 /// # Errors
 ///
-/// Those of [`cells`]; [`Range`](crate::PupsErrorKind::Range) for options outside of their ranges.
+/// The errors of [`cells`]; [`Range`](crate::PupsErrorKind::Range) if an option is out of its range.
 ///
 /// # Examples
 ///

@@ -1,7 +1,7 @@
-//! Colors of a palette at the control points, interpolated. Beyond the paper, which calls color "a more challenging
-//! problem" and leaves it there; its values may be "a vector color value" all the same.
+//! Colors of a palette at the control points, interpolated. This goes beyond the paper, which calls color "a more
+//! challenging problem" and does not pursue it, although its values may be "a vector color value".
 //!
-//! Colors are interpolated as they are given: give linear RGB, or any three numbers that may be mixed.
+//! Colors are interpolated as given, so use linear RGB, or any other three numbers that can be averaged.
 
 use crate::{
     NetOptions, PupsError, PupsField, PupsRecipe, Spacing, VectorTexture, palette_values,
@@ -47,15 +47,14 @@ impl Default for ColorNoiseOptions {
     }
 }
 
-/// A texture of random colors of a palette, each between the smallest and the largest of them in every channel.
+/// Makes a texture of random palette colors. Every channel is between its smallest and largest value in the palette.
 ///
 #[cfg_attr(doc, doc = include_str!("../../docs/color-noise.md"))]
 ///
 /// # Errors
 ///
-/// [`Points`](crate::PupsErrorKind::Points) for points that cannot be placed, [`Range`](crate::PupsErrorKind::Range)
-/// for an empty palette or a color that is not finite, and what
-/// [`PupsOptions::check`](crate::PupsOptions::check) refuses.
+/// [`Points`](crate::PupsErrorKind::Points) if points cannot be placed, [`Range`](crate::PupsErrorKind::Range) for an
+/// empty palette or a color that is not finite, and the errors of [`PupsOptions::check`](crate::PupsOptions::check).
 ///
 /// # Examples
 ///

@@ -1,5 +1,5 @@
-//! The control points of a texture as data, for editors: where they are, what they hold and how they are connected; and
-//! the texture of points given one by one that has the same picture.
+//! The control points of a texture as data, for editors: their positions, values and connections. Also the conversion
+//! of a texture to individual control points, which gives the same image.
 
 use super::Octave;
 use crate::{
@@ -11,12 +11,12 @@ use dapple_points::Domain;
 use dapple_raster::Field;
 use glam::{DVec2, DVec3};
 
-/// Control points with what they hold: a texture, or one layer of a texture.
+/// The control points of a texture or of one of its layers, with their values.
 #[derive(Clone, Debug)]
 pub struct ControlNet {
-    /// Where the points are, and how they are weighted.
+    /// The points with their weights.
     pub pups: Pups,
-    /// The values, labels or colors of the points.
+    /// Values, labels or colors of the points.
     pub values: NetValues,
 }
 
@@ -24,25 +24,25 @@ pub struct ControlNet {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum NetValues {
-    /// A value each, and the texture mixes them.
+    /// One value for each point; the texture interpolates them.
     Numbers(Vec<f32>),
-    /// A label each, and the texture has the value of the label of the strongest point.
+    /// One label for each point; the texture has the value of the strongest point's label.
     Labels {
-        /// The label of each point.
+        /// Label of each point.
         labels: Vec<u32>,
-        /// The value of each label.
+        /// Value of each label.
         values: Vec<f32>,
     },
-    /// A color each, and the texture mixes them.
+    /// One color for each point; the texture interpolates them.
     Colors(Vec<[f32; 3]>),
 }
 
-/// A texture of numbers whose control points can be looked at.
+/// A texture of numbers with accessible control points.
 pub trait NetField: Field {
-    /// The nets of its layers, the coarsest first; a single one where there are no layers.
+    /// The nets of its layers, the coarsest first; a single net for a texture without layers.
     fn nets(&self) -> Vec<ControlNet>;
 
-    /// The texture as control points that are given one by one: see [`PupsField::to_points`].
+    /// Converts the texture to individual control points; see [`PupsField::to_points`].
     fn to_points(&self, tile: Domain) -> Option<ControlPoints> {
         let _ = tile;
         None
@@ -50,16 +50,16 @@ pub trait NetField: Field {
 }
 
 impl ControlNet {
-    /// The Delaunay graph of the points: the edges that the texture is made along.
+    /// The Delaunay graph of the points, whose edges are the axes of the texture.
     ///
     /// # Errors
     ///
-    /// [`Graph`](crate::PupsErrorKind::Graph) if there is no triangulation, which there is for a texture of a recipe.
+    /// [`Graph`](crate::PupsErrorKind::Graph) if there is no triangulation. Textures of recipes have one.
     pub fn graph(&self) -> Result<Graph, PupsError> {
         Ok(delaunay(self.pups.points())?)
     }
 
-    /// The orientation of each point, if points have any.
+    /// Orientation of each point, if there are orientations.
     #[must_use]
     pub fn orientations(&self) -> Option<Vec<DVec3>> {
         let vectors = &self.pups.options().orientation.as_ref()?.vectors;
@@ -67,7 +67,7 @@ impl ControlNet {
         Some((0..self.pups.n_points()).map(of_point).collect())
     }
 
-    /// The value of each point, or that of its label; nothing for colors.
+    /// Value of each point, or of its label; `None` for colors.
     #[must_use]
     pub fn numbers(&self) -> Option<Vec<f32>> {
         match &self.values {
@@ -80,7 +80,7 @@ impl ControlNet {
         }
     }
 
-    /// The label of each point and the value of each label, where points have labels that are not just their own.
+    /// Label of each point and value of each label; `None` without labels, or if every point has its own label.
     #[must_use]
     pub fn shared_labels(&self) -> Option<(&[u32], &[f32])> {
         match &self.values {
@@ -92,8 +92,8 @@ impl ControlNet {
         }
     }
 
-    /// The points as options of [`control_points`](crate::control_points) whose domain is `tile`; nothing for colors, and
-    /// where the texture repeats otherwise than the tile.
+    /// Converts the net to options of [`control_points`](crate::control_points) with the domain `tile`. Returns `None`
+    /// for colors, and if the period of the texture is not that of the tile.
     fn to_points(&self, tile: Domain) -> Option<ControlPoints> {
         let (domain, numbers) = (self.pups.domain(), self.numbers()?);
         let wraps_within = |axis: usize| !domain.wrap[axis] || tile.wrap[axis];
@@ -130,7 +130,7 @@ impl ControlNet {
     }
 }
 
-/// The options of a net whose points have their orientations themselves.
+/// The options of a net whose points have their own orientations.
 fn net_options(options: &PupsOptions) -> NetOptions {
     let usual = NetOptions::default();
     NetOptions {
@@ -147,7 +147,7 @@ fn net_options(options: &PupsOptions) -> NetOptions {
 }
 
 impl PupsField {
-    /// The control points of the texture, layer by layer, the coarsest layer first.
+    /// The control points of the texture, by layer, the coarsest layer first.
     #[must_use]
     pub fn nets(&self) -> Vec<ControlNet> {
         match self {
@@ -156,11 +156,11 @@ impl PupsField {
         }
     }
 
-    /// The texture as control points that are given one by one, on a domain that is `tile`: the same picture, bit for bit.
-    /// Points that move stay where they are.
+    /// Converts the texture to individual control points on the domain `tile`. Their image is the same, bit for bit.
+    /// Moving points keep their current positions.
     ///
-    /// There are none for a texture of several layers (octaves, turbulence, cellular noise) and for colors, which
-    /// [`control_points`](crate::control_points) does not make.
+    /// Returns `None` for a texture of several layers (octaves, turbulence, cellular noise) and for colors, which
+    /// [`control_points`](crate::control_points) does not support.
     ///
     /// # Examples
     ///
@@ -233,7 +233,7 @@ impl NetField for LabelTexture {
 }
 
 impl NetField for Layers<Octave> {
-    /// The nets of the octaves, of which rescaled ones have a single one together.
+    /// The nets of the octaves; a single net for rescaled octaves.
     fn nets(&self) -> Vec<ControlNet> {
         let octaves = self.layers().iter().filter(|octave| octave.scale() == 1.0);
         octaves.map(|octave| octave.texture().into()).collect()

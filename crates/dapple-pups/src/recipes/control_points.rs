@@ -1,4 +1,4 @@
-//! Textures of control points that are given one by one.
+//! Textures of individual control points.
 
 use crate::{
     LabelTexture, NetField, NetOptions, Orientation, Orientations, Pups, PupsError, PupsErrorKind,
@@ -51,7 +51,7 @@ pub struct ControlPoints {
     pub margin: [f64; 2],
 }
 
-/// Distances from the domain to points outside of it.
+/// Range of the distance from the domain to points outside of it.
 const MARGIN: Range = range!(at least 0);
 
 #[cfg(feature = "serde")]
@@ -127,7 +127,7 @@ pub struct ControlPoint {
     pub orientation: Option<DVec3>,
 }
 
-/// Reads a number. `null` is refused: JSON has it where a number is not finite.
+/// Deserializes a number. `null` is an error, since JSON writes it for a number that is not finite.
 #[cfg(feature = "serde")]
 fn number<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<Option<f32>, D::Error> {
     <f32 as serde::Deserialize>::deserialize(deserializer).map(Some)
@@ -147,14 +147,16 @@ impl Default for ControlPoints {
     }
 }
 
-/// The values of control points, interpolated or as cells.
+/// Makes a texture of individual control points, interpolated or as cells.
 ///
 /// # Errors
 ///
-/// [`NoPoints`](PupsErrorKind::NoPoints) if there are none, [`Points`](PupsErrorKind::Points) for points outside of the
-/// domain, [`Conflict`](PupsErrorKind::Conflict) if only some points have an orientation, the options give orientations
-/// too, or a point has not either a value or a label, [`Count`](PupsErrorKind::Count) for a label without a value, and what
-/// [`PupsOptions::check`](crate::PupsOptions::check) refuses.
+/// * [`NoPoints`](PupsErrorKind::NoPoints) without points
+/// * [`Points`](PupsErrorKind::Points) for a point outside of the domain
+/// * [`Conflict`](PupsErrorKind::Conflict) if only some points have an orientation, if the options have orientations,
+///   too, or if a point does not have exactly one of value and label
+/// * [`Count`](PupsErrorKind::Count) for a label without a value
+/// * the errors of [`PupsOptions::check`](crate::PupsOptions::check)
 pub fn control_points(options: &ControlPoints, seed: Seed) -> Result<PupsField, PupsError> {
     let points = options.point_set()?;
     let net = &options.net;
@@ -178,7 +180,7 @@ pub fn control_points(options: &ControlPoints, seed: Seed) -> Result<PupsField, 
 }
 
 impl Cells {
-    /// The texture of values at the points of a net.
+    /// Makes the texture for the values at the points of a net.
     pub(crate) fn texture(
         self,
         pups: Pups,
@@ -195,13 +197,14 @@ impl Cells {
 }
 
 impl ControlPoints {
-    /// The points, in their order.
+    /// The positions of the points, in order.
     pub(crate) fn point_set(&self) -> Result<PointSet, PupsError> {
         let positions = self.points.iter().map(|point| DVec2::new(point.x, point.y));
         Ok(PointSet::new(self.points_domain()?, positions.collect())?)
     }
 
-    /// Where points may lie, and after which distances the texture repeats: the domain with its margin.
+    /// The domain of the points: the domain of the options with its margin, and the axes along which the texture
+    /// repeats.
     fn points_domain(&self) -> Result<Domain, PupsError> {
         for margin in self.margin {
             PupsError::check_in(MARGIN, "margin of the control points", margin)?;
@@ -214,7 +217,7 @@ impl ControlPoints {
         Ok(domain.grown(self.margin.into()))
     }
 
-    /// The value of each of some points: its own, or that of its label.
+    /// Value of each point, or of its label.
     pub(crate) fn numbers<'a>(
         &self,
         points: impl IntoIterator<Item = &'a ControlPoint>,
@@ -238,7 +241,7 @@ impl ControlPoints {
         points.into_iter().map(number).collect()
     }
 
-    /// The orientations that the points have, if they have any.
+    /// Orientations of the points; `None` if no point has one.
     pub(crate) fn orientations(&self) -> Result<Option<Vec<DVec3>>, PupsError> {
         let given: Vec<_> = self.points.iter().filter_map(|p| p.orientation).collect();
         let conflict = |rule| Err(PupsError::new(PupsErrorKind::Conflict { rule }));
@@ -255,7 +258,7 @@ impl ControlPoints {
     }
 }
 
-/// Orientations as data: two numbers, or three.
+/// Orientations as data: two or three numbers.
 #[cfg(feature = "serde")]
 mod orientation {
     use glam::DVec3;

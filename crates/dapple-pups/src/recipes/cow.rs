@@ -1,6 +1,6 @@
 //! Cow (section 3.2, figure 11): control points with random binary labels.
 //!
-//! With a spacing that varies it is figure 15, with a probability that varies figure 17.
+//! A varying spacing gives figure 15, a varying probability figure 17.
 
 use crate::{LabelTexture, NetOptions, PupsError, PupsField, PupsRecipe, Spacing, biased_labels};
 use dapple_hash::Seed;
@@ -42,14 +42,14 @@ impl Default for CowOptions {
     }
 }
 
-/// Patches of two values, like those of a cow.
+/// Makes patches of two values, like those of a cow.
 ///
 #[cfg_attr(doc, doc = include_str!("../../docs/cow.md"))]
 ///
 /// # Errors
 ///
-/// [`Points`](crate::PupsErrorKind::Points) for points that cannot be placed, [`Range`](crate::PupsErrorKind::Range)
-/// for a probability outside of `[0, 1]`, and what [`PupsOptions::check`](crate::PupsOptions::check) refuses.
+/// [`Points`](crate::PupsErrorKind::Points) if points cannot be placed, [`Range`](crate::PupsErrorKind::Range) for a
+/// probability outside of `[0, 1]`, and the errors of [`PupsOptions::check`](crate::PupsOptions::check).
 ///
 /// # Examples
 ///

@@ -1,12 +1,13 @@
 //! Iterated reference image (section 3.2, figure 14): boundaries that become fractal.
 //!
-//! In each iteration there are twice as many control points, each of which is white with a probability that is the
-//! intensity of the picture before at its place: the reference image at first, then the last iteration's interpolated
-//! texture. Away from boundaries that is 0 or 1 and nothing changes; near them the choice is random again and again, in
-//! ever smaller steps.
+//! Each iteration doubles the number of control points. A point is white with a probability equal to the intensity at
+//! its position. In the first iteration this is the intensity of the reference image, then of the previous iteration's
+//! interpolated texture. Away from boundaries the probability is 0 or 1, and nothing changes. Near boundaries the
+//! choice is random in every iteration, at ever smaller scales.
 //!
-//! The paper does not say whether an iteration's points contain the last's; both are here. If they do, they keep their
-//! label (with an axis scale of at most 1, a texture has at a control point exactly that point's value).
+//! The paper does not say whether the points of an iteration contain the previous ones; both are available. Points that
+//! are kept retain their label, since the value of a texture at a control point is that point's value (for an axis
+//! scale of at most 1).
 
 use super::octaves::{COUNT, expected_in_series};
 use crate::{
@@ -70,15 +71,15 @@ impl Default for IteratedOptions {
     }
 }
 
-/// The textures of all iterations, each with values in `[0, 1]` but for rounding, and mostly 0 or 1.
+/// Makes the textures of all iterations. Values are in `[0, 1]` up to rounding, and mostly 0 or 1.
 ///
 #[cfg_attr(doc, doc = include_str!("../../docs/iterated-reference.md"))]
 ///
 /// # Errors
 ///
-/// [`Points`](PupsErrorKind::Points) for points that cannot be placed, [`Range`](PupsErrorKind::Range) for a number of
-/// iterations outside of its range, [`SpacingVaries`](PupsErrorKind::SpacingVaries) for nested points of varying
-/// spacing, and what [`PupsOptions::check`](crate::PupsOptions::check) refuses.
+/// [`Points`](PupsErrorKind::Points) if points cannot be placed, [`Range`](PupsErrorKind::Range) if the number of
+/// iterations is out of its range, [`SpacingVaries`](PupsErrorKind::SpacingVaries) for nested points with a varying
+/// spacing, and the errors of [`PupsOptions::check`](crate::PupsOptions::check).
 ///
 /// # Examples
 ///
@@ -102,7 +103,7 @@ pub fn iterated_reference(
         ..options.net.clone()
     };
     let mut textures: Vec<Texture> = Vec::new();
-    // What the next iteration follows: if points move, their values stay those of the still texture.
+    // The input of the next iteration. If points move, their values come from the texture without motion.
     let mut former: Option<Texture> = None;
     for (iteration, points) in (0..).zip(options.point_sets(seed)?) {
         let seed = seed.child("iteration", iteration);
@@ -129,7 +130,7 @@ fn first_intensities(image: &ReferenceImage, points: &PointSet) -> Vec<f32> {
 }
 
 impl IteratedOptions {
-    /// The points of each iteration: twice as many as before, so closer by the square root of two.
+    /// The points of each iteration: twice as many as before, at distances divided by the square root of two.
     fn point_sets(&self, seed: Seed) -> Result<Vec<PointSet>, PupsError> {
         let factors = core::iter::successors(Some(1.0), |factor| Some(factor * SQRT_2));
         let factors = factors.take(self.iterations as usize);

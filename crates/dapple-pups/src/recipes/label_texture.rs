@@ -1,16 +1,16 @@
-//! Textures of labels: every position has the label of its strongest control point, and each label a value.
+//! Textures of labels: every position has the label of its strongest control point, and every label has a value.
 //!
-//! The paper labels a pixel by "the control point with the highest weight"; of equal ones it is the first. Labels that
-//! several control points share are not summed up.
+//! The paper labels a pixel by "the control point with the highest weight"; if several are equal, the first is used
+//! here. Weights of control points with equal labels are not added.
 
 use crate::{Pups, PupsError};
 use dapple_points::PointIdx;
 use dapple_raster::{Field, Raster, RasterError, RasterViewMut, Window};
 use glam::DVec2;
 
-/// A value for the label of the strongest control point, at every position.
+/// A texture with the value of the strongest control point's label, at every position.
 ///
-/// It takes no other values than those of its labels. At a position that is not finite it is NaN.
+/// Its values are those of its labels only, and NaN at a position that is not finite.
 ///
 /// # Examples
 ///
@@ -34,7 +34,8 @@ pub struct LabelTexture {
     values: Vec<f32>,
 }
 
-/// A vector, such as a color, for the label of the strongest control point: [`LabelTexture`] for `N` numbers at once.
+/// A texture with the vector, such as a color, of the strongest control point's label: a [`LabelTexture`] with `N`
+/// components.
 #[derive(Clone, Debug)]
 pub struct VectorLabelTexture<const N: usize> {
     pups: Pups,
@@ -42,7 +43,7 @@ pub struct VectorLabelTexture<const N: usize> {
     values: Vec<[f32; N]>,
 }
 
-/// Refuses labels without a value, and values that are not finite.
+/// Checks that every label has a value, and that all values are finite.
 fn check(pups: &Pups, labels: &[u32], n_values: usize, numbers: &[f32]) -> Result<(), PupsError> {
     PupsError::check_count("labels", labels.len(), pups.n_points())?;
     if let Some(&label) = labels.iter().find(|&&label| label as usize >= n_values) {
@@ -55,7 +56,7 @@ fn check(pups: &Pups, labels: &[u32], n_values: usize, numbers: &[f32]) -> Resul
     Ok(())
 }
 
-/// The label of each pixel of a window, changed by `value` and written into memory of its size.
+/// Renders `value` of the strongest control point of each pixel of a window into `out`.
 fn render_labels<T: Copy>(
     pups: &Pups,
     window: &Window,
@@ -74,12 +75,12 @@ fn render_labels<T: Copy>(
 }
 
 impl LabelTexture {
-    /// A texture of `values[label]`, where `labels` holds the label of each control point.
+    /// Creates a texture of `values[label]`; `labels` has the label of each control point.
     ///
     /// # Errors
     ///
-    /// [`Count`](crate::PupsErrorKind::Count) if there is not one label for each control point or a label has no value,
-    /// [`Range`](crate::PupsErrorKind::Range) if a value is not finite.
+    /// [`Count`](crate::PupsErrorKind::Count) if the number of labels is not the number of control points or a label
+    /// has no value, [`Range`](crate::PupsErrorKind::Range) if a value is not finite.
     pub fn new(pups: Pups, labels: Vec<u32>, values: Vec<f32>) -> Result<Self, PupsError> {
         check(&pups, &labels, values.len(), &values)?;
         Ok(Self {
@@ -89,7 +90,7 @@ impl LabelTexture {
         })
     }
 
-    /// The net that the labels belong to.
+    /// The net of the control points.
     #[must_use]
     pub fn pups(&self) -> &Pups {
         &self.pups
@@ -107,19 +108,19 @@ impl LabelTexture {
         &self.values
     }
 
-    /// The label at a position; none at one that is not finite.
+    /// The label at a position; `None` if it is not finite.
     #[must_use]
     pub fn label(&self, position: DVec2) -> Option<u32> {
         let point = self.pups.strongest(position)?;
         Some(self.labels[point.index()])
     }
 
-    /// The labels at the pixel centers of a window; `u32::MAX` at a position that is not finite.
+    /// Renders the labels at the pixel centers of a window; `u32::MAX` at a position that is not finite.
     ///
     /// # Errors
     ///
     /// [`Empty`](dapple_raster::RasterErrorKind::Empty) or [`TooLarge`](dapple_raster::RasterErrorKind::TooLarge) if
-    /// the window has a bad size.
+    /// the size of the window is invalid.
     pub fn label_raster(&self, window: &Window) -> Result<Raster<u32>, RasterError> {
         let mut raster = Raster::filled(window.size, u32::MAX)?;
         let label = |point: PointIdx| self.labels.get(point.index()).copied();
@@ -133,16 +134,16 @@ impl LabelTexture {
     ///
     /// # Errors
     ///
-    /// Those of [`new`](Self::new).
+    /// The errors of [`new`](Self::new).
     pub fn with_values(self, values: Vec<f32>) -> Result<Self, PupsError> {
         Self::new(self.pups, self.labels, values)
     }
 
-    /// Gives each label a vector, such as a color, in place of its value.
+    /// Replaces the value of each label by a vector, such as a color.
     ///
     /// # Errors
     ///
-    /// Those of [`new`](Self::new).
+    /// The errors of [`new`](Self::new).
     pub fn with_vectors<const N: usize>(
         self,
         values: Vec<[f32; N]>,
@@ -150,7 +151,7 @@ impl LabelTexture {
         VectorLabelTexture::new(self.pups, self.labels, values)
     }
 
-    /// The value of a point's label; NaN where there is no point.
+    /// The value of a point's label; NaN without a point.
     fn of_point(&self, point: Option<PointIdx>) -> f32 {
         let label = point.and_then(|point| self.labels.get(point.index()));
         label.map_or(f32::NAN, |&label| self.values[label as usize])
@@ -172,11 +173,11 @@ impl Field for LabelTexture {
 }
 
 impl<const N: usize> VectorLabelTexture<N> {
-    /// A texture of `values[label]`, where `labels` holds the label of each control point.
+    /// Creates a texture of `values[label]`; `labels` has the label of each control point.
     ///
     /// # Errors
     ///
-    /// Those of [`LabelTexture::new`].
+    /// The errors of [`LabelTexture::new`].
     pub fn new(pups: Pups, labels: Vec<u32>, values: Vec<[f32; N]>) -> Result<Self, PupsError> {
         check(&pups, &labels, values.len(), values.as_flattened())?;
         Ok(Self {
@@ -186,13 +187,13 @@ impl<const N: usize> VectorLabelTexture<N> {
         })
     }
 
-    /// The vector at a position; NaN at one that is not finite.
+    /// The vector at a position; NaN if it is not finite.
     #[must_use]
     pub fn sample(&self, position: impl Into<[f64; 2]>) -> [f32; N] {
         self.of_point(self.pups.strongest(position.into().into()))
     }
 
-    /// The vectors at the pixel centers of a window, into memory of its size.
+    /// Renders the vectors at the pixel centers of a window into `out`.
     ///
     /// # Errors
     ///
@@ -205,12 +206,12 @@ impl<const N: usize> VectorLabelTexture<N> {
         render_labels(&self.pups, window, out, |point| self.of_point(Some(point)))
     }
 
-    /// The vectors at the pixel centers of a window, as a new raster.
+    /// Renders the vectors at the pixel centers of a window to a new raster.
     ///
     /// # Errors
     ///
     /// [`Empty`](dapple_raster::RasterErrorKind::Empty) or [`TooLarge`](dapple_raster::RasterErrorKind::TooLarge) if
-    /// the window has a bad size.
+    /// the size of the window is invalid.
     pub fn to_raster(&self, window: &Window) -> Result<Raster<[f32; N]>, RasterError> {
         let mut raster = Raster::filled(window.size, [0.0; N])?;
         self.render(window, raster.view_mut())?;

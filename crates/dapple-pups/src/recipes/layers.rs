@@ -1,11 +1,11 @@
-//! Sums of layers, each with an amplitude: octaves of noise (equation 5) and cells of several sizes (figure 10).
+//! Weighted sums of layers: octaves of noise (equation 5) and cells of several sizes (figure 10).
 
 use dapple_raster::{Field, Raster, RasterError, RasterViewMut, Window, common_period};
 
 /// A weighted sum of fields whose values are between 0 and 1.
 ///
-/// Its values are at least 0 and at most the sum of the amplitudes: 1.875 for the four octaves of equation 5.
-/// To show it as an image, divide by that: [`normalized`](Self::normalized).
+/// Values are from 0 to the sum of the amplitudes, 1.875 for the four octaves of equation 5. To show the sum as an
+/// image, divide by this maximum: [`normalized`](Self::normalized).
 #[derive(Clone, Debug)]
 pub struct Layers<F> {
     layers: Vec<F>,
@@ -14,7 +14,7 @@ pub struct Layers<F> {
 }
 
 impl<F> Layers<F> {
-    /// Layer i with the amplitude `gain^i`.
+    /// Creates a sum in which layer i has the amplitude `gain^i`.
     pub(crate) fn geometric(layers: Vec<F>, gain: f64) -> Self {
         let amplitudes = core::iter::successors(Some(1.0), |amplitude| Some(amplitude * gain));
         let amplitudes = amplitudes.take(layers.len());
@@ -39,19 +39,19 @@ impl<F> Layers<F> {
         &self.layers
     }
 
-    /// The factor of each layer.
+    /// Amplitude of each layer.
     #[must_use]
     pub fn amplitudes(&self) -> &[f32] {
         &self.amplitudes
     }
 
-    /// The sum of the amplitudes: no value is larger.
+    /// Sum of the amplitudes, which no value exceeds.
     #[must_use]
     pub fn maximum(&self) -> f32 {
         self.maximum
     }
 
-    /// Divides the sum by its maximum, which gives values in `[0, 1]`: the mapping for display.
+    /// Divides the sum by its maximum, which maps values to `[0, 1]` for display.
     #[must_use]
     pub fn normalized(self) -> Self {
         let maximum = self.maximum;
@@ -63,7 +63,7 @@ impl<F> Layers<F> {
         }
     }
 
-    /// Changes the layers and keeps their amplitudes.
+    /// Applies a function to the layers; their amplitudes do not change.
     pub(crate) fn map<G>(self, change: impl FnMut(F) -> G) -> Layers<G> {
         Layers {
             layers: self.layers.into_iter().map(change).collect(),
@@ -72,7 +72,7 @@ impl<F> Layers<F> {
         }
     }
 
-    /// The last step: rounding must not leave the range. What is not a number stays so.
+    /// Clamps a sum that exceeds the maximum by rounding. NaN is unchanged.
     fn finish(&self, sum: f32) -> f32 {
         if sum > self.maximum {
             self.maximum
@@ -82,7 +82,7 @@ impl<F> Layers<F> {
     }
 }
 
-/// A value of a layer, kept between 0 and 1 against rounding, times its amplitude.
+/// The value of a layer, clamped to 0 to 1 because of rounding, times its amplitude.
 fn part(value: f32, amplitude: f32) -> f32 {
     value.clamp(0.0, 1.0) * amplitude
 }

@@ -1,4 +1,4 @@
-//! How the recipes weight their control points.
+//! Options of the recipes for the weights of their control points.
 
 use super::Orbits;
 use crate::options::MOVING_FADE;
@@ -77,7 +77,7 @@ impl Default for NetOptions {
 }
 
 impl NetOptions {
-    /// Random orientations, else the defaults: the cells of figure 9.
+    /// Options with random orientations and otherwise the defaults, for the cells of figure 9.
     #[must_use]
     pub fn randomly_oriented() -> Self {
         Self {
@@ -86,23 +86,24 @@ impl NetOptions {
         }
     }
 
-    /// The net of the Delaunay triangulation of `points`, or of where they have moved to.
+    /// Builds the net of the Delaunay triangulation of `points`, or of their positions after motion.
     ///
     /// # Errors
     ///
-    /// Those of [`with_graph`](Self::with_graph), and [`Graph`](crate::PupsErrorKind::Graph) if there is no triangulation.
+    /// The errors of [`with_graph`](Self::with_graph), and [`Graph`](crate::PupsErrorKind::Graph) if there is no
+    /// triangulation.
     pub fn pups(&self, points: &PointSet, seed: Seed) -> Result<Pups, PupsError> {
         let graph = self.delaunay(points)?;
         self.of_delaunay(points, &graph, self.orientation(points, seed)?, seed)
     }
 
-    /// The net of any graph over `points`; if they move, that of the Delaunay triangulation of where they have moved to.
-    /// Orientations come from `seed.child("orientation", 0)`, orbits from `seed.child("orbit", 0)`.
+    /// Builds the net of any graph over `points`; if they move, of the Delaunay triangulation of their positions after
+    /// motion. Orientations come from `seed.child("orientation", 0)`, orbits from `seed.child("orbit", 0)`.
     ///
     /// # Errors
     ///
-    /// Those of [`Pups::new`], and [`Range`](crate::PupsErrorKind::Range) for orientations that are not finite and orbits
-    /// outside of their range.
+    /// The errors of [`Pups::new`], and [`Range`](crate::PupsErrorKind::Range) for orientations that are not finite and
+    /// orbits out of their range.
     pub fn with_graph(
         &self,
         points: &PointSet,
@@ -119,7 +120,8 @@ impl NetOptions {
         }
     }
 
-    /// The net of the Delaunay graph of `points`, or of where they have moved to, with these orientations.
+    /// Builds the net of the Delaunay graph of `points`, or of their positions after motion, with the given
+    /// orientations.
     pub(crate) fn of_delaunay(
         &self,
         points: &PointSet,
@@ -133,7 +135,7 @@ impl NetOptions {
         }
     }
 
-    /// The points with a spacing in a domain.
+    /// Places points with a spacing in a domain, or takes equal points from `parts`.
     pub(crate) fn points(
         &self,
         spacing: &Spacing,
@@ -144,7 +146,7 @@ impl NetOptions {
         let Some(spacing) = spacing.description() else {
             return Ok(Arc::new(make()?));
         };
-        // Numbers are written such that equal texts have equal bits.
+        // Numbers are formatted so that equal texts mean equal bits.
         let text = format!("{spacing} {domain:?} {seed:?}");
         let scattered = self.parts.get_or_make(
             |other: &Scattered| other.text == text,
@@ -157,12 +159,12 @@ impl NetOptions {
         Ok(scattered.points.clone())
     }
 
-    /// The callback of the caller.
+    /// The cancellation callback of the caller.
     pub(crate) fn is_cancelled(&self) -> impl Fn() -> bool + Sync {
         || self.cancel.is_cancelled()
     }
 
-    /// The Delaunay graph of points.
+    /// The Delaunay graph of points, or an equal one from `parts`.
     pub(crate) fn delaunay(&self, points: &PointSet) -> Result<Arc<Graph>, PupsError> {
         let triangulated = self.parts.get_or_make(
             |other: &Triangulated| is_same(&other.points, points),
@@ -176,7 +178,7 @@ impl NetOptions {
         Ok(triangulated.graph.clone())
     }
 
-    /// The net of the Delaunay graph of points that do not move any more.
+    /// Builds the net of the Delaunay graph of points after motion, or takes an equal one from `parts`.
     fn net(
         &self,
         points: &PointSet,
@@ -193,7 +195,7 @@ impl NetOptions {
         Ok(Pups::clone(&pups))
     }
 
-    /// The orientations of points.
+    /// The orientations for points, with the strength of the options.
     pub(crate) fn orientation(
         &self,
         points: &PointSet,
@@ -207,7 +209,7 @@ impl NetOptions {
         }))
     }
 
-    /// Where the points have moved to, given their Delaunay graph; nothing if they do not move.
+    /// The positions of the points after motion, given their Delaunay graph; `None` if they do not move.
     pub(crate) fn moved(
         &self,
         points: &PointSet,
@@ -218,7 +220,7 @@ impl NetOptions {
         self.motion.map(moved).transpose()
     }
 
-    /// The options of a net, with these orientations.
+    /// The options of a net with the given orientations.
     pub(crate) fn pups_options(&self, orientation: Option<Orientation>) -> PupsOptions {
         PupsOptions {
             axis_scale: self.axis_scale,
@@ -231,7 +233,7 @@ impl NetOptions {
         }
     }
 
-    /// The options of points that have been moved already: axes fade as they do while points move.
+    /// The options for points that have already been moved. Axes fade as for moving points.
     pub(crate) fn after_motion(&self) -> Self {
         let PupsOptions { fade, .. } = self.pups_options(None);
         Self {
@@ -242,7 +244,7 @@ impl NetOptions {
     }
 }
 
-/// Points with the text of what they follow from.
+/// Points, with a text that identifies their inputs.
 struct Scattered {
     text: String,
     points: Arc<PointSet>,
@@ -254,7 +256,7 @@ struct Triangulated {
     graph: Arc<Graph>,
 }
 
-/// Whether two sets of points have the same bits.
+/// Whether the coordinates of two point sets have the same bits.
 fn is_same(a: &PointSet, b: &PointSet) -> bool {
     let pairs = a.positions().iter().zip(b.positions());
     a == b
@@ -263,12 +265,12 @@ fn is_same(a: &PointSet, b: &PointSet) -> bool {
             .all(|(a, b)| a.map(f64::to_bits) == b.map(f64::to_bits))
 }
 
-/// Whether nets of equal points have the same bits with two options. Only in orientations the sign of a zero matters.
+/// Whether nets of equal points have the same bits with both options. The sign of a zero matters only in orientations.
 fn is_same_options(a: &PupsOptions, b: &PupsOptions) -> bool {
     a == b && orientation_bits(a).eq(orientation_bits(b))
 }
 
-/// The bits of the orientations, if there are any.
+/// The bits of the orientations and their strength; empty without orientations.
 fn orientation_bits(options: &PupsOptions) -> impl Iterator<Item = u64> {
     let orientation = options.orientation.iter();
     let numbers = orientation.flat_map(|orientation| {
@@ -353,7 +355,7 @@ mod tests {
                 let (stopped, _, parts) = make(last);
                 let error = stopped.unwrap_err();
                 assert_eq!(*error.kind(), PupsErrorKind::Cancelled, "at call {last}");
-                // What was kept before is whole.
+                // Parts that were kept before the cancellation are complete.
                 let options = OctavesOptions {
                     domain,
                     net: NetOptions {

@@ -1,4 +1,4 @@
-//! Noise (section 3.1): random values at Poisson-disk control points, interpolated. One octave of figure 7.
+//! Noise (section 3.1): interpolated random values at Poisson-disk control points. One octave of figure 7.
 
 use crate::{NetOptions, PupsError, PupsField, PupsRecipe, Spacing, Texture, random_values};
 use dapple_hash::Seed;
@@ -32,14 +32,14 @@ impl Default for NoiseOptions {
     }
 }
 
-/// One octave of noise: a smooth field of values in `[0, 1]`, but for the rounding of single precision.
+/// Makes one octave of noise: a smooth field with values in `[0, 1]`, up to rounding in single precision.
 ///
 #[cfg_attr(doc, doc = include_str!("../../docs/noise.md"))]
 ///
 /// # Errors
 ///
-/// [`Points`](crate::PupsErrorKind::Points) for points that cannot be placed, and what
-/// [`PupsOptions::check`](crate::PupsOptions::check) refuses.
+/// [`Points`](crate::PupsErrorKind::Points) if points cannot be placed, and the errors of
+/// [`PupsOptions::check`](crate::PupsOptions::check).
 ///
 /// # Examples
 ///

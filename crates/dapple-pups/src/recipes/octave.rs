@@ -1,9 +1,9 @@
-//! One octave of noise, as it stands in a sum: rescaled, and perhaps folded.
+//! One octave of a sum: rescaled and optionally folded noise.
 
 use crate::Texture;
 use dapple_raster::{Field, RasterError, RasterViewMut, Window};
 
-/// One octave: a texture with values in `[0, 1]`, rescaled and perhaps folded.
+/// One octave: a texture with values in `[0, 1]`, rescaled and optionally folded.
 #[derive(Clone, Debug)]
 pub struct Octave {
     texture: Texture,
@@ -17,7 +17,7 @@ pub struct Octave {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Folding {
-    /// It is as it was interpolated.
+    /// The interpolated values.
     #[default]
     Plain,
     /// T' = 2 · |T − ½|.
@@ -33,19 +33,19 @@ impl Octave {
         }
     }
 
-    /// Says whether the octave is folded.
+    /// Sets whether the octave is folded.
     #[must_use]
     pub fn with_folding(self, folding: Folding) -> Self {
         Self { folding, ..self }
     }
 
-    /// The texture that it shows.
+    /// The texture of the octave, before rescaling and folding.
     #[must_use]
     pub fn texture(&self) -> &Texture {
         &self.texture
     }
 
-    /// The factor of positions: 1, or a power of two if octaves are rescaled.
+    /// Factor on positions: 1, or a power of two if octaves are rescaled.
     #[must_use]
     pub fn scale(&self) -> f64 {
         self.scale
@@ -67,7 +67,7 @@ impl Field for Octave {
     }
 
     fn render(&self, window: &Window, mut out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
-        // With a power of two, the positions of this window are those of the other times the scale, to the last bit.
+        // Since the factor is a power of two, scaling the window gives the same bits as scaling each position.
         let window = Window {
             origin: window.origin.map(|at| at * self.scale),
             pixel: window.pixel.map(|side| side * self.scale),

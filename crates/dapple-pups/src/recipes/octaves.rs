@@ -1,11 +1,12 @@
 //! Octaves of noise, their sum (equation 5, figure 6), folding (figure 7) and turbulence (figure 8).
 //!
-//! Octave i has control points that are 2^i times as dense along each axis. The paper takes separate points for every
-//! octave and notes that one tile, rescaled, would do; both are here. A rescaled octave is `tile(2^i · position)`: since
-//! the factor is a power of two and the tile repeats, this is exact, and the octave repeats with the tile's period.
+//! In octave i, control points are 2^i times as dense along each axis. The paper uses separate points for every octave
+//! and notes that one rescaled tile would suffice; both are available. A rescaled octave is `tile(2^i · position)`.
+//! Since the factor is a power of two and the tile repeats, this is exact, and the octave repeats with the tile's
+//! period.
 //!
-//! The sum of equation 5 lies between 0 and 1 + ½ + ¼ + ⅛ = 1.875; the paper does not say how it is shown. We divide by
-//! the largest possible value: [`Layers::normalized`].
+//! The sum of equation 5 is between 0 and 1 + ½ + ¼ + ⅛ = 1.875. The paper does not say how it is displayed. Here it is
+//! divided by the largest possible value: [`Layers::normalized`].
 
 use crate::{
     Folding, Layers, NetOptions, NoiseOptions, Octave, PupsError, PupsErrorKind, PupsField,
@@ -88,13 +89,13 @@ impl Default for OctavesOptions {
     }
 }
 
-/// Octaves of noise and, as a field, their sum after equation 5.
+/// Makes octaves of noise; as a field, their sum by equation 5.
 ///
 #[cfg_attr(doc, doc = include_str!("../../docs/octaves.md"))]
 ///
 /// # Errors
 ///
-/// What [`noise`] refuses; [`Range`](PupsErrorKind::Range) for options outside of their ranges;
+/// The errors of [`noise`]; [`Range`](PupsErrorKind::Range) if an option is out of its range;
 /// [`NotWrapped`](PupsErrorKind::NotWrapped) if octaves are rescaled and the domain does not wrap along both axes.
 ///
 /// # Examples
@@ -132,13 +133,13 @@ pub fn octaves(options: &OctavesOptions, seed: Seed) -> Result<Layers<Octave>, P
     Ok(Layers::geometric(octaves?, options.gain))
 }
 
-/// Perlin's turbulence: the sum of the [`octaves`], each of which is folded. Between 0 and 1.875 by default.
+/// Makes Perlin's turbulence: the sum of folded [`octaves`], which is between 0 and 1.875 by default.
 ///
 #[cfg_attr(doc, doc = include_str!("../../docs/turbulence.md"))]
 ///
 /// # Errors
 ///
-/// Those of [`octaves`].
+/// The errors of [`octaves`].
 pub fn turbulence(options: &OctavesOptions, seed: Seed) -> Result<Layers<Octave>, PupsError> {
     Ok(octaves(options, seed)?.folded())
 }
@@ -184,14 +185,14 @@ impl OctavesOptions {
     }
 }
 
-/// The number of octaves, layers or iterations.
+/// Range of the number of octaves, layers or iterations.
 pub(super) const COUNT: Range = range!(from 1 to 16);
-/// How much finer each is than the one before.
+/// Range of the ratio of frequencies of successive octaves.
 pub(super) const LACUNARITY: Range = range!(above 1 to 16);
-/// How high each is beside the one before.
+/// Range of the ratio of amplitudes of successive octaves.
 pub(super) const GAIN: Range = range!(above 0 to 1);
 
-/// Refuses a series of layers that is too long or does not get finer and fainter.
+/// Checks the number, the lacunarity and the gain of a series of layers.
 pub(crate) fn check_series(
     what: &'static str,
     count: u32,
@@ -244,8 +245,8 @@ impl PupsRecipe for TurbulenceOptions {
     }
 }
 
-/// The control points of layers, each with distances `factor` times smaller than the one before. Of a number that is
-/// refused when they are to be made there are none.
+/// Estimated number of control points of layers whose distances are divided by `factor` from layer to layer. An invalid
+/// number of layers, which is an error when the layers are made, counts as 0.
 pub(super) fn expected_in_series(
     spacing: &Spacing,
     domain: Domain,

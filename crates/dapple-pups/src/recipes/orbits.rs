@@ -1,11 +1,12 @@
 //! Control points that move on circles, for loops in time.
 //!
-//! The paper's outlook: "the motion of the texture can be governed by the motion of the underlying discrete structure. The
-//! main difficulty here lies in smoothing out sudden changes in the texture arising from sudden changes in the control
-//! net topology." Points keep what they hold while they move, and what smooths is [`PupsOptions::fade`].
+//! The paper's outlook: "the motion of the texture can be governed by the motion of the underlying discrete structure.
+//! The main difficulty here lies in smoothing out sudden changes in the texture arising from sudden changes in the
+//! control net topology." Points keep their values and labels while they move. [`PupsOptions::fade`] smooths the
+//! changes.
 //!
-//! A circle lies about the place of its point in the still texture, so that points are as far apart at one time as at any
-//! other.
+//! A circle is centered at the position of its point in the texture without motion, so the distribution of distances
+//! does not change with time.
 //!
 //! [`PupsOptions::fade`]: crate::PupsOptions::fade
 
@@ -31,14 +32,14 @@ pub struct Orbits {
     pub radius: f64,
 }
 
-/// Radii beside mean distances.
+/// Range of [`Orbits::radius`].
 const RADIUS: Range = range!(above 0 to 1);
-/// Parts of a loop; whole loops change nothing.
+/// Range of the time, in loops; whole loops change nothing.
 const TIME: Range = range!(finite);
 
 impl Orbits {
-    /// Where the points are when a part of the loop has passed; at 1 it is where they were at 0. Along axes of the domain
-    /// that do not wrap, circles end at its border.
+    /// The positions of the points after a fraction of the loop; at 1 they equal those at 0. Along axes of the domain
+    /// that do not wrap, circles are limited by its border.
     pub(crate) fn moved(
         self,
         points: &PointSet,
@@ -72,7 +73,7 @@ fn mean_distance(graph: &Graph, point: PointIdx) -> f64 {
     sum / axes.len().max(1) as f64
 }
 
-/// A place on a circle, which is made smaller where it would cross a border that does not wrap.
+/// A position on a circle, whose radius is reduced where it would cross a border that does not wrap.
 fn within(points: &PointSet, center: DVec2, mut radius: f64, circle: DVec2) -> DVec2 {
     let domain = points.domain();
     let (first, last) = (domain.origin, domain.end());
@@ -82,7 +83,7 @@ fn within(points: &PointSet, center: DVec2, mut radius: f64, circle: DVec2) -> D
     }
     let mut at = center + circle * radius;
     for axis in (0..2).filter(|&axis| !domain.wrap[axis]) {
-        // Rounding may lead past the border.
+        // Rounding may exceed the border.
         at[axis] = at[axis].clamp(first[axis], last[axis]);
     }
     at

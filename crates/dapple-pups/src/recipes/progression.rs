@@ -1,9 +1,10 @@
 //! Progressions from left to right (section 3.3): denser cows and giraffes (figures 15 and 16), and a label ramp
 //! (figure 17).
 //!
-//! They are [`cow`] and [`space_giraffe`] with a spacing or a probability that depends on x, on a domain that repeats
-//! from top to bottom only: around a torus, what grows from left to right ends in a step. The paper gives no numbers;
-//! distances change by equal ratios over equal lengths, so that the relative change is the same everywhere.
+//! The recipes are [`cow`] and [`space_giraffe`] with a spacing or a probability that depends on x. Their domain wraps
+//! from top to bottom only: on a torus, a progression from left to right would end in a step. The paper gives no
+//! numbers. Here distances change geometrically: by equal ratios over equal lengths, so that the relative change is
+//! uniform.
 
 use crate::{
     CowOptions, LabelTexture, NetOptions, PupsError, PupsField, PupsRecipe, SpaceGiraffeOptions,
@@ -94,13 +95,13 @@ impl Default for LabelRampOptions {
     }
 }
 
-/// A cow whose patches become smaller to the right (figure 15).
+/// Makes a cow whose patches become smaller to the right (figure 15).
 ///
 #[cfg_attr(doc, doc = include_str!("../../docs/cow-progression.md"))]
 ///
 /// # Errors
 ///
-/// Those of [`cow`].
+/// The errors of [`cow`].
 ///
 /// # Examples
 ///
@@ -118,13 +119,13 @@ pub fn cow_progression(
     cow(&options.cow(), seed)
 }
 
-/// A space giraffe whose spots become smaller to the right (figure 16).
+/// Makes a space giraffe whose spots become smaller to the right (figure 16).
 ///
 #[cfg_attr(doc, doc = include_str!("../../docs/giraffe-progression.md"))]
 ///
 /// # Errors
 ///
-/// Those of [`space_giraffe`].
+/// The errors of [`space_giraffe`].
 pub fn giraffe_progression(
     options: &ProgressionOptions,
     seed: Seed,
@@ -132,13 +133,13 @@ pub fn giraffe_progression(
     space_giraffe(&options.giraffe(), seed)
 }
 
-/// Black and white cells, with ever more white to the right (figure 17).
+/// Makes black and white cells, with the share of white increasing to the right (figure 17).
 ///
 #[cfg_attr(doc, doc = include_str!("../../docs/label-ramp.md"))]
 ///
 /// # Errors
 ///
-/// Those of [`cow`].
+/// The errors of [`cow`].
 pub fn label_ramp(options: &LabelRampOptions, seed: Seed) -> Result<LabelTexture, PupsError> {
     let cow_options = CowOptions {
         domain: options.domain,
@@ -151,7 +152,7 @@ pub fn label_ramp(options: &LabelRampOptions, seed: Seed) -> Result<LabelTexture
 }
 
 impl ProgressionOptions {
-    /// The spacing of the points of a cow, or of the centers of the spots of a giraffe.
+    /// The spacing of the points of a cow, or of the spot centers of a giraffe.
     #[must_use]
     pub fn spacing(&self) -> Spacing {
         let ramp = left_to_right(&self.domain, self.distances);
@@ -177,7 +178,7 @@ impl ProgressionOptions {
     }
 }
 
-/// The paper's square, wrapped from top to bottom only.
+/// The paper's square, which wraps from top to bottom only.
 fn cylinder() -> Domain {
     Domain {
         wrap: [false, true],

@@ -1,4 +1,4 @@
-//! Reference image (section 3.2, figure 13): an image decides which group a control point belongs to.
+//! Reference image (section 3.2, figure 13): an image determines the labels of the control points.
 
 use crate::{
     LabelTexture, NetOptions, PupsError, PupsField, PupsRecipe, ReferenceImage, Spacing,
@@ -38,14 +38,14 @@ impl Default for ReferenceOptions {
     }
 }
 
-/// Black and white cells after an image: a control point is white with the probability of the intensity under it.
+/// Makes black and white cells from an image: the probability of white at a control point is the intensity there.
 ///
 #[cfg_attr(doc, doc = include_str!("../../docs/reference-texture.md"))]
 ///
 /// # Errors
 ///
-/// [`Points`](crate::PupsErrorKind::Points) for points that cannot be placed, and what
-/// [`PupsOptions::check`](crate::PupsOptions::check) refuses.
+/// [`Points`](crate::PupsErrorKind::Points) if points cannot be placed, and the errors of
+/// [`PupsOptions::check`](crate::PupsOptions::check).
 ///
 /// # Examples
 ///

@@ -1,30 +1,36 @@
-//! Space giraffe (section 3.2, figure 12): irregular spots that stay apart.
+//! Space giraffe (section 3.2, figure 12): irregular spots that do not touch.
 //!
-//! The literal recipe: spot centers are a Poisson-disk set; the radius r of a spot is half the distance to the nearest
-//! other center; around the center, at angular intervals of 2π/n with a random n from 10 to 20, stand pairs of points at
-//! random radii from 0 to r, the inner one in the spot, the outer one in the background. But where radii at neighboring
-//! angles have nothing to do with each other, an inner point can lie beyond the outer points beside it: some 70 centers
-//! give 95 black pieces with 33 holes, and only 16 % of the picture is black.
+//! The literal recipe: spot centers are a Poisson-disk set. The radius r of a spot is half the distance to the nearest
+//! other center. Around the center, at angular intervals of 2π/n with a random n from 10 to 20, are pairs of points at
+//! random radii from 0 to r: the inner point in the spot, the outer one in the background. Since radii at neighboring
+//! angles are independent, an inner point can be farther out than the outer points next to it. Some 70 centers give 95
+//! black pieces with 33 holes, and only 16 % of the image is black.
 //!
-//! By default, radii are therefore drawn evenly over the area of the disk, and each is replaced by a mean of its
-//! neighbors along the angle; then the pairs are scaled until the outermost point stands at r. That gives one piece
-//! without holes around each center, and about a third of the picture is black.
+//! By default, radii are therefore drawn uniformly over the area of the disk, and each is replaced by a weighted mean
+//! of its neighbors along the angle. Then the pairs are scaled until the outermost point is at r. This gives one piece
+//! without holes around each center, and about a third of the image is black.
 //!
 //! "A secondary objective was to prevent two cells from merging", which the literal recipe misses for about one pair of
-//! neighboring spots in 20 000. By default no two spots merge, by this argument. A control point has a weight only within
-//! its support, which is its Voronoi cell scaled by twice the axis scale about the point. Leaving points out makes
-//! Voronoi cells larger, never smaller. So the support that an inner point (or the center) has *among the points of its
-//! own spot alone* holds its true support, whatever stands around. If all these polygons of a spot lie in the Voronoi
-//! cell of its center among the centers, then the spot does; Voronoi cells are disjoint, so no two spots meet. Scaling
-//! the points of a spot about its center scales the polygons with them: a spot that does not fit is scaled down until it
-//! does. Orientations change weights within supports only and do not matter, nor does the axial weight.
+//! neighboring spots in 20 000. By default no two spots merge, for these reasons:
 //!
-//! When points move, the centers do, and spots are made about where they have moved to: at any time they are whole and
-//! apart, and they change their size as they pass each other.
+//! * A control point has a weight only within its support, which is its Voronoi cell scaled around the point by twice
+//! the
+//!   axis scale.
+//! * Removing points makes Voronoi cells larger, never smaller. So the support of an inner point (or the center) *among
+//!   the points of its own spot alone* contains its true support, whatever other points exist.
+//! * If all these polygons of a spot are in the Voronoi cell of its center among the centers, then the spot is, too.
+//!   Voronoi cells are disjoint, so no two spots touch.
+//! * Scaling the points of a spot around its center scales the polygons with them. So a spot that does not fit is
+//! scaled
+//!   down until it does.
+//! * Orientations and axial weights change weights within supports only, so they do not matter.
 //!
-//! Where the paper is silent: the first angle is random; n is uniform; radii keep 1/256 of r from 0, from r and, within
-//! a pair, from each other, so that no two points coincide. Along axes that do not wrap, the domain of the texture is
-//! that of the centers grown by the largest r, so that every spot is whole.
+//! If points move, the centers move, and spots are built around their new positions. At any time the spots are whole
+//! and separate; their sizes change as they pass each other.
+//!
+//! Choices that the paper leaves open: the first angle is random, and n is uniform. Radii differ by at least r/256 from
+//! 0, from r and from each other in a pair, so no two points coincide. Along axes that do not wrap, the domain of the
+//! texture is the domain of the centers extended by the largest r, so every spot is whole.
 
 mod spot;
 
@@ -98,17 +104,17 @@ impl Default for SpaceGiraffeOptions {
     }
 }
 
-/// Irregular spots, one around each point of a Poisson-disk set.
+/// Makes irregular spots, one around each point of a Poisson-disk set.
 ///
-/// The first control points are the centers; then come, spot by spot, the pairs: inner point, outer point.
+/// The first control points are the centers. The pairs follow, spot by spot: inner point, outer point.
 ///
 #[cfg_attr(doc, doc = include_str!("../../docs/space-giraffe.md"))]
 ///
 /// # Errors
 ///
-/// [`Points`](PupsErrorKind::Points) for points that cannot be placed, [`Count`](PupsErrorKind::Count) for a single
-/// center without any neighbor, [`Range`](PupsErrorKind::Range) for a number of pairs outside of its range, and what
-/// [`PupsOptions::check`](crate::PupsOptions::check) refuses.
+/// [`Points`](PupsErrorKind::Points) if points cannot be placed, [`Count`](PupsErrorKind::Count) for a single center
+/// without a neighbor, [`Range`](PupsErrorKind::Range) if a number of pairs is out of its range, and the errors of
+/// [`PupsOptions::check`](crate::PupsOptions::check).
 ///
 /// # Examples
 ///
@@ -126,7 +132,7 @@ pub fn space_giraffe(options: &SpaceGiraffeOptions, seed: Seed) -> Result<LabelT
 }
 
 impl SpaceGiraffeOptions {
-    /// The centers and the pairs, and their labels.
+    /// Places the centers and the pairs; returns them with their labels.
     fn control_points(&self, seed: Seed) -> Result<(PointSet, Vec<u32>), PupsError> {
         self.check()?;
         let seed_of_points = seed.child("points", 0);
@@ -167,7 +173,7 @@ impl SpaceGiraffeOptions {
         Ok(())
     }
 
-    /// The spot around each center.
+    /// Makes the spot around each center.
     fn place_spots(&self, centers: &PointSet, seed: Seed) -> Result<Vec<Spot>, PupsError> {
         let graph = self.net.delaunay(centers)?;
         let place = |(center, _): (PointIdx, DVec2)| {
@@ -182,7 +188,7 @@ impl SpaceGiraffeOptions {
     }
 }
 
-/// Half the distance to the nearest other center (or image of a center): the shortest of the Delaunay edges.
+/// Half the distance to the nearest other center (or periodic image): half the length of the shortest Delaunay edge.
 fn radius(graph: &Graph, center: PointIdx) -> Result<f64, PupsError> {
     let lengths = graph.axes(center).iter().map(|axis| axis.vector.length());
     lengths.reduce(f64::min).map(|length| 0.5 * length).ok_or(

@@ -1,4 +1,4 @@
-//! How far apart the control points of a recipe are, everywhere or depending on the position.
+//! The spacing of a recipe's control points, constant or depending on the position.
 
 #[cfg(feature = "serde")]
 mod data;
@@ -47,21 +47,21 @@ impl From<f64> for Spacing {
 }
 
 impl Spacing {
-    /// A maximal Poisson-disk set with this spacing.
+    /// Makes a maximal Poisson-disk set with this spacing.
     ///
     /// # Errors
     ///
-    /// [`Points`](crate::PupsErrorKind::Points) for what [`poisson_disk`](dapple_points::poisson_disk) or, if
-    /// the spacing varies, [`variable_poisson_disk`](dapple_points::variable_poisson_disk) refuses.
+    /// [`Points`](crate::PupsErrorKind::Points) for the errors of [`poisson_disk`](dapple_points::poisson_disk) or, if
+    /// the spacing varies, of [`variable_poisson_disk`](dapple_points::variable_poisson_disk).
     pub fn points(&self, domain: Domain, seed: Seed) -> Result<PointSet, PupsError> {
         self.points_cancellable(domain, seed, &|| false)
     }
 
-    /// The set of [`points`](Self::points), unless `is_cancelled` returns true.
+    /// Makes the set of [`points`](Self::points), unless `is_cancelled` returns true.
     ///
     /// # Errors
     ///
-    /// Those of [`points`](Self::points), and [`Cancelled`](crate::PupsErrorKind::Cancelled).
+    /// The errors of [`points`](Self::points), and [`Cancelled`](crate::PupsErrorKind::Cancelled).
     pub fn points_cancellable(
         &self,
         domain: Domain,
@@ -85,11 +85,12 @@ impl Spacing {
         points.map_err(PupsError::of_part)
     }
 
-    /// About how many points [`points`](Self::points) makes in the domain, rather too many than too few, without making
-    /// them. It may be infinite.
+    /// Estimated number of [`points`](Self::points) in the domain, computed without making them; rather too large than
+    /// too small. It may be infinite.
     ///
-    /// For distances that are a constant or a ramp it is an upper bound, up to twice the number where there are many points;
-    /// any other variation is read at a few thousand places only. A spacing that is refused counts as none.
+    /// For distances that are constant or a ramp it is an upper bound, at most twice the number if there are many
+    /// points. Any other variation is sampled at a few thousand positions only. The estimate for an invalid spacing is
+    /// 0.
     ///
     /// # Examples
     ///
@@ -114,7 +115,7 @@ impl Spacing {
         }
     }
 
-    /// The smallest distance, if it is the same everywhere.
+    /// The smallest distance, if it is constant.
     pub(crate) fn uniform_distance(&self, domain: Domain) -> Result<Option<f64>, PupsError> {
         let distance = match self {
             Self::Distance(distance) => distance.clone(),
@@ -127,7 +128,7 @@ impl Spacing {
         })
     }
 
-    /// The spacing as a text from which it follows; none where it varies as a raster or a function does.
+    /// A text that identifies the spacing; `None` if it varies like a raster or a function.
     pub(crate) fn description(&self) -> Option<String> {
         match self {
             Self::Distance(varying) | Self::Density(varying) => matches!(
@@ -139,27 +140,27 @@ impl Spacing {
         }
     }
 
-    /// The spacing with all distances divided by `factor`: `factor²` times as many points.
+    /// The spacing with all distances divided by `factor`, which gives `factor²` times as many points.
     #[must_use]
     pub fn finer(&self, factor: f64) -> Self {
         match self {
             Self::Distance(distance) => Self::Distance(scaled(distance, 1.0 / factor)),
             Self::Density(density) => Self::Density(scaled(density, factor * factor)),
             Self::Count(n_points) => {
-                // Saturates, and then there are too many points.
+                // Saturates. The number of points is then above the limit anyway.
                 Self::Count((f64::from(*n_points) * factor * factor).round() as u32)
             }
         }
     }
 }
 
-/// The most points per squared smallest distance that are expected: random maximal sets have 0.70.
+/// Estimated maximum number of points per squared smallest distance; random maximal sets have 0.70.
 const POINTS_PER_SQUARE: f64 = 0.75;
 
-/// Along each axis, the parts of the domain in which a spacing that varies is taken for its smallest.
+/// Number of parts along each axis of the domain in which a varying spacing is replaced by its minimum.
 const PARTS: u32 = 64;
 
-/// The most points expected in a rectangle, also on its borders.
+/// Estimated maximum number of points in a rectangle, including its borders.
 fn expected_in(size: DVec2, radius: f64) -> f64 {
     if radius > 0.0 {
         let sides = size / radius + 1.0;
@@ -169,7 +170,7 @@ fn expected_in(size: DVec2, radius: f64) -> f64 {
     }
 }
 
-/// The sum over parts of the domain, in each of which the radius is the smallest of those at its corners.
+/// Sum of the estimates for parts of the domain. In each part, the radius is the smallest at its corners.
 fn expected_by_parts(domain: Domain, radius: &Varying) -> f64 {
     let part = domain.size / f64::from(PARTS);
     let at = |x: u32, y: u32| {
@@ -177,7 +178,7 @@ fn expected_by_parts(domain: Domain, radius: &Varying) -> f64 {
         if radius > 0.0 { radius } else { f64::INFINITY }
     };
     let row = |y: u32| (0..=PARTS).map(|x| at(x, y)).collect::<Vec<_>>();
-    // Points on the border of the domain count beyond those of its area.
+    // Points on the border of the domain count in addition to the points of its area.
     let is_border = |index: u32| f64::from(u8::from(index == 0 || index == PARTS - 1));
     let mut above = row(0);
     let mut sum = 1.0;
@@ -194,7 +195,7 @@ fn expected_by_parts(domain: Domain, radius: &Varying) -> f64 {
     sum
 }
 
-/// A number that varies, multiplied everywhere.
+/// A varying number, multiplied by a factor.
 fn scaled(varying: &Varying, factor: f64) -> Varying {
     let ramp = |ramp: &Ramp| Ramp {
         start: ramp.start * factor,
@@ -220,7 +221,7 @@ mod tests {
     use dapple_raster::{Ramp, Varying};
     use glam::DVec2;
 
-    /// Spacings that vary along the diagonal of a domain, and ones that do not.
+    /// Spacings that vary along the diagonal of a domain, and constant ones.
     fn spacings(domain: Domain) -> Vec<Spacing> {
         let ramp = Ramp {
             from: domain.origin,
@@ -254,7 +255,7 @@ mod tests {
         };
         for domain in [torus, rectangle] {
             for spacing in spacings(rectangle) {
-                // What varies does not repeat, so that it belongs on the rectangle.
+                // A spacing that varies does not repeat, so it needs the rectangle.
                 let varies = matches!(
                     spacing,
                     Spacing::Distance(Varying::Ramp(_) | Varying::GeometricRamp(_))

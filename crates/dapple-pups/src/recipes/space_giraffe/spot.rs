@@ -1,4 +1,4 @@
-//! One spot of a giraffe: pairs of points around a center, and the polygons that its cells cannot leave.
+//! One spot of a giraffe: pairs of points around a center, and polygons that contain its cells.
 //!
 //! Positions are relative to the center, in units of the domain.
 
@@ -9,23 +9,23 @@ use dapple_hash::{CellHash, Seed, unit_f64};
 use dapple_points::PointIdx;
 use glam::DVec2;
 
-/// How close a point may come to the center, the rim or the other of its pair, as a part of the radius.
+/// Minimum distance of a point from the center, the rim and the other point of its pair, as a fraction of the radius.
 const GAP: f64 = 1.0 / 256.0;
 
-/// The part of its room that a scaled spot fills, so that rounding does not matter.
+/// Fraction of the available space that a scaled spot fills, as a margin for rounding.
 const SLACK: f64 = 1.0 - 1e-6;
 
-/// The pairs around a center.
+/// The pairs of points around a center.
 #[derive(Clone, Debug)]
 pub(super) struct Spot {
     /// Half the distance to the nearest other center.
     pub(super) radius: f64,
-    /// The inner and the outer point of each pair.
+    /// Inner and outer point of each pair.
     pub(super) pairs: Vec<[DVec2; 2]>,
 }
 
 impl Spot {
-    /// The spot of a center before it is fitted into its room.
+    /// Draws the spot of a center, before it is fitted.
     pub(super) fn random(
         radius: f64,
         options: &SpaceGiraffeOptions,
@@ -41,7 +41,7 @@ impl Spot {
         let radii: Vec<[f64; 2]> = match options.spots {
             Spots::Literal => (0..n_pairs).map(|index| sorted(draw(index))).collect(),
             Spots::Separated => {
-                // Evenly over the area of the disk.
+                // The square root makes points uniform over the area of the disk.
                 let even = (0..n_pairs).map(|index| sorted(draw(index).map(f64::sqrt)));
                 filled(&smoothed(&even.collect::<Vec<_>>()))
             }
@@ -57,7 +57,7 @@ impl Spot {
         }
     }
 
-    /// The spot, scaled down if need be, so that no cell of it leaves the Voronoi cell of the center, whose Delaunay
+    /// Scales the spot down if needed, so that all its cells are inside the Voronoi cell of the center, whose Delaunay
     /// axes are given.
     pub(super) fn fitted(mut self, axes: &[Axis], axis_scale: f64) -> Self {
         let room = self.room(axes, axis_scale);
@@ -70,7 +70,7 @@ impl Spot {
         self
     }
 
-    /// By how much the spot can be scaled.
+    /// Maximum scale at which the spot fits, at most 1.
     pub(super) fn room(&self, axes: &[Axis], axis_scale: f64) -> f64 {
         let room_for = |corner: DVec2| {
             let along = |axis: &Axis| {
@@ -88,9 +88,9 @@ impl Spot {
             .fold(1.0, f64::min)
     }
 
-    /// The corners of the support that a point has among the points of this spot.
+    /// The corners of the support of a point among the points of this spot.
     fn support(&self, point: DVec2, axis_scale: f64) -> Vec<DVec2> {
-        // Outer points stand all around, so that the support ends long before this square does.
+        // Outer points are on all sides, so the support ends long before this square.
         let far = self.radius * 1e12;
         let mut corners = [(-far, -far), (far, -far), (far, far), (-far, far)]
             .map(DVec2::from)
@@ -106,7 +106,8 @@ impl Spot {
     }
 }
 
-/// The radii of a pair from two random numbers: the inner one first, and off the center, the rim and each other.
+/// Converts two random numbers to the radii of a pair, as fractions: the inner one first, with gaps to the center, to
+/// the rim and between them.
 fn sorted(parts: [f64; 2]) -> [f64; 2] {
     let [a, b] = parts.map(|part| GAP + (1.0 - 2.0 * GAP) * part);
     let outer = a.max(b).max(2.0 * GAP);
@@ -114,8 +115,8 @@ fn sorted(parts: [f64; 2]) -> [f64; 2] {
     [inner, outer]
 }
 
-/// The radii around a spot, each the mean of its neighbors within a fifth of a turn to either side, with weights that
-/// fall off in a line. Inner points stay inside of outer ones, as they do before.
+/// Smooths radii around a spot: each becomes the weighted mean of its neighbors within a fifth of a turn on either
+/// side. Weights decrease linearly. Inner points remain inside of outer ones.
 fn smoothed(radii: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let n_pairs = radii.len();
     let reach = (n_pairs / 5).max(3);
@@ -132,7 +133,7 @@ fn smoothed(radii: &[[f64; 2]]) -> Vec<[f64; 2]> {
     (0..n_pairs).map(mean).collect()
 }
 
-/// The radii, scaled so that the outermost point stands at the rim.
+/// Scales the radii so that the outermost point is at the rim.
 fn filled(radii: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let outermost = radii.iter().map(|&[_, outer]| outer).fold(0.0, f64::max);
     let scale = (1.0 - GAP) / outermost;
@@ -142,7 +143,7 @@ fn filled(radii: &[[f64; 2]]) -> Vec<[f64; 2]> {
         .collect()
 }
 
-/// The part of a convex polygon in which `normal · position ≤ limit`.
+/// Clips a convex polygon to `normal · position ≤ limit`.
 fn clipped(corners: &[DVec2], normal: DVec2, limit: f64) -> Vec<DVec2> {
     let mut kept = Vec::with_capacity(corners.len() + 1);
     for (index, &from) in corners.iter().enumerate() {

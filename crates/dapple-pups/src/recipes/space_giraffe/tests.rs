@@ -1,4 +1,4 @@
-//! Spots stay apart.
+//! Tests that spots stay separate.
 
 use crate::*;
 use dapple_hash::Seed;
@@ -6,12 +6,12 @@ use dapple_points::{Domain, PointIdx, PointSet};
 use dapple_raster::{Raster, Window};
 use glam::DVec2;
 
-/// The window of `size` pixels over the paper's torus.
+/// The window of `size` pixels in each direction over the paper's torus.
 fn paper_window(size: u32) -> Window {
     Window::new(DVec2::NEG_ONE, DVec2::splat(2.0), [size; 2]).unwrap()
 }
 
-/// The spot that each control point belongs to: its center's index.
+/// The centers, and for each control point the index of its spot's center.
 fn owners(labels: &[u32], options: &SpaceGiraffeOptions, seed: Seed) -> (PointSet, Vec<usize>) {
     let (points, placed) = options.control_points(seed).unwrap();
     assert_eq!(
@@ -23,7 +23,7 @@ fn owners(labels: &[u32], options: &SpaceGiraffeOptions, seed: Seed) -> (PointSe
         .points(options.domain, seed.child("points", 0))
         .unwrap();
     let nearest = |position: DVec2| nearest(&centers, position);
-    // A point stands within r of its center, which is half the distance to any other.
+    // A point is within r of its center, and r is half the distance to any other center.
     let owners = points
         .positions()
         .iter()
@@ -32,7 +32,7 @@ fn owners(labels: &[u32], options: &SpaceGiraffeOptions, seed: Seed) -> (PointSe
     (centers, owners)
 }
 
-/// The nearest center and by how much the second is further away.
+/// Index of the nearest center, and the difference of the distances to the second nearest and the nearest center.
 fn nearest(centers: &PointSet, position: DVec2) -> (usize, f64) {
     let mut best = (0, f64::INFINITY);
     let mut second = f64::INFINITY;
@@ -49,7 +49,7 @@ fn nearest(centers: &PointSet, position: DVec2) -> (usize, f64) {
     (best.0, second - best.1)
 }
 
-/// How many pixels of spots lie in the Voronoi cell of another center.
+/// Number of spot pixels in the Voronoi cell of another center.
 fn strays(options: &SpaceGiraffeOptions, seed: Seed, window: &Window) -> usize {
     let texture = space_giraffe(options, seed).unwrap();
     let (centers, owners) = owners(texture.labels(), options, seed);
@@ -114,7 +114,7 @@ fn separated_spots_stay_apart_with_longer_axes() {
     assert_eq!(strays(&options, Seed(1), &paper_window(256)), 0);
 }
 
-/// How many connected components of spot pixels have two centers, on the torus.
+/// Number of connected components of spot pixels with two centers, on the torus.
 fn merged(options: &SpaceGiraffeOptions, seed: Seed, size: u32) -> usize {
     let texture = space_giraffe(options, seed).unwrap();
     let labels = texture.label_raster(&paper_window(size)).unwrap();
@@ -162,7 +162,7 @@ fn no_component_of_spots_has_two_centers() {
 
 #[test]
 fn literal_spots_merge_now_and_then_where_separated_ones_do_not() {
-    // The seeds below 300 whose pictures, of some 70 spots each, have a merged pair in the literal form.
+    // The seeds below 300 whose images, of some 70 spots each, have a merged pair in the literal form.
     for seed in [77, 125, 271] {
         let [literal, separated] = [Spots::Literal, Spots::Separated].map(|spots| {
             let options = SpaceGiraffeOptions {
@@ -192,7 +192,7 @@ fn spots_at_open_borders_are_whole() {
     let wide = Window::new(DVec2::new(-1.5, -1.0), DVec2::new(3.0, 2.0), [192, 128]).unwrap();
     assert_eq!(strays(&options, Seed(1), &wide), 0);
 }
-/// How many connected pieces the pixels of a label make on the torus, where pixels that share an edge are connected.
+/// Number of connected components of a label's pixels on the torus. Pixels that share an edge are connected.
 fn pieces(labels: &Raster<u32>, label: u32) -> usize {
     let [width, height] = labels.size();
     let mut seen: Vec<bool> = labels
@@ -229,7 +229,7 @@ fn spots_are_whole_and_cover_about_a_third() {
             .points(options.domain, seed.child("points", 0))
             .unwrap();
         assert_eq!(pieces(&labels, 1), centers.len(), "spots of {seed:?}");
-        // A hole would be a second piece of the background.
+        // A hole would be a second component of the background.
         assert_eq!(pieces(&labels, 0), 1, "backgrounds of {seed:?}");
         let spots = labels.pixels().iter().filter(|&&label| label == 1);
         let share = spots.count() as f64 / f64::from(512 * 512);

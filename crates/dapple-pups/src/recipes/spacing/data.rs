@@ -1,4 +1,4 @@
-//! [`Spacing`] as data: a plain number for the smallest distance, or a table with the name of what is given.
+//! [`Spacing`] as data: a plain number for the smallest distance, or a table that names the quantity.
 
 use super::Spacing;
 use core::fmt;
@@ -7,7 +7,7 @@ use serde::de::value::MapAccessDeserializer;
 use serde::de::{Deserialize, Deserializer, MapAccess, Visitor};
 use serde::ser::{Serialize, Serializer};
 
-/// A spacing that is not a plain number.
+/// A spacing as a table.
 #[derive(serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 enum Table {
