@@ -1,16 +1,17 @@
 //! The discrete Fourier transform of any length, with the same bits everywhere.
 //!
-//! Reference: T. G. Stockham, "High-speed convolution and correlation", Spring Joint Computer Conference 1966, for the
-//! passes that sort themselves (given in this form by P. N. Swarztrauber, "FFT algorithms for vector computers",
-//! Parallel Computing 1, 1984); L. I. Bluestein, "A linear filtering approach to the computation of discrete Fourier
-//! transform", IEEE Transactions on Audio and Electroacoustics 18, 1970, for all other lengths.
+//! Reference: T. G. Stockham, "High-speed convolution and correlation", Spring Joint Computer Conference 1966, for
+//! self-sorting passes (given in this form by P. N. Swarztrauber, "FFT algorithms for vector computers", Parallel
+//! Computing 1, 1984); L. I. Bluestein, "A linear filtering approach to the computation of discrete Fourier transform",
+//! IEEE Transactions on Audio and Electroacoustics 18, 1970, for all other lengths.
 //!
-//! Implemented: lengths whose prime factors are 2, 3, 5 and 7 in passes of radix 4, 2, 3, 5 and 7; other lengths as a
-//! convolution with a chirp. Several lines are transformed side by side, so that the innermost loops run over
-//! neighbors in memory that share a factor; a line has the same bits in whatever company. Two real lines travel as one
-//! complex line. Everything is `f64`; sines and cosines come from `libm`, so that no platform's own are used.
+//! Implementation: lengths with the prime factors 2, 3, 5 and 7 are transformed in passes of radix 4, 2, 3, 5 and 7,
+//! other lengths as a convolution with a chirp. Several lines are transformed together. So the innermost loops run over
+//! contiguous elements that share a factor. The bits of a line do not depend on the other lines. Two real lines are
+//! packed into one complex line. Everything is `f64`. Sines and cosines come from `libm`, so they do not depend on the
+//! platform.
 //!
-//! Convention: `F(k) = Σ f(x) exp(−2πi kx/n)`, and the way back is not divided by `n`.
+//! Convention: `F(k) = Σ f(x) exp(−2πi kx/n)`; the inverse transform is not divided by `n`.
 
 mod bluestein;
 mod lines;
@@ -24,7 +25,7 @@ use passes::Pass;
 pub(crate) use lines::{BAND, Element, LANES, map_columns, par_flat_map, times};
 pub(crate) use power::power_spectrum;
 
-/// A transform of one length, ready for many lines.
+/// A transform of one length, prepared for any number of lines.
 #[derive(Debug)]
 pub(crate) struct Fourier {
     length: usize,
@@ -51,12 +52,12 @@ impl Fourier {
         Self { length, route }
     }
 
-    /// The number of elements of a line.
+    /// Number of elements of a line.
     pub(crate) fn length(&self) -> usize {
         self.length
     }
 
-    /// Transforms values to frequencies. The number of elements must be the length.
+    /// Transforms values to frequencies, in place. `lines` must have [`length`](Self::length) elements.
     pub(crate) fn forward(&self, lines: &mut Vec<Element>) {
         match &self.route {
             Route::Passes(passes) => passes::run(passes, lines),
@@ -64,7 +65,7 @@ impl Fourier {
         }
     }
 
-    /// Transforms frequencies to values that are `length` times as large.
+    /// Transforms frequencies to values, in place. The values are not divided by the length.
     pub(crate) fn backward(&self, lines: &mut Vec<Element>) {
         exchange_parts(lines);
         self.forward(lines);
@@ -72,7 +73,8 @@ impl Fourier {
     }
 }
 
-/// Conjugates every number and multiplies it by i. Done before and after a transform, it reverses its direction.
+/// Swaps the real and the imaginary parts: conjugates every number and multiplies it by i. Swapping before and after a
+/// transform reverses its direction.
 fn exchange_parts(lines: &mut [Element]) {
     lines
         .iter_mut()

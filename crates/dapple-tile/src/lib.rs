@@ -1,18 +1,18 @@
 //! Makes images repeat without a seam, measures the seams, fills large maps from small tiles, and blends materials.
 //!
-//! If a generator of this workspace makes the image, give it a period there: it then repeats exactly without any loss.
-//! The methods here are for images whose source is not at hand, such as photographs.
+//! If a generator of this workspace makes the image, give it a period: it then repeats exactly, without any loss. The
+//! methods here are for images without a generator, such as photographs.
 //!
 //! ```
 //! use dapple_tile::raster::Raster;
 //! use dapple_tile::{Method, SeamOptions, SeamReport, Seamless, SoftCut, rank_equalize, repeat};
 //!
 //! fn tile(image: &Raster<f32>) -> Result<Raster<f32>, Box<dyn std::error::Error>> {
-//!     // A margin of 32 pixels laid over the other side and cut where it is seen least.
+//!     // Overlap a margin of 32 pixels with the other side, and cut it where the cut is least visible.
 //!     let cut = Seamless::new(Method::SoftCut(SoftCut::default()));
 //!     let tile = cut.apply(image)?;
 //!
-//!     // How well it repeats, and what it kept.
+//!     // Measure how well it repeats, and what it has kept.
 //!     let report = SeamReport::beside(image, &tile, &SeamOptions::default())?;
 //!     println!("{report}");
 //!
@@ -67,14 +67,15 @@
 //!
 //! * Pixels must be finite. Maps of a material have one size.
 //! * [`CornerTiles`] takes two to four sources.
-//! * A tile that passes a report may still look bad, and one that fails may look good. Look at both.
-//! * Rasters are `f32`, and equations are solved in `f64`. All results have the same bits on every platform and any
+//! * A tile that passes a report may still look bad, and one that fails may look good. Check both by eye.
+//! * Rasters are `f32`, and equations are solved in `f64`. All results have the same bits on every platform and with
+//! any
 //!   number of threads.
-//! * The crate knows no file format and touches no file.
+//! * The crate has no file formats and does not access files.
 //!
 //! # Without std
 //!
-//! Not possible today. `floor` and `sqrt` of `f64` are methods of std, and `dapple-raster`, `dapple-color` and
+//! Not supported. `floor` and `sqrt` of `f64` are methods of std, and `dapple-raster`, `dapple-color` and
 //! `dapple-wavelet` need std.
 //!
 //! # Reference

@@ -1,18 +1,22 @@
-//! Seam reports: how well a tile repeats, in numbers.
+//! Seam reports: measurements of how well a tile repeats.
 //!
-//! A report answers questions, each with a number that an eye may check. Is the wrap visible? [`Seam`] compares the
-//! step across it with the steps inside of the tile. Has the method lost detail? [`DetailKept`] compares the tile with
-//! its source, octave by octave, and in contrast. Has it lost detail in one place, where a band of the tile has gone
-//! soft? [`lowest_local_detail`](SeamReport::lowest_local_detail) measures the softest. Is there content at the seam
-//! that the source lacks? [`DetailKept::strangeness`] measures it. [`SeamReport::faults`] is the verdict over all of
-//! them, and [`SeamReports`] that over all channels of an image.
+//! A report answers these questions, each with a number that can be checked by eye:
 //!
-//! The measures are ours, and each is defined where its field is. One of them needs care: a spline tile changes more
-//! across some pixel boundaries than across others, and a wrap that cannot be told from the boundaries of its own kind
-//! scores 1.19 beside all of them. [`SeamOptions::lattice`] selects the boundaries of its kind.
+//! * Is the wrap visible? [`Seam`] compares the step across it with the steps inside the tile.
+//! * Has the method lost detail or contrast? [`DetailKept`] compares the tile with its source, octave by octave.
+//! * Has it lost detail in one band of the tile? [`lowest_local_detail`](SeamReport::lowest_local_detail) measures the
+//!   softest band.
+//! * Does the seam have content that the source lacks? [`DetailKept::strangeness`] measures it.
 //!
-//! Sums are in `f64` and in a fixed order, so that a report is the same on every machine. No number of it is NaN or
-//! infinite: a quotient is 1 where both of its parts are zero, and at most [`MOST`](SeamReport::MOST).
+//! [`SeamReport::faults`] is the verdict over all measures, and [`SeamReports`] the verdict over all channels of an
+//! image.
+//!
+//! The measures are our own, and each is defined at its field. One of them needs care: a spline tile changes more
+//! across some pixel boundaries than across others. A wrap that is like the other boundaries of the spline lattice has
+//! a ratio of 1.19 relative to all boundaries. [`SeamOptions::lattice`] selects the boundaries to compare with.
+//!
+//! Sums are in `f64` and in a fixed order, so a report is the same on every machine. No number of it is NaN or
+//! infinite: a quotient is 1 if both of its parts are zero, and at most [`MOST`](SeamReport::MOST).
 
 mod channels;
 mod clipped;
@@ -34,7 +38,7 @@ use crate::{TileError, TileErrorKind};
 use clipped::{Ends, PLAIN_SLOPES};
 use dapple_raster::{Raster, Wrap};
 
-/// Options of a report: the measured seams, and the boundaries they are compared with.
+/// Options of a report: the axes to measure, and the boundaries to compare the wrap with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(
     feature = "serde",
@@ -42,13 +46,13 @@ use dapple_raster::{Raster, Wrap};
     serde(default, deny_unknown_fields)
 )]
 pub struct SeamOptions {
-    /// The axes along which the tile repeats, x first; only these are measured. By default both.
+    /// Axes along which the tile repeats, x first; only these are measured. Both by default.
     pub axes: [bool; 2],
-    /// The distance in pixels, along each axis, of the boundaries that are like the wrap: divisors of the sides. By
-    /// default 1, which is every boundary.
+    /// Distance in pixels, along each axis, between the boundaries that are like the wrap: divisors of the sides. By
+    /// default 1, which selects every boundary.
     ///
-    /// A tile that is made on a lattice differs more across some boundaries than across others. Give `2^levels` for a tile of
-    /// splines, and the pixels per cell for cellular noise.
+    /// A tile that is made on a lattice differs more across some boundaries than across others. Use `2^levels` for a
+    /// spline tile, and the number of pixels per cell for cellular noise.
     pub lattice: [u32; 2],
 }
 
@@ -63,7 +67,7 @@ impl Default for SeamOptions {
 
 /// Measurements of how well a tile repeats.
 ///
-/// `Display` writes it as a table of at most 80 columns.
+/// `Display` formats it as a table of at most 80 columns.
 ///
 /// # Examples
 ///
@@ -80,76 +84,79 @@ impl Default for SeamOptions {
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SeamReport {
-    /// Columns and rows of the tile.
+    /// Numbers of columns and rows of the tile.
     pub size: [u32; 2],
-    /// The options of the measurement.
+    /// Options of the measurement.
     pub options: SeamOptions,
-    /// The steps across the wrap, for means of 1, 2, 4 and 8 pixels.
+    /// Steps across the wrap, for means of 1, 2, 4 and 8 pixels.
     pub seams: [Seam; 4],
-    /// The detail of the softest band of the tile as a fraction of that of the whole tile, from 0 to 1.
+    /// Detail of the softest band of the tile as a fraction of the detail of the whole tile, from 0 to 1.
     ///
     /// Detail is the difference of the image from the mean of 3 × 3 pixels, with weights 1 2 1 along each axis. A band
-    /// is 8 columns or 8 rows wide (all of them, if there are fewer) and reaches from side to side; along axes that
-    /// repeat it may lie across the wrap. The number is the root mean square of the detail in the band that has the
-    /// least, divided by that of the whole tile. It is about 0.7 for photographs, less where they vary, and 0 if a band
-    /// is flat and another is not. It is 1 for a tile that is flat everywhere and, within rounding, for one of at most
-    /// 8 columns and 8 rows, which is a single band.
+    /// is 8 columns or 8 rows wide (all of them, if there are fewer), and extends from side to side. Along axes that
+    /// repeat, it may cross the wrap. The number is the root mean square of the detail in the band with the least
+    /// detail, divided by that of the whole tile. It is about 0.7 for photographs, less where they vary, and 0 if one
+    /// band is flat and another is not. It is 1 for a tile that is flat everywhere. Up to rounding, it is also 1 for a
+    /// tile of at most 8 columns and 8 rows, which is a single band.
     pub lowest_local_detail: f64,
-    /// The comparison of the tile with its source, if one was passed.
+    /// Comparison of the tile with its source, if a source was given.
     pub kept: Option<DetailKept>,
 }
 
-/// The contrast and detail that a tile has kept of its source. Their sizes may differ.
+/// The contrast and detail that a tile has kept of its source. The two images may differ in size.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct DetailKept {
-    /// Columns and rows of the source.
+    /// Numbers of columns and rows of the source.
     pub source_size: [u32; 2],
-    /// The power of the tile in each octave as a multiple of that of the source, finest first.
+    /// Power of the tile in each octave, as a multiple of the power of the source, finest octave first.
     ///
-    /// The first octave holds the frequencies above ¼ up to ½ cycles per pixel along x or y, whichever is higher: the
-    /// detail that an image of half the size cannot show. The next holds those above ⅛ up to ¼, and so on for as long
-    /// as an octave begins at 4 cycles per side or more, in the smaller of the two images; below 16 pixels there is
-    /// none. Powers are per pixel, under a Hann window, so that the wrap of neither image matters.
+    /// The first octave has the frequencies above ¼ up to ½ cycles per pixel along x or y, whichever is higher: the
+    /// detail that an image of half the size cannot show. The next octave has those above ⅛ up to ¼, and so on. The
+    /// last octave is the last one that begins at 4 cycles per side or more, in the smaller of the two images; below 16
+    /// pixels there is no octave. Powers are per pixel, under a Hann window, so the wrap of neither image affects them.
     pub octaves: Vec<f64>,
-    /// The standard deviation of the tile as a multiple of that of the source.
+    /// Standard deviation of the tile as a multiple of that of the source.
     pub contrast: f64,
-    /// [`SeamReport::lowest_local_detail`] of the source, whose borders are mirrored.
+    /// [`SeamReport::lowest_local_detail`] of the source, with mirrored borders.
     pub source_lowest_local_detail: f64,
-    /// The strangeness: how unlike the source the tile is near its seams.
+    /// Strangeness: dissimilarity of the tile near its seams to the source.
     ///
-    /// The mean distance of squares of 8 × 8 pixels, across and beside the wrap, from the nearest in the source, as a
-    /// multiple of the mean distance of squares of the source from the nearest elsewhere in it; the largest of all
-    /// zones. It is about 1 where a seam was moved and not mended, more for stains and double exposures of pictures
-    /// with clear shapes, and less for copied parts. `None` for images of less than 24 pixels along a side, and for a
-    /// flat source.
+    /// Squares of 8 × 8 pixels across and next to the wrap are compared with all squares of the source. The strangeness
+    /// is their mean distance to the nearest square, as a multiple of the mean distance of squares of the source to the
+    /// nearest other square in it; the largest of all zones. It is about 1 where a seam was moved and not repaired,
+    /// more for stains and double exposures of images with clear shapes, and less for copied parts. `None` for images
+    /// of less than 24 pixels along a side, and for a flat source.
     pub strangeness: Option<f64>,
-    /// The strangeness of both images at half of their size, where a square covers 16 × 16 pixels.
+    /// Strangeness of both images at half of their size, where a square covers 16 × 16 pixels.
     ///
-    /// Pieces that end at a seam, as the courses of a wall, are found at this size. `None` for images of less than 48
-    /// pixels along a side, and for a flat source.
+    /// Elements that end at a seam, such as courses of a wall, are detected at this size. `None` for images of less
+    /// than 48 pixels along a side, and for a flat source.
     pub coarse_strangeness: Option<f64>,
-    /// The share of the samples that the method clipped, from 0 to 1.
+    /// Share of the samples that the method clipped, from 0 to 1.
     ///
-    /// These are samples that lie past 0 or 1 by more than half a code of 8 bits; at either end at most as many as the
-    /// tile has there beyond the share of the source. Samples that are exactly 0 or 1, as in a tile that was read from a
-    /// file, were not clipped by the method as far as can be known. It is 0 for a source that exceeds 0 or 1 itself;
-    /// any other tile is cut off at 0 and 1 before its seams are measured, as in an image file.
+    /// A sample counts as clipped if it is outside of 0 to 1 by more than half an 8-bit code. At either end, at most as
+    /// many samples count as the share of the tile at or past that end exceeds the share of the source. Samples that
+    /// are exactly 0 or 1, as in a tile read from a file, do not count, since their original values are unknown. The
+    /// share is 0 for a source that is outside of 0 to 1 itself. For any other source, the tile is clamped to 0 and 1
+    /// before its seams are measured, as in an image file.
     pub clipped: f64,
-    /// Whether both sides of the wrap are mirror images along an axis that repeats, and those of the source are not.
+    /// Whether both sides of the wrap are mirror images along an axis that repeats, and the sides of the source are
+    /// not.
     pub is_mirrored: bool,
 }
 
 impl SeamReport {
-    /// The largest ratio in a report: larger and infinite ratios are replaced by it.
+    /// Maximum ratio in a report; larger and infinite ratios are replaced by it.
     pub const MOST: f64 = 1e9;
 
     /// Measures how well a tile repeats.
     ///
     /// # Errors
     ///
-    /// [`NotFinite`](TileErrorKind::NotFinite) for a pixel that is NaN or infinite, [`Count`](TileErrorKind::Count) if no
-    /// axis repeats, [`Range`](TileErrorKind::Range) for a lattice that does not divide the side of an axis that does.
+    /// [`NotFinite`](TileErrorKind::NotFinite) for a pixel that is NaN or infinite, [`Count`](TileErrorKind::Count) if
+    /// no axis repeats, [`Range`](TileErrorKind::Range) for a lattice that does not divide the side of an axis that
+    /// repeats.
     pub fn of(tile: &Raster<f32>, options: &SeamOptions) -> Result<Self, TileError> {
         options.check(tile.size())?;
         check_finite(tile)?;
@@ -162,7 +169,7 @@ impl SeamReport {
         })
     }
 
-    /// Measures how well a tile repeats, and how much it has kept of the image from which it was made.
+    /// Measures how well a tile repeats, and how much it has kept of its source image.
     ///
     /// # Errors
     ///
@@ -174,6 +181,7 @@ impl SeamReport {
     ) -> Result<Self, TileError> {
         check_finite(source)?;
         check_finite(tile)?;
+        // Clamp the tile to the range of an image file if the source is in that range.
         let [source_ends, tile_ends] =
             [source, tile].map(|image| Ends::of(image.pixels().iter().copied(), PLAIN_SLOPES));
         let range = source.statistics();
@@ -201,11 +209,11 @@ impl SeamReport {
         })
     }
 
-    /// The report as JSON.
+    /// Converts the report to JSON.
     ///
     /// # Errors
     ///
-    /// None for any report; the type is that of `serde_json`.
+    /// No report causes an error; the type is that of `serde_json`.
     #[cfg(feature = "json")]
     pub fn to_json(&self) -> Result<String, serde_json::Error> {
         serde_json::to_string_pretty(self)
@@ -233,14 +241,14 @@ impl SeamOptions {
         Ok(())
     }
 
-    /// The wrapping past the borders of the tile: periodic along axes that repeat, mirrored along others.
+    /// Wrapping past the borders of the tile: periodic along axes that repeat, mirrored along the others.
     fn wrap(&self) -> [Wrap; 2] {
         self.axes
             .map(|repeats| if repeats { Wrap::Repeat } else { Wrap::Mirror })
     }
 }
 
-/// The quotient `part / whole` of two numbers that are not negative: 1 if both are zero, and at most
+/// The quotient `part / whole` of two numbers that are at least zero: 1 if both are zero, and at most
 /// [`SeamReport::MOST`].
 fn quotient(part: f64, whole: f64) -> f64 {
     if part == whole {

@@ -1,4 +1,4 @@
-//! The entry point: makes a tile from an image, by one of several methods.
+//! The entry point: makes a tile from an image by one of several methods.
 
 mod feather;
 mod mirror;
@@ -16,7 +16,7 @@ pub use poisson::WrapGradient;
 pub use soft_cut::SoftCut;
 pub use spline_project::{Basis, Pixels, SplineProject};
 
-/// The method by which an image is made to repeat.
+/// The method that makes an image repeat.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -30,15 +30,15 @@ pub enum Method {
     #[cfg_attr(doc, doc = include_str!("../docs/method-periodic.md"))]
     #[default]
     Periodic,
-    /// The periodic image whose gradients are nearest to the given ones.
+    /// The periodic image with the nearest gradients to those of the image.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/method-poisson.md"))]
     Poisson(WrapGradient),
-    /// A cut along the line of least difference, where a margin overlaps the opposite side.
+    /// A cut along the path of least difference, in a margin that overlaps the opposite side.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/method-soft-cut.md"))]
     SoftCut(SoftCut),
-    /// The paper's blend tile: halved and doubled with periodic filters.
+    /// The paper's blend tile: the image halved and doubled with periodic filters.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/method-spline-project.md"))]
     SplineProject(SplineProject),
@@ -46,11 +46,11 @@ pub enum Method {
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/method-periodic-then-project.md"))]
     PeriodicThenProject(SplineProject),
-    /// A crossfade: the usual baseline.
+    /// A crossfade, a common baseline.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/method-feather.md"))]
     Feather(Feather),
-    /// The image beside its mirror image, twice as large along each axis: the other usual baseline.
+    /// The image next to its mirror image, twice as large along each axis; another common baseline.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/method-mirror.md"))]
     Mirror,
@@ -77,9 +77,9 @@ pub enum Method {
     serde(default, deny_unknown_fields)
 )]
 pub struct Seamless {
-    /// The method. By default [`Method::Periodic`].
+    /// Method; [`Method::Periodic`] by default.
     pub method: Method,
-    /// The axes along which the tile repeats, x first. By default both.
+    /// Axes along which the tile repeats, x first; both by default.
     pub axes: [bool; 2],
 }
 
@@ -90,7 +90,7 @@ impl Default for Seamless {
 }
 
 impl Seamless {
-    /// Makes images repeat along both axes with a method.
+    /// Creates a converter that makes images repeat along both axes.
     #[must_use]
     pub fn new(method: Method) -> Self {
         Self {
@@ -105,7 +105,7 @@ impl Seamless {
         Self { axes, ..self }
     }
 
-    /// The tile of one raster.
+    /// Makes the tile of one raster.
     ///
     /// # Errors
     ///
@@ -115,7 +115,7 @@ impl Seamless {
         Ok(planes.swap_remove(0))
     }
 
-    /// The tile of a color raster.
+    /// Makes the tile of a color raster.
     ///
     /// # Errors
     ///
@@ -124,20 +124,23 @@ impl Seamless {
         color_from_planes(self.planes(&color_planes(image), &[[1.0; 2]; 3])?)
     }
 
-    /// The tiles of all maps of a material, which are cut along the same lines.
+    /// Makes the tiles of all maps of a material, which are cut along the same paths.
     ///
     /// Normals are processed as slopes. Where an image is reflected, its normals are those of the reflected heights.
     ///
     /// # Errors
     ///
-    /// [`Count`](TileErrorKind::Count) without maps, [`Raster`](TileErrorKind::Raster) for maps of different sizes,
-    /// [`NotFinite`](TileErrorKind::NotFinite) for pixels that are NaN or infinite,
-    /// [`TooSmall`](TileErrorKind::TooSmall) for a side of a single pixel along an axis that is to repeat; and
-    /// [`Wavelet`](TileErrorKind::Wavelet), [`Margin`](TileErrorKind::Margin) or [`Range`](TileErrorKind::Range) for
-    /// sizes and options that the method does not allow.
+    /// * [`Count`](TileErrorKind::Count) without maps
+    /// * [`Raster`](TileErrorKind::Raster) for maps of different sizes
+    /// * [`NotFinite`](TileErrorKind::NotFinite) for pixels that are NaN or infinite
+    /// * [`TooSmall`](TileErrorKind::TooSmall) for a side of a single pixel along an axis that repeats
+    /// * [`Wavelet`](TileErrorKind::Wavelet), [`Margin`](TileErrorKind::Margin) or [`Range`](TileErrorKind::Range) for
+    /// sizes
+    ///   and options that the method does not support
     pub fn apply_maps(&self, maps: &[Map]) -> Result<Vec<Map>, TileError> {
         let planes: Vec<_> = match self.method {
-            // Reflected, the slope that is read for a flat normal would be another code.
+            // Center normals first: otherwise, the slope of the code for a flat normal would have another code when
+            // reflected.
             Method::Mirror => maps
                 .iter()
                 .flat_map(|map| map.centered().planes())
@@ -148,7 +151,7 @@ impl Seamless {
         Map::all_with_planes(maps, self.planes(&planes, &reflections)?)
     }
 
-    /// The tiles of planes. `reflections` has the factors of each plane when it is reflected along x and along y.
+    /// Makes the tiles of planes. `reflections` are the factors of each plane for reflection along x and along y.
     fn planes(
         &self,
         planes: &[Raster<f32>],

@@ -3,28 +3,29 @@
 use super::passes::{self, Pass};
 use super::{BAND, Element, LANES, exchange_parts, times, turn};
 
-/// A transform by convolution. Since `jk = (j² + k² − (k − j)²) / 2`, it is a convolution with `exp(πi j²/n)`, with a
-/// product with the conjugate before and after.
+/// A transform by convolution. Since `jk = (j² + k² − (k − j)²) / 2`, it is a convolution with `exp(πi j²/n)`,
+/// multiplied by the conjugate before and after.
 #[derive(Debug)]
 pub(super) struct Chirp {
     /// The chirp `exp(−πi j²/n)`, as cosine and sine.
     chirp: Vec<[f64; 2]>,
-    /// The transform of the conjugate chirp around a circle that is long enough, divided by its length.
+    /// Transform of the conjugate chirp, padded to a circular convolution, divided by the padded length.
     kernel: Vec<[f64; 2]>,
-    /// The passes for the length of that circle.
+    /// Passes for the padded length.
     passes: Vec<Pass>,
 }
 
 impl Chirp {
     pub(super) fn new(length: usize) -> Self {
         let n = length as u64;
-        // j² modulo 2n, without overflow: (j + 1)² = j² + 2j + 1.
+        // j² modulo 2n without overflow: (j + 1)² = j² + 2j + 1.
         let squares = (0..n).scan(0, |square, j| {
             let now = *square;
             *square = (now + 2 * j + 1) % (2 * n);
             Some(now)
         });
         let chirp: Vec<_> = squares.map(|square| turn(square, 2 * n)).collect();
+        // Transform the conjugate chirp, which is symmetric around index 0.
         let circle = (2 * length - 1).next_power_of_two();
         let mut kernel = vec![[0.0; BAND]; circle];
         for (j, [cos, sin]) in chirp.iter().enumerate() {
@@ -46,6 +47,7 @@ impl Chirp {
     }
 
     pub(super) fn forward(&self, lines: &mut [Element]) {
+        // Multiply by the chirp, convolve with its conjugate, and multiply by the chirp again.
         let mut circle = vec![[0.0; BAND]; self.kernel.len()];
         circle[..lines.len()].copy_from_slice(lines);
         multiply(&mut circle, &self.chirp);
@@ -59,7 +61,7 @@ impl Chirp {
     }
 }
 
-/// Multiplies all lines, from the first element on, by complex factors.
+/// Multiplies all lines, element by element, by complex factors.
 fn multiply(lines: &mut [Element], factors: &[[f64; 2]]) {
     for (element, factor) in lines.iter_mut().zip(factors) {
         *element = times(element, *factor);

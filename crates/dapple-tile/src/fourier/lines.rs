@@ -1,19 +1,19 @@
-//! Lines side by side, and their exchange with planes.
+//! Groups of lines that are transformed together, and their conversion from and to planes.
 
 use dapple_raster::parallel;
 
-/// The number of complex lines that are transformed side by side: they fill vector registers, and lines of a few
-/// thousand elements stay in the second-level cache.
+/// Number of complex lines that are transformed together. They fill vector registers, and lines of a few thousand
+/// elements stay in the second-level cache.
 pub(crate) const LANES: usize = 8;
 
-/// The number of real lines in [`LANES`] complex ones.
+/// Number of real lines in [`LANES`] complex lines.
 pub(crate) const BAND: usize = 2 * LANES;
 
-/// The elements of [`BAND`] real lines at one place. Line `l` below [`LANES`] and line `LANES + l` are the real and the
+/// The elements of [`BAND`] real lines at one index. Line `l` below [`LANES`] and line `LANES + l` are the real and the
 /// imaginary part of one complex line.
 pub(crate) type Element = [f64; BAND];
 
-/// The product of all complex lines with a complex factor.
+/// Multiplies all complex lines by a complex factor.
 pub(crate) fn times(element: &Element, [re, im]: [f64; 2]) -> Element {
     let mut product = [0.0; BAND];
     for lane in 0..LANES {
@@ -23,7 +23,7 @@ pub(crate) fn times(element: &Element, [re, im]: [f64; 2]) -> Element {
     product
 }
 
-/// The [`BAND`] columns of a plane from `first` on, with zeros past the last.
+/// [`BAND`] columns of a plane, starting at `first`, with zeros past the last column.
 pub(crate) fn columns(plane: &[f64], width: usize, first: usize) -> Vec<Element> {
     let n_columns = BAND.min(width - first);
     let element = |row: &[f64]| {
@@ -34,10 +34,10 @@ pub(crate) fn columns(plane: &[f64], width: usize, first: usize) -> Vec<Element>
     plane.chunks_exact(width).map(element).collect()
 }
 
-/// Changes the columns of a plane, [`BAND`] at once, and returns the result transposed.
+/// Applies a function to the columns of a plane, [`BAND`] at a time, and returns the result transposed.
 ///
-/// `change` must treat the real and the imaginary parts as separate lines, as every linear map with real coefficients
-/// does.
+/// `change` must treat the real and the imaginary parts as separate lines, like every linear map with real
+/// coefficients.
 pub(crate) fn map_columns(
     plane: &[f64],
     width: usize,
@@ -51,7 +51,7 @@ pub(crate) fn map_columns(
     })
 }
 
-/// The concatenated results of `make` for the indices below `count`, on all cores where the feature `rayon` is on.
+/// Concatenates the results of `make` for the indices below `count`, computed in parallel with the feature `rayon`.
 pub(crate) fn par_flat_map<T: Copy + Send>(
     count: usize,
     make: impl Fn(usize) -> Vec<T> + Sync,

@@ -2,24 +2,24 @@
 
 use super::{BAND, Element, LANES, turn};
 
-/// The radices, in the order in which they are divided out of a length.
+/// Radices, in the order in which they are divided out of a length.
 const RADICES: [usize; 5] = [4, 2, 3, 5, 7];
 
-/// A pass, which splits transforms into `radix` times as many, `radix` times as short.
+/// A pass, which splits transforms into `radix` times as many transforms of 1/`radix` of the length.
 ///
-/// Before the pass there are `stride` transforms of `radix * blocks` elements, which lie `stride` apart.
+/// Before the pass there are `stride` interleaved transforms of `radix * blocks` elements.
 #[derive(Debug)]
 pub(super) struct Pass {
     radix: usize,
     blocks: usize,
     stride: usize,
-    /// The factors of the outputs of the butterfly, by block and output, as cosine and sine.
+    /// Twiddle factors of the outputs of the butterfly, by block and output, as cosine and sine.
     twiddles: Vec<[f64; 2]>,
-    /// The roots of unity `exp(−2πi j/radix)`.
+    /// Roots of unity `exp(−2πi j/radix)`.
     roots: Vec<[f64; 2]>,
 }
 
-/// The passes for a length, if its only prime factors are 2, 3, 5 and 7.
+/// The passes for a length; `None` if it has a prime factor other than 2, 3, 5 and 7.
 pub(super) fn plan(length: usize) -> Option<Vec<Pass>> {
     let mut passes = Vec::new();
     let mut rest = length;
@@ -32,7 +32,7 @@ pub(super) fn plan(length: usize) -> Option<Vec<Pass>> {
     (rest == 1).then_some(passes)
 }
 
-/// Transforms all lines.
+/// Transforms all lines, in place.
 pub(super) fn run(passes: &[Pass], lines: &mut Vec<Element>) {
     let mut other = vec![[0.0; BAND]; lines.len()];
     for pass in passes {
@@ -47,7 +47,7 @@ pub(super) fn run(passes: &[Pass], lines: &mut Vec<Element>) {
     }
 }
 
-/// The real and the imaginary parts of the elements of a small transform.
+/// Real and imaginary parts of the elements of a small transform.
 type Parts<const R: usize> = ([f64; R], [f64; R]);
 
 impl Pass {
@@ -68,7 +68,7 @@ impl Pass {
         }
     }
 
-    /// Applies the butterfly of the radix `R` to all elements.
+    /// Applies the butterfly of radix `R` to all elements.
     #[inline(always)]
     fn run<const R: usize>(
         &self,
@@ -116,7 +116,7 @@ fn butterfly2((re, im): Parts<2>, _: &[[f64; 2]; 2]) -> Parts<2> {
 fn butterfly4((re, im): Parts<4>, _: &[[f64; 2]; 4]) -> Parts<4> {
     let even_re = [re[0] + re[2], re[0] - re[2]];
     let even_im = [im[0] + im[2], im[0] - im[2]];
-    // The differences of the odd ones are times −i, the first root.
+    // The difference of the odd elements is multiplied by −i, the first root.
     let odd_re = [re[1] + re[3], im[1] - im[3]];
     let odd_im = [im[1] + im[3], re[3] - re[1]];
     let join = |even: [f64; 2], odd: [f64; 2]| {
@@ -130,7 +130,7 @@ fn butterfly4((re, im): Parts<4>, _: &[[f64; 2]; 4]) -> Parts<4> {
     (join(even_re, odd_re), join(even_im, odd_im))
 }
 
-/// The transform of an odd number of elements: outputs `j` and `R − j` share their sums.
+/// The transform of an odd number of elements. Outputs `j` and `R − j` share their sums.
 #[inline(always)]
 fn butterfly_odd<const R: usize>((re, im): Parts<R>, roots: &[[f64; 2]; R]) -> Parts<R> {
     let mut out = ([0.0; R], [0.0; R]);

@@ -1,4 +1,4 @@
-//! Reports of all channels of a map, with one verdict.
+//! Reports of all channels of a map, with a common verdict.
 
 use super::clipped::{Ends, SRGB_SLOPES};
 use super::{SeamOptions, SeamReport};
@@ -9,12 +9,12 @@ use dapple_raster::Raster;
 
 /// The seam reports of all channels of an image.
 ///
-/// A seam in a single channel shows as a change of hue, and may be absent from the luminance. `Display` names the
-/// channels that do not pass and why, above the table of the worst.
+/// A seam in a single channel is a change of hue, and may be absent from the luminance. `Display` lists the faults of
+/// each channel, and then the table of the worst channel.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SeamReports {
-    /// The reports, one for each channel, at least one.
+    /// Reports, one for each channel.
     channels: Vec<ChannelReport>,
 }
 
@@ -22,15 +22,15 @@ pub struct SeamReports {
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ChannelReport {
-    /// The name of the channel; empty where it is the only one.
+    /// Name of the channel; empty if it is the only one.
     pub channel: String,
-    /// The report of the channel.
+    /// Report of the channel.
     pub report: SeamReport,
 }
 
 impl SeamReports {
-    /// Measures how well an image repeats, from its channels and their names. An image without channels fails as too
-    /// small.
+    /// Measures how well an image repeats, given its channels with their names. An image without channels does not
+    /// pass.
     ///
     /// # Errors
     ///
@@ -50,8 +50,8 @@ impl SeamReports {
         })
     }
 
-    /// Measures how well a map repeats: values as they are, normals by x and y, and colors as they are displayed, in
-    /// sRGB.
+    /// Measures how well a map repeats. Values are measured as they are, normals by x and y, and colors as displayed,
+    /// in sRGB.
     ///
     /// # Errors
     ///
@@ -64,7 +64,7 @@ impl SeamReports {
         )
     }
 
-    /// Measures how well a map repeats, and how much it has kept of the map of the same kind from which it was made.
+    /// Measures how well a map repeats, and how much it has kept of its source, a map of the same kind.
     ///
     /// # Errors
     ///
@@ -81,7 +81,7 @@ impl SeamReports {
             channels: reports.collect::<Result<_, TileError>>()?,
         };
         if let (Map::Color(source), Map::Color(tile)) = (source, tile) {
-            // Shown colors end at 0 and 1, so that linear light tells what was clipped.
+            // Displayed colors end at 0 and 1, so clipping is measured in linear light.
             for ((of, source), tile) in reports
                 .channels
                 .iter_mut()
@@ -102,7 +102,7 @@ impl SeamReports {
         &self.channels
     }
 
-    /// Whether there is a channel and all channels pass.
+    /// Whether there is at least one channel, and all channels pass.
     #[must_use]
     pub fn passes(&self) -> bool {
         !self.channels.is_empty() && self.channels.iter().all(|of| of.report.passes())
@@ -115,7 +115,7 @@ impl SeamReports {
             .map_or(SeamReport::MOST, |of| of.report.badness())
     }
 
-    /// The channel with the largest badness, the first of equal ones.
+    /// The channel with the largest badness; the first if several are equal.
     #[must_use]
     pub fn worst(&self) -> Option<&ChannelReport> {
         let worse =
@@ -156,7 +156,7 @@ impl fmt::Display for SeamReports {
     }
 }
 
-/// The channels of a map as they are displayed.
+/// The channels of a map as displayed.
 fn channels(map: &Map) -> Result<Vec<(&'static str, Raster<f32>)>, TileError> {
     Ok(match map {
         Map::Value(values) => vec![("", values.clone())],
@@ -178,7 +178,7 @@ fn channels(map: &Map) -> Result<Vec<(&'static str, Raster<f32>)>, TileError> {
     })
 }
 
-/// The samples of red, green and blue at the ends of the range.
+/// Shares of the samples of red, green and blue at the ends of the range.
 fn color_ends(colors: &Raster<LinearRgb>) -> [Ends; 3] {
     let channels: [fn(&LinearRgb) -> f32; 3] = [|color| color.r, |color| color.g, |color| color.b];
     channels.map(|channel| Ends::of(colors.pixels().iter().map(channel), SRGB_SLOPES))

@@ -1,30 +1,30 @@
 //! The share of the samples that a method clipped.
 //!
-//! A sample is clipped if the method moved it past 0 or 1, where an image file holds the end of its range. A source has
-//! samples at the ends, too: a black disk is as black in the tile, and crops and mixtures of black are black. So, at
-//! each end, at most as many samples count as the tile has there beyond the share of the source.
+//! A sample is clipped if the method moved it past 0 or 1, where an image file stores the end of its range. A source
+//! has samples at the ends, too: a black disk remains black in the tile, and crops and mixtures of black are black. So
+//! at each end, at most the share of samples counts by which the tile exceeds the source there.
 //!
 //! Reference: our own.
 
-/// The largest distance from 0 or 1 that is rounding: half a code of 8 bits.
+/// Maximum distance from 0 or 1 that counts as rounding: half an 8-bit code.
 const ROUNDING: f32 = 0.5 / 255.0;
 
-/// The slope of the sRGB curve at 0 and at 1: the change of the code, from 0 to 1, with the linear value.
+/// Slope of the sRGB curve at 0 and at 1: change of the code, from 0 to 1, per change of the linear value.
 pub(super) const SRGB_SLOPES: [f32; 2] = [12.92, 1.055 / 2.4];
 
-/// The slope of values that are shown as they are.
+/// Slope of values that are displayed as they are.
 pub(super) const PLAIN_SLOPES: [f32; 2] = [1.0; 2];
 
-/// The shares of the samples of an image at 0 and at 1.
+/// Shares of the samples of an image at 0 and at 1.
 pub(super) struct Ends {
-    /// The samples at or past either end.
+    /// Share of samples at or past each end.
     reached: [f64; 2],
-    /// The samples past either end by more than a rounding.
+    /// Share of samples past each end by more than rounding.
     past: [f64; 2],
 }
 
 impl Ends {
-    /// Counts samples before they are cut off at 0 and 1. The slopes are those of the shown value at 0 and at 1.
+    /// Counts samples before they are clamped to 0 and 1. `slopes` are those of the displayed value at 0 and at 1.
     pub(super) fn of(samples: impl ExactSizeIterator<Item = f32>, slopes: [f32; 2]) -> Self {
         let n = samples.len() as f64;
         let [below, above] = slopes.map(|slope| ROUNDING / slope);
@@ -41,7 +41,7 @@ impl Ends {
         }
     }
 
-    /// The share of the samples of a tile that were clipped; 0 for a source that lies past 0 or 1 itself.
+    /// Share of the samples of a tile that were clipped; 0 for a source that is outside of 0 to 1 itself.
     pub(super) fn clipped(source: &Self, tile: &Self) -> f64 {
         if source.past != [0.0; 2] {
             return 0.0;
@@ -66,27 +66,27 @@ mod tests {
     #[test]
     fn only_samples_that_a_method_moved_past_an_end_are_clipped() {
         let source = [0.0, 0.2, 0.5, 1.0];
-        // A crop has a larger share of black, but moved nothing.
+        // A crop has a larger share of black, but nothing was moved.
         assert_eq!(clipped(&source, &[0.0, 0.0, 0.5], PLAIN_SLOPES), 0.0);
-        // One of four was moved past either end beside the one that the source has there.
+        // One of four samples was moved past an end, in addition to the one that the source has there.
         assert_eq!(clipped(&source, &[0.0, -0.1, 0.5, 1.0], PLAIN_SLOPES), 0.25);
         assert_eq!(clipped(&source, &[0.0, 0.5, 1.2, 1.0], PLAIN_SLOPES), 0.25);
-        // Black that became blacker is as black as before.
+        // Black that is moved below 0 remains black.
         assert_eq!(clipped(&source, &[-0.4, 0.2, 0.5, 1.0], PLAIN_SLOPES), 0.0);
-        // What one end loses, the other does not excuse.
+        // A decrease at one end does not compensate for the other end.
         assert_eq!(clipped(&source, &[0.2, 0.2, 1.5, 1.0], PLAIN_SLOPES), 0.25);
-        // Half of a code is a rounding.
+        // Half a code counts as rounding.
         assert_eq!(
             clipped(&source, &[0.0, -0.0019, 0.5, 1.0], PLAIN_SLOPES),
             0.0
         );
-        // A source past the range is not clipped by a method.
+        // A source outside of the range is not clipped by a method.
         assert_eq!(clipped(&[-0.1, 0.5], &[-0.1, -0.5], PLAIN_SLOPES), 0.0);
     }
 
     #[test]
     fn roundings_of_colors_are_those_of_their_codes() {
-        // Half a code is 0.00196, and so 0.00015 of linear light at black and 0.0045 at white.
+        // Half a code is 0.00196, which is 0.00015 of linear light at black and 0.0045 at white.
         let source = [0.1, 0.5];
         assert_eq!(clipped(&source, &[-0.00014, 1.0044], SRGB_SLOPES), 0.0);
         assert_eq!(clipped(&source, &[-0.00016, 0.5], SRGB_SLOPES), 0.5);

@@ -5,19 +5,19 @@
 use super::quotient;
 use dapple_raster::{Raster, Wrap};
 
-/// The width of a band, in columns or rows.
+/// Width of a band, in columns or rows.
 const BAND: usize = 8;
 
-/// [`SeamReport::lowest_local_detail`](super::SeamReport::lowest_local_detail) of an image.
+/// Computes [`SeamReport::lowest_local_detail`](super::SeamReport::lowest_local_detail) of an image.
 pub(super) fn lowest_detail(image: &Raster<f32>, wrap: [Wrap; 2]) -> f64 {
     let [columns, rows] = detail_powers(image, wrap);
     let mean = columns.iter().sum::<f64>() / columns.len() as f64;
     let lowest = lowest_band(&columns, wrap[0]).min(lowest_band(&rows, wrap[1]));
-    // The sums are in different orders, so that the lowest may exceed the mean by a rounding.
+    // The sums have different orders, so the lowest may exceed the mean by rounding.
     quotient(lowest, mean).sqrt().min(1.0)
 }
 
-/// The mean square of the detail in each column, and in each row.
+/// Mean square of the detail in each column, and in each row.
 fn detail_powers(image: &Raster<f32>, wrap: [Wrap; 2]) -> [Vec<f64>; 2] {
     let [width, height] = image.size();
     let beside = |axis: usize, index: u32, length: u32| {
@@ -28,7 +28,7 @@ fn detail_powers(image: &Raster<f32>, wrap: [Wrap; 2]) -> [Vec<f64>; 2] {
     let mut rows = Vec::with_capacity(height as usize);
     for y in 0..height {
         let [above, here, below] = beside(1, y, height).map(|row| image.row(row));
-        // The mean over three rows, with weights 1 2 1.
+        // The vertical mean over three rows, with weights 1 2 1.
         let down: Vec<f64> = (0..width as usize)
             .map(|x| mean_121([above[x], here[x], below[x]].map(f64::from)))
             .collect();
@@ -44,12 +44,12 @@ fn detail_powers(image: &Raster<f32>, wrap: [Wrap; 2]) -> [Vec<f64>; 2] {
     [columns, rows]
 }
 
-/// The mean of three numbers with weights 1 2 1. Of equal numbers it is exact.
+/// The mean of three numbers with weights 1 2 1; exact for equal numbers.
 fn mean_121([before, here, after]: [f64; 3]) -> f64 {
     ((before + after) + 2.0 * here) / 4.0
 }
 
-/// The lowest mean of neighbors over the width of a band.
+/// The lowest mean over the width of a band.
 fn lowest_band(powers: &[f64], wrap: Wrap) -> f64 {
     let n = powers.len();
     let width = BAND.min(n);

@@ -1,16 +1,16 @@
-//! Test whether both sides of a wrap are mirror images.
+//! Test whether both sides of a wrap are mirror images of each other.
 
 use crate::TileError;
 use crate::axis::transpose;
 use dapple_raster::Raster;
 
-/// The number of pixels on either side that are compared.
+/// Number of pixels on either side that are compared.
 const REACH: usize = 8;
 
-/// The largest difference of mirror images, as a fraction of the variation there.
+/// Maximum squared difference of mirror images, as a fraction of the variation of the compared pixels.
 const LARGEST: f64 = 0.01;
 
-/// Whether the last columns are the mirror image of the first ones, or the rows are, along an axis that repeats.
+/// Whether the last columns mirror the first ones, or the last rows the first ones, along an axis that repeats.
 pub(super) fn is_mirrored(tile: &Raster<f32>, axes: [bool; 2]) -> Result<bool, TileError> {
     Ok((axes[0] && along_rows(tile)) || (axes[1] && along_rows(&transpose(tile)?)))
 }

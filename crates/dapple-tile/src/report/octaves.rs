@@ -7,11 +7,11 @@ use crate::fourier::power_spectrum;
 use core::f64::consts::TAU;
 use dapple_raster::Raster;
 
-/// The lowest frequency of an octave that is measured, in cycles per side. The peak of the Hann window at 0 reaches 2
-/// to either side, and so reaches no octave.
+/// Lowest frequency of a measured octave, in cycles per side. The peak of the Hann window at frequency 0 extends 2
+/// cycles to either side, so it affects no octave.
 const LEAST_CYCLES: u32 = 4;
 
-/// The power of the tile in each octave as a multiple of that of the source, finest first.
+/// Power of the tile in each octave as a multiple of the power of the source, finest octave first.
 pub(super) fn kept(source: &Raster<f32>, tile: &Raster<f32>) -> Vec<f64> {
     let sides = source.size().into_iter().chain(tile.size());
     let shortest = sides.min().unwrap_or(0);
@@ -21,7 +21,7 @@ pub(super) fn kept(source: &Raster<f32>, tile: &Raster<f32>) -> Vec<f64> {
     pairs.map(|(kept, all)| quotient(kept, all)).collect()
 }
 
-/// The mean square of an image in each octave, under the window.
+/// Mean square of an image in each octave, under the window.
 fn octave_powers(image: &Raster<f32>, n_octaves: usize) -> Vec<f64> {
     let mut powers = vec![0.0; n_octaves];
     if n_octaves == 0 {
@@ -34,6 +34,7 @@ fn octave_powers(image: &Raster<f32>, n_octaves: usize) -> Vec<f64> {
         .map(|of| of.iter().map(|w| w * w).sum::<f64>());
     let size = image.size().map(|side| side as usize);
     let spectrum = power_spectrum(&windowed(image, &windows), size);
+    // Add each frequency to its octave: the finer of the octaves along x and y.
     let columns: Vec<usize> = (0..width).map(|index| octave(index, width)).collect();
     for (y, line) in spectrum.chunks_exact(width as usize).enumerate() {
         let row = octave(y as u32, height);
@@ -48,9 +49,9 @@ fn octave_powers(image: &Raster<f32>, n_octaves: usize) -> Vec<f64> {
     powers
 }
 
-/// The pixels minus their mean, times the windows of columns and rows.
+/// The pixels minus their mean, multiplied by the windows of columns and rows.
 fn windowed(image: &Raster<f32>, [columns, rows]: &[Vec<f64>; 2]) -> Vec<f64> {
-    // Relative to the first pixel, so that a flat image is exactly zero.
+    // Subtract the first pixel, so that a flat image is exactly zero.
     let first = f64::from(image.pixels()[0]);
     let offset = |&value: &f32| f64::from(value) - first;
     let mean = image.pixels().iter().map(offset).sum::<f64>() / image.pixels().len() as f64;
@@ -62,7 +63,7 @@ fn windowed(image: &Raster<f32>, [columns, rows]: &[Vec<f64>; 2]) -> Vec<f64> {
     values
 }
 
-/// The Hann window of a side.
+/// The Hann window for a side of `n` pixels.
 fn hann(n: u32) -> Vec<f64> {
     let turn = |index: u32| TAU * (f64::from(index) + 0.5) / f64::from(n);
     (0..n)
@@ -70,13 +71,13 @@ fn hann(n: u32) -> Vec<f64> {
         .collect()
 }
 
-/// The octave of a frequency, 0 for those above ¼ cycle per pixel; `usize::MAX` for that of the mean.
+/// The octave of a frequency: 0 above ¼ cycle per pixel, `usize::MAX` for the mean.
 fn octave(index: u32, n: u32) -> usize {
     let cycles = u64::from(index.min(n - index));
     if cycles == 0 {
         return usize::MAX;
     }
-    // The frequency is above 2^-(octave + 2).
+    // The octave's frequencies are above 2^-(octave + 2) cycles per pixel.
     let exact = |octave: &usize| cycles << (octave + 2) > u64::from(n);
     (0..32).find(exact).unwrap_or(usize::MAX)
 }

@@ -1,4 +1,4 @@
-//! The step across the wrap, compared with the steps inside of the tile.
+//! The step across the wrap, compared with the steps inside the tile.
 //!
 //! Reference: our own.
 
@@ -7,50 +7,51 @@ use crate::TileError;
 use crate::axis::transpose;
 use dapple_raster::Raster;
 
-/// The widths of the means on either side of a boundary, in pixels.
+/// Widths of the means on either side of a boundary, in pixels.
 const WIDTHS: [u32; 4] = [1, 2, 4, 8];
 
-/// The ratio of the step across the wrap and the steps inside of the tile, at one scale.
+/// The ratio of the step across the wrap to the steps inside the tile, at one scale.
 ///
-/// The step across a boundary is the difference of the means of the `width` pixels before it and the `width` pixels after
-/// it, along one line; its absolute value is averaged over all lines.
+/// The step across a boundary is the difference between the mean of the `width` pixels before it and the mean of the
+/// `width` pixels after it, along one line. Its absolute value is averaged over all lines.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Seam {
-    /// The number of pixels in a mean.
+    /// Number of pixels in a mean.
     pub width: u32,
-    /// The seam from the last column to the first.
+    /// Seam from the last column to the first.
     ///
-    /// `None` if the tile does not repeat along this axis, or if no boundary of the lattice inside of the tile has
-    /// `width` pixels on either side.
+    /// `None` if the tile does not repeat along this axis, or if no boundary of the lattice inside the tile has `width`
+    /// pixels on either side.
     pub x: Option<SeamRatio>,
-    /// The seam from the last row to the first; `None` as for x.
+    /// Seam from the last row to the first; `None` under the same conditions as `x`.
     pub y: Option<SeamRatio>,
-    /// Both axes together: the sum of the steps across their wraps divided by the sum of their steps inside. `None` if
-    /// a repeating axis has none.
+    /// Both axes together: the sum of the steps across their wraps, divided by the sum of their steps inside. `None` if
+    /// a repeating axis has no ratio.
     pub both: Option<SeamRatio>,
-    /// How much more visible the wrap is than the most visible boundary inside, in standard deviations of the
-    /// boundaries inside, along the axis where this is larger; 0 if it is less visible.
+    /// Excess of the visibility of the wrap over the most visible boundary inside, in standard deviations of the
+    /// boundaries inside, for the axis with the larger excess; 0 if the wrap is less visible.
     ///
-    /// The visibility of a boundary is the mean over lines of its step divided by the mean of the 8 steps on either
-    /// side on that line and a tenth of the mean step of the line. Deviations are at least 5 % of the mean. `None` if
-    /// there is no room on an axis.
+    /// The visibility of a boundary is a mean over all lines. On each line, it is the step divided by a reference: the
+    /// mean of the 8 steps on either side plus a tenth of the mean step of the line. Deviations are at least 5 % of the
+    /// mean.
+    /// `None` if an axis is too short.
     pub stands_out: Option<f64>,
 }
 
-/// A step across the wrap as a multiple of the mean step inside.
+/// The step across the wrap as a multiple of the mean step inside.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SeamRatio {
-    /// 1 for a wrap like any other boundary, more for a seam, less where the tile has gone soft; 1 for a flat tile. At
-    /// least 0.
+    /// The ratio, at least 0: 1 for a wrap like any other boundary, more for a seam, less where the tile is soft; 1 for
+    /// a flat tile.
     pub ratio: f64,
-    /// The standard deviation of the same ratio for the boundaries inside, as if each was the wrap: how far from 1 the
-    /// ratio of a good tile may be. At least 0; `None` if there are fewer than two such boundaries.
+    /// Standard deviation of the ratio over the boundaries inside, each taken as the wrap: the expected deviation from
+    /// 1 for a good tile. At least 0; `None` if there are fewer than two such boundaries.
     pub spread: Option<f64>,
 }
 
-/// The seams of a tile at all widths.
+/// Measures the seams of a tile at all widths.
 pub(super) fn seams(tile: &Raster<f32>, options: &SeamOptions) -> Result<[Seam; 4], TileError> {
     let [along_x, along_y] = options.axes;
     let steps =
@@ -77,7 +78,7 @@ pub(super) fn seams(tile: &Raster<f32>, options: &SeamOptions) -> Result<[Seam; 
     }))
 }
 
-/// How much the wrap stands out, along the axis where it does so most; `None` if one of them has no room.
+/// The excess of the wrap's visibility, for the axis where it is largest; `None` if an axis is too short.
 fn stands_out(lines: [Option<&Raster<f32>>; 2], width: u32, options: &SeamOptions) -> Option<f64> {
     let mut most: f64 = 0.0;
     for (lines, lattice) in lines.into_iter().zip(options.lattice) {
@@ -92,18 +93,19 @@ fn stands_out(lines: [Option<&Raster<f32>>; 2], width: u32, options: &SeamOption
     Some(most)
 }
 
-/// The steps of one axis at one width, each a mean over all lines.
+/// Steps of one axis at one width, each a mean over all lines.
 #[derive(Clone, Copy)]
 struct Steps {
+    /// Step across the wrap.
     wrap: f64,
-    /// The mean step of the boundaries inside.
+    /// Mean step of the boundaries inside.
     inside: f64,
-    /// The variance of the steps inside.
+    /// Variance of the steps inside; `None` for a single boundary.
     variance: Option<f64>,
 }
 
 impl Steps {
-    /// The steps of the wrap and of the boundaries inside.
+    /// Computes the mean and the variance of the steps inside.
     fn new(wrap: f64, inside: &[f64]) -> Self {
         let mean = inside.iter().sum::<f64>() / inside.len() as f64;
         let squares: f64 = inside
@@ -117,7 +119,7 @@ impl Steps {
         }
     }
 
-    /// The sums of the steps of two axes, which count as independent.
+    /// The sums of the steps of two axes, which are treated as independent.
     fn plus(self, other: Self) -> Self {
         let variances = self.variance.zip(other.variance);
         Self {
@@ -142,11 +144,12 @@ impl Steps {
     }
 }
 
-/// The steps along rows, at all widths.
+/// Measures the steps along rows, at all widths.
 fn axis_steps(tile: &Raster<f32>, lattice: usize) -> [Option<Steps>; 4] {
     let n = tile.width() as usize;
     let boundaries = WIDTHS.map(|width| boundaries(n, width as usize, lattice));
     let mut steps = boundaries.each_ref().map(|of| vec![0.0; of.len()]);
+    // Sum the steps of all lines. The sums of pixels are doubled from width to width.
     let mut sums = vec![0.0; n];
     for line in tile.view().rows() {
         sums.clear();
@@ -164,6 +167,7 @@ fn axis_steps(tile: &Raster<f32>, lattice: usize) -> [Option<Steps>; 4] {
             }
         }
     }
+    // Divide by the number of lines and pixels.
     let n_lines = f64::from(tile.height());
     core::array::from_fn(|index| {
         let count = n_lines * f64::from(WIDTHS[index]);
@@ -173,8 +177,8 @@ fn axis_steps(tile: &Raster<f32>, lattice: usize) -> [Option<Steps>; 4] {
     })
 }
 
-/// The first pixels of the two means at the wrap, and then at every boundary of the lattice with room for both. Empty
-/// if there is no boundary inside.
+/// First pixels of the two means at the wrap, and then at every boundary of the lattice with enough pixels for both.
+/// Empty if there is no boundary inside.
 pub(super) fn boundaries(n: usize, width: usize, lattice: usize) -> Vec<[usize; 2]> {
     let last = n.saturating_sub(width);
     let inside = (lattice..=last).step_by(lattice);
@@ -184,10 +188,10 @@ pub(super) fn boundaries(n: usize, width: usize, lattice: usize) -> Vec<[usize; 
     if all.len() > 1 { all } else { Vec::new() }
 }
 
-/// Replaces the sums of `half` pixels from each pixel on by those of twice as many.
+/// Replaces the sums of `half` pixels starting at each pixel by sums of twice as many.
 ///
-/// In this order the sums of the same pixels, backward, are the same to the last bit, and the seam of a mirror image is
-/// exactly 0.
+/// The order of additions is symmetric: sums of the same pixels in reverse order have the same bits. So the seam of a
+/// mirror image is exactly 0.
 fn double(sums: &mut Vec<f64>, half: usize) {
     let n = sums.len().saturating_sub(half);
     for at in 0..n {

@@ -1,15 +1,16 @@
-//! Strangeness: how unlike the source a tile is near its seams.
+//! Strangeness: dissimilarity of a tile near its seams to the source.
 //!
-//! Sample squares of pixels across and beside the wrap are compared with all of the source. Parts that were cut or
-//! moved as a whole are found there; a stain, a cut-off line, or two pictures laid over each other is not. The distance
-//! of a good match depends on the picture: squares of the source are compared with the rest of the source. The measure
-//! is the mean distance of the tile's squares to their nearest match, as a multiple of that of the source's squares.
+//! Sample squares of pixels across and next to the wrap are compared with all squares of the source. Parts that were
+//! cut or moved as a whole have a match there; a stain, an interrupted line, or a double exposure has none. The
+//! distance of a good match depends on the image, so squares of the source are compared with the rest of the source,
+//! too. The measure is the mean distance of the tile's squares to their nearest match, as a multiple of the mean
+//! distance of the source's squares.
 //!
-//! The measure is taken at two scales. A cut through grass is found in squares of 8 × 8 pixels; a course of bricks that ends
-//! at the cut looks like any other joint there, and only larger squares have nothing like it in the source.
+//! The measure is taken at two scales. A cut through grass is detected in squares of 8 × 8 pixels. A course of bricks
+//! that ends at the cut looks like any other joint at that scale; only larger squares have no match in the source.
 //!
-//! Most places are left out by the means of the quarters of their squares: the squared distance of two quarters is at least
-//! 16 times the square of how far their means are apart (Cauchy and Schwarz).
+//! Most candidates are rejected by the means of the quarters of their squares: the squared distance of two quarters is
+//! at least 16 times the squared difference of their means (Cauchy-Schwarz inequality).
 //!
 //! Reference: our own, after the nearest neighbors of Alexei A. Efros and Thomas K. Leung, "Texture Synthesis by
 //! Non-parametric Sampling", ICCV 1999, <https://doi.org/10.1109/ICCV.1999.790383>.
@@ -20,42 +21,43 @@ use crate::axis::transpose;
 use dapple_raster::{Raster, Wrap, parallel, simd};
 use fearless_simd::{f32x16, prelude::*};
 
-/// The side of a square, in pixels.
+/// Side of a square, in pixels.
 const SIDE: u32 = 8;
 
-/// The number of squares that are compared in each zone.
+/// Number of squares that are compared in each zone.
 const SQUARES: u32 = 128;
 
-/// The largest number of places of the source that are compared: all of 256 × 256 pixels.
+/// Maximum number of candidate positions in the source: all positions of an image of 256 × 256 pixels.
 const PLACES: usize = 1 << 16;
 
-/// The part of a side, on the far side of the wrap, where methods lay two pictures over each other.
+/// Divisor of the side: the zone on the far side of the wrap, where methods blend two images, is a fifth of the side.
 const BESIDE: u32 = 5;
 
-/// The places that are compared at once.
+/// Number of candidates that are compared at once.
 const LANES: usize = 16;
 
-/// The width and height of a quarter of a square.
+/// Width and height of a quarter of a square.
 const HALF: usize = SIDE as usize / 2;
 
-/// How much less a bound is than it was computed, for its own rounding and that of distances: each has less than 100 operations,
-/// with an error of half of the last bit, 6e-8.
+/// Factor that keeps a bound valid despite rounding of the bound and of distances. Each takes fewer than 100 operations
+/// with a relative error of at most half of the last bit, 6e-8.
 const SAFE: f32 = 1.0 - 1e-5;
 
-/// The part of the largest value by which the means of two quarters may be farther apart by rounding: half of the last bit for
-/// either, and twice as much for their difference.
+/// Maximum error of the difference of two quarter means by rounding, as a fraction of the largest value: half of the
+/// last bit for either mean, and twice as much for their difference.
 const MEAN_ERROR: f32 = 4e-7;
 
-/// The smallest distance of a match in the source, as a multiple of the deviation of the source.
+/// Minimum distance of a match in the source, as a multiple of the standard deviation of the source.
 const LEAST_DISTANCE: f64 = 0.01;
 
+/// Values of a square, row by row.
 type Square = [f32; (SIDE * SIDE) as usize];
 
-/// The first columns and rows of the quarters of a square.
+/// First column and row of each quarter of a square.
 const QUARTERS: [[usize; 2]; 4] = [[0, 0], [HALF, 0], [0, HALF], [HALF, HALF]];
 
-/// The strangeness at a scale, where each value of a square is the mean of `scale` × `scale` pixels: the strangest of all
-/// zones; `None` if an image is too small or the source is flat.
+/// The strangeness at a scale: the maximum over all zones. Each value of a square is the mean of `scale` × `scale`
+/// pixels. `None` if an image is too small or the source is flat.
 pub(super) fn strangeness(
     source: &Raster<f32>,
     tile: &Raster<f32>,
@@ -71,9 +73,11 @@ pub(super) fn strangeness(
     if deviation == 0.0 {
         return Ok(None);
     }
+    // The distance of matches within the source.
     let places = Places::new(&reduced);
     let usual = places.usual();
     let usual = usual.max(LEAST_DISTANCE * deviation * f64::from(SIDE));
+    // The distances of the tile's squares, along each axis that repeats.
     let mut most: f64 = 0.0;
     for (axis, _) in axes.iter().enumerate().filter(|(_, repeats)| **repeats) {
         let turned = match axis {
@@ -87,7 +91,7 @@ pub(super) fn strangeness(
     Ok(Some(most))
 }
 
-/// The means of squares of `scale` × `scale` pixels. Pixels of the last columns and rows that fill no square are left out.
+/// Means of `scale` × `scale` pixels. Remaining pixels of the last columns and rows are left out.
 fn reduced(source: &Raster<f32>, scale: u32) -> Result<Raster<f32>, TileError> {
     let size = source.size().map(|side| side / scale);
     let wrap = [Wrap::Clamp; 2];
@@ -96,7 +100,7 @@ fn reduced(source: &Raster<f32>, scale: u32) -> Result<Raster<f32>, TileError> {
     })?)
 }
 
-/// The mean of `scale` × `scale` pixels from a corner on.
+/// The mean of `scale` × `scale` pixels with the given upper left corner.
 fn mean_at(image: &Raster<f32>, [x, y]: [i64; 2], scale: u32, wrap: [Wrap; 2]) -> f32 {
     let mut sum = 0.0;
     for row in 0..i64::from(scale) {
@@ -107,7 +111,7 @@ fn mean_at(image: &Raster<f32>, [x, y]: [i64; 2], scale: u32, wrap: [Wrap; 2]) -
     (sum / f64::from(scale * scale)) as f32
 }
 
-/// Squares across the wrap of the columns, and squares beside it; transposed back if the tile was transposed.
+/// Squares across the wrap of the columns, and squares next to it; transposed back if the tile was transposed.
 fn zones(tile: &Raster<f32>, is_turned: bool, scale: u32) -> [Vec<Square>; 2] {
     let [width, height] = tile.size();
     let beside = (width / scale / BESIDE).saturating_sub(SIDE).max(1);
@@ -127,14 +131,14 @@ fn zones(tile: &Raster<f32>, is_turned: bool, scale: u32) -> [Vec<Square>; 2] {
     ]
 }
 
-/// Places along a side that are far from each other: multiples of the golden section of the side.
+/// The position with the given index of a well-spread sequence along a side: multiples of the golden ratio.
 fn spread(index: u32, side: u32) -> i64 {
-    // 2^32 divided by the golden ratio.
+    // The factor is 2^32 divided by the golden ratio.
     let part = u64::from(index.wrapping_mul(2_654_435_769));
     ((part * u64::from(side)) >> 32) as i64
 }
 
-/// The values of a square from its corner on, of a tile that repeats.
+/// The values of a square with the given corner, in a tile that repeats.
 fn square(tile: &Raster<f32>, corner: [i64; 2], is_turned: bool, scale: u32) -> Square {
     core::array::from_fn(|index| {
         let (row, column) = (
@@ -164,12 +168,12 @@ fn mean(square: &Square, [column, row]: [usize; 2]) -> f32 {
     mean_of(values.map(|&value| f64::from(value)).sum())
 }
 
-/// The mean of a quarter with a sum, which may be larger than single precision has numbers for.
+/// The mean of a quarter with the given sum, which may exceed the range of single precision.
 fn mean_of(sum: f64) -> f32 {
     (sum / (HALF * HALF) as f64) as f32
 }
 
-/// The means of one quarter of all squares of a lattice, row by row.
+/// Means of one quarter of all squares of a lattice, row by row.
 fn quarter_means(
     source: &Raster<f32>,
     size: [usize; 2],
@@ -189,32 +193,33 @@ fn quarter_means(
     sums.into_iter().map(mean_of).collect()
 }
 
-/// Bounds, of which an infinite one says only that it is not below the largest number.
+/// Limits bounds to the largest finite number. An infinite bound only means that the distance is not below it.
 #[inline(always)]
 fn at_most_largest<S: Simd>(simd: S, bounds: f32x16<S>) -> f32x16<S> {
     bounds.min(f32x16::splat(simd, f32::MAX))
 }
 
-/// A number of places with room for the last register.
+/// Number of candidates in a row, padded for the last register.
 fn padded(columns: usize) -> usize {
     columns.next_multiple_of(LANES)
 }
 
-/// Squares of the source, on a lattice that is as fine as the largest number of places allows.
+/// Squares of the source on a lattice, the candidates. The lattice is as fine as the maximum number of candidates
+/// allows.
 struct Places<'a> {
     source: &'a Raster<f32>,
-    /// The distance of neighbors in the lattice.
+    /// Distance of neighbors in the lattice, in pixels.
     step: usize,
-    /// The columns and rows of the lattice.
+    /// Numbers of columns and rows of the lattice.
     size: [usize; 2],
-    /// For each row of the source its pixels in runs, one for each remainder of the column by `step`: what squares side by
-    /// side have at one column of theirs lies side by side.
+    /// Pixels of each row of the source, sorted into runs by the remainder of the column modulo `step`. So the pixels
+    /// at one column of adjacent candidates are contiguous.
     runs: Vec<f32>,
-    /// The length of a run, with room for the last register.
+    /// Length of a run, padded for the last register.
     run_length: usize,
-    /// For each place of the lattice the means of the quarters of its square, row by row with room for the last register.
+    /// Quarter means of the square of each candidate, row by row, padded for the last register.
     quarters: [Vec<f32>; 4],
-    /// How far off means of quarters may be.
+    /// Maximum error of quarter means.
     mean_error: f32,
 }
 
@@ -247,7 +252,7 @@ impl<'a> Places<'a> {
         }
     }
 
-    /// The mean distance of squares of the source from their nearest match elsewhere in it.
+    /// Mean distance of squares of the source to their nearest match elsewhere in it.
     fn usual(&self) -> f64 {
         let [columns, rows] = self.source.size().map(|side| side - SIDE + 1);
         self.mean(SQUARES as usize, |index| {
@@ -269,19 +274,19 @@ impl<'a> Places<'a> {
         parallel::map(count, distance).iter().sum::<f64>() / count as f64
     }
 
-    /// The distance of a square from the nearest in the source, apart from those that meet the one at a corner.
+    /// Distance of a square to the nearest candidate, except for candidates that overlap the square at `left_out`.
     fn distance(&self, square: &Square, left_out: Option<[usize; 2]>) -> f64 {
         simd::dispatch!(simd::level(), simd => self.search(simd, square, left_out)).sqrt()
     }
 
-    /// The square of the distance.
+    /// Squared distance of a square to the nearest candidate.
     #[inline(always)]
     fn search<S: Simd>(&self, simd: S, square: &Square, left_out: Option<[usize; 2]>) -> f64 {
         let own = QUARTERS.map(|quarter| mean(square, quarter));
         let error = self.mean_error + MEAN_ERROR * largest(square);
         let rows = 0..self.size[1];
         let groups = rows.flat_map(|row| (0..self.size[0]).step_by(LANES).map(move |at| [at, row]));
-        // The place that is the nearest by its bound leaves out most others.
+        // Start with the candidate with the lowest bound; its distance rejects most others.
         let (mut lowest, mut guess) = (f32::INFINITY, None);
         for group in groups.clone() {
             let bounds = self.bounds(simd, &own, error, group);
@@ -293,9 +298,10 @@ impl<'a> Places<'a> {
                 }
             }
         }
+        // Visit the groups of candidates; compute exact distances only where the bounds allow a nearer one.
         let mut least = f64::INFINITY;
         for group in guess.into_iter().chain(groups) {
-            // Squares of what is smaller are not exact.
+            // Squares of smaller numbers are not exact.
             let limit = f32x16::splat(simd, least as f32 + f32::MIN_POSITIVE);
             let bounds = self.bounds(simd, &own, error, group);
             if bounds.simd_lt(limit).any_true() && self.may_be_nearer(simd, square, group, limit) {
@@ -309,7 +315,7 @@ impl<'a> Places<'a> {
         least
     }
 
-    /// Whether there is a place, and its square is apart from the one at a corner.
+    /// Whether the index is a candidate, and its square does not overlap the one at `left_out`.
     #[inline(always)]
     fn is_compared(&self, place: [usize; 2], left_out: Option<[usize; 2]>) -> bool {
         let meets = |axis: usize| {
@@ -320,7 +326,7 @@ impl<'a> Places<'a> {
         place[0] < self.size[0] && !(meets(0) && meets(1))
     }
 
-    /// Numbers that the squares of the distances from places side by side are not below.
+    /// Lower bounds on the squared distances of adjacent candidates.
     #[inline(always)]
     fn bounds<S: Simd>(
         &self,
@@ -341,7 +347,7 @@ impl<'a> Places<'a> {
         at_most_largest(simd, bounds * f32x16::splat(simd, factor))
     }
 
-    /// Whether the square of the distance from any of some places side by side may be below a limit.
+    /// Whether the squared distance of any of some adjacent candidates may be below a limit.
     #[inline(always)]
     fn may_be_nearer<S: Simd>(
         &self,
@@ -358,6 +364,7 @@ impl<'a> Places<'a> {
                 let apart = f32x16::splat(simd, value) - others;
                 sums += apart * apart;
             }
+            // Stop as soon as the partial sums exceed the limit.
             if !(at_most_largest(simd, sums) * safe)
                 .simd_lt(limit)
                 .any_true()
@@ -368,7 +375,7 @@ impl<'a> Places<'a> {
         true
     }
 
-    /// The squares of the distances from places side by side.
+    /// Squared distances of adjacent candidates.
     #[inline(always)]
     fn sums(&self, square: &Square, group: [usize; 2]) -> [f64; LANES] {
         let mut sums = [0.0; LANES];
@@ -388,7 +395,7 @@ impl<'a> Places<'a> {
         sums
     }
 
-    /// What squares at places side by side have at one pixel of theirs.
+    /// Pixels at one position within the squares of adjacent candidates.
     #[inline(always)]
     fn others(&self, [first, row]: [usize; 2], [x, y]: [usize; 2]) -> &[f32] {
         let run = (row * self.step + y) * self.step + x % self.step;
@@ -410,7 +417,7 @@ mod tests {
         strangeness(&source, &tile, [true; 2], 1).unwrap().unwrap()
     }
 
-    /// The distance of a square from the nearest of all places of a lattice.
+    /// Distance of a square to the nearest of all candidates of a lattice.
     fn of_all(places: &Places<'_>, own: &Square, left_out: Option<[usize; 2]>) -> f64 {
         let meets = |at: [usize; 2]| {
             left_out
@@ -475,7 +482,7 @@ mod tests {
     fn a_picture_that_repeats_is_not_strange_beside_itself() {
         let tile = fbm(2, [96, 64], true);
         let strangeness = strangeness(&tile, &tile, [true; 2], 1).unwrap().unwrap();
-        // Squares inside are found exactly, and those across the wrap match like any others.
+        // Squares inside have exact matches, and squares across the wrap match like any others.
         assert!(strangeness < 1.12, "{strangeness}");
     }
 

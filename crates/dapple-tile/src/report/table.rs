@@ -3,10 +3,10 @@
 use super::{DetailKept, SeamRatio, SeamReport};
 use core::fmt;
 
-/// The width of a cell, which fits `1.02 ± 0.05` and the largest ratio.
+/// Width of a cell, which fits `1.02 ± 0.05` and the largest ratio.
 const CELL: usize = 16;
 
-/// The entry of a quantity that was not measured.
+/// Entry for a quantity that was not measured.
 const NOTHING: &str = "-";
 
 impl fmt::Display for SeamReport {
@@ -29,7 +29,7 @@ impl fmt::Display for SeamReport {
 }
 
 impl SeamReport {
-    /// The numbers, without the verdict.
+    /// Writes the measurements without the verdict.
     pub(super) fn write_table(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{:<22}", "seam ratio")?;
         for axis in ["x", "y", "both"] {
@@ -53,7 +53,8 @@ impl SeamReport {
 }
 
 impl DetailKept {
-    /// Writes the lines about the source; the first continues the line of the lowest local detail of the tile.
+    /// Writes the measurements relative to the source. The first one continues the line of the tile's lowest local
+    /// detail.
     fn write(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let source = format!("of the source {:.3}", self.source_lowest_local_detail);
         write!(f, "  ({source})\n{:<22}", "detail kept")?;
@@ -61,7 +62,7 @@ impl DetailKept {
             write!(f, "{NOTHING:>CELL$}")?;
         }
         for (index, kept) in self.octaves.iter().enumerate() {
-            // Three in a line, aligned with the columns of the ratios.
+            // Three octaves per line, aligned with the columns of the ratios.
             if index > 0 && index % 3 == 0 {
                 write!(f, "\n{:<22}", "")?;
             }
@@ -92,7 +93,7 @@ fn cell(ratio: Option<SeamRatio>) -> String {
     }
 }
 
-/// A number in at most six characters.
+/// Formats a number in at most six characters.
 fn number(value: f64) -> String {
     if value < 100.0 {
         format!("{value:.2}")

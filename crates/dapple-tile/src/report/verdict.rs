@@ -1,59 +1,60 @@
-//! The verdict: the faults of a tile, by the numbers of its report.
+//! The verdict: the faults of a tile, derived from the measurements of its report.
 //!
-//! The limits were set on 2 × 2 copies of 16 photographs, made to repeat in 9 ways, that were judged by eye first. The README says how
-//! far the verdict agrees with eyes on photographs that were not used for that.
+//! The limits were set on 2 × 2 copies of 16 photographs, made to repeat in 9 ways, which were judged by eye first. The
+//! README states how far the verdict agrees with eyes on other photographs.
 
 use super::{DetailKept, SeamReport};
 use core::fmt;
 
-/// The largest visibility of a wrap above the most visible boundary inside, in standard deviations.
+/// Maximum excess of a wrap's visibility over the most visible boundary inside, in standard deviations.
 const STANDS_OUT: f64 = 2.5;
 
-/// The smallest detail of the softest band, as a fraction of that of the softest band of the source.
+/// Minimum detail of the softest band, as a fraction of that of the softest band of the source.
 const SOFTEST: f64 = 0.85;
 
-/// The smallest power that the third octave must keep. A mean of two pictures keeps half of it.
+/// Minimum power that the third octave must keep. The mean of two images keeps half of it.
 const THIRD_OCTAVE: f64 = 0.65;
 
-/// The smallest contrast of a tile whose third octave is weak: a mean of two pictures loses both, and a part of a pattern
-/// may lack one octave.
+/// Minimum contrast of a tile whose third octave is weak. The mean of two images loses both contrast and octave,
+/// whereas a part of a pattern may lack only one octave.
 const CONTRAST: f64 = 0.9;
 
-/// The largest distance of squares at the seam from the source, as a multiple of that of the source from itself.
+/// Maximum [`strangeness`](DetailKept::strangeness).
 const STRANGEST: f64 = 0.84;
 
-/// The largest such distance at half of the size.
+/// Maximum [`coarse_strangeness`](DetailKept::coarse_strangeness).
 const COARSE_STRANGEST: f64 = 0.97;
 
-/// The largest share of clipped samples.
+/// Maximum share of clipped samples.
 const CLIPPED: f64 = 0.04;
 
-/// The smallest width of the means for which a seam must have been measured, in pixels.
+/// Width of the means at which a seam must have been measured, in pixels.
 const LEAST_WIDTH: u32 = 4;
 
 /// A fault of a tile.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Fault {
-    /// The tile has too few pixels to compare a seam with the inside.
+    /// The tile is too small to compare a seam with the inside.
     TooSmall,
-    /// The step across the wrap is more visible than any boundary inside, by [`Seam::stands_out`](super::Seam::stands_out).
+    /// The step across the wrap is more visible than any boundary inside, by
+    /// [`Seam::stands_out`](super::Seam::stands_out).
     Step {
-        /// The width of the means, in pixels, at which it is the most visible.
+        /// Width of the means, in pixels, at which the step is most visible.
         width: u32,
     },
-    /// A band has lost its detail, as a crossfade leaves it.
+    /// A band has lost its detail, typically in a crossfade.
     Soft,
-    /// Contrast was lost at all scales, as where two pictures lie over each other.
+    /// Contrast is lost at all scales, as in a blend of two images.
     Ghosts,
-    /// The pixels at the seam are unlike all pixels of the source.
+    /// Pixels at the seam are unlike all pixels of the source.
     Strange,
     /// Samples were clipped to 0 or 1.
     Clipped {
-        /// The share of clipped samples, from 0 to 1.
+        /// Share of clipped samples, from 0 to 1.
         share: f64,
     },
-    /// Both sides of the wrap are mirror images, and those of the source are not.
+    /// Both sides of the wrap are mirror images, and the sides of the source are not.
     Mirrored,
 }
 
@@ -74,9 +75,9 @@ impl fmt::Display for Fault {
 }
 
 impl SeamReport {
-    /// The faults of the tile; none if it [passes](Self::passes).
+    /// The faults of the tile; empty if it [passes](Self::passes).
     ///
-    /// Without a source, only steps are tested. A wrap that is less visible than the boundaries inside is no fault.
+    /// Without a source, only steps are tested. A wrap that is less visible than the boundaries inside is not a fault.
     #[must_use]
     pub fn faults(&self) -> Vec<Fault> {
         let mut faults = Vec::new();
@@ -110,9 +111,9 @@ impl SeamReport {
         self.faults().is_empty()
     }
 
-    /// The worst measure of the tile, as a multiple of its limit: tiles that pass have at most 1.
+    /// The worst measure of the tile, as a multiple of its limit: at most 1 for tiles that pass.
     ///
-    /// It ranks tiles of one source. A tile that is too small to be judged has [`MOST`](Self::MOST).
+    /// It ranks tiles of one source. It is [`MOST`](Self::MOST) for a tile that is too small to be judged.
     #[must_use]
     pub fn badness(&self) -> f64 {
         if self.faults().contains(&Fault::TooSmall) {
@@ -128,7 +129,7 @@ impl SeamReport {
             .min(Self::MOST)
     }
 
-    /// The width of the means at which the wrap stands out most, and how much it does.
+    /// The width of the means at which the wrap stands out most, and the excess of its visibility there.
     fn most_visible(&self) -> (u32, f64) {
         let measured = self
             .seams
@@ -142,7 +143,7 @@ impl SeamReport {
 }
 
 impl DetailKept {
-    /// Each measure as a multiple of its limit, with the fault for values above 1.
+    /// Each measure as a multiple of its limit, with the fault that it indicates above 1.
     fn measures(&self, lowest_local_detail: f64) -> [(f64, Fault); 5] {
         let over = |limit: f64, kept: f64| super::quotient(limit, kept);
         let power = self

@@ -1,7 +1,7 @@
-//! The visibility of the step across the wrap among the boundaries inside.
+//! The visibility of the step across the wrap, compared with the boundaries inside.
 //!
-//! Changes around a step hide it, and it is visible on even ground: so each step is divided by the mean of the steps
-//! beside it on its line, before lines are averaged (contrast masking). That distinguishes a cut through a brick from
+//! A step is masked by changes around it, and visible on even ground (contrast masking). So each step is divided by the
+//! mean of the steps next to it on its line before lines are averaged. This distinguishes a cut through a brick from
 //! the joints between bricks, which the mean of plain steps does not.
 //!
 //! Reference: our own.
@@ -11,16 +11,16 @@ use super::seam::boundaries;
 use core::ops::Range;
 use dapple_raster::Raster;
 
-/// The number of steps on either side that can hide a step.
+/// Number of steps on either side that can mask a step.
 const AROUND: usize = 8;
 
-/// The fraction of the mean step of a line that is added to the steps around, to avoid a division by zero.
+/// Fraction of the mean step of a line that is added to the steps around, to avoid a division by zero.
 const FLOOR: f64 = 0.1;
 
-/// The smallest standard deviation of the boundaries inside, as a fraction of their mean: the eye cannot see less.
+/// Minimum standard deviation of the boundaries inside, as a fraction of their mean; smaller differences are invisible.
 const LEAST_DEVIATION: f64 = 0.05;
 
-/// [`Seam::stands_out`](super::Seam::stands_out) along the rows of a tile, for means of `width` pixels.
+/// Computes [`Seam::stands_out`](super::Seam::stands_out) along the rows of a tile, for means of `width` pixels.
 pub(super) fn stands_out(tile: &Raster<f32>, width: usize, lattice: usize) -> Option<f64> {
     let n = tile.width() as usize;
     let around = AROUND.min((n / 2).saturating_sub(width));
@@ -28,10 +28,11 @@ pub(super) fn stands_out(tile: &Raster<f32>, width: usize, lattice: usize) -> Op
         .into_iter()
         .map(|[_, after]| after)
         .collect();
-    // The wrap, and at least two boundaries inside.
+    // The wrap and at least two boundaries inside are needed.
     if around == 0 || at.len() < 3 {
         return None;
     }
+    // Add up the masked steps of all lines.
     let mut shown = vec![0.0; at.len()];
     for line in tile.view().rows() {
         let steps = steps(line, width);
@@ -48,7 +49,7 @@ pub(super) fn stands_out(tile: &Raster<f32>, width: usize, lattice: usize) -> Op
     Some(above(wrap, inside))
 }
 
-/// How far a number is above the largest of others, in standard deviations of these; at least 0.
+/// Excess of a number over the largest of others, in standard deviations of these; at least 0.
 fn above(wrap: f64, inside: &[f64]) -> f64 {
     let mean = inside.iter().sum::<f64>() / inside.len() as f64;
     let squares = inside.iter().map(|shown| (shown - mean) * (shown - mean));
@@ -60,7 +61,7 @@ fn above(wrap: f64, inside: &[f64]) -> f64 {
     }
 }
 
-/// The steps between the means of `width` pixels before and after each pixel's left border, once around.
+/// Steps between the means of `width` pixels before and after the left border of each pixel, on a circular line.
 fn steps(line: &[f32], width: usize) -> Vec<f64> {
     let n = line.len();
     let values: Vec<f64> = once_more(line, width).map(f64::from).collect();
@@ -77,7 +78,7 @@ fn steps(line: &[f32], width: usize) -> Vec<f64> {
         .collect()
 }
 
-/// For each step the sum of those at some distances before and after it, once around.
+/// For each step, the sum of the steps at some distances before and after it, on a circular line.
 fn sums_beside(steps: &[f64], distances: Range<usize>) -> Vec<f64> {
     let (n, reach) = (steps.len(), distances.end);
     let before = &steps[n - reach..];
@@ -96,7 +97,7 @@ fn sums_beside(steps: &[f64], distances: Range<usize>) -> Vec<f64> {
     sums
 }
 
-/// Values once around, and then the first `more` again.
+/// Iterator over all values, and then the first `more` again.
 fn once_more<T: Copy>(values: &[T], more: usize) -> impl Iterator<Item = T> {
     values.iter().chain(&values[..more]).copied()
 }
@@ -111,7 +112,7 @@ mod tests {
         unit_f32(hash2(Seed(3), [x.into(), y.into()], 0) as u32)
     }
 
-    /// Even bricks of 32 × 32 pixels with bright joints, whose sides rise over 4 pixels.
+    /// Evenly spaced bricks of 32 × 32 pixels with bright joints, whose sides rise over 4 pixels.
     fn bricks(x: u32, y: u32) -> f32 {
         let [x, y] = [x, y].map(|at| (at % 32).min(32 - at % 32));
         0.2 + 0.15 * (4.0 - x.min(y) as f32).max(0.0)
@@ -148,7 +149,7 @@ mod tests {
 
     #[test]
     fn a_step_on_even_ground_stands_out_among_stronger_steps() {
-        // The wrap is in the middle of bricks, which grow lighter. Its step is smaller than those of the joints.
+        // The wrap is in the middle of bricks, which become lighter. Its step is smaller than the steps of the joints.
         let lit = |x: u32, y| bricks(x + 16, y) + 0.001 * x as f32;
         let lit = Raster::from_fn([96, 128], lit).unwrap();
         let shown = stands_out(&lit, 1, 1).unwrap();

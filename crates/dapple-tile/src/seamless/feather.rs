@@ -1,13 +1,13 @@
-//! Crossfades: the usual baselines.
+//! Crossfades, common baselines.
 //!
-//! [`Feather::HalfShift`] is the method of GIMP's filter "Tile Seamless" and similar tools: the image is mixed with
-//! itself rolled by half of its size, whose borders are continuous where its middle is not, and each is visible where
-//! it is continuous. Here it is done along one axis after the other, and not once along the diagonal, so that it works
-//! for a single axis. [`Feather::Margin`] mixes the two ends of the image over each other, as many small tools do, and
-//! loses the margin.
+//! [`Feather::HalfShift`] is the method of GIMP's filter "Tile Seamless" and similar tools. The image is blended with
+//! itself rolled by half of its size. The rolled image is continuous at the borders, the original in the middle, and
+//! each is visible where it is continuous. Here this is done along one axis after the other instead of once along the
+//! diagonal, so it works for a single axis. [`Feather::Margin`] blends the two ends of the image, as many small tools
+//! do, and loses the margin.
 //!
-//! Weights rise linearly, as in those tools, and the half shift mixes plainly, which costs contrast: these are baselines.
-//! Widths are in pixels.
+//! As in those tools, weights rise linearly, and the half shift uses a plain average, which costs contrast. Widths are
+//! in pixels.
 //!
 //! Reference: our own, after these tools.
 
@@ -24,24 +24,24 @@ use dapple_raster::Raster;
     serde(rename_all = "snake_case", deny_unknown_fields)
 )]
 pub enum Feather {
-    /// A crossfade with the image rolled by half of its size, all the way to the middle; the size stays. A side has at
-    /// least 4 pixels.
+    /// A crossfade with the image rolled by half of its size, up to the middle; the size does not change. A side must
+    /// have at least 4 pixels.
     #[default]
     HalfShift,
-    /// A crossfade of the two ends over a margin, in pixels, by which the tile is smaller.
+    /// A crossfade of the two ends over a margin; the tile is smaller by the margin.
     Margin {
-        /// The width of the crossfade, in pixels, from 1 to half of the side.
+        /// Width of the crossfade, in pixels, from 1 to half of the side.
         margin: u32,
-        /// The weights of the mix. By default the variance is kept.
+        /// Weights of the blend; variance-preserving by default.
         #[cfg_attr(feature = "serde", serde(default))]
         crossfade: Crossfade,
     },
 }
 
-/// The shortest side that has two pixels on both sides of its middle.
+/// Shortest side with two pixels on either side of its middle.
 const LEAST_SIDE: u32 = 4;
 
-/// The tiles of all planes.
+/// Makes the tiles of all planes.
 pub(crate) fn tile(
     planes: &[Raster<f32>],
     feather: &Feather,
@@ -63,7 +63,7 @@ pub(crate) fn tile(
     }
 }
 
-/// Mixes every row with itself, rolled by half of its length.
+/// Blends every row with itself rolled by half of its length.
 fn half_shift(plane: &Raster<f32>) -> Result<Raster<f32>, TileError> {
     let length = plane.width();
     if length < LEAST_SIDE {
@@ -85,7 +85,7 @@ fn half_shift(plane: &Raster<f32>) -> Result<Raster<f32>, TileError> {
     })?)
 }
 
-/// The weight of the image itself: 0 in the first and last pixel, 1 in both pixels where the rolled image has its ends.
+/// Weight of the image itself: 0 at the first and last pixel, 1 at both pixels where the rolled image has its ends.
 fn tent(column: u32, length: u32) -> f32 {
     let left = length - length / 2;
     if column < left {

@@ -1,14 +1,14 @@
-//! The image beside its mirror image, as a tile.
+//! The image next to its mirror image, as a tile.
 //!
-//! No pixel is lost, and the seam is exact: along each axis that repeats, the last pixel meets itself, and the first
-//! too. The price is a tile twice as long and a kaleidoscope: a baseline to compare with.
+//! No pixel is lost, and the seam is exact: along each axis that repeats, the last pixel is adjacent to its own copy,
+//! and so is the first. The price is a tile twice as long with visible symmetry. It is a baseline for comparison.
 
 use crate::TileError;
 use dapple_raster::{Raster, Wrap};
 
-/// The tiles of all planes, twice as large along each axis that repeats.
+/// Makes the tiles of all planes, twice as large along each axis that repeats.
 ///
-/// A reflected half along x is multiplied by the plane's first factor, along y by its second one.
+/// Halves reflected along x are multiplied by the plane's first factor, halves reflected along y by its second.
 pub(crate) fn tile(
     planes: &[Raster<f32>],
     reflections: &[[f32; 2]],

@@ -3,15 +3,15 @@
 //! Source: Lionel Moisan, "Periodic plus smooth image decomposition", Journal of Mathematical Imaging and Vision 39,
 //! 2011, <https://doi.org/10.1007/s10851-010-0227-1>.
 //!
-//! An image is `u = p + s`. The smooth part solves `Δs = v` on the torus, where `Δ` is the sum of the four neighbors
-//! minus four times the pixel, and `v` is zero except at the borders, where it is the jump to the pixel across the
-//! wrap. The mean of `s` is zero, so that `p = u − s` keeps the mean; it also keeps all detail, since `s` has none. `p`
-//! is the image whose differences are nearest, by least squares, to those of `u` inside and to zero across the wrap.
+//! An image is `u = p + s`. The smooth part solves `Δs = v` on the torus. `Δ` is the sum of the four neighbors minus
+//! four times the pixel. `v` is zero except at the borders, where it is the jump to the pixel across the wrap. The mean
+//! of `s` is zero, so `p = u − s` keeps the mean. It also keeps all detail, since `s` has none. `p` is the image whose
+//! differences are nearest, by least squares, to those of `u` inside and to zero across the wrap.
 //!
-//! Departures. The jumps across x and those across y are solved one after the other, which their sum allows: with
-//! frequencies along the border only, the solution across it is a difference of two powers, `ρ^(n−1−x) − ρ^x`, known
-//! without a second transform. Along an axis that does not repeat there are no jumps, and the image is continued by its
-//! mirror image, as the least squares want it.
+//! Differences from the paper: the jumps across x and the jumps across y are solved separately, and the solutions are
+//! added. With frequencies along the border only, the solution across it is a difference of two powers,
+//! `ρ^(n−1−x) − ρ^x`, which needs no second transform. Along an axis that does not repeat there are no jumps, and the
+//! image is extended by its mirror image, which is the least-squares solution.
 //!
 //! All arithmetic is `f64` up to the pixels of the result.
 
@@ -20,11 +20,11 @@ use crate::fourier::{BAND, Element, Fourier, LANES, par_flat_map, times};
 use core::f64::consts::PI;
 use dapple_raster::{Raster, parallel};
 
-/// Powers below this are replaced by zero: it is far below the rounding of all sums, and far above subnormal numbers,
-/// which are slow.
+/// Powers below this limit are replaced by zero. It is far below the rounding of all sums, and far above subnormal
+/// numbers, which are slow.
 const NEGLIGIBLE: f64 = 1e-40;
 
-/// The periodic parts of all planes.
+/// Computes the periodic parts of all planes.
 pub(crate) fn tile(planes: &[Raster<f32>], axes: [bool; 2]) -> Result<Vec<Raster<f32>>, TileError> {
     let tile = |plane| {
         let jump = |axis: usize| axes[axis].then(|| jumps(plane, axis));
@@ -33,14 +33,14 @@ pub(crate) fn tile(planes: &[Raster<f32>], axes: [bool; 2]) -> Result<Vec<Raster
     planes.iter().map(tile).collect()
 }
 
-/// For each pixel of the first border across an axis, the pixel of the last border minus it.
+/// Jumps across the wrap of an axis: for each pixel of the first border, the pixel of the last border minus it.
 pub(crate) fn jumps(plane: &Raster<f32>, axis: usize) -> Vec<f64> {
     let last = border(plane, axis, plane.size()[axis] - 1);
     let differences = last.zip(border(plane, axis, 0));
     differences.map(|(last, first)| last - first).collect()
 }
 
-/// The column (axis 0) or the row (axis 1) at `index`.
+/// The pixels of the column (axis 0) or row (axis 1) at `index`.
 pub(crate) fn border(
     plane: &Raster<f32>,
     axis: usize,
@@ -53,9 +53,9 @@ pub(crate) fn border(
     pixels.take(count).map(|&value| f64::from(value))
 }
 
-/// A plane minus its smooth part.
+/// Subtracts the smooth part from a plane.
 ///
-/// `jumps` holds, for each axis that repeats, the jump at each pixel of the first border across it.
+/// `jumps` has, for each axis that repeats, the jump at each pixel of the first border.
 pub(crate) fn without_jumps(
     plane: &Raster<f32>,
     jumps: &[Option<Vec<f64>>; 2],
@@ -74,8 +74,9 @@ pub(crate) fn without_jumps(
 /// the last ones.
 pub(crate) struct Smooth {
     size: [usize; 2],
-    /// The part from the jumps across x, in bands whose lines are columns.
+    /// Part from the jumps across x, in bands of columns.
     across_x: Vec<Vec<Element>>,
+    /// Part from the jumps across y.
     across_y: Option<Layer>,
 }
 
@@ -94,7 +95,7 @@ impl Smooth {
         }
     }
 
-    /// Up to [`BAND`] rows from row `band * BAND` on.
+    /// Computes up to [`BAND`] rows, starting at row `band * BAND`.
     pub(crate) fn rows(&self, band: usize) -> Vec<f64> {
         let [width, height] = self.size;
         let rows = band * BAND..height.min((band + 1) * BAND);
@@ -109,7 +110,7 @@ impl Smooth {
     }
 }
 
-/// Adds a band whose lines are rows.
+/// Adds a band of rows.
 fn add_rows(rows: &mut [f64], elements: &[Element]) {
     for (line, row) in rows.chunks_exact_mut(elements.len()).enumerate() {
         for (value, element) in row.iter_mut().zip(elements) {
@@ -118,7 +119,7 @@ fn add_rows(rows: &mut [f64], elements: &[Element]) {
     }
 }
 
-/// Adds a band whose lines are columns, from column `first` on.
+/// Adds a band of columns, starting at column `first`.
 fn add_columns(rows: &mut [f64], width: usize, first: usize, elements: &[Element]) {
     for (row, element) in rows.chunks_exact_mut(width).zip(elements) {
         for (value, line) in row[first..].iter_mut().zip(element) {
@@ -129,27 +130,27 @@ fn add_columns(rows: &mut [f64], width: usize, first: usize, elements: &[Element
 
 /// The smooth image of the jumps across one axis.
 struct Layer {
-    /// The number of pixels across the borders.
+    /// Number of pixels across the borders.
     across: usize,
-    /// The number of pixels along a border.
+    /// Number of pixels along a border.
     along: usize,
     fourier: Fourier,
-    /// The mean of the jumps.
+    /// Mean of the jumps.
     mean: f64,
-    /// The frequencies along the border, from 1 to the middle one.
+    /// Frequencies along the border, from 1 to the middle one.
     modes: Vec<Mode>,
 }
 
-/// A frequency along the border.
+/// One frequency along the border.
 struct Mode {
-    /// The factor from one pixel to the next, away from the border: ρ.
+    /// Decay ρ from one pixel to the next, away from the border.
     decay: f64,
-    /// The complex number of which the profile of the mode is a multiple.
+    /// Complex amplitude of the mode.
     amplitude: [f64; 2],
 }
 
 impl Layer {
-    /// The layer of jumps along a border that repeats, or is mirrored at its ends.
+    /// Makes the layer of the jumps along a border that repeats, or that is mirrored at its ends.
     fn new(jumps: &[f64], repeats: bool, across: usize) -> Self {
         let mirrored = jumps.iter().rev().filter(|_| !repeats);
         let line = jumps.iter().chain(mirrored);
@@ -170,7 +171,7 @@ impl Layer {
         }
     }
 
-    /// The [`BAND`] lines along the border from line `band * BAND` on; those past the last are unused.
+    /// Computes [`BAND`] lines along the border, starting at line `band * BAND`; lines past the last are unused.
     fn band(&self, band: usize) -> Vec<Element> {
         let n = self.fourier.length();
         let first = band * BAND;
@@ -179,7 +180,7 @@ impl Layer {
         for (k, mode) in (1..).zip(&self.modes) {
             let profile = mode.profile(first, self.across);
             if profile == [0.0; BAND] {
-                // Higher frequencies decay faster still.
+                // Higher frequencies decay even faster.
                 break;
             }
             let [re, im] = mode.amplitude;
@@ -193,13 +194,14 @@ impl Layer {
 }
 
 impl Mode {
-    /// Frequency `k` of `n` along the border, with the spectrum of the jumps there.
+    /// Frequency `k` of `n` along the border, with the spectrum of the jumps at this frequency.
     ///
-    /// `ρ + 1/ρ = 4 − 2 cos φ` makes every `ρ^x` a solution away from the borders; the factor makes the difference of
-    /// `ρ^(across − 1 − x)` and `ρ^x` right at the borders.
+    /// Since `ρ + 1/ρ = 4 − 2 cos φ`, every `ρ^x` is a solution away from the borders. The scale makes the difference
+    /// of
+    /// `ρ^(across − 1 − x)` and `ρ^x` correct at the borders.
     fn new(k: usize, n: usize, jump: [f64; 2], across: usize) -> Self {
         let sine = libm::sin(PI * (k as f64 / n as f64));
-        // 1 − cos φ, without the cancellation of nearly equal numbers.
+        // 1 − cos φ, computed without cancellation.
         let rise = 2.0 * sine * sine;
         let decay = 1.0 / (1.0 + rise + (rise * (2.0 + rise)).sqrt());
         let scale = decay / ((1.0 + decay) * (1.0 - power(decay, across)));
@@ -209,7 +211,7 @@ impl Mode {
         }
     }
 
-    /// The profile `ρ^(across − 1 − x) − ρ^x` for [`BAND`] positions from `first` on.
+    /// The profile `ρ^(across − 1 − x) − ρ^x` for [`BAND`] positions, starting at `first`.
     fn profile(&self, first: usize, across: usize) -> Element {
         let mut profile = [0.0; BAND];
         let mut near = power(self.decay, first);
@@ -227,13 +229,13 @@ impl Mode {
     }
 }
 
-/// The solution for a jump of 1 all along the border: linear from border to border.
+/// The solution for a constant jump of 1 along the border: linear from border to border.
 fn ramp(first: usize, across: usize) -> Element {
     let middle = 0.5 * (across - 1) as f64;
     core::array::from_fn(|at| ((first + at) as f64 - middle) / across as f64)
 }
 
-/// An element with a real number in the first line, and zeros in the others.
+/// An element with a real number in the first line and zeros in the others.
 fn only_first(value: f64) -> Element {
     let mut element = [0.0; BAND];
     element[0] = value;

@@ -1,16 +1,16 @@
-//! The image whose gradients are nearest to those of the source, once around the torus.
+//! The periodic image with the nearest gradients to those of the source.
 //!
 //! Source: the guided interpolation of Patrick Pérez, Michel Gangnet and Andrew Blake, "Poisson image editing", ACM
-//! Transactions on Graphics 22 (SIGGRAPH 2003), <https://doi.org/10.1145/882262.882269>, here without a boundary: a
-//! torus has none.
+//! Transactions on Graphics 22 (SIGGRAPH 2003), <https://doi.org/10.1145/882262.882269>, here without a boundary, since
+//! a torus has none.
 //!
-//! The target is a field of differences between neighbors: inside they are those of the source, across the wrap
-//! [`WrapGradient`] chooses them. The result is nearest to the field by least squares, and keeps the mean. Along an
-//! axis that does not repeat, the ends are free.
+//! The target is a field of differences between neighbors: inside, the differences of the source; across the wrap, the
+//! differences that [`WrapGradient`] selects. The result is nearest to the field by least squares, and keeps the mean.
+//! Along an axis that does not repeat, the ends are unconstrained.
 //!
-//! Inside, the source meets the field already; what remains is the error across the wrap. So the result is the source
-//! minus the smooth part of [`periodic`](super::periodic), with that error in place of the jump. With
-//! [`WrapGradient::Zero`] error and jump are the same, and so are both methods, bit for bit.
+//! Inside, the source satisfies the field exactly, so the only error is across the wrap. The result is the source minus
+//! the smooth part of [`periodic`](super::periodic), with that error instead of the jump. With [`WrapGradient::Zero`],
+//! the error equals the jump, and both methods give the same bits.
 
 use super::periodic::{border, jumps, without_jumps};
 use crate::TileError;
@@ -28,7 +28,7 @@ dapple_raster::named! {
     }
 }
 
-/// The tiles of all planes.
+/// Makes the tiles of all planes.
 pub(crate) fn tile(
     planes: &[Raster<f32>],
     wrap: WrapGradient,
@@ -41,12 +41,12 @@ pub(crate) fn tile(
     planes.iter().map(tile).collect()
 }
 
-/// The target gradient across the wrap minus the actual one, for each pixel of a border.
+/// Target gradient across the wrap minus the actual one, for each pixel of a border.
 fn wrap_errors(plane: &Raster<f32>, wrap: WrapGradient, axis: usize) -> Vec<f64> {
     let mut errors = jumps(plane, axis);
     if wrap == WrapGradient::Extrapolate {
         let last = plane.size()[axis] - 1;
-        // With one pixel there is no second one, and the gradient is zero.
+        // An axis of one pixel has no second pixel; its gradient is then zero.
         let second = last.min(1);
         for (index, sign) in [(0, -0.5), (second, 0.5), (last - second, -0.5), (last, 0.5)] {
             for (error, value) in errors.iter_mut().zip(border(plane, axis, index)) {

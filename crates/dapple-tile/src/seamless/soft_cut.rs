@@ -1,16 +1,16 @@
-//! A soft cut along the line of least difference, where a margin overlaps the opposite side.
+//! A soft cut along the path of least difference, in a margin that overlaps the opposite side.
 //!
-//! The last columns are laid over the first ones, and the picture changes from one to the other where the two are most
-//! alike: the cut of Alexei A. Efros and William T. Freeman, "Image Quilting for Texture Synthesis and Transfer",
-//! SIGGRAPH 2001, <https://doi.org/10.1145/383259.383296>. Rows follow in the same way, on the result, which repeats
-//! along x already.
+//! The last columns are laid over the first ones, and the tile changes from one to the other where they are most
+//! similar: the cut of Alexei A. Efros and William T. Freeman, "Image Quilting for Texture Synthesis and Transfer",
+//! SIGGRAPH 2001, <https://doi.org/10.1145/383259.383296>. Then rows are processed in the same way, on the result,
+//! which already repeats along x.
 //!
-//! * The difference is the sum over all planes of squares, each plane divided by its own variance, so that a height in
-//!   meters counts as much as a color. All planes are cut along the same line.
-//! * The cut is not hard. Across it the weights rise along a smooth ramp that never leaves the margin, and they keep the
-//!   variance, with regard to how alike the two sides are there: see [`Crossfade`].
-//! * The cut along y runs across columns that repeat, so it has to close: it ends where it began. The one along x need
-//!   not, for where its two ends meet there is the other cut.
+//! * The difference is the sum of squares over all planes. Each plane is divided by its own variance, so a height in
+//!   meters counts as much as a color. All planes are cut along the same path.
+//! * The cut is soft. Across it, weights rise along a smooth ramp within the margin. They preserve the variance,
+//!   depending on the correlation of the two sides there; see [`Crossfade`].
+//! * The cut for y runs across columns that repeat, so it has to be closed: it ends where it began. The cut for x need
+//!   not be, since the cut for y passes where its two ends meet.
 //!
 //! Widths are in pixels.
 
@@ -29,12 +29,12 @@ use dapple_raster::Raster;
     serde(default, deny_unknown_fields)
 )]
 pub struct SoftCut {
-    /// The width of the overlap of the two sides, in pixels, from 1 to half of the side. By default 32.
+    /// Width of the overlap of the two sides, in pixels, from 1 to half of the side. 32 by default.
     pub margin: u32,
-    /// Half of the width over which the cut is softened, in pixels, from 0 (a hard cut) to half of the margin. By default
-    /// 4.
+    /// Half of the width of the ramp across the cut, in pixels, from 0 (a hard cut) to half of the margin. 4 by
+    /// default.
     pub half_width: f32,
-    /// The mix of the sides along the cut. By default the variance is kept.
+    /// Weights of the blend along the cut; variance-preserving by default.
     pub crossfade: Crossfade,
 }
 
@@ -48,7 +48,7 @@ impl Default for SoftCut {
     }
 }
 
-/// The tiles of all planes, with the same cut.
+/// Makes the tiles of all planes, with the same cut.
 pub(crate) fn tile(
     planes: &[Raster<f32>],
     cut: &SoftCut,
@@ -72,7 +72,7 @@ pub(crate) fn tile(
     })
 }
 
-/// The difference of the two ends of the planes, in the columns that the cut may visit.
+/// The difference of the two ends of the planes, in the columns that the cut may pass through.
 fn differences(planes: &[Raster<f32>], cut: &SoftCut) -> Result<Raster<f64>, TileError> {
     let height = planes.first().map_or(1, Raster::height);
     let inset = inset(cut.half_width.into());
@@ -80,7 +80,7 @@ fn differences(planes: &[Raster<f32>], cut: &SoftCut) -> Result<Raster<f64>, Til
     let mut sum = Raster::filled([width, height], 0.0)?;
     for plane in planes {
         let deviation = plane.statistics().deviation;
-        // A plane of one value has no differences.
+        // A plane with a single value has no differences.
         let scale = if deviation > 0.0 {
             1.0 / deviation
         } else {
@@ -92,7 +92,7 @@ fn differences(planes: &[Raster<f32>], cut: &SoftCut) -> Result<Raster<f64>, Til
     Ok(sum)
 }
 
-/// The weights of the first columns: 0 on the left of the cut, 1 on the right, ½ on it.
+/// Weights of the first columns: 0 to the left of the cut, 1 to the right, ½ on it.
 fn weights(path: &[u32], cut: &SoftCut) -> Result<Raster<f64>, TileError> {
     let half_width = f64::from(cut.half_width);
     let inset = inset(half_width);

@@ -1,17 +1,17 @@
-//! The paper's blend tile: an image halved and doubled again by filters that wrap around.
+//! The paper's blend tile: an image halved and doubled by filters that wrap around.
 //!
-//! Source: Du Jin-Lian, Wang Song and Meng Xianhai, "Wavelet and Blend maps for texture synthesis", section 3: an image
-//! `R` becomes a smaller `R_d` by equation 12, and `R_d` the tile `R_n` by equation 13. Only `R_d` needs to be stored:
-//! with one level it has a quarter of the pixels, and `R_n` follows from it exactly. The filters are those of Cook and
-//! DeRose, "Wavelet Noise", ACM Transactions on Graphics 24(3) (SIGGRAPH 2005),
+//! Source: Du Jin-Lian, Wang Song and Meng Xianhai, "Wavelet and Blend maps for texture synthesis", section 3. An image
+//! `R` becomes a smaller `R_d` by equation 12, and `R_d` becomes the tile `R_n` by equation 13. Only `R_d` needs to be
+//! stored: with one level it has a quarter of the pixels, and determines `R_n` exactly. The filters are those of Cook
+//! and DeRose, "Wavelet Noise", ACM Transactions on Graphics 24(3) (SIGGRAPH 2005),
 //! <https://doi.org/10.1145/1073204.1073264>.
 //!
-//! Decided here, where the paper is silent: the filters repeat along the axes on which the tile does, which alone makes
-//! it periodic, and are mirrored along the others; the phase and the number of levels are options; pixels are
-//! coefficients of the spline, or optionally its values.
+//! Choices that the paper leaves open: the filters are periodic along the axes on which the tile repeats, which makes
+//! the tile periodic, and mirrored along the others. The phase and the number of levels are options. Pixels are
+//! coefficients of the spline or, optionally, its values.
 //!
-//! What to expect: one level leaves 34 to 66 % of a step at the border and takes most of the top octave away. To remove
-//! the seam first, use [`Method::PeriodicThenProject`](crate::Method::PeriodicThenProject).
+//! Limitations: one level leaves 34 to 66 % of a step at the border, and removes most of the top octave. To remove the
+//! seam first, use [`Method::PeriodicThenProject`](crate::Method::PeriodicThenProject).
 
 use crate::TileError;
 use crate::map::check_finite;
@@ -19,7 +19,7 @@ use crate::sines::{self, Axis};
 use dapple_raster::Raster;
 use dapple_wavelet::{Border, Degree, Fit, Phase, SplineFilter};
 
-/// The functions from which a tile is built.
+/// Basis functions of a tile.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(
     feature = "serde",
@@ -29,8 +29,8 @@ use dapple_wavelet::{Border, Degree, Fit, Phase, SplineFilter};
 pub enum Basis {
     /// B-splines.
     Spline(Degree),
-    /// Sines and cosines: the periodic Fourier projector, the paper's other refinable functions. Their phase has a
-    /// meaning only along axes that repeat, where it is that of splines of even degree.
+    /// Sines and cosines: the periodic Fourier projector, the paper's other refinable functions. Their phase matters
+    /// only along axes that repeat, where it is that of splines of even degree.
     Sines,
 }
 
@@ -54,13 +54,13 @@ dapple_raster::named! {
     serde(default, deny_unknown_fields)
 )]
 pub struct SplineProject {
-    /// The number of times the image is halved. By default 1.
+    /// Number of times that the image is halved; 1 by default.
     pub levels: u32,
-    /// The position of the coarse coefficients. By default centered.
+    /// Position of the coarse coefficients; centered by default.
     pub phase: Phase,
-    /// The functions from which the tile is built. By default quadratic B-splines.
+    /// Basis functions; quadratic B-splines by default.
     pub basis: Basis,
-    /// The relation of pixels to the spline. By default they are its coefficients.
+    /// Relation of pixels to the spline; coefficients by default.
     pub pixels: Pixels,
 }
 
@@ -76,16 +76,19 @@ impl Default for SplineProject {
 }
 
 impl SplineProject {
-    /// The small tile, from which [`refine`](Self::refine) makes the full one: the paper's `R_d`.
+    /// Computes the small tile from which [`refine`](Self::refine) makes the full one: the paper's `R_d`.
     ///
-    /// It repeats along `axes`, x first. Along an axis that repeats it has `1/2^levels` as many pixels, along another
-    /// the length that [`Border::Mirror`] defines. Its pixels relate to the coarse function as those of the image to
-    /// the fine one.
+    /// It repeats along `axes`, x first. Along an axis that repeats, it has `1/2^levels` as many pixels; along another
+    /// axis, its length is defined by [`Border::Mirror`]. Its pixels relate to the coarse function as the pixels of the
+    /// image relate to the fine one.
     ///
     /// # Errors
     ///
-    /// Pixels that are not finite; a side that repeats and is no multiple of `2^levels`, a side that is halved down to one
-    /// pixel before the last level (or, mirrored, at the last: samples of a spline need two), or more than 32 levels.
+    /// * pixels that are not finite
+    /// * a side that repeats and is not a multiple of `2^levels`
+    /// * a side that has one pixel before the last level (or, mirrored, at the last level: samples of a spline need
+    /// two)
+    /// * more than 32 levels
     ///
     /// # Examples
     ///
@@ -119,14 +122,14 @@ impl SplineProject {
         }
     }
 
-    /// The tile of `size` pixels for a small tile: the paper's `R_n`.
+    /// Computes the tile of `size` pixels from a small tile: the paper's `R_n`.
     ///
-    /// With `coarse` from [`coarse`](Self::coarse) and the size of the image, this is the tile of the image that
-    /// [`Seamless`](crate::Seamless) makes, to the last bit.
+    /// With the result of [`coarse`](Self::coarse) and the size of the image, this is, bit for bit, the tile that
+    /// [`Seamless`](crate::Seamless) makes from the image.
     ///
     /// # Errors
     ///
-    /// The errors of [`coarse`](Self::coarse); and if the small tile has another size than `size` has after halving.
+    /// The errors of [`coarse`](Self::coarse); also if the size of the small tile is not that of `size` after halving.
     pub fn refine(
         &self,
         coarse: &Raster<f32>,
@@ -135,7 +138,7 @@ impl SplineProject {
     ) -> Result<Raster<f32>, TileError> {
         check_finite(coarse)?;
         let sizes = self.sizes(size, axes)?;
-        // This checks the size before memory is allocated.
+        // Check the sizes before memory is allocated.
         Raster::filled(size, ())?;
         Raster::filled(sizes[self.levels as usize], ())?.check_same_size(coarse.size())?;
         match self.basis {
@@ -152,11 +155,11 @@ impl SplineProject {
         }
     }
 
-    /// The sizes of an image as it is halved, from its own to the last.
+    /// The sizes of an image after each halving, from its own to the last.
     fn sizes(&self, size: [u32; 2], axes: [bool; 2]) -> Result<Vec<[u32; 2]>, TileError> {
         let filter = match self.basis {
             Basis::Spline(degree) => self.filter(degree),
-            // Sines are sampled where the pixels of a centered spline of even degree are.
+            // Sines are sampled at the pixels of a centered spline of even degree.
             Basis::Sines => SplineFilter::default(),
         };
         Ok(filter.sizes(size, self.levels, borders(axes))?)
@@ -183,7 +186,7 @@ impl SplineProject {
         })
     }
 
-    /// The pixels for a spline with these coefficients.
+    /// The pixels for a spline with the given coefficients.
     fn pixels(
         &self,
         filter: &SplineFilter,
@@ -207,7 +210,7 @@ impl SplineProject {
     }
 }
 
-/// The tiles of all planes.
+/// Makes the tiles of all planes.
 pub(crate) fn tile(
     planes: &[Raster<f32>],
     project: &SplineProject,
@@ -220,7 +223,7 @@ pub(crate) fn tile(
     planes.iter().map(tile).collect()
 }
 
-/// The borders of the filters: periodic along the axes on which the tile repeats, else mirrored.
+/// Borders of the filters: periodic along the axes on which the tile repeats, mirrored along the others.
 fn borders(axes: [bool; 2]) -> [Border; 2] {
     axes.map(|repeats| match repeats {
         true => Border::Periodic,
