@@ -1,20 +1,20 @@
 //! Processing of planes along one axis after the other.
 //!
-//! A function for rows serves columns too: the planes are transposed before and after.
+//! A function for rows is applied to columns by transposing the planes before and after.
 
 use crate::TileError;
 use dapple_raster::Raster;
 
-/// The axes, in the order in which they are processed.
+/// An axis; x is processed before y.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Axis {
     X,
     Y,
 }
 
-/// Changes the rows of all planes if x repeats, then the columns of the result if y repeats.
+/// Processes the rows of all planes if x repeats, then the columns of the result if y repeats.
 ///
-/// `along_rows` gets planes whose rows run along the axis in its argument.
+/// `along_rows` gets planes whose rows run along the given axis.
 pub(crate) fn each_axis(
     planes: &[Raster<f32>],
     axes: [bool; 2],
@@ -35,10 +35,10 @@ fn transpose_all(planes: &[Raster<f32>]) -> Result<Vec<Raster<f32>>, TileError> 
     planes.iter().map(transpose).collect()
 }
 
-/// The number of columns and rows that are transposed at a time: source and target of a block stay in the cache.
+/// Number of columns and rows that are transposed at a time, so that source and target of a block stay in the cache.
 const BLOCK: usize = 32;
 
-/// The raster with rows and columns exchanged.
+/// Exchanges the rows and columns of a raster.
 pub(crate) fn transpose(raster: &Raster<f32>) -> Result<Raster<f32>, TileError> {
     let [width, height] = raster.size().map(|side| side as usize);
     let from = raster.pixels();
@@ -74,7 +74,7 @@ mod tests {
     #[test]
     fn each_axis_works_on_x_first_and_only_where_asked() {
         let raster = Raster::from_fn([3, 2], |x, y| (x + 10 * y) as f32).unwrap();
-        // Adds the position along the axis once for x, a hundred times for y.
+        // Adds the position along the axis, times 1 for x and times 100 for y.
         let sum = |planes: &[Raster<f32>], axis: Axis| {
             let factor = if axis == Axis::X { 1.0 } else { 100.0 };
             let size = planes[0].size();

@@ -1,20 +1,20 @@
 //! Blending of textures: all maps of several materials, by weights.
 //!
-//! Blending has two parts, which can be combined freely. The [`Weighting`] determines the share of each layer in a
-//! pixel: its weight as it is, more for the higher layer, or the share from a blend tile, which is the purpose of the
-//! tiles of Du, Wang and Meng ("Wavelet and Blend maps for texture synthesis", section V). The [`Mixing`] determines
-//! how the values `x` of the layers are mixed by these shares `w`:
+//! Blending has two independent parts. The [`Weighting`] determines the share of each layer in a pixel: its weight as
+//! it is, more for the higher layer, or the share from a blend tile, which is the purpose of the tiles of Du, Wang and
+//! Meng ("Wavelet and Blend maps for texture synthesis", section V). The [`Mixing`] determines how the values `x` of
+//! the layers are combined by these shares `w`:
 //!
 //! * linear: `Σ w x`, the splatting of Charles Bloom (2000);
-//! * keeping the variance: `Σ w μ + Σ w (x - μ) / sqrt(Σ w²)`, with `μ` the mean of a layer's map over the raster, after
+//! * variance-preserving: `Σ w μ + Σ w (x - μ) / sqrt(Σ w²)`, with `μ` the mean of a layer's map over the raster, after
 //!   Eric Heitz and Fabrice Neyret, "High-Performance By-Example Noise using a Histogram-Preserving Blending Operator",
 //!   Proceedings of the ACM on Computer Graphics and Interactive Techniques 1(2), 2018,
-//!   <https://doi.org/10.1145/3233304>. Theirs works on textures whose histograms were made Gaussian first; here the
-//!   values are taken as they are;
+//!   <https://doi.org/10.1145/3233304>. Their operator is for textures with histograms made Gaussian; here values are
+//!   used as they are;
 //! * in bands: see [`Pyramid`].
 //!
-//! The tests measure how much of the fine contrast of two unlike noises of equal contrast is left in the middle of a
-//! ramp 128 pixels wide:
+//! The fine contrast that is left in the middle of a ramp of 128 pixels, for two different noises of equal contrast, as
+//! measured by the tests:
 //!
 //! | weighting | linear | keeping the variance | pyramid |
 //! |---|---|---|---|
@@ -24,21 +24,21 @@
 //! | mask, gain 4 | 0.97 | | 0.99 |
 //! | mask, hard | 1.05 | | |
 //!
-//! All maps of a material have the same shares. Normals are mixed as slopes, and the results are unit vectors. For
+//! All maps of a material have the same shares. Normals are blended as slopes, and the results are unit vectors. For
 //! normals that match the blended height, compute them from it by [`normal_map`](dapple_color::normal_map).
 
 use crate::map::check_planes;
 use crate::{Map, Pyramid, TileError, TileErrorKind, Weighting};
 use dapple_raster::Raster;
 
-/// A material, and the weight of its layer at each pixel.
+/// A material with the weight of its layer at each pixel.
 #[derive(Clone, Copy, Debug)]
 pub struct Layer<'a> {
-    /// Its maps. All layers have the same kinds in the same order, and all are of one size.
+    /// Maps of the material. All layers have the same kinds in the same order, and all maps have one size.
     pub maps: &'a [Map],
-    /// The weight of the layer at each pixel, at least 0, relative to the weights of the other layers.
+    /// Weight of the layer at each pixel, at least 0, relative to the weights of the other layers.
     pub weight: &'a Raster<f32>,
-    /// Its height for [`Weighting::Height`], by custom from 0 to 1. Only differences between layers count.
+    /// Height for [`Weighting::Height`], usually from 0 to 1. Only differences between layers matter.
     pub height: Option<&'a Raster<f32>>,
 }
 
@@ -49,7 +49,7 @@ pub struct Layer<'a> {
 /// ```
 /// use dapple_tile::{Blend, Mixing, Weighting};
 ///
-/// // Plain splatting, and the same with hard edges along the features of a blend tile.
+/// // Plain splatting, and splatting with hard edges along the features of a blend tile.
 /// let splatting = Blend::new(Weighting::Given, Mixing::Linear);
 /// let cut = Blend { weighting: Weighting::Mask { gain: 1e9 }, ..splatting };
 /// assert_eq!(splatting, Blend::default());
@@ -62,13 +62,13 @@ pub struct Layer<'a> {
     serde(default, deny_unknown_fields)
 )]
 pub struct Blend {
-    /// The rule that turns weights into shares; [`Weighting::Given`] by default.
+    /// Rule that converts weights to shares; [`Weighting::Given`] by default.
     pub weighting: Weighting,
-    /// The rule by which layers are mixed with their shares; linear by default.
+    /// Rule that combines layers by their shares; linear by default.
     pub mixing: Mixing,
 }
 
-/// How layers are mixed by their shares.
+/// The rule that combines layers by their shares.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/mixing.md"))]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -78,17 +78,17 @@ pub struct Blend {
     serde(rename_all = "snake_case")
 )]
 pub enum Mixing {
-    /// The weighted mean: it stays in the range of the layers.
+    /// Weighted mean; it stays in the range of the layers.
     #[default]
     Linear,
-    /// The contrast is kept where layers are uncorrelated; values may leave the range of the layers.
+    /// Variance-preserving: keeps the contrast of uncorrelated layers. Values may exceed the range of the layers.
     KeepVariance,
-    /// The weighted mean in bands, with sharper transitions where details are finer.
+    /// Weighted mean in bands, with sharper transitions for finer detail.
     Pyramid(Pyramid),
 }
 
 impl Blend {
-    /// A blend with these shares and this mixing.
+    /// Creates a blend with the given weighting and mixing.
     #[must_use]
     pub fn new(weighting: Weighting, mixing: Mixing) -> Self {
         Self { weighting, mixing }
@@ -97,18 +97,21 @@ impl Blend {
 
 /// Blends the maps of layers.
 ///
-/// Where only one layer has a weight, the result is its maps: to the last bit with [`Mixing::Linear`], to a rounding
-/// with [`Mixing::KeepVariance`], and to a rounding per level with [`Mixing::Pyramid`] where no other layer has a
+/// Where only one layer has a weight, the result equals its maps: exactly with [`Mixing::Linear`], up to rounding with
+/// [`Mixing::KeepVariance`], and up to one rounding per level with [`Mixing::Pyramid`] where no other layer has a
 /// weight nearby. Normals are exact up to the rounding of their slopes.
 ///
 /// # Errors
 ///
-/// [`Count`](TileErrorKind::Count) without layers or maps, if the layers have not equally many maps, or if a height or a
-/// blend tile is missing; [`KindMismatch`](TileErrorKind::KindMismatch) if a map is not of the kind that it is of in
-/// the first layer; [`Raster`](TileErrorKind::Raster) if sizes differ; [`NotFinite`](TileErrorKind::NotFinite) for pixels that
-/// are NaN or infinite; [`Range`](TileErrorKind::Range) for a weight below 0, a place without any weight, and a depth,
-/// gain, sharpness or number of levels out of range; [`Wavelet`](TileErrorKind::Wavelet) if a size cannot be halved as
-/// often as a pyramid needs.
+/// * [`Count`](TileErrorKind::Count) without layers or maps, if the numbers of maps differ between layers, or if a
+/// height
+///   or a blend tile is missing
+/// * [`KindMismatch`](TileErrorKind::KindMismatch) if the kinds of maps differ between layers
+/// * [`Raster`](TileErrorKind::Raster) if sizes differ
+/// * [`NotFinite`](TileErrorKind::NotFinite) for pixels that are NaN or infinite
+/// * [`Range`](TileErrorKind::Range) for a weight below 0, a pixel without any weight, and a depth, gain, sharpness or
+///   number of levels out of its range
+/// * [`Wavelet`](TileErrorKind::Wavelet) if a size cannot be halved as often as a pyramid needs
 ///
 /// # Examples
 ///
@@ -128,12 +131,13 @@ pub fn blend(layers: &[Layer<'_>], how: &Blend) -> Result<Vec<Map>, TileError> {
     blend_layers(layers, None, how)
 }
 
-/// Blends the maps of layers along the features of a blend tile, which has their size. The tile is the mask for
-/// [`Weighting::Mask`], and the height of layers without one for [`Weighting::Height`]; other weightings ignore it.
+/// Blends the maps of layers along the features of a blend tile of the same size. The tile is the mask for
+/// [`Weighting::Mask`], and the height of layers without a height for [`Weighting::Height`]. Other weightings ignore
+/// it.
 ///
 /// # Errors
 ///
-/// The errors of [`blend`]; and [`Range`](TileErrorKind::Range) if a mask has a value that is not from 0 to 1.
+/// The errors of [`blend`]; and [`Range`](TileErrorKind::Range) if a mask has a value outside of 0 to 1.
 ///
 /// # Examples
 ///
@@ -172,7 +176,7 @@ fn blend_layers(
 ) -> Result<Vec<Map>, TileError> {
     check_layers(layers)?;
     let shares = how.weighting.shares(layers, tile)?;
-    // The shares for each band, finest first.
+    // Shares for each band, finest first.
     let bands = match &how.mixing {
         Mixing::Pyramid(pyramid) => pyramid.shares(shares)?,
         Mixing::Linear | Mixing::KeepVariance => vec![shares],
@@ -224,7 +228,7 @@ fn mix_map(
         .collect();
     let mut blended = Vec::new();
     loop {
-        // The next plane of each layer; all have equally many planes.
+        // Take the next plane of each layer; all layers have the same number of planes.
         let planes: Vec<_> = of_layers.iter_mut().filter_map(Iterator::next).collect();
         if planes.is_empty() {
             return layers[0].maps[map].with_planes(blended);
@@ -238,7 +242,7 @@ fn mix_map(
     }
 }
 
-/// The linear mix `Σ w x`, clamped to the range of the values that have a share.
+/// The linear blend `Σ w x`, clamped to the range of the values with a share.
 pub(crate) fn linear(
     planes: &[Raster<f32>],
     shares: &[Raster<f32>],
@@ -256,13 +260,13 @@ pub(crate) fn linear(
                 }
             }
         }
-        // The shares sum to 1 but for their roundings, which must not lead out of the range.
+        // The shares sum to 1 up to rounding, which must not exceed the range.
         let mixed = |(sum, min, max): (f64, f32, f32)| (sum as f32).max(min).min(max);
         sums.into_iter().map(mixed)
     })?)
 }
 
-/// The mix `Σ w μ + Σ w (x - μ) / sqrt(Σ w²)`, which keeps the variance.
+/// The variance-preserving blend `Σ w μ + Σ w (x - μ) / sqrt(Σ w²)`.
 fn keep_variance(planes: &[Raster<f32>], shares: &[Raster<f32>]) -> Result<Raster<f32>, TileError> {
     let size = planes[0].size();
     let means: Vec<f64> = planes.iter().map(|plane| plane.statistics().mean).collect();
@@ -277,7 +281,7 @@ fn keep_variance(planes: &[Raster<f32>], shares: &[Raster<f32>]) -> Result<Raste
                 *squares += share * share;
             }
         }
-        // The squares are at least one over the number of layers.
+        // The sum of squares is at least one over the number of layers.
         let mixed = |[mean, offset, squares]: [f64; 3]| (mean + offset / squares.sqrt()) as f32;
         sums.into_iter().map(mixed)
     })?)

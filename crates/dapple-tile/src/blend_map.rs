@@ -1,7 +1,7 @@
-//! Blend maps from a texture's own features.
+//! Blend maps from the features of a texture.
 //!
-//! A blend map assigns an importance to every pixel: a texture that is laid over appears first where the map is low.
-//! Grass grows from the cracks between stones, and not on the stones.
+//! A blend map assigns an importance to every pixel: an overlaid texture appears first where the map is low. Grass
+//! grows in the cracks between stones, and not on the stones.
 //!
 //! The idea is that of Alexandre Hardy and Duncan Andrew Keith Mc Roberts, "Blend Maps: Enhanced Terrain Texturing",
 //! SAICSIT 2006: find the important parts of a texture by its features. Du, Wang and Meng ("Wavelet and Blend maps for
@@ -11,23 +11,24 @@
 //! Let `L` be the luminance (or the height), mapped to the range from -1 to 1, `G(s)` the blur by a Gaussian of
 //! standard deviation `s`, and `s = feature_size / 16`, but at least half a pixel:
 //!
-//! * `B = G(s) L - G(4s) L` is what stands out from its surroundings: positive on stones, negative in cracks;
-//! * `D = s · G(s) |∇ G(s) L|` is the change over the distance `s`, nearby;
-//! * `E = sqrt(G(4s) B² + 0.05 · mean(B²))` is how much things stand out around here, so that dark stones beside bright
-//!   ones count as much as those;
+//! * `B = G(s) L - G(4s) L` is the contrast to the surroundings: positive on stones, negative in cracks;
+//! * `D = s · G(s) |∇ G(s) L|` is the local gradient, as the change over the distance `s`;
+//! * `E = sqrt(G(4s) B² + 0.05 · mean(B²))` is the local contrast, which makes dark stones next to bright ones count as
+//!   much as those;
 //! * `I = (B - D) / E` is the importance.
 //!
 //! The gradient lowers the importance. Edges belong to the cracks: a stone has a rim because a crack ends there, and
-//! the middle of a stone has no edges. On procedural stones of several kinds, with dark cracks over 30 % of the area,
-//! 98 to 99 % of the quarter with the lowest importance lie in the cracks, and more than 99.7 % on the five kinds of
-//! the tests. By `B` alone it is 91 to 99 %, and with the gradient added instead 82 to 99 %: less where the stones are
-//! more unlike. (The luminance alone does it too as long as every crack is darker than every stone and the light is
-//! even.) From the cracks the map rises over the rims to the middles of the stones, so that what grows beyond the
-//! cracks grows inward. With bells half as wide the middles would fall back to ½.
+//! the center of a stone has no edges. The formula was tested on procedural stones of several kinds, with dark cracks
+//! over 30 % of the area. Of the quarter of pixels with the lowest importance, 98 to 99 % are in the cracks, and more
+//! than 99.7 % on the five kinds of the tests. By `B` alone the share is 91 to 99 %, and with the gradient added
+//! instead of subtracted, 82 to 99 %: less where the stones vary more. (The luminance alone is enough if every crack is
+//! darker than every stone and the light is even.) From the cracks the map rises over the rims to the centers of the
+//! stones, so a growing texture extends from the cracks inward. With blurs half as wide, the centers would fall back to
+//! ½.
 //!
-//! The map is `½ + ½ x / sqrt(1 + x²)` of `x = contrast · (I - median I)`: ½ on the median, and between 0 and 1.
-//! [`rank_equalize`](crate::rank_equalize) makes of it a mask that covers exactly its share. Masks without features come
-//! from any noise in the same way.
+//! The map is `½ + ½ x / sqrt(1 + x²)` of `x = contrast · (I - median I)`: ½ at the median, and between 0 and 1.
+//! [`rank_equalize`](crate::rank_equalize) turns it into a mask that covers exactly its share. A mask without features
+//! is made from any noise in the same way.
 //!
 //! Reference: Hardy and Mc Roberts, as above, for the idea; the formula is our own.
 
@@ -38,7 +39,7 @@ use crate::{IsCancelled, TileError};
 use dapple_color::LinearRgb;
 use dapple_raster::{Raster, Wrap};
 
-/// Options of a blend map, and the functions that compute it.
+/// Options of a blend map.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/blend-map.md"))]
 ///
@@ -61,15 +62,15 @@ use dapple_raster::{Raster, Wrap};
     serde(default, deny_unknown_fields)
 )]
 pub struct BlendMap {
-    /// The size of the features, such as the diameter of the stones, in pixels, from 1 to 4096. By default 32.
+    /// Size of the features, such as the diameter of the stones, in pixels, from 1 to 4096; 32 by default.
     ///
-    /// With half of their size the cracks are found as well, but the middles of large stones fall to ½; with twice as much
-    /// thin cracks are lost.
+    /// With half of their size, cracks are still found, but the centers of large stones fall to ½. With twice their
+    /// size, thin cracks are lost.
     pub feature_size: f64,
-    /// The steepness of the map around its median, at least 0. At 0 it is ½ everywhere, at 1 it grows by ½ per standard
-    /// deviation of the surroundings, and at 100 it is almost black and white. By default 1.
+    /// Steepness of the map around its median, at least 0; 1 by default. At 0 the map is ½ everywhere, at 1 it
+    /// increases by ½ per standard deviation of the surroundings, and at 100 it is almost black and white.
     pub contrast: f64,
-    /// The wrapping past the edges, along x and y. By default the texture repeats, and so does its map.
+    /// Wrapping past the edges, along x and y. By default the texture repeats, and so does its map.
     pub wrap: [Wrap; 2],
 }
 
@@ -79,19 +80,19 @@ impl Default for BlendMap {
     }
 }
 
-/// The feature size divided by the standard deviation of the finer blur.
+/// Ratio of the feature size to the standard deviation of the finer blur.
 const FINE: f64 = 16.0;
-/// The smallest standard deviation of the finer blur, in pixels: a smaller Gaussian has no weight beside its middle.
+/// Minimum standard deviation of the finer blur, in pixels; a smaller Gaussian has no weight next to its center.
 const LEAST_SIGMA: f64 = 0.5;
-/// The standard deviation of the coarser blur divided by that of the finer.
+/// Ratio of the standard deviations of the coarser and the finer blur.
 const COARSE: f64 = 4.0;
-/// The weight of the whole raster in the local contrast `E`.
+/// Weight of the whole raster in the local contrast `E`.
 const WHOLE: f32 = 0.05;
-/// The square of the smallest contrast that counts, in a range of 2: `f32` blurs are good to some 1e-7.
+/// Square of the smallest contrast that counts, in a range of 2; `f32` blurs are accurate to about 1e-7.
 const FLAT: f32 = 1e-10;
 
 impl BlendMap {
-    /// A blend map for features of this size in pixels.
+    /// Creates options for features of the given size, in pixels.
     #[must_use]
     pub fn new(feature_size: f64) -> Self {
         Self {
@@ -113,7 +114,7 @@ impl BlendMap {
         Self { wrap, ..self }
     }
 
-    /// The blend map of a color texture, from its luminance.
+    /// Computes the blend map of a color texture, from its luminance.
     ///
     /// # Errors
     ///
@@ -122,21 +123,21 @@ impl BlendMap {
         self.apply(&texture.map(|color| color.luminance()))
     }
 
-    /// The blend map of a gray texture or of a height: between 0 and 1, low in dark or deep cracks, high on raised or
-    /// bright parts, and ½ everywhere for a constant.
+    /// Computes the blend map of a gray texture or of a height. Values are between 0 and 1: low in dark or deep cracks,
+    /// high on raised or bright parts, and ½ everywhere for a constant.
     ///
-    /// Where both axes repeat, a texture that is shifted around gives the shifted map, bit for bit.
+    /// If both axes repeat, a shifted texture gives the shifted map, bit for bit.
     ///
     /// # Errors
     ///
-    /// [`Range`](crate::TileErrorKind::Range) for a feature size or a contrast that is out of range,
+    /// [`Range`](crate::TileErrorKind::Range) for a feature size or a contrast out of its range,
     /// [`NotFinite`](crate::TileErrorKind::NotFinite) for a pixel that is NaN or infinite.
     pub fn apply(&self, texture: &Raster<f32>) -> Result<Raster<f32>, TileError> {
         self.apply_cancellable(texture, &|| false)
     }
 
-    /// The blend map of [`apply`](Self::apply), unless `is_cancelled` returns true, which is called before each of the
-    /// passes over the texture.
+    /// Computes the blend map of [`apply`](Self::apply), unless `is_cancelled` returns true. It is called before each
+    /// pass over the texture.
     ///
     /// # Errors
     ///
@@ -158,7 +159,7 @@ impl BlendMap {
         Ok(importance.par_map(|&value| squash(contrast * f64::from(value - median))))
     }
 
-    /// The importance `I` of a texture in the range from -1 to 1.
+    /// The importance `I` of a texture with values from -1 to 1.
     fn importance(
         &self,
         texture: &Raster<f32>,
@@ -168,11 +169,14 @@ impl BlendMap {
             check(is_cancelled)?;
             blur(texture, sigma, self.wrap)
         };
+        // The contrast to the surroundings, B.
         let sigma = (self.feature_size / FINE).max(LEAST_SIGMA);
         let smooth = blur(texture, sigma)?;
         let around = blur(texture, COARSE * sigma)?;
         let band = smooth.zip_map(&around, |smooth, around| smooth - around)?;
+        // The gradient, D.
         let edges = blur(&slopes(&smooth, self.wrap)?, sigma)?;
+        // The local contrast, E.
         let squares = band.map(|band| band * band);
         let floor = WHOLE * mean(&squares) + FLAT;
         let power = blur(&squares, COARSE * sigma)?;
@@ -181,9 +185,9 @@ impl BlendMap {
     }
 }
 
-/// Maps the range of the raster to -1 to 1; zero for a constant raster.
+/// Maps the range of the raster to -1 to 1; a constant raster becomes zero.
 ///
-/// Unlike a mean, smallest and largest values do not depend on the order of pixels.
+/// Unlike a mean, the minimum and maximum do not depend on the order of pixels.
 fn to_unit_range(raster: &Raster<f32>) -> Raster<f32> {
     let pixels = || raster.pixels().iter().copied().map(f64::from);
     let min = pixels().fold(f64::INFINITY, f64::min);
@@ -211,7 +215,7 @@ fn slopes(raster: &Raster<f32>, wrap: [Wrap; 2]) -> Result<Raster<f32>, TileErro
     })?)
 }
 
-/// The mean of numbers between 0 and 4, in whole steps of 2^-40, whose sum does not depend on the order.
+/// The mean of numbers from 0 to 4, rounded to multiples of 2^-40, so that the sum does not depend on the order.
 fn mean(raster: &Raster<f32>) -> f32 {
     const STEPS: f64 = (1_u64 << 40) as f64;
     let pixels = raster.pixels();
@@ -222,16 +226,16 @@ fn mean(raster: &Raster<f32>) -> f32 {
     (sum as f64 / STEPS / pixels.len() as f64) as f32
 }
 
-/// The median; of an even number of pixels the upper one.
+/// The median; the upper one for an even number of pixels.
 fn median(raster: &Raster<f32>) -> f32 {
     let mut values = raster.pixels().to_vec();
     let middle = values.len() / 2;
     *values.select_nth_unstable_by(middle, f32::total_cmp).1
 }
 
-/// Maps all numbers to those between 0 and 1, along a curve of slope ½ in the middle.
+/// Maps all numbers to the range from 0 to 1, by a curve with slope ½ at 0.
 fn squash(x: f64) -> f32 {
-    // Beyond a billion the result is 0 or 1 to all bits, and the square does not overflow.
+    // Beyond a billion the result is 0 or 1 to the last bit. The clamp keeps the square from overflowing.
     let x = x.clamp(-1e9, 1e9);
     (0.5 + 0.5 * x / (1.0 + x * x).sqrt()) as f32
 }

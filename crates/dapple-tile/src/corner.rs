@@ -1,17 +1,18 @@
 //! Corner tiles: sets of tiles that fit in any order.
 //!
-//! Ares Lagae and Philip Dutré, "An Alternative for Wang Tiles: Colored Edges versus Colored Corners", ACM Transactions on
-//! Graphics 25(4), 2006, <https://doi.org/10.1145/1183287.1183296>: a square tile has a color at each of its corners,
-//! and tiles fit where the colors of the corners that meet agree, along edges as well as across corners. With C colors
-//! there are C⁴ tiles, and a plane of randomly colored corners has exactly one tile for every place.
+//! Ares Lagae and Philip Dutré, "An Alternative for Wang Tiles: Colored Edges versus Colored Corners", ACM Transactions
+//! on Graphics 25(4), 2006, <https://doi.org/10.1145/1183287.1183296>. A square tile has a color at each of its
+//! corners. Tiles fit if the colors agree at the corners that they share, along edges as well as across corners. With C
+//! colors there are C⁴ tiles, and a plane of randomly colored corners has exactly one tile for every position.
 //!
-//! Each color is a source, a material that repeats by itself, and near a corner its source is visible. As in the paper,
-//! pieces meet along cuts where they are most alike, and all other pixels are copies.
+//! Each color is a source, a material that repeats by itself, and its source is visible near a corner. As in the paper,
+//! pieces meet along cuts where they are most similar, and all other pixels are copies.
 //!
-//! Departure: instead of one cut through a graph there are three through rows or columns (see `cut.rs`). Sources a and b
-//! beside each other are cut from top to bottom, by a cut that closes and is the same in all tiles that have them there.
-//! Then the upper pair is cut from the lower pair, from left to right. Where that cut begins depends on the two colors on
-//! the left alone, and where it ends on those on the right, so that it goes on in the tile beside.
+//! Difference from the paper: instead of one graph cut there are three cuts through rows or columns (see `cut.rs`).
+//! First, the left and the right source of a pair are cut from top to bottom. This cut is closed, and it is the same in
+//! all tiles with this pair. Then the upper pair and the lower pair are cut from left to right. The start of this cut
+//! depends only on the two colors on the left, and its end only on those on the right, so it continues in the next
+//! tile.
 
 use crate::cut::{Band, Cut, Ends, mix, scales};
 use crate::map::check_planes;
@@ -20,10 +21,10 @@ use crate::{Map, TileError, TileErrorKind};
 use dapple_hash::{CellHash, Seed};
 use dapple_raster::{Raster, Wrap};
 
-/// The largest number of sources, hence of colors.
+/// Maximum number of sources, and so of colors.
 const MOST_SOURCES: usize = 4;
 
-/// The default share of a side that cuts may take.
+/// Default share of a side that cuts may take.
 const WIDTH: f64 = 0.5;
 
 /// A set of corner tiles, made from 2 to 4 materials that repeat by themselves.
@@ -45,10 +46,11 @@ const WIDTH: f64 = 0.5;
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct CornerTiles {
-    /// The planes of the maps of each source.
+    /// Planes of the maps of each source.
     sources: Vec<Vec<Raster<f32>>>,
-    /// A pixel of each map of the first source, which records the kind of the map.
+    /// One pixel of each map of the first source, which records the kind of the map.
     kinds: Vec<Map>,
+    /// Period of the corner colors along x and y, in tiles.
     period: [Option<u32>; 2],
     cuts: Cuts,
 }
@@ -56,22 +58,26 @@ pub struct CornerTiles {
 /// The cuts for a set of C colors.
 #[derive(Clone, Debug, PartialEq)]
 struct Cuts {
-    /// The cut between color a on the left and b on the right, at index a + b C.
+    /// Cut between color a on the left and b on the right, at index a + b C.
     beside: Vec<Cut>,
-    /// The cut between the upper and the lower pair, from left to right, at the index of the tile.
+    /// Cut between the upper and the lower pair, from left to right, at the index of the tile.
     across: Vec<Cut>,
 }
 
 impl CornerTiles {
-    /// The tiles of 2 to 4 sources, each the maps of a material, of one size. Cuts may take half of a side.
+    /// Creates the tiles of 2 to 4 sources. Each source has the maps of a material; all sizes are equal. Cuts may take
+    /// half of a side.
     ///
     /// During the search for cuts, C² copies of a source are in memory.
     ///
     /// # Errors
     ///
-    /// [`TileErrorKind::Count`] for fewer or more sources, for sources without maps or with another number of maps than
-    /// the first, [`TileErrorKind::KindMismatch`] if their maps are of other kinds, [`TileErrorKind::Raster`] if they
-    /// differ in size, [`TileErrorKind::NotFinite`] for a pixel that is NaN or infinite.
+    /// * [`TileErrorKind::Count`] for another number of sources, and for a source whose number of maps is 0 or not that
+    /// of
+    ///   the first source
+    /// * [`TileErrorKind::KindMismatch`] if the kinds of maps differ between sources
+    /// * [`TileErrorKind::Raster`] if sizes differ
+    /// * [`TileErrorKind::NotFinite`] for a pixel that is NaN or infinite
     pub fn new(sources: &[Vec<Map>]) -> Result<Self, TileError> {
         let count = sources.len();
         if !(2..=MOST_SOURCES).contains(&count) {
@@ -97,12 +103,12 @@ impl CornerTiles {
         })
     }
 
-    /// Sets the share of the shorter side that cuts may take, above 0 and at most 1. The larger the share, the less the
-    /// pieces look like squares.
+    /// Sets the share of the shorter side that cuts may take, above 0 and at most 1; ½ by default. The larger the
+    /// share, the less the pieces look like squares.
     ///
     /// # Errors
     ///
-    /// [`TileErrorKind::Range`] for another width.
+    /// [`TileErrorKind::Range`] for a width out of its range.
     pub fn with_width(self, width: f64) -> Result<Self, TileError> {
         let holds = width > 0.0 && width <= 1.0;
         TileError::check(holds, "width of the cuts", width, "above 0, at most 1")?;
@@ -110,8 +116,8 @@ impl CornerTiles {
         Ok(Self { cuts, ..self })
     }
 
-    /// Sets the number of tiles after which the corners repeat along x and y: a map of whole periods repeats. By
-    /// default they do not repeat.
+    /// Sets the period of the corner colors along x and y, in tiles. A map of whole periods repeats. There is no period
+    /// by default.
     ///
     /// # Errors
     ///
@@ -123,13 +129,13 @@ impl CornerTiles {
         Ok(Self { period, ..self })
     }
 
-    /// Columns and rows of a tile.
+    /// Numbers of columns and rows of a tile.
     #[must_use]
     pub fn size(&self) -> [u32; 2] {
         self.sources[0][0].size()
     }
 
-    /// The tile with these colors at its corners: top left, top right, bottom left, bottom right.
+    /// Makes the tile with the given colors at its corners: top left, top right, bottom left, bottom right.
     ///
     /// # Errors
     ///
@@ -151,23 +157,23 @@ impl CornerTiles {
         Map::all_with_planes(&self.kinds, planes)
     }
 
-    /// All C⁴ tiles. The one with corner colors `[a, b, c, d]`, in the order of [`tile`](Self::tile), is at index
-    /// a + b C + c C² + d C³.
+    /// Makes all C⁴ tiles. The tile with corner colors `[a, b, c, d]`, in the order of [`tile`](Self::tile), is at
+    /// index a + b C + c C² + d C³.
     ///
     /// # Errors
     ///
-    /// None for sources that [`new`](Self::new) accepted.
+    /// No errors for sources that [`new`](Self::new) accepts.
     pub fn all(&self) -> Result<Vec<Vec<Map>>, TileError> {
         let n_colors = self.sources.len();
         let tiles = (0..n_colors.pow(4)).map(|index| self.tile(colors_of(index, n_colors)));
         tiles.collect()
     }
 
-    /// Maps of `size` pixels from pixel `first` of the plane, whose corners have random colors; on all cores where the
-    /// feature `rayon` is on.
+    /// Renders maps of `size` pixels, starting at pixel `first` of a plane with random corner colors; in parallel with
+    /// the feature `rayon`.
     ///
-    /// A window is the crop of the whole. Tile `[0, 0]` begins in pixel `[0, 0]` of the plane. Past the largest `i64` the
-    /// plane goes on with the smallest, in the middle of a tile.
+    /// A window equals the crop of the whole. Tile `[0, 0]` starts at pixel `[0, 0]` of the plane. Past the largest
+    /// `i64`, coordinates wrap around to the smallest, in the middle of a tile.
     ///
     /// # Errors
     ///
@@ -198,7 +204,7 @@ impl CornerTiles {
         Map::all_with_planes(&self.kinds, planes)
     }
 
-    /// The colors at the corners of a tile of the plane.
+    /// Corner colors of a tile of the plane.
     fn colors(&self, seed: Seed, tile: [i64; 2]) -> [u8; 4] {
         let [left, above] = tile;
         let [right, below] = tile.map(|at| at.wrapping_add(1));
@@ -212,11 +218,11 @@ impl CornerTiles {
             None => corner[axis],
         });
         let bits = CellHash::new(seed, [y]).axis(x).at(0);
-        // The upper half of the product of a number below 1 and the number of colors.
+        // Multiply a fixed-point number below 1 by the number of colors.
         (((bits >> 32) * self.sources.len() as u64) >> 32) as u8
     }
 
-    /// Joins some columns of a row of a plane of a tile.
+    /// Joins some columns of a row of one plane of a tile.
     fn join_row(
         &self,
         colors: [u8; 4],
@@ -244,7 +250,7 @@ impl CornerTiles {
     }
 }
 
-/// The index of a tile, from the colors at its corners.
+/// The index of a tile with the given corner colors.
 fn index_of(colors: [usize; 4], n_colors: usize) -> usize {
     colors
         .iter()
@@ -252,13 +258,13 @@ fn index_of(colors: [usize; 4], n_colors: usize) -> usize {
         .fold(0, |index, color| index * n_colors + color)
 }
 
-/// The colors at the corners of a tile, from its index.
+/// The corner colors of the tile with the given index.
 fn colors_of(index: usize, n_colors: usize) -> [u8; 4] {
     [0, 1, 2, 3].map(|place| (index / n_colors.pow(place) % n_colors) as u8)
 }
 
 impl Cuts {
-    /// The cheapest cuts within a share of the shorter side.
+    /// Finds the cheapest cuts in a band that takes a share of the shorter side.
     fn new(sources: &[Vec<Raster<f32>>], width: f64) -> Result<Self, TileError> {
         let size = check_planes(&sources.concat())?;
         let [along_x, along_y] = size.map(|side| band(side, size, width));
@@ -267,6 +273,7 @@ impl Cuts {
         let turned = sources.iter().map(|planes| turned(planes));
         let turned: Vec<_> = turned.collect::<Result<_, _>>()?;
         let n_colors = sources.len();
+        // Cut each pair from top to bottom, and record where its cut from left to right starts and ends.
         let (mut beside, mut halves, mut ends) = (Vec::new(), Vec::new(), Vec::new());
         for (a, b) in (0..n_colors).flat_map(|b| (0..n_colors).map(move |a| (a, b))) {
             let cheapest = |of: &[Vec<Raster<f32>>], band| match a == b {
@@ -282,6 +289,7 @@ impl Cuts {
             halves.push(self::turned(&joined)?);
             beside.push(cut);
         }
+        // Cut the upper from the lower pair of each tile, between these ends.
         let mut across = Vec::new();
         for index in 0..n_colors.pow(4) {
             let [a, b, c, d] = colors_of(index, n_colors).map(usize::from);
@@ -296,9 +304,9 @@ impl Cuts {
     }
 }
 
-/// The band of the cuts in the middle of a side. It takes a share of the shorter side, so that a cut that moves one
-/// pixel to the side in each row gets from any pixel of the band to any other. One pixel at each end of the side stays
-/// free, if there are three or more.
+/// The band of the cuts in the middle of a side. It takes a share of the shorter side, so a cut that moves one pixel
+/// sideways in each row can connect any two pixels of the band. One pixel at each end of the side stays free, if the
+/// side has at least three.
 fn band(side: u32, size: [u32; 2], width: f64) -> Band {
     let shorter = size[0].min(size[1]);
     let share = (f64::from(shorter) * width).round() as u32;

@@ -1,15 +1,15 @@
-//! Crossfade: two images mixed by weights, with or without their variance kept.
+//! Crossfade: a blend of two images by weights, with or without preserving the variance.
 //!
-//! The mean of two uncorrelated images has less contrast than either. If it is divided by the length of the vector of
-//! weights instead of by their sum, the deviation from the mean keeps its variance: Eric Heitz and Fabrice Neyret,
+//! The mean of two uncorrelated images has less contrast than either. If the deviation from the mean is divided by the
+//! length of the vector of weights instead of by their sum, it keeps its variance: Eric Heitz and Fabrice Neyret,
 //! "High-Performance By-Example Noise using a Histogram-Preserving Blending Operator", Proceedings of the ACM on
 //! Computer Graphics and Interactive Techniques 1(2), 2018, <https://doi.org/10.1145/3233304>; here without their
-//! change of histogram.
+//! histogram transform.
 //!
-//! Departure: the operator takes the two images for independent, and along a cut of least difference they are not. With
-//! weights v and w and correlation r the deviation is divided by sqrt(v² + w² + 2 r v w), which is the operator for r = 0
-//! and the plain mean for r = 1. The correlation is measured over the pixels that are mixed, and is at least 0 so that
-//! opposites are not blown up.
+//! Difference from the paper: the operator assumes independent images, and along a cut of least difference they are
+//! not. With weights v and w and correlation r, the deviation is divided by sqrt(v² + w² + 2 r v w). This is the
+//! operator for r = 0 and the plain mean for r = 1. The correlation is measured over the blended pixels, and clamped to
+//! at least 0 so that opposite images are not amplified.
 
 use crate::TileError;
 use dapple_raster::Raster;
@@ -29,7 +29,7 @@ dapple_raster::named! {
     }
 }
 
-/// Two images of one size, and the means of their planes.
+/// Two images of one size, with the means of their planes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Pair<'a> {
     pub(crate) images: [&'a Raster<f32>; 2],
@@ -37,7 +37,7 @@ pub(crate) struct Pair<'a> {
 }
 
 impl Crossfade {
-    /// Mixes the images by the weights of the second, from 0 to 1. A pixel of weight 0 or 1 is copied.
+    /// Blends the images by the weights of the second image, from 0 to 1. Pixels with weight 0 or 1 are copied.
     pub(crate) fn mix(
         self,
         pair: Pair<'_>,
@@ -60,21 +60,21 @@ impl Crossfade {
     }
 }
 
-/// The factors of the two deviations, for a weight of the second and a correlation.
+/// Factors of the two deviations, for a weight of the second image and a correlation.
 fn shares(weight: f64, correlation: f64) -> [f64; 2] {
     let [v, w] = [1.0 - weight, weight];
     let length = (v * v + w * w + 2.0 * correlation * v * w).sqrt();
     [v / length, w / length]
 }
 
-/// Mixes two values: the weighted mean of the means, plus the shares of both deviations.
+/// Blends two values: the weighted mean of the means plus both scaled deviations.
 fn mix_two(values: [f32; 2], means: [f64; 2], shares: [f64; 2], weight: f64) -> f32 {
     let [a, b] = [0, 1].map(|side| (f64::from(values[side]) - means[side]) * shares[side]);
     (means[0] + weight * (means[1] - means[0]) + (a + b)) as f32
 }
 
 impl<'a> Pair<'a> {
-    /// The values of both images at a pixel, and the weight of the second.
+    /// Iterator over the values of both images at a pixel, with the weight of the second.
     fn pixels(
         self,
         weights: &'a Raster<f64>,
@@ -87,7 +87,7 @@ impl<'a> Pair<'a> {
         Ok(pixels.map(|((a, b), weight)| ([*a, *b], *weight)))
     }
 
-    /// The correlation of the two over all mixed pixels, from 0 to 1; 0 if one of them is constant there.
+    /// Correlation of the images over all blended pixels, clamped to 0 to 1; 0 if one image is constant there.
     fn correlation(self, weights: &Raster<f64>) -> Result<f64, TileError> {
         let [mut aa, mut bb, mut ab] = [0.0; 3];
         for ([a, b], weight) in self.pixels(weights)? {
@@ -98,7 +98,7 @@ impl<'a> Pair<'a> {
                 ab += a * b;
             }
         }
-        // The roots are taken one by one, so that the product of huge sums stays finite.
+        // Take the roots separately, so that the product of huge sums stays finite.
         let both: f64 = aa.sqrt() * bb.sqrt();
         Ok(if both > 0.0 {
             (ab / both).clamp(0.0, 1.0)

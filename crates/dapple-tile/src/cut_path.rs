@@ -1,27 +1,28 @@
 //! The cheapest path from the top of a grid of costs to its bottom.
 //!
-//! A path visits one cell of every row and steps at most one cell to the side from row to row. Its price is the sum of
-//! the costs of its cells, in the order of the rows. The open path is found by dynamic programming, as in Alexei A. Efros
-//! and William T. Freeman, "Image Quilting for Texture Synthesis and Transfer", SIGGRAPH 2001,
+//! A path visits one cell of every row, and moves at most one column from row to row. Its price is the sum of the costs
+//! of its cells, in the order of the rows. The open path is found by dynamic programming, as in Alexei A. Efros and
+//! William T. Freeman, "Image Quilting for Texture Synthesis and Transfer", SIGGRAPH 2001,
 //! <https://doi.org/10.1145/383259.383296>.
 //!
-//! A closed path ends in the cell below which it began, or beside it, so that it goes on where the grid repeats. The
-//! cheapest path through each first cell is another problem of the same kind; the cheapest of all comes from halving the
-//! first cells: two paths that swap places can trade their ends without a change of the total, so paths of neighboring
-//! first cells need not cross, and the path of the middle one bounds both halves. That takes O(rows · width · log width)
-//! and is exact.
+//! A closed path ends at most one column from where it began, so it continues where the grid repeats. The cheapest
+//! closed path for a given first cell is a problem of the same kind. The cheapest of all is found by bisection of the
+//! first cells. Two paths that cross can exchange their ends without changing the total price, so paths of neighboring
+//! first cells need not cross, and the path of the middle cell bounds the search in both halves. This takes
+//! O(rows · width · log width) and is exact.
 
 use dapple_raster::Raster;
 
-/// The columns of the cheapest path, row by row; of equally cheap ones, with the smaller columns from the end on.
+/// The columns of the cheapest path, row by row. Of equally cheap paths, the one with the smaller columns from the end
+/// on.
 ///
-/// Costs are finite.
+/// Costs must be finite.
 pub(crate) fn open_path(costs: &Raster<f64>) -> Vec<u32> {
     let [left, right] = whole_band(costs);
     Search::new(costs).cheapest(&left, &right, None).columns
 }
 
-/// The columns of the cheapest closed path, row by row; of equally cheap ones, the one that begins in the smallest column.
+/// The columns of the cheapest closed path, row by row. Of equally cheap paths, the one with the smallest first column.
 pub(crate) fn closed_path(costs: &Raster<f64>) -> Vec<u32> {
     let [left, right] = whole_band(costs);
     let mut search = Search::new(costs);
@@ -31,9 +32,9 @@ pub(crate) fn closed_path(costs: &Raster<f64>) -> Vec<u32> {
     best.columns
 }
 
-/// The columns of the cheapest path from a column of the first row to one of the last, row by row.
+/// The columns of the cheapest path from a column of the first row to a column of the last row, row by row.
 ///
-/// The two columns differ by less than the number of rows.
+/// The difference of the two columns must be less than the number of rows.
 pub(crate) fn path_between(costs: &Raster<f64>, [begin, end]: [u32; 2]) -> Vec<u32> {
     let [left, right] = whole_band(costs);
     let mut search = Search::new(costs);
@@ -41,7 +42,7 @@ pub(crate) fn path_between(costs: &Raster<f64>, [begin, end]: [u32; 2]) -> Vec<u
     search.trace(left.len() - 1, [end; 2]).columns
 }
 
-/// A path and its price.
+/// A path with its price.
 struct Path {
     price: f64,
     columns: Vec<u32>,
@@ -53,23 +54,24 @@ impl Path {
     }
 }
 
-/// The smallest and the largest column of each row, for a search in the whole grid.
+/// Bounds of the band for a search in the whole grid: the smallest and the largest column of each row.
 fn whole_band(costs: &Raster<f64>) -> [Vec<u32>; 2] {
     [0, costs.width() - 1].map(|column| vec![column; costs.height() as usize])
 }
 
-/// A grid of costs, and memory that is reused from search to search.
+/// A grid of costs, with scratch memory that is reused from search to search.
 struct Search<'a> {
     costs: &'a Raster<f64>,
-    /// The prices of the cheapest paths to the cells of this row and of the one above, which begin [`PAD`] cells
-    /// before the first column.
+    /// Prices of the cheapest paths to the cells of the current row and of the row above, with [`PAD`] cells before the
+    /// first column.
     prices: [Vec<f64>; 2],
-    /// The best way to reach each cell: from the column before (0), the same (1) or the one after (2).
+    /// For each cell, the step of the cheapest path to it: from the column before (0), the same column (1), or the one
+    /// after (2).
     steps: Vec<u8>,
 }
 
-/// The number of cells of infinite cost around a band: a step goes one cell to the side, and the band of the next row
-/// may begin and end one cell further out.
+/// Number of cells of infinite cost on either side of a band. A step moves one column, and the band of the next row may
+/// start and end one column further out.
 const PAD: usize = 2;
 
 impl<'a> Search<'a> {
@@ -82,7 +84,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Searches closed paths that begin in `first[0]..first[1]` and stay in the band.
+    /// Searches closed paths that start in `first[0]..first[1]` and stay in the band, by bisection.
     fn halve(&mut self, first: [u32; 2], left: &[u32], right: &[u32], best: &mut Path) {
         if first[0] >= first[1] {
             return;
@@ -96,7 +98,8 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// The cheapest path between `left` and `right`, both included; closed, if `begin` is the column to begin in.
+    /// Finds the cheapest path from `left` to `right`, both inclusive. With `begin`, the path is closed and starts in
+    /// that column.
     fn cheapest(&mut self, left: &[u32], right: &[u32], begin: Option<u32>) -> Path {
         let last = left.len() - 1;
         let begins = begin.map_or([left[0], right[0]], |column| [column; 2]);
@@ -109,7 +112,7 @@ impl<'a> Search<'a> {
         self.trace(last, [from, to])
     }
 
-    /// Computes the prices of all cells of the band, for paths that begin in one of the cells `begins[0]..=begins[1]`.
+    /// Computes the prices of all cells of the band, for paths that start in a cell of `begins[0]..=begins[1]`.
     fn spread(&mut self, left: &[u32], right: &[u32], begins: [u32; 2]) {
         self.begin([left[0], right[0]], begins);
         for row in 1..left.len() {
@@ -117,7 +120,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Computes the prices of the first row, in which paths begin in the cells `from..=to`.
+    /// Computes the prices of the first row, for paths that start in a cell of `from..=to`.
     fn begin(&mut self, band: [u32; 2], [from, to]: [u32; 2]) {
         let [low, high] = band.map(|column| column as usize + PAD);
         let prices = &mut self.prices[0];
@@ -127,7 +130,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Computes the prices of the next row, whose band begins and ends at most one cell beside that of the last.
+    /// Computes the prices of the next row, whose band starts and ends at most one column from that of the row before.
     fn advance(&mut self, row: usize, band: [u32; 2]) {
         let [low, high] = band.map(|column| column as usize);
         let width = self.costs.width() as usize;
@@ -137,6 +140,7 @@ impl<'a> Search<'a> {
         prices[low..low + PAD].fill(f64::INFINITY);
         prices[high + PAD + 1..=high + 2 * PAD].fill(f64::INFINITY);
         for column in low..=high {
+            // Take the cheapest of the three cells above; the first one if several are equal.
             let mut best = above[column + PAD - 1];
             let mut step = 0;
             if above[column + PAD] < best {
@@ -151,7 +155,7 @@ impl<'a> Search<'a> {
         self.prices.swap(0, 1);
     }
 
-    /// The path to the cheapest of the cells `from..=to` of the last row.
+    /// Traces the path to the cheapest cell of `from..=to` of the last row.
     fn trace(&self, last: usize, [from, to]: [u32; 2]) -> Path {
         let price = |column: u32| self.prices[0][column as usize + PAD];
         let cheaper = |best, column| {
@@ -181,7 +185,7 @@ mod tests {
     use dapple_hash::{Seed, hash2};
     use dapple_raster::Raster;
 
-    /// Costs that are small whole numbers, so that sums are exact in any order and ties abound.
+    /// Costs that are small integers, so that sums are exact in any order and ties are frequent.
     fn costs(seed: u64, size: [u32; 2]) -> Raster<f64> {
         let cost = |x: u32, y: u32| hash2(Seed(seed), [x.into(), y.into()], 0) % 7;
         Raster::from_fn(size, |x, y| cost(x, y) as f64).unwrap()
@@ -195,7 +199,7 @@ mod tests {
             .sum()
     }
 
-    /// The cheapest price of a path from any of `begin` to any of `ends`, cell by cell, without a band.
+    /// The price of the cheapest path from any of `begin` to any of `ends`, cell by cell, without a band.
     fn brute_force(costs: &Raster<f64>, begin: &[u32], ends: impl Fn(u32) -> bool) -> f64 {
         let at = |column: u32, row| costs.row(row)[column as usize];
         let mut prices: Vec<_> = (0..costs.width())

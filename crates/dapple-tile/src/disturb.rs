@@ -1,15 +1,15 @@
-//! Copies of a tile that differ inside and agree on their borders.
+//! Copies of a tile that differ inside and have equal borders.
 //!
-//! A tile that repeats shows its repetition. Jin-Lian Du, Song Wang and Xianhai Meng, "Wavelet and Blend maps for
-//! texture synthesis", propose "using stochastic function to disturb the signal inner each tile but keep the boundary
-//! not change", and leave the function open. Here the middle of each copy of the tile in the plane is a piece of the
-//! same tile, shifted by a random number of whole pixels, and the two meet along a cut where they are most alike (see
-//! `cut.rs`). So copies contain no content that the tile lacks. A shift is at least a quarter of the tile along each
-//! axis, in either direction (a side of a single pixel cannot be shifted).
+//! The repetition of a tile is visible. Jin-Lian Du, Song Wang and Xianhai Meng, "Wavelet and Blend maps for texture
+//! synthesis", propose "using stochastic function to disturb the signal inner each tile but keep the boundary not
+//! change", and leave the function open. Here the interior of each copy is a piece of the same tile, shifted by a
+//! random number of whole pixels. The two meet along a cut where they are most similar (see `cut.rs`). So copies
+//! contain no content that the tile lacks. A shift is at least a quarter of the tile along each axis, in either
+//! direction (a side of a single pixel cannot be shifted).
 //!
-//! The `frozen` pixels next to the borders are the tile's in all copies, bit for bit, and the cut lies in the `margin`
-//! next to them. The shift of a copy is a hash of its column and row: a window is the crop of the whole, and a map of
-//! whole copies repeats.
+//! In all copies, the `frozen` pixels next to the borders equal the tile's, bit for bit. The cut is in the `margin`
+//! next to them. The shift of a copy is a hash of its column and row. So a window equals the crop of the whole, and a
+//! map of whole copies repeats.
 //!
 //! Reference: Du Jin-Lian, Wang Song and Meng Xianhai, "Wavelet and Blend maps for texture synthesis", section 4 C; the
 //! shifts and the cut are our own.
@@ -22,7 +22,7 @@ use crate::{IsCancelled, Map, TileError, TileErrorKind};
 use dapple_hash::{CellHash, Seed};
 use dapple_raster::Raster;
 
-/// A map of copies of a tile that differ inside and share their borders.
+/// Makes maps of copies of a tile that differ inside and have equal borders.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/disturbance.md"))]
 ///
@@ -44,12 +44,12 @@ use dapple_raster::Raster;
     serde(default, deny_unknown_fields)
 )]
 pub struct Disturbance {
-    /// The number of unchanged pixels along each border. By default 4.
+    /// Number of unchanged pixels along each border; 4 by default.
     pub frozen: u32,
-    /// The number of pixels next to the frozen ones in which the cut may lie, where tile and shifted tile overlap.
-    /// Together with the frozen pixels it is at most half of a side. By default 24.
+    /// Number of pixels next to the frozen ones in which the cut may be, where the tile and the shifted tile overlap;
+    /// 24 by default. Together with the frozen pixels it is at most half of a side.
     pub margin: u32,
-    /// The seed of the shifts. By default `Seed(0)`.
+    /// Seed of the shifts; `Seed(0)` by default.
     pub seed: Seed,
 }
 
@@ -60,7 +60,7 @@ impl Default for Disturbance {
 }
 
 impl Disturbance {
-    /// The disturbance with a seed, for tiles of at least 56 pixels: 4 frozen and a margin of 24.
+    /// Creates options with a seed, 4 frozen pixels and a margin of 24, for tiles of at least 56 pixels.
     #[must_use]
     pub fn new(seed: Seed) -> Self {
         Self {
@@ -70,11 +70,11 @@ impl Disturbance {
         }
     }
 
-    /// A map of `size` pixels that is covered with disturbed copies of a periodic tile, from pixel `first` of the
-    /// plane; on all cores where the feature `rayon` is on.
+    /// Renders a map of `size` pixels, starting at pixel `first` of a plane that is covered with disturbed copies of a
+    /// periodic tile; in parallel with the feature `rayon`.
     ///
-    /// Copy `[0, 0]` of the tile begins in pixel `[0, 0]` of the plane. Past the largest `i64` the plane goes on with the
-    /// smallest, in the middle of a copy.
+    /// Copy `[0, 0]` of the tile starts at pixel `[0, 0]` of the plane. Past the largest `i64`, coordinates wrap around
+    /// to the smallest, in the middle of a copy.
     ///
     /// # Errors
     ///
@@ -91,14 +91,15 @@ impl Disturbance {
         Ok(maps.swap_remove(0))
     }
 
-    /// Maps that are covered with disturbed copies of the tiles of a material. All maps are shifted and cut alike.
+    /// Renders maps covered with disturbed copies of the tiles of a material. All maps are shifted and cut in the same
+    /// way.
     ///
-    /// Normals are mixed as slopes, so that those of the frozen border are unchanged only up to rounding.
+    /// Normals are blended as slopes, so those of the frozen border are unchanged only up to rounding.
     ///
     /// # Errors
     ///
     /// The errors of [`render`](Self::render); [`TileErrorKind::Count`] without maps, and [`TileErrorKind::Raster`] if
-    /// they differ in size.
+    /// their sizes differ.
     pub fn render_maps(
         &self,
         maps: &[Map],
@@ -108,8 +109,8 @@ impl Disturbance {
         self.render_maps_cancellable(maps, first, size, &|| false)
     }
 
-    /// The maps of [`render_maps`](Self::render_maps), unless `is_cancelled` returns true, which is called once for each
-    /// copy and map.
+    /// Renders the maps of [`render_maps`](Self::render_maps), unless `is_cancelled` returns true. It is called once
+    /// for each copy and map.
     ///
     /// # Errors
     ///
@@ -140,6 +141,7 @@ impl Disturbance {
         Raster::<()>::filled(size, ())?;
         let seed = self.seed.child("disturb", 0);
         let [columns, rows] = [0, 1].map(|axis| pieces(first[axis], size[axis], sides[axis]));
+        // Make each copy that the window touches, and lay them out.
         let copies = Raster::from_rows([columns.len() as u32, rows.len() as u32], |row| {
             let hash = CellHash::new(seed, [rows[row as usize].copy]);
             let copy = move |column: &Piece| {
@@ -159,7 +161,7 @@ impl Disturbance {
         planes.map(lay).collect()
     }
 
-    /// The planes of a copy.
+    /// Makes the planes of a copy.
     fn copy(&self, tile: &[Raster<f32>], hash: CellHash) -> Result<Vec<Raster<f32>>, TileError> {
         let [x, y] = [0, 1].map(|axis| shift(hash.at(axis), tile[0].size()[axis as usize]));
         let shifted = tile.iter().map(|plane| rolled(plane, [x, y]));
@@ -186,7 +188,7 @@ impl Disturbance {
     }
 }
 
-/// A periodic tile, rolled so that it begins at another pixel.
+/// Rolls a periodic tile so that it starts at another pixel.
 pub(crate) fn rolled(plane: &Raster<f32>, [x, y]: [u32; 2]) -> Result<Raster<f32>, TileError> {
     Ok(Raster::from_rows(plane.size(), |row| {
         let row = (u64::from(row) + u64::from(y)) % u64::from(plane.height());
@@ -195,12 +197,12 @@ pub(crate) fn rolled(plane: &Raster<f32>, [x, y]: [u32; 2]) -> Result<Raster<f32
     })?)
 }
 
-/// A random number of pixels from a quarter to three quarters of a side, both included; 0 for a side of one pixel.
+/// A random number of pixels from a quarter to three quarters of a side, both inclusive; 0 for a side of one pixel.
 fn shift(bits: u64, side: u32) -> u32 {
     let least = side.div_ceil(4);
-    // The largest shift is a quarter less than the side. A side of one pixel has no choice.
+    // The largest shift is a quarter less than the side. A side of one pixel cannot be shifted.
     let choices = u64::from((side - least + 1).saturating_sub(least));
-    // The upper half of the product of a number below 1 and the choices.
+    // Multiply a fixed-point number below 1 by the number of choices.
     let chosen = (((bits >> 32) * choices) >> 32) as u32;
     if choices > 0 { least + chosen } else { 0 }
 }

@@ -1,8 +1,8 @@
-//! An image in the frame of another: the borders of one and the middle of the other, with a cut all around.
+//! Frames: the borders of one image around the middle of another, with a cut all around.
 //!
-//! Along each axis there is a cut at either end: first those on the left and on the right, from the top to the bottom;
-//! then, on the result, those above and below. Where both sides of a cut are the frame it costs nothing, so that the four
-//! cuts become one line around the middle.
+//! Along each axis there is a cut at either end. First, the left and the right cut run from top to bottom; then, on the
+//! result, the upper and the lower cut run from left to right. Where both sides of a cut are the frame, it costs
+//! nothing, so the four cuts join to one closed path around the middle.
 
 use crate::TileError;
 use crate::axis::{Axis, each_axis, transpose};
@@ -12,13 +12,13 @@ use dapple_raster::Raster;
 /// The width of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Frame {
-    /// The number of pixels along each border that belong to the frame.
+    /// Number of pixels along each border that belong to the frame.
     pub(crate) whole: u32,
-    /// The number of further pixels that the cut and its ramp may take. Both together are at most half of a side.
+    /// Number of further pixels for the cut and its ramp. Together with `whole` it is at most half of a side.
     pub(crate) band: u32,
 }
 
-/// Puts planes into a frame: all are cut along the same line.
+/// Puts planes into a frame; all planes are cut along the same path.
 pub(crate) fn framed(
     planes: &[Raster<f32>],
     frame: &[Raster<f32>],
@@ -27,7 +27,7 @@ pub(crate) fn framed(
     framed_along(planes, width, |_, axis| in_axis(frame, axis))
 }
 
-/// The planes of a frame, with their rows along an axis.
+/// The planes of a frame, transposed if needed so that their rows run along the axis.
 pub(crate) fn in_axis(frame: &[Raster<f32>], axis: Axis) -> Result<Vec<Raster<f32>>, TileError> {
     match axis {
         Axis::X => Ok(frame.to_vec()),
@@ -35,7 +35,7 @@ pub(crate) fn in_axis(frame: &[Raster<f32>], axis: Axis) -> Result<Vec<Raster<f3
     }
 }
 
-/// Puts planes into a frame that is computed for each axis from the current planes, whose rows run along that axis.
+/// Puts planes into a frame. It is computed for each axis from the current planes, whose rows run along that axis.
 pub(crate) fn framed_along(
     planes: &[Raster<f32>],
     width: Frame,
@@ -49,12 +49,12 @@ pub(crate) fn framed_along(
             first: width.whole,
             count: width.band,
         };
-        // The cuts above and below meet themselves where columns repeat.
+        // The upper and lower cuts are closed, since columns repeat.
         let ends = match axis {
             Axis::X => Ends::Free,
             Axis::Y => Ends::Closed,
         };
-        // The cut on the left, and then, on mirrored planes, that on the right.
+        // Make the left cut, and then, on mirrored planes, the right one.
         for _ in 0..2 {
             let cut = Cut::cheapest([&frame, &planes], &scales, band, ends)?;
             let pairs = frame.iter().zip(&planes);
@@ -66,7 +66,7 @@ pub(crate) fn framed_along(
     })
 }
 
-/// The raster with its columns in reverse order.
+/// Reverses the order of the columns.
 fn mirrored(plane: &Raster<f32>) -> Result<Raster<f32>, TileError> {
     Ok(Raster::from_rows(plane.size(), |row| {
         plane.row(row).iter().rev().copied()
@@ -102,7 +102,7 @@ mod tests {
                     _ => n_mixed += u32::from(made != frame && made != plane),
                 }
             }
-            // Three pixels of each row or column that a cut crosses, and the cuts are as long as the sides.
+            // A cut blends three pixels of each row or column that it crosses, and the cuts are as long as the sides.
             assert!(n_mixed <= 3 * 2 * (50 + 41), "{n_mixed} pixels are mixed");
         }
     }

@@ -1,25 +1,25 @@
 //! Gaussian blur, row by row and column by column.
 //!
-//! The weights are `exp(-k² / 2σ²)` up to 3.5 standard deviations, beyond which lies less than 0.05 % of the curve,
-//! normalized to a sum of 1. Each pixel is summed in `f32` from the middle outward, in the same order at every place,
-//! so that a raster that is shifted around the torus has the shifted blur to the last bit.
+//! The weights are `exp(-k² / 2σ²)` up to 3.5 standard deviations, normalized to a sum of 1. Less than 0.05 % of the
+//! Gaussian is beyond. Each pixel is summed in `f32` from the center outward, in the same order at every position. So
+//! the blur of a raster that is shifted around the torus is the shifted blur, bit for bit.
 
 use crate::TileError;
 use dapple_raster::{Raster, Wrap, parallel};
 
-/// The radius of the blur, in standard deviations.
+/// Radius of the blur, in standard deviations.
 const REACH: f64 = 3.5;
 
-/// The number of columns that are summed at a time: 4 kB of sums stay in the nearest cache.
+/// Number of columns that are summed at a time: 4 kB of sums stay in the first-level cache.
 const BLOCK: usize = 1024;
 
-/// A raster blurred by a Gaussian with a standard deviation of `sigma` pixels, from 0 to 65536.
+/// Blurs a raster by a Gaussian with a standard deviation of `sigma` pixels, from 0 to 65536.
 ///
-/// `wrap` says for columns and rows what lies past the edges.
+/// `wrap` is the wrapping past the edges, along x and y.
 ///
 /// # Errors
 ///
-/// [`TileErrorKind::Range`](crate::TileErrorKind::Range) for another `sigma`.
+/// [`TileErrorKind::Range`](crate::TileErrorKind::Range) for a `sigma` out of its range.
 ///
 /// # Examples
 ///
@@ -45,7 +45,7 @@ pub fn blur(raster: &Raster<f32>, sigma: f64, wrap: [Wrap; 2]) -> Result<Raster<
     })
 }
 
-/// A raster whose rows are written by `fill`, on all cores where the feature `rayon` is on.
+/// Makes a raster whose rows are written by `fill`, in parallel with the feature `rayon`.
 fn rows(size: [u32; 2], fill: impl Fn(u32, &mut [f32]) + Sync) -> Result<Raster<f32>, TileError> {
     let mut raster = Raster::filled(size, 0.0)?;
     let width = size[0] as usize;
@@ -55,7 +55,7 @@ fn rows(size: [u32; 2], fill: impl Fn(u32, &mut [f32]) + Sync) -> Result<Raster<
     Ok(raster)
 }
 
-/// The weight of the middle, and of each distance from it.
+/// Weight of the center, followed by the weight of each distance from it.
 fn weights(sigma: f64) -> Vec<f32> {
     let reach = libm::ceil(REACH * sigma) as u32;
     let bell: Vec<f64> = (0..=reach)
@@ -78,7 +78,7 @@ fn blur_row(row: &[f32], weights: &[f32], wrap: Wrap, blurred: &mut [f32]) {
     sum_up(at, weights, blurred);
 }
 
-/// Writes the weighted sum of lines to `sums`. `at` returns a line by its distance from the middle one, in steps.
+/// Writes the weighted sum of lines to `sums`. `at` returns the line at a given distance from the center.
 fn sum_up<'a>(at: impl Fn(i64) -> &'a [f32], weights: &[f32], sums: &mut [f32]) {
     for (block, sums) in sums.chunks_mut(BLOCK).enumerate() {
         let range = block * BLOCK..block * BLOCK + sums.len();
@@ -189,7 +189,7 @@ mod tests {
         for sigma in [0.0, 0.01, 0.5, 3.0, 40.0] {
             let weights = weights(sigma);
             let sum: f64 = weights.iter().map(|&weight| 2.0 * f64::from(weight)).sum();
-            // Each weight is rounded to 2^-25 of itself.
+            // The relative rounding error of each weight is at most 2^-25.
             assert!((sum - f64::from(weights[0]) - 1.0).abs() < 1e-7, "{sigma}");
         }
         assert_eq!(weights(0.0), [1.0]);

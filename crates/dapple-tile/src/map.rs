@@ -1,4 +1,4 @@
-//! The maps of a material, and their decomposition into planes of numbers.
+//! The maps of a material, and their decomposition into planes.
 
 use crate::{TileError, TileErrorKind};
 use core::mem::discriminant;
@@ -8,19 +8,19 @@ use dapple_raster::Raster;
 /// One map of a material.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Map {
-    /// One number per pixel: height, roughness, a mask.
+    /// One number per pixel, such as height, roughness or a mask.
     Value(Raster<f32>),
     /// Linear color.
     Color(Raster<LinearRgb>),
-    /// Normals. They are processed as slopes (x/z, y/z), and results are unit vectors.
+    /// Normals. They are processed as slopes (x/z, y/z); results are unit vectors.
     Normal(Raster<Normal>),
 }
 
-/// The smallest z of a normal before it becomes a slope: the slopes of unit vectors are at most 1000.
+/// Minimum z of a normal when it is converted to a slope: slopes of unit vectors are at most 1000.
 const LEAST_Z: f32 = 1e-3;
 
 impl Map {
-    /// Columns and rows.
+    /// Numbers of columns and rows.
     #[must_use]
     pub fn size(&self) -> [u32; 2] {
         match self {
@@ -30,7 +30,7 @@ impl Map {
         }
     }
 
-    /// The number of planes of the map: 1, 3, or 2 for slopes.
+    /// Number of planes of the map: 1 for values, 3 for colors, 2 for normals (slopes).
     pub(crate) fn n_planes(&self) -> usize {
         match self {
             Self::Value(_) => 1,
@@ -39,7 +39,7 @@ impl Map {
         }
     }
 
-    /// The planes of the map, a raster for each channel: 1, 3, or 2 for slopes.
+    /// The planes of the map, one raster for each channel.
     pub(crate) fn planes(&self) -> Vec<Raster<f32>> {
         match self {
             Self::Value(raster) => vec![raster.clone()],
@@ -51,7 +51,7 @@ impl Map {
         }
     }
 
-    /// The map, with normals [centered](Normal::centered).
+    /// The map with [centered](Normal::centered) normals.
     pub(crate) fn centered(&self) -> Self {
         match self {
             Self::Normal(raster) => Self::Normal(raster.map(|normal| normal.centered())),
@@ -59,9 +59,9 @@ impl Map {
         }
     }
 
-    /// The factors of the planes, in the order of [`planes`](Self::planes), when the map is reflected along x and along y.
+    /// Factors of the planes, in the order of [`planes`](Self::planes), for reflections of the map along x and along y.
     ///
-    /// A slope along the axis of a reflection changes its sign: heights fall where they rose.
+    /// A slope along the axis of a reflection changes its sign.
     pub(crate) fn reflections(&self) -> &'static [[f32; 2]] {
         match self {
             Self::Value(_) => &[[1.0; 2]],
@@ -72,8 +72,8 @@ impl Map {
 
     /// The planes of the maps of several materials.
     ///
-    /// Fails for materials without maps, with another number of maps than the first, with maps of other kinds or sizes,
-    /// and for pixels that are not finite.
+    /// Fails if the number of maps is 0 or differs from the first material, if kinds or sizes differ, and for pixels
+    /// that are not finite.
     pub(crate) fn planes_of_all(
         materials: &[Vec<Self>],
     ) -> Result<Vec<Vec<Raster<f32>>>, TileError> {
@@ -99,7 +99,7 @@ impl Map {
         Ok(all)
     }
 
-    /// Maps of the same kinds as `maps`, from all their planes.
+    /// Makes maps of the kinds of `maps` from all their planes.
     pub(crate) fn all_with_planes(
         maps: &[Self],
         planes: Vec<Raster<f32>>,
@@ -110,7 +110,7 @@ impl Map {
             .collect()
     }
 
-    /// A map of this kind from its planes, in the order of [`planes`](Self::planes).
+    /// Makes a map of this kind from its planes, in the order of [`planes`](Self::planes).
     pub(crate) fn with_planes(&self, planes: Vec<Raster<f32>>) -> Result<Self, TileError> {
         Ok(match self {
             Self::Value(_) => {
@@ -126,7 +126,7 @@ impl Map {
     }
 }
 
-/// The planes red, green and blue of a color raster.
+/// The red, green and blue planes of a color raster.
 pub(crate) fn color_planes(image: &Raster<LinearRgb>) -> [Raster<f32>; 3] {
     [
         image.map(|color| color.r),
@@ -135,14 +135,14 @@ pub(crate) fn color_planes(image: &Raster<LinearRgb>) -> [Raster<f32>; 3] {
     ]
 }
 
-/// The color raster with the planes red, green and blue.
+/// Makes a color raster from its red, green and blue planes.
 pub(crate) fn color_from_planes(planes: Vec<Raster<f32>>) -> Result<Raster<LinearRgb>, TileError> {
     let [r, g, b] = exactly(planes)?;
     let rg = r.zip_map(&g, |&r, &g| [r, g])?;
     Ok(rg.zip_map(&b, |&[r, g], &b| LinearRgb::new(r, g, b))?)
 }
 
-/// The planes as an array, if there are `N`.
+/// Converts the planes to an array of exactly `N`.
 fn exactly<const N: usize>(planes: Vec<Raster<f32>>) -> Result<[Raster<f32>; N], TileError> {
     planes.try_into().map_err(|planes: Vec<_>| {
         TileError::new(TileErrorKind::Count {
@@ -153,7 +153,7 @@ fn exactly<const N: usize>(planes: Vec<Raster<f32>>) -> Result<[Raster<f32>; N],
     })
 }
 
-/// A component of a normal as a slope; NaN if `z` is not finite.
+/// Converts a component of a normal to a slope; NaN if `z` is not finite.
 fn slope(part: f32, z: f32) -> f32 {
     if z.is_finite() {
         part / z.max(LEAST_Z)
@@ -162,7 +162,7 @@ fn slope(part: f32, z: f32) -> f32 {
     }
 }
 
-/// The unit vector along (x, y, 1), computed in `f64`, in which the squares of all slopes fit.
+/// The unit vector along (x, y, 1), computed in `f64`, where the squares of all slopes are finite.
 fn from_slopes(x: f32, y: f32) -> Normal {
     let [x, y] = [x, y].map(f64::from);
     let length = (x * x + y * y + 1.0).sqrt();
@@ -170,7 +170,7 @@ fn from_slopes(x: f32, y: f32) -> Normal {
     Normal { x, y, z }
 }
 
-/// Checks that planes are of one size, that there are any, and that all pixels are finite.
+/// Checks that there is at least one plane, that all planes have one size, and that all pixels are finite.
 pub(crate) fn check_planes(planes: &[Raster<f32>]) -> Result<[u32; 2], TileError> {
     let first = planes.first().ok_or(TileError::new(TileErrorKind::Count {
         what: "maps",
@@ -184,7 +184,7 @@ pub(crate) fn check_planes(planes: &[Raster<f32>]) -> Result<[u32; 2], TileError
     Ok(first.size())
 }
 
-/// Fails with the first pixel of a raster that is not finite.
+/// Returns an error for the first pixel of a raster that is not finite.
 pub(crate) fn check_finite(raster: &Raster<f32>) -> Result<(), TileError> {
     let bad = raster.pixels().iter().position(|value| !value.is_finite());
     bad.map_or(Ok(()), |index| {

@@ -1,18 +1,18 @@
-//! Unlike tiles that fit beside each other.
+//! Different tiles that fit next to each other.
 //!
 //! Jin-Lian Du, Song Wang and Xianhai Meng, "Wavelet and Blend maps for texture synthesis", name an optional step of
-//! their method: to "adjust the tile borders to accommodate tile meshing (if using different tiles)". The method is
-//! left open. Here all tiles get the same borders: each is put in the frame of the first one, along a cut where the two
-//! are most alike (see `cut.rs`). So every tile fits beside, above and below every other, itself included, and the
-//! pixels on both sides of a border are a piece of one texture.
+//! their method: to "adjust the tile borders to accommodate tile meshing (if using different tiles)". They leave the
+//! method open. Here all tiles get the same borders: each is put into the frame of the first tile, along a cut where
+//! the two are most similar (see `cut.rs`). So every tile fits next to, above and below every other tile and itself,
+//! and the pixels on both sides of a border are a piece of one texture.
 //!
-//! The borders are either those of the first tile, if it repeats by itself, or else its middle, which is continuous
-//! where its borders are not: then the first tile is put in the frame of itself, rolled by half, along one axis after
-//! the other, before the others are.
+//! There are two sources of the borders. If the first tile repeats by itself, they are its own borders. Otherwise they
+//! are its middle, which is continuous where its borders are not. The first tile is then put into the frame of itself
+//! rolled by half, along one axis after the other, before the other tiles are.
 //!
-//! Detail is not smoothed, shifted in level, or stretched, as a correction added to the rows would do. The quarter of
-//! the width next to the border is that of the first tile; the cut lies in the rest of the width; past the width
-//! nothing changes. All maps of a material are cut along the same line.
+//! Detail is not smoothed, shifted in level, or stretched, as it would be by a correction added to the rows. The
+//! quarter of the width next to the border is from the first tile, the cut is in the rest of the width, and beyond the
+//! width nothing changes. All maps of a material are cut along the same path.
 //!
 //! Reference: Du Jin-Lian, Wang Song and Meng Xianhai, "Wavelet and Blend maps for texture synthesis", section 5; the
 //! method is our own.
@@ -61,10 +61,10 @@ dapple_raster::named! {
     serde(default, deny_unknown_fields)
 )]
 pub struct MatchBorders {
-    /// The distance from a border within which a tile changes, in pixels: from 1 to half of a side, rounded down, and
-    /// one pixel less for [`BorderSource::Middle`]. By default 16.
+    /// Distance from a border within which a tile changes, in pixels: from 1 to half of a side, rounded down, and one
+    /// pixel less for [`BorderSource::Middle`]. 16 by default.
     pub width: u32,
-    /// The source of the pixels of all borders. By default the border of the first tile.
+    /// Source of the pixels of all borders; the border of the first tile by default.
     pub source: BorderSource,
 }
 
@@ -78,12 +78,12 @@ impl Default for MatchBorders {
 }
 
 impl MatchBorders {
-    /// The tiles with equal borders, which fit beside each other in any order.
+    /// Makes tiles with equal borders, which fit next to each other in any order.
     ///
     /// # Errors
     ///
-    /// [`TileErrorKind::Count`] if there is no tile, [`TileErrorKind::Margin`] or [`TileErrorKind::Range`] for a width
-    /// that is too large or zero, [`TileErrorKind::Raster`] if the tiles differ in size, [`TileErrorKind::NotFinite`]
+    /// [`TileErrorKind::Count`] without tiles, [`TileErrorKind::Margin`] or [`TileErrorKind::Range`] for a width that
+    /// is too large or zero, [`TileErrorKind::Raster`] if the sizes of the tiles differ, [`TileErrorKind::NotFinite`]
     /// for a pixel that is NaN or infinite.
     pub fn apply(&self, tiles: &[Raster<f32>]) -> Result<Vec<Raster<f32>>, TileError> {
         let materials: Vec<_> = tiles
@@ -94,18 +94,18 @@ impl MatchBorders {
         Ok(matched.into_iter().flatten().collect())
     }
 
-    /// Gives the tiles of several materials the same borders. All maps of a material are cut along the same line.
+    /// Makes tiles of several materials with equal borders. All maps of a material are cut along the same path.
     ///
     /// # Errors
     ///
-    /// The errors of [`apply`](Self::apply); [`TileErrorKind::Count`] too for materials without maps, or with more or
-    /// fewer than the first, and [`TileErrorKind::KindMismatch`] for maps of other kinds.
+    /// The errors of [`apply`](Self::apply); also [`TileErrorKind::Count`] if the number of maps is 0 or differs from
+    /// the first material, and [`TileErrorKind::KindMismatch`] if the kinds of maps differ.
     pub fn apply_maps(&self, tiles: &[Vec<Map>]) -> Result<Vec<Vec<Map>>, TileError> {
         self.apply_maps_cancellable(tiles, &|| false)
     }
 
-    /// The tiles of [`apply_maps`](Self::apply_maps), unless `is_cancelled` returns true, which is called for each axis of
-    /// each tile.
+    /// Makes the tiles of [`apply_maps`](Self::apply_maps), unless `is_cancelled` returns true. It is called for each
+    /// axis of each tile.
     ///
     /// # Errors
     ///
@@ -122,14 +122,15 @@ impl MatchBorders {
             .collect()
     }
 
-    /// Maps of `size` pixels from pixel `first` of the plane, which is covered with the tiles in random order.
+    /// Renders maps of `size` pixels, starting at pixel `first` of a plane that is covered with the tiles in random
+    /// order.
     ///
-    /// A window is the crop of the whole, and a map of whole tiles repeats. Tile `[0, 0]` begins in pixel `[0, 0]` of the
-    /// plane. Past the largest `i64` the plane goes on with the smallest, in the middle of a tile.
+    /// A window equals the crop of the whole, and a map of whole tiles repeats. Tile `[0, 0]` starts at pixel `[0, 0]`
+    /// of the plane. Past the largest `i64`, coordinates wrap around to the smallest, in the middle of a tile.
     ///
     /// # Errors
     ///
-    /// The errors of [`apply_maps`](Self::apply_maps); [`TileErrorKind::Raster`] too if `size` is empty or too large.
+    /// The errors of [`apply_maps`](Self::apply_maps); also [`TileErrorKind::Raster`] if `size` is empty or too large.
     pub fn render(
         &self,
         tiles: &[Vec<Map>],
@@ -146,7 +147,7 @@ impl MatchBorders {
             let bits = CellHash::new(seed, [rows[row].copy])
                 .axis(columns[column].copy)
                 .at(0);
-            // The upper half of the product of a number below 1 and the number of tiles.
+            // Multiply a fixed-point number below 1 by the number of tiles.
             &matched[(((bits >> 32) * matched.len() as u64) >> 32) as usize]
         };
         let planes = 0..matched[0].len();
@@ -180,13 +181,13 @@ impl MatchBorders {
         Ok([donor].into_iter().chain(others).collect())
     }
 
-    /// Checks that the width is not zero, and that the two borders, or the seam of the rolled tile, keep their
-    /// distance.
+    /// Checks that the width is at least 1, and that the changed borders overlap neither each other nor the seam of the
+    /// rolled tile.
     fn check_width(&self, size: [u32; 2]) -> Result<(), TileError> {
         for length in size {
             let most = match self.source {
                 BorderSource::Border => length / 2,
-                // The rolled tile has its seam in the middle, whose nearer pixel is this far from a border.
+                // The rolled tile has its seam in the middle. The nearer pixel of the seam is this far from a border.
                 BorderSource::Middle => (length / 2).saturating_sub(1),
             };
             if self.width > most {
@@ -200,7 +201,7 @@ impl MatchBorders {
         TileError::check(self.width >= 1, "width", self.width.into(), "at least 1")
     }
 
-    /// The tile with the strip along its middle at its borders, where it is continuous.
+    /// Makes a tile whose borders are the middle of the given tile, where it is continuous.
     fn with_middle_at_borders(
         &self,
         tile: &[Raster<f32>],
@@ -216,7 +217,7 @@ impl MatchBorders {
         })
     }
 
-    /// The frame: a quarter of the width, and at least a pixel, is the first tile's.
+    /// The frame: a quarter of the width, at least one pixel, belongs to the first tile.
     fn frame(&self) -> Frame {
         let whole = self.width.div_ceil(4);
         Frame {

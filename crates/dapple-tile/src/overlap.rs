@@ -1,10 +1,10 @@
-//! The overlap of the two ends of rows.
+//! The overlap of the two ends of a row.
 
 use crate::crossfade::Pair;
 use crate::{Crossfade, TileError, TileErrorKind};
 use dapple_raster::Raster;
 
-/// Checks that a margin has a pixel, and at most half of a side along which the planes are to repeat.
+/// Checks that a margin is at least one pixel, and at most half of each side that repeats.
 pub(crate) fn check_margin(
     planes: &[Raster<f32>],
     margin: u32,
@@ -33,7 +33,7 @@ pub(crate) fn ends(plane: &Raster<f32>, margin: u32) -> Result<[Raster<f32>; 2],
     Ok([plane.crop([0, 0], size)?, last])
 }
 
-/// Mixes the last columns of the planes into the first, and drops the last.
+/// Blends the last columns of the planes into the first ones, and drops the last ones.
 ///
 /// The weights, from 0 to 1, are those of the first columns; their width is the margin.
 pub(crate) fn overlap(
@@ -56,7 +56,7 @@ pub(crate) fn overlap(
         .collect()
 }
 
-/// Joins the mixed columns and those that do not overlap.
+/// Joins the blended columns and the columns without overlap.
 fn join(mixed: &Raster<f32>, plane: &Raster<f32>) -> Result<Raster<f32>, TileError> {
     let margin = mixed.width();
     let rest = margin as usize..(plane.width() - margin) as usize;

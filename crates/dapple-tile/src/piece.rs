@@ -1,4 +1,4 @@
-//! The pieces of copies of a tile along a line of a map, and maps that are covered with them.
+//! Pieces of copies of a tile along an axis of a map, and maps that are covered with them.
 
 use crate::TileError;
 use dapple_raster::Raster;
@@ -6,17 +6,17 @@ use dapple_raster::Raster;
 /// A run of pixels of a copy of a tile, along one axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Piece {
-    /// The number of the copy; copy 0 begins in pixel 0 of the plane.
+    /// Index of the copy; copy 0 starts at pixel 0 of the plane.
     pub(crate) copy: i64,
-    /// The first pixel of the run, counted from the beginning of the copy.
+    /// First pixel of the run, relative to the start of the copy.
     pub(crate) from: u32,
-    /// The number of pixels.
+    /// Number of pixels.
     pub(crate) count: u32,
 }
 
-/// The pieces of copies, `side` pixels long, that cover the pixels `first..first + length` of the plane.
+/// The pieces of copies of `side` pixels that cover the pixels `first..first + length` of the plane.
 ///
-/// Past the largest `i64` the plane goes on with the smallest, in the middle of a copy.
+/// Past the largest `i64`, coordinates wrap around to the smallest, in the middle of a copy.
 pub(crate) fn pieces(first: i64, length: u32, side: u32) -> Vec<Piece> {
     let mut pieces = Vec::new();
     let mut done = 0;
@@ -36,7 +36,7 @@ pub(crate) fn pieces(first: i64, length: u32, side: u32) -> Vec<Piece> {
     pieces
 }
 
-/// A map that is covered with pieces of copies, one of them for each column and row of pieces.
+/// Makes a map that is covered with pieces of copies, one for each column and row of pieces.
 pub(crate) fn lay<'a>(
     [columns, rows]: [&[Piece]; 2],
     copy: impl Fn([usize; 2]) -> &'a Raster<f32> + Sync,

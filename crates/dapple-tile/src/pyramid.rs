@@ -1,14 +1,14 @@
-//! Blending in bands, with shares that are sharper where details are finer.
+//! Blending in bands, with sharper transitions for finer detail.
 //!
-//! A transition that is wide enough for the large features of two textures blurs their fine details into each other,
-//! and one that is narrow enough for the details cuts the large features. Decomposed into bands, the textures can have
-//! a transition of its own width for each.
+//! A transition that is wide enough for the large features of two textures blurs their fine details into each other. A
+//! transition that is narrow enough for the details cuts the large features. If the textures are decomposed into bands,
+//! the transition can have a different width in each band.
 //!
 //! Bartlomiej Wronski, "GPU-Friendly Laplacian Texture Blending", Journal of Computer Graphics Techniques 14(1), 2025
-//! (arXiv:2502.13945), blends the levels of a Laplacian pyramid by masks that sharpen toward the fine ones. Here the
-//! bands are those of the quadratic spline filter of `dapple-wavelet`, the shares are halved by the same filter, and the
-//! sharpening is a power: in the band of level `l`, counted from 0 for the finest, the shares `w` become
-//! `w^p / Σ w^p` with `p = 1 + sharpness · (levels - l) / levels`. The coarse rest is mixed by `p = 1`.
+//! (arXiv:2502.13945), blends the levels of a Laplacian pyramid by masks that are sharper at finer levels. Here the
+//! bands are those of the quadratic spline filter of `dapple-wavelet`, and the shares are halved by the same filter.
+//! The sharpening is a power: in the band of level `l`, counted from 0 for the finest, the shares `w` become `w^p / Σ
+//! w^p` with `p = 1 + sharpness · (levels - l) / levels`. The coarse rest is blended with `p = 1`.
 
 use crate::TileError;
 use crate::blend::linear;
@@ -16,7 +16,7 @@ use crate::weighting::{normalize, zip};
 use dapple_raster::Raster;
 use dapple_wavelet::{Bands, Border, SplineFilter};
 
-/// The weighted mean in bands.
+/// Options of a weighted mean in bands.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -24,13 +24,13 @@ use dapple_wavelet::{Bands, Border, SplineFilter};
     serde(default, deny_unknown_fields)
 )]
 pub struct Pyramid {
-    /// The number of bands, at most 30. By default 4; 0 is the plain mean.
+    /// Number of bands, at most 30; 4 by default. 0 is the plain mean.
     pub levels: u32,
-    /// The sharpness of the transition of the finest band, at least 0: its shares are taken to the power of `1 +
-    /// sharpness`. At 0 the result is nearly the plain mean. By default 8.
+    /// Sharpness of the transition of the finest band, at least 0; 8 by default. Its shares are raised to the power
+    /// `1 + sharpness`. At 0 the result is nearly the plain mean.
     pub sharpness: f64,
-    /// The extension past the edges, along x and y. By default mirrored, for any side longer than 2^(levels - 1)
-    /// pixels; use periodic for tiles whose weights repeat too, with sides that are multiples of 2^levels.
+    /// Extension past the edges, along x and y. Mirrored by default, for sides longer than 2^(levels - 1) pixels. Use
+    /// periodic borders for tiles whose weights also repeat, with sides that are multiples of 2^levels.
     pub borders: [Border; 2],
 }
 
@@ -45,7 +45,7 @@ impl Default for Pyramid {
 }
 
 impl Pyramid {
-    /// The shares of each band, finest first and the coarse rest last, from those of the pixels.
+    /// The shares of each band, finest first and the coarse rest last, from the shares of the pixels.
     pub(crate) fn shares(
         &self,
         finest: Vec<Raster<f32>>,
@@ -72,14 +72,14 @@ impl Pyramid {
         Ok(bands)
     }
 
-    /// The planes of all layers, mixed by the shares of each band.
+    /// Blends the planes of all layers by the shares of each band.
     pub(crate) fn mix(
         &self,
         planes: &[Raster<f32>],
         shares: &[Vec<Raster<f32>>],
     ) -> Result<Raster<f32>, TileError> {
         let filter = SplineFilter::default();
-        // The bands of each layer, rearranged as the layers of each band.
+        // Group the bands of all layers by band.
         let mut bands = vec![Vec::new(); shares.len()];
         for plane in planes {
             let Bands { details, coarse } = filter.analyze(plane, self.levels, self.borders)?;
@@ -91,19 +91,20 @@ impl Pyramid {
         let mut details: Vec<_> = mixed
             .map(|(layers, shares)| linear(layers, shares))
             .collect::<Result<_, _>>()?;
-        // `shares` has one more than there are levels.
+        // The last one is the coarse rest: `shares` has one element more than there are levels.
         let coarse = details.swap_remove(self.levels as usize);
         Ok(filter.synthesize(&Bands { details, coarse }, self.borders)?)
     }
 }
 
-/// Shares to a power, normalized to a sum of 1. Filters may have left some a little below 0; they count as 0.
+/// Raises shares to a power, and normalizes them to a sum of 1. Slightly negative shares, which filters may cause,
+/// count as 0.
 fn sharpen(shares: &[Raster<f32>], power: f64) -> Result<Vec<Raster<f32>>, TileError> {
     let mut most = shares[0].clone();
     for shares in &shares[1..] {
         most = zip(&most, shares, |most, share| share.max(*most))?;
     }
-    // Relative to the largest, so that the powers of at least one of them do not underflow.
+    // Divide by the largest share, so that the power of at least one does not underflow.
     let power_of = |share: &f32, most: &f32| {
         let part = f64::from(share.max(0.0)) / f64::from(*most);
         libm::pow(part, power) as f32

@@ -1,12 +1,12 @@
-//! Values replaced by their ranks, so that a threshold covers its share of the area.
+//! Histogram equalization by ranks, so that a threshold covers its share of the area.
 //!
-//! A mask that is stretched from its smallest to its largest value covers hardly anything at a low threshold and almost
-//! everything at a high one, since its values crowd in the middle. Ranks are spread evenly by construction: this is
-//! histogram equalization without bins. Values only pass through a growing function, so that a seamless raster stays
+//! A mask that is only stretched to its range covers hardly anything at a low threshold, and almost everything at a
+//! high one, since its values are concentrated in the middle. Ranks are evenly distributed by construction: this is
+//! histogram equalization without bins. Values are mapped by an increasing function, so a seamless raster stays
 //! seamless.
 //!
-//! Equal values are ordered by a hash of their place. They scatter over the places where they occur, and the share
-//! stays exact even for a raster of a few gray levels.
+//! Equal values are ordered by a hash of their position. So their ranks are scattered over the area where they occur,
+//! and the share is exact even for a raster of a few gray levels.
 //!
 //! Reference: our own.
 
@@ -15,10 +15,10 @@ use crate::map::check_finite;
 use dapple_hash::{Seed, hash2};
 use dapple_raster::{Raster, parallel};
 
-/// The raster with every value replaced by `(rank + ½) / n`, where `rank` counts from 0 and `n` is the number of pixels.
+/// Replaces every value by `(rank + ½) / n`, where `rank` counts from 0 and `n` is the number of pixels.
 ///
-/// The values lie between 0 and 1, and the part of all pixels that lie below a threshold `t` is `t`: exactly where
-/// `t · n` is whole and `n` is at most 2^23, and else to one pixel or 2^-24, whichever is more.
+/// The values are between 0 and 1, and the share of pixels below a threshold `t` is `t`. It is exact if `t · n` is an
+/// integer and `n` is at most 2^23, and otherwise within one pixel or 2^-24, whichever is more.
 ///
 /// This turns any raster into a blend mask: a [`BlendMap`](crate::BlendMap), a height, or noise of any kind.
 ///
@@ -51,8 +51,8 @@ pub fn rank_equalize(raster: &Raster<f32>) -> Result<Raster<f32>, TileError> {
     Ok(ranks)
 }
 
-/// A sort key for each pixel: the value as a whole number of the same order, the hash of the place, and, in the lowest bits,
-/// the pixel's index. No two are equal.
+/// A unique sort key for each pixel, from high to low bits: the value as an integer in the same order, the hash of the
+/// position, and the index of the pixel.
 fn keys(raster: &Raster<f32>) -> Result<Raster<u128>, TileError> {
     const PLACES: Seed = Seed(0).child("rank", 0);
     let width = raster.width();
@@ -66,9 +66,9 @@ fn keys(raster: &Raster<f32>) -> Result<Raster<u128>, TileError> {
     })?)
 }
 
-/// Whole numbers in the order of the values; the two zeros are one.
+/// Converts values to integers in the same order; both zeros become one integer.
 fn ordered_bits(value: f32) -> u32 {
-    // A negative zero becomes a positive one.
+    // Adding zero turns a negative zero into a positive one.
     let bits = (value + 0.0).to_bits();
     let sign = 1 << 31;
     if bits & sign == 0 { bits | sign } else { !bits }
@@ -82,7 +82,7 @@ mod tests {
     use dapple_raster::Raster;
     use proptest::prelude::*;
 
-    /// Noise that crowds around ½, as sums of random numbers do.
+    /// Noise that is concentrated around ½, like sums of random numbers.
     fn bell(size: [u32; 2], seed: u64) -> Raster<f32> {
         Raster::from_fn(size, |column, row| {
             let cell = [column.into(), row.into()];

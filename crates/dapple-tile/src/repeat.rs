@@ -1,12 +1,12 @@
 //! Repetition of a tile over a map of any size.
 //!
-//! Every row is the first period, copied over and over in pieces that double, at the speed of copying memory. A window
-//! of a large map can be filled without the rest of it, and equals its crop.
+//! Every row starts with one period, which is copied in pieces of doubling length, at the speed of copying memory. A
+//! window of a large map can be filled without the rest of it, and equals its crop.
 
 use crate::TileError;
 use dapple_raster::{Raster, RasterViewMut, Wrap};
 
-/// A map of `size` pixels that is covered with copies of a tile, the first of them in the corner at the top left.
+/// Makes a map of `size` pixels covered with copies of a tile, starting at the top left corner.
 ///
 /// # Errors
 ///
@@ -26,8 +26,8 @@ pub fn repeat<T: Copy + Send + Sync>(
     tile: &Raster<T>,
     size: [u32; 2],
 ) -> Result<Raster<T>, TileError> {
-    // The first rows, as many as the tile has, are whole periods of the following ones. The size is checked before any
-    // memory is allocated.
+    // Fill the first rows, up to the height of the tile; the following rows are copies of them. The size is checked
+    // before memory is allocated.
     let n_rows = size[1].min(tile.height());
     Raster::<()>::filled(size, ())?;
     let mut first = Raster::filled([size[0], n_rows], tile.pixels()[0])?;
@@ -41,10 +41,10 @@ pub fn repeat<T: Copy + Send + Sync>(
     Ok(Raster::from_vec(size, pixels)?)
 }
 
-/// Covers the caller's memory with copies of a tile, on all cores where the feature `rayon` is on.
+/// Covers `out` with copies of a tile, in parallel with the feature `rayon`.
 ///
-/// The pixel in column c and row r becomes the tile's pixel `first + [c, r]`, modulo its size: so a window of a large
-/// map is filled as the whole would be.
+/// The pixel in column c and row r becomes the tile's pixel `first + [c, r]`, modulo its size. So a window of a large
+/// map is filled like the whole.
 pub fn repeat_into<T: Copy + Send + Sync>(
     tile: &Raster<T>,
     first: [i64; 2],
@@ -60,10 +60,10 @@ pub fn repeat_into<T: Copy + Send + Sync>(
     });
 }
 
-/// The number of rows that a thread fills at a time.
+/// Number of rows that a thread fills at a time.
 const BAND_ROWS: u32 = 64;
 
-/// Fills a row with periods of the tile's row, which begins at pixel `first`.
+/// Fills a row with periods of the tile's row, starting at pixel `first` of the tile.
 fn repeat_row<T: Copy>(from: &[T], first: usize, to: &mut [T]) {
     let end = (from.len() - first).min(to.len());
     to[..end].copy_from_slice(&from[first..first + end]);

@@ -1,14 +1,14 @@
 //! The periodic Fourier projector: a plane halved and doubled again with sines and cosines.
 //!
 //! Du, Wang and Meng name sines as other functions for a tile, and leave open how sines are refined. Here a coarse line
-//! of `m` samples stands for the function with these samples that consists of the sines and cosines below the frequency
-//! `m/2` and, for an even `m`, of the cosine at `m/2` that has its crests and troughs on the samples. A line is halved
-//! by finding the nearest such function, by least squares over the pixels, and sampling it. It is doubled by evaluating
-//! that function at the pixels. A doubled line that is halved again is the same, and so is the function.
+//! of `m` samples represents the function that has these samples and consists of the sines and cosines below the
+//! frequency `m/2`. For an even `m`, it also has the cosine at `m/2` whose extremes are at the samples. To halve a
+//! line, the nearest such function is fitted by least squares over the pixels, and sampled. To double a line, the
+//! function is evaluated at the pixels. Halving a doubled line restores the line and its function.
 //!
-//! A line that does not repeat is continued by its mirror image, with its end pixels twice; its functions are the
-//! cosines of the discrete cosine transform. Coarse samples then lie in the middles of the parts that they stand for,
-//! whatever the phase: only there they are mirrored as well.
+//! A line that does not repeat is extended by its mirror image, with repeated end pixels. Its functions are the cosines
+//! of the discrete cosine transform. Coarse samples are then at the centers of the pixels that they replace, whatever
+//! the phase, since only there the samples are mirrored as well.
 
 use crate::TileError;
 use crate::fourier::{BAND, Element, Fourier, map_columns, times};
@@ -16,21 +16,21 @@ use core::f64::consts::TAU;
 use dapple_raster::Raster;
 use dapple_wavelet::Phase;
 
-/// The lengths of a line before and after, and the position of the coarse samples.
+/// Lengths of a line before and after halving, and the position of the coarse samples.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Axis {
-    /// The number of pixels.
+    /// Number of pixels.
     pub(crate) fine: u32,
-    /// The number of coarse samples, fewer than there are pixels.
+    /// Number of coarse samples, fewer than pixels.
     pub(crate) coarse: u32,
-    /// Whether the line repeats, or is mirrored.
+    /// Whether the line repeats; otherwise it is mirrored.
     pub(crate) repeats: bool,
-    /// The place of the first coarse sample, if the line repeats: in the middle of the pixels that become one, or one
-    /// fine pixel earlier for each halving.
+    /// Position of the first coarse sample, if the line repeats: at the center of the pixels that become one sample, or
+    /// one fine pixel earlier for each halving.
     pub(crate) phase: Phase,
 }
 
-/// Samples the nearest functions of the columns and rows of a plane.
+/// Fits functions to the columns and rows of a plane, and samples them.
 pub(crate) fn coarse(plane: &Raster<f32>, axes: [Axis; 2]) -> Result<Raster<f32>, TileError> {
     change(plane, axes.map(|axis| axis.coarse), |axis| {
         let sampling = Sampling::new(&axes[axis]);
@@ -46,7 +46,7 @@ pub(crate) fn refine(plane: &Raster<f32>, axes: [Axis; 2]) -> Result<Raster<f32>
     })
 }
 
-/// Changes all columns and then all rows.
+/// Applies a function to all columns, and then to all rows.
 fn change<C: Fn(Vec<Element>) -> Vec<Element> + Sync>(
     plane: &Raster<f32>,
     size: [u32; 2],
@@ -59,13 +59,14 @@ fn change<C: Fn(Vec<Element>) -> Vec<Element> + Sync>(
     Ok(Raster::from_vec(size, pixels)?)
 }
 
-/// The two transforms of a line.
+/// The transforms of a fine and a coarse line.
 struct Sampling {
     fine: Fourier,
     coarse: Fourier,
-    /// Whether the lines are mirrored, so that the transforms are twice as long.
+    /// Whether lines are mirrored, which doubles the length of the transforms.
     mirrored: bool,
-    /// For each frequency up to the coarse line's last: its turn from the first pixel to the first coarse sample.
+    /// Phase from the first pixel to the first coarse sample, as cosine and sine, for each frequency up to the coarse
+    /// line's last.
     turns: Vec<[f64; 2]>,
 }
 
@@ -91,7 +92,7 @@ impl Sampling {
         }
     }
 
-    /// Samples the nearest functions.
+    /// Fits the nearest functions, and samples them.
     fn coarse(&self, mut line: Vec<Element>) -> Vec<Element> {
         let [n_fine, n_coarse] = [self.fine.length(), self.coarse.length()];
         self.mirror(&mut line);
@@ -102,7 +103,7 @@ impl Sampling {
             let [cos, sin] = [cos * scale, sin * scale];
             add(&mut spectrum[k], times(&line[k], [cos, sin]));
             if k > 0 {
-                // At the highest frequency of an even line, this is the same place.
+                // At the highest frequency of an even line, both indices are the same.
                 add(
                     &mut spectrum[n_coarse - k],
                     times(&line[n_fine - k], [cos, -sin]),
@@ -120,7 +121,7 @@ impl Sampling {
         self.coarse.forward(&mut line);
         let mut spectrum = vec![[0.0; BAND]; n_fine];
         for (k, &[cos, sin]) in self.turns.iter().enumerate() {
-            // The highest frequency of an even line is shared by both signs.
+            // The highest frequency of an even line is split between both signs.
             let share = if 2 * k == n_coarse { 0.5 } else { 1.0 };
             let [cos, sin] = [cos, sin].map(|part| part * share / n_coarse as f64);
             spectrum[k] = times(&line[k], [cos, -sin]);
@@ -141,7 +142,7 @@ impl Sampling {
         }
     }
 
-    /// Removes the mirror image again.
+    /// Removes the mirror image.
     fn halve_mirrored(&self, mut line: Vec<Element>) -> Vec<Element> {
         if self.mirrored {
             line.truncate(line.len() / 2);

@@ -1,25 +1,32 @@
 //! Weighting: the shares of layers at every pixel.
 //!
-//! Plain weights make slow transitions in which both textures are half transparent. Heights let the higher stones of
-//! one layer reach into the other, and a blend tile cuts the transition along its own features.
+//! Plain weights give gradual transitions in which both textures are half transparent. With heights, the higher stones
+//! of one layer extend into the other. A blend tile cuts the transition along its own features.
 //!
-//! * [`Weighting::Height`]: with weights `α` that sum to 1 and heights `h`, a layer has the level
-//!   `l = h + α - max(1 / 4α - 1, 0)`, and `w = α · max(l - (top - depth), 0)`, where `top` is the largest level, then
-//!   divided by the sum of all `w`. This is the usual height blend of engines with two departures, so that a layer fades
-//!   in from nothing: the factor `α`, and that layers of less than a quarter are lowered, the deeper the less there is of
-//!   them. Otherwise a high layer of no weight to speak of would be the top and push out all others. Only differences of
-//!   heights count, so that they may lie in any range; the more they differ, the less of a layer is enough.
-//! * [`Weighting::Mask`]: with the thresholds `T(i) = α(1) + … + α(i)` and a blend tile `m`, `w(i) = s(T(i)) - s(T(i-1))`
-//!   with `s(T) = clamp((T - m) / 2r + ½, 0, 1)` and half the width `r = min(1 / (2 gain), T, 1 - T)` of a ramp, or 0
-//!   for the largest gain. The ramp gets narrower near 0 and 1, where it would reach past the values of the tile. So
-//!   every layer has exactly its share of the area for every gain, if the values of the tile are spread evenly, as those
-//!   of [`rank_equalize`](crate::rank_equalize) are; and a layer without weight is nowhere.
+//! * [`Weighting::Height`]: a layer with weight `α` (weights sum to 1) and height `h` has the level
+//!   `l = h + α - max(1 / 4α - 1, 0)`. Its share is `w = α · max(l - (top - depth), 0)`, where `top` is the largest
+//! level,
+//!   divided by the sum of all `w`. This is the usual height blend of engines with two changes, which let a layer fade
+//! in
+//!   from nothing: the factor `α`, and a lower level for layers with weights below ¼. The smaller the weight, the lower
+//!   the level. Without this, a high layer of negligible weight would be the top and displace all others. Only
+//!   differences of heights matter, so heights may have any range. The larger the differences, the smaller the weight
+//! at
+//!   which a layer becomes visible.
+//! * [`Weighting::Mask`]: with the thresholds `T(i) = α(1) + … + α(i)` and a blend tile `m`, `w(i) = s(T(i)) -
+//! s(T(i-1))`
+//!   with `s(T) = clamp((T - m) / 2r + ½, 0, 1)`. Half of the width of the ramp is `r = min(1 / (2 gain), T, 1 - T)`,
+//! or 0
+//!   for the largest gain. The ramp is narrower near 0 and 1, where it would exceed the values of the tile. So every
+//! layer
+//!   has exactly its share of the area for every gain, if the values of the tile are evenly distributed, like those of
+//!   [`rank_equalize`](crate::rank_equalize). A layer without weight has no area.
 
 use crate::map::check_finite;
 use crate::{Layer, TileError, TileErrorKind};
 use dapple_raster::Raster;
 
-/// The rule that turns the weights of layers into their shares. The shares of a pixel sum to 1.
+/// The rule that converts the weights of layers to their shares. The shares of a pixel sum to 1.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/weighting.md"))]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -29,21 +36,21 @@ use dapple_raster::Raster;
     serde(rename_all = "snake_case", deny_unknown_fields)
 )]
 pub enum Weighting {
-    /// Each weight divided by the sum of all.
+    /// Each weight divided by the sum of all weights.
     #[default]
     Given,
-    /// By height: the higher layer is visible. A layer without a height has that of the blend tile.
+    /// By height: the higher layer is visible. The blend tile is the height of layers without one.
     Height {
-        /// The difference of heights over which layers mix, above 0, for heights from 0 to 1: 0.1 is crisp, 0.3 soft.
-        /// With such heights and up to four layers, a layer with less than 1/16 of the weights is invisible, for depths
-        /// up to 1.
+        /// Difference of heights over which layers mix, above 0, for heights from 0 to 1: 0.1 is crisp, 0.3 soft. With
+        /// such heights and up to four layers, a layer with less than 1/16 of the weights is invisible, for depths up
+        /// to 1.
         depth: f64,
     },
-    /// The blend tile is cut at thresholds. The first layer lies where the tile is lowest: in the cracks of a
+    /// The blend tile is divided at thresholds. The first layer is where the tile is lowest: in the cracks of a
     /// [`BlendMap`](crate::BlendMap).
     Mask {
-        /// One over the width of the transition, in values of the tile, above 0 and at most 1e9: 1 is soft, 4 and more
-        /// show the features of the tile, and 1e9 makes hard edges, without any transition.
+        /// Reciprocal of the width of the transition, in values of the tile, above 0 and at most 1e9. 1 is soft, 4 and
+        /// more show the features of the tile, and 1e9 gives hard edges without any transition.
         gain: f64,
     },
 }
@@ -84,7 +91,7 @@ impl Weighting {
     }
 }
 
-/// Weights divided by their sum, which must not be zero anywhere.
+/// Divides weights by their sum, which must be above zero everywhere.
 pub(crate) fn normalize(weights: &[&Raster<f32>]) -> Result<Vec<Raster<f32>>, TileError> {
     let sums = sums(weights)?;
     let share = |&weight: &f32, sum: &f64| (f64::from(weight) / sum) as f32;
@@ -92,7 +99,7 @@ pub(crate) fn normalize(weights: &[&Raster<f32>]) -> Result<Vec<Raster<f32>>, Ti
     shares.collect()
 }
 
-/// The sums of the weights, added in the order of the layers. None is zero.
+/// The sums of the weights, added in the order of the layers. They must be above zero.
 fn sums(weights: &[&Raster<f32>]) -> Result<Raster<f64>, TileError> {
     let first = weights.first().ok_or(TileError::new(TileErrorKind::Count {
         what: "layers",
@@ -108,7 +115,7 @@ fn sums(weights: &[&Raster<f32>]) -> Result<Raster<f64>, TileError> {
     Ok(sums)
 }
 
-/// The height of each layer, or the blend tile.
+/// The height of each layer; the blend tile for layers without one.
 fn heights<'a>(
     layers: &[Layer<'a>],
     tile: Option<&'a Raster<f32>>,
@@ -140,7 +147,7 @@ fn by_height(
     for levels in &levels[1..] {
         top = zip(&top, levels, |top, level| level.max(*top))?;
     }
-    // Over the depth, so that the highest layer has 1 for the smallest of depths.
+    // Divide by the depth first, so that the highest layer has nearness 1 even for the smallest depth.
     let nearness = |level: &f64, top: &f64| (1.0 - (top - level) / depth).max(0.0);
     let product = |&weight: &f32, nearness: &f64| (f64::from(weight) * nearness) as f32;
     let shares: Vec<Raster<f32>> = weights
@@ -151,7 +158,7 @@ fn by_height(
     normalize(&shares.iter().collect::<Vec<_>>())
 }
 
-/// The level of a layer for the shares by height: the highest is visible, and a layer without weight is below all
+/// The level of a layer for the shares by height. The highest layer is visible, and a layer without weight is below all
 /// others.
 fn level(&weight: &f32, &height: &f32) -> f64 {
     let weight = f64::from(weight);
@@ -190,7 +197,7 @@ fn by_mask(
     let mut shares = Vec::with_capacity(weights.len());
     for weights in weights {
         part = zip(&part, weights, |part, &weight| part + f64::from(weight))?;
-        // These sums are computed like the sums of all, so that the last threshold is 1 to the last bit.
+        // These sums are computed in the same way as the sums of all weights, so the last threshold is exactly 1.
         let thresholds = zip(&part, &sums, |part, sum| part / sum)?;
         let up_to = zip(&thresholds, mask, |&threshold, &mask| {
             step(threshold, mask, half_width)
@@ -216,7 +223,7 @@ fn step(threshold: f64, mask: f32, half_width: f64) -> f64 {
     }
 }
 
-/// Combines two rasters of the same size, on all cores where the feature `rayon` is on.
+/// Combines two rasters of the same size, in parallel with the feature `rayon`.
 pub(crate) fn zip<A: Sync, B: Sync, C: Send>(
     a: &Raster<A>,
     b: &Raster<B>,
