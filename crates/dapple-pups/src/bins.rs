@@ -2,7 +2,7 @@
 //!
 //! Every bin lists the instances whose supports intersect it, in the order of summation. So the time for a position
 //! does not depend on the number of points. The grid covers the domain. On an axis that does not wrap, the bins at the
-//! border extend to the farthest evaluated positions.
+//! border extend to the limits of the evaluated positions.
 //!
 //! With many points, evaluation waits for memory, so the data is compact and local. A bin has 16 bytes. Its numbers
 //! refer to records, which are sorted by strips of bins and by column. So the candidates of a position are near each
@@ -99,7 +99,7 @@ pub(crate) struct Bins {
 impl Bins {
     pub(crate) fn new(net: &Net) -> Self {
         let size = net.domain.size;
-        // Choose square bins, as many as there should be for the instances.
+        // Choose the side of square bins by the wanted number of bins.
         let side = (size.x * size.y / (net.instances.len() as f64 * BINS_PER_INSTANCE)).sqrt();
         let count = |axis: usize| (size[axis] / side).ceil().clamp(1.0, BINS_LIMIT);
         let counts = DVec2::new(count(0), count(1));

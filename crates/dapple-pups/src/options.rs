@@ -63,16 +63,16 @@ pub(crate) fn is_never(fade: &f64) -> bool {
     *fade == 0.0
 }
 
-/// Orientations of the control points, with the strength by which they shift the weights (equation 4).
+/// Orientations of the control points, and the strength of their shift of the weights (equation 4).
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Orientation {
     /// Strength ε, in `[0, 1)`; 0.5 in the paper.
     ///
     /// Below ½ the gradient of the texture is continuous. From ½ on, the texture has a kink at the border of a support
-    /// where the orientation points directly away from the control point: there the weight falls like `(1 − p)^(2 −
-    /// 2ε)`. Near 1, weights on the opposite side almost vanish, and so does the denominator of equation 3. Where it is
-    /// below 1e-30, the value of the nearest control point is used.
+    /// where the orientation points directly away from the control point. There the weight falls like
+    /// `(1 − p)^(2 − 2ε)`. Near 1, weights on the opposite side almost vanish, and so does the denominator of equation 3.
+    /// Where it is below 1e-30, the value of the nearest control point is used.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/strength.md"))]
     pub strength: f64,

@@ -49,7 +49,7 @@ impl Pups {
     ///
     /// # Errors
     ///
-    /// The errors of [`new`](Self::new), and [`Graph`](crate::PupsErrorKind::Graph) if there is no triangulation.
+    /// The errors of [`new`](Self::new), and [`Graph`](crate::PupsErrorKind::Graph) if the triangulation fails.
     pub fn delaunay_with(points: &PointSet, options: PupsOptions) -> Result<Self, PupsError> {
         Self::delaunay_cancellable(points, options, &|| false)
     }

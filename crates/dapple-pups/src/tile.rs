@@ -30,7 +30,7 @@ pub(crate) struct Tiles {
     n_blocks: usize,
     /// A bit for each axis of the first block.
     axes: u32,
-    /// Tiles sorted by their number of axes. Each number has a section with room for all tiles.
+    /// Tiles sorted by their number of axes. Each number has a section that fits all tiles.
     sorted: Vec<Tile>,
     /// Number of tiles in each section.
     lengths: [usize; STRETCHES],

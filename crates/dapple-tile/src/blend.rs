@@ -104,8 +104,7 @@ impl Blend {
 /// # Errors
 ///
 /// * [`Count`](TileErrorKind::Count) without layers or maps, if the numbers of maps differ between layers, or if a
-/// height
-///   or a blend tile is missing
+///   height or a blend tile is missing
 /// * [`KindMismatch`](TileErrorKind::KindMismatch) if the kinds of maps differ between layers
 /// * [`Raster`](TileErrorKind::Raster) if sizes differ
 /// * [`NotFinite`](TileErrorKind::NotFinite) for pixels that are NaN or infinite

@@ -73,8 +73,7 @@ impl CornerTiles {
     /// # Errors
     ///
     /// * [`TileErrorKind::Count`] for another number of sources, and for a source whose number of maps is 0 or not that
-    /// of
-    ///   the first source
+    ///   of the first source
     /// * [`TileErrorKind::KindMismatch`] if the kinds of maps differ between sources
     /// * [`TileErrorKind::Raster`] if sizes differ
     /// * [`TileErrorKind::NotFinite`] for a pixel that is NaN or infinite
@@ -116,8 +115,8 @@ impl CornerTiles {
         Ok(Self { cuts, ..self })
     }
 
-    /// Sets the period of the corner colors along x and y, in tiles. A map of whole periods repeats. There is no period
-    /// by default.
+    /// Sets the period of the corner colors along x and y, in tiles. A map of whole periods repeats. By default
+    /// there are no periods.
     ///
     /// # Errors
     ///

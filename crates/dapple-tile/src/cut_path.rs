@@ -130,7 +130,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Computes the prices of the next row, whose band starts and ends at most one column from that of the row before.
+    /// Computes the prices of the next row, whose band starts and ends at most one column from the previous band.
     fn advance(&mut self, row: usize, band: [u32; 2]) {
         let [low, high] = band.map(|column| column as usize);
         let width = self.costs.width() as usize;

@@ -94,7 +94,7 @@ impl Disturbance {
     /// Renders maps covered with disturbed copies of the tiles of a material. All maps are shifted and cut in the same
     /// way.
     ///
-    /// Normals are blended as slopes, so those of the frozen border are unchanged only up to rounding.
+    /// Normals are blended as slopes, so normals of the frozen border are unchanged only up to rounding.
     ///
     /// # Errors
     ///

@@ -12,7 +12,7 @@
 //!     let cut = Seamless::new(Method::SoftCut(SoftCut::default()));
 //!     let tile = cut.apply(image)?;
 //!
-//!     // Measure how well it repeats, and what it has kept.
+//!     // Measure how well it repeats, and how much detail it has kept.
 //!     let report = SeamReport::beside(image, &tile, &SeamOptions::default())?;
 //!     println!("{report}");
 //!
@@ -69,8 +69,7 @@
 //! * [`CornerTiles`] takes two to four sources.
 //! * A tile that passes a report may still look bad, and one that fails may look good. Check both by eye.
 //! * Rasters are `f32`, and equations are solved in `f64`. All results have the same bits on every platform and with
-//! any
-//!   number of threads.
+//!   any number of threads.
 //! * The crate has no file formats and does not access files.
 //!
 //! # Without std

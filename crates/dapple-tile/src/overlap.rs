@@ -35,7 +35,7 @@ pub(crate) fn ends(plane: &Raster<f32>, margin: u32) -> Result<[Raster<f32>; 2],
 
 /// Blends the last columns of the planes into the first ones, and drops the last ones.
 ///
-/// The weights, from 0 to 1, are those of the first columns; their width is the margin.
+/// `weights` are the weights of the first columns, from 0 to 1; their width is the margin.
 pub(crate) fn overlap(
     planes: &[Raster<f32>],
     weights: &Raster<f64>,

@@ -7,8 +7,8 @@
 //! Bartlomiej Wronski, "GPU-Friendly Laplacian Texture Blending", Journal of Computer Graphics Techniques 14(1), 2025
 //! (arXiv:2502.13945), blends the levels of a Laplacian pyramid by masks that are sharper at finer levels. Here the
 //! bands are those of the quadratic spline filter of `dapple-wavelet`, and the shares are halved by the same filter.
-//! The sharpening is a power: in the band of level `l`, counted from 0 for the finest, the shares `w` become `w^p / Σ
-//! w^p` with `p = 1 + sharpness · (levels - l) / levels`. The coarse rest is blended with `p = 1`.
+//! The sharpening is a power: in the band of level `l`, counted from 0 for the finest, the shares `w` become
+//! `w^p / Σ w^p` with `p = 1 + sharpness · (levels - l) / levels`. The coarse rest is blended with `p = 1`.
 
 use crate::TileError;
 use crate::blend::linear;

@@ -30,7 +30,7 @@ pub enum Method {
     #[cfg_attr(doc, doc = include_str!("../docs/method-periodic.md"))]
     #[default]
     Periodic,
-    /// The periodic image with the nearest gradients to those of the image.
+    /// The periodic image whose gradients are nearest to the given image's gradients.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/method-poisson.md"))]
     Poisson(WrapGradient),
@@ -126,7 +126,7 @@ impl Seamless {
 
     /// Makes the tiles of all maps of a material, which are cut along the same paths.
     ///
-    /// Normals are processed as slopes. Where an image is reflected, its normals are those of the reflected heights.
+    /// Normals are processed as slopes. Where an image is reflected, its normals match the reflected heights.
     ///
     /// # Errors
     ///
@@ -135,8 +135,7 @@ impl Seamless {
     /// * [`NotFinite`](TileErrorKind::NotFinite) for pixels that are NaN or infinite
     /// * [`TooSmall`](TileErrorKind::TooSmall) for a side of a single pixel along an axis that repeats
     /// * [`Wavelet`](TileErrorKind::Wavelet), [`Margin`](TileErrorKind::Margin) or [`Range`](TileErrorKind::Range) for
-    /// sizes
-    ///   and options that the method does not support
+    ///   sizes and options that the method does not support
     pub fn apply_maps(&self, maps: &[Map]) -> Result<Vec<Map>, TileError> {
         let planes: Vec<_> = match self.method {
             // Center normals first: otherwise, the slope of the code for a flat normal would have another code when

@@ -109,7 +109,7 @@ pub(crate) fn turned(raster: &Raster<f32>) -> Raster<f32> {
     transpose(raster).unwrap()
 }
 
-/// Joins two rasters side by side.
+/// Joins two rasters horizontally.
 pub(crate) fn beside(left: &Raster<f32>, right: &Raster<f32>) -> Raster<f32> {
     let size = [left.width() + right.width(), left.height()];
     Raster::from_rows(size, |row| {

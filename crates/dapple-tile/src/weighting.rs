@@ -5,22 +5,17 @@
 //!
 //! * [`Weighting::Height`]: a layer with weight `α` (weights sum to 1) and height `h` has the level
 //!   `l = h + α - max(1 / 4α - 1, 0)`. Its share is `w = α · max(l - (top - depth), 0)`, where `top` is the largest
-//! level,
-//!   divided by the sum of all `w`. This is the usual height blend of engines with two changes, which let a layer fade
-//! in
-//!   from nothing: the factor `α`, and a lower level for layers with weights below ¼. The smaller the weight, the lower
-//!   the level. Without this, a high layer of negligible weight would be the top and displace all others. Only
-//!   differences of heights matter, so heights may have any range. The larger the differences, the smaller the weight
-//! at
-//!   which a layer becomes visible.
-//! * [`Weighting::Mask`]: with the thresholds `T(i) = α(1) + … + α(i)` and a blend tile `m`, `w(i) = s(T(i)) -
-//! s(T(i-1))`
-//!   with `s(T) = clamp((T - m) / 2r + ½, 0, 1)`. Half of the width of the ramp is `r = min(1 / (2 gain), T, 1 - T)`,
-//! or 0
-//!   for the largest gain. The ramp is narrower near 0 and 1, where it would exceed the values of the tile. So every
-//! layer
-//!   has exactly its share of the area for every gain, if the values of the tile are evenly distributed, like those of
-//!   [`rank_equalize`](crate::rank_equalize). A layer without weight has no area.
+//!   level, divided by the sum of all `w`. This is the usual height blend of engines with two changes, which let a
+//!   layer fade in from nothing: the factor `α`, and a lower level for layers with weights below ¼. The smaller the
+//!   weight, the lower the level. Without this, a high layer of negligible weight would be the top and displace all
+//!   others. Only differences of heights matter, so heights may have any range. The larger the differences, the smaller
+//!   the weight at which a layer becomes visible.
+//! * [`Weighting::Mask`]: with the thresholds `T(i) = α(1) + … + α(i)` and a blend tile `m`, the share is
+//!   `w(i) = s(T(i)) - s(T(i-1))` with `s(T) = clamp((T - m) / 2r + ½, 0, 1)`. Half of the width of the ramp is
+//!   `r = min(1 / (2 gain), T, 1 - T)`, or 0 for the largest gain. The ramp is narrower near 0 and 1, where it would
+//!   exceed the values of the tile. So every layer has exactly its share of the area for every gain, if the values of
+//!   the tile are evenly distributed, like those of [`rank_equalize`](crate::rank_equalize). A layer without weight has
+//!   no area.
 
 use crate::map::check_finite;
 use crate::{Layer, TileError, TileErrorKind};

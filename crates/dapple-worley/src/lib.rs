@@ -60,8 +60,8 @@
 //! # Limits
 //!
 //! * Positions are `f64`, distances `f32`, both in cells. A position is rounded down to a multiple of
-//! [`POSITION_STEP`];
-//!   it is as precise at 1e9 as at 0. Past 2^62, and for positions that are not finite, distances are NaN.
+//!   [`POSITION_STEP`]; it is as precise at 1e9 as at 0. Past 2^62, and for positions that are not finite, distances
+//!   are NaN.
 //! * Nearest points are exact for every metric: no neighbor is missed, so F1 to F4 are continuous.
 //! * One search finds at most 4 points ([`MAX_NEAREST`]).
 //! * The density is from 1/64 to 64 points per cell, clamped to 1 to 9 points in a cell by default. Minkowski's

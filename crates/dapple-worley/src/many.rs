@@ -77,7 +77,7 @@ const MOST_NEAR: usize = 1 << 4;
 /// The farther neighbors that are still to be visited.
 #[derive(Debug)]
 struct Visits {
-    /// The visits. The low bits hold the code of a neighbor; the bits from [`PLACE_SHIFT`] on hold an index in the
+    /// The visits. The low bits hold the code of a neighbor; the bits starting at [`PLACE_SHIFT`] hold an index in the
     /// group.
     list: [u32; FULL + (MOST_FAR + 1) * LANES],
     len: usize,

@@ -8,9 +8,9 @@
 //! * `m · θ / π`, with the polar angle `θ` from the north pole at +z, and `m` cells from pole to pole;
 //! * `k · r`, with the radius `r`, and `k` cells per unit.
 //!
-//! Distances are those of the basis's metric between such triples. On the equator of the sphere of radius `r`, the size
-//! of a cell is `2πr/n` by `πr/m` by `1/k`. Toward the poles cells get narrower. At a pole all azimuths meet, so the
-//! texture is not continuous there, like a map of the Earth. On the axis the azimuth is defined as 0.
+//! The distance is the basis's metric between such triples. On the equator of the sphere of radius `r`, the size of a
+//! cell is `2πr/n` by `πr/m` by `1/k`. Toward the poles cells get narrower. At a pole all azimuths meet, so the texture
+//! is not continuous there, like a map of the Earth. On the axis the azimuth is defined as 0.
 //!
 //! The gradient is transformed back to `[x, y, z]` by the derivatives of the three coordinates. The derivative of the
 //! azimuth is unbounded toward the axis. On the axis and at the center, undefined terms are left out.

@@ -127,7 +127,7 @@ impl Picture<'_> {
         render_stack(vec![(*self, bands)]);
     }
 
-    /// The coordinates of the columns, shared with the preceding picture if they are equal.
+    /// The coordinates of the columns, shared with the preceding image if they are equal.
     fn columns(&self, before: Option<(&Self, &Arc<Line>)>) -> Arc<Line> {
         match before {
             Some((before, columns)) if before.section.is_same_along(0, &self.section) => {
@@ -185,12 +185,12 @@ impl Picture<'_> {
     }
 }
 
-/// Maximum number of pictures of a stack that one thread renders together, with shared tables and candidates.
+/// Maximum number of images of a stack that one thread renders together, with shared tables and candidates.
 const STACK: usize = 16;
 
 /// Renders several pictures of one basis, frequency and window, in parallel with the feature `rayon`.
 pub(crate) fn render_stack<'a>(stack: Vec<(Picture<'a>, Vec<Output<'a>>)>) {
-    // Share the column coordinates of equal pictures.
+    // Share the column coordinates of equal images.
     let mut pictures: Vec<(Picture<'a>, Arc<Line>, Vec<Output<'a>>)> = Vec::new();
     for (picture, bands) in stack {
         let before = pictures.last();
@@ -218,7 +218,7 @@ pub(crate) fn render_stack<'a>(stack: Vec<(Picture<'a>, Vec<Output<'a>>)>) {
     });
 }
 
-/// Renders one band of several pictures. Consecutive slices of a volume are rendered together.
+/// Renders one band of several images. Consecutive slices of a volume are rendered together.
 fn render_bands(
     level: Level,
     mut bands: &[Band<'_>],
@@ -253,7 +253,7 @@ fn render_bands(
     }
 }
 
-/// A band of rows of a picture, with the coordinates of its rows and columns.
+/// A band of rows of a image, with the coordinates of its rows and columns.
 struct Band<'a> {
     picture: Picture<'a>,
     /// The first row of the band, in the window.

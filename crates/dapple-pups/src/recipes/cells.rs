@@ -50,7 +50,7 @@ impl CellsOptions {
     }
 }
 
-/// Makes cells, each with a label from 0 on and a random value in `[0, 1)`.
+/// Makes cells, each with a label (starting at 0) and a random value in `[0, 1)`.
 ///
 #[cfg_attr(doc, doc = include_str!("../../docs/cells.md"))]
 ///

@@ -10,7 +10,7 @@ use glam::DVec2;
 
 /// A texture with the value of the strongest control point's label, at every position.
 ///
-/// Its values are those of its labels only, and NaN at a position that is not finite.
+/// It has only the values of its labels, and NaN at a position that is not finite.
 ///
 /// # Examples
 ///

@@ -14,15 +14,13 @@
 //! neighboring spots in 20 000. By default no two spots merge, for these reasons:
 //!
 //! * A control point has a weight only within its support, which is its Voronoi cell scaled around the point by twice
-//! the
-//!   axis scale.
+//!   the axis scale.
 //! * Removing points makes Voronoi cells larger, never smaller. So the support of an inner point (or the center) *among
-//!   the points of its own spot alone* contains its true support, whatever other points exist.
+//!   the points of its spot alone* contains its true support, whatever other points exist.
 //! * If all these polygons of a spot are in the Voronoi cell of its center among the centers, then the spot is, too.
 //!   Voronoi cells are disjoint, so no two spots touch.
 //! * Scaling the points of a spot around its center scales the polygons with them. So a spot that does not fit is
-//! scaled
-//!   down until it does.
+//!   scaled down until it does.
 //! * Orientations and axial weights change weights within supports only, so they do not matter.
 //!
 //! If points move, the centers move, and spots are built around their new positions. At any time the spots are whole

@@ -24,7 +24,7 @@ pub(super) struct Ends {
 }
 
 impl Ends {
-    /// Counts samples before they are clamped to 0 and 1. `slopes` are those of the displayed value at 0 and at 1.
+    /// Counts samples before they are clamped to 0 and 1. `slopes` are the slopes of the displayed value at 0 and at 1.
     pub(super) fn of(samples: impl ExactSizeIterator<Item = f32>, slopes: [f32; 2]) -> Self {
         let n = samples.len() as f64;
         let [below, above] = slopes.map(|slope| ROUNDING / slope);

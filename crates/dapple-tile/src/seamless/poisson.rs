@@ -1,4 +1,4 @@
-//! The periodic image with the nearest gradients to those of the source.
+//! The periodic image whose gradients are nearest to the source's gradients.
 //!
 //! Source: the guided interpolation of Patrick Pérez, Michel Gangnet and Andrew Blake, "Poisson image editing", ACM
 //! Transactions on Graphics 22 (SIGGRAPH 2003), <https://doi.org/10.1145/882262.882269>, here without a boundary, since

@@ -87,7 +87,7 @@ impl SplineProject {
     /// * pixels that are not finite
     /// * a side that repeats and is not a multiple of `2^levels`
     /// * a side that has one pixel before the last level (or, mirrored, at the last level: samples of a spline need
-    /// two)
+    ///   two)
     /// * more than 32 levels
     ///
     /// # Examples

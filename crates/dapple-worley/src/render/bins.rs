@@ -33,7 +33,7 @@ pub(super) struct Reach {
     pub(super) columns: usize,
     /// Number of rows of bins above the tile, and the number below it.
     pub(super) halves: usize,
-    /// Largest accumulated key along the axes across the picture.
+    /// Largest accumulated key along the axes across the image.
     pub(super) key: f32,
 }
 
@@ -64,7 +64,7 @@ pub(super) struct Point<const TILES: usize> {
     pub(super) terms: [[f32; TILE]; TILES],
     /// Coordinate along the axis of the rows, in steps.
     pub(super) row: i32,
-    /// Accumulated terms along the axes across the picture.
+    /// Accumulated terms along the axes across the image.
     pub(super) across: f32,
 }
 
@@ -80,7 +80,7 @@ pub(super) struct PointLists {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Runs<'a, const TILES: usize> {
     pub(super) metric: Metric,
-    /// Whether there are axes across the picture.
+    /// Whether there are axes across the image.
     pub(super) is_deep: bool,
     /// Keys at or above this value may be wrong.
     pub(super) limit: f32,
@@ -100,7 +100,7 @@ pub(super) struct Runs<'a, const TILES: usize> {
 pub(super) struct Bins {
     /// Number of points.
     len: usize,
-    /// Coordinates of the points along the axes of the picture, in steps, in the order of the cells.
+    /// Coordinates of the points along the axes of the image, in steps, in the order of the cells.
     steps: [Vec<i32>; 2],
     /// Accumulated terms of the points along the other axes, in the order of the cells. They stay zero in the plane,
     /// since one `Bins` serves a single basis.
@@ -217,7 +217,7 @@ impl Bins {
                 let ahead = steps[axis].bitcast::<i32x16<S>>() + (corner - grid.first[axis]);
                 points[axis] = if axis == 0 { ahead + lanes } else { ahead };
             }
-            // Select the coordinate along the rows, and accumulate the terms of the axes across the picture.
+            // Select the coordinate along the rows, and accumulate the terms of the axes across the image.
             let [x, mut rows, ..] = points;
             let is_deep = lattice.n_axes > 2;
             let mut across = f32x16::splat(simd, 0.0);

@@ -44,12 +44,12 @@ pub(super) struct Memory {
     pub(super) wide_table: Table,
     /// Whether the candidates come from `wide_table`.
     pub(super) is_wide: bool,
-    /// Candidates of a square, as points of the space and of the picture.
+    /// Candidates of a square, as points of the space and of the image.
     pub(super) list: PointList,
     pub(super) square: FlatPoints,
     /// Origin of the coordinates of `square`, in steps from the lower corner of the table.
     pub(super) low: [i32; MOST_AXES],
-    /// Candidates of a tile, as points of the space and of the picture.
+    /// Candidates of a tile, as points of the space and of the image.
     pub(super) tile_list: PointList,
     pub(super) tile: FlatPoints,
     pub(super) candidates: Vec<Candidate>,
@@ -268,7 +268,7 @@ impl Block<'_> {
             splat.render(self, &cells, values, rows, memory);
             return;
         }
-        // The table of the previous picture may cover the same cells.
+        // The table of the previous image may cover the same cells.
         if !memory.table.has(&cells, wants_ids) {
             memory.table.wants_ids = wants_ids;
             memory.table.fill(self.level, basis.lattice(), cells);
@@ -280,7 +280,7 @@ impl Block<'_> {
             depth,
             guess,
             metric,
-            // The terms of the axes across the picture are accumulated before those of the rows.
+            // The terms of the axes across the image are accumulated before those of the rows.
             row_axis: section
                 .row_axis()
                 .filter(|&axis| section.n_axes < 4 || axis == 1),

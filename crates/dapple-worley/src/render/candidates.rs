@@ -23,7 +23,7 @@ impl Memory {
             self.tile
                 .take_undominated(level, plan.metric, &self.square, &cuboid, dominance);
         } else {
-            // Otherwise, cull by bounds, and project the remaining points to the picture.
+            // Otherwise, cull by bounds, and project the remaining points to the image.
             let pixels = self.pixel_box(area);
             let mut moved = pixels;
             for axis in 0..pixels.n_axes {

@@ -1,6 +1,6 @@
-//! Candidates projected to the picture, and removal of dominated candidates.
+//! Candidates projected to the image, and removal of dominated candidates.
 //!
-//! The axes across the picture add the same amount to the keys of a point at all pixels. So three numbers describe a
+//! The axes across the image add the same amount to the keys of a point at all pixels. So three numbers describe a
 //! point: its column, its row, and the accumulated terms of the other axes.
 //!
 //! If a key is a sum of terms, the difference between the keys of two points is a sum over the axes. Along each axis
@@ -180,7 +180,7 @@ pub(super) struct PictureAxes {
     pub(super) slices: Option<usize>,
 }
 
-/// Feature points projected to the picture.
+/// Feature points projected to the image.
 #[derive(Debug)]
 pub(super) struct FlatPoints {
     pub(super) len: usize,
@@ -254,7 +254,7 @@ impl FlatPoints {
         self.len = points.len;
         for start in (0..points.len).step_by(LANES) {
             let at = start..start + LANES;
-            // Accumulate the terms of the axes across the picture.
+            // Accumulate the terms of the axes across the image.
             let mut rest = f32x16::splat(simd, 0.0);
             for axis in (1..pixels.n_axes).rev() {
                 if axis != axes.rows && Some(axis) != axes.slices {
@@ -262,7 +262,7 @@ impl FlatPoints {
                     rest = measure.accumulate(term, rest);
                 }
             }
-            // Store the coordinates along the axes of the picture.
+            // Store the coordinates along the axes of the image.
             places(simd, points, pixels, 0, start).store_slice(&mut self.x[at.clone()]);
             let rows = places(simd, points, pixels, axes.rows, start);
             rows.store_slice(&mut self.y[at.clone()]);

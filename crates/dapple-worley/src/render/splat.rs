@@ -38,7 +38,7 @@ const COLUMNS: [usize; 3] = [2, 3, 5];
 /// Upper limit, exclusive, for the number of rows of bins above a tile, and for the number below it.
 const MOST_HALVES: usize = 8;
 
-/// Distance along the axes across the picture within which points are taken, as a multiple of the guess. Searching a
+/// Distance along the axes across the image within which points are taken, as a multiple of the guess. Searching a
 /// pixel on its own takes as long as comparing hundreds of points.
 const SPARE: f32 = 1.1;
 
@@ -61,7 +61,7 @@ impl Splat {
     pub(super) fn new(block: &Block<'_>, depth: usize, distance: f32) -> Option<Self> {
         let Picture { section, basis, .. } = &block.bands[0].picture;
         let row_axis = section.row_axis()?;
-        // The terms of the axes across the picture are accumulated before those of the rows.
+        // The terms of the axes across the image are accumulated before those of the rows.
         if section.n_axes == 4 && row_axis != 1 {
             return None;
         }
@@ -304,7 +304,7 @@ fn fill_any<const TILES: usize>(level: Level, runs: Runs<'_, TILES>, tiles: &mut
 /// Renders a row of tiles. Each column of bins is compared with `TILES` tiles, which are held in registers.
 ///
 /// `depth` is the number of nearest points to find, at most `K`. Points have terms for `SLOTS` tiles. `DEEP` means that
-/// there may be axes across the picture.
+/// there may be axes across the image.
 #[inline(always)]
 fn fill<
     S: Simd,
