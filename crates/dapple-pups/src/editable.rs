@@ -227,7 +227,7 @@ impl EditablePups {
     ///
     /// # Errors
     ///
-    /// [`Raster`](PupsErrorKind::Raster) if the size of `out` is not that of the window.
+    /// [`Raster`](PupsErrorKind::Raster) if the size of `out` differs from the window's.
     pub fn render(&self, window: &Window, out: RasterViewMut<'_, f32>) -> Result<(), PupsError> {
         Ok(self.field(window)?.render(window, out)?)
     }

@@ -17,7 +17,8 @@ impl Texture {
     /// The gradient of the value at a position, per unit of x and of y.
     ///
     /// At the border of a support, with orientations of strength ½ or more, the texture is not differentiable. The
-    /// gradient there equals the gradient on the side without a weight. At a position that is not finite, both components are NaN.
+    /// gradient there equals the gradient on the side without a weight. At a position that is not finite, both
+    /// components are NaN.
     ///
     /// # Examples
     ///

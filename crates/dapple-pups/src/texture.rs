@@ -112,7 +112,7 @@ impl<const N: usize> VectorTexture<N> {
     ///
     /// # Errors
     ///
-    /// [`SizeMismatch`](dapple_raster::RasterErrorKind::SizeMismatch) if `out` has another size than the window.
+    /// [`SizeMismatch`](dapple_raster::RasterErrorKind::SizeMismatch) if the size of `out` differs from the window's.
     pub fn render(
         &self,
         window: &Window,

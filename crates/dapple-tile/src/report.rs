@@ -135,11 +135,11 @@ pub struct DetailKept {
     pub coarse_strangeness: Option<f64>,
     /// Share of the samples that the method clipped, from 0 to 1.
     ///
-    /// A sample counts as clipped if it is outside of 0 to 1 by more than half an 8-bit code. At either end, at most as
-    /// many samples count as the share of the tile at or past that end exceeds the share of the source. Samples that
-    /// are exactly 0 or 1, as in a tile read from a file, do not count, since their original values are unknown. The
-    /// share is 0 for a source that is outside of 0 to 1 itself. For any other source, the tile is clamped to 0 and 1
-    /// before its seams are measured, as in an image file.
+    /// A sample counts as clipped if it is outside of 0 to 1 by more than half an 8-bit code. At either end, the share is
+    /// limited to the excess of the tile's samples at or past that end over the source's. Samples that are exactly 0 or
+    /// 1, as in a tile read from a file, do not count, since their original values are unknown. The share is 0 for a
+    /// source that is outside of 0 to 1 itself. For any other source, the tile is clamped to 0 and 1 before its seams
+    /// are measured, as in an image file.
     pub clipped: f64,
     /// Whether both sides of the wrap are mirror images along an axis that repeats, and the sides of the source are
     /// not.

@@ -42,7 +42,7 @@ where
     ///
     /// # Errors
     ///
-    /// [`SizeMismatch`](dapple_raster::RasterErrorKind::SizeMismatch) if `out` has another size than the window.
+    /// [`SizeMismatch`](dapple_raster::RasterErrorKind::SizeMismatch) if the size of `out` differs from the window's.
     pub fn render_plane(
         &self,
         plane: &Plane<N>,

@@ -85,7 +85,7 @@ where
     ///
     /// # Errors
     ///
-    /// [`SizeMismatch`](dapple_raster::RasterErrorKind::SizeMismatch) if a view has another size than the window.
+    /// [`SizeMismatch`](dapple_raster::RasterErrorKind::SizeMismatch) if the size of a view differs from the window's.
     pub fn render_features<const K: usize>(
         &self,
         plane: &Plane<N>,
@@ -160,7 +160,7 @@ where
     ///
     /// # Errors
     ///
-    /// [`SizeMismatch`](dapple_raster::RasterErrorKind::SizeMismatch) if `out` has another size than the window.
+    /// [`SizeMismatch`](dapple_raster::RasterErrorKind::SizeMismatch) if the size of `out` differs from the window's.
     pub fn render_gradient(
         &self,
         plane: &Plane<N>,

@@ -1,4 +1,4 @@
-//! Blends compared with their formulas, and the contrast that they keep.
+//! Tests of blends: their formulas, and the contrast that they keep.
 
 use super::{Blend, Layer, Mixing, blend, blend_by_tile};
 use crate::gauss::blur;
@@ -9,7 +9,7 @@ use dapple_raster::{Raster, Wrap};
 use dapple_wavelet::Border;
 use proptest::prelude::*;
 
-/// A ramp of 128 pixels between margins of 32.
+/// Size of the images: a ramp of 128 pixels between margins of 32.
 const SIZE: [u32; 2] = [192, 128];
 
 fn noise(size: [u32; 2], seed: u64) -> Raster<f32> {
@@ -33,7 +33,7 @@ fn ramp() -> [Raster<f32>; 2] {
     ]
 }
 
-/// The root mean square of the difference of a pixel from its four neighbors, in the middle 32 columns.
+/// Root mean square of the difference of a pixel from its four neighbors, in the middle 32 columns.
 fn fine_contrast(raster: &Raster<f32>) -> f64 {
     let mut sum = 0.0;
     for row in 1..i64::from(SIZE[1]) - 1 {
@@ -46,7 +46,8 @@ fn fine_contrast(raster: &Raster<f32>) -> f64 {
     (sum / (32.0 * f64::from(SIZE[1] - 2))).sqrt()
 }
 
-/// The fine contrast in the middle of a ramp between two unlike textures, as a fraction of that of the textures.
+/// The fine contrast in the middle of a ramp between two different textures, as a fraction of the textures' own
+/// contrast.
 fn contrast_kept(weighting: Weighting, mixing: Mixing) -> f64 {
     let weights = ramp();
     let trials = 4;
@@ -83,16 +84,16 @@ fn contrast_is_lost_and_kept_as_stated() {
     let height = |depth| Weighting::Height { depth };
     let mask = |gain| Weighting::Mask { gain };
     for (weighting, mixing, low, high) in [
-        // Half of each of two independent textures has sqrt(1/2) of the contrast; 3 % for the small sample.
+        // The mean of two independent textures keeps sqrt(1/2) of the contrast; 3 % for the small sample.
         (given, Mixing::Linear, 0.69, 0.73),
         (given, Mixing::KeepVariance, 0.98, 1.02),
-        // The sharper the transition, the fewer pixels are a mix of both. Measured: 1.01 and 0.92.
+        // The sharper the transition, the fewer pixels are a blend of both. Measured: 1.01 and 0.92.
         (height(0.1), Mixing::Linear, 0.95, 1.05),
         (height(0.3), Mixing::Linear, 0.86, 0.96),
-        // Measured: 0.97 and 1.05. The edges of the mask add to the contrast what transitions take.
+        // Measured: 0.97 and 1.05. The edges of the mask add as much contrast as transitions remove.
         (mask(4.0), Mixing::Linear, 0.92, 1.02),
         (mask(1e9), Mixing::Linear, 1.0, 1.1),
-        // Bands without sharpening change nothing. Sharpened they keep 0.88, and 0.99 with a mask.
+        // Bands without sharpening change nothing. With sharpening they keep 0.88, and 0.99 with a mask.
         (given, pyramid(0.0), 0.69, 0.73),
         (given, pyramid(8.0), 0.85, 0.92),
         (mask(4.0), pyramid(8.0), 0.95, 1.04),
@@ -138,7 +139,7 @@ fn all_mixings() -> [Mixing; 3] {
     ]
 }
 
-/// The largest difference of two lists of maps.
+/// Maximum difference of two lists of maps.
 fn difference(a: &[Map], b: &[Map]) -> f32 {
     let planes = |maps: &[Map]| maps.iter().flat_map(Map::planes).collect::<Vec<_>>();
     let pairs = planes(a).into_iter().zip(planes(b));
@@ -194,7 +195,7 @@ fn the_linear_mix_stays_in_the_range_of_its_layers_to_the_last_bit() {
     for value in [f32::MAX, -f32::MAX, 1.0, 0.1, 1e-45] {
         let near = 0.999_999_9 * value;
         let maps = [value, near].map(|value| [Map::Value(Raster::filled(size, value).unwrap())]);
-        // All alike, and one that is an ulp or two nearer to 0.
+        // First all values are equal, then one is an ulp or two nearer to 0.
         for n_near in [0, 1] {
             let layers: Vec<_> = (weights.iter().enumerate())
                 .map(|(index, weight)| Layer {
@@ -274,7 +275,7 @@ fn normals_are_mixed_as_slopes() {
     assert_eq!(blend_of(Normal::FLAT, Normal::FLAT), Normal::FLAT);
     let mixed = blend_of(Normal::FLAT, tilted);
     let length = (mixed.x * mixed.x + mixed.y * mixed.y + mixed.z * mixed.z).sqrt();
-    // Half of the slope of 45 degrees, to some roundings.
+    // Half of the slope of 45 degrees, up to some roundings.
     assert!((mixed.x / mixed.z - 0.5).abs() < 1e-6, "{mixed:?}");
     assert!((length - 1.0).abs() < 1e-6, "{mixed:?}");
 }

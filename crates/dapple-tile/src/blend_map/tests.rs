@@ -10,18 +10,18 @@ use proptest::prelude::*;
 
 const SIDE: u32 = 128;
 
-/// Gray stones around jittered points, once around the torus.
+/// Gray stones around jittered points on a torus.
 #[derive(Clone, Copy, Debug)]
 struct Stones {
     seed: u64,
-    /// The distance of the points, in pixels.
+    /// Distance of the points, in pixels.
     cell: u32,
-    /// The width of the cracks, in pixels.
+    /// Width of the cracks, in pixels.
     crack_width: f64,
-    /// The darkest and the lightest stone.
+    /// Gray of the darkest and the lightest stone.
     grays: [f64; 2],
     crack_gray: f64,
-    /// The amplitude of the noise on the stones.
+    /// Amplitude of the noise on the stones.
     noise: f64,
 }
 
@@ -35,7 +35,7 @@ const GRAY: Stones = Stones {
 };
 
 impl Stones {
-    /// The picture, and the distance of each pixel from the border of its stone, below zero in cracks.
+    /// The image, and the signed distance of each pixel from the border of its stone, negative in cracks.
     fn render(&self) -> (Raster<f32>, Raster<f64>) {
         let places = Seed(self.seed).child("place", 0);
         let grain = Seed(self.seed).child("grain", 0);
@@ -85,7 +85,7 @@ fn nearest(points: &[[f64; 3]], at: [f64; 2]) -> (f64, f64) {
     ((f2 - f1) / (2.0 * (x * x + y * y).sqrt()), gray)
 }
 
-/// The fraction of the lowest quarter of a map that lies in cracks.
+/// Fraction of the lowest quarter of a map that is in cracks.
 fn quarter_in_cracks(map: &Raster<f32>, inside: &Raster<f64>) -> f64 {
     let ranks = rank_equalize(map).unwrap();
     let pixels = ranks.pixels().iter().zip(inside.pixels());
@@ -94,7 +94,7 @@ fn quarter_in_cracks(map: &Raster<f32>, inside: &Raster<f64>) -> f64 {
     cracks as f64 / low.len() as f64
 }
 
-/// The mean of the map over the pixels whose distance from the border of their stone is in a range.
+/// Mean of the map over the pixels whose distance from the border of their stone is in a range.
 fn mean_where(map: &Raster<f32>, inside: &Raster<f64>, range: Range<f64>) -> f64 {
     let pixels = map.pixels().iter().zip(inside.pixels());
     let chosen: Vec<f64> = pixels
@@ -134,7 +134,7 @@ fn the_lowest_quarter_lies_in_the_cracks_of_dark_light_and_noisy_stones() {
                 .filter(|inside| **inside < 0.0)
                 .count();
             assert!(covered >= texture.pixels().len() / 4, "{covered} pixels");
-            // More than 0.997 was measured for all of them. The rest are dents of the noise on a stone, and rims.
+            // More than 0.997 was measured for all of them. The rest are noise minima on stones, and rims.
             let share = quarter_in_cracks(&map, &inside);
             assert!(share > 0.97, "{stones:?}: {share}");
             // Measured: at most 0.12 in cracks, at least 0.66 on stones.
@@ -161,7 +161,7 @@ fn the_map_rises_from_the_cracks_to_the_middles_of_the_stones() {
 #[test]
 fn the_lowest_quarter_lies_in_the_cracks_under_uneven_light() {
     let (texture, inside) = GRAY.render();
-    // Light that falls to nearly nothing in the middle column, and a haze that grows toward the middle row.
+    // Light that falls to almost nothing in the middle column, and haze that increases toward the middle row.
     let away = |at: u32| (at as f32 / 64.0 - 1.0).abs();
     let lit = Raster::from_fn([SIDE; 2], |column, row| {
         let value = texture.row(row)[column as usize];
@@ -169,7 +169,7 @@ fn the_lowest_quarter_lies_in_the_cracks_under_uneven_light() {
     })
     .unwrap();
     let map = BlendMap::new(32.0).apply(&lit).unwrap();
-    // Measured: 0.997 and 0.83. The luminance takes stones in the shade for cracks.
+    // Measured: 0.997 and 0.83. By luminance alone, shaded stones look like cracks.
     let [by_map, by_luminance] = [&map, &lit].map(|map| quarter_in_cracks(map, &inside));
     assert!(by_map > 0.97, "{by_map} by the map");
     assert!(by_luminance < 0.9, "{by_luminance} by the luminance");

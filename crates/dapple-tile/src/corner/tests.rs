@@ -1,4 +1,4 @@
-//! Corner tiles: their fit, their order, windows, and the variance.
+//! Tests of corner tiles: their fit and order, windows, and the variance.
 
 use super::{CornerTiles, Cuts};
 use crate::disturb::rolled;
@@ -9,7 +9,7 @@ use dapple_hash::Seed;
 use dapple_raster::Raster;
 use proptest::prelude::*;
 
-/// The tiles of sources of a single map of numbers.
+/// The tiles of sources with a single value map.
 fn of(sources: &[Raster<f32>]) -> Result<CornerTiles, TileError> {
     let maps = sources
         .iter()
@@ -22,7 +22,7 @@ fn tiles(count: u64, size: [u32; 2]) -> CornerTiles {
     of(&sources).unwrap()
 }
 
-/// The numbers of a single map.
+/// The values of a single map.
 fn value(maps: Vec<Map>) -> Raster<f32> {
     match <[Map; 1]>::try_from(maps) {
         Ok([Map::Value(raster)]) => raster,
@@ -79,7 +79,7 @@ fn tiles_fit_wherever_their_corners_agree() {
             for (fits, tiles) in [(right, &all), (below, &turned)] {
                 if fits {
                     let ratio = seam_ratio_of(&tiles[a], &tiles[b], 1);
-                    // Borders of 63 pixels cross seven stones: some have more of their edges than others.
+                    // Borders of 63 pixels cross seven stones, some at more edges than others.
                     assert!((0.5..1.7).contains(&ratio), "{a} and {b}: {ratio}");
                     sum += ratio;
                     count += 1;
@@ -97,7 +97,8 @@ fn tiles_fit_wherever_their_corners_agree() {
 
 #[test]
 fn a_tile_is_made_of_whole_pieces_of_its_sources() {
-    // A cut mixes three pixels of each line that it crosses: one or two lines from above to below, one from left to right.
+    // A cut blends three pixels of each line that it crosses. One or two cuts run from top to bottom, one from left to
+    // right.
     let most = 3 * 3 * 60;
     for texture in [fbm, gravel] {
         for seed in 0..6 {
@@ -115,7 +116,7 @@ fn a_tile_is_made_of_whole_pieces_of_its_sources() {
 
 #[test]
 fn cuts_pass_the_seam_report_of_a_picture_that_wraps_there() {
-    // Two tiles that repeat together, rolled so that the band of the cut from above to below is where the picture wraps.
+    // Two tiles that repeat together, rolled so that the band of the top-to-bottom cut is where the image wraps.
     let n_sets = 12;
     let mut ratio = 0.0;
     for seed in 0..n_sets {
@@ -264,7 +265,7 @@ fn render_has_the_variance_of_its_sources_at_every_place_of_a_tile() {
     let mean = whole[0] / (n_values * 4096.0);
     let all = whole[1] / (n_values * 4096.0) - mean * mean;
     assert!((all / expected - 1.0).abs() < 0.05, "{all} of {expected}");
-    // Four regions: corners, middles of edges along x and along y, and the middle.
+    // Four regions: corners, centers of edges along x and along y, and the center.
     let near = |at: usize, place: usize| at.abs_diff(place) < 10 || (place == 0 && at > 54);
     for (x, y) in [(0, 0), (32, 0), (0, 32), (32, 32)] {
         let region = (0..4096).filter(|at| near(at % 64, x) && near(at / 64, y));

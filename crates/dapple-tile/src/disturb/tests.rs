@@ -1,4 +1,4 @@
-//! Disturbed copies: their unchanged borders, changed middles, windows, and the variance.
+//! Tests of disturbed copies: unchanged borders, changed interiors, windows, and the variance.
 
 use super::{Disturbance, shift};
 use crate::test_fields::{gravel, same_on_threads, seam_ratio_of, variance};
@@ -31,7 +31,7 @@ fn render_keeps_the_frozen_border_of_every_copy_bit_for_bit() {
             }
         }
     }
-    // Stones are equally bright inside, so that some pixels meet equal ones.
+    // Stones have a constant shade, so some pixels are replaced by equal ones.
     assert!(n_changed > 192 * 168 / 4, "only {n_changed} pixels changed");
 }
 
@@ -94,9 +94,9 @@ fn render_keeps_the_variance_and_has_no_seam() {
         maps.push(map);
     }
     let kept = variance(&maps) / variance(&tiles);
-    // 12 tiles of 49 stones, whose variance is known to some percent.
+    // 12 tiles of 49 stones, whose variance is known up to a few percent.
     assert!((0.95..1.05).contains(&kept), "variance {kept}");
-    // The frozen border is the only part of the tile that does not vary: 12 · 63 pixels of stones of 9.
+    // The frozen border is the only part of the tile that does not vary: 12 · 63 pixels of stones of 9 pixels.
     assert!((0.85..1.15).contains(&ratio), "seam ratio {ratio}");
 }
 
@@ -105,7 +105,7 @@ fn render_shows_the_tile_or_its_shifted_self_but_along_a_thin_line() {
     let tile = gravel(2, [60, 60], true);
     let disturbance = Disturbance::new(Seed(4));
     let map = disturbance.render(&tile, [0, 0], [240, 240]).unwrap();
-    // Any piece of three pixels in a row that does not occur in the tile was mixed.
+    // Three adjacent pixels that do not occur in the tile contain a blended pixel.
     let bits = |piece: &[f32]| [0, 1, 2].map(|at| piece[at].to_bits());
     let tripled = tile.tile([2, 1]).unwrap();
     let pieces = tripled.view();
@@ -120,7 +120,7 @@ fn render_shows_the_tile_or_its_shifted_self_but_along_a_thin_line() {
         n_pieces += 1;
         n_strange += u32::from(!known.contains(&piece));
     }
-    // A cut is about as long as four sides of 50 pixels, and five pieces in its row see a mixed pixel.
+    // A cut has the length of about four sides of 50 pixels, and each of its rows affects five runs of three pixels.
     let most = 16 * 4 * 50 * 5;
     assert!(n_strange < most, "{n_strange} of {n_pieces}");
 }
@@ -162,7 +162,7 @@ fn shift_is_at_least_a_quarter_of_the_side_either_way_round() {
                 "{shift} of {side}"
             );
         }
-        // Both ends are reached: no other number of pixels would do.
+        // Both limits are reached: one pixel less or more would be outside of the range.
         let [least, most] = [shifts[0], shifts[3]].map(u64::from);
         assert!(4 * (least - 1) < side.into(), "{least} of {side}");
         assert!(4 * (most + 1) > 3 * u64::from(side), "{most} of {side}");
@@ -257,8 +257,8 @@ fn value_stability_disturb() {
     assert_eq!(bits, [1052928431, 1063551567, 1059975078, 1057285837]);
 }
 
-/// Checks that work which asks whether it is still wanted ends with the typed error at each call that says no, and is
-/// unchanged if none does; returns the number of calls.
+/// Checks that cancellation at each call gives the typed error, and that the result is unchanged without cancellation.
+/// Returns the number of calls.
 fn check_cancel<T: PartialEq + core::fmt::Debug>(
     made: &T,
     make: impl Fn(&IsCancelled) -> Result<T, TileError>,

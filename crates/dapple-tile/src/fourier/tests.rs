@@ -1,14 +1,14 @@
-//! Transforms compared with the naive sum.
+//! Tests of transforms against the naive sum.
 
 use super::*;
 use proptest::prelude::*;
 
-/// Lengths with factors 2, 3, 5 and 7 alone and mixed, and primes that need the convolution.
+/// Lengths with the factors 2, 3, 5 and 7, alone and combined, and primes that need the convolution.
 fn lengths() -> impl Iterator<Item = usize> {
     (1..=40).chain([97, 100, 128, 343, 360])
 }
 
-/// Values without any structure, between −1 and 1.
+/// Unstructured values between −1 and 1.
 fn noise(count: usize, seed: u64) -> Vec<f64> {
     let mut state = seed;
     let mut next = || {
@@ -26,7 +26,7 @@ fn random_lines(length: usize) -> Vec<Element> {
     (0..length).map(element).collect()
 }
 
-/// The transform of one line by its definition.
+/// The transform of one line by definition.
 fn naive(lines: &[Element], lane: usize) -> Vec<[f64; 2]> {
     let n = lines.len();
     let frequency = |k: usize| {
@@ -52,7 +52,7 @@ fn forward_equals_the_definition_for_every_kind_of_length() {
                 let error = (spectra[k][lane] - re)
                     .abs()
                     .max((spectra[k][LANES + lane] - im).abs());
-                // Rounding of up to 360 terms of about 1; the sum of the definition is the less exact one.
+                // Rounding of up to 360 terms of about 1; the sum of the definition is less exact than the transform.
                 assert!(error < 1e-12, "length {length}, frequency {k}: {error}");
             }
         }
@@ -89,7 +89,7 @@ fn a_line_has_the_same_bits_in_whatever_company() {
     }
 }
 
-/// The element with zeros in all lines but one.
+/// An element with zeros in all lines but one.
 fn only(element: &Element, lane: usize) -> Element {
     let mut only = [0.0; BAND];
     only[lane] = element[lane];
@@ -127,7 +127,7 @@ fn power_spectrum_keeps_the_sum_of_squares() {
         let sum: f64 = power_spectrum(&values, size).iter().sum();
         let squares: f64 = values.iter().map(|value| value * value).sum();
         let wanted = squares * values.len() as f64;
-        // Parseval; both sums round some thousand times.
+        // Parseval's theorem; both sums round some thousand times.
         assert!((sum / wanted - 1.0).abs() < 1e-12, "{size:?}: {sum}");
     }
 }

@@ -1,4 +1,4 @@
-//! Matched borders: any two tiles fit, and the rest does not change.
+//! Tests of matched borders: any two tiles fit, and the rest does not change.
 
 use super::{BorderSource, MatchBorders};
 use crate::test_fields::{fbm, gravel, seam_ratio_of, top_power, turned};
@@ -175,7 +175,7 @@ fn equal_tiles_that_repeat_hardly_change_and_the_first_not_at_all() {
     assert_eq!(tiles[0], tile);
     let pixels = tiles[1].pixels().iter().zip(tile.pixels());
     let worst = pixels.fold(0.0_f32, |worst, (a, b)| worst.max((a - b).abs()));
-    // A mean of two equal numbers, by weights that sum to 1 within rounding.
+    // The mean of two equal numbers, by weights that sum to 1 up to rounding.
     assert!(worst < 1e-6, "{worst}");
 }
 

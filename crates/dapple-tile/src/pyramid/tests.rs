@@ -1,4 +1,4 @@
-//! Blending in bands: what is exact, and what is sharper.
+//! Tests of blending in bands: exact results, and sharper transitions.
 
 use super::{Pyramid, sharpen};
 use crate::blend::linear;
@@ -41,7 +41,7 @@ fn pyramid_without_levels_is_the_mean() {
         &mix(&pyramid, &planes, &shares),
         &linear(&planes, &shares).unwrap(),
     );
-    // The shares are divided by their largest and their sum once more.
+    // The shares are divided by their maximum and by their sum once more.
     assert!(off < 1e-6, "{off}");
 }
 
@@ -101,7 +101,7 @@ fn pyramid_mixes_fine_details_over_a_narrower_band_than_coarse_ones() {
         });
         let planes = [checker.unwrap(), Raster::filled(size, 0.0).unwrap()];
         let mixed = mix(&Pyramid::default(), &planes, &weights);
-        // A quarter of the way on, and three quarters.
+        // Positions at a quarter and at three quarters of the ramp.
         [24, 88].map(|first| {
             mixed
                 .crop([first, 0], [16, 32])
@@ -111,7 +111,7 @@ fn pyramid_mixes_fine_details_over_a_narrower_band_than_coarse_ones() {
         })
     };
     let [fine, coarse] = [1, 16].map(contrast);
-    // By the weights alone it would be 0.75 and 0.25 for both.
+    // With the weights alone, both contrasts would be 0.75 and 0.25.
     // Measured: 0.9998 and 0.0003, and 0.85 and 0.22.
     assert!(fine[0] > 0.99 && fine[1] < 0.01, "{fine:?}");
     assert!(coarse[0] < 0.9 && coarse[1] > 0.15, "{coarse:?}");
@@ -136,14 +136,14 @@ fn pyramid_on_the_torus_commutes_with_shifts_of_whole_coarse_pixels() {
         &planes.each_ref().map(shift),
         &shares.iter().map(shift).collect::<Vec<_>>(),
     );
-    // The recursions of the filter start at another place, which costs roundings.
+    // The recursions of the filter start at another pixel, which changes the rounding.
     let off = difference(&shifted, &shift(&mix(&pyramid, &planes, &shares)));
     assert!(off < 2e-6, "{off}");
 }
 
 #[test]
 fn sharpened_shares_sum_to_one_for_any_power() {
-    // Values as a filter may leave them: a little below zero and above one.
+    // Values that a filter may produce: slightly below zero and above one.
     let share = noise([9, 9], 1).map(|value| 1.2 * value - 0.1);
     let shares = [share.map(|share| 1.0 - share), share];
     for power in [1.0, 2.5, 9.0, 1e6, 1e300] {

@@ -2,7 +2,7 @@
 //!
 //! A sample is clipped if the method moved it past 0 or 1, where an image file stores the end of its range. A source
 //! has samples at the ends, too: a black disk remains black in the tile, and crops and mixtures of black are black. So
-//! at each end, at most the share of samples counts by which the tile exceeds the source there.
+//! at each end, the clipped share is limited to the tile's excess of samples over the source.
 //!
 //! Reference: our own.
 

@@ -1,4 +1,4 @@
-//! Whole reports: their numbers, text and limits.
+//! Tests of whole reports: their numbers, text and limits.
 
 use super::{Fault, SeamOptions, SeamReport, SeamReports};
 use crate::test_fields::gravel;
@@ -8,7 +8,7 @@ use dapple_hash::{Seed, hash2, unit_f32};
 use dapple_raster::Raster;
 use proptest::prelude::*;
 
-/// White noise from 0 to 1, which repeats.
+/// Periodic white noise from 0 to 1.
 fn noise(size: [u32; 2], seed: u64) -> Raster<f32> {
     let pixel = |x, y| unit_f32(hash2(Seed(seed), [i64::from(x), i64::from(y)], 0) as u32);
     Raster::from_fn(size, pixel).unwrap()
@@ -71,7 +71,7 @@ fn gate_passes_noise_and_stops_seams() {
         ..options
     };
     assert!(SeamReport::of(&ramp(0.05), &y_only).unwrap().passes());
-    // The step is too small for pixels, but not for means of 4.
+    // The step is too small to be visible between pixels, but not between means of 4.
     let faint = SeamReport::of(&ramp(0.005), &options).unwrap();
     assert!(faint.seams[0].both.unwrap().ratio < 1.25, "{faint}");
     assert!(!faint.passes(), "{faint}");
@@ -99,13 +99,14 @@ fn faults_name_what_crossfades_and_mirrors_do() {
     });
     let half = Method::Feather(Feather::HalfShift);
     assert_eq!(faults(&source, Method::SoftCut(SoftCut::default())), []);
-    // In the middle of the crossfade noise keeps 0.71 of its deviation.
+    // In the middle of the crossfade, noise keeps 0.71 of its deviation.
     assert!(faults(&grain, feather).contains(&Fault::Soft));
     assert!(faults(&source, half).contains(&Fault::Ghosts));
     assert!(faults(&source, Method::Mirror).contains(&Fault::Mirrored));
 }
 
-/// A black disk with a radius of 60 pixels in noise from 0.3 to 0.7, which no mean of two values leaves.
+/// A black disk with a radius of 60 pixels in noise from 0.3 to 0.7. No mean of two values of the noise is outside of
+/// it.
 fn disk_in_noise() -> Raster<f32> {
     let grain = noise([256; 2], 7);
     Raster::from_fn([256; 2], |x, y| {
@@ -128,11 +129,11 @@ fn black_of_the_source_is_not_clipped_by_a_method_that_crops() {
         let pixels = image.pixels().iter();
         pixels.filter(|value| **value <= 0.0).count()
     };
-    // All of the disk is still there, as 22.5 % of the tile where it was 17.2 % of the source.
+    // All of the disk is still in the tile, as 22.5 % of it; it was 17.2 % of the source.
     assert_eq!((tile.size(), black(&tile)), ([224; 2], black(&source)));
     let report = SeamReport::beside(&source, &tile, &SeamOptions::default()).unwrap();
     assert_eq!(report.kept.as_ref().unwrap().clipped, 0.0, "{report}");
-    // Shown colors end at 0 and 1, so that they are counted in linear light.
+    // Displayed colors end at 0 and 1, so clipping is counted in linear light.
     let [source, tile] = [source, tile]
         .map(|image| Map::Color(image.map(|&value| LinearRgb::new(value, value, 0.5))));
     let report = SeamReports::beside(&source, &tile, &SeamOptions::default()).unwrap();
@@ -164,7 +165,7 @@ fn samples_of_colors_past_the_range_are_clipped() {
 
 #[test]
 fn a_good_cut_passes_where_the_source_is_clipped() {
-    // Strong contrast, as of a wet photograph: a quarter of the samples is black or white.
+    // Strong contrast, like a wet photograph: a quarter of the samples is black or white.
     let source = gravel(4, [160; 2], false).map(|value| (2.0 * value - 0.5).clamp(0.0, 1.0));
     let ends = source.pixels().iter();
     let ends = ends
@@ -178,7 +179,7 @@ fn a_good_cut_passes_where_the_source_is_clipped() {
     assert!(report.passes(), "{report}");
 }
 
-/// Upright bricks of 22 × 60 pixels whose joints lean more and more to the right, as seen from one side.
+/// Upright bricks of 22 × 60 pixels whose joints lean more and more to the right, as in a view from one side.
 fn leaning_bricks() -> Raster<f32> {
     Raster::from_fn([192; 2], |x, y| {
         let [x, y] = [f64::from(x), f64::from(y)];
@@ -203,7 +204,7 @@ fn courses_that_break_at_a_cut_are_strange_at_a_coarse_scale() {
         .apply(&source)
         .unwrap();
     let report = SeamReport::beside(&source, &tile, &SeamOptions::default()).unwrap();
-    // Squares of 8 × 8 pixels find all pieces of bricks and joints elsewhere.
+    // Squares of 8 × 8 pixels have matches elsewhere for all parts of bricks and joints.
     let fine = report.kept.as_ref().and_then(|kept| kept.strangeness);
     assert!(fine.is_some_and(|fine| fine < 0.8), "{report}");
     assert!(report.faults().contains(&Fault::Strange), "{report}");

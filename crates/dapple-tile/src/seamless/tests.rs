@@ -1,4 +1,4 @@
-//! Properties of every method.
+//! Tests of properties of every method.
 
 use super::*;
 use crate::test_fields::fbm;
@@ -14,7 +14,7 @@ fn ramp(size: [u32; 2]) -> Raster<f32> {
     .expect("the size is small and not empty")
 }
 
-/// Methods that change every plane on its own, for any size.
+/// Methods that process every plane separately, for any size.
 fn methods() -> [Method; 3] {
     [
         Method::Periodic,
@@ -23,7 +23,7 @@ fn methods() -> [Method; 3] {
     ]
 }
 
-/// All methods, with margins of a pixel.
+/// All methods, with margins of one pixel.
 fn every_method() -> Vec<Method> {
     let cut = SoftCut {
         margin: 1,
@@ -214,7 +214,7 @@ proptest! {
     }
 }
 
-/// Normals of heights over pixels of a unit of the plane.
+/// Normals of heights on pixels with a side of one unit of the plane.
 fn normals_of(height: &Raster<f32>, wrap: Wrap) -> Raster<Normal> {
     let [width, height_px] = height.size().map(f64::from);
     let plane = HeightPlane {
@@ -225,7 +225,7 @@ fn normals_of(height: &Raster<f32>, wrap: Wrap) -> Raster<Normal> {
     normal_map(height, &plane.into()).expect("the plane is right")
 }
 
-/// The tile of heights, and the tile of their normals, of one cut.
+/// The tile of heights and the tile of their normals, from one cut.
 fn height_and_normals(seamless: &Seamless, height: &Raster<f32>) -> (Raster<f32>, Raster<Normal>) {
     let normals = normals_of(height, Wrap::Clamp);
     let maps = [Map::Value(height.clone()), Map::Normal(normals)];
@@ -245,14 +245,14 @@ fn mirrored_normals_are_those_of_the_mirrored_heights() {
         let expected = normals_of(&tile, Wrap::Repeat);
         for row in 1..tile.height() - 1 {
             for column in 1..tile.width() as usize - 1 {
-                // Heights have a crease where they meet their mirror image.
+                // Heights have a crease next to their mirror image.
                 let at = [column as u32, row];
                 let meets = |axis: usize| axes[axis] && at[axis].abs_diff(height.size()[axis]) <= 1;
                 if meets(0) || meets(1) {
                     continue;
                 }
                 let [a, b] = [&normals, &expected].map(|map| map.row(row)[column].to_array());
-                // A slope is rounded to single precision on the way.
+                // Slopes are rounded to single precision on the way.
                 let is_near = a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-5);
                 assert!(
                     is_near,
@@ -293,7 +293,7 @@ fn steep_normals_of_every_method_lean_as_the_tiled_heights_do() {
             }
         }
         assert!(n_steep > 2000, "{method:?}: {n_steep} are steep");
-        // Where images are mixed, normals are mixed too and do not know the slope of the changing weight.
+        // Where images are blended, normals are blended, too, and do not include the slope of the changing weight.
         let share = f64::from(n_wrong) / f64::from(n_steep);
         assert!(
             share < 0.05,

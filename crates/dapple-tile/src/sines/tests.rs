@@ -1,4 +1,4 @@
-//! The projector onto sines compared with a dense one.
+//! Tests of the projector onto sines against a dense one.
 
 use super::*;
 use crate::fourier::LANES;
@@ -61,7 +61,7 @@ fn basis(axis: &Axis) -> Vec<Vec<f64>> {
     basis
 }
 
-/// The place of the first coarse sample, in pixels.
+/// Position of the first coarse sample, in pixels.
 fn first_sample(axis: &Axis) -> f64 {
     let middle = 0.5 * (f64::from(axis.fine) / f64::from(axis.coarse) - 1.0);
     if axis.phase == Phase::CookDeRose {
@@ -71,11 +71,11 @@ fn first_sample(axis: &Axis) -> f64 {
     }
 }
 
-/// The lines that are zero but for one pixel.
+/// Lines that are zero except for one pixel.
 fn unit_lines(length: usize) -> impl Iterator<Item = Vec<Element>> {
     (0..length).map(move |at| {
         let mut line = vec![[0.0; BAND]; length];
-        // One line of each part, so that both are tested.
+        // One real and one imaginary part, so that both are tested.
         line[at][3] = 1.0;
         line[at][LANES + 1] = -2.0;
         line
@@ -113,7 +113,7 @@ fn halving_a_doubled_line_gives_it_back() {
         for unit in unit_lines(axis.coarse as usize) {
             let back = sampling.coarse(sampling.refine(unit.clone()));
             for (back, unit) in back.as_flattened().iter().zip(unit.as_flattened()) {
-                // As above.
+                // Rounding of transforms of values of about 1.
                 assert!(
                     (back - unit).abs() < 1e-14,
                     "{axis:?}: {back} is not {unit}"
@@ -125,7 +125,7 @@ fn halving_a_doubled_line_gives_it_back() {
 
 #[test]
 fn coarse_samples_lie_where_the_phase_says() {
-    // A wave slow enough for every axis, and the same wave at the places of the samples.
+    // A wave slow enough for every axis, evaluated at the pixels and at the positions of the samples.
     for phase in [Phase::Centered, Phase::CookDeRose] {
         for (fine, coarse) in [(24, 12), (24, 6), (40, 5)] {
             let axis = axis(fine, coarse, true, phase);
@@ -158,7 +158,7 @@ proptest! {
         let once = refine(&coarse(&image, axes).expect("the sizes fit"), axes).expect("the sizes fit");
         let twice = refine(&coarse(&once, axes).expect("the sizes fit"), axes).expect("the sizes fit");
         for (once, twice) in once.pixels().iter().zip(twice.pixels()) {
-            // Each plane on the way is rounded to f32; four planes of values of about 1.
+            // Four intermediate planes of values of about 1 are rounded to `f32`.
             prop_assert!((once - twice).abs() < 1e-6, "{} became {}", once, twice);
         }
     }

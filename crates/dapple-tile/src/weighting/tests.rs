@@ -1,4 +1,4 @@
-//! Shares: partitions of unity, and the order of layers.
+//! Tests of shares: partitions of unity, and the order of layers.
 
 use super::{Weighting, normalize, step};
 use crate::{Layer, TileErrorKind, rank_equalize};
@@ -15,7 +15,7 @@ fn noise(size: [u32; 2], seed: u64) -> Raster<f32> {
     .unwrap()
 }
 
-/// The shares of layers with these weights and heights.
+/// The shares of layers with the given weights and heights.
 fn shares(
     weighting: Weighting,
     weights: &[Raster<f32>],
@@ -48,7 +48,7 @@ fn all() -> [Weighting; 6] {
 #[test]
 fn shares_sum_to_one_and_none_is_negative() {
     for n_layers in 1..5 {
-        // A quarter of all weights are zero, but never all of a pixel.
+        // A quarter of all weights are zero, but never all weights of a pixel.
         let weights: Vec<_> = (0..n_layers)
             .map(|seed| noise(SIZE, seed).map(|weight| (4.0 * weight - 1.0).max(0.0)))
             .collect();
@@ -58,7 +58,7 @@ fn shares_sum_to_one_and_none_is_negative() {
         let heights: Vec<_> = (0..n_layers + 2)
             .map(|seed| noise(SIZE, seed + 10))
             .collect();
-        // With many places that are 0 or 1.
+        // Many values are 0 or 1.
         let tile = noise(SIZE, 20).map(|value| (2.0 * value - 0.5).clamp(0.0, 1.0));
         for weighting in all() {
             let shares = shares(weighting, &weights, &heights, Some(&tile));
@@ -109,7 +109,7 @@ fn masks_give_every_layer_its_share_of_the_area_for_every_gain() {
         let shares = shares(Weighting::Mask { gain }, &weights, &[], Some(&tile));
         for (shares, part) in shares.iter().zip(parts) {
             let covered = shares.statistics().mean;
-            // A pixel at most at either threshold, of 4096.
+            // The error is at most one of 4096 pixels at either threshold.
             let off = covered - f64::from(part);
             assert!(
                 off.abs() < 2.0 / 4096.0,
@@ -181,13 +181,13 @@ fn heights_equal_the_formula_pixel_by_pixel() {
         for layer in 0..3 {
             let expected = raw[layer] / (raw[0] + raw[1] + raw[2]);
             let share = f64::from(shares[layer].pixels()[index]);
-            // The weights were rounded to `f32`, and a depth of 0.15 makes 7 times as much of it.
+            // The weights were rounded to `f32`, and a depth of 0.15 amplifies the error by 7.
             assert!((share - expected).abs() < 2e-6, "{share} for {expected}");
         }
     }
 }
 
-/// The shares by height of layers at a single pixel.
+/// The shares by height at a single pixel.
 fn at_a_pixel(weights: &[f32], heights: &[f32], depth: f64) -> Vec<f32> {
     let rasters = |values: &[f32]| -> Vec<_> {
         let values = values.iter();
@@ -210,7 +210,7 @@ fn layers_fade_in_from_nothing_however_high_they_are() {
                 let rest = 0.5 - 0.5 * weight;
                 at_a_pixel(&[weight, rest, rest], &heights, depth)[0]
             };
-            // From no weight to all in steps of a fiftieth of the weight itself.
+            // Weights from almost 0 to 1, each 2 % below the next.
             let smaller = core::iter::successors(Some(1.0_f32), |weight| Some(0.98 * weight));
             let mut weights: Vec<f32> = smaller.take(1500).collect();
             weights.reverse();
@@ -249,8 +249,9 @@ fn layers_fade_in_continuously() {
         let all: Vec<f32> = (0..=n)
             .map(|i| share(f32::from(i) / f32::from(n)))
             .collect();
-        // The layer passes the others at a weight of about 0.15, where the difference of levels grows by 1.5 + 1 / 4α²,
-        // or 13, per weight. The share changes at most by (1 - α) / α / depth, or 57, times as much: by 0.074 per step.
+        // The layer passes the others at a weight of about 0.15. There, the difference of levels increases by 1.5 + 1 /
+        // 4α², or 13, per weight. The share changes by at most (1 - α) / α / depth, or 57, times as much: by 0.074 per
+        // step.
         for (index, pair) in all.windows(2).enumerate() {
             assert!((pair[1] - pair[0]).abs() < 0.08, "{depth} at {index}");
         }

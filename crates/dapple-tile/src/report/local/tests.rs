@@ -1,4 +1,4 @@
-//! The softest band, compared with values by hand and a naive search.
+//! Tests of the softest band against values computed by hand and a naive search.
 
 use super::lowest_detail;
 use dapple_hash::{Seed, hash2, unit_f32};
@@ -12,7 +12,7 @@ fn noise(size: [u32; 2], gain: impl Fn(u32) -> f32) -> Raster<f32> {
     Raster::from_fn(size, |x, y| gain(x) * pixel(x, y)).unwrap()
 }
 
-/// The definition: every band on its own.
+/// The definition: a search over every band.
 fn naive(image: &Raster<f32>, wrap: [Wrap; 2]) -> f64 {
     let [width, height] = image.size().map(i64::from);
     let at = |x, y| f64::from(*image.at(x, y, wrap));
@@ -68,7 +68,7 @@ fn lowest_detail_equals_its_definition() {
 fn lowest_detail_finds_a_soft_band() {
     let even = lowest_detail(&noise([64, 64], |_| 1.0), REPEAT);
     assert!((0.85..1.0).contains(&even), "{even}");
-    // Twelve columns across the wrap with a third of the contrast; a band of 8 lies inside of them.
+    // Twelve columns across the wrap have a third of the contrast; a band of 8 columns is inside of them.
     let soft = |x: u32| if (6..58).contains(&x) { 1.0 } else { 1.0 / 3.0 };
     let found = lowest_detail(&noise([64, 64], soft), REPEAT);
     // The whole has √((52 + 12/9) / 64) = 0.91 of the full contrast.

@@ -1,4 +1,4 @@
-//! Octaves of sines and of noise.
+//! Tests of octaves with sines and noise.
 
 use super::{hann, kept, octave, octave_powers, windowed};
 use core::f64::consts::TAU;
@@ -34,7 +34,7 @@ fn octaves_end_at_powers_of_a_half() {
     assert_eq!(octave(0, 128), usize::MAX);
 }
 
-/// The power spectrum by its definition, along rows and then along columns.
+/// The power spectrum by definition, along rows and then along columns.
 fn naive_power_spectrum(values: &[f64], [width, height]: [usize; 2]) -> Vec<f64> {
     let mut plane: Vec<[f64; 2]> = values.iter().map(|&value| [value, 0.0]).collect();
     let lines = [(width, 1, height, width), (height, width, width, 1)];
@@ -97,8 +97,8 @@ fn waves_have_their_power_in_their_octave() {
             let powers = octave_powers(&wave(size, frequency), 4);
             for (index, power) in powers.iter().enumerate() {
                 let expected = if index == own { 0.5 } else { 0.0 };
-                // Off the integers a Hann window leaks 1/(6π) of the amplitude at most per three bins away; here all
-                // frequencies are two bins or more from the end of their octave.
+                // At frequencies between the integers, a Hann window leaks at most 1/(6π) of the amplitude to bins at a
+                // distance of three. Here all frequencies are two bins or more from the end of their octave.
                 assert!((power - expected).abs() < 2e-3, "{frequency:?}: {powers:?}");
             }
         }
@@ -114,11 +114,12 @@ fn noise_has_power_in_proportion_to_area() {
             .zip(powers)
             .for_each(|(sum, power)| *sum += power / 20.0);
     }
-    // How many of the 64 × 96 frequencies an octave has, out to the corners.
+    // Number of the 64 × 96 frequencies in each octave, including the corners.
     let shares = [6144 - 33 * 49, 33 * 49 - 17 * 25, 17 * 25 - 9 * 13];
     for (power, share) in sums.iter().zip(shares) {
         let relative = power / (f64::from(share) / 6144.0 / 12.0);
-        // Of the 308 of the last the window leaves a quarter independent, twenty times: a standard error of 3 %.
+        // The last octave has 308 frequencies. Under the window a quarter of them is independent, in each of twenty
+        // images: a standard error of 3 %.
         assert!((relative - 1.0).abs() < 0.09, "{sums:?}");
     }
 }

@@ -1,4 +1,4 @@
-//! Seam ratios compared with values by hand and naive sums.
+//! Tests of seam ratios against values computed by hand and naive sums.
 
 use super::{SeamOptions, SeamRatio, seams};
 use crate::SeamReport;
@@ -19,7 +19,7 @@ fn with_lattice(lattice: u32) -> SeamOptions {
     }
 }
 
-/// The step across a boundary of columns, from its definition.
+/// The step across a boundary of columns, by definition.
 fn naive_step(tile: &Raster<f32>, boundary: i64, width: u32) -> f64 {
     let mean = |first: i64, row: u32| {
         let columns = first..first + i64::from(width);
@@ -30,7 +30,7 @@ fn naive_step(tile: &Raster<f32>, boundary: i64, width: u32) -> f64 {
     (0..tile.height()).map(step).sum::<f64>() / f64::from(tile.height())
 }
 
-/// The ratio along x, and its spread, from their definitions.
+/// The ratio along x and its spread, by definition.
 fn naive_ratio(tile: &Raster<f32>, width: u32, lattice: u32) -> Option<(f64, f64)> {
     let fits = |&at: &u32| at % lattice == 0 && at >= width && at + width <= tile.width();
     let inside: Vec<f64> = (1..tile.width())
@@ -89,14 +89,15 @@ fn ratios_equal_their_definition() {
 
 #[test]
 fn ratios_of_a_small_raster_are_as_by_hand() {
-    // Along x the steps across the wraps are 5 and 5, those inside 1, 2, 2 and 1, 3, 1. Along y a wrap is the step inside.
+    // Along x, the steps across the wraps are 5 and 5, and the steps inside 1, 2, 2 and 1, 3, 1. Along y, the step
+    // across the wrap equals the step inside.
     let tile = Raster::from_vec([4, 2], vec![0.0, 1.0, 3.0, 5.0, 6.0, 5.0, 2.0, 1.0]).unwrap();
     let [one, two, four, _] = seams(&tile, &SeamOptions::default()).unwrap();
     let x = one.x.unwrap();
     assert_eq!(x.ratio, 5.0 / ((1.0 + 2.5 + 1.5) / 3.0));
     assert_eq!(one.y.unwrap().ratio, 1.0);
     assert_eq!(one.y.unwrap().spread, None, "there is one boundary inside");
-    // At 2 pixels there is one boundary inside, and the wrap is the same step.
+    // With means of 2 pixels there is one boundary inside, and the wrap has the same step.
     assert_eq!(two.x.unwrap().ratio, 1.0);
     assert_eq!((two.y, two.both), (None, None));
     assert_eq!((four.x, four.y, four.both), (None, None, None));
@@ -113,7 +114,7 @@ fn ratio_of_a_ramp_is_its_length_less_one() {
 
 #[test]
 fn ratio_of_a_periodic_sine_is_one() {
-    // Along the diagonal, so that every line has another phase.
+    // A wave along the diagonal, so that every line has another phase.
     let wave = |x: u32, y: u32| libm::sin(core::f64::consts::TAU * f64::from(3 * x + 5 * y) / 64.0);
     let tile = Raster::from_fn([64, 64], |x, y| wave(x, y) as f32).unwrap();
     for seam in seams(&tile, &SeamOptions::default()).unwrap() {
@@ -177,7 +178,7 @@ fn flat_tiles_have_no_seam_and_steps_on_flat_ground_are_finite() {
         };
         assert_eq!(seam.both, Some(expected), "at {} pixels", seam.width);
     }
-    // All the steps are off the lattice.
+    // All steps are at boundaries off the lattice.
     let steps = Raster::from_fn([32, 32], |x, _| if x < 2 { 0.1 } else { 0.7 }).unwrap();
     let x = seams(&steps, &with_lattice(8)).unwrap()[0].x.unwrap();
     assert_eq!((x.ratio, x.spread), (SeamReport::MOST, Some(0.0)));
@@ -185,7 +186,7 @@ fn flat_tiles_have_no_seam_and_steps_on_flat_ground_are_finite() {
 
 #[test]
 fn lattice_leaves_out_other_boundaries() {
-    // Pairs of equal pixels: 0 within a pair, and the wrap is between pairs.
+    // Pairs of equal pixels: the step within a pair is 0, and the wrap is between pairs.
     let pairs = Raster::from_fn([64, 64], |x, y| {
         noise([32, 32], 7).row(y / 2)[x as usize / 2]
     });
@@ -221,9 +222,11 @@ fn spline_tiles_score_one_beside_boundaries_of_their_lattice_only() {
         }
     }
     let [naive, matched] = means;
-    // The exact ratio is that of 0.654 to the mean of 0.654 and 0.267: 1.42 along the axis alone, less across both.
+    // The exact ratio of 0.654 to the mean of 0.654 and 0.267 is 1.42. It is the ratio along one axis; across both it
+    // is less.
     assert!((naive - 1.42).abs() < 0.02, "{naive}");
-    // A tile has 128 lines, of which neighbors are alike: 200 have a standard error of about half a percent.
+    // A tile has 128 lines, and neighboring lines are correlated. 200 tiles give a standard error of about half a
+    // percent.
     assert!((matched - 1.0).abs() < 0.015, "{matched}");
 }
 

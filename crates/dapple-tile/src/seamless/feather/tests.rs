@@ -1,4 +1,4 @@
-//! Crossfades: their periods, the detail that they keep, and their cost.
+//! Tests of crossfades: their periods, kept detail, and cost.
 
 use super::{Feather, tent, tile};
 use crate::test_fields::{fbm, gravel, seam_ratio};
@@ -22,7 +22,7 @@ fn tent_hides_both_places_where_an_image_has_its_ends() {
             [0.0; 2],
             "{length}"
         );
-        // The rolled image goes from its last pixel to its first between these two.
+        // The rolled image continues from its last pixel to its first between these two columns.
         let ends = [length - half - 1, length - half];
         assert_eq!(ends.map(|at| tent(at, length)), [1.0; 2], "{length}");
         assert!(
@@ -45,7 +45,7 @@ fn half_shift_keeps_the_size_and_shows_the_middle_at_the_border() {
             "the middle at the border"
         );
         assert_eq!(to[3..5], from[3..5], "the image in its middle");
-        // A third of pixel 1 and two thirds of pixel 5.
+        // A third of pixel 1 plus two thirds of pixel 5.
         let expected = from[1] / 3.0 + from[5] * (1.0 - 1.0 / 3.0);
         assert!((to[1] - expected).abs() < 1e-5, "{} and {expected}", to[1]);
     }
@@ -65,7 +65,7 @@ fn margin_mixes_the_ends_linearly() {
     let image = Raster::from_vec([6, 1], vec![1.0, 5.0, 9.0, 2.0, 3.0, 8.0]).unwrap();
     let feather = margin(2, Crossfade::Linear);
     let tiles = tile(&[image], &feather, [true, false]).unwrap();
-    // Weights ¼ and ¾ of the first pixels; all numbers are whole in binary.
+    // Weights ¼ and ¾ of the first pixels; all numbers are exact in binary.
     assert_eq!(
         tiles[0].pixels(),
         [0.25 + 0.75 * 3.0, 0.75 * 5.0 + 0.25 * 8.0, 9.0, 2.0]
@@ -89,7 +89,7 @@ fn margin_that_keeps_variance_keeps_contrast_where_the_linear_one_does_not() {
             *share += mixed.statistics().deviation / whole / 16.0;
         }
     }
-    // The middle of both margins, 16 × 16 pixels, is a small sample: some percent.
+    // The center of both margins, 16 × 16 pixels, is a small sample with an error of a few percent.
     assert!((0.9..1.1).contains(&share[0]), "keeps {}", share[0]);
     assert!(share[1] < 0.75, "flattens to {}", share[1]);
 }
@@ -107,7 +107,7 @@ fn tiles_have_no_seam() {
                 seam_ratio(&tile(&[image], &feather, BOTH).unwrap()[0], 1) / 8.0
             });
             let ratio: f64 = ratios.sum();
-            // A half shift has the source at the border, and a flattened mix elsewhere, so the ratio is above 1 there.
+            // A half shift has the source at the border, and flattened detail elsewhere, so the ratio is above 1 there.
             assert!((0.8..1.5).contains(&ratio), "{feather:?}: {ratio}");
         }
     }

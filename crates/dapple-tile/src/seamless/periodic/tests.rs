@@ -1,4 +1,4 @@
-//! The periodic part compared with Moisan's own formula.
+//! Tests of the periodic part against Moisan's own formula.
 
 use super::*;
 use crate::fourier::power_spectrum;
@@ -6,7 +6,7 @@ use crate::{Method, Seamless};
 use core::f64::consts::TAU;
 use proptest::prelude::*;
 
-/// Noise between 0 and 1 over a ramp that makes every border jump.
+/// Noise between 0 and 1 over a ramp that causes a jump at every border.
 fn image(size: [u32; 2], seed: u32) -> Raster<f32> {
     Raster::from_fn(size, |column, row| {
         let mixed = (column + 977 * row + 31 * seed + 1).wrapping_mul(0x9E37_79B1);
@@ -29,7 +29,7 @@ fn smooth_of(plane: &Raster<f32>, axes: [bool; 2]) -> Vec<f64> {
         .collect()
 }
 
-/// Moisan's formula, with transforms by their definition.
+/// Moisan's formula, with transforms by definition.
 fn moisan(plane: &Raster<f32>) -> Vec<f64> {
     let [width, height] = plane.size().map(|length| length as usize);
     let mut boundary = vec![0.0; width * height];
@@ -82,7 +82,7 @@ fn smooth_part_equals_moisans_formula() {
     }
 }
 
-/// The neighbor of a position one step along an axis: around the torus or, at a free end, the position itself.
+/// The neighbor of a position one step along an axis: across the wrap or, at a free end, the position itself.
 fn neighbor(at: usize, length: usize, forward: bool, repeats: bool) -> usize {
     match (forward, repeats) {
         (true, true) => (at + 1) % length,
@@ -92,7 +92,7 @@ fn neighbor(at: usize, length: usize, forward: bool, repeats: bool) -> usize {
     }
 }
 
-/// The largest difference of the Laplacian of the smooth part from the jumps, and of its mean from zero.
+/// Maximum difference of the smooth part's Laplacian from the jumps, and of its mean from zero.
 fn largest_error(plane: &Raster<f32>, axes: [bool; 2]) -> f64 {
     let smooth = smooth_of(plane, axes);
     let [across_x, across_y] = axis_jumps(plane, axes);
@@ -129,11 +129,11 @@ proptest! {
 
 #[test]
 fn laplacian_of_the_smooth_part_is_the_jumps_where_powers_are_negligible() {
-    // In the middle of long sides, most frequencies have died away.
+    // In the middle of long sides, most frequencies have decayed to zero.
     for size in [[700, 9], [5, 521], [400, 360]] {
         for axes in [[true, true], [true, false], [false, true]] {
             let error = largest_error(&image(size, 8), axes);
-            // As above.
+            // Jumps of up to 3 go through two transforms.
             assert!(error < 1e-12, "{size:?}, {axes:?}: {error}");
         }
     }
@@ -165,7 +165,7 @@ fn periodic_keeps_the_mean_for_every_kind_of_size() {
             let plane = image(size, 3);
             let seamless = Seamless::default().with_axes(axes);
             let tile = seamless.apply(&plane).expect("all is finite");
-            // Half of the last place of an f32 between 2 and 4.
+            // Half of the last bit of an `f32` between 2 and 4.
             let error = (mean(&tile) - mean(&plane)).abs();
             assert!(error < 1.2e-7, "{size:?}, {axes:?}: {error}");
         }
@@ -181,7 +181,7 @@ fn periodic_takes_away_only_what_jumps_across_an_axis_that_repeats() {
     let along_y = Seamless::default().with_axes([false, true]);
     let tile = along_y.apply(&ramp).expect("all is finite");
     for row in 0..40 {
-        // The error of 39 across the wrap is shared by 40 differences: the slope of 1 becomes 1/40.
+        // The error of 39 across the wrap is distributed over 40 differences: the slope of 1 becomes 1/40.
         let wanted = 19.5 + (row as f32 - 19.5) / 40.0;
         for value in tile.row(row) {
             assert!(
@@ -209,7 +209,7 @@ fn periodic_keeps_the_power_of_the_top_octave() {
     assert!((ratio - 1.0).abs() < 1e-3, "{ratio} of the power is left");
 }
 
-/// The power at frequencies above a quarter per pixel along either axis, seen through a Hann window.
+/// The power at frequencies above a quarter per pixel along either axis, under a Hann window.
 fn top_octave(plane: &Raster<f32>) -> f64 {
     let [width, height] = plane.size().map(|length| length as usize);
     let window = |at: usize, n: usize| 1.0 - libm::cos(TAU * (at as f64 + 0.5) / n as f64);

@@ -1,4 +1,4 @@
-//! Poisson images compared with dense least squares.
+//! Tests of Poisson images against dense least squares.
 
 use super::*;
 use crate::fourier::BAND;
@@ -6,7 +6,7 @@ use crate::seamless::periodic::Smooth;
 use crate::{Method, Seamless};
 use proptest::prelude::*;
 
-/// Values of about 1 without structure, over a ramp.
+/// Unstructured values of about 1, over a ramp.
 fn image(size: [u32; 2], seed: u32) -> Raster<f32> {
     Raster::from_fn(size, |column, row| {
         let mixed = (column * 89 + row * 57 + seed * 7 + 3) * (column + 2 * row + 5);
@@ -20,7 +20,7 @@ fn tile_of(plane: &Raster<f32>, wrap: WrapGradient, axes: [bool; 2]) -> Raster<f
     seamless.apply(plane).expect("all is finite")
 }
 
-/// The least squares by their definition: the whole field of differences, its divergence, and a dense solver.
+/// Least squares by definition: the whole field of differences, its divergence, and a dense solver.
 fn by_divergence(plane: &Raster<f32>, wrap: WrapGradient, axes: [bool; 2]) -> Vec<f64> {
     let n = plane.pixels().len();
     let mut matrix = vec![vec![0.0; n + 1]; n];
@@ -37,7 +37,7 @@ fn by_divergence(plane: &Raster<f32>, wrap: WrapGradient, axes: [bool; 2]) -> Ve
         matrix[to][n] += wanted;
         matrix[from][n] -= wanted;
     }
-    // Only differences are known. One equation follows from the others and gives its place to the sum.
+    // Only differences are determined, so one equation is redundant. It is replaced by the sum of the pixels.
     matrix[0] = vec![1.0; n + 1];
     matrix[0][n] = plane.pixels().iter().map(|&value| f64::from(value)).sum();
     solve(matrix)
@@ -69,7 +69,7 @@ fn field(plane: &Raster<f32>, wrap: WrapGradient, axes: [bool; 2]) -> Vec<(usize
     field
 }
 
-/// Gauss's elimination with pivots; the last column is the right-hand side.
+/// Gaussian elimination with pivots; the last column is the right-hand side.
 fn solve(mut matrix: Vec<Vec<f64>>) -> Vec<f64> {
     let n = matrix.len();
     for column in 0..n {
@@ -117,7 +117,7 @@ fn extrapolated_ramp_becomes_flat() {
         [true; 2],
     );
     for value in tile.pixels() {
-        // The mean of the ramp; the slope goes on across the wrap, so that all of it is error.
+        // The mean of the ramp remains: the slope continues across the wrap, so the whole ramp is removed as error.
         assert!((value - 26.0).abs() < 1e-5, "{value} is not the mean");
     }
 }

@@ -1,4 +1,4 @@
-//! Soft cuts: kept pixels, periods, and the quality of the seam on two textures.
+//! Tests of soft cuts: unchanged pixels, periods, and the quality of the seam on two textures.
 
 use super::{SoftCut, differences, tile};
 use crate::test_fields::{fbm, gravel, same_on_threads, seam_ratio, step_at, top_power, turned};
@@ -51,7 +51,7 @@ fn tile_of_a_hard_cut_changes_once_per_row_from_the_last_columns_to_the_first() 
 
 #[test]
 fn tile_never_touches_the_columns_that_meet_outside_of_the_margin() {
-    // A ramp as wide as the margin still ends inside of it: the image goes on smoothly where it is not cut.
+    // Even a ramp as wide as the margin ends inside it, so the tile is continuous where it is not cut.
     for (margin, half_width) in [(1, 0.5), (2, 1.0), (5, 2.5), (8, 4.0), (9, 4.2)] {
         let image =
             Raster::from_fn([40, 30], |x, y| if x < 20 { x } else { x + y } as f32).unwrap();
@@ -86,7 +86,7 @@ fn tile_of_an_image_that_repeats_is_the_image() {
         let tiles = tile(slice::from_ref(&image), &cut, BOTH).unwrap();
         let pixels = tiles[0].pixels().iter().zip(source.pixels());
         let worst = pixels.fold(0.0_f32, |worst, (a, b)| worst.max((a - b).abs()));
-        // Equal values are mixed in `f64` by shares whose sum is 1 within rounding.
+        // Equal values are blended in `f64` by shares whose sum is 1 up to rounding.
         assert!(worst < 1e-6, "{crossfade:?}: {worst}");
     }
 }
@@ -94,7 +94,7 @@ fn tile_of_an_image_that_repeats_is_the_image() {
 #[test]
 fn tile_cuts_all_planes_alike_whatever_their_units() {
     let [height, shade] = [fbm(4, [90, 80], false), gravel(5, [90, 80], false)];
-    // Scales that are powers of two do not change a bit of what is computed.
+    // Scales that are powers of two do not change a bit of the result.
     let scaled = [
         height.map(|value| value * 1024.0),
         shade.map(|value| value / 256.0),
@@ -122,14 +122,14 @@ fn differences_are_squares_over_the_variance_of_each_plane() {
     );
 }
 
-/// Four ratios of 24 tiles to their sources: the mean seam at 1 and 4 pixels, the top octave's power, and the steps
-/// across the middle of all cuts.
+/// Four ratios of 24 tiles to their sources: the mean seam at 1 and at 4 pixels, the power of the top octave, and the
+/// steps across the center of all cuts.
 fn quality(texture: fn(u64, [u32; 2], bool) -> Raster<f32>) -> [f64; 4] {
     let cut = SoftCut::default();
     let sums = (0..24).map(|seed| {
         let image = texture(seed, [160, 160], false);
         let tile = tile(slice::from_ref(&image), &cut, BOTH).unwrap().remove(0);
-        // A pixel past each end, so that differences across the wrap count too.
+        // Include a pixel past each end, so that differences across the wrap count, too.
         let wrapped = tile.tile([2, 2]).unwrap().crop([0, 0], [132, 132]).unwrap();
         let steps = |raster: &Raster<f32>| {
             let turned = turned(raster);
@@ -173,7 +173,7 @@ fn tile_has_no_seam_and_all_detail_on_noise_and_on_grains() {
             (0.98..=1.02).contains(&top),
             "{name}: power of the top octave {top}"
         );
-        // The cut itself is no seam either: steps in the margin, through which it runs, are those of the source.
+        // The cut itself is not a seam: steps in the margin that it crosses equal the steps of the source.
         assert!(
             (0.95..=1.05).contains(&steps),
             "{name}: steps in the margin {steps}"

@@ -1,4 +1,4 @@
-//! Blend tiles: remaining steps, small tiles, limits.
+//! Tests of blend tiles: remaining steps, small tiles, and limits.
 
 use super::*;
 use crate::{Method, Seamless, TileErrorKind};
@@ -14,7 +14,7 @@ const DEGREES: [Degree; 4] = [
 
 const PHASES: [Phase; 2] = [Phase::Centered, Phase::CookDeRose];
 
-/// Values between 0 and 1 without structure.
+/// Unstructured values between 0 and 1.
 fn noise(size: [u32; 2], seed: u32) -> Raster<f32> {
     Raster::from_fn(size, |column, row| {
         let mixed = (column + 977 * row + 31 * seed + 1).wrapping_mul(0x9E37_79B1);
@@ -51,8 +51,9 @@ fn largest_difference(a: &Raster<f32>, b: &Raster<f32>) -> f32 {
 
 #[test]
 fn step_left_at_the_wrap_is_the_known_fraction() {
-    // Per level, centered and in the phase of Cook and DeRose, to six places from a dense solver in double precision. At
-    // 128 pixels (research's table) the other step, in the middle of the line, is still felt from the third level on.
+    // Fractions for each level, centered and in the phase of Cook and DeRose, to six digits, from a dense solver in
+    // double precision. At 128 pixels (research's table), the other step, in the middle of the line, still has an
+    // effect from the third level on.
     let at_128 = [
         [0.655_340, 0.344_660],
         [0.353_644, 0.234_797],
@@ -77,7 +78,7 @@ fn step_left_at_the_wrap_is_the_known_fraction() {
                 };
                 let tile = tile_of(&step, project, [true; 2]);
                 let found = tile.row(5)[n as usize - 1] - tile.row(5)[0];
-                // Half of the last of six places, and a few roundings to f32.
+                // Half of the last of six digits, and a few roundings to `f32`.
                 let error = (found - fraction).abs();
                 assert!(
                     error < 1.5e-6,
@@ -90,7 +91,7 @@ fn step_left_at_the_wrap_is_the_known_fraction() {
 
 #[test]
 fn tile_of_an_impulse_has_the_known_values() {
-    // Research's vector for eight coefficients, over 1024; every row is the same.
+    // Research's vector for eight coefficients, divided by 1024; all rows are equal.
     let impulse = Raster::from_fn([8, 2], |column, _| f32::from(u8::from(column == 0)));
     let tile = tile_of(
         &impulse.expect("the size is good"),
@@ -113,7 +114,7 @@ fn tile_of_an_impulse_has_the_known_values() {
 #[test]
 fn tiles_of_coefficients_and_of_samples_equal_their_lines_in_double_precision() {
     let n = 40_u32;
-    // All rows are the same, so that nothing changes along y.
+    // All rows are equal, so nothing changes along y.
     let image = Raster::from_fn([n, 8], |column, _| {
         noise([n, 1], 10).row(0)[column as usize]
     });
