@@ -5,8 +5,7 @@
 //!
 //! An axis `v` of a control point `c`, scaled by `s`, projects a position `x` to `p = (x − c)·v / (s |v|²)`. Let
 //! `a = v / (s |v|²)`, and let `d` be `x − c` rounded to single precision. The evaluation needs `u = 1 − p`, computed
-//! as
-//! `(1 − a_y d_y) − a_x d_x`. Every code path of this crate uses this grouping, so that the bits agree.
+//! as `(1 − a_y d_y) − a_x d_x`. Every code path of this crate uses this grouping, so that the bits agree.
 //!
 //! On a wrapped axis, the periodic images of a control point have weights, too. Each image whose support intersects the
 //! domain is an [`Instance`]. Positions are first wrapped into the domain, so a texture repeats exactly.

@@ -71,8 +71,8 @@ pub struct Orientation {
     ///
     /// Below ½ the gradient of the texture is continuous. From ½ on, the texture has a kink at the border of a support
     /// where the orientation points directly away from the control point. There the weight falls like
-    /// `(1 − p)^(2 − 2ε)`. Near 1, weights on the opposite side almost vanish, and so does the denominator of equation 3.
-    /// Where it is below 1e-30, the value of the nearest control point is used.
+    /// `(1 − p)^(2 − 2ε)`. Near 1, weights on the opposite side and the denominator of equation 3 almost vanish. Where
+    /// the denominator is below 1e-30, the value of the nearest control point is used.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/strength.md"))]
     pub strength: f64,

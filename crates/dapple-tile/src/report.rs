@@ -135,9 +135,9 @@ pub struct DetailKept {
     pub coarse_strangeness: Option<f64>,
     /// Share of the samples that the method clipped, from 0 to 1.
     ///
-    /// A sample counts as clipped if it is outside of 0 to 1 by more than half an 8-bit code. At either end, the share is
-    /// limited to the excess of the tile's samples at or past that end over the source's. Samples that are exactly 0 or
-    /// 1, as in a tile read from a file, do not count, since their original values are unknown. The share is 0 for a
+    /// A sample counts as clipped if it is outside of 0 to 1 by more than half an 8-bit code. At either end, the share
+    /// is limited to the excess of the tile's samples at or past that end over the source's. Samples that are exactly 0
+    /// or 1, as in a tile read from a file, do not count, since their original values are unknown. The share is 0 for a
     /// source that is outside of 0 to 1 itself. For any other source, the tile is clamped to 0 and 1 before its seams
     /// are measured, as in an image file.
     pub clipped: f64,

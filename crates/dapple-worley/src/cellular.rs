@@ -151,16 +151,14 @@ where
     /// Maps the values so that their range is about 0 to 1: one value in a thousand is below 0, and one above 1.
     ///
     /// The ranges come from a table of measurements for [named combinations](Combination::NAMED), the default scatter
-    /// and
-    /// [`Scatter::Jittered`](crate::Scatter::Jittered) with a jitter of 1, and every metric but Minkowski's.
+    /// and [`Scatter::Jittered`](crate::Scatter::Jittered) with a jitter of 1, and every metric but Minkowski's.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/normalized.md"))]
     ///
     /// # Errors
     ///
     /// [`NoRange`](crate::WorleyErrorKind::NoRange) for all other textures, and if a range is already set; for these,
-    /// use
-    /// [`measure_range`](Self::measure_range) and [`with_range`](Self::with_range).
+    /// use [`measure_range`](Self::measure_range) and [`with_range`](Self::with_range).
     pub fn normalized(self) -> Result<Self, WorleyError> {
         let Worley {
             metric, scatter, ..

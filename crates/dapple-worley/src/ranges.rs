@@ -16,8 +16,7 @@ pub(crate) const SCATTERS: [Scatter; 2] = [
 ];
 
 /// Low and high end of the range, indexed by [`SCATTERS`], by [`Metric::NAMED`], by the number of axes (2, 3, 4), and
-/// by
-/// [`Combination::NAMED`].
+/// by [`Combination::NAMED`].
 #[rustfmt::skip]
 const RANGES: [[[[[f32; 2]; Combination::NAMED.len()]; 3]; Metric::NAMED.len()]; SCATTERS.len()] = [
     [

@@ -111,8 +111,7 @@ fn pyramid_mixes_fine_details_over_a_narrower_band_than_coarse_ones() {
         })
     };
     let [fine, coarse] = [1, 16].map(contrast);
-    // With the weights alone, both contrasts would be 0.75 and 0.25.
-    // Measured: 0.9998 and 0.0003, and 0.85 and 0.22.
+    // With the weights alone, both contrasts would be 0.75 and 0.25. Measured: 0.9998 and 0.0003, and 0.85 and 0.22.
     assert!(fine[0] > 0.99 && fine[1] < 0.01, "{fine:?}");
     assert!(coarse[0] < 0.9 && coarse[1] > 0.15, "{coarse:?}");
 }

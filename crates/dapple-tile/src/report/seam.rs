@@ -34,8 +34,7 @@ pub struct Seam {
     ///
     /// The visibility of a boundary is a mean over all lines. On each line, it is the step divided by a reference: the
     /// mean of the 8 steps on either side plus a tenth of the mean step of the line. Deviations are at least 5 % of the
-    /// mean.
-    /// `None` if an axis is too short.
+    /// mean. `None` if an axis is too short.
     pub stands_out: Option<f64>,
 }
 

@@ -197,8 +197,7 @@ impl Mode {
     /// Frequency `k` of `n` along the border, with the spectrum of the jumps at this frequency.
     ///
     /// Since `ρ + 1/ρ = 4 − 2 cos φ`, every `ρ^x` is a solution away from the borders. The scale makes the difference
-    /// of
-    /// `ρ^(across − 1 − x)` and `ρ^x` correct at the borders.
+    /// of `ρ^(across − 1 − x)` and `ρ^x` correct at the borders.
     fn new(k: usize, n: usize, jump: [f64; 2], across: usize) -> Self {
         let sine = libm::sin(PI * (k as f64 / n as f64));
         // 1 − cos φ, computed without cancellation.

@@ -8,8 +8,7 @@ use crate::{Dimensions, MAX_NEAREST, Metric, Space, Worley};
 use core::fmt;
 
 /// A basis in the form that rendering uses, independent of the number of axes. Places and vectors are zero along
-/// missing
-/// axes.
+/// missing axes.
 pub trait Basis: Sync + fmt::Debug {
     /// The metric of the basis.
     fn metric(&self) -> Metric;
