@@ -1,11 +1,11 @@
-//! Baking: the maps of a material, band by band.
+//! Baking: renders the maps of a material, band by band.
 //!
-//! A band is some rows of all maps. Maps that depend on the surroundings of a pixel (normals, occlusion, curvature) are
-//! computed from the height of the band and of a margin around it, so that bands, regions and the whole picture have
-//! the same bits. Nodes that depend on the whole tile are evaluated beforehand; without them, the memory of a bake
-//! depends on its width alone.
+//! A band is a block of rows of all maps. Normals, occlusion and curvature depend on the neighborhood of a pixel. They
+//! are computed from the heights of the band and of a margin around it, so that bands, regions and the whole map have
+//! the same bits. Nodes that depend on the whole tile are evaluated beforehand; without such nodes, the memory of a
+//! bake depends on its width alone.
 //!
-//! Reference: our own; occlusion, curvature and normals have theirs in `dapple-color`.
+//! The scheme is our own. `dapple-color` has the references for occlusion, curvature and normals.
 
 mod heights;
 #[cfg(feature = "image")]
@@ -22,49 +22,49 @@ use dapple_raster::Window;
 use heights::Heights;
 use maps::Side;
 
-/// The maps to bake, their size, and limits of memory.
+/// Options of a bake: the maps, their size, and the limit of memory.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BakeOptions {
-    /// The numbers of columns and rows of the whole tile; 1024 × 1024 by default. There may be more pixels than in a
-    /// raster.
+    /// Columns and rows of the whole tile; 1024 × 1024 by default. The tile may have more pixels than a raster can
+    /// have.
     pub size: [u32; 2],
-    /// The positions of the samples: the centers of pixels by default.
+    /// The positions of the samples; pixel centers by default.
     pub samples: Samples,
-    /// The part of the tile to bake; all of it by default.
+    /// The region of the tile to bake; the whole tile by default.
     pub region: Option<Region>,
     /// The maps to bake; the height by default.
     pub maps: Vec<MapKind>,
     /// The limit of memory.
     pub memory: BakeMemory,
-    /// The approximate number of pixels of a band, at most; 2^20 by default: enough for all cores, and few enough that
-    /// several values of each fit in memory. Smaller pictures have about eight bands, for their progress, unless a band
-    /// would have fewer than 2^15 pixels or 16 rows. The bits do not depend on it.
+    /// Approximate maximum number of pixels of a band; 2^20 by default, which is enough for all cores, and few enough
+    /// that several values of each pixel fit in memory. Smaller maps have about eight bands, so that progress is
+    /// reported, but bands have at least 2^15 pixels and 16 rows. The bits do not depend on this option.
     pub band_pixels: u32,
 }
 
-/// A part of a picture, in pixels.
+/// A rectangle of a map, in pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Region {
     /// The first column and row of the region.
     pub first: [u32; 2],
-    /// The numbers of columns and rows of the region.
+    /// Columns and rows of the region.
     pub size: [u32; 2],
 }
 
 /// The limit of memory of a bake.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum BakeMemory {
-    /// Nodes that depend on the whole tile are evaluated for all of it.
+    /// Nodes that depend on the whole tile are evaluated for all its pixels, which are kept in memory.
     #[default]
     Whole,
-    /// Only some rows at a time are in memory; nodes that depend on the whole tile are errors.
+    /// Only the rows of a band are in memory; nodes that depend on the whole tile are errors.
     Banded,
 }
 
-/// The least number of bands of pictures that are not small.
+/// Minimum number of bands of a map, unless its bands would be smaller than [`LEAST_PIXELS`].
 const LEAST_BANDS: u32 = 8;
 
-/// The least number of pixels of a band that is one of so few.
+/// Minimum number of pixels of a band, unless [`BakeOptions::band_pixels`] is smaller.
 const LEAST_PIXELS: u32 = 1 << 15;
 
 impl Default for BakeOptions {
@@ -80,10 +80,10 @@ impl Default for BakeOptions {
     }
 }
 
-/// Some rows of all baked maps.
+/// Consecutive rows of all baked maps.
 #[derive(Clone, Debug)]
 pub struct Band {
-    /// The first row, counted within the region.
+    /// The index of the first row, counted from the top of the region.
     pub first_row: u32,
     /// The maps, in the order of [`BakeOptions::maps`].
     pub maps: Vec<(MapKind, MapRows)>,
@@ -110,26 +110,26 @@ pub struct Bake<'a> {
     maps: Vec<MapKind>,
     /// The distinct samples of the tile.
     tile: TileSamples,
-    /// The samples to bake: with a last column and row on corners, which may be copies of the first ones.
+    /// The samples to bake. For samples on corners, the last column and row may be copies of the first ones.
     window: Window,
     band_pixels: u32,
     next_row: u32,
     heights: Heights,
-    /// The heights of the first column, for its copy.
+    /// The heights of the first column, for the copy of it at the right.
     first_heights: Heights,
 }
 
 impl<'a> Bake<'a> {
-    /// Prepares a bake. Nodes that depend on the whole tile are evaluated here, which may be most of the work; all else is
-    /// computed when the bands are taken. A callback of the plan for the
-    /// [progress](crate::Plan::new_with_progress) hears of both.
+    /// Prepares a bake. This evaluates the nodes that depend on the whole tile, which may be most of the work; the rest
+    /// is computed band by band, as the iterator advances. Both report to the callback of the plan for the
+    /// [progress](crate::Plan::new_with_progress).
     ///
     /// # Errors
     ///
-    /// [`Range`](crate::RecipeErrorKind::Range) for a size of zero, a region past the tile, or a radius out of range,
-    /// [`Global`](crate::RecipeErrorKind::Global) for a node that depends on the whole tile under
-    /// [`BakeMemory::Banded`], [`Cancelled`](crate::RecipeErrorKind::Cancelled) if
-    /// the callback of the plan asks to stop, and the errors of such nodes.
+    /// [`Range`](crate::RecipeErrorKind::Range) for a size of zero, a region that exceeds the tile, or a radius out of
+    /// range, [`Global`](crate::RecipeErrorKind::Global) for a node that depends on the whole tile under
+    /// [`BakeMemory::Banded`], [`Cancelled`](crate::RecipeErrorKind::Cancelled) if the callback of the plan asks to
+    /// stop, and the errors of such nodes.
     pub fn new(plan: &'a Plan, options: &BakeOptions) -> Result<Self, RecipeError> {
         let tile = plan.tile_samples(options.size, options.samples)?;
         let all = Window {
@@ -159,13 +159,13 @@ impl<'a> Bake<'a> {
         })
     }
 
-    /// The numbers of columns and rows of the baked part.
+    /// Columns and rows of the baked region.
     #[must_use]
     pub fn size(&self) -> [u32; 2] {
         self.window.size
     }
 
-    /// The remaining rows of all maps, each map in one piece, in the order of [`BakeOptions::maps`].
+    /// Bakes all remaining bands, and returns each map in one piece, in the order of [`BakeOptions::maps`].
     ///
     /// # Errors
     ///
@@ -178,6 +178,7 @@ impl<'a> Bake<'a> {
         Ok(whole)
     }
 
+    /// Bakes the next band.
     fn band(&mut self) -> Result<Band, RecipeError> {
         let [width, height] = self.window.size;
         let first_row = self.next_row;
@@ -187,15 +188,17 @@ impl<'a> Bake<'a> {
             self.window.first[0],
             self.window.first[1].saturating_add(first_row.into()),
         ];
+        // Count the distinct columns and rows from here to the end of the tile.
         let distinct = |axis: usize, first: i64| {
             u32::try_from(i64::from(self.tile.window.size[axis]) - first).unwrap_or(0)
         };
         let columns = distinct(0, left).min(width);
+        // Choose the number of rows.
         let most = self.band_pixels / width;
         let least = (LEAST_PIXELS / width).min(most);
         let rows = height.div_ceil(LEAST_BANDS).clamp(least, most);
         let rows = rows.max(16).min(height - first_row);
-        // Past the last distinct row comes a copy of the first one.
+        // The row after the last distinct one is a copy of the first row.
         let (top, rows) = match distinct(1, top) {
             0 => (0, 1),
             below => (top, rows.min(below)),
@@ -212,7 +215,7 @@ impl<'a> Bake<'a> {
                 .heights
                 .maps(self.plan, &self.whole, &band, &self.tile, &self.maps)?;
         }
-        // Past the last distinct column comes a copy of the first one.
+        // The column after the last distinct one is a copy of the first column.
         if columns < width {
             let band = Window {
                 first: [0, top],
@@ -228,7 +231,7 @@ impl<'a> Bake<'a> {
     }
 }
 
-/// Maps of the same kinds, joined each with the other; the others alone where there are none yet.
+/// Joins each map with its next part. Returns the parts alone if there are no maps yet.
 fn joined(
     maps: Vec<(MapKind, MapRows)>,
     others: Vec<(MapKind, MapRows)>,
@@ -251,7 +254,7 @@ impl Iterator for Bake<'_> {
 }
 
 impl Region {
-    /// The window of the region of a tile.
+    /// The window of the region within the tile.
     pub(crate) fn of(self, whole: &Window) -> Result<Window, RecipeError> {
         for axis in 0..2 {
             let end = u64::from(self.first[axis]) + u64::from(self.size[axis]);

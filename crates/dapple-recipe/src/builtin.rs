@@ -1,4 +1,4 @@
-//! The recipes that come with the crate, for the textures in the papers.
+//! The built-in recipes, which reproduce textures of the papers.
 
 use crate::{Recipe, RecipeError, RecipeErrorKind};
 
@@ -40,7 +40,7 @@ impl Recipe {
     ///
     /// # Errors
     ///
-    /// [`UnknownRecipe`](RecipeErrorKind::UnknownRecipe), with the nearest name, if there is none.
+    /// [`UnknownRecipe`](RecipeErrorKind::UnknownRecipe), with the nearest name, if no built-in recipe has this name.
     pub fn builtin(name: &str) -> Result<Self, RecipeError> {
         Self::from_toml(Self::builtin_text(name)?)
     }

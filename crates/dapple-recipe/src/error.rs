@@ -10,12 +10,12 @@ use dapple_tile::TileError;
 use dapple_wavelet::WaveletError;
 use dapple_worley::WorleyError;
 
-/// An error of a recipe, with its place in the text, and the nearest valid word.
+/// An error of a recipe, with its position in the text or its node, and the nearest valid word.
 ///
-/// Match on [`kind`](Self::kind); the text is for people.
+/// Programs match on [`kind`](Self::kind); the message is for people.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RecipeError {
-    /// The content in a box, so that results are small in the usual case.
+    /// Boxed, so that results are small.
     content: Box<Content>,
 }
 
@@ -27,12 +27,12 @@ struct Content {
     nearest: Option<String>,
 }
 
-/// A place in the text of a recipe; both numbers count from 1.
+/// A position in the text of a recipe. Line and column count from 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Place {
-    /// The line.
+    /// The line number.
     pub line: usize,
-    /// The character in the line.
+    /// The number of the character within the line.
     pub column: usize,
 }
 
@@ -40,9 +40,9 @@ pub struct Place {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum RecipeErrorKind {
-    /// The text is no TOML or JSON, or has a key or value that recipes do not have.
+    /// The text is not valid TOML or JSON, or has a key or value that recipes do not have.
     Text {
-        /// The message of the reader.
+        /// The message of the parser.
         message: String,
     },
     /// The recipe has another version of the schema than this crate.
@@ -60,12 +60,12 @@ pub enum RecipeErrorKind {
         /// The name.
         name: String,
     },
-    /// A name of a node has other characters than letters, digits, `_` and `-`.
+    /// The name of a node does not begin with a letter, or has other characters than letters, digits, `_` and `-`.
     Name {
         /// The name.
         name: String,
     },
-    /// A node depends on itself, possibly through others.
+    /// A node depends on itself, directly or through other nodes.
     Cycle {
         /// The names of the nodes on the cycle.
         names: Vec<String>,
@@ -74,17 +74,17 @@ pub enum RecipeErrorKind {
     Count {
         /// The name of the items.
         what: &'static str,
-        /// The number of items.
+        /// The actual number of items.
         count: usize,
         /// The allowed number, as text.
         needed: &'static str,
     },
-    /// A color is where a number is needed.
+    /// An input is a color, but a number is needed.
     NotANumber {
-        /// The input as in the text.
+        /// The input as written in the recipe.
         input: String,
     },
-    /// A number is outside of its range.
+    /// A number is out of range.
     Range {
         /// The name of the number.
         what: &'static str,
@@ -95,9 +95,9 @@ pub enum RecipeErrorKind {
     },
     /// The recipe, up to this node, needs more work than the limits allow: see [`PlanLimits`](crate::PlanLimits).
     TooMuch {
-        /// The name of the items of which there are too many.
+        /// The name of the counted items.
         what: &'static str,
-        /// The number of items, about.
+        /// The estimated number of items.
         value: f64,
         /// The largest allowed number.
         limit: u64,
@@ -114,10 +114,10 @@ pub enum RecipeErrorKind {
     },
     /// A node depends on the whole tile, but only a part of it is available.
     Global {
-        /// The circumstance, as the end of a sentence.
+        /// The operation that has only a part of the tile, as the end of a sentence.
         during: &'static str,
     },
-    /// The callback of the caller asked to stop.
+    /// The progress callback of the caller asked to stop.
     Cancelled,
     /// An error of the cellular basis.
     Worley(WorleyError),
@@ -148,7 +148,7 @@ impl RecipeError {
         }
     }
 
-    /// Fails for a number outside of its range.
+    /// Returns a [`Range`](RecipeErrorKind::Range) error unless `holds`.
     pub(crate) fn check(
         holds: bool,
         what: &'static str,
@@ -162,24 +162,24 @@ impl RecipeError {
         }
     }
 
-    /// Fails for a number outside of a range.
+    /// Returns a [`Range`](RecipeErrorKind::Range) error if `value` is out of range.
     pub(crate) fn check_in(range: Range, what: &'static str, value: f64) -> Result<(), Self> {
         Self::check(range.holds(value), what, value, range.text)
     }
 
-    /// Sets the place in the text.
+    /// Sets the position in the text.
     pub(crate) fn at(mut self, place: Option<Place>) -> Self {
         self.content.place = place;
         self
     }
 
-    /// Sets the node, unless it is set.
+    /// Sets the node, unless one is set already.
     pub(crate) fn within(mut self, node: &str) -> Self {
         self.content.node.get_or_insert_with(|| node.to_owned());
         self
     }
 
-    /// Adds the valid word that is nearest to the written one, if one is near.
+    /// Sets the nearest of the valid words, if one is similar to the written word.
     pub(crate) fn meant<'a>(
         mut self,
         written: &str,
@@ -196,19 +196,19 @@ impl RecipeError {
         &self.content.kind
     }
 
-    /// The place in the text, if it is known.
+    /// The position in the text, if known.
     #[must_use]
     pub fn place(&self) -> Option<Place> {
         self.content.place
     }
 
-    /// The name of the node, if the error is in one.
+    /// The name of the node in which the error is, if any.
     #[must_use]
     pub fn node(&self) -> Option<&str> {
         self.content.node.as_deref()
     }
 
-    /// The valid word that is nearest to the written one, if one is near.
+    /// The valid word that is nearest to the written word, if one is similar.
     #[must_use]
     pub fn nearest(&self) -> Option<&str> {
         self.content.nearest.as_deref()
@@ -260,7 +260,7 @@ impl fmt::Display for RecipeErrorKind {
             Self::Range { what, value, range } => {
                 write!(f, "the {what} is {value}, but it must be {range}")
             }
-            // Larger numbers would be long rows of digits.
+            // Write large numbers in exponential form, which is shorter.
             Self::TooMuch { what, value, limit } if *value >= 1e15 => {
                 write!(
                     f,
@@ -305,7 +305,7 @@ impl core::error::Error for RecipeError {
     }
 }
 
-/// Implements the conversion of errors of other crates.
+/// Implements the conversion from errors of other crates.
 macro_rules! from {
     ($($error:ident => $kind:ident),*) => {
         $(impl From<$error> for RecipeError {

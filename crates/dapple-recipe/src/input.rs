@@ -31,7 +31,7 @@ impl From<&str> for Input {
 }
 
 impl Input {
-    /// The name of the node, if the input is one.
+    /// The name of the node, if the input refers to one.
     pub(crate) fn node(&self) -> Option<&str> {
         match self {
             Self::Node(name) => Some(name),

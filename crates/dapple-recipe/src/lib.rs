@@ -39,8 +39,9 @@
 //! # Ok::<(), dapple_recipe::RecipeError>(())
 //! ```
 //!
-//! [`Recipe`] is the data, [`Plan`] has everything checked and made, and [`Bake`] gives the maps in bands.
-//! [`Recipe::builtin`] has recipes that are built in, and [`Recipe::to_rust`] writes a program that bakes a recipe.
+//! A [`Recipe`] is data, a [`Plan`] is a recipe that has been validated and prepared for evaluation, and a [`Bake`]
+//! renders the maps in bands. [`Recipe::builtin`] returns the built-in recipes, and [`Recipe::to_rust`] generates a
+//! program that bakes a recipe.
 //!
 //! # Ways to use it
 //!
@@ -49,18 +50,19 @@
 //! | to get | call | cost |
 //! |---|---|---|
 //! | all maps, whole | [`Bake::whole_maps`] | memory for all pixels |
-//! | all maps, band by band | [`Bake`] as an iterator | memory for a band, where no node sees the whole tile |
+//! | all maps, band by band | [`Bake`] as an iterator | memory for a band, if no node depends on the whole tile |
 //! | a part of an image | [`BakeOptions::region`] | |
 //! | an image in parts, on any number of machines | [`Shards`] | no memory for the list |
-//! | one node at any position, or in a window | [`Plan::field`], [`Plan::colors`], [`Plan::height`] | not for nodes that see the whole tile |
+//! | one node at any position, or in a window | [`Plan::field`], [`Plan::colors`], [`Plan::height`] | not for nodes
+//! that depend on the whole tile |
 //! | an image of one node | [`Plan::node_picture`] | |
 //! | bytes and mip levels for a GPU | [`MapRows::to_rgba8`], [`MapRows::mip_levels`] | |
 //! | progress, and a way to stop | [`Plan::new_with_progress`] | |
 //! | redraw a recipe as it changes | [`Plan::new_with_cache`] with a [`PlanCache`] | only what changed |
 //!
 //! All maps of the built-in recipe `mountains` take 54.1 ms at 256 × 256 pixels, on one thread of a server processor
-//! (AMD EPYC). Nodes that grow a texture (`synth`) do their work in [`Plan::new`], and nodes that see the whole tile in
-//! [`Bake::new`].
+//! (AMD EPYC). Nodes that synthesize a texture (`synth`) do their work in [`Plan::new`], and nodes that depend on the
+//! whole tile in [`Bake::new`].
 //!
 //! # Features
 //!
@@ -72,13 +74,13 @@
 //!
 //! # Limits
 //!
-//! * A recipe has at most 1024 nodes and 4 MiB ([`MAX_TEXT`]). No text makes the reader panic.
-//! * A recipe may ask for any amount of work. [`PlanLimits`] bound it. Past a limit, [`Plan::new`] returns an error
-//!   that names the node, before the work is done.
-//! * Nodes that see the whole tile (`tile`, `disturb`, `match_borders`, `corner_tiles`, `blend_map`, most `blend`s)
-//!   cannot be baked under [`BakeMemory::Banded`], and have no value at a single position.
+//! * A recipe has at most 1024 nodes and 4 MiB of text ([`MAX_TEXT`]). The parser does not panic on any text.
+//! * A recipe may ask for any amount of work. [`PlanLimits`] bound it: if the estimated work exceeds a limit,
+//!   [`Plan::new`] returns an error that names the node, before the work is done.
+//! * Nodes that depend on the whole tile (`tile`, `disturb`, `match_borders`, `corner_tiles`, `blend_map`, most
+//!   `blend`s) cannot be baked under [`BakeMemory::Banded`], and have no value at a single position.
 //! * The crate opens no files. Read images yourself, and pass them by name as [`Images`].
-//! * Another version of the format than [`SCHEMA`] is an error.
+//! * A recipe of another format version than [`SCHEMA`] is an error.
 //! * An error has the line and the column, or the node, and the nearest valid word.
 //! * Maps have the same bits on every machine and any number of threads.
 //!

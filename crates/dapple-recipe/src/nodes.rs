@@ -1,7 +1,7 @@
-//! The kinds of nodes. Each is a file with its name in recipes, its options, and the construction of its step in a
-//! plan.
+//! The kinds of nodes, one file per kind: its options, and how its step in a plan is built.
 //!
-//! To add a kind, write a file that implements [`NodeKind`] for its options, and a line in the table below.
+//! To add a kind, write a file that implements [`NodeKind`] for its options, and add a line with its name in recipes to
+//! the table below.
 
 mod alpha;
 mod arithmetic;
@@ -62,7 +62,7 @@ use serde::{Deserialize, Serialize};
 
 /// A kind of node.
 ///
-/// A node is a number at every position, or a color if [`build`](Self::build) makes a step of colors.
+/// A node has a number at every position, or a color if [`build`](Self::build) returns a step of colors.
 pub(crate) trait NodeKind {
     /// The inputs of the node, in a fixed order.
     fn inputs(&self) -> Vec<&Input> {
@@ -74,31 +74,31 @@ pub(crate) trait NodeKind {
         Vec::new()
     }
 
-    /// The use of their alpha, if the node sets it.
+    /// How the alpha of the image files is used, if the node sets it.
     fn alpha(&self) -> Option<ImageAlpha> {
         None
     }
 
-    /// The layer that is read of the image files, if the node sets it.
+    /// The layer of the image files to read, if the node sets it.
     fn layer(&self) -> Option<&str> {
         None
     }
 
-    /// The texture of control points of a `pups` node.
+    /// The partition-of-unity texture of a `pups` node; `None` for other kinds.
     fn pups(&self) -> Option<&dyn pups::Texture> {
         None
     }
 
-    /// The work of building the node's step, an estimate that is too high rather than too low.
+    /// Estimates the work of building the node's step, rather too high than too low.
     fn work(&self, _plan: &Builder<'_>) -> Result<Work, RecipeError> {
         Ok(Work::default())
     }
 
-    /// Builds the step of the node; its inputs have steps in the plan already.
+    /// Builds the step of the node. Its inputs have steps in the plan already.
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError>;
 }
 
-/// Defines the enum of all kinds, their names in recipes, and the conversion from a node to its kind.
+/// Defines the enum of all kinds, their names in recipes, and access to a node as a [`NodeKind`].
 macro_rules! nodes {
     ($($(#[$doc:meta])* $name:literal $variant:ident($options:ident) in $group:literal as $start:literal,)*) => {
         /// A node of a recipe: a table with one entry, whose name is the kind.
@@ -114,11 +114,10 @@ macro_rules! nodes {
             $($(#[$doc])* #[serde(rename = $name)] $variant($options),)*
         }
 
-        /// The names of the kinds in files.
+        /// The names of the kinds, as recipes write them.
         pub const KINDS: [&str; [$($name),*].len()] = [$($name),*];
 
-        /// For each of [`KINDS`] the group that it belongs to, such as `shape`, and the options that a new node may begin with,
-        /// as JSON.
+        /// For each of [`KINDS`], its group, such as `shape`, and the initial options of a new node, as JSON.
         pub const NEW_NODES: [(&str, &str); KINDS.len()] = [$(($group, $start)),*];
 
         impl Node {
@@ -199,19 +198,19 @@ impl Node {
         self.kind().images()
     }
 
-    /// The use of the alpha of these files, if the node sets it.
+    /// How the alpha of the image files is used, if the node sets it.
     #[must_use]
     pub fn image_alpha(&self) -> Option<ImageAlpha> {
         self.kind().alpha()
     }
 
-    /// The layer that is read of these files, if the node sets it.
+    /// The layer of the image files to read, if the node sets it.
     #[must_use]
     pub fn image_layer(&self) -> Option<&str> {
         self.kind().layer()
     }
 
-    /// The images that the node reads.
+    /// The images that the node reads: its files, with their layer and the use of their alpha.
     pub fn image_sources(&self) -> impl Iterator<Item = ImageSource<'_>> {
         let (layer, alpha) = (self.image_layer(), self.image_alpha());
         let files = self.image_files().into_iter();

@@ -1,8 +1,8 @@
 //! Plans: recipes ready for evaluation, with all names resolved, and all seeds and fields made.
 //!
-//! The nodes become steps in an order in which the inputs of each come before it. A window, or a list of positions, is
-//! evaluated step by step, each step once. The value of a pixel depends on its position alone, except after the steps
-//! that depend on the whole tile, which are evaluated beforehand for a whole picture: see [`Plan::whole`].
+//! Nodes become steps in topological order: the inputs of a step come before it. A window, or a list of positions, is
+//! evaluated step by step, each step once. The value of a pixel depends on its position alone. Steps that depend on the
+//! whole tile are the exception; they are evaluated beforehand for all pixels of the tile: see [`Plan::whole`].
 
 mod builder;
 mod cache;
@@ -62,7 +62,8 @@ impl Picture {
     }
 }
 
-/// The images of a recipe, by file name; of a file of which several layers are read, by [`ImageSource::key`].
+/// The images of a recipe by file name. If nodes read several layers of one file, each layer has the key
+/// [`ImageSource::key`].
 pub type Images = std::collections::BTreeMap<String, Picture>;
 
 /// An image that nodes of a recipe read: a file, or a layer of it.
@@ -78,8 +79,8 @@ pub struct ImageSource<'a> {
 }
 
 impl ImageSource<'_> {
-    /// The key of the picture in [`Images`]: the file name, followed by NUL and the layer if there is one. No file name
-    /// contains NUL.
+    /// The key of the image in [`Images`]: the file name, followed by NUL and the layer if a layer is named. No file
+    /// name contains NUL.
     #[must_use]
     pub fn key(&self) -> String {
         match self.layer {
@@ -88,7 +89,7 @@ impl ImageSource<'_> {
         }
     }
 
-    /// The picture of this image: the one with its key, or else with its file name.
+    /// Looks the image up by its key, then by its file name.
     pub(crate) fn picture<'a>(&self, images: &'a Images) -> Option<&'a Picture> {
         images.get(&self.key()).or_else(|| images.get(self.file))
     }
@@ -122,11 +123,11 @@ pub struct Plan {
     watch: Watch,
     /// Whether a node changes with time.
     moves: bool,
-    /// The number of each step in the memory.
+    /// The id of each step in the cache; empty without a cache.
     ids: Arc<[StepId]>,
 }
 
-/// The steps that the maps of the material use.
+/// The indices of the steps that the maps of the material read.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Channels {
     pub(crate) height: usize,
@@ -194,7 +195,7 @@ impl Plan {
         Self::new_within(recipe, images, time, &PlanLimits::default())
     }
 
-    /// Makes all nodes of the recipe, if this is no more work than the limits allow.
+    /// Makes all nodes of the recipe, if the estimated work is within the limits.
     ///
     /// # Errors
     ///
@@ -208,8 +209,8 @@ impl Plan {
         Self::make(recipe, images, time, limits, None, Watch::default())
     }
 
-    /// Makes all nodes of the recipe, and reuses from the memory parts of earlier plans, for programs that redraw a
-    /// recipe as it changes. Bakes and pictures of nodes use the memory, too.
+    /// Makes all nodes of the recipe, and reuses parts of earlier plans from the cache. This is for programs that
+    /// redraw a recipe as it changes. Bakes and node images use the cache, too.
     ///
     /// # Errors
     ///
@@ -240,18 +241,19 @@ impl Plan {
         Self::make(recipe, images, time, limits, Some(memory), Watch::default())
     }
 
-    /// Makes all nodes of the recipe, and calls `progress` meanwhile, which can stop the work with
-    /// [`Cancelled`](RecipeErrorKind::Cancelled): games load recipes on a thread, show a bar and cancel. The plan keeps the
-    /// callback for its bakes and pictures of nodes.
+    /// Makes all nodes of the recipe and reports to the callback `progress`, which can stop the work with
+    /// [`Cancelled`](RecipeErrorKind::Cancelled). Games load recipes on a thread, show a progress bar and offer to
+    /// cancel. The plan keeps the callback for its bakes and node images.
     ///
-    /// It is called on any thread, possibly on several at a time, from the beginning on and then at least once for some 50
-    /// milliseconds of work of one core; only the making of wavelet noise and of a Delaunay triangulation of points that do
-    /// not repeat, and single passes of `tile`, `blend` and `corner_tiles` nodes over pictures of millions of pixels, take
-    /// longer. It is not called again after it asked to stop, but by threads that call it at that time.
+    /// The callback runs on any thread, possibly on several threads at once: at the start, and then at least once in
+    /// about 50 milliseconds of work of one core. Calls are further apart while wavelet noise is made, during a
+    /// Delaunay triangulation of points that do not repeat, and during a single pass of a `tile`, `blend` or
+    /// `corner_tiles` node over an image of millions of pixels. Once the callback has asked to stop, only threads that
+    /// are calling it at that moment still call it.
     ///
-    /// There are three passes: in the first nodes are made, in the second, in [`Bake::new`](crate::Bake::new), the nodes that
-    /// depend on the whole tile are evaluated, each a thousand sites; in the third, the bands of a bake are computed, whose
-    /// rows are the sites. [`Progress::part`] is the part of all work.
+    /// There are three passes. The first makes the nodes. The second, in [`Bake::new`](crate::Bake::new), evaluates the
+    /// nodes that depend on the whole tile. A node counts as a thousand sites. The third computes the bands of a bake,
+    /// where a row counts as a site. [`Progress::part`] is the fraction of all work that is done.
     ///
     /// # Errors
     ///
@@ -282,6 +284,7 @@ impl Plan {
         Self::make(recipe, images, time, limits, memory, Watch::by(progress))
     }
 
+    /// Makes all nodes of the recipe, with an optional cache and callback.
     fn make(
         recipe: &Recipe,
         images: &Images,
@@ -297,6 +300,7 @@ impl Plan {
         if let Some(memory) = memory {
             memory.begin();
         }
+        // Build the step of each node after its inputs.
         watch.begin(Pass::Nodes, OF_NODE * recipe.nodes.len());
         let mut builder = Builder::new(recipe, images, time, limits, memory, &watch);
         for (index, name) in order(recipe)?.into_iter().enumerate() {
@@ -305,6 +309,7 @@ impl Plan {
             let added = builder.add(name, &recipe.nodes[name]);
             added.map_err(|error| watch.reason(error.within(name)))?;
         }
+        // Add the steps that the material reads, such as constants.
         let channels = channels(recipe, &mut builder).map_err(|error| error.within("material"))?;
         let plan = Self {
             extent: recipe.extent.into(),
@@ -323,7 +328,7 @@ impl Plan {
         Ok(plan)
     }
 
-    /// The same plan, with another callback for the progress of its bakes and pictures of nodes: see
+    /// Sets the callback for the progress of bakes and node images, in place of an earlier one: see
     /// [`new_with_progress`](Self::new_with_progress).
     ///
     /// # Examples
@@ -354,13 +359,13 @@ impl Plan {
         self.extent
     }
 
-    /// Whether a node changes with time. If none does, all pictures of a loop are equal.
+    /// Whether a node changes with time. Otherwise, all frames of a loop are equal.
     #[must_use]
     pub fn moves(&self) -> bool {
         self.moves
     }
 
-    /// The window that covers the tile with `size` pixels. It may have more pixels than a raster.
+    /// The window that covers the tile with `size` columns and rows. It may have more pixels than a raster can have.
     ///
     /// # Errors
     ///
@@ -399,7 +404,7 @@ impl Plan {
     /// # Errors
     ///
     /// [`UnknownNode`](RecipeErrorKind::UnknownNode) if there is no such node,
-    /// [`NotANumber`](RecipeErrorKind::NotANumber) if it makes a color, and those of [`height`](Self::height).
+    /// [`NotANumber`](RecipeErrorKind::NotANumber) if it makes a color, and the errors of [`height`](Self::height).
     pub fn field(&self, node: &str) -> Result<NodeField, RecipeError> {
         let step = self.find(node)?;
         if self.steps[step].is_color() {
@@ -412,7 +417,8 @@ impl Plan {
     ///
     /// # Errors
     ///
-    /// [`UnknownNode`](RecipeErrorKind::UnknownNode) if there is no such node, and those of [`height`](Self::height).
+    /// [`UnknownNode`](RecipeErrorKind::UnknownNode) if there is no such node, and the errors of
+    /// [`height`](Self::height).
     pub fn colors(&self, node: &str) -> Result<NodeColors, RecipeError> {
         Ok(NodeColors::new(self.steps.clone(), self.find(node)?))
     }
@@ -437,14 +443,14 @@ impl Plan {
         matches!(step, Some(Step::Global(_)))
     }
 
-    /// The step of a node that has a value at a single position.
+    /// The index of the step of a node; an error if the node has no value at a single position.
     fn find(&self, node: &str) -> Result<usize, RecipeError> {
         let step = self.step_of(node)?;
         self.local(step)?;
         Ok(step)
     }
 
-    /// The step of a node.
+    /// The index of the step of a node.
     fn step_of(&self, node: &str) -> Result<usize, RecipeError> {
         self.names.get(node).copied().ok_or_else(|| {
             let name = node.to_owned();
@@ -453,7 +459,7 @@ impl Plan {
         })
     }
 
-    /// Fails for a step that depends on the whole tile.
+    /// Fails for a step that depends on the whole tile, directly or through an input.
     fn local(&self, step: usize) -> Result<(), RecipeError> {
         let is_global = |&index: &usize| matches!(self.steps[index], Step::Global(_));
         let Some(global) = ancestors(&self.steps, &[step]).into_iter().find(is_global) else {
@@ -463,8 +469,8 @@ impl Plan {
         Err(self.within(global, RecipeError::new(RecipeErrorKind::Global { during })))
     }
 
-    /// The values of steps at the pixels of a window, in the order of the steps, on all cores where the feature `rayon`
-    /// is on. Values of some steps may be passed in `known`.
+    /// Computes the values of the steps `wanted` at the pixels of a window, in the order of `wanted`. Runs on all cores
+    /// if the feature `rayon` is on. `known` has values of steps that the caller has computed already.
     pub(crate) fn values(
         &self,
         whole: &Whole,
@@ -478,7 +484,7 @@ impl Plan {
         }
     }
 
-    /// The values of steps, from the memory as far as it has them; others are added to it.
+    /// Computes the values of steps with the cache: reads the stored ones, and stores the new ones.
     fn values_with(
         &self,
         memory: &PlanCache,
@@ -493,6 +499,8 @@ impl Plan {
                 Step::Number(_) | Step::Color(_) | Step::Global(_)
             )
         };
+        // Take the needed steps in order, and look each up in the cache. The inputs of a step found there are not
+        // needed.
         let mut known = known.to_vec();
         let found = RefCell::new(Vec::new());
         let order = step::needed(&self.steps, wanted, |index| {
@@ -507,6 +515,7 @@ impl Plan {
             is_known || is_found
         });
         known.append(&mut found.into_inner());
+        // Evaluate the other steps, and store their values unless they would evict most of the cache.
         let is_new =
             |index: &usize| is_kept(*index) && !known.iter().any(|(known, _)| known == index);
         let fresh: Vec<_> = order.into_iter().filter(is_new).collect();
@@ -521,15 +530,15 @@ impl Plan {
         Ok(values)
     }
 
-    /// The steps that `wanted` and the height have in common. With their values, no step below them is needed.
+    /// The steps that both `wanted` and the height depend on. Once their values are known, their inputs are not needed.
     pub(crate) fn shared_with_height(&self, wanted: &[usize]) -> Vec<usize> {
         step::shared(&self.steps, self.channels.height, wanted)
     }
 
-    /// The axes along which heights continue past the sides of the tile.
+    /// For each axis, whether heights past the sides of the tile must be extrapolated.
     ///
-    /// Along these the recipe does not repeat, and the height depends on a picture, which ends at the sides. Heights made
-    /// of functions alone are known everywhere.
+    /// This is so if the recipe does not repeat along the axis and the height depends on an image, which ends at the
+    /// sides. Heights computed from functions alone are known everywhere.
     pub(crate) fn continues_heights(&self) -> [bool; 2] {
         let mut above = ancestors(&self.steps, &[self.channels.height]).into_iter();
         let is_picture =
@@ -537,7 +546,7 @@ impl Plan {
         self.wrap.map(|repeats| is_picture && !repeats)
     }
 
-    /// The callback for new work of the plan.
+    /// A copy of the callback, with separate progress, for new work of the plan.
     pub(crate) fn watch(&self) -> Watch {
         self.watch.again()
     }
@@ -557,10 +566,10 @@ impl Plan {
 
 pub(crate) const TIME: Range = range!(finite);
 pub(crate) const EXTENT: Range = range!(above 0 to 1e6);
-/// The range of the relief: far more than any texture needs, while slopes and their squares stay finite.
+/// The range of the relief. It is far larger than textures need, and slopes and their squares stay finite.
 pub(crate) const RELIEF: Range = range!(from -1e6 to 1e6);
 
-/// The steps of the material, which come after all nodes.
+/// Adds the steps that the material reads, after the steps of all nodes.
 fn channels(recipe: &Recipe, builder: &mut Builder<'_>) -> Result<Channels, RecipeError> {
     let material = &recipe.material;
     RecipeError::check_in(RELIEF, "relief", material.relief)?;
@@ -578,7 +587,7 @@ fn channels(recipe: &Recipe, builder: &mut Builder<'_>) -> Result<Channels, Reci
 }
 
 impl Input {
-    /// The input as in the text, for messages.
+    /// The input as written in the recipe, for error messages.
     pub(crate) fn written(&self) -> String {
         match self {
             Self::Number(number) => number.to_string(),
@@ -588,7 +597,7 @@ impl Input {
     }
 }
 
-/// The error of a color where a number is needed.
+/// The error for a color where a number is needed.
 pub(crate) fn not_a_number(input: &Input) -> RecipeError {
     RecipeError::new(RecipeErrorKind::NotANumber {
         input: input.written(),

@@ -128,7 +128,7 @@ impl Default for Material {
 }
 
 impl Recipe {
-    /// A recipe with one node as the height, for the commands that draw a single field.
+    /// Makes a recipe with a single node, which is the height. For commands that render a single field.
     #[must_use]
     pub fn of_node(name: &str, node: Node, seed: Seed) -> Self {
         Self {

@@ -1,10 +1,10 @@
-//! Rust programs that contain a recipe as text and bake it.
+//! Export of a recipe as a Rust program that contains its text and bakes it.
 
 use crate::{Recipe, RecipeError};
 
 impl Recipe {
-    /// A Rust program that contains this recipe and writes its height, normals and albedo as PNG files, with the crate
-    /// `dapple` alone.
+    /// Generates a Rust program that contains this recipe and writes its height, normals and albedo as PNG files. The
+    /// program depends on the crate `dapple` alone.
     ///
     /// # Errors
     ///
@@ -16,7 +16,7 @@ impl Recipe {
             &self.name
         };
         let toml = self.to_toml()?;
-        // More marks than follow any quotation mark in the text.
+        // Delimit the raw string by more `#` than follow any quotation mark in the text.
         let mut marks = String::from("#");
         while toml.contains(&format!("\"{marks}")) {
             marks.push('#');
@@ -27,7 +27,7 @@ impl Recipe {
     }
 }
 
-/// The program, up to the text of the recipe.
+/// The source of the program, up to the text of the recipe.
 const PROGRAM: &str = "
 use dapple::image::{Depth, write_color_png, write_gray_png, write_normal_png};
 use dapple::recipe::{Bake, BakeOptions, Images, MapKind, MapRows, Plan, Recipe, RecipeError};

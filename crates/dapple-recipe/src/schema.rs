@@ -1,6 +1,7 @@
-//! The JSON Schema of recipes, for completion in editors, generated from the types that recipes are read into. Names
-//! and kinds of options, ranges and defaults are those of the reader, and descriptions are the documentation of the
-//! types.
+//! The JSON Schema of recipes, for completion in editors.
+//!
+//! The schema is generated from the types that recipes are deserialized into, so that the names and types of options,
+//! their ranges and their defaults agree with the parser. The descriptions are the doc comments of these types.
 
 mod reference;
 mod traced;
@@ -16,7 +17,7 @@ use serde_json::{Value, json};
 use std::borrow::Cow;
 
 impl Recipe {
-    /// The JSON Schema of recipes, draft 2020-12.
+    /// Returns the JSON Schema of recipes, draft 2020-12.
     ///
     /// # Examples
     ///
@@ -33,21 +34,21 @@ impl Recipe {
         schema.to_value()
     }
 
-    /// A reference of all options of recipes, in Markdown.
+    /// Returns a reference of all options of recipes, in Markdown.
     #[must_use]
     pub fn reference() -> String {
         reference::reference(&Self::schema())
     }
 }
 
-/// Other names that the reader accepts for an option.
+/// Aliases that the parser accepts for options, as pairs of option and alias.
 const ALIASES: [(&str, &str); 3] = [
     ("gain", "persistence"),
     ("albedo", "basecolor"),
     ("albedo", "base_color"),
 ];
 
-/// Removes the markup of Rust's documentation from descriptions, and adds the other names of options.
+/// Removes rustdoc markup from descriptions, and adds the aliases of options. Recurses into all subschemas.
 fn plain(schema: &mut Schema) {
     if let Some(Value::String(text)) = schema.get_mut("description") {
         *text = without_links(text);
@@ -62,7 +63,7 @@ fn plain(schema: &mut Schema) {
     transform_subschemas(&mut (plain as fn(&mut Schema)), schema);
 }
 
-/// An option under another name.
+/// The schema of an alias: the option, marked as deprecated in favor of `name`.
 fn deprecated(mut option: Value, name: &str) -> Value {
     if let Value::Object(option) = &mut option {
         option.remove("default");
@@ -75,7 +76,7 @@ fn deprecated(mut option: Value, name: &str) -> Value {
     option
 }
 
-/// The first paragraph of a description, with plain words in place of links.
+/// The first paragraph of a description, with each intra-doc link replaced by its name in code style.
 fn without_links(text: &str) -> String {
     let paragraph = text.split("\n\n").next().unwrap_or(text).replace('\n', " ");
     let mut plain = String::new();
@@ -96,7 +97,7 @@ fn without_links(text: &str) -> String {
     plain + rest
 }
 
-/// Implements the schema of types with more than one form.
+/// Implements `JsonSchema` for types that can be written in more than one form.
 macro_rules! schemas {
     ($($type:ident => $schema:expr;)*) => {
         $(impl JsonSchema for $type {
@@ -111,7 +112,7 @@ macro_rules! schemas {
     };
 }
 
-/// The pattern of colors as sRGB in hexadecimal.
+/// The regular expression of sRGB colors in hexadecimal.
 const HEX: &str = "^#([0-9a-fA-F]{3}|[0-9a-fA-F]{6})$";
 
 schemas! {

@@ -1,4 +1,4 @@
-//! Reading and writing of recipes as text: TOML and JSON, with errors that name the line and the nearest valid word.
+//! Reading and writing recipes as TOML and JSON. Errors have the line and the nearest valid word.
 
 use crate::{Node, Place, PupsNode, Recipe, RecipeError, RecipeErrorKind, SCHEMA};
 use content::Content;
@@ -11,19 +11,19 @@ mod content;
 mod refusal;
 mod set;
 
-/// The largest number of bytes of a recipe.
+/// Maximum size of the text of a recipe, in bytes: 4 MiB.
 pub const MAX_TEXT: usize = 1 << 22;
 
 impl Recipe {
-    /// Reads a recipe from a text in TOML.
+    /// Reads a recipe from TOML text.
     ///
-    /// Its names and inputs are checked only when it is made into a plan.
+    /// The names and inputs of nodes are checked later, by [`Plan::new`](crate::Plan::new).
     ///
     /// # Errors
     ///
-    /// [`Text`](RecipeErrorKind::Text) for text that is no TOML, or has a key or value that recipes do not have, with
-    /// the line and the nearest valid word; [`Schema`](RecipeErrorKind::Schema) for another version;
-    /// [`Count`](RecipeErrorKind::Count) past [`MAX_TEXT`] bytes.
+    /// [`Text`](RecipeErrorKind::Text) for text that is not valid TOML, or has a key or value that recipes do not have,
+    /// with the line and the nearest valid word; [`Schema`](RecipeErrorKind::Schema) for another version of the schema;
+    /// [`Count`](RecipeErrorKind::Count) for more than [`MAX_TEXT`] bytes.
     pub fn from_toml(text: &str) -> Result<Self, RecipeError> {
         let text = decoded(text)?;
         let content: Content = toml::from_str(text).map_err(|error| {
@@ -37,7 +37,7 @@ impl Recipe {
         })
     }
 
-    /// Reads a recipe from a text in JSON.
+    /// Reads a recipe from JSON text.
     ///
     /// # Errors
     ///
@@ -47,7 +47,7 @@ impl Recipe {
         let content: Content = serde_json::from_str(text).map_err(|error| {
             let (line, column) = (error.line(), error.column());
             let full = error.to_string();
-            // The reader's text of the place is removed, since the error names it.
+            // Remove the position from the message of the parser, since the error has it separately.
             let message = full.split(" at line ").next().unwrap_or(&full);
             text_error(message).at((line > 0).then_some(Place { line, column }))
         })?;
@@ -75,18 +75,18 @@ impl Recipe {
     }
 }
 
-/// A value that is written to any format through references, so that the writers of the many types of recipes are
-/// compiled once, and not for each format.
+/// Erases the type of a value for serialization, so that the serializers of the many types of recipes are compiled once
+/// and not once per format.
 fn data(value: &impl Serialize) -> &dyn Serialize {
     value
 }
 
-/// Whether a node can be written as data; functions cannot.
+/// Whether a node can be serialized. Nodes with functions cannot.
 pub(crate) fn is_data(node: &Node) -> bool {
     serde_json::to_string_pretty(data(node)).is_ok()
 }
 
-/// The text of a recipe without its byte order mark, if it is not too long.
+/// Removes the byte order mark of a text. Fails for more than [`MAX_TEXT`] bytes.
 fn decoded(text: &str) -> Result<&str, RecipeError> {
     if text.len() > MAX_TEXT {
         return Err(RecipeError::new(RecipeErrorKind::Count {
@@ -99,7 +99,7 @@ fn decoded(text: &str) -> Result<&str, RecipeError> {
 }
 
 impl PupsNode {
-    /// Converts the texture to a value of JSON.
+    /// Converts the texture to a JSON value.
     ///
     /// # Errors
     ///
@@ -108,7 +108,7 @@ impl PupsNode {
         serde_json::to_value(data(self)).map_err(|error| text_error(&error.to_string()))
     }
 
-    /// Converts a value of JSON to a texture.
+    /// Converts a JSON value to a texture.
     ///
     /// # Errors
     ///
@@ -120,7 +120,7 @@ impl PupsNode {
     }
 }
 
-/// Reads options in the form of a recipe from a value of JSON.
+/// Reads options from a JSON value, in the form in which recipes write them.
 ///
 /// # Errors
 ///
@@ -144,7 +144,7 @@ pub fn read_options<T: serde::de::DeserializeOwned>(value: &Value) -> Result<T, 
     T::deserialize(&content).map_err(|refusal| text_error(&refusal.message))
 }
 
-/// Fails for a recipe of another version, before all other errors.
+/// Fails for a recipe of another schema version. It is checked first, because other errors may follow from it.
 fn check_version(content: &Content) -> Result<(), RecipeError> {
     let version = match content.get("dapple") {
         Some(Content::Signed(version)) => u32::try_from(*version),
@@ -159,13 +159,13 @@ fn check_version(content: &Content) -> Result<(), RecipeError> {
     }
 }
 
-/// Converts the error of a reader, with the nearest of the words that it expected.
+/// Converts the message of a parser to an error, with the nearest of the words that the parser expected.
 fn text_error(message: &str) -> RecipeError {
     let message = plain(&message.lines().collect::<Vec<_>>().join(" "));
     let error = RecipeError::new(RecipeErrorKind::Text {
         message: message.clone(),
     });
-    // Readers write ``unknown field `densty`, expected one of `density`, `seed` ``.
+    // Parsers write ``unknown field `densty`, expected one of `density`, `seed` ``.
     let mut words = message.split('`').skip(1).step_by(2);
     match words.next() {
         Some(written) if message.starts_with("unknown ") => error.meant(written, words),
@@ -173,7 +173,7 @@ fn text_error(message: &str) -> RecipeError {
     }
 }
 
-/// The message in words of the texts: without names of Rust types and of the parts of their readers.
+/// Rewrites the message of a parser in the terms of TOML and JSON, without names of Rust types and of serde.
 fn plain(message: &str) -> String {
     if let Some(name) = message.strip_prefix("missing field ") {
         return format!("{name} is missing");
@@ -210,7 +210,7 @@ fn plain(message: &str) -> String {
     format!("{found}, expected {expected}")
 }
 
-/// The line and the column of a byte.
+/// The line and column of a byte offset.
 fn place_of(text: &str, byte: usize) -> Place {
     let before = text.get(..byte).unwrap_or(text);
     let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);

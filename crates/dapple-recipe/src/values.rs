@@ -7,7 +7,7 @@ use dapple_tile::Map;
 use std::borrow::Cow;
 use std::ops::Range;
 
-/// The values of a node: numbers or colors, with one value for each position.
+/// The values of a node: one number or one color for each position.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Values {
     /// Numbers.
@@ -17,7 +17,7 @@ pub enum Values {
 }
 
 impl Values {
-    /// The number of positions.
+    /// Number of positions.
     #[must_use]
     pub fn len(&self) -> usize {
         match self {
@@ -26,13 +26,13 @@ impl Values {
         }
     }
 
-    /// Whether there is no position.
+    /// Whether there are no positions.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// The numbers; empty for colors, which a plan excludes where numbers are needed.
+    /// The numbers; empty for colors. A plan has checked that inputs which must be numbers are not colors.
     pub(crate) fn numbers(&self) -> &[f32] {
         match self {
             Self::Numbers(numbers) => numbers,
@@ -48,7 +48,7 @@ impl Values {
         }
     }
 
-    /// The colors, or grays for numbers.
+    /// The colors; numbers become grays.
     pub(crate) fn into_colors(self) -> Vec<LinearRgb> {
         match self {
             Self::Numbers(numbers) => numbers.into_iter().map(LinearRgb::gray).collect(),
@@ -56,7 +56,7 @@ impl Values {
         }
     }
 
-    /// The colors, or grays for numbers.
+    /// The colors, borrowed if possible; numbers become grays.
     pub(crate) fn colors(&self) -> Cow<'_, [LinearRgb]> {
         match self {
             Self::Numbers(_) => Cow::Owned(self.clone().into_colors()),
@@ -64,7 +64,7 @@ impl Values {
         }
     }
 
-    /// The values of some of the positions.
+    /// The values of a range of the positions.
     pub(crate) fn part(&self, range: Range<usize>) -> Self {
         match self {
             Self::Numbers(numbers) => Self::Numbers(numbers[range].to_vec()),
@@ -72,7 +72,7 @@ impl Values {
         }
     }
 
-    /// The values of several sets of positions, which are of one kind, one after the other.
+    /// Concatenates values, which must be all numbers or all colors.
     pub(crate) fn joined(parts: &[&Self]) -> Self {
         let n_values = parts.iter().map(|part| part.len()).sum();
         let mut all = match parts.first() {
@@ -85,7 +85,7 @@ impl Values {
         all
     }
 
-    /// Appends the values of more positions, which are of the same kind.
+    /// Appends the values of more positions. Both must be numbers, or both colors.
     pub(crate) fn append(&mut self, more: &Self) {
         match self {
             Self::Numbers(numbers) => numbers.extend_from_slice(more.numbers()),
@@ -96,7 +96,7 @@ impl Values {
         }
     }
 
-    /// Combines inputs from the first to the last, as colors if one of them has colors.
+    /// Combines inputs pairwise, from the first to the last. The result is in color if any input is.
     pub(crate) fn fold(
         inputs: &[&Self],
         combine: impl Fn(f32, f32) -> f32,
@@ -128,7 +128,7 @@ impl Values {
         Raster::from_vec(size, self.clone().into_grays())
     }
 
-    /// The inputs as maps of this size: all in color, if any input is.
+    /// The inputs as maps of this size: all in color if any input is in color.
     pub(crate) fn maps(inputs: &[&Self], size: [u32; 2]) -> Result<Vec<Map>, RasterError> {
         let as_colors = Self::has_colors(inputs);
         let map = |values: &&Self| {
@@ -142,7 +142,7 @@ impl Values {
         inputs.iter().map(map).collect()
     }
 
-    /// The values of the only map of a result.
+    /// The values of the first map of a result; an error for a map of normals, or without a map.
     pub(crate) fn of_map(maps: Vec<Map>) -> Result<Self, RecipeError> {
         match maps.into_iter().next() {
             Some(Map::Value(raster)) => Ok(Self::Numbers(raster.into_pixels())),

@@ -1,12 +1,12 @@
-//! Search for misspelled words.
+//! Suggestions for misspelled words.
 
-/// The smallest similarity of two words, from 0 to 1, at which one may be a misspelling of the other.
+/// Minimum similarity of two words, from 0 to 1, at which one may be a misspelling of the other.
 const ALIKE: f64 = 0.6;
 
-/// The valid words of which the written one may be a misspelling, the most similar first.
+/// Returns the valid words that are similar to a misspelled one, most similar first.
 ///
-/// Insertions, omissions, changes and swaps of neighboring letters are counted (the distance of Damerau and Levenshtein), and
-/// related to the length of the longer word; case does not matter.
+/// The similarity is one minus the Damerau–Levenshtein distance (insertions, omissions, changes, and swaps of
+/// neighboring letters) divided by the length of the longer word; words of at least 0.6 are returned. Case is ignored.
 ///
 /// # Examples
 ///

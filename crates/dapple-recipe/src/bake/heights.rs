@@ -1,4 +1,4 @@
-//! The heights of a band with a margin, and the steps that other maps share with the height.
+//! The heights of a band with its margin, and the values that other maps share with the height.
 
 use super::maps::{NORMAL_HALO, beside_height, curvature_options, maps, occlusion_options};
 use super::{MapKind, MapRows};
@@ -8,8 +8,9 @@ use dapple_color::continue_heights;
 use dapple_raster::{Raster, RasterError, Window};
 use std::sync::Arc;
 
-/// The largest number of pixels of a band with its margin for which more than the heights is kept: eight times those of
-/// a usual band, which take 32 MiB for each step. Above it, the other maps compute all their steps again.
+/// Maximum number of pixels of a band with its margin at which the values of shared steps are stored in addition to the
+/// heights: eight times the pixels of a usual band, or 32 MiB for each step. Above it, the other maps recompute all
+/// their steps.
 const SHARED_PIXELS: usize = 1 << 23;
 
 /// Computes the heights of bands; rows that two bands share are computed once.
@@ -17,13 +18,14 @@ const SHARED_PIXELS: usize = 1 << 23;
 pub(super) struct Heights {
     /// Whether any map needs heights.
     wanted: bool,
-    /// The halo of the maps, in pixels.
+    /// The largest halo of all maps, in pixels: columns and rows at each side of a pixel on which its value depends.
     halo: [u32; 2],
-    /// For each axis along which heights continue past the sides of the tile, its first pixel and the one past its last.
+    /// For each axis along which heights are extrapolated past the sides of the tile, the first pixel of the tile and
+    /// the pixel after its last one.
     sides: [Option<[i64; 2]>; 2],
-    /// The steps of the height on which other maps depend, too.
+    /// The steps that both the height and other maps depend on.
     shared: Vec<usize>,
-    /// The lowest rows of the last band, with which the margin of the next one begins.
+    /// The lowest rows of the previous band, which the margin of the next band reuses.
     last: Option<Rows>,
 }
 
@@ -38,7 +40,7 @@ struct Rows {
 pub(super) struct Margined {
     pub(super) raster: Option<Raster<f32>>,
     pub(super) halo: [u32; 2],
-    /// The values, in the band itself, of steps that other maps need too.
+    /// The values of shared steps, in the band without its margin.
     pub(super) shared: Box<Known>,
 }
 
@@ -75,7 +77,7 @@ impl Heights {
         Ok(heights)
     }
 
-    /// Computes the maps of a band below or beside the last one.
+    /// Computes the maps of a band. Reuses heights that it shares with the previous band.
     pub(super) fn maps(
         &mut self,
         plan: &Plan,
@@ -88,7 +90,7 @@ impl Heights {
         maps(plan, whole, band, tile, &heights, kinds)
     }
 
-    /// Computes the heights of a band below or beside the last one.
+    /// Computes the heights of a band with its margin. Reuses rows that it shares with the previous band.
     fn of(&mut self, plan: &Plan, whole: &Whole, band: &Window) -> Result<Margined, RecipeError> {
         let halo = self.halo;
         if !self.wanted {
@@ -103,6 +105,7 @@ impl Heights {
             size: [0, 1].map(|axis| band.size[axis].saturating_add(halo[axis].saturating_mul(2))),
             ..*band
         };
+        // Begin with the rows of the previous band, and compute the rest.
         let mut steps = vec![plan.channels().height];
         if window.n_pixels() <= SHARED_PIXELS {
             steps.extend(&self.shared);
@@ -117,6 +120,7 @@ impl Heights {
             let next = band.first[1].saturating_add(band.size[1].into());
             self.last = rows.rows_from(next.saturating_sub(halo[1].into()));
         }
+        // Extrapolate the heights past the sides of the tile.
         let mut values = rows.values.into_iter();
         let heights = match values.next() {
             Some(Values::Numbers(heights)) => heights,
@@ -128,6 +132,7 @@ impl Heights {
             Some(sides.map(|side| side - window.first[axis]))
         };
         continue_heights(&mut raster, [0, 1].map(in_window));
+        // Crop the margin from the values of the shared steps.
         let in_band = |(&step, values)| Ok((step, Arc::new(cropped(values, &window, halo, band)?)));
         Ok(Margined {
             raster: Some(raster),
@@ -142,7 +147,7 @@ impl Heights {
 }
 
 impl Rows {
-    /// An empty set of rows, above those of the window.
+    /// An empty set of rows at the top of the window.
     fn none(window: &Window) -> Self {
         let [width, _] = window.size;
         Self {
@@ -154,7 +159,7 @@ impl Rows {
         }
     }
 
-    /// The rows from `first` on, if it is among them.
+    /// The rows starting at the row `first`; `None` if that row is not among these.
     fn rows_from(&self, first: i64) -> Option<Self> {
         let [width, rows] = self.window.size;
         let above = u32::try_from(first.checked_sub(self.window.first[1])?).ok()?;
@@ -174,7 +179,7 @@ impl Rows {
         })
     }
 
-    /// Computes the rows of the window that are below these.
+    /// Appends the remaining rows of the window, and computes their values.
     fn complete(
         &mut self,
         plan: &Plan,
@@ -203,7 +208,7 @@ impl Rows {
     }
 }
 
-/// Crops the margin from the values of a window.
+/// Crops the values of a window to the band within it.
 fn cropped(
     values: Values,
     window: &Window,

@@ -1,11 +1,11 @@
-//! Maps as images: the content of their files, and their rows.
+//! Writing maps to image files.
 
 use super::{MapKind, MapRows};
 use dapple_image::{Content, ImageError, RowWriter};
 use std::io::{Seek, Write};
 
 impl MapKind {
-    /// The content of an image of the map, which decides how its numbers are coded.
+    /// The content type of the map's image file, which determines how its values are encoded.
     #[must_use]
     pub fn content(self) -> Content {
         match self {
@@ -20,7 +20,8 @@ impl MapKind {
 }
 
 impl MapRows {
-    /// Writes the rows as the next ones of an image with the content of their map.
+    /// Writes the rows as the next rows of an image. The writer must have the [`content`](MapKind::content) of their
+    /// map.
     ///
     /// # Errors
     ///

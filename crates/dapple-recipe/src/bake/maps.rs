@@ -1,4 +1,4 @@
-//! The maps of a band.
+//! The kinds of maps, and their computation for a band.
 
 use super::heights::Margined;
 use crate::plan::{TileSamples, Watch};
@@ -15,13 +15,13 @@ use glam::DVec2;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[non_exhaustive]
 pub enum MapKind {
-    /// The height, from 0 to 1 for recipes that stay in this range.
+    /// The height: from 0 to 1, unless the recipe leaves this range.
     Height,
-    /// The normals of the height.
+    /// The surface normals of the height.
     Normal,
-    /// Ambient occlusion: the visible part of the sky, from 0 to 1.
+    /// Ambient occlusion: the visible fraction of the sky, from 0 to 1.
     Occlusion,
-    /// The curvature as a gray: ½ where it is flat, more on edges, less in grooves.
+    /// The curvature as a gray: ½ where the surface is flat, more on edges, less in grooves.
     Curvature,
     /// The base color.
     Albedo,
@@ -33,14 +33,14 @@ pub enum MapKind {
     Orm,
 }
 
-/// The side of a map at which another part is appended.
+/// The side at which another part of a map is appended.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Side {
     Below,
     Right,
 }
 
-/// Some rows of a map.
+/// Consecutive rows of a map.
 #[derive(Clone, Debug, PartialEq)]
 pub enum MapRows {
     /// Numbers.
@@ -49,7 +49,7 @@ pub enum MapRows {
     Color(Raster<LinearRgb>),
     /// Normals.
     Normal(Raster<Normal>),
-    /// Three numbers that are not a color.
+    /// Three independent numbers per pixel, such as occlusion, roughness and metallic.
     Packed(Raster<[f32; 3]>),
 }
 
@@ -66,7 +66,8 @@ impl MapKind {
         Self::Orm,
     ];
 
-    /// The map with a name; `basecolor` and `base_color` are the albedo, and `occlusion` is `ao`.
+    /// The map with a [name](Self::name), or with an alias: `basecolor` and `base_color` for `albedo`, `occlusion` for
+    /// `ao`.
     #[must_use]
     pub fn from_name(name: &str) -> Option<Self> {
         match name {
@@ -93,7 +94,8 @@ impl MapKind {
 }
 
 impl Side {
-    /// A raster with another one at its side, which has as many columns or rows.
+    /// Appends a raster at this side of another one. Both have the same width for `Below`, and the same height for
+    /// `Right`.
     fn join<T: Copy>(self, raster: Raster<T>, other: &Raster<T>) -> Result<Raster<T>, RasterError> {
         let [width, height] = raster.size();
         match self {
@@ -124,8 +126,8 @@ impl MapRows {
         }
     }
 
-    /// The bytes of a texture on a GPU, 4 for each pixel, row by row from the top: sRGB codes of a color
-    /// (`Rgba8UnormSrgb`), and linear codes of all other maps (`Rgba8Unorm`).
+    /// The bytes of a GPU texture: 4 bytes per pixel, row by row from the top. Colors are sRGB encoded
+    /// (`Rgba8UnormSrgb`); all other maps are linear (`Rgba8Unorm`).
     #[must_use]
     pub fn to_rgba8(&self) -> Vec<u8> {
         match self {
@@ -156,19 +158,19 @@ impl MapRows {
         }
     }
 
-    /// Appends another part of the same map at a side.
+    /// Appends another part of the same kind of map at a side.
     pub(super) fn joined(self, other: Self, side: Side) -> Result<Self, RecipeError> {
         Ok(match (self, other) {
             (Self::Gray(map), Self::Gray(other)) => Self::Gray(side.join(map, &other)?),
             (Self::Color(map), Self::Color(other)) => Self::Color(side.join(map, &other)?),
             (Self::Normal(map), Self::Normal(other)) => Self::Normal(side.join(map, &other)?),
             (Self::Packed(map), Self::Packed(other)) => Self::Packed(side.join(map, &other)?),
-            // The parts of a map are of one kind.
+            // Not reached: all parts of a map are of one kind.
             (map, _) => map,
         })
     }
 
-    /// A range of numbers, extended by the finite numbers of these rows.
+    /// Extends a range, as minimum and maximum, by the finite numbers of these rows.
     #[must_use]
     pub fn range(&self, range: [f32; 2]) -> [f32; 2] {
         fn widened(range: [f32; 2], numbers: impl Iterator<Item = f32>) -> [f32; 2] {
@@ -196,10 +198,11 @@ impl MapRows {
     }
 }
 
-/// The numbers of columns and rows at each side on which a normal depends.
+/// Columns and rows at each side of a pixel on which its normal depends.
 pub(super) const NORMAL_HALO: [u32; 2] = [1; 2];
 
-/// The plane of the heights of a plan, with the extent of all pixels of the tile. The wrap past the margin does not matter.
+/// The scale of the heights of a plan. `extent` is the width and height of all pixels of the tile, in units of the
+/// plane. The wrap has no effect, because the margin covers all pixels that are read.
 fn height_plane(plan: &Plan, extent: DVec2) -> HeightPlane {
     HeightPlane {
         strength: plan.material().relief,
@@ -253,7 +256,7 @@ pub(super) fn curvature_options(
     })
 }
 
-/// The steps that are maps themselves, in the order of the maps: all maps except those computed from the height.
+/// The steps of the maps that are not computed from the height, in the order of the maps.
 pub(super) fn beside_height(plan: &Plan, kinds: &[MapKind]) -> Vec<usize> {
     let channels = plan.channels();
     let of_kind = |kind: &MapKind| match kind {
@@ -288,7 +291,7 @@ pub(super) fn maps(
         heights,
         occlusion: None,
     };
-    // Two maps may show occlusion, and it takes the longest.
+    // Compute occlusion once: it is the slowest, and both `Occlusion` and `Orm` show it.
     let shows_occlusion = |kind: &MapKind| matches!(kind, MapKind::Occlusion | MapKind::Orm);
     if kinds.iter().any(shows_occlusion) {
         around.occlusion = Some(around.make_occlusion()?);
@@ -316,6 +319,7 @@ pub(super) fn maps(
     Ok(maps)
 }
 
+/// Packs three rasters of equal size into the channels of one.
 fn pack(
     red: &Raster<f32>,
     green: &Raster<f32>,
@@ -325,24 +329,24 @@ fn pack(
     Ok(two.zip_map(blue, |&[red, green], &blue| [red, green, blue])?)
 }
 
-/// The maps that depend on the surroundings of a pixel.
+/// Computes the maps of a band whose values depend on the neighborhood of a pixel.
 struct Around<'a> {
     plan: &'a Plan,
     watch: &'a Watch,
     tile: &'a TileSamples,
     size: [u32; 2],
     heights: &'a Margined,
-    /// The occlusion, computed if a map shows it.
+    /// The occlusion; computed if a map shows it.
     occlusion: Option<Raster<f32>>,
 }
 
 impl Around<'_> {
-    /// The heights with a margin; they exist if any map depends on them.
+    /// The heights with the margin; an error if they have not been computed.
     fn margined(&self) -> Result<&Raster<f32>, RecipeError> {
         foreseen(self.heights.raster.as_ref())
     }
 
-    /// The occlusion; it exists if any map shows it.
+    /// The occlusion; an error if it has not been computed.
     fn occlusion(&self) -> Result<&Raster<f32>, RecipeError> {
         foreseen(self.occlusion.as_ref())
     }
@@ -351,7 +355,7 @@ impl Around<'_> {
         self.within([0; 2])
     }
 
-    /// The heights with a margin of the given numbers of columns and rows, at most that of all maps.
+    /// The heights with a margin of `margin` columns and rows at each side; at most the halo of all maps.
     fn within(&self, margin: [u32; 2]) -> Result<Raster<f32>, RecipeError> {
         let first = [0, 1].map(|axis| self.heights.halo[axis] - margin[axis]);
         let size = [0, 1].map(|axis| self.size[axis] + 2 * margin[axis]);
@@ -389,7 +393,7 @@ impl Around<'_> {
     }
 }
 
-/// A raster that several maps of a band need; its absence is an error.
+/// Unwraps a raster that is computed beforehand for several maps of a band; an error if it is missing.
 fn foreseen(raster: Option<&Raster<f32>>) -> Result<&Raster<f32>, RecipeError> {
     raster.ok_or_else(|| {
         let rule = "a map was not foreseen";

@@ -1,11 +1,12 @@
-//! Shards: the parts of a picture for independent bakes on any number of machines.
+//! Shards: the regions of a map for independent bakes on any number of machines.
 
 use crate::{RecipeError, Region};
 
-/// The shards of a picture: regions of equal size, row by row from the top; the last ones are cropped at the border.
+/// The shards of a map: regions of equal size, row by row from the top. The last column and row of shards are cropped
+/// at the border of the map.
 ///
-/// Only the two sizes are stored, so that a list may have any length. A shard baked as the
-/// [`region`](crate::BakeOptions::region) of a bake is, bit for bit, that part of the whole picture.
+/// Only sizes are stored, so that a list of any length takes no memory. A shard baked as the
+/// [`region`](crate::BakeOptions::region) of a bake is, bit for bit, a crop of the whole map.
 ///
 /// # Examples
 ///
@@ -28,11 +29,11 @@ pub struct Shards {
 }
 
 impl Shards {
-    /// The shards of a picture of `size` columns and rows, with `shard` columns and rows each.
+    /// Divides a map of `size` columns and rows into shards of `shard` columns and rows.
     ///
     /// # Errors
     ///
-    /// [`Range`](crate::RecipeErrorKind::Range) if a side of the picture or of the shard has no pixel.
+    /// [`Range`](crate::RecipeErrorKind::Range) if a side of the map or of the shard has no pixel.
     pub fn new(size: [u32; 2], shard: [u32; 2]) -> Result<Self, RecipeError> {
         let names = [
             "number of pixels along a side of the picture",
@@ -50,12 +51,12 @@ impl Shards {
         })
     }
 
-    /// Lets neighboring shards share `overlap` columns and rows, which are part of the size of a shard; none by default.
-    /// Terrain tiles share one.
+    /// Sets the overlap: the number of columns and rows that neighboring shards share; 0 by default. They are part of
+    /// the size of a shard. Terrain tiles have an overlap of 1.
     ///
     /// # Errors
     ///
-    /// [`Range`](crate::RecipeErrorKind::Range) unless a shard has more columns and rows than it shares.
+    /// [`Range`](crate::RecipeErrorKind::Range) unless the overlap is less than both sides of a shard.
     ///
     /// # Examples
     ///
@@ -78,19 +79,19 @@ impl Shards {
         Ok(Self { overlap, ..self })
     }
 
-    /// Columns and rows of the picture.
+    /// Columns and rows of the map.
     #[must_use]
     pub fn size(&self) -> [u32; 2] {
         self.size
     }
 
-    /// Columns and rows of a shard.
+    /// Columns and rows of a shard, before cropping at the border.
     #[must_use]
     pub fn shard(&self) -> [u32; 2] {
         self.shard
     }
 
-    /// The numbers of shards side by side, and one below the other.
+    /// Columns and rows of the grid of shards.
     #[must_use]
     pub fn grid(&self) -> [u32; 2] {
         let steps = self.steps();
@@ -100,7 +101,7 @@ impl Shards {
         })
     }
 
-    /// The columns and rows from one shard to the next.
+    /// Distance from a shard to the next one along each axis, in pixels: the size of a shard less the overlap.
     #[must_use]
     pub fn steps(&self) -> [u32; 2] {
         self.shard.map(|side| side - self.overlap)
@@ -117,23 +118,23 @@ impl Shards {
         u64::from(columns) * u64::from(rows)
     }
 
-    /// The shard with an index, or `None` past the last one. Its column among the shards is the index modulo the
-    /// columns of the [`grid`](Self::grid).
+    /// The shard with an index, or `None` past the last one. Its column in the [`grid`](Self::grid) is the index modulo
+    /// the columns of the grid; its row is the quotient.
     #[must_use]
     pub fn get(&self, index: u64) -> Option<Region> {
         let columns = u64::from(self.grid()[0]);
         (index < self.len()).then(|| self.at([index % columns, index / columns]))
     }
 
-    /// All shards in the order of their indices.
+    /// All shards, in the order of their indices.
     pub fn iter(&self) -> impl Iterator<Item = Region> + use<> {
         let shards = *self;
         (0..shards.len()).map_while(move |index| shards.get(index))
     }
 
-    /// The shard in this column and row of the grid.
+    /// The shard at a column and row of the grid.
     fn at(&self, place: [u64; 2]) -> Region {
-        // Both fit, since they are within the picture.
+        // Positions within the map fit in 32 bits.
         let steps = self.steps();
         let first = [0, 1].map(|axis| (place[axis] * u64::from(steps[axis])) as u32);
         let size = [0, 1].map(|axis| self.shard[axis].min(self.size[axis] - first[axis]));

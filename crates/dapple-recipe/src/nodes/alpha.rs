@@ -1,4 +1,4 @@
-//! The use of an image with alpha where no alpha is needed.
+//! How an image with alpha becomes an opaque image.
 
 use crate::input::hex_from_color;
 use dapple_color::LinearRgb;

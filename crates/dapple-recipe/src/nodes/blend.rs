@@ -82,7 +82,7 @@ impl NodeKind for Blended {
         for number in weights.chain(heights).chain(&self.mask) {
             inputs.push(plan.number(number)?);
         }
-        // Each pixel is computed on its own if no mean over all is needed.
+        // Linear mixing computes each pixel separately. The other rules need means over the whole tile.
         Ok(if self.mixing == Mixing::Linear {
             plan.local(inputs, move |inputs| {
                 layers.blend(inputs, [inputs[0].len() as u32, 1])
@@ -95,8 +95,8 @@ impl NodeKind for Blended {
     }
 }
 
-/// The layers of a blend. The inputs are those of the layers, their weights, the heights of those that have one, and
-/// the mask.
+/// The structure of a blend's inputs. They are, in order: the textures of all layers, the weights of all layers, the
+/// heights of the layers that have one, and the mask if there is one.
 #[derive(Clone, Debug)]
 struct Layers {
     how: Blend,
@@ -107,7 +107,7 @@ struct Layers {
 }
 
 impl Layers {
-    /// Blends pictures of this size.
+    /// Blends inputs of `size` columns and rows.
     fn blend(&self, inputs: &[&Values], size: [u32; 2]) -> Result<Values, RecipeError> {
         let count = self.heights.len();
         let maps = Values::maps(&inputs[..count], size)?;

@@ -1,4 +1,4 @@
-//! Maps of the places where another texture shows first.
+//! Blend maps: low where another texture shows first, such as in cracks.
 
 use super::NodeKind;
 use crate::plan::{Builder, Step};

@@ -1,4 +1,4 @@
-//! Images, laid over the tile.
+//! Images, stretched over the tile.
 
 use super::{ImageAlpha, NodeKind};
 use crate::RecipeError;

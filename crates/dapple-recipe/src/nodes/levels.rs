@@ -67,7 +67,7 @@ impl NodeKind for Levels {
 }
 
 impl LevelsCurve {
-    /// The fraction of the new range for a fraction `t` of the old one.
+    /// Maps a fraction `t` of the range `from` to a fraction of the range `to`.
     fn at(self, t: f32) -> f32 {
         match self {
             Self::Unclamped => t,

@@ -1,4 +1,4 @@
-//! Textures with the borders of another one.
+//! Textures that take over the borders of another texture.
 
 use super::NodeKind;
 use crate::plan::{Builder, Step};

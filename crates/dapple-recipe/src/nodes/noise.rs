@@ -1,4 +1,4 @@
-//! Octaves of noise of several kinds, with values from 0 to 1.
+//! Fractal sums of octaves of noise, with values from 0 to 1.
 
 use super::{NodeKind, NodeSeed, wavelet};
 use crate::RecipeError;
@@ -113,7 +113,8 @@ impl FractalNode {
         }
     }
 
-    /// The weights of octaves of noise with a variance, for a sum with a standard deviation of a sixth.
+    /// The weights of the octaves, normalized so that their sum has a standard deviation of 1/6 for noise with this
+    /// variance.
     fn weights(&self, variance: f64) -> Vec<f32> {
         let weights = core::iter::successors(Some(1.0), |weight| Some(weight * self.gain));
         let weights: Vec<f64> = weights.take(self.octaves as usize).collect();
@@ -126,7 +127,7 @@ impl FractalNode {
     }
 }
 
-/// A value plus one half, clamped to 0 to 1.
+/// Adds ½ to a value, and clamps the result to 0 to 1.
 fn about_half(value: f32) -> f32 {
     (0.5 + value).clamp(0.0, 1.0)
 }

@@ -31,7 +31,7 @@ pub struct Referenced<T> {
 
 /// A texture of `dapple-pups` as a node.
 pub(crate) trait Texture {
-    /// The image that guides the texture, and the use of its alpha.
+    /// The image file that guides the texture, and how its alpha is used.
     fn image(&self) -> Option<(&str, Option<ImageAlpha>)> {
         None
     }
@@ -39,10 +39,10 @@ pub(crate) trait Texture {
     /// Whether the texture makes colors.
     fn is_color(&self) -> bool;
 
-    /// The approximate number of control points of the texture on a tile.
+    /// Estimated number of control points of the texture on a tile.
     fn expected_points(&self, tile: Domain) -> f64;
 
-    /// The texture on the tile of a plan.
+    /// Builds the texture on the tile of a plan.
     fn build(&self, plan: &Builder<'_>) -> Result<PupsField, RecipeError>;
 }
 
@@ -84,7 +84,7 @@ impl<T: PupsRecipe<ReferenceImage>> Texture for Referenced<T> {
     }
 }
 
-/// The options with the tile of a plan as their domain and the parts that it keeps, at its time if the points move.
+/// The options for a plan: on its tile, with its reusable parts and its callback, and at its time if the points move.
 fn now<T: PupsRecipe<Image>, Image>(options: &T, plan: &Builder<'_>) -> T {
     let mut options = placed(options, plan.domain());
     let net = options.net_mut();
@@ -96,7 +96,8 @@ fn now<T: PupsRecipe<Image>, Image>(options: &T, plan: &Builder<'_>) -> T {
     options
 }
 
-/// The options with the tile as their domain, which wraps along no axis along which the texture changes.
+/// The options with the tile as their domain. The domain does not wrap along axes along which the default domain of the
+/// texture does not wrap, even if the tile does.
 fn placed<T: PupsRecipe<Image>, Image>(options: &T, tile: Domain) -> T {
     let usual = T::default().domain_mut().wrap;
     let mut options = options.clone();
@@ -107,7 +108,7 @@ fn placed<T: PupsRecipe<Image>, Image>(options: &T, tile: Domain) -> T {
     options
 }
 
-/// Fails for options with a domain of their own.
+/// Fails for options that set a domain.
 fn check_domain<T: PupsRecipe<Image>, Image>(options: &T) -> Result<(), RecipeError> {
     if options.clone().domain_mut() == T::default().domain_mut() {
         return Ok(());
@@ -116,7 +117,7 @@ fn check_domain<T: PupsRecipe<Image>, Image>(options: &T) -> Result<(), RecipeEr
     Err(RecipeError::new(RecipeErrorKind::Conflict { rule }))
 }
 
-/// Defines the node of the textures in the table of `dapple-pups`.
+/// Defines the enum of the textures in the table of `dapple-pups`.
 macro_rules! node {
     ($(#[doc = $about:literal] $name:literal $variant:ident($options:ty),)*) => {
         /// A partition-of-unity texture: one of the recipes of `dapple-pups`.
@@ -130,10 +131,10 @@ macro_rules! node {
         }
 
         impl PupsNode {
-            /// The names of the textures in files, with a sentence about each.
+            /// The names of the textures, as recipes write them, with a sentence about each.
             pub const KINDS: [(&str, &str); [$($name),*].len()] = [$(($name, $about.trim_ascii())),*];
 
-            /// The texture with a name, with all defaults; required options are empty.
+            /// The texture with a name, with default options. Required options are empty.
             #[must_use]
             pub fn of_kind(name: &str) -> Option<Self> {
                 match name {
@@ -154,13 +155,13 @@ macro_rules! node {
 dapple_pups::recipes!(node);
 
 impl PupsNode {
-    /// Whether the texture makes a color at every position, not a number.
+    /// Whether the texture makes colors, not numbers.
     #[must_use]
     pub fn is_color(&self) -> bool {
         self.texture().is_color()
     }
 
-    /// The image file that guides the texture, if there is one.
+    /// The image file that guides the texture, if any.
     #[must_use]
     pub fn image_file(&self) -> Option<&str> {
         Some(self.texture().image()?.0)
@@ -170,21 +171,21 @@ impl PupsNode {
 /// The control points of a `pups` node.
 #[derive(Clone, Debug)]
 pub struct ControlNets {
-    /// The points of each layer, the coarsest first; a single one where the texture has no layers.
+    /// The net of each layer, coarsest first; a texture without layers has one net.
     pub nets: Vec<ControlNet>,
-    /// The options of a `points` texture that is the same, bit for bit, where there is one.
+    /// The options of a `points` texture that equals this texture bit for bit, if one exists.
     pub points: Option<ControlPoints>,
 }
 
 impl Recipe {
-    /// The control points of the `pups` node with this name; `None` if there is no such node.
+    /// The control points of the `pups` node with this name; `None` if the recipe has no such node.
     ///
-    /// A texture of one layer of numbers can be converted to a node of points: all except `octaves`, `turbulence` and
-    /// `cellular_noise`, which have layers, and `color_noise`.
+    /// A texture with one layer of numbers can be converted to a `points` texture. These are all textures except
+    /// `octaves`, `turbulence` and `cellular_noise`, which have layers, and `color_noise`.
     ///
     /// # Errors
     ///
-    /// The errors of [`Plan::new_within`](crate::Plan::new_within) that the node has by itself.
+    /// The errors of [`Plan::new_within`](crate::Plan::new_within) that concern this node.
     ///
     /// # Examples
     ///
@@ -222,7 +223,7 @@ impl Recipe {
         Ok(Some(ControlNets {
             nets: field.nets(),
             points: points.map(|points| ControlPoints {
-                // In a recipe the domain is the tile, and must not be set.
+                // The domain of a texture in a recipe is the tile, and must not be set.
                 domain: ControlPoints::default().domain,
                 ..points
             }),

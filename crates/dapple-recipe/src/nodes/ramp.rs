@@ -59,7 +59,7 @@ impl NodeKind for Ramped {
         let ramp = self.ramp()?;
         let inputs = vec![plan.number(&self.input)?];
         let step = plan.local(inputs, move |inputs| {
-            // Neighbors often have the same number, such as that of their cell.
+            // Reuse the last color: neighboring pixels often have equal numbers, such as the value of their cell.
             let mut last = (f32::NAN.to_bits(), ramp.at(f32::NAN));
             let color = |&value: &f32| {
                 if value.to_bits() != last.0 {
@@ -75,7 +75,7 @@ impl NodeKind for Ramped {
 }
 
 impl Ramped {
-    /// The ramp of the palette, or of the node's own colors.
+    /// The color ramp of the palette, or of the node's colors.
     fn ramp(&self) -> Result<ColorRamp, RecipeError> {
         let conflict = |rule| Err(RecipeError::new(RecipeErrorKind::Conflict { rule }));
         let colors = match (self.palette, self.colors.is_empty()) {
@@ -102,7 +102,7 @@ impl Ramped {
     }
 }
 
-/// Lists of colors as sRGB in hexadecimal.
+/// Serialization of lists of colors, as sRGB in hexadecimal.
 mod colors {
     use crate::ColorOf;
     use dapple_color::LinearRgb;

@@ -1,4 +1,4 @@
-//! Textures grown from examples.
+//! Textures synthesized from example images.
 
 use super::{ImageAlpha, NodeKind, NodeSeed};
 use crate::RecipeError;
@@ -85,6 +85,7 @@ impl NodeKind for SynthNode {
         if let Some(levels) = self.levels {
             RecipeError::check_in(LEVELS, "number of levels", levels.into())?;
         }
+        // Reuse a texture with equal options: other nodes may transfer other maps of the same example.
         let repeats = plan.domain().wrap;
         let options = EndlessOptions {
             seed: plan.seed(self.seed.as_ref()),
@@ -123,13 +124,13 @@ impl NodeKind for SynthNode {
 }
 
 impl SynthNode {
-    /// The image file of the example.
+    /// The image file of the example, which neighborhoods are compared in.
     fn example(&self) -> &str {
         self.example.as_ref().unwrap_or(&self.file)
     }
 }
 
-/// A texture, and what it follows from.
+/// A synthesized texture, with the inputs that determine it.
 struct Grown {
     example: Picture,
     edges: Edges,
@@ -150,7 +151,7 @@ impl Grown {
             Picture::Colors(colors) => Exemplar::new(colors, edges)?,
         };
         let endless = Endless::new_cancellable(&exemplar, &options, &|| watch.is_cancelled())?;
-        // The preparation is about half of the work.
+        // Preparing the example is about half of the work. Report progress for the other half.
         let half = OF_NODE / 2;
         let prepared = watch.done() + half;
         let texture = endless.window([0; 2], size, |progress| {

@@ -1,4 +1,4 @@
-//! Nodes at displaced positions.
+//! Domain warping: nodes at displaced positions.
 
 use super::NodeKind;
 use crate::plan::{Builder, Step};

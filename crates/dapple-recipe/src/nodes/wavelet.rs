@@ -34,7 +34,7 @@ impl Default for WaveletNode {
     }
 }
 
-/// The number of cells of a wavelet tile along axes that do not repeat.
+/// Number of cells of the tile of wavelet noise along axes on which the recipe does not repeat.
 const UNBOUND_TILE: u32 = 128;
 
 impl NodeKind for WaveletNode {
@@ -53,7 +53,7 @@ impl NodeKind for WaveletNode {
     }
 }
 
-/// Wavelet noise with bands of these weights; `frequency` is the cells per unit of the plane of the coarsest.
+/// Makes wavelet noise with these band weights. `frequency` is in cells of the coarsest band per unit of the plane.
 pub(super) fn noise(
     plan: &Builder<'_>,
     seed: Seed,
@@ -72,13 +72,13 @@ pub(super) fn noise(
     Ok(noise.frequency(frequency))
 }
 
-/// Wavelet noise of a single band, with the seed that it was made from.
+/// Wavelet noise of a single band, with its seed. It is reused for other weights.
 struct Tile {
     noise: WaveletNoise2,
     seed: Seed,
 }
 
-/// The work of generating this noise.
+/// Estimates the work of making wavelet noise of a frequency.
 pub(super) fn work(plan: &Builder<'_>, frequency: f64) -> Result<Work, RecipeError> {
     let [across, down] = cells(plan, frequency)?.map(f64::from);
     Ok(Work {
@@ -87,7 +87,8 @@ pub(super) fn work(plan: &Builder<'_>, frequency: f64) -> Result<Work, RecipeErr
     })
 }
 
-/// The cells of the tile of wavelet noise along each axis.
+/// The number of cells of the tile of wavelet noise along each axis. Fails for an odd number, or one below 4, along an
+/// axis that repeats.
 fn cells(plan: &Builder<'_>, frequency: f64) -> Result<[u32; 2], RecipeError> {
     let periods = plan.periods([frequency; 2])?;
     for cells in periods.into_iter().flatten() {

@@ -119,7 +119,7 @@ impl NodeKind for WorleyNode {
 }
 
 impl WorleyNode {
-    /// A cellular basis with the metric and the scatter of the node.
+    /// Sets the metric and the scatter of the node on a cellular basis.
     fn basis<const N: usize>(&self, worley: Worley<N>) -> Result<Worley<N>, RecipeError>
     where
         Dimensions: Space<N>,
@@ -134,7 +134,7 @@ impl WorleyNode {
             .with_scatter(self.scatter)?)
     }
 
-    /// The field of a cellular basis of the plane.
+    /// The field of the node's value, for a cellular basis in the plane.
     fn plane_field(&self, worley: Worley2) -> Result<Arc<dyn Field>, RecipeError> {
         let worley = self.basis(worley)?;
         let combination = match self.value {
@@ -151,7 +151,8 @@ impl WorleyNode {
         })
     }
 
-    /// The field of a slice of a basis of four dimensions.
+    /// The field of the node's value, for a slice of a cellular basis in four dimensions. `place` is the position
+    /// along the third and fourth axis, in cells.
     fn moving_field(
         &self,
         worley: Worley4,
@@ -173,7 +174,8 @@ impl WorleyNode {
         Ok(Arc::new(solid.slice(place)))
     }
 
-    /// Fails for options that only combinations of distances have.
+    /// Fails if a single value (`cell_value` or `edge_distance`) has options that only combinations of distances have,
+    /// or a metric that it does not support.
     fn check_single(&self, has_metric: bool) -> Result<(), RecipeError> {
         let rule = if self.octaves.is_some() || self.range.is_some() {
             "`cell_value` and `edge_distance` have neither `octaves` nor a `range`"
@@ -231,7 +233,8 @@ impl<'de> Visitor<'de> for FrequencyVisitor {
     }
 }
 
-/// The names of [`WorleyValue`] in files; those of combinations are in the order of [`Combination::NAMED`].
+/// The names of [`WorleyValue`], as recipes write them. Combinations come first, in the order of
+/// [`Combination::NAMED`].
 pub(crate) const WORLEY_VALUES: [&str; 13] = [
     "f1",
     "f2",

@@ -1,4 +1,4 @@
-//! The builder of steps, which provides the tile, the seed and the inputs to nodes.
+//! The builder of steps, which passes the tile, the seed and the inputs to nodes.
 
 use super::cache::{PlanCache, StepId};
 use super::step::{Global, Local, Step, Tile};
@@ -15,7 +15,7 @@ use indexmap::IndexMap;
 use std::cell::Cell;
 use std::fmt::Write as _;
 
-/// Builds the steps of nodes, one after the other.
+/// Builds the steps of all nodes, in topological order.
 pub(crate) struct Builder<'a> {
     recipe: &'a Recipe,
     images: &'a Images,
@@ -25,19 +25,19 @@ pub(crate) struct Builder<'a> {
     work: WorkSum<'a>,
     memory: Option<&'a PlanCache>,
     watch: &'a Watch,
-    /// Parts of steps of this plan, and of earlier ones, if there is a memory.
+    /// Reusable parts of steps of this plan, and of earlier plans if there is a cache.
     shared_parts: Parts,
     /// Whether the current node has used the time.
     asks_time: Cell<bool>,
     /// Whether a node has used the time.
     pub(super) moves: bool,
     pub(super) steps: Vec<Step>,
-    /// The number of the description of each step, if there is a memory.
+    /// The id of each step; empty without a cache.
     pub(super) ids: Vec<StepId>,
     pub(super) names: IndexMap<String, usize>,
 }
 
-/// The range of a number of cells or bumps per unit of the plane.
+/// The range of a frequency: cells or bumps per unit of the plane.
 pub(crate) const FREQUENCY: Range = range!(above 0 to 1e6);
 
 impl<'a> Builder<'a> {
@@ -66,9 +66,10 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// Adds the step of a node whose inputs have steps.
+    /// Adds the step of a node. Its inputs must have steps already.
     pub(super) fn add(&mut self, name: &'a str, node: &Node) -> Result<(), RecipeError> {
         self.enter(name, node)?;
+        // Take the step from the cache, or build it and see whether it reads the time.
         let before = self.memory.and_then(|memory| self.id_in(memory, node));
         let known = before.and_then(|(id, _)| self.memory?.source(id));
         self.asks_time.set(false);
@@ -77,6 +78,7 @@ impl<'a> Builder<'a> {
             Some(step) => step,
             None => node.kind().build(self)?,
         };
+        // Choose the id under which the step is cached. The id of a step that reads the time includes the time.
         let id = self.memory.map(|memory| match before {
             None => memory.new_id(),
             Some((id, false)) if self.asks_time.get() => memory.at_time(id, self.time),
@@ -96,10 +98,9 @@ impl<'a> Builder<'a> {
         self.ids.extend(id);
     }
 
-    /// The number of the description from which the values of the node follow, and whether it is known to include the
-    /// time; `None` if there is no description.
+    /// The id of a node's key in the cache, and whether the key includes the time. `None` for a node without a key.
     fn id_in(&self, memory: &PlanCache, node: &Node) -> Option<(StepId, bool)> {
-        // Options that cannot be written as data, such as functions, cannot be compared.
+        // Options that cannot be written as data, such as functions, cannot be compared; such a node has no key.
         if !is_data(node) {
             return None;
         }
@@ -124,36 +125,36 @@ impl<'a> Builder<'a> {
         })
     }
 
-    /// Makes a node current, if its work is within the limits.
+    /// Makes a node current. Fails if its work exceeds the limits.
     pub(crate) fn enter(&mut self, name: &'a str, node: &Node) -> Result<(), RecipeError> {
         self.node = name;
         let work: Work = node.kind().work(self)?;
         self.work.add(&work)
     }
 
-    /// The callback of the caller.
+    /// Progress reports to the callback of the caller.
     pub(crate) fn watch(&self) -> &'a Watch {
         self.watch
     }
 
-    /// Parts of steps of earlier plans, if there is a memory.
+    /// Reusable parts of steps of earlier plans; without a cache, no parts are kept.
     pub(crate) fn parts(&self) -> Parts {
         let parts = self.memory.map(|memory| memory.parts().clone());
         parts.unwrap_or_default()
     }
 
-    /// Parts of steps of this plan, and of earlier ones, if there is a memory.
+    /// Reusable parts of steps of this plan, and of earlier plans if there is a cache.
     pub(crate) fn shared_parts(&self) -> &Parts {
         &self.shared_parts
     }
 
-    /// The elapsed part of a loop, from 0 to 1.
+    /// The time as a fraction of a loop, from 0 to 1. Notes that the current node reads it.
     pub(crate) fn time(&self) -> f64 {
         self.asks_time.set(true);
         self.time
     }
 
-    /// The wrapping of the tile past its edges.
+    /// For each axis, how the tile continues past its sides.
     pub(crate) fn wrap(&self) -> [Wrap; 2] {
         wrap(self.recipe.wrap)
     }
@@ -167,12 +168,12 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// The image in a file.
+    /// The image with a file name.
     pub(crate) fn image(&self, file: &str) -> Result<&'a Picture, RecipeError> {
         self.layer_of(file, None)
     }
 
-    /// A layer of the image in a file.
+    /// The image with a file name, or a layer of it.
     pub(crate) fn layer_of(
         &self,
         file: &str,
@@ -186,7 +187,7 @@ impl<'a> Builder<'a> {
         })
     }
 
-    /// The seed of the current node: that of its own name unless `other` is given.
+    /// The seed of the current node: derived from its name, unless `other` is given.
     pub(crate) fn seed(&self, other: Option<&NodeSeed>) -> Seed {
         match other {
             None => self.recipe.seed.child(self.node, 0),
@@ -195,7 +196,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// The numbers of cells of the tile along each axis that repeats, for a frequency per axis.
+    /// For each axis that repeats, the number of cells of the tile at a frequency; `None` for the other axes.
     pub(crate) fn periods(&self, frequency: [f64; 2]) -> Result<[Option<u32>; 2], RecipeError> {
         let mut periods = [None; 2];
         for axis in 0..2 {
@@ -213,7 +214,7 @@ impl<'a> Builder<'a> {
         Ok(periods)
     }
 
-    /// The step of an input that is a number or a color.
+    /// The index of the step of an input, which may make numbers or colors. Adds a step for a constant.
     pub(crate) fn any(&mut self, input: &Input) -> Result<usize, RecipeError> {
         let step = match input {
             Input::Number(number) => {
@@ -232,7 +233,7 @@ impl<'a> Builder<'a> {
         Ok(self.steps.len() - 1)
     }
 
-    /// The step of an input that must be a number.
+    /// The index of the step of an input that must make numbers.
     pub(crate) fn number(&mut self, input: &Input) -> Result<usize, RecipeError> {
         let step = self.any(input)?;
         if self.is_color(step) {
@@ -246,7 +247,7 @@ impl<'a> Builder<'a> {
         self.steps[step].is_color()
     }
 
-    /// A step that combines the inputs at each position; it makes colors if any input does.
+    /// A step that combines the values of the inputs at each position. It makes colors if any input does.
     pub(crate) fn local(
         &self,
         inputs: Vec<usize>,
@@ -259,8 +260,8 @@ impl<'a> Builder<'a> {
         })
     }
 
-    /// A step that combines the whole pictures of the inputs; it makes colors if any input does. Pictures of the inputs
-    /// have as many pixels as one of the tile's copies.
+    /// A step that combines the inputs over the whole tile. It makes colors if any input does. The inputs are rendered
+    /// at the size of the tile divided by `copies`.
     pub(crate) fn global(
         &self,
         inputs: Vec<usize>,
@@ -275,7 +276,7 @@ impl<'a> Builder<'a> {
         })
     }
 
-    /// A step that changes a number.
+    /// A step that applies a function to a number.
     pub(crate) fn each(
         &mut self,
         input: &Input,
@@ -290,7 +291,7 @@ impl<'a> Builder<'a> {
         }))
     }
 
-    /// A step that combines numbers, from the first to the last.
+    /// A step that combines numbers pairwise, from the first to the last.
     pub(crate) fn fold(
         &mut self,
         inputs: &[Input],
@@ -303,7 +304,7 @@ impl<'a> Builder<'a> {
         }))
     }
 
-    /// A step that combines numbers or colors, from the first to the last.
+    /// A step that combines numbers or colors pairwise, from the first to the last.
     pub(crate) fn fold_any(
         &mut self,
         inputs: &[Input],
@@ -318,12 +319,12 @@ impl<'a> Builder<'a> {
     }
 }
 
-/// The wrapping past the edges of a tile that repeats along some axes.
+/// For each axis, how the tile continues past its sides: repeated, or clamped.
 pub(super) fn wrap(repeats: [bool; 2]) -> [Wrap; 2] {
     repeats.map(|repeats| if repeats { Wrap::Repeat } else { Wrap::Clamp })
 }
 
-/// Checks that there is an input.
+/// Fails if there is no input.
 fn at_least_one(inputs: Vec<usize>) -> Result<Vec<usize>, RecipeError> {
     if inputs.is_empty() {
         let (what, count, needed) = ("inputs", 0, "at least 1");

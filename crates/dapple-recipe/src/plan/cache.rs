@@ -1,9 +1,9 @@
-//! A memory of computed values, shared by plans of similar recipes.
+//! A cache of computed values, shared by plans of similar recipes.
 //!
-//! A step is identified by a description of all data from which its values follow: its node, the tile, the seed, the
-//! time, and its inputs. If a later plan has a step with the same description, its fields and its values at the same
-//! pixels are reused. A step with other options still takes over the parts that these do not change, such as nets of
-//! control points. The bits are those of a plan without a memory.
+//! The key of a step describes all data that its values depend on: its node, the tile, the seed, the time, and its
+//! inputs. If a later plan has a step with the same key, its field and its values at the same pixels are reused. A step
+//! with other options still reuses the parts that these options do not change, such as nets of control points. A plan
+//! with a cache computes the same bits as a plan without.
 
 use super::{Picture, Step};
 use crate::Values;
@@ -16,19 +16,19 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// Values and steps of plans, for reuse in later plans: see [`Plan::new_with_cache`](super::Plan::new_with_cache).
 ///
-/// Clones share the same memory.
+/// Clones share one cache.
 #[derive(Clone)]
 pub struct PlanCache {
     kept: Arc<Mutex<Kept>>,
-    /// Parts of steps without inputs.
+    /// Reusable parts of steps without inputs.
     parts: Parts,
     max_bytes: usize,
 }
 
-/// The number of a description, unique for the lifetime of the memory.
+/// The id of the key of a step, unique for the lifetime of the cache.
 pub(crate) type StepId = u64;
 
-/// The pixels of a window, in a form that can be compared.
+/// The pixels of a window as a map key: floats are compared by their bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct Pixels {
     origin: [u64; 2],
@@ -40,17 +40,18 @@ struct Pixels {
 
 #[derive(Default)]
 struct Kept {
+    /// The next free id.
     next: StepId,
     ids: BTreeMap<String, StepId>,
-    /// The total number of bytes of the descriptions.
+    /// Total size of the keys, in bytes.
     id_bytes: usize,
-    /// The numbers of steps that change with time.
+    /// The ids of steps that change with time.
     timed: BTreeSet<StepId>,
-    /// Steps without inputs, with the last plan that used each.
+    /// Steps without inputs, each with the number of the last plan that used it.
     sources: BTreeMap<StepId, (Source, u64)>,
     n_plans: u64,
     values: BTreeMap<(StepId, Pixels), (Arc<Values>, u64)>,
-    /// The stored values by their last use, oldest first.
+    /// The keys of the stored values by their last use, oldest first.
     uses: BTreeMap<u64, (StepId, Pixels)>,
     n_uses: u64,
     bytes: usize,
@@ -63,15 +64,16 @@ enum Source {
     Colors(Arc<VectorTexture<3>>),
 }
 
-/// The largest number of bytes of descriptions; past it, the memory is cleared.
+/// Maximum total size of the keys, in bytes. The cache is cleared before a key would exceed it.
 const MAX_ID_BYTES: usize = 1 << 26;
-/// The largest age, in plans, of an unused step without inputs and of its parts. It may be a texture with many points.
+/// Number of plans after which an unused step without inputs is dropped, with its parts. Such a step may be a texture
+/// with many points.
 const MAX_AGE: u64 = 4;
-/// The largest number of images that are recognized.
+/// Maximum number of images that the cache recognizes. The cache is cleared before it would exceed this number.
 const MAX_PICTURES: usize = 64;
 
 impl PlanCache {
-    /// A memory for values of at most `max_bytes` bytes.
+    /// Makes an empty cache for values of at most `max_bytes` bytes.
     #[must_use]
     pub fn new(max_bytes: usize) -> Self {
         Self {
@@ -81,13 +83,14 @@ impl PlanCache {
         }
     }
 
-    /// The number of bytes of the stored values.
+    /// Total size of the stored values, in bytes.
     #[must_use]
     pub fn bytes(&self) -> usize {
         self.lock().bytes
     }
 
-    /// Whether the values of some steps at a window fit without evicting most others.
+    /// Whether values of this number of steps at a window take at most half of the cache, so that they do not evict
+    /// most of the others.
     pub(super) fn has_room(&self, steps: usize, window: &Window) -> bool {
         let bytes = steps
             .saturating_mul(window.n_pixels())
@@ -95,12 +98,12 @@ impl PlanCache {
         bytes <= self.max_bytes / 2
     }
 
-    /// Parts of steps without inputs, for steps made with other options.
+    /// Reusable parts of steps without inputs, for steps with other options.
     pub(super) fn parts(&self) -> &Parts {
         &self.parts
     }
 
-    /// Begins a plan, and drops steps and parts of steps that the last plans did not use.
+    /// Begins a plan, and drops steps and parts of steps that the last [`MAX_AGE`] plans did not use.
     pub(super) fn begin(&self) {
         self.parts.begin(MAX_AGE);
         let mut kept = self.lock();
@@ -109,7 +112,7 @@ impl PlanCache {
         kept.sources.retain(|_, (_, used)| *used + MAX_AGE >= now);
     }
 
-    /// The number of a description; a new one if it is unknown.
+    /// The id of a key; a new id for a key that is not stored.
     pub(super) fn id(&self, description: String) -> StepId {
         let mut kept = self.lock();
         if let Some(&id) = kept.ids.get(&description) {
@@ -125,31 +128,32 @@ impl PlanCache {
         id
     }
 
-    /// Whether the step with this number has used the time so far.
+    /// Whether the step with this id is known to change with time.
     pub(super) fn is_timed(&self, id: StepId) -> bool {
         self.lock().timed.contains(&id)
     }
 
-    /// The number of a step that changes with time, at a time.
+    /// Notes that a step changes with time, and returns its id at the given time.
     pub(super) fn at_time(&self, id: StepId, time: f64) -> StepId {
         self.lock().timed.insert(id);
         self.id(format!("{id} at {}", time.to_bits()))
     }
 
-    /// A number without a description.
+    /// A new id without a key, for a step that cannot be cached.
     pub(super) fn new_id(&self) -> StepId {
         let mut kept = self.lock();
         kept.next += 1;
         kept.next - 1
     }
 
-    /// A number for an image, the same for the very same pixels in memory.
+    /// The number of an image. Two images have the same number if they share their pixels in memory.
     pub(super) fn picture_id(&self, picture: &Picture) -> usize {
         let mut kept = self.lock();
         if kept.pictures.len() >= MAX_PICTURES {
             kept.forget_all();
         }
-        // The address identifies the image, since a stored image cannot be replaced by others at the same address.
+        // The address identifies the image: the cache holds a reference, so that no other image can get the same
+        // address.
         let is_it = |other: &Picture| match (other, picture) {
             (Picture::Numbers(a), Picture::Numbers(b)) => Arc::ptr_eq(a, b),
             (Picture::Colors(a), Picture::Colors(b)) => Arc::ptr_eq(a, b),
@@ -174,7 +178,7 @@ impl PlanCache {
         })
     }
 
-    /// Stores a step if it has no inputs.
+    /// Stores a step if it is a field or a color texture, which have no inputs.
     pub(super) fn keep_source(&self, id: StepId, step: &Step) {
         let source = match step {
             Step::Field(field) => Source::Field(field.clone()),
@@ -186,7 +190,7 @@ impl PlanCache {
         kept.sources.insert(id, (source, now));
     }
 
-    /// The values of a step at the pixels of a window.
+    /// The stored values of a step at the pixels of a window. Marks them as used.
     pub(super) fn values(&self, id: StepId, window: &Window) -> Option<Arc<Values>> {
         let mut kept = self.lock();
         let key = (id, Pixels::of(window));
@@ -200,7 +204,8 @@ impl PlanCache {
         Some(values)
     }
 
-    /// Stores the values of a step at the pixels of a window, and drops the least recently used ones.
+    /// Stores the values of a step at the pixels of a window, and drops the least recently used values past the size
+    /// limit.
     pub(super) fn keep(&self, id: StepId, window: &Window, values: Arc<Values>) {
         let mut kept = self.lock();
         let key = (id, Pixels::of(window));
@@ -231,7 +236,7 @@ impl fmt::Debug for PlanCache {
 }
 
 impl Kept {
-    /// Clears the memory. Numbers continue, so that existing plans are not confused with new ones.
+    /// Clears the cache. Ids are not reused, so that existing plans are not confused with new ones.
     fn forget_all(&mut self) {
         *self = Self {
             next: self.next,
@@ -268,7 +273,7 @@ impl Pixels {
 }
 
 impl Values {
-    /// The number of bytes of the values.
+    /// Size of the values, in bytes.
     fn bytes(&self) -> usize {
         match self {
             Self::Numbers(numbers) => size_of_val(&numbers[..]),

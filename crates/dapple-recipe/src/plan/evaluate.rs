@@ -9,11 +9,12 @@ use dapple_raster::{Raster, RasterViewMut, Texel, Window, parallel};
 use glam::DVec2;
 use std::sync::Arc;
 
-/// The positions of an evaluation.
+/// The positions of an evaluation, and the area that each stands for.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Places<'a> {
     pub(super) at: At<'a>,
-    /// The width and height of the area around each position over which images are averaged; zero for points.
+    /// Width and height of the area around each position over which images are averaged, in units of the plane; zero
+    /// for points.
     pub(super) area: DVec2,
 }
 
@@ -41,7 +42,7 @@ impl<'a> Places<'a> {
         }
     }
 
-    /// Points.
+    /// A list of points without an area.
     pub(super) fn points(positions: &'a [DVec2]) -> Self {
         Self {
             at: At::Positions(positions),
@@ -71,10 +72,10 @@ impl<'a> Places<'a> {
     }
 }
 
-/// Steps with values that were computed before.
+/// Indices of steps with their values that were computed before.
 pub(crate) type Known = [(usize, Arc<Values>)];
 
-/// The values of the steps `wanted`, in their order.
+/// Computes the values of the steps `wanted` at some positions, in the order of `wanted`.
 pub(super) fn evaluate(
     steps: &[Step],
     whole: Option<&Whole>,
@@ -95,7 +96,7 @@ pub(super) fn evaluate(
             }
             values[index] = Some(Arc::new(step(steps, whole, places, index, &values)?));
         }
-        // The next steps reuse the memory while it is in a cache.
+        // Free inputs after their last use. The next steps then reuse the memory while it is in the processor's cache.
         for input in steps[index].inputs() {
             if last_use[input] == index {
                 values[input] = None;
@@ -106,7 +107,8 @@ pub(super) fn evaluate(
     Ok(wanted.iter().map(value).collect())
 }
 
-/// For each step the last one of `order` that uses its values; values of the steps `wanted` remain until the end.
+/// For each step, the index of the last step of `order` that reads its values; `usize::MAX` for the steps `wanted`,
+/// whose values are kept.
 fn last_uses(steps: &[Step], order: &[usize], wanted: &[usize]) -> Vec<usize> {
     let mut last_use = vec![usize::MAX; steps.len()];
     for &index in order {
@@ -120,13 +122,13 @@ fn last_uses(steps: &[Step], order: &[usize], wanted: &[usize]) -> Vec<usize> {
     last_use
 }
 
-/// The largest and the smallest number of pixels that a thread takes at a time.
+/// Maximum and minimum number of pixels that a thread takes at a time.
 const CHUNK_PIXELS: [u32; 2] = [1 << 16, 1 << 11];
 
-/// The number of positions that a warp evaluates at a time, so that the values fit in a cache.
+/// Number of positions that a warp evaluates at a time. Their values fit in the processor's cache.
 const CHUNK_POSITIONS: usize = 1 << 12;
 
-/// The values of the steps `wanted` at the pixels of a window, on all cores where the feature `rayon` is on.
+/// Computes the values of the steps `wanted` at the pixels of a window, on all cores if the feature `rayon` is on.
 pub(super) fn window(
     steps: &[Step],
     whole: &Whole,
@@ -138,7 +140,7 @@ pub(super) fn window(
         return Ok(Vec::new());
     }
     let [width, height] = window.size;
-    // Small pictures are divided among all threads, too.
+    // Choose the number of rows of a chunk, so that small windows have work for all threads, too.
     let share = window.n_pixels() / (2 * parallel::n_threads());
     let [most, fewest] = CHUNK_PIXELS;
     let pixels = u32::try_from(share).map_or(most, |share| share.clamp(fewest, most));
@@ -166,14 +168,14 @@ pub(super) fn window(
             &known.collect::<Vec<_>>(),
         )
     });
-    // The error is that of the first chunk that has one, whatever the order of the threads.
+    // Return the error of the topmost chunk that failed, regardless of the order of the threads.
     Ok(join(chunks.into_iter().collect::<Result<_, _>>()?))
 }
 
-/// The number of values from which on those of several steps are joined on several cores.
+/// Minimum number of values that a parallel task joins; fewer are joined on the current thread.
 const JOINED_VALUES: usize = 1 << 14;
 
-/// Joins the values of all chunks, for each of the steps.
+/// Joins, for each step, the values of all chunks.
 fn join(mut chunks: Vec<Vec<Arc<Values>>>) -> Vec<Values> {
     if chunks.len() == 1 {
         let only = chunks.swap_remove(0);
@@ -240,6 +242,8 @@ fn step(
                 };
                 evaluate(steps, whole, places, &[*input], &[])
             };
+            // Evaluate in chunks. The first one may be empty, so that the result has a value kind even without
+            // positions.
             let (first, rest) = shifted.split_at(CHUNK_POSITIONS.min(count));
             let rest = rest.chunks(CHUNK_POSITIONS).map(values);
             let chunks: Result<Vec<_>, _> = core::iter::once(values(first)).chain(rest).collect();
@@ -254,7 +258,7 @@ fn step(
     }
 }
 
-/// The positions, displaced by the amount times two numbers for each.
+/// The positions, displaced by `amount` times the vectors (x, y).
 fn shifted(mut positions: Vec<DVec2>, x: &Values, y: &Values, amount: f64) -> Vec<DVec2> {
     let shifts = x.numbers().iter().zip(y.numbers());
     for (position, (&x, &y)) in positions.iter_mut().zip(shifts) {
@@ -264,7 +268,7 @@ fn shifted(mut positions: Vec<DVec2>, x: &Values, y: &Values, amount: f64) -> Ve
 }
 
 impl StretchedImage {
-    /// The values of the image at places of the plane: the mean of its pixels over the area of each.
+    /// Samples the image at positions of the plane: the mean of its pixels over the area of each position.
     pub(super) fn at(&self, places: Places<'_>) -> Values {
         match &self.picture {
             Picture::Numbers(raster) => Values::Numbers(self.read(raster, places)),
@@ -288,7 +292,7 @@ mod tests {
     use crate::plan::step::{Local, Step, shared};
     use dapple_raster::glam::DVec2;
 
-    /// A step that sums the absolute values of some inputs, without a plan, which would compile all nodes again.
+    /// A step that sums the absolute values of some inputs. The tests use no plan, which would compile all nodes again.
     fn sum(inputs: &[usize]) -> Step {
         Step::Local(Local {
             inputs: inputs.to_vec(),

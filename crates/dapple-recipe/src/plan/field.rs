@@ -8,19 +8,19 @@ use dapple_raster::{Field, Raster, RasterError, RasterViewMut, Window};
 use dapple_tile::TileErrorKind;
 use std::sync::Arc;
 
-/// The number of a node at every position of the plane.
+/// The values of a node that makes numbers, as a field: one number for every position of the plane.
 ///
 /// A position is a point: unlike in a [`Bake`](crate::Bake), images are not averaged over the pixels of a window.
 ///
-/// A node may fail for its inputs, such as a blend with weights below 0. Then sampling of many positions and of windows
-/// fails, and [`value`](Field::value), which cannot fail, returns NaN.
+/// A node may fail for some inputs, such as a blend for weights below 0. Then sampling many positions or a window
+/// returns an error, and [`value`](Field::value), which cannot fail, returns NaN.
 #[derive(Clone, Debug)]
 pub struct NodeField {
     steps: Arc<[Step]>,
     step: usize,
 }
 
-/// The color of a node at every position of the plane.
+/// The colors of a node, as a function of the position in the plane.
 ///
 /// A position is a point: unlike in a [`Bake`](crate::Bake), images are not averaged over the pixels of a window.
 #[derive(Clone, Debug)]
@@ -81,7 +81,7 @@ impl NodeColors {
     pub fn sample(&self, position: impl Into<[f64; 2]>) -> Result<LinearRgb, RecipeError> {
         let position = position.into().into();
         let values = one(&self.steps, Places::points(&[position]), self.step)?;
-        // There is a value for each position.
+        // One position has exactly one value.
         Ok(Arc::unwrap_or_clone(values).into_colors()[0])
     }
 
@@ -89,9 +89,10 @@ impl NodeColors {
     ///
     /// # Errors
     ///
-    /// [`Raster`](RecipeErrorKind::Raster) if the window has a bad size, and those of [`sample`](Self::sample).
+    /// [`Raster`](RecipeErrorKind::Raster) for a window without pixels or with too many, and the errors of
+    /// [`sample`](Self::sample).
     pub fn to_raster(&self, window: &Window) -> Result<Raster<LinearRgb>, RecipeError> {
-        // The size is checked before any values are computed.
+        // Check the size before any values are computed.
         let mut raster = Raster::filled(window.size, LinearRgb::BLACK)?;
         let values = one(&self.steps, Places::centers(window), self.step)?;
         let colors = Arc::unwrap_or_clone(values).into_colors();
@@ -106,7 +107,7 @@ fn one(steps: &[Step], places: Places<'_>, step: usize) -> Result<Arc<Values>, R
     Ok(values.swap_remove(0))
 }
 
-/// The error of a node as an error of fields.
+/// Converts the error of a node to the error type of fields.
 fn refused(error: &RecipeError) -> RasterError {
     let (what, value, range) = match error.kind() {
         RecipeErrorKind::Raster(error) => return error.clone(),

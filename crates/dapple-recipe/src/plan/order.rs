@@ -1,11 +1,11 @@
-//! The order of nodes: each comes after its inputs.
+//! Topological order of the nodes, by depth-first search: each node comes after its inputs.
 
 use crate::{Node, Recipe, RecipeError, RecipeErrorKind};
 
-/// The largest number of nodes of a recipe: more than people write, and few enough for recursion along a chain of them.
+/// Maximum number of nodes of a recipe: more than people write, and few enough for recursion along a chain of nodes.
 const MAX_NODES: usize = 1024;
 
-/// The names of all nodes, each after its inputs, otherwise in the order of the recipe.
+/// The names of all nodes, each after its inputs; otherwise in the order of the recipe.
 pub(crate) fn order(recipe: &Recipe) -> Result<Vec<&str>, RecipeError> {
     check_names(recipe)?;
     let mut order = Order {
@@ -43,7 +43,7 @@ fn check_names(recipe: &Recipe) -> Result<(), RecipeError> {
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum State {
     New,
-    /// The node is on the current path.
+    /// The node is on the current path of the search.
     Open,
     Done,
 }
@@ -56,7 +56,7 @@ struct Order<'a> {
 }
 
 impl<'a> Order<'a> {
-    /// Adds a node to the order, after its inputs. The depth is at most the number of nodes.
+    /// Adds a node to the order, after its inputs. The recursion depth is at most the number of nodes.
     fn visit(&mut self, index: usize) -> Result<(), RecipeError> {
         let (name, node) = self.entry(index);
         match self.states[index] {
@@ -93,7 +93,7 @@ impl<'a> Order<'a> {
             .ok_or_else(|| unknown(self.recipe, name))
     }
 
-    /// The error of a cycle from a node on the path back to it.
+    /// The error for a cycle: a node on the current path that is reached again.
     fn cycle(&self, index: usize) -> RecipeError {
         let start = self
             .path
@@ -106,7 +106,7 @@ impl<'a> Order<'a> {
     }
 }
 
-/// The error of a name that no node has.
+/// The error for a name that no node has.
 pub(crate) fn unknown(recipe: &Recipe, name: &str) -> RecipeError {
     let names = recipe.nodes.keys().map(String::as_str);
     RecipeError::new(RecipeErrorKind::UnknownNode {

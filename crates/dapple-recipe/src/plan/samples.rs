@@ -1,4 +1,4 @@
-//! Samples of the tile: at the centers of pixels, or on the corners of a grid that reaches the sides of the tile.
+//! Sample positions of the tile: pixel centers, or the corners of a grid that reaches the sides of the tile.
 
 use super::Plan;
 use crate::RecipeError;
@@ -18,17 +18,18 @@ named! {
     }
 }
 
-/// The distinct samples of the tile.
+/// The distinct sample positions of the tile.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct TileSamples {
-    /// The samples as a window. Along an axis that repeats, it lacks the last sample on corners, which equals the first.
+    /// The samples as a window. For corners along an axis that repeats, it lacks the last sample, which equals the
+    /// first.
     pub(crate) window: Window,
     /// The width and height of all pixels of the window, in units of the plane.
     pub(crate) extent: DVec2,
 }
 
 impl Plan {
-    /// The distinct samples of a picture of `size`, which may have more pixels than a raster.
+    /// The distinct samples of a map of `size` columns and rows, which may have more pixels than a raster can have.
     ///
     /// # Errors
     ///
@@ -60,7 +61,7 @@ impl Plan {
         });
         Ok(TileSamples {
             window: Window {
-                // The centers of pixels become corners. The first one is exact.
+                // Shift by half a pixel, so that pixel centers become corners. The first corner is exact.
                 origin: (-0.5 * pixel).into(),
                 pixel: pixel.into(),
                 first: [0, 0],

@@ -1,4 +1,4 @@
-//! The steps of a plan; each computes the values of a node or of a constant.
+//! The steps of a plan. A step computes the values of a node or of a constant.
 
 use super::{Picture, Watch};
 use crate::{RecipeError, Values};
@@ -40,41 +40,41 @@ type LocalFunction = dyn Fn(&[&Values]) -> Result<Values, RecipeError> + Send + 
 pub(crate) struct Global {
     pub(crate) inputs: Vec<usize>,
     pub(crate) color: bool,
-    /// The number of copies of the inputs' pictures in the tile along each axis.
+    /// For each axis, the number of copies of the inputs' images in the tile.
     pub(crate) copies: [u32; 2],
     pub(crate) apply: Box<GlobalFunction>,
 }
 
 type GlobalFunction = dyn Fn(&Tile<'_>) -> Result<Values, RecipeError> + Send + Sync;
 
-/// The tile for a step that depends on the whole of it.
+/// The arguments of a step that depends on the whole tile.
 pub(crate) struct Tile<'a> {
     pub(crate) inputs: &'a [&'a Values],
     /// The numbers of columns and rows of the inputs.
     pub(crate) input_size: [u32; 2],
-    /// The pixels of the tile.
+    /// The window of all pixels of the tile.
     pub(crate) window: &'a Window,
-    /// The callback of the caller.
+    /// Progress reports to the callback of the caller.
     pub(crate) watch: &'a Watch,
 }
 
-/// An image that covers the tile.
+/// An image stretched over the tile.
 #[derive(Clone, Debug)]
 pub(crate) struct StretchedImage {
     pub(crate) picture: Picture,
-    /// The corner of its first pixel.
+    /// The position of the outer corner of the first pixel.
     pub(crate) origin: DVec2,
     pub(crate) extent: DVec2,
     pub(crate) wrap: [Wrap; 2],
 }
 
 impl Tile<'_> {
-    /// Whether the caller no longer needs the picture.
+    /// Whether the caller asks to stop.
     pub(crate) fn is_cancelled(&self) -> impl Fn() -> bool + Sync {
         || self.watch.is_cancelled()
     }
 
-    /// The inputs as maps: all in color, if any input is.
+    /// The inputs as maps: all in color if any input is in color.
     pub(crate) fn maps(&self) -> Result<Vec<Map>, RecipeError> {
         Ok(Values::maps(self.inputs, self.input_size)?)
     }
@@ -102,12 +102,12 @@ impl Step {
         Self::Field(Arc::new(field))
     }
 
-    /// The step, marked as one of colors whatever its inputs are.
+    /// Marks the step as one that makes colors, regardless of its inputs.
     pub(crate) fn with_colors(self) -> Self {
         self.with_color(true)
     }
 
-    /// The step, marked as one of numbers whatever its inputs are.
+    /// Marks the step as one that makes numbers, regardless of its inputs.
     pub(crate) fn with_numbers(self) -> Self {
         self.with_color(false)
     }
@@ -131,7 +131,7 @@ impl Step {
         }
     }
 
-    /// The indices of its inputs.
+    /// The indices of the inputs of the step.
     pub(crate) fn inputs(&self) -> Vec<usize> {
         match self {
             Self::Local(Local { inputs, .. }) | Self::Global(Global { inputs, .. }) => {
@@ -143,9 +143,10 @@ impl Step {
     }
 }
 
-/// The steps that must be evaluated for `wanted`, in their order. This leaves out the inputs of warps, which are
-/// evaluated elsewhere, steps that depend on the whole tile, which are evaluated before, known steps, and steps that
-/// only these need.
+/// The steps to evaluate at the positions of `wanted`, in order.
+///
+/// The list continues neither to the displaced inputs of warps, which are evaluated at other positions, nor to the
+/// inputs of steps that depend on the whole tile, which are evaluated beforehand, nor to the inputs of known steps.
 pub(super) fn needed(
     steps: &[Step],
     wanted: &[usize],
@@ -159,12 +160,12 @@ pub(super) fn needed(
     })
 }
 
-/// The steps on which others depend, themselves included, in their order.
+/// The steps that `wanted` depend on, including `wanted` themselves, in order.
 pub(super) fn ancestors(steps: &[Step], wanted: &[usize]) -> Vec<usize> {
     reached(steps, wanted, |index| steps[index].inputs())
 }
 
-/// The steps that are reachable from others, in their order; each leads to earlier ones.
+/// The steps reachable from `wanted`, in order. Each step leads to earlier steps only.
 fn reached(steps: &[Step], wanted: &[usize], leads_to: impl Fn(usize) -> Vec<usize>) -> Vec<usize> {
     let mut reached = vec![false; steps.len()];
     wanted.iter().for_each(|&index| reached[index] = true);
@@ -178,11 +179,11 @@ fn reached(steps: &[Step], wanted: &[usize], leads_to: impl Fn(usize) -> Vec<usi
     (0..steps.len()).filter(|&index| reached[index]).collect()
 }
 
-/// The steps that `wanted` and `height` have in common, except for those that cost nothing to make again.
+/// The steps that both `wanted` and `height` depend on, except steps that are cheap to recompute.
 pub(super) fn shared(steps: &[Step], height: usize, wanted: &[usize]) -> Vec<usize> {
     let of_height = needed(steps, &[height], |_| false);
     let is_shared = |index: usize| {
-        // A constant is as fast to make as to copy, and steps that depend on the whole tile are stored already.
+        // Making a constant is as fast as copying it, and steps that depend on the whole tile are stored already.
         let is_ready = matches!(
             steps[index],
             Step::Number(_) | Step::Color(_) | Step::Global(_)

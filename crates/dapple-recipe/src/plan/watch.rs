@@ -1,4 +1,4 @@
-//! The callback of a caller that hears of the progress of the work, and can stop it.
+//! Progress reports to a callback of the caller, which can stop the work.
 
 use crate::{RecipeError, RecipeErrorKind};
 use core::fmt;
@@ -8,40 +8,41 @@ use dapple_points::Cancel;
 use dapple_synth::Progress;
 use std::sync::Arc;
 
-/// A callback, if there is one, and how far the work is of which it hears. Clones share both.
+/// An optional callback, with the progress of the work that it reports. Clones share both.
 #[derive(Clone, Default)]
 pub(crate) struct Watch(Option<Arc<Heard>>);
 
 type Callback = dyn Fn(Progress) -> ControlFlow<()> + Send + Sync;
 
+/// A callback and the progress of one piece of work.
 struct Heard {
     callback: Arc<Callback>,
     pass: AtomicUsize,
     done: AtomicUsize,
     n_sites: AtomicUsize,
-    /// Whether the callback has asked to stop. Then it is not called again.
+    /// Whether the callback has asked to stop; it is not called again after that.
     is_over: AtomicBool,
 }
 
-/// The parts of the work, in their order.
+/// The passes of the work, in order.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Pass {
-    /// Nodes are made.
+    /// Makes the nodes.
     Nodes,
-    /// The nodes that depend on the whole tile are evaluated.
+    /// Evaluates the nodes that depend on the whole tile.
     Whole,
-    /// Pixels are computed.
+    /// Computes the rows of maps; a row counts as a site.
     Rows,
 }
 
 /// The number of passes.
 const N_PASSES: usize = 3;
 
-/// The parts of the work of a node that count in its progress.
+/// Number of sites that a node counts as in the progress.
 pub(crate) const OF_NODE: usize = 1000;
 
 impl Watch {
-    /// Calls a callback.
+    /// Reports to this callback.
     pub(super) fn by(
         callback: impl Fn(Progress) -> ControlFlow<()> + Send + Sync + 'static,
     ) -> Self {
@@ -60,13 +61,13 @@ impl Watch {
         })))
     }
 
-    /// The same callback for other work, which may go on at the same time.
+    /// A watch with the callback of this one and separate progress, for other work that may run at the same time.
     pub(crate) fn again(&self) -> Self {
         let heard = self.0.as_ref();
         heard.map_or_else(Self::default, |heard| Self::of(heard.callback.clone()))
     }
 
-    /// Begins a pass of so many sites.
+    /// Begins a pass of `n_sites` sites.
     pub(crate) fn begin(&self, pass: Pass, n_sites: usize) {
         if let Some(heard) = &self.0 {
             heard.pass.store(pass as usize, Relaxed);
@@ -75,7 +76,7 @@ impl Watch {
         }
     }
 
-    /// Notes the number of sites that are done.
+    /// Sets the number of sites that are done.
     pub(crate) fn reach(&self, done: usize) {
         if let Some(heard) = &self.0 {
             heard.done.store(done, Relaxed);
@@ -87,7 +88,7 @@ impl Watch {
         self.0.as_ref().map_or(0, |heard| heard.done.load(Relaxed))
     }
 
-    /// Whether the caller asks to stop, or has asked before.
+    /// Calls the callback, and returns whether it asks to stop or has asked before.
     pub(crate) fn is_cancelled(&self) -> bool {
         let Some(heard) = &self.0 else {
             return false;
@@ -108,7 +109,7 @@ impl Watch {
         is_cancelled
     }
 
-    /// Fails if the caller asks to stop, or has asked before.
+    /// Calls the callback, and fails if it asks to stop or has asked before.
     pub(crate) fn check(&self) -> Result<(), RecipeError> {
         match self.is_cancelled() {
             true => Err(cancelled()),
@@ -116,7 +117,7 @@ impl Watch {
         }
     }
 
-    /// The callback, for options of textures.
+    /// The callback in the form that options of textures take.
     pub(crate) fn cancel(&self) -> Cancel {
         match &self.0 {
             None => Cancel::default(),
@@ -127,7 +128,8 @@ impl Watch {
         }
     }
 
-    /// The error of some work: that of the caller's request, if it ended for it.
+    /// The reason why work ended: [`Cancelled`](RecipeErrorKind::Cancelled) if the callback asked to stop, else
+    /// `error`.
     pub(crate) fn reason(&self, error: RecipeError) -> RecipeError {
         let is_over = |heard: &Arc<Heard>| heard.is_over.load(Relaxed);
         match self.0.as_ref().is_some_and(is_over) {

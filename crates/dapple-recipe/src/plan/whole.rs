@@ -1,4 +1,4 @@
-//! The steps that depend on the whole tile, evaluated beforehand for a picture of a given size.
+//! Steps that depend on the whole tile, evaluated beforehand at a given size.
 
 use super::builder::wrap;
 use super::evaluate::{At, Places};
@@ -9,26 +9,26 @@ use dapple_raster::{Raster, Window, Wrap};
 use glam::DVec2;
 use std::sync::Arc;
 
-/// The values of all steps that depend on the whole tile, for a picture of one size: a value for each pixel and step.
+/// The values of all steps that depend on the whole tile, at one size: one image for each such step.
 #[derive(Clone, Debug, Default)]
 pub struct Whole {
-    /// The tile as a window; `None` if no step depends on the whole of it.
+    /// The tile as a window; `None` if no step depends on the whole tile.
     window: Option<Window>,
     wrap: [Wrap; 2],
     extent: DVec2,
     pictures: Vec<Option<Picture>>,
-    /// The callback of the caller for what is made with it.
+    /// Progress reports of the work that uses these values.
     pub(crate) watch: Watch,
 }
 
 impl Plan {
-    /// Whether a map of the material depends on the whole tile, so that it cannot be baked in bands.
+    /// Whether a map of the material depends on the whole tile and so cannot be baked in bands.
     #[must_use]
     pub fn sees_whole(&self) -> bool {
         !self.needed_globals(&self.channels().steps()).is_empty()
     }
 
-    /// The steps that depend on the whole tile and are needed for some steps, in their order.
+    /// The steps that depend on the whole tile and that `wanted` need, in order.
     fn needed_globals(&self, wanted: &[usize]) -> Vec<(usize, &Global)> {
         let needed = ancestors(self.steps(), wanted).into_iter();
         let global = |index: usize| match &self.steps()[index] {
@@ -54,7 +54,7 @@ impl Plan {
         Err(self.within(index, error))
     }
 
-    /// Adds the node of a step to an error.
+    /// Adds the name of the node of a step to an error.
     pub(super) fn within(&self, index: usize, error: RecipeError) -> RecipeError {
         match self.names.iter().find(|&(_, &step)| step == index) {
             Some((name, _)) => error.within(name),
@@ -62,12 +62,13 @@ impl Plan {
         }
     }
 
-    /// Evaluates the steps that depend on the whole tile, for a picture of `size` pixels.
+    /// Evaluates the steps that depend on the whole tile, for maps of `size` columns and rows.
     ///
     /// # Errors
     ///
     /// The errors of the crates of the nodes, [`Raster`](RecipeErrorKind::Raster) for a size that is too large, and
-    /// [`TooMuch`](RecipeErrorKind::TooMuch) for more pixels in all than the limits of the plan allow.
+    /// [`TooMuch`](RecipeErrorKind::TooMuch) if their images together have more pixels than the limits of the plan
+    /// allow.
     pub fn whole(&self, size: [u32; 2]) -> Result<Whole, RecipeError> {
         let tile = self.tile_samples(size, Samples::Centers)?;
         self.whole_of(&tile, &self.channels().steps(), self.watch())
@@ -78,7 +79,7 @@ impl Plan {
         self.whole_of(tile, &self.channels().steps(), self.watch())
     }
 
-    /// Evaluates the steps that depend on the whole tile and are needed for `wanted`.
+    /// Evaluates the steps that depend on the whole tile and that `wanted` need.
     fn whole_of(
         &self,
         tile: &TileSamples,
@@ -96,7 +97,7 @@ impl Plan {
         self.limits
             .check_pixels(globals.len(), window.size)
             .map_err(|error| self.within(first, error))?;
-        // A raster has fewer pixels than a window may have.
+        // Check that the window has no more pixels than a raster can have.
         Window::unit(window.size)?;
         let mut whole = Whole {
             window: Some(window),
@@ -105,6 +106,7 @@ impl Plan {
             pictures: vec![None; self.steps().len()],
             watch,
         };
+        // Evaluate the steps in order; each may read the images of earlier ones.
         whole.watch.begin(Pass::Whole, OF_NODE * globals.len());
         for (number, (index, global)) in globals.into_iter().enumerate() {
             whole.watch.reach(OF_NODE * number);
@@ -116,12 +118,12 @@ impl Plan {
         Ok(whole)
     }
 
-    /// The values of a node at the pixels of the tile, or of a part of it, whether the material uses it or not.
+    /// Renders a node at the pixels of the tile, or of a region of it. The material need not use the node.
     ///
     /// # Errors
     ///
-    /// [`UnknownNode`](RecipeErrorKind::UnknownNode) if there is no such node, and those of [`whole`](Self::whole) and of
-    /// [`Bake::new`](crate::Bake::new).
+    /// [`UnknownNode`](RecipeErrorKind::UnknownNode) if there is no such node, and the errors of [`whole`](Self::whole)
+    /// and of [`Bake::new`](crate::Bake::new).
     pub fn node_picture(
         &self,
         node: &str,
@@ -143,7 +145,7 @@ impl Plan {
         )
     }
 
-    /// The picture of a step that depends on the whole tile, from the memory if it is there.
+    /// The image of a step that depends on the whole tile, from the cache if it is stored there.
     fn known_picture(
         &self,
         whole: &Whole,
@@ -185,7 +187,7 @@ impl Plan {
 }
 
 impl Values {
-    /// The values as a picture of this size.
+    /// The values as an image of `size` columns and rows.
     fn picture(self, size: [u32; 2]) -> Result<Picture, RecipeError> {
         Ok(match self {
             Self::Numbers(numbers) => Picture::Numbers(Arc::new(Raster::from_vec(size, numbers)?)),
@@ -195,7 +197,8 @@ impl Values {
 }
 
 impl Global {
-    /// The pixels of the inputs: those of the picture, or of one of the smaller copies in it.
+    /// The window at which the inputs are evaluated: the tile, or one of the copies in it if the step repeats its
+    /// inputs.
     fn window_of_inputs(&self, window: &Window) -> Result<Window, RecipeError> {
         let mut size = window.size;
         for (side, copies) in size.iter_mut().zip(self.copies) {
@@ -216,8 +219,7 @@ impl Global {
 }
 
 impl Whole {
-    /// The values of a step at some places: pixels of the picture where the places are pixels, else interpolated
-    /// values.
+    /// The values of a step at some positions. Pixels of the tile have exact values; other positions are interpolated.
     pub(super) fn at(&self, index: usize, places: Places<'_>) -> Result<Values, RecipeError> {
         let (Some(tile), Some(Some(picture))) = (self.window, self.pictures.get(index)) else {
             return Err(RecipeError::new(RecipeErrorKind::Global { during: "yet" }));
@@ -241,7 +243,7 @@ impl Whole {
         }
     }
 
-    /// The pixels of a part of the tile, or of its surroundings.
+    /// The pixels of a window that may extend past the tile.
     fn pixels<T: Copy>(&self, raster: &Raster<T>, window: &Window) -> Vec<T> {
         let mut pixels = Vec::with_capacity(window.n_pixels());
         for row in 0..window.size[1] {

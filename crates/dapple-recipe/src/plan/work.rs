@@ -1,14 +1,15 @@
-//! Estimates of the work of a recipe, before any of it is done.
+//! Estimates of the work of a recipe, checked against limits before any of the work is done.
 //!
-//! A few lines of a recipe can demand any number of control points, wavelet noise of any size, and warps of warps, each
-//! of which evaluates all its inputs once more.
+//! A few lines of a recipe can demand any number of control points, wavelet noise of any size, and nested warps. Each
+//! level of warps evaluates all its inputs once more.
 
 use super::step::{Global, Step, needed};
 use crate::{RecipeError, RecipeErrorKind};
 
 /// Limits of the work of a recipe.
 ///
-/// The defaults are far above the needs of textures, and within the memory of a small machine.
+/// The defaults are far above the needs of textures, and the work that they allow fits in the memory of a small
+/// machine.
 ///
 /// # Examples
 ///
@@ -23,23 +24,23 @@ use crate::{RecipeError, RecipeErrorKind};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PlanLimits {
-    /// The largest number of control points of all nodes together, by an estimate that is rather too high; 2^22 by
-    /// default, which take about 2 GiB.
+    /// Maximum number of control points of all nodes together; 2^22 by default, which take about 2 GiB. The number is
+    /// estimated, rather too high than too low.
     pub control_points: u64,
-    /// The largest number of cells of the tiles of all wavelet noise together; 2^24 by default, such as a tile of 4096
-    /// × 4096.
+    /// Maximum number of cells of the tiles of all wavelet noise together; 2^24 by default, such as one tile of
+    /// 4096 × 4096 cells.
     pub wavelet_cells: u64,
-    /// The largest number of pixels of all textures that are grown from examples together; 2^24 by default, such as 4096 ×
-    /// 4096.
+    /// Maximum number of pixels of all textures synthesized from examples together; 2^24 by default, such as one
+    /// texture of 4096 × 4096 pixels.
     pub synthesized_pixels: u64,
-    /// The largest number of values that are computed for each pixel: one for each node and for each number or color
-    /// that is an input. Nodes under a warp, or under a node that depends on the whole tile, count once more for each
-    /// of these. 4096 by default.
+    /// Maximum number of values computed for each pixel; 4096 by default. Each node counts as one value, and so does
+    /// each number or color that is an input. Inputs of a warp, or of a node that depends on the whole tile, count once
+    /// more for each such node, together with all that they depend on.
     pub values: u64,
-    /// The largest number of warps one under another; 32 by default.
+    /// Maximum depth of nested warps; 32 by default.
     pub warps: u64,
-    /// The largest number of pixels of all pictures of nodes that depend on the whole tile together, for the size of a
-    /// bake; 2^29 by default.
+    /// Maximum number of pixels of the stored images of all nodes that depend on the whole tile, together, at the size
+    /// of a bake; 2^29 by default.
     pub pixels: u64,
 }
 
@@ -57,7 +58,7 @@ impl Default for PlanLimits {
 }
 
 impl PlanLimits {
-    /// Fails for more pixels than the limit.
+    /// Fails if this number of images of `size` columns and rows has more pixels than the limit.
     pub(super) fn check_pixels(&self, pictures: usize, size: [u32; 2]) -> Result<(), RecipeError> {
         let pixels = pictures as f64 * f64::from(size[0]) * f64::from(size[1]);
         check("pixels that are seen as a whole", pixels, self.pixels)
@@ -79,15 +80,15 @@ fn check(what: &'static str, value: f64, limit: u64) -> Result<(), RecipeError> 
 /// The work of building the step of a node.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Work {
-    /// The number of control points to be placed and connected.
+    /// Number of control points to place and connect.
     pub(crate) control_points: f64,
-    /// The number of cells of tiles of wavelet noise.
+    /// Number of cells of tiles of wavelet noise.
     pub(crate) wavelet_cells: f64,
-    /// The number of pixels grown from examples.
+    /// Number of pixels synthesized from examples.
     pub(crate) synthesized_pixels: f64,
 }
 
-/// The work of all nodes so far.
+/// Sum of the work of all nodes so far, with its limits.
 pub(super) struct WorkSum<'a> {
     limits: &'a PlanLimits,
     sum: Work,
@@ -101,7 +102,7 @@ impl<'a> WorkSum<'a> {
         }
     }
 
-    /// Adds the work of building a node, or fails past the limits.
+    /// Adds the work of building a node. Fails if the sum is above a limit.
     pub(super) fn add(&mut self, work: &Work) -> Result<(), RecipeError> {
         let Self { limits, sum } = self;
         sum.control_points += work.control_points;
@@ -121,15 +122,16 @@ impl<'a> WorkSum<'a> {
     }
 }
 
-/// The numbers of values that are computed for each pixel.
+/// Numbers of values computed for each pixel.
 struct Values {
-    /// For each step, the number of values that are computed again for it, besides its own.
+    /// For each step, the number of values recomputed for it, in addition to its own value.
     under: Vec<f64>,
-    /// For each step, the number of nested warps, including itself.
+    /// For each step, the depth of nested warps that ends at it; 0 unless the step is a warp.
     warps: Vec<u64>,
 }
 
-/// Fails for steps with too many values for each pixel; the error comes with the index of the step.
+/// Fails if the steps compute too many values for each pixel, or nest warps too deeply. The error has the index of the
+/// step at which the limit is exceeded.
 pub(super) fn check_steps(steps: &[Step], limits: &PlanLimits) -> Result<(), (usize, RecipeError)> {
     let what = "values for each pixel";
     let last = steps.len().saturating_sub(1);
@@ -150,8 +152,9 @@ pub(super) fn check_steps(steps: &[Step], limits: &PlanLimits) -> Result<(), (us
 }
 
 impl Values {
-    /// Adds a step, whose inputs are before it.
+    /// Adds a step, after its inputs.
     fn add(&mut self, before: &[Step], step: &Step) {
+        // Find the steps that are evaluated separately for this one.
         let apart = match step {
             Step::Warp { input, .. } => vec![*input],
             Step::Global(Global { inputs, .. }) => inputs.clone(),

@@ -1,4 +1,4 @@
-//! The schema of recipes as a reference for people, in Markdown.
+//! Renders the schema of recipes as a reference of all options, in Markdown.
 
 use core::fmt::Write as _;
 use serde_json::{Map, Value};
@@ -11,7 +11,7 @@ read into, by `dapple recipe --reference`; `dapple recipe --schema` gives the sa
 for is in the [README](../README.md).
 ";
 
-/// The reference of a schema of recipes.
+/// Renders the reference of a schema of recipes.
 pub(super) fn reference(schema: &Value) -> String {
     let reference = Reference {
         types: &schema["$defs"],
@@ -27,13 +27,13 @@ pub(super) fn reference(schema: &Value) -> String {
     page
 }
 
-/// The types of a schema by their names.
+/// Writes sections of the reference, and looks up the types of a schema by name.
 struct Reference<'a> {
     types: &'a Value,
 }
 
 impl Reference<'_> {
-    /// A section for each kind of a table with one entry.
+    /// Appends a section for each variant of an enum. A variant is written as a table with one entry.
     fn kinds(&self, page: &mut String, title: &str, name: &str) {
         let _ = write!(page, "\n## {title}\n");
         for kind in list(&self.types[name]["oneOf"]) {
@@ -65,7 +65,7 @@ impl Reference<'_> {
         }
     }
 
-    /// Appends the sections of the types of options, other than those of nodes.
+    /// Appends the sections of the types in [`FORMS`], which options of several nodes use.
     fn types(&self, page: &mut String) {
         page.push_str("\n## Forms\n");
         for name in FORMS {
@@ -79,12 +79,12 @@ impl Reference<'_> {
         }
     }
 
-    /// The type that a schema refers to, or the schema itself.
+    /// The type that a schema refers to; the schema itself if it is not a reference.
     fn followed<'b>(&'b self, schema: &'b Value) -> &'b Value {
         name_of(schema).map_or(schema, |name| self.followed(&self.types[name]))
     }
 
-    /// The options of a table, by name, without those that users do not write.
+    /// The options of a table by name, without deprecated ones.
     fn written<'b>(&'b self, table: &'b Value) -> impl Iterator<Item = (&'b str, &'b Value)> {
         let all = object(&table["properties"]);
         all.filter(|(_, option)| {
@@ -92,7 +92,7 @@ impl Reference<'_> {
         })
     }
 
-    /// The form of a value, as text.
+    /// Describes how a value is written.
     fn form(&self, schema: &Value) -> String {
         if let Some(name) = name_of(schema) {
             if let Some((_, link)) = SECTIONS.iter().find(|(section, _)| *section == name) {
@@ -121,6 +121,7 @@ impl Reference<'_> {
         self.form_of_type(schema)
     }
 
+    /// Describes a value by its JSON type.
     fn form_of_type(&self, schema: &Value) -> String {
         let range = range(schema);
         match kind(schema) {
@@ -146,6 +147,7 @@ impl Reference<'_> {
         }
     }
 
+    /// Describes a table by its options.
     fn form_of_table(&self, schema: &Value) -> String {
         let inner = self.written(schema);
         let inner = inner.map(|(name, inner)| format!("{name} = {}", self.form(inner)));
@@ -157,7 +159,7 @@ impl Reference<'_> {
     }
 }
 
-/// The forms with sections.
+/// The types that have a section under "Forms".
 const FORMS: [&str; 7] = [
     "Input",
     "NodeSeed",
@@ -168,7 +170,7 @@ const FORMS: [&str; 7] = [
     "AxialWeight",
 ];
 
-/// The types with earlier sections, and links to them.
+/// The types that have a section before "Forms", with links to it.
 const SECTIONS: [(&str, &str); 3] = [
     ("Material", "[the material](#the-material)"),
     ("Node", "[node](#nodes)"),
@@ -183,18 +185,19 @@ fn name_of(schema: &Value) -> Option<&str> {
     schema["$ref"].as_str()?.strip_prefix("#/$defs/")
 }
 
-/// The kind of a value; for an option that may be left out, the one beside `null`.
+/// The JSON type of a value. An option that may be left out has the types `null` and another one; this returns the
+/// other.
 fn kind(schema: &Value) -> &str {
     let kinds = list(&schema["type"]).filter_map(Value::as_str);
     let beside_null = kinds.into_iter().find(|&kind| kind != "null");
     beside_null.or(schema["type"].as_str()).unwrap_or("table")
 }
 
-/// The range of a number, as text after its kind.
+/// The range of a number, as text that follows its type.
 fn range(schema: &Value) -> String {
     let part = |key: &str, word: &str| {
         let number = schema[key].as_f64()?;
-        // The largest number of an integer type is not a limit worth printing.
+        // Leave out the maximum of an integer type, which is not a meaningful limit.
         (number < 4e9).then(|| format!(" {word} {}", in_toml(&schema[key])))
     };
     let least = part("minimum", "from").or_else(|| part("exclusiveMinimum", "above"));
@@ -202,7 +205,7 @@ fn range(schema: &Value) -> String {
     least.unwrap_or_default() + &most.unwrap_or_default()
 }
 
-/// The description of a schema, in one line.
+/// The description of a schema, escaped for a Markdown table.
 fn text(schema: &Value) -> String {
     let text = schema["description"].as_str().unwrap_or_default();
     text.replace('|', "\\|")
@@ -217,7 +220,7 @@ fn in_toml(value: &Value) -> String {
         }
         Value::Object(all) if all.is_empty() => "{}".to_owned(),
         Value::Object(all) => {
-            // The domain of a texture must not be set.
+            // Leave out the domain of a texture, which recipes must not set.
             let all = all.iter().filter(|(name, _)| *name != "domain");
             let all = all.map(|(name, value)| format!("{name} = {}", in_toml(value)));
             format!("{{ {} }}", all.collect::<Vec<_>>().join(", "))

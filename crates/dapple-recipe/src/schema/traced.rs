@@ -1,8 +1,8 @@
-//! Schemas of types of other crates, found by tracing their `Deserialize`.
+//! Schemas of types of other crates, derived by tracing their `Deserialize` implementations.
 //!
-//! A probe is read in place of data. The first value that a type requests is the answer, and ends the reading as an
-//! error. Where there are several ways to continue, such as the fields of a struct, the type is read once for each of
-//! them.
+//! The type is deserialized from a probe instead of data. The probe answers the first value that the type requests with
+//! an error that contains the schema of this value. At a struct or an enum there are several ways to continue: the type
+//! is then deserialized once for each field or variant.
 
 use core::fmt;
 use schemars::{Schema, SchemaGenerator};
@@ -14,26 +14,27 @@ use serde::de::{
 use serde::forward_to_deserialize_any;
 use serde_json::{Map, Value, json};
 
-/// The schema of a type, without descriptions and defaults.
+/// Returns the schema of a type, without descriptions and defaults.
 pub(crate) fn traced<T: DeserializeOwned>(_: &mut SchemaGenerator) -> Schema {
     let schema = explore::<T>(&mut Vec::new()).unwrap_or(Value::Bool(true));
     Schema::try_from(schema).unwrap_or_default()
 }
 
-/// The kind of value that a type requested.
+/// The kind of value that a type requested, returned as the error of the deserialization.
 #[derive(Debug)]
 struct Found {
     asked: Asked,
-    /// The lists around it, by their lengths; innermost first.
+    /// The lengths of the lists around the value, innermost first; `None` for a list of any length.
     lists: Vec<Option<usize>>,
 }
 
+/// A request of a type.
 #[derive(Debug)]
 enum Asked {
     Value(Value),
     Fields(&'static [&'static str]),
     Variants(&'static [&'static str]),
-    /// A variant without content.
+    /// A unit variant of an enum, written as a word.
     Word,
 }
 
@@ -68,11 +69,12 @@ impl Error for Found {
     }
 }
 
-/// The schema at the end of a way through a type; `None` for a single word.
+/// The schema of the value at the end of a path of field and variant indices through a type; `None` for a unit variant.
 fn explore<T: DeserializeOwned>(way: &mut Vec<usize>) -> Option<Value> {
     let Err(found) = T::deserialize(Probe { way }) else {
         return None;
     };
+    // Continue into each field or variant.
     let mut next = |names: Words| -> Vec<(&str, Option<Value>)> {
         let mut all = Vec::new();
         for (index, &name) in names.iter().enumerate() {
@@ -88,6 +90,7 @@ fn explore<T: DeserializeOwned>(way: &mut Vec<usize>) -> Option<Value> {
         Asked::Fields(names) => table(next(names)),
         Asked::Variants(names) => one_of(next(names)),
     };
+    // Wrap the schema in the lists around it.
     for length in found.lists {
         schema = match length {
             None => json!({ "type": "array", "items": schema }),
@@ -97,6 +100,7 @@ fn explore<T: DeserializeOwned>(way: &mut Vec<usize>) -> Option<Value> {
     Some(schema)
 }
 
+/// The schema of a struct with these fields.
 fn table(fields: Vec<(&str, Option<Value>)>) -> Value {
     let fields = fields.into_iter();
     let properties: Map<_, _> = fields
@@ -105,6 +109,7 @@ fn table(fields: Vec<(&str, Option<Value>)>) -> Value {
     json!({ "type": "object", "properties": properties, "additionalProperties": false })
 }
 
+/// The schema of an enum: a word for each unit variant, and a table with one entry for each other variant.
 fn one_of(variants: Vec<(&str, Option<Value>)>) -> Value {
     let (words, tables): (Vec<_>, Vec<_>) = variants
         .into_iter()
@@ -128,21 +133,21 @@ fn one_of(variants: Vec<(&str, Option<Value>)>) -> Value {
     json!({ "oneOf": all })
 }
 
-/// A stand-in for data. At a struct or an enum it continues into the field or variant of the next number of its way,
-/// and ends where there is none.
+/// A deserializer that stands in for data. At a struct or an enum, it takes the next index of its path and continues
+/// into that field or variant. At the end of the path, it returns the request as an error.
 #[derive(Clone, Copy)]
 struct Probe<'a> {
     way: &'a [usize],
 }
 
 impl<'a> Probe<'a> {
-    /// The next number of the way, and the probe that continues from there.
+    /// The next index of the path, and a probe with the rest of the path.
     fn fork(self) -> Option<(usize, Self)> {
         let (&index, way) = self.way.split_first()?;
         Some((index, Self { way }))
     }
 
-    /// Reads the only element of a list.
+    /// Reads a list with one element. Notes the list if the path ends in it.
     fn list<'de, V: Visitor<'de>>(
         self,
         length: Option<usize>,
@@ -157,7 +162,7 @@ impl<'a> Probe<'a> {
         })
     }
 
-    /// Reads one of the fields.
+    /// Reads the field that the path selects; at the end of the path, returns the names of all fields.
     fn fields<'de, V: Visitor<'de>>(self, names: Words, visitor: V) -> Result<V::Value, Found> {
         match self.fork() {
             None => Err(Found::new(Asked::Fields(names))),
@@ -169,7 +174,7 @@ impl<'a> Probe<'a> {
     }
 }
 
-/// Implements the methods of a probe for elementary values.
+/// Implements the methods of a probe for primitive types.
 macro_rules! values {
     ($($method:ident => $schema:tt,)*) => {
         $(fn $method<V: Visitor<'de>>(self, _: V) -> Result<V::Value, Found> {
@@ -196,7 +201,7 @@ impl<'de> Deserializer<'de> for Probe<'_> {
         deserialize_unit => { "type": "null" },
     }
 
-    /// The names of words are taken from the error for an unknown one.
+    /// Passes an unknown word. A type that reads words lists all valid ones in its error.
     fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Found> {
         match visitor.visit_str::<Found>("\u{1}") {
             Err(found) => Err(found),
@@ -273,7 +278,7 @@ impl<'de> SeqAccess<'de> for Probe<'_> {
     }
 }
 
-/// A field or a variant by its name, and the probe for its content.
+/// A field or variant with its name, and the probe for its content.
 struct Named<'a> {
     name: &'static str,
     rest: Probe<'a>,

@@ -1,5 +1,7 @@
-//! The data of a text in TOML or JSON. Recipes are read from it, so that the readers of their many types are compiled
-//! once, and not for each format.
+//! The parsed data of a TOML or JSON text.
+//!
+//! Recipes are deserialized from it, so that the deserializers of their many types are compiled once and not once per
+//! format.
 
 use super::refusal::{Part, Refusal};
 use core::fmt;
@@ -11,7 +13,7 @@ use serde::de::{
 use serde::forward_to_deserialize_any;
 use std::collections::BTreeSet;
 
-/// A value of a text. No table has a key twice.
+/// A parsed value. The keys of a table are unique.
 #[derive(Clone, Debug)]
 pub(super) enum Content {
     Null,
@@ -85,7 +87,7 @@ impl<'de> Visitor<'de> for ContentVisitor {
 }
 
 impl Content {
-    /// The value of a key of a table.
+    /// The value of a key; `None` if the value is not a table or lacks the key.
     pub(super) fn get(&self, key: &str) -> Option<&Self> {
         let Self::Table(table) = self else {
             return None;
@@ -94,7 +96,7 @@ impl Content {
         Some(value)
     }
 
-    /// The value as errors of readers name it.
+    /// The value as serde names it in errors.
     fn unexpected(&self) -> Unexpected<'_> {
         match self {
             Self::Null => Unexpected::Unit,
@@ -172,7 +174,7 @@ impl<'de> Deserializer<'de> for &'de Content {
         }
     }
 
-    /// Options are a table. That they are no list is said here, so that no type has a reader for one.
+    /// Reads a struct from a table. Lists are refused here, so that no type needs a deserializer for them.
     fn deserialize_struct<V: Visitor<'de>>(
         self,
         _: &'static str,
@@ -249,7 +251,7 @@ impl<'de> MapAccess<'de> for Entries<'de> {
     }
 }
 
-/// A word, which is a variant of an enum without options.
+/// A unit variant of an enum, written as a word.
 struct Word<'de>(&'de str);
 
 impl<'de> EnumAccess<'de> for Word<'de> {
@@ -296,7 +298,7 @@ impl<'de> VariantAccess<'de> for Word<'de> {
     }
 }
 
-/// A table with one entry, which is a variant of an enum.
+/// A variant of an enum with content, written as a table with one entry.
 struct Variant<'de> {
     name: &'de str,
     value: &'de Content,
@@ -315,7 +317,7 @@ impl<'de> EnumAccess<'de> for Variant<'de> {
 }
 
 impl Variant<'_> {
-    /// Adds the variant to an error in its content.
+    /// Adds the name of the variant to the path of an error in its content.
     fn refusal(&self, refusal: Refusal) -> Refusal {
         refusal.inside(Part::Key(self.name.to_owned()))
     }

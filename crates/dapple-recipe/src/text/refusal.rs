@@ -1,4 +1,4 @@
-//! Errors of reading a recipe from data, and their places in the text.
+//! Errors of deserializing a recipe from parsed data, and their positions in the text.
 
 use crate::Place;
 use core::fmt;
@@ -7,17 +7,17 @@ use serde::de::{
 };
 use toml::de::{DeTable, DeValue};
 
-/// The error of a value, with the path to it from the whole text.
+/// The error of a value or key, with its path from the root of the document.
 #[derive(Debug)]
 pub(super) struct Refusal {
     pub(super) message: String,
     /// The path, innermost part first.
     parts: Vec<Part>,
-    /// Whether the error is about the last key of the path, not its value.
+    /// Whether the error is about the last key of the path instead of its value.
     is_key: bool,
 }
 
-/// A step from a value to one that is in it.
+/// A part of a path: from a table or list to a value in it.
 #[derive(Debug)]
 pub(super) enum Part {
     Key(String),
@@ -43,19 +43,19 @@ impl Error for Refusal {
 }
 
 impl Refusal {
-    /// Adds the part of a value that contains the erroneous one.
+    /// Prepends a part to the path, as the error passes to the enclosing value.
     pub(super) fn inside(mut self, part: Part) -> Self {
         self.parts.push(part);
         self
     }
 
-    /// The error of a key.
+    /// Marks the error as one of this key, and prepends the key to the path.
     pub(super) fn of_key(mut self, key: &str) -> Self {
         self.is_key = true;
         self.inside(Part::Key(key.to_owned()))
     }
 
-    /// The byte in a text in TOML at which the erroneous key or value begins.
+    /// Byte offset of the erroneous key or value in TOML text.
     pub(super) fn byte_in_toml(&self, text: &str) -> Option<usize> {
         let table = DeTable::parse(text).ok()?;
         let mut span = table.span();
@@ -79,8 +79,9 @@ impl Refusal {
         Some(span.start)
     }
 
-    /// The place at which the reader of a text in JSON had read the erroneous key or value.
+    /// Position in JSON text at which the parser has read the erroneous key or value.
     pub(super) fn place_in_json(&self, text: &str) -> Option<Place> {
+        // Parse again up to the erroneous value. The error that ends this pass has the position.
         let mut reader = serde_json::Deserializer::from_str(text);
         let walk = Walk {
             parts: &self.parts,
@@ -94,7 +95,7 @@ impl Refusal {
     }
 }
 
-/// A walk through JSON to a key or a value, where it ends with an error.
+/// A pass over JSON that follows a path, and returns an error at its end.
 #[derive(Clone, Copy)]
 struct Walk<'a> {
     parts: &'a [Part],
@@ -102,7 +103,7 @@ struct Walk<'a> {
 }
 
 impl Walk<'_> {
-    /// Descends into a value if the next part of the path leads there.
+    /// The rest of the path, if its next part leads to the value at hand.
     fn step(self, leads_there: impl FnOnce(&Part) -> bool) -> Option<Self> {
         let (next, parts) = self.parts.split_last()?;
         leads_there(next).then_some(Self { parts, ..self })

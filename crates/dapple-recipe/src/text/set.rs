@@ -1,27 +1,28 @@
-//! Changes of single values of a recipe by their path, as on a command line.
+//! Changes single values of a recipe by their path, as on a command line.
 
 use super::{data, read_options, text_error};
 use crate::{Recipe, RecipeError, RecipeErrorKind};
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;
 
-/// Values of a recipe that are not nodes.
+/// The values of a recipe that can be set and are not nodes.
 const TOP: [&str; 6] = ["name", "about", "seed", "extent", "wrap", "material"];
 
 impl Recipe {
     /// Replaces one value: an option of a node, such as `stones.from`, or a value of the recipe, such as `seed` or
     /// `material.relief`.
     ///
-    /// `value` is written as in TOML: a number, `true`, a list such as `[0, 0.3]`, or a table such as
-    /// `{ jittered = { jitter = 0.8 } }`. Words need no quotes. A node named like a value of the recipe comes first.
+    /// `value` is written as in TOML: a number, `true`, a list such as `[0, 0.3]`, or a table such as `{ jittered = {
+    /// jitter = 0.8 } }`. Words need no quotes. If a node and a value of the recipe have the same name, a path with a
+    /// dot refers to the node.
     ///
-    /// Only the form is checked, as in [`from_toml`](Self::from_toml); a plan checks ranges.
+    /// The types of values are checked, as in [`from_toml`](Self::from_toml); ranges are checked later, by a plan.
     ///
     /// # Errors
     ///
-    /// The recipe stays as it was, with the error [`UnknownNode`](RecipeErrorKind::UnknownNode) if there is neither such
-    /// a node nor such a value, or [`Text`](RecipeErrorKind::Text) for options and values that recipes do not have. Both
-    /// have the nearest valid word.
+    /// [`UnknownNode`](RecipeErrorKind::UnknownNode) if neither a node nor a value has this name, or
+    /// [`Text`](RecipeErrorKind::Text) for options and values that recipes do not have. Both have the nearest valid
+    /// word. On an error, the recipe stays unchanged.
     ///
     /// # Examples
     ///
@@ -41,7 +42,7 @@ impl Recipe {
             serde_json::to_value(data(self)).map_err(|error| text_error(&error.to_string()))?;
         let (first, options) = path.split_once('.').unwrap_or((path, ""));
         let (target, path) = if self.nodes.contains_key(first) && !options.is_empty() {
-            // A node is a table of one key, its kind.
+            // A node is a table with one key, its kind. The path continues in the options of this kind.
             let kinds = recipe["nodes"][first].as_object_mut();
             (kinds.and_then(|kinds| kinds.values_mut().next()), options)
         } else if TOP.contains(&first) {
@@ -55,6 +56,7 @@ impl Recipe {
             let name = first.to_owned();
             return Err(RecipeError::new(RecipeErrorKind::UnknownNode { name }).meant(first, names));
         };
+        // Walk to the value, adding tables where they are missing.
         let mut target = target.ok_or_else(|| text_error("this node has no options"))?;
         for part in path.split('.') {
             if !target.is_object() {
@@ -62,20 +64,21 @@ impl Recipe {
             }
             target = &mut target[part];
         }
+        // Replace the value, and read the whole recipe from the result.
         *target = parsed(value);
         *self = read_options(&recipe)?;
         Ok(())
     }
 }
 
-/// A value of TOML, or the text itself if it is none.
+/// Parses a TOML value; other text becomes a string.
 fn parsed(text: &str) -> Value {
     let table = toml::from_str::<BTreeMap<String, Value>>(&format!("value = {text}"));
     match table.ok().and_then(|mut table| match table.len() {
         1 => table.remove("value"),
         _ => None,
     }) {
-        // Numbers that are not finite have no form in JSON.
+        // Infinity and NaN, which JSON cannot represent, become strings, too.
         None | Some(Value::Null) => Value::String(text.to_owned()),
         Some(value) => value,
     }
