@@ -79,12 +79,13 @@ pub(crate) struct OutputArgs {
     pub(crate) json: Option<Option<PathBuf>>,
 }
 
-/// The files of a run.
+/// The output files of a run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Targets {
-    /// The path `NAME.ENDING`, whether it is written or not: the JSON file is written beside it.
+    /// The path `NAME.EXTENSION`, which may not be written itself. The sidecar has the same path with the extension
+    /// `.json`.
     pub(crate) main: Target,
-    /// The file of each part.
+    /// The file of each part, in the order of the parts.
     pub(crate) files: Vec<Target>,
 }
 
@@ -106,7 +107,7 @@ pub(crate) struct ImageArgs {
     pub(crate) ramp: Option<RampArg>,
 }
 
-/// The help of `--ramp`, with the names of all palettes.
+/// The help text of `--ramp`, with the names of all palettes.
 fn ramp_help() -> String {
     format!(
         "Color gray results: a palette ({}) or colors from low to high, such as `#123,#8ac,white`",
@@ -130,12 +131,12 @@ dapple::raster::named! {
 }
 
 impl Axes {
-    /// Parses one or both axes, for options where `none` has no meaning.
+    /// Parses an axis or both, for options where `none` has no meaning.
     pub(crate) fn some() -> NamedValueParser<Self> {
         NamedValueParser::some(&[Self::X, Self::Y, Self::Both])
     }
 
-    /// Whether x and y repeat.
+    /// For each axis, whether the image repeats along it.
     pub(crate) fn flags(self) -> [bool; 2] {
         [
             matches!(self, Self::X | Self::Both),
@@ -145,14 +146,14 @@ impl Axes {
 }
 
 impl ImageArgs {
-    /// The ending of images whose names the command chooses.
+    /// The file extension of images whose names the command chooses.
     pub(crate) fn ending(&self) -> &'static str {
         self.format.map_or("png", Format::ending)
     }
 }
 
 impl OutputArgs {
-    /// The file of a run that writes a single one.
+    /// The output file of a run that writes a single file.
     ///
     /// # Errors
     ///
@@ -161,13 +162,16 @@ impl OutputArgs {
         Ok(self.targets(name, &[""], ending)?.main)
     }
 
-    /// The files of a run that writes a file for each part: `NAME_PART.ENDING`, and `NAME.ENDING` for a part without a name.
+    /// The output files of a run that writes a file for each part: `NAME_PART.EXTENSION`, and `NAME.EXTENSION` for a
+    /// part with an empty name.
     ///
-    /// A single part is the output itself, unless that is a folder. In folders the name is that of `--name`, or else `name`.
+    /// A single part is written to the output path itself, unless that is a directory. In a directory, NAME is given by
+    /// `--name`, or else by `name`.
     ///
     /// # Errors
     ///
-    /// If there is no output, or it cannot take the files.
+    /// If no output is given, or several files are written to standard output, or `--name` is given without a
+    /// directory.
     pub(crate) fn targets<S: AsRef<str>>(
         &self,
         name: &str,
@@ -203,7 +207,8 @@ impl OutputArgs {
         Ok(Targets { main, files })
     }
 
-    /// The folder of the output, if it is a folder for this number of files.
+    /// The output path, if it means a directory for this number of files: an existing directory, a path with a trailing
+    /// slash, or, for several files, a path without an extension.
     pub(crate) fn folder(&self, n_files: usize) -> Option<&Path> {
         let output = self.output.as_deref()?;
         let ends_with_slash = output
@@ -220,7 +225,7 @@ impl OutputArgs {
 ///
 /// # Errors
 ///
-/// If the text is not a seed, with the range of seeds.
+/// If the text is not a whole number from 0 to 2^64 − 1.
 pub(crate) fn seed(text: &str) -> Result<u64, String> {
     let range = format!("a seed is a whole number from 0 to {}", u64::MAX);
     text.trim()
@@ -231,7 +236,7 @@ pub(crate) fn seed(text: &str) -> Result<u64, String> {
         })
 }
 
-/// Parses a name of files without a folder.
+/// Parses a file name without a directory.
 fn plain_name(text: &str) -> Result<String, String> {
     if text.is_empty() || text.starts_with('.') || text.contains(['/', '\\']) {
         return Err("it becomes part of file names, without a slash or a leading dot".to_owned());
@@ -239,7 +244,8 @@ fn plain_name(text: &str) -> Result<String, String> {
     Ok(text.to_owned())
 }
 
-/// A name as a part of file names: characters other than letters, digits, `.` and `_` become `-`.
+/// Makes a name safe as a part of file names: characters other than letters, digits, `.` and `_` become `-`, and
+/// leading dots are removed. An empty result becomes `recipe`.
 pub(crate) fn file_name(name: &str) -> String {
     let plain = |c: char| {
         if c.is_alphanumeric() || c == '.' || c == '_' {

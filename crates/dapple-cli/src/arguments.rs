@@ -1,7 +1,7 @@
 //! Parsing of the command line.
 //!
-//! Options are read in any case and with `_` for `-`, and a negative number after an option is its value. For options
-//! of other programs, the error names the option here.
+//! Option names are case-insensitive, with `_` for `-`. A negative number after an option is its value. For an option
+//! name that other programs use, the error suggests the option of this command.
 
 use crate::cli::{Cli, command};
 use crate::words::with_dashes;
@@ -11,7 +11,7 @@ use clap::parser::ValueSource;
 use clap::{ArgMatches, Command, FromArgMatches};
 use std::ffi::{OsStr, OsString};
 
-/// Options of other programs: the subcommands, the option, and the option to use instead.
+/// Option names of other programs: the subcommands at which users try them, the name, and what to use instead.
 const ELSEWHERE: [(&[&str], &str, &str); 9] = [
     (
         &["worley", "noise", "wavelet"],
@@ -61,11 +61,12 @@ const ELSEWHERE: [(&[&str], &str, &str); 9] = [
 pub(crate) struct GivenOption {
     /// The long name, without the dashes before it.
     pub(crate) name: String,
-    /// The value as it was typed.
+    /// The value as typed; several values are joined by commas.
     pub(crate) value: String,
 }
 
-/// Parses the command line of this process, and lists the options that were given. If it is invalid, the process ends.
+/// Parses the command line of this process, and lists the options that were given. Exits the process with a message if
+/// the command line is invalid.
 pub(crate) fn parse() -> (Cli, Vec<GivenOption>) {
     let words = normalized(std::env::args_os());
     let mut command = command();
@@ -75,7 +76,7 @@ pub(crate) fn parse() -> (Cli, Vec<GivenOption>) {
     parsed.unwrap_or_else(|error| advised(error.format(&mut command), &words).exit())
 }
 
-/// The options of the subcommand that are not at their defaults.
+/// The options of the subcommand that were given on the command line.
 fn given(command: &Command, matches: &ArgMatches) -> Vec<GivenOption> {
     let subcommand = matches.subcommand();
     let Some((command, matches)) =
@@ -101,7 +102,8 @@ fn given(command: &Command, matches: &ArgMatches) -> Vec<GivenOption> {
     options.collect()
 }
 
-/// Normalizes the arguments: option names are spelled as defined, and negative numbers are joined with their options.
+/// Normalizes the arguments up to `--`: option names get the spelling of their definition, and negative numbers are
+/// joined to the option before them with `=`.
 fn normalized(typed: impl IntoIterator<Item = OsString>) -> Vec<OsString> {
     let mut words: Vec<OsString> = Vec::new();
     let mut are_options = true;
@@ -120,7 +122,7 @@ fn normalized(typed: impl IntoIterator<Item = OsString>) -> Vec<OsString> {
     words
 }
 
-/// The name of an option in lower case, with dashes.
+/// Spells the name of an option in lower case, with dashes. Leaves a value after `=` unchanged.
 fn option(text: &str) -> String {
     match text.split_once('=') {
         Some((name, value)) => format!("{}={value}", with_dashes(name)),
@@ -128,6 +130,7 @@ fn option(text: &str) -> String {
     }
 }
 
+/// Whether a text begins like a negative number, such as `-1` or `-.5`.
 fn is_negative(text: &str) -> bool {
     let digits = text.strip_prefix('-').unwrap_or_default();
     let digits = digits.strip_prefix('.').unwrap_or(digits);
@@ -140,7 +143,7 @@ fn takes_more(word: &OsString) -> bool {
     word.starts_with("--") && word.len() > 2 && !word.contains('=')
 }
 
-/// Adds the name of the option here to an error about an option of another program.
+/// Adds the option to use instead to the error about an option name of another program.
 fn advised(mut error: clap::Error, words: &[OsString]) -> clap::Error {
     let unknown = match error.get(ContextKind::InvalidArg) {
         Some(ContextValue::String(option)) if error.kind() == ErrorKind::UnknownArgument => option,

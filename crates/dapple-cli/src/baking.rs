@@ -1,4 +1,4 @@
-//! Baking of recipes: bands of maps, each map into a file of its own.
+//! Baking of recipes: the bands of a bake, written to an image file for each map.
 
 use crate::args::{FiniteArgs, ReadArgs};
 use crate::encode::Format;
@@ -21,16 +21,16 @@ use std::io::{BufWriter, Cursor, Write};
 use std::path::Path;
 use std::sync::Arc;
 
-/// The file of an image of maps.
+/// The file of a baked image.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct MapFile {
     pub(crate) image: Image,
     pub(crate) output: OutputIdx,
-    /// The file for 2 x 2 copies, if requested.
+    /// The file for a sheet of 2 × 2 copies of the image, if requested.
     pub(crate) sheet: Option<OutputIdx>,
 }
 
-/// The scale of a recipe, for programs that read its maps: a unit of the plane is a meter.
+/// The name, seed and scale of a recipe, for programs that read its maps. One unit of the plane is one meter.
 pub(crate) fn report(recipe: &Recipe) -> Value {
     json!({
         "name": recipe.name,
@@ -42,12 +42,12 @@ pub(crate) fn report(recipe: &Recipe) -> Value {
     })
 }
 
-/// Reads a recipe from a file, from standard input (`-`), or by the name of a built-in one, and returns it with the
-/// folder of its images.
+/// Reads a recipe from a file, from standard input (`-`), or from the built-in recipes by its name. Returns the recipe
+/// and the directory of its images.
 ///
 /// # Errors
 ///
-/// If there is no such recipe, with the nearest name, or it cannot be read.
+/// If no recipe has this name, with the nearest name, or if it cannot be read.
 pub(crate) fn read_recipe(name: &str) -> Result<(Recipe, &Path)> {
     let path = Path::new(name);
     let builtin = with_dashes(name);
@@ -78,17 +78,17 @@ pub(crate) fn read_recipe(name: &str) -> Result<(Recipe, &Path)> {
     Ok((recipe, path.parent().unwrap_or(Path::new(""))))
 }
 
-/// Whether a recipe file is in JSON, by its ending.
+/// Whether a recipe file is in JSON, by its extension.
 pub(crate) fn is_json(path: &Path) -> bool {
     let ending = path.extension();
     ending.is_some_and(|ending| ending.eq_ignore_ascii_case("json"))
 }
 
-/// Reads the images of a recipe from a folder.
+/// Reads the images of a recipe from a directory.
 ///
 /// # Errors
 ///
-/// If one does not exist, or cannot be read.
+/// If an image does not exist or cannot be read.
 pub(crate) fn read_images(recipe: &Recipe, folder: &Path, finite: FiniteArgs) -> Result<Images> {
     let mut images = Images::new();
     let hint = "give its node alpha = \"drop\" or alpha = \"over:#rrggbb\"";
@@ -110,8 +110,7 @@ pub(crate) fn read_images(recipe: &Recipe, folder: &Path, finite: FiniteArgs) ->
 ///
 /// # Errors
 ///
-/// If it does not exist, or cannot be read; with the hint, if it is partly transparent and there is no option for
-/// alpha.
+/// If the image does not exist or cannot be read; and, with `hint`, if it is partly transparent and `alpha` is `None`.
 pub(crate) fn read_picture(
     path: &Path,
     alpha: Option<ImageAlpha>,
@@ -126,7 +125,7 @@ pub(crate) fn read_picture(
     })
 }
 
-/// Writes the maps of a bake into claimed files, and counts the rows in the progress.
+/// Writes the maps of a bake to claimed files, and counts the rows in the progress.
 ///
 /// # Errors
 ///
@@ -142,7 +141,7 @@ pub(crate) fn write(
     for file in files {
         rows.push(Rows::new(job, file, size)?);
     }
-    // The lower half of a sheet is baked a second time, which needs no memory.
+    // Bake the lower half of a sheet a second time, instead of storing the upper half.
     let has_sheets = files.iter().any(|file| file.sheet.is_some());
     let again = has_sheets.then(|| bake.clone());
     draw(bake, &mut rows, progress, Rows::write)?;
@@ -162,7 +161,7 @@ pub(crate) fn write(
     Ok(())
 }
 
-/// Encodes images in memory, and counts the rows in the progress.
+/// Encodes the images of a bake in memory, and counts the rows in the progress.
 ///
 /// # Errors
 ///
@@ -188,7 +187,7 @@ pub(crate) fn encode(
     finished.map(|file| Ok(file?.into_inner())).collect()
 }
 
-/// Passes the bands of a bake to all files.
+/// Passes each band of a bake to all files, in parallel.
 fn draw(
     bake: Bake<'_>,
     rows: &mut [Rows],
@@ -202,7 +201,7 @@ fn draw(
     })
 }
 
-/// Writes the bands of a bake, each while the next one is made, and counts their rows in the progress.
+/// Writes the bands of a bake, and counts their rows in the progress. A band is written while the next one is computed.
 fn for_each_band(
     mut bake: Bake<'_>,
     progress: &Progress,
@@ -226,7 +225,7 @@ fn for_each_band(
     Ok(())
 }
 
-/// The format of a map's file.
+/// The format of a map's file; 16-bit PNG by default.
 ///
 /// # Errors
 ///
@@ -235,7 +234,7 @@ pub(crate) fn format(asked: Option<Format>, target: &Target) -> Result<Format> {
     Format::choose(asked, target, Format::Png16)
 }
 
-/// What is said of a loop of a recipe without motion.
+/// The note for a loop of a recipe in which no node changes with time.
 pub(crate) const STILL: &str = "note: nothing in this recipe moves, so that all pictures of the loop are equal; \
     see `motion` in `dapple recipe --reference`";
 
@@ -255,7 +254,7 @@ pub(crate) fn advise(error: RecipeError) -> Error {
     Error::new(error).hint(hint)
 }
 
-/// Adds a hint to an error of a recipe that is to be baked in shards.
+/// Adds a hint to an error of a recipe that is baked in shards.
 pub(crate) fn advise_shard(error: RecipeError) -> Error {
     match error.kind() {
         RecipeErrorKind::Global { .. } => Error::new(error)
@@ -265,24 +264,24 @@ pub(crate) fn advise_shard(error: RecipeError) -> Error {
     }
 }
 
-/// A file that receives an image row by row, and its name for errors.
+/// A writer of an image row by row, with its target for error messages.
 struct Writer {
     target: Target,
     rows: RowWriter<BufWriter<Sink>>,
 }
 
-/// The rows of an image for a file, and for 2 x 2 copies of it.
+/// The writers of an image and of its sheet of 2 × 2 copies, with statistics of the written numbers.
 struct Rows {
     layers: Layers,
     map: Writer,
     sheet: Option<Writer>,
-    /// Whether the range of the numbers is noted.
+    /// Whether the range of the numbers is recorded.
     is_noted: bool,
-    /// The smallest and the largest number written so far.
+    /// Minimum and maximum of the numbers written so far.
     range: [f32; 2],
-    /// The number of pixels written so far that the format clips.
+    /// Number of pixels written so far with a number that the format clips.
     n_clipped: u64,
-    /// Whether the format clips numbers.
+    /// Whether the format clips numbers to 0 to 1.
     clips: bool,
 }
 

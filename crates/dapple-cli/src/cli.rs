@@ -5,7 +5,7 @@ use crate::commands::Command;
 use crate::error::EXIT_CODES;
 use clap::{Arg, Command as ClapCommand, CommandFactory, Parser};
 
-/// The text of `dapple --help` before the subcommands.
+/// The introduction of `dapple --help`, before the subcommands.
 const ABOUT: &str = "\
 Makes textures: bakes the maps of materials from recipes, draws cells and noise, makes
 images repeat, blends them, and synthesizes more from an example, on the plane and on models.
@@ -13,7 +13,7 @@ images repeat, blends them, and synthesizes more from an example, on the plane a
 The same options and the same seed give the same bits on every machine, with any number of threads.
 No file is overwritten without --force, and a failed or interrupted command leaves no files.";
 
-/// The text at the end.
+/// The examples at the end of the help.
 const EXAMPLES: &str = "\
 Examples:
   dapple bake flagstone -o out/ --size 2048
@@ -46,7 +46,7 @@ pub(crate) struct Cli {
     pub(crate) command: Command,
 }
 
-/// Defines the command line; words are read without regard to case.
+/// Defines the command line. Values that are words are case-insensitive.
 pub(crate) fn command() -> ClapCommand {
     let any_case = |arg: Arg| {
         let takes_values = arg.get_action().takes_values();

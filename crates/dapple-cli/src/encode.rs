@@ -30,11 +30,11 @@ dapple::raster::named! {
 }
 
 impl Format {
-    /// The format for a target: the requested one, or that of its ending.
+    /// The format for a target: the requested format, or else the format of the file extension.
     ///
     /// # Errors
     ///
-    /// If the ending is not that of an image, or conflicts with the requested format.
+    /// If the extension is not one of an image format, or conflicts with the requested format.
     pub(crate) fn choose(asked: Option<Self>, target: &Target, default: Self) -> Result<Self> {
         let by_ending = match (target, target.ending().as_str()) {
             (Target::Stdout, _) => return Ok(asked.unwrap_or(default)),
@@ -44,7 +44,7 @@ impl Format {
             (_, "exr") => Some(Self::Exr),
             (_, "npy") => Some(Self::Npy),
             (_, "r16") => Some(Self::R16),
-            // A device has no ending.
+            // A device, such as /dev/null, has no extension.
             (Target::Path(path), "") if path.exists() && !path.is_file() => {
                 return Ok(asked.unwrap_or(default));
             }
@@ -64,7 +64,7 @@ impl Format {
         Err(error.hint(format!("let it end in .{}", format.ending())))
     }
 
-    /// The encoding of the numbers of a file of this format.
+    /// The encoding of numbers in this format.
     pub(crate) fn encoding(self) -> Encoding {
         match self {
             Self::Png8 => Encoding::Png(Depth::Eight),
@@ -75,12 +75,12 @@ impl Format {
         }
     }
 
-    /// Whether numbers are kept unchanged, also those below 0 and above 1.
+    /// Whether numbers are stored unchanged, including those below 0 and above 1.
     pub(crate) fn keeps_numbers(self) -> bool {
         matches!(self, Self::Exr | Self::Npy)
     }
 
-    /// The bytes of a number, and their description.
+    /// The bytes of a number, and the bit depth as text.
     pub(crate) fn depth(self) -> (u64, &'static str) {
         match self {
             Self::Png8 => (1, "8 bits"),
@@ -89,7 +89,7 @@ impl Format {
         }
     }
 
-    /// Checks that the content of raw heights is a single number at each pixel.
+    /// Checks that raw heights have a single channel.
     ///
     /// # Errors
     ///
@@ -103,7 +103,7 @@ impl Format {
         Err(usage(message).hint("write a height as .r16, and this as .png, .exr or .npy"))
     }
 
-    /// The ending of files of this format, without its dot.
+    /// The file extension of this format, without its dot.
     pub(crate) fn ending(self) -> &'static str {
         match self {
             Self::Png8 | Self::Png16 => "png",
@@ -114,7 +114,7 @@ impl Format {
     }
 }
 
-/// The default format of a map: PNG with 8 bits for color of at most 8 bits, with 16 for all others.
+/// The default format of a map: 8-bit PNG for colors unless `is_deep`, and 16-bit PNG for all other maps.
 pub(crate) fn default_format(map: &Map, is_deep: bool) -> Format {
     match map {
         Map::Color(_) if !is_deep => Format::Png8,
@@ -122,7 +122,7 @@ pub(crate) fn default_format(map: &Map, is_deep: bool) -> Format {
     }
 }
 
-/// A map with its values colored, if there is a ramp and they are values.
+/// Applies a ramp to a map of values; other maps, and all maps without a ramp, are unchanged.
 pub(crate) fn ramped(map: Map, ramp: Option<&RampArg>) -> Map {
     match (map, ramp) {
         (Map::Value(values), Some(ramp)) => Map::Color(ramp.ramp.apply(&values)),
@@ -130,7 +130,7 @@ pub(crate) fn ramped(map: Map, ramp: Option<&RampArg>) -> Map {
     }
 }
 
-/// The node of a ramp over an input of a recipe.
+/// A ramp node that colors an input of a recipe.
 pub(crate) fn ramped_recipe(ramp: &RampArg, input: &Input) -> Node {
     Node::Ramp(Ramped {
         input: input.clone(),
@@ -143,7 +143,7 @@ pub(crate) fn ramped_recipe(ramp: &RampArg, input: &Input) -> Node {
     })
 }
 
-/// A map of the same kind, with the raster replaced by an expression of it.
+/// Applies an expression to the raster of a map, and wraps the result in a map of the same kind.
 macro_rules! map_raster {
     ($map:expr, $raster:ident => $make:expr) => {
         match $map {
@@ -157,8 +157,9 @@ pub(crate) use map_raster;
 
 /// Encodes a map as the bytes of a file.
 ///
-/// Values are `round(value * max)` in PNG and raw heights, and unchanged in EXR and NumPy arrays; color is sRGB in PNG
-/// and linear in the others; normals are `(part + 1) / 2` in images and unchanged in arrays.
+/// Values are `round(value * max)` in PNG and raw heights, and unchanged in EXR and NumPy arrays. Colors are sRGB in
+/// PNG and linear in the other formats. Components of normals are stored as `(component + 1) / 2` in images, and
+/// unchanged in arrays.
 pub(crate) fn encode(map: &Map, format: Format) -> Result<Vec<u8>> {
     let (sink, encoding) = (Cursor::new(Vec::new()), format.encoding());
     let sink = match map {
@@ -181,17 +182,17 @@ pub(crate) fn encode(map: &Map, format: Format) -> Result<Vec<u8>> {
     Ok(sink.into_inner())
 }
 
-/// The alpha of colors.
+/// The alpha of an image, and how it is combined with the colors.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Cover<'a> {
     alpha: &'a Raster<f32>,
-    /// Whether alpha is multiplied into the colors.
+    /// Whether the colors are associated: multiplied by alpha.
     is_associated: bool,
     clear: Clear,
 }
 
 impl<'a> Cover<'a> {
-    /// The alpha of colors, if they have any.
+    /// The alpha of an image; `None` if it has no alpha.
     pub(crate) fn of(
         alpha: Option<&'a Raster<f32>>,
         is_associated: bool,
@@ -205,7 +206,7 @@ impl<'a> Cover<'a> {
         })
     }
 
-    /// The alpha of colors into which it is not multiplied.
+    /// The alpha of straight colors, which are not multiplied by alpha.
     pub(crate) fn straight(alpha: &'a Raster<f32>, clear: Clear) -> Self {
         Self {
             alpha,
@@ -215,24 +216,25 @@ impl<'a> Cover<'a> {
     }
 }
 
-/// The color under pixels of alpha 0 in PNG.
+/// How the colors of pixels with alpha 0 are written to PNG.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Clear {
-    /// It is kept.
+    /// The color is unchanged.
     Keep,
-    /// It is copied from the nearest visible pixel, so that mip levels have no dark rims. The image wraps along some
-    /// axes.
+    /// The color is copied from the nearest visible pixel, so that mip levels have no dark rims. `wraps` are the axes
+    /// along which the image wraps.
     Bleed { wraps: [bool; 2] },
 }
 
 impl Clear {
-    /// Colors bleed within an image that does not wrap, as far as is known.
+    /// Bleeding colors in an image that is not known to wrap.
     pub(crate) const NOT_WRAPPED: Self = Self::Bleed { wraps: [false; 2] };
 }
 
 /// Encodes colors and their alpha as the bytes of a file, like [`encode`].
 ///
-/// Associated colors are unchanged in EXR, with any alpha. In all other cases alpha is from 0 to 1.
+/// Associated colors and their alpha are unchanged in EXR. In all other cases, colors are straight, and alpha is
+/// clamped to 0 to 1.
 pub(crate) fn encode_with_alpha(
     colors: &Raster<LinearRgb>,
     cover: Cover<'_>,
@@ -247,6 +249,7 @@ pub(crate) fn encode_with_alpha(
         rows.write_packed_four(pixels.view())?;
         return Ok(rows.finish()?.into_inner());
     }
+    // Convert to straight colors.
     let mut pixels = colors.zip_map(cover.alpha, |color, alpha| LinearRgba {
         color: match cover.is_associated {
             true => divided(color, alpha),
@@ -255,6 +258,7 @@ pub(crate) fn encode_with_alpha(
         alpha: alpha.clamp(0.0, 1.0),
     })?;
     if let (Clear::Bleed { wraps }, Encoding::Png(depth)) = (cover.clear, format.encoding()) {
+        // Bleed colors into the pixels whose alpha rounds to the code 0.
         let is_clear = |alpha: f32| match depth {
             Depth::Eight => u8::from_unit(alpha) == 0,
             Depth::Sixteen => u16::from_unit(alpha) == 0,
@@ -271,7 +275,7 @@ pub(crate) fn encode_with_alpha(
     Ok(rows.finish()?.into_inner())
 }
 
-/// Encodes three maps of numbers, which are the channels of one image, as the bytes of a file.
+/// Encodes an image of three independent channels as the bytes of a file.
 pub(crate) fn encode_packed(pixels: &Raster<[f32; 3]>, format: Format) -> Result<Vec<u8>> {
     let sink = Cursor::new(Vec::new());
     let mut rows = RowWriter::new(sink, pixels.size(), Content::Packed, format.encoding())?;
@@ -279,7 +283,7 @@ pub(crate) fn encode_packed(pixels: &Raster<[f32; 3]>, format: Format) -> Result
     Ok(rows.finish()?.into_inner())
 }
 
-/// The content of an image of a map.
+/// The content type of the image of a map.
 pub(crate) fn content(map: &Map) -> Content {
     match map {
         Map::Value(_) => Content::Gray,
@@ -288,7 +292,7 @@ pub(crate) fn content(map: &Map) -> Content {
     }
 }
 
-/// The number of pixels with a part below 0 or above 1, by more than half a code of 16 bits.
+/// Number of pixels with a component below 0 or above 1 by more than half a 16-bit code.
 pub(crate) fn n_clipped<T: Sync, const N: usize>(
     raster: &Raster<T>,
     parts: impl Fn(&T) -> [f32; N],
@@ -301,7 +305,7 @@ pub(crate) fn n_clipped<T: Sync, const N: usize>(
         .count() as u64
 }
 
-/// The number of pixels of a map that an image of whole numbers clips.
+/// Number of pixels of a map that integer formats clip. Normals are never clipped.
 pub(crate) fn n_clipped_of(map: &Map) -> u64 {
     match map {
         Map::Value(raster) => n_clipped(raster, |number| [*number]),
@@ -310,7 +314,7 @@ pub(crate) fn n_clipped_of(map: &Map) -> u64 {
     }
 }
 
-/// The smallest and the largest finite number of a map, over all channels; normals are from -1 to 1.
+/// Minimum and maximum of the finite numbers of a map, over all channels. Components of normals are from -1 to 1.
 pub(crate) fn range(map: &Map) -> [f32; 2] {
     let fold = |range: [f32; 2], value: f32| {
         if value.is_finite() {

@@ -1,4 +1,4 @@
-//! Errors for users: a message, its causes, a hint, and the exit code.
+//! Error reports for users: the message, its causes, a hint, and the exit code.
 
 use crate::arguments::GivenOption;
 use anyhow::Error;
@@ -16,19 +16,19 @@ use std::process::ExitCode;
 /// The exit code of the command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Exit {
-    /// The work is done.
+    /// The command succeeded.
     Done = 0,
-    /// The work failed; files that were reported before are whole, and no others were written.
+    /// The command failed. Files that were reported before are complete, and no other files were written.
     Failed = 1,
     /// The command line was invalid; clap exits with the same code.
     Usage = 2,
-    /// The work is done, but a condition of `--check` does not hold.
+    /// The command succeeded, but a condition of `--check` does not hold.
     Check = 3,
-    /// The user interrupted the command: 128 and the number of SIGINT.
+    /// The user interrupted the command: 128 plus the number of SIGINT.
     Interrupted = 130,
 }
 
-/// The exit codes in `--help` and the manual pages.
+/// The description of the exit codes in `--help` and the manual pages.
 pub(crate) const EXIT_CODES: &str = "\
 Exit codes:
   0    done
@@ -43,7 +43,7 @@ impl From<Exit> for ExitCode {
     }
 }
 
-/// An error with a hint, or with a specific exit code.
+/// An error with a hint or a specific exit code.
 #[derive(Debug)]
 struct Refusal {
     error: Error,
@@ -63,7 +63,7 @@ impl std::error::Error for Refusal {
     }
 }
 
-/// An error of the command line that clap does not detect.
+/// An error in the command line that clap does not detect.
 pub(crate) fn usage(message: impl Into<String>) -> Error {
     Error::new(Refusal {
         error: Error::msg(message.into()),
@@ -77,10 +77,10 @@ pub(crate) trait Hint {
     /// The type of the result.
     type Hinted;
 
-    /// Adds a hint: an imperative sentence without a full stop.
+    /// Adds a hint: an imperative sentence without a period.
     fn hint(self, hint: impl Into<String>) -> Self::Hinted;
 
-    /// Marks an error as one of the command line: a library has rejected a value of an option.
+    /// Marks an error as wrong usage: a library has rejected the value of an option.
     fn wrong_value(self) -> Self::Hinted;
 }
 
@@ -124,7 +124,8 @@ impl<T, E: Into<Error>> Hint for Result<T, E> {
     }
 }
 
-/// Reports an error to the user, beginning with the option that caused it, and returns the exit code.
+/// Prints an error to standard error, and returns the exit code. The message begins with the option that caused the
+/// error, if it is known.
 pub(crate) fn report(error: &Error, options: &[GivenOption]) -> Exit {
     let exit = exit(error);
     if exit != Exit::Done {
@@ -133,13 +134,13 @@ pub(crate) fn report(error: &Error, options: &[GivenOption]) -> Exit {
             _ => None,
         };
         let text = text(error, option.as_deref());
-        // If even this cannot be written, the exit code must suffice.
+        // If standard error cannot be written, the exit code must suffice.
         let _ = io::stderr().lock().write_all(printable(&text).as_bytes());
     }
     exit
 }
 
-/// The name of the number that a library reports as out of range.
+/// The name of the quantity that a library reports as out of range.
 fn refused_number(error: &Error) -> Option<&'static str> {
     use PointsErrorKind::{NotDescending, NotPositive, OutOfRange, PeriodTooShort, Radius};
     error.chain().find_map(|cause| {
@@ -169,17 +170,17 @@ fn refused_number(error: &Error) -> Option<&'static str> {
     })
 }
 
-/// The first cause of this type.
+/// The first cause of an error that has this type.
 pub(crate) fn cause<T: std::error::Error + 'static>(error: &Error) -> Option<&T> {
     let mut causes = error.chain();
     causes.find_map(|found| match found.downcast_ref() {
-        // A refusal passes for the error in it, which the chain therefore lacks.
+        // A refusal displays as the error in it, which is not part of the chain.
         Some(Refusal { error, .. }) => cause(error),
         None => found.downcast_ref(),
     })
 }
 
-/// Options whose number has another name in the errors of libraries.
+/// Options and the name of their number in the errors of libraries, where the two names differ.
 const OTHER_NAMES: [(&str, &str); 5] = [
     ("persistence", "gain"),
     ("radii", "radius"),
@@ -188,9 +189,9 @@ const OTHER_NAMES: [(&str, &str); 5] = [
     ("width", "width of the cuts"),
 ];
 
-/// The only given option for a number, by the name that libraries have for the number, as it was typed.
+/// The option, as typed, for the quantity that a library calls `what`; `None` unless exactly one given option matches.
 ///
-/// Values are not compared: `--threads 1` has nothing to do with an exemplar whose side is 1.
+/// Options are matched by name only. Their values are not compared, since equal values would match unrelated options.
 fn option_of(what: &str, options: &[GivenOption]) -> Option<String> {
     let what = what.strip_prefix("the ").unwrap_or(what);
     let what = what.strip_prefix("number of ").unwrap_or(what);
@@ -205,10 +206,10 @@ fn option_of(what: &str, options: &[GivenOption]) -> Option<String> {
     }
 }
 
-/// The exit code after an error.
+/// The exit code for an error.
 fn exit(error: &Error) -> Exit {
     if is_broken_pipe(error) {
-        // The reader of the pipe has closed it, which is no failure.
+        // The reader of the pipe has closed it. This is not a failure of the command.
         return Exit::Done;
     }
     let refusals = error.chain().filter_map(|cause| cause.downcast_ref());
@@ -218,14 +219,14 @@ fn exit(error: &Error) -> Exit {
         .unwrap_or(Exit::Failed)
 }
 
-/// The text of an error: the option, the message, the causes that add to it, and the hint.
+/// The text of an error: the option, the message, the causes that add information, and the hint.
 fn text(error: &Error, option: Option<&str>) -> String {
     let mut said = error.to_string();
     let option = option.map_or(String::new(), |option| format!("{option}: "));
     let mut text = format!("error: {option}{said}\n");
     for cause in error.chain().skip(1) {
         let cause = cause.to_string();
-        // Many errors repeat their cause in their own message, or are repeated by it.
+        // Skip a cause that the message above it repeats, or that repeats this message.
         if !said.contains(&cause) && !cause.ends_with(&said) {
             text += &format!("  because: {cause}\n");
             said = cause;
@@ -241,8 +242,8 @@ fn text(error: &Error, option: Option<&str>) -> String {
     text
 }
 
-/// A text for a terminal: control characters, which names of files and texts of recipes may have, are written as
-/// `\u{1b}`, and so are those that turn the direction of writing. Line ends and tabs remain.
+/// Escapes a text for a terminal. Control characters, which names of files and texts of recipes may contain, are
+/// written as `\u{1b}`, and so are characters that change the direction of writing. Line feeds and tabs remain.
 pub(crate) fn printable(text: &str) -> Cow<'_, str> {
     let turns = |c: char| matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
     let is_odd = |c: char| (c.is_control() && c != '\n' && c != '\t') || turns(c);

@@ -1,4 +1,4 @@
-//! An estimate of the work of a bake before it begins: pixels, bytes, and time.
+//! Estimates the work of a bake before it begins: pixels, bytes, and time.
 
 use crate::baking::advise;
 use crate::error::Hint;
@@ -9,18 +9,18 @@ use dapple::recipe::{Bake, BakeMemory, BakeOptions, Plan};
 use indicatif::{DecimalBytes, HumanDuration};
 use std::time::{Duration, Instant};
 
-/// The largest number of pixels that are baked without `--banded`: 32768 × 32768.
+/// Maximum number of pixels of a bake without `--banded`: 32768 × 32768.
 const MOST_PIXELS: u64 = 1 << 30;
-/// The number of pixels from which on the estimate is printed: 8192 × 8192.
+/// Minimum number of pixels for which the estimate is printed: 8192 × 8192.
 const TOLD_PIXELS: u64 = 1 << 26;
-/// The columns and rows of the small bake for the measurement.
+/// Columns and rows of the small bake that is timed.
 const PROBE: [u32; 2] = [256; 2];
 
 /// Prints an estimate of the work of a large bake.
 ///
 /// # Errors
 ///
-/// If there are more than [`MOST_PIXELS`] and the bake is not banded, or if the recipe fails.
+/// If the bake has more than [`MOST_PIXELS`] and is not banded, or if the recipe fails.
 pub(crate) fn print_estimate(
     plan: &Plan,
     options: &BakeOptions,
@@ -44,7 +44,7 @@ pub(crate) fn print_estimate(
     Ok(())
 }
 
-/// The seconds for each pixel, measured on a small picture of the same tile.
+/// The time per pixel in seconds, measured with a small bake of the whole tile.
 #[expect(
     clippy::disallowed_methods,
     reason = "the time is told to the user, and no value depends on it"
@@ -62,7 +62,7 @@ fn probe(plan: &Plan, options: &BakeOptions) -> Result<f64> {
     Ok(start.elapsed().as_secs_f64() / n_pixels(PROBE) as f64)
 }
 
-/// The work as text.
+/// The estimated work as text. `pace` is in seconds per pixel.
 fn work([width, height]: [u32; 2], images: &[Image], pace: f64) -> String {
     let pixels = n_pixels([width, height]);
     let bytes = images.iter().map(n_bytes);
@@ -80,7 +80,7 @@ fn n_pixels(size: [u32; 2]) -> u64 {
     u64::from(size[0]) * u64::from(size[1])
 }
 
-/// The bytes of a pixel of an image in an uncompressed file.
+/// Bytes per pixel of an image, without compression.
 fn n_bytes(image: &Image) -> u64 {
     image.layers.n_channels() * image.format.depth().0
 }

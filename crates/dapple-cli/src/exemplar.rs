@@ -3,12 +3,12 @@
 use dapple::synth::{Edges, Exemplar, SynthError};
 use dapple::tile::Map;
 
-/// The exemplar of a map, all channels of which are from about 0 to 1: values as they are, colors as sRGB codes, and normals
-/// by their parts along the surface.
+/// Converts a map to an exemplar whose channels are about 0 to 1. Values are unchanged, colors are sRGB encoded, and
+/// normals have their x and y components as channels, scaled to 0 to 1.
 ///
 /// # Errors
 ///
-/// If a number is not finite, or a value is beyond 10^12.
+/// If a number is not finite, or the magnitude of a value is above 10^12.
 pub(crate) fn exemplar_of(map: &Map, edges: Edges) -> Result<Exemplar, SynthError> {
     match map {
         Map::Value(values) => Exemplar::from_planes(&[(values, 1.0)], edges),

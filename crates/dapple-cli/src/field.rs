@@ -1,4 +1,5 @@
-//! Drawing of a single field, shared by `worley`, `pups` and `wavelet`: each makes a recipe of one node and bakes it.
+//! Rendering of a single field, shared by the subcommands that render noise: each makes a recipe of one node and bakes
+//! it.
 
 use crate::args::{Axes, Frame, ImageArgs, Region, SamplesArgs, Size, Targets, seed};
 use crate::baking::{self, MapFile, advise, report};
@@ -52,13 +53,13 @@ pub(crate) struct FieldArgs {
     pub(crate) recipe: bool,
 }
 
-/// A range of values on the command line.
+/// A range of values, as given on the command line.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum RangeArg {
     /// The values are unchanged.
     Raw,
-    /// The values that are mapped to 0 and 1.
+    /// The values that become 0 and 1.
     Ends([f32; 2]),
 }
 
@@ -81,7 +82,7 @@ impl std::str::FromStr for RangeArg {
     }
 }
 
-/// A field to draw, and its defaults.
+/// A field to render, with its defaults.
 #[derive(Clone, Debug)]
 pub(crate) struct Field {
     /// The name of the subcommand.
@@ -90,17 +91,17 @@ pub(crate) struct Field {
     pub(crate) node: Node,
     /// Whether the field has colors.
     pub(crate) is_color: bool,
-    /// Width and height of the image in units of the plane.
+    /// Width and height of the image, in units of the plane.
     pub(crate) extent: [f64; 2],
-    /// The values that become black and white in files with whole numbers.
+    /// The values that become black and white in integer formats.
     pub(crate) range: [f32; 2],
-    /// The number of frames of a loop, if the field moves.
+    /// Number of frames of a loop; `None` for a still image.
     pub(crate) frames: Option<u32>,
-    /// The images that the field uses.
+    /// The images that the node reads.
     pub(crate) images: Images,
 }
 
-/// Draws a field.
+/// Renders a field to a file, or each frame of a loop to a file.
 ///
 /// # Errors
 ///
@@ -112,6 +113,7 @@ pub(crate) fn draw(
     options: &impl Serialize,
     context: &Context,
 ) -> Result<Exit> {
+    // Write the recipe alone, if requested.
     let mut job = Job::new(context, field.command, &image.files);
     if args.recipe {
         let format = image.format.unwrap_or(Format::Png16);
@@ -119,6 +121,7 @@ pub(crate) fn draw(
         let text = text.map_err(advise)?;
         return put_text(job, field.command, "toml", &text, options);
     }
+    // Choose the format, and claim the files.
     let Targets { main, files } =
         image
             .files
@@ -151,6 +154,7 @@ pub(crate) fn draw(
     };
     let files = files.iter().map(claim).collect::<Result<Vec<_>>>()?;
     job.claim_sidecar(&main)?;
+    // Bake each frame.
     let bake = BakeOptions {
         size: args.size.0,
         samples: args.samples.samples,
@@ -181,24 +185,24 @@ pub(crate) fn draw(
 }
 
 impl FieldArgs {
-    /// The numbers of distances between samples from one side of the picture to the other.
+    /// The number of sample spacings from one side of the image to the other, along each axis.
     ///
     /// # Errors
     ///
-    /// If a side has a single sample on corners.
+    /// If the samples are on corners and a side has a single one.
     pub(crate) fn spaces(&self) -> Result<Size> {
         self.samples.spaces(self.size)
     }
 }
 
-/// An error of the recipe, as an error of an option. The node is left out, since users of this subcommand do not know
-/// it.
+/// Converts an error of the recipe to an error of an option. The message lacks the node, which users of the subcommand
+/// do not see.
 fn refused(error: RecipeError) -> Error {
     let message = error.kind().to_string();
     Error::new(error).context(message).wrong_value()
 }
 
-/// The options and the recipe, for the JSON file.
+/// The options and the recipe, for the sidecar.
 #[derive(Serialize)]
 struct FieldSidecar<'a, T> {
     #[serde(flatten)]
@@ -207,7 +211,7 @@ struct FieldSidecar<'a, T> {
     recipe: &'a Recipe,
 }
 
-/// The recipe of a picture of a field.
+/// The recipe that renders a field: its node, mapped to the range, and colored by the ramp.
 fn recipe(field: &Field, args: &FieldArgs, image: &ImageArgs, format: Format) -> Result<Recipe> {
     let mut recipe = Recipe::of_node(field.command, field.node.clone(), Seed(args.seed));
     recipe.extent = field.extent;
@@ -215,7 +219,7 @@ fn recipe(field: &Field, args: &FieldArgs, image: &ImageArgs, format: Format) ->
     let range = match args.range {
         Some(RangeArg::Raw) => None,
         Some(RangeArg::Ends(ends)) => Some(ends),
-        // A ramp goes from 0 to 1.
+        // With a ramp, which takes values from 0 to 1, the default range applies to every format.
         None if format.keeps_numbers() && image.ramp.is_none() => None,
         None => Some(field.range),
     };
@@ -249,21 +253,23 @@ fn recipe(field: &Field, args: &FieldArgs, image: &ImageArgs, format: Format) ->
     Ok(recipe)
 }
 
-/// The labels of the frames of a loop, `001` and so on, as parts of file names; an empty label for a single picture.
+/// The labels of the frames of a loop for file names, such as `001`; a single empty label for a still image.
 fn frames(count: Option<u32>) -> Vec<String> {
     let label = |frame: Option<Frame>| frame.map_or(String::new(), Frame::label);
     Frame::all(count).map(label).collect()
 }
 
-/// The width and height of a picture that is `shorter` units along its shorter side and has square pixels; `spaces` counts them.
+/// Width and height of an image with square pixels whose shorter side is `shorter` units of the plane. `spaces` is the
+/// number of sample spacings along each axis.
 pub(crate) fn extent_of(spaces: Size, shorter: f64) -> [f64; 2] {
     let [width, height] = spaces.0.map(f64::from);
-    // The products come first, so that whole numbers of units along both sides are exact.
+    // Multiply before dividing, so that sides that are whole numbers of units are exact.
     let side = |pixels: f64| pixels * shorter / width.min(height);
     [side(width), side(height)]
 }
 
-/// Checks that the numbers of cells along the sides are whole along axes that repeat; `option` is the option to change.
+/// Checks that the number of cells is whole along each axis that repeats. `option` names the option to change, for the
+/// hint.
 pub(crate) fn check_whole_cells(cells: [f64; 2], repeats: [bool; 2], option: &str) -> Result<()> {
     for (cells, repeats) in cells.into_iter().zip(repeats) {
         if repeats && cells.fract() != 0.0 {

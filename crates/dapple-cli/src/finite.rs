@@ -1,4 +1,4 @@
-//! Numbers of images that are NaN or infinite: what is said of them, and how they are replaced.
+//! NaN and infinite values in images: error messages, and replacement.
 
 use crate::args::NonFinite;
 use crate::error::Hint;
@@ -6,13 +6,13 @@ use anyhow::{Result, anyhow};
 use dapple::image::ExrPlane;
 use dapple::raster::Raster;
 
-/// The planes of an image that have numbers that are not finite, as they are in the file.
+/// The planes of an image with values that are NaN or infinite, as stored in the file.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Faults(Vec<ExrPlane>);
 
 impl Faults {
-    /// Replaces all numbers of planes that are not finite, and returns the planes that had some; none if they are to be
-    /// replaced.
+    /// Replaces all values of planes that are NaN or infinite. For [`NonFinite::Error`], returns the original planes
+    /// that have such values, so that [`check`](Self::check) can report them; otherwise returns no planes.
     pub(crate) fn replace(planes: &mut [ExrPlane], how: NonFinite) -> Self {
         let mut faults = Vec::new();
         for plane in planes {
@@ -31,7 +31,7 @@ impl Faults {
         Self(faults)
     }
 
-    /// The faults of a part of the image.
+    /// The faults within a region of the image.
     pub(crate) fn crop(&self, first: [u32; 2], size: [u32; 2]) -> Result<Self> {
         let planes = self.0.iter().map(|plane| {
             let values = plane.values.crop(first, size)?;
@@ -40,7 +40,7 @@ impl Faults {
         planes.collect::<Result<_>>().map(Self)
     }
 
-    /// Whether there is none.
+    /// Whether there are no faults.
     pub(crate) fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
@@ -49,7 +49,7 @@ impl Faults {
     ///
     /// # Errors
     ///
-    /// The name of the image, the channel, the column, the row and the number.
+    /// A message with the name of the image, the channel, the column, the row and the value.
     pub(crate) fn check(&self, name: &str, is_used: impl Fn(u32, u32) -> bool) -> Result<()> {
         for plane in &self.0 {
             let width = plane.values.size()[0] as usize;
@@ -72,11 +72,12 @@ fn finite_or_zero(&value: &f32) -> f32 {
     if value.is_finite() { value } else { 0.0 }
 }
 
-/// The values with those that are not finite filled in from outside: ring by ring, each with the mean of its neighbors that
-/// are finite or already filled. Without any finite value all are 0.
+/// Fills holes of NaN and infinite values from their borders inward, ring by ring. A pixel gets the mean of those of
+/// its eight neighbors that are finite or already filled. Without any finite value, all values become 0.
 fn filled(values: &Raster<f32>) -> Raster<f32> {
     let [width, height] = values.size().map(|side| side as usize);
     let mut pixels: Vec<f32> = values.pixels().to_vec();
+    // The indices of a pixel and its neighbors within the raster.
     let around = |at: usize| {
         let (x, y) = (at % width, at / width);
         let rows = y.saturating_sub(1)..(y + 2).min(height);
@@ -84,12 +85,13 @@ fn filled(values: &Raster<f32>) -> Raster<f32> {
             (x.saturating_sub(1)..(x + 2).min(width)).map(move |column| row * width + column)
         })
     };
+    // Begin with the holes' pixels that have a finite neighbor.
     let mut ring: Vec<usize> = (0..pixels.len())
         .filter(|&at| !pixels[at].is_finite())
         .filter(|&at| around(at).any(|other| pixels[other].is_finite()))
         .collect();
     while !ring.is_empty() {
-        // All pixels of a ring are computed before any is filled.
+        // Compute all pixels of the ring before any is filled, so that the order does not matter.
         let means: Vec<f32> = ring
             .iter()
             .map(|&at| mean(around(at).map(|at| pixels[at])))
@@ -97,6 +99,7 @@ fn filled(values: &Raster<f32>) -> Raster<f32> {
         for (&at, mean) in ring.iter().zip(means) {
             pixels[at] = mean;
         }
+        // The next ring has the unfilled neighbors of this one.
         let mut next: Vec<usize> = ring
             .iter()
             .flat_map(|&at| around(at))
@@ -110,7 +113,7 @@ fn filled(values: &Raster<f32>) -> Raster<f32> {
     values.map(|_| filled.next().unwrap_or_default())
 }
 
-/// The mean of the finite values.
+/// The mean of the finite values; 0 without any.
 fn mean(values: impl Iterator<Item = f32>) -> f32 {
     let (mut sum, mut count) = (0.0_f64, 0.0_f64);
     for value in values.filter(|value| value.is_finite()) {

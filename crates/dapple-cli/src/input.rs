@@ -1,4 +1,4 @@
-//! Input files: images, meshes and text, with errors that suggest a remedy.
+//! Reading of input files: images, meshes and text. Errors have hints.
 
 #![expect(
     clippy::disallowed_methods,
@@ -38,35 +38,35 @@ use std::path::Path;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// The number of bytes by which formats of images are told apart.
+/// Number of bytes at the beginning of a file from which the image format is recognized.
 const SIGNATURE_MAX: u64 = 16;
-/// The maximum number of names in a message.
+/// Maximum number of names in a message.
 const NAMES_MAX: usize = 3;
 
-/// The kind of quantity in an image.
+/// The kind of map that an image is read as.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
-    /// Values if the image is gray, else color.
+    /// Values if the image is gray, otherwise colors.
     ByChannels,
-    /// Color, even if the image is gray.
+    /// Colors, even if the image is gray.
     Colors,
-    /// Normals: `2 code / max - 1`.
+    /// Normals with the components `2 code / max - 1`.
     Normals,
 }
 
-/// The largest number of pixels of an image that is read, if `--max-pixels` was given.
+/// Maximum number of pixels of an image that is read, if `--max-pixels` was given.
 static MAX_PIXELS: OnceLock<u64> = OnceLock::new();
 
-/// Sets the largest number of pixels of images that are read, for the whole process.
+/// Sets the maximum number of pixels of images that are read, for the whole process.
 pub(crate) fn set_max_pixels(pixels: u64) {
-    // Only the first call has an effect, and there is only one.
+    // Only the first call has an effect, and it is called once.
     let _ = MAX_PIXELS.set(pixels);
 }
 
-/// Whether notes on what is read are left out.
+/// Whether notes about input files are suppressed.
 static IS_QUIET: AtomicBool = AtomicBool::new(false);
 
-/// Sets whether notes on what is read are left out, for the whole process.
+/// Sets whether notes about input files are suppressed, for the whole process.
 pub(crate) fn set_quiet(is_quiet: bool) {
     IS_QUIET.store(is_quiet, Ordering::Relaxed);
 }
@@ -75,7 +75,7 @@ pub(crate) fn set_quiet(is_quiet: bool) {
 fn limits() -> Limits {
     let default = Limits::default();
     let pixels = MAX_PIXELS.get().copied().unwrap_or(default.pixels);
-    // Four channels of 32 bits.
+    // A pixel has up to four channels of 32 bits.
     let bytes = default.bytes.max(pixels.saturating_mul(16));
     Limits { pixels, bytes }
 }
@@ -85,20 +85,21 @@ fn limits() -> Limits {
 pub(crate) struct Loaded {
     /// The pixels of the image.
     pub(crate) map: Map,
-    /// The alpha of the pixels, if some are transparent and it is kept.
+    /// The alpha of the pixels, if it is kept and some pixels are not opaque.
     pub(crate) alpha: Option<Raster<f32>>,
-    /// Whether alpha is multiplied into the colors, as in OpenEXR, where light may cover nothing.
+    /// Whether the colors are associated: multiplied by alpha, as in OpenEXR, where a pixel with alpha 0 may emit
+    /// light.
     pub(crate) is_associated: bool,
-    /// The numbers of the file that are not finite, and were replaced.
+    /// The NaN and infinite values of the file, which were replaced in `map`.
     pub(crate) faults: Faults,
     /// Whether the file has more than 8 bits per channel.
     pub(crate) is_deep: bool,
-    /// Whether the numbers are linear light, as in OpenEXR; in other formats they are sRGB codes.
+    /// Whether the file stores linear light, as OpenEXR does; other formats store sRGB codes.
     is_linear: bool,
 }
 
 impl Loaded {
-    /// Colors that are from no image.
+    /// Wraps colors that were not read from a file.
     pub(crate) fn of_colors(colors: Raster<LinearRgb>) -> Self {
         Self {
             map: Map::Color(colors),
@@ -110,16 +111,16 @@ impl Loaded {
         }
     }
 
-    /// Fails for numbers of the file that are not finite.
+    /// Fails if the file has NaN or infinite values.
     ///
     /// # Errors
     ///
-    /// The first of them, with its channel and its pixel.
+    /// The first such value, with its channel and its pixel.
     pub(crate) fn check_finite(&self, path: &Path) -> Result<()> {
         self.faults.check(&name(path), |_, _| true)
     }
 
-    /// Multiplies alpha into the colors.
+    /// Multiplies the colors by alpha, unless they are associated already.
     ///
     /// # Errors
     ///
@@ -134,7 +135,8 @@ impl Loaded {
         Ok(())
     }
 
-    /// Divides the colors by alpha, for what has no light without cover. Where alpha is 0, they are as they are.
+    /// Divides associated colors by alpha, for formats and operations that use straight colors. Where alpha is 0, the
+    /// colors are unchanged.
     ///
     /// # Errors
     ///
@@ -149,7 +151,7 @@ impl Loaded {
         Ok(())
     }
 
-    /// Another map of this image, such as one of its channels, without alpha.
+    /// The properties of this image with another map, such as one of its channels, and without alpha.
     pub(crate) fn with_map(&self, map: Map) -> Self {
         Self {
             map,
@@ -160,7 +162,7 @@ impl Loaded {
         }
     }
 
-    /// The color of a gray value of a picture.
+    /// The color of a gray value of the image.
     pub(crate) fn color_of(&self, value: f32) -> LinearRgb {
         if self.is_linear {
             LinearRgb::gray(value)
@@ -169,12 +171,12 @@ impl Loaded {
         }
     }
 
-    /// The numbers of a map that was made of this image, which has one at each pixel; a picture in color says them by how
-    /// light it is, in the codes of the file.
+    /// One number for each pixel of a map derived from this image. Colors become their luminance, encoded as in the
+    /// file.
     ///
     /// # Errors
     ///
-    /// If the map holds normals.
+    /// If the map has normals.
     pub(crate) fn numbers(&self, map: &Map) -> Result<Raster<f32>> {
         match map {
             Map::Value(values) => Ok(values.clone()),
@@ -183,7 +185,7 @@ impl Loaded {
         }
     }
 
-    /// How light a color of a picture is, as a gray value of it.
+    /// The luminance of a color as a gray value of the image, encoded as in the file.
     fn value_of(&self, color: LinearRgb) -> f32 {
         let lightness = color.luminance();
         if self.is_linear {
@@ -207,7 +209,7 @@ pub(crate) fn image(path: &Path) -> Result<Image> {
     }
     check_file(path, "an image")?;
     if !path.is_file() {
-        // A pipe, such as `<(…)` of a shell.
+        // The path is a pipe, such as `<(…)` of a shell.
         let opened = fs::File::open(path).map_err(Error::new);
         let decoded = opened.and_then(|mut pipe| of_stream(&mut pipe, &limits));
         return decoded.with_context(|| name(path));
@@ -215,8 +217,8 @@ pub(crate) fn image(path: &Path) -> Result<Image> {
     read_image(path, &limits).map_err(advise)
 }
 
-/// Reads an image; or only a region of it, if it has too many pixels and is a PNG or OpenEXR image. The second value says
-/// which.
+/// Reads an image. If it has too many pixels and is a PNG or OpenEXR image, reads only the region; the second value is
+/// then true.
 fn image_or_region(path: &Path, region: Option<Region>) -> Result<(Image, bool)> {
     let error = match (image(path), region) {
         (Ok(image), _) => return Ok((image, false)),
@@ -241,7 +243,7 @@ fn image_or_region(path: &Path, region: Option<Region>) -> Result<(Image, bool)>
     Err(error)
 }
 
-/// A region of an image in a format whose rows or blocks can be read alone.
+/// Decodes a region of a PNG or OpenEXR image, whose rows or blocks can be decoded separately.
 fn region_of(bytes: &[u8], Region { first, size }: Region) -> Result<Image, ImageError> {
     match decode_png_region(bytes, first, size, &limits()) {
         Err(error) if matches!(error.kind(), ImageErrorKind::UnknownFormat) => {
@@ -251,7 +253,7 @@ fn region_of(bytes: &[u8], Region { first, size }: Region) -> Result<Image, Imag
     }
 }
 
-/// The limit of pixels that an image exceeds, if this is the reason of the error.
+/// The limit of pixels that an image exceeds, if this is the cause of the error.
 pub(crate) fn exceeded_limit(error: &Error) -> Option<u64> {
     match cause::<ImageError>(error)?.kind() {
         ImageErrorKind::TooManyPixels { limit, .. } => Some(*limit),
@@ -259,7 +261,7 @@ pub(crate) fn exceeded_limit(error: &Error) -> Option<u64> {
     }
 }
 
-/// All bytes of a regular file.
+/// Reads all bytes of a regular file, up to the limit of bytes of an image.
 fn whole(path: &Path, what: &str) -> Result<Vec<u8>> {
     check_file(path, what)?;
     let limit = limits().bytes;
@@ -273,7 +275,8 @@ fn whole(path: &Path, what: &str) -> Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// Decodes the image in a stream, which is read on only if it begins like an image: it may never end.
+/// Decodes the image in a stream. A stream may never end, so reading continues only if its beginning is that of an
+/// image.
 fn of_stream(stream: &mut dyn Read, limits: &Limits) -> Result<Image> {
     let mut bytes = Vec::new();
     stream.take(SIGNATURE_MAX).read_to_end(&mut bytes)?;
@@ -287,15 +290,15 @@ fn of_stream(stream: &mut dyn Read, limits: &Limits) -> Result<Image> {
     decode_image(&bytes, limits).map_err(advise)
 }
 
-/// The hint for an image with alpha where an option handles it.
+/// The hint for an image with alpha, for subcommands with the option `--alpha`.
 pub(crate) const ALPHA_HINT: &str = "add --alpha drop or --alpha over:COLOR";
 
-/// Reads an image, or a part of it, as a map without alpha.
+/// Reads an image, or a region of it, as a map without alpha.
 ///
 /// # Errors
 ///
-/// The errors of [`image`]; channels that do not fit the kind; a part outside of the image; and, with the hint,
-/// transparent pixels where `alpha` is `None`.
+/// The errors of [`image`]; channels that do not fit the kind; a region that exceeds the image; and, with `hint`,
+/// transparent pixels if `alpha` is `None`.
 pub(crate) fn map(
     path: &Path,
     kind: Kind,
@@ -321,12 +324,12 @@ pub(crate) fn map(
     Ok(loaded)
 }
 
-/// Reads an image, or a part of it, as a map, and keeps, drops or composites its alpha. Normals have no alpha.
+/// Reads an image, or a region of it, as a map, and keeps, drops or composites its alpha. Normals have no alpha.
 ///
 /// # Errors
 ///
-/// The errors of [`image`]; channels that do not fit the kind; a part outside of the image; numbers in it that are not
-/// finite.
+/// The errors of [`image`]; channels that do not fit the kind; a region that exceeds the image; NaN or infinite values
+/// in it.
 pub(crate) fn map_with_alpha(
     path: &Path,
     kind: Kind,
@@ -339,12 +342,12 @@ pub(crate) fn map_with_alpha(
     Ok(loaded)
 }
 
-/// Reads an image like [`map_with_alpha`], also if numbers that are not finite had to be replaced: the caller checks
-/// whether it uses these pixels.
+/// Reads an image like [`map_with_alpha`], but accepts NaN and infinite values, which are replaced. The caller must
+/// check the [`faults`](Loaded::faults) at the pixels that it uses.
 ///
 /// # Errors
 ///
-/// The errors of [`map_with_alpha`], but for numbers that are not finite.
+/// The errors of [`map_with_alpha`], except for NaN and infinite values.
 pub(crate) fn map_with_faults(
     path: &Path,
     kind: Kind,
@@ -372,8 +375,8 @@ pub(crate) fn map_with_faults(
     Ok(loaded)
 }
 
-/// Reads an image: of the layers of an OpenEXR file only the one that is used, with finite numbers. The last value says
-/// whether the image is the region alone, as in [`image_or_region`].
+/// Reads an image, selects the layer of an OpenEXR file, and replaces NaN and infinite values. The last value is true
+/// if only the region was read, as in [`image_or_region`].
 fn picture(path: &Path, region: Option<Region>, read: &ReadArgs) -> Result<(Image, Faults, bool)> {
     let (mut image, is_part) = image_or_region(path, region)?;
     let mut faults = Faults::default();
@@ -383,7 +386,7 @@ fn picture(path: &Path, region: Option<Region>, read: &ReadArgs) -> Result<(Imag
         if let Some(layer) = &read.layer {
             match exr.layer(layer) {
                 Ok(layer) => *exr = layer,
-                // A file of one layer is read as it is, beside one of several.
+                // Accept a file without layers, since `--layer` may be meant for another input.
                 Err(_) if !has_layers && !read.needs_layer => note_no_layers(path, layer),
                 Err(error) => return Err(of_file(error)),
             }
@@ -399,7 +402,7 @@ fn picture(path: &Path, region: Option<Region>, read: &ReadArgs) -> Result<(Imag
     Ok((image, faults, is_part))
 }
 
-/// Says that `--layer` has no effect on a file.
+/// Prints a note that `--layer` has no effect on a file.
 fn note_no_layers(path: &Path, layer: &str) {
     if !IS_QUIET.load(Ordering::Relaxed) {
         let name = name(path);
@@ -409,11 +412,11 @@ fn note_no_layers(path: &Path, layer: &str) {
     }
 }
 
-/// An image in a mesh file, as [`map_with_alpha`] gives one in a file of its own.
+/// Decodes an image that is embedded in a mesh file, as [`map_with_alpha`] reads an image from a separate file.
 ///
 /// # Errors
 ///
-/// If it is damaged, or has channels that do not fit the kind.
+/// If the image is damaged, or has channels that do not fit the kind.
 pub(crate) fn embedded(
     image: &EncodedImage,
     path: &Path,
@@ -433,7 +436,7 @@ pub(crate) fn embedded(
     of_image(&image, path, kind, None, alpha)
 }
 
-/// An image as a map.
+/// Converts an image, or a region of it, to a map.
 fn of_image(
     image: &Image,
     path: &Path,
@@ -461,13 +464,14 @@ fn of_image(
         return part(path, image, region, map, None);
     };
     let associated = match (image, alpha) {
-        // Light that covers nothing has no color that could be divided out.
+        // Keep OpenEXR colors associated: light at alpha 0 has no straight color.
         (Image::Exr(exr), Alpha::Keep | Alpha::Without(ImageAlpha::Over(_))) => {
             Some(exr.associated().map_err(advise)?.0)
         }
         _ => None,
     };
     let is_associated = associated.is_some() && alpha == Alpha::Keep;
+    // Keep, drop or composite the alpha.
     let map = match (alpha, values_beside_alpha(image, &pixels)) {
         (Alpha::Without(ImageAlpha::Drop), Some(values)) if kind == Kind::ByChannels => {
             Map::Value(values)
@@ -488,7 +492,7 @@ fn of_image(
     Ok(loaded)
 }
 
-/// The uncoded values of a gray image with alpha.
+/// The values of a gray image with alpha, from 0 to 1, without sRGB decoding; `None` for an image in color.
 fn values_beside_alpha(image: &Image, pixels: &Raster<LinearRgba>) -> Option<Raster<f32>> {
     let png = match image {
         Image::Png(png) => png,
@@ -504,7 +508,7 @@ fn values_beside_alpha(image: &Image, pixels: &Raster<LinearRgba>) -> Option<Ras
     }
 }
 
-/// The map of an image whose pixels are all opaque.
+/// Converts an image whose pixels are all opaque to a map.
 fn opaque(image: &Image, kind: Kind) -> Result<Map> {
     match kind {
         Kind::Normals => image.normals().map(Map::Normal).map_err(advise),
@@ -516,7 +520,7 @@ fn opaque(image: &Image, kind: Kind) -> Result<Map> {
     }
 }
 
-/// A part of an image that was read, or all of it.
+/// Collects a map of an image and its properties, cropped to a region if one is given.
 fn part(
     path: &Path,
     image: &Image,
@@ -549,7 +553,7 @@ fn part(
     })
 }
 
-/// Checks that an image has the size of another.
+/// Checks that an image has the size of the first one.
 ///
 /// # Errors
 ///
@@ -571,15 +575,15 @@ pub(crate) fn check_size(
     )))
 }
 
-/// Reads the planes of an EXR image of this size.
+/// Reads the planes of an OpenEXR image with at most the number of pixels of `size`.
 ///
 /// # Errors
 ///
-/// If there is no such file, or it is damaged, too large, or of another size.
+/// If the file does not exist, is damaged or too large, or is not an OpenEXR image.
 pub(crate) fn exr(path: &Path, size: [u32; 2]) -> Result<ExrImage> {
     check_file(path, "an image")?;
     let pixels = u64::from(size[0]) * u64::from(size[1]);
-    // Four planes, and the rest of the file: its header and the places of its tiles.
+    // Allow 20 bytes per pixel, more than four planes take, and 1 MiB for the header and the tile offsets.
     let bytes = pixels.saturating_mul(20).saturating_add(1 << 20);
     match read_image(path, &Limits { pixels, bytes }).map_err(advise)? {
         Image::Exr(image) => Ok(image),
@@ -591,7 +595,7 @@ pub(crate) fn exr(path: &Path, size: [u32; 2]) -> Result<ExrImage> {
 ///
 /// # Errors
 ///
-/// If there is no such file, or it cannot be read.
+/// If the file does not exist or cannot be read.
 pub(crate) fn sha256(path: &Path) -> Result<String> {
     check_file(path, "an image")?;
     let content = dapple::image::open_regular(path).and_then(read_back);
@@ -599,13 +603,13 @@ pub(crate) fn sha256(path: &Path) -> Result<String> {
     Ok(content.sha256)
 }
 
-/// Crops a map.
+/// Crops a map to a region.
 fn crop(map: &Map, region: Region) -> Result<Map> {
     let Region { first, size } = region;
     Ok(map_raster!(map, raster => raster.crop(first, size)?))
 }
 
-/// A color with its alpha divided out, if there is any.
+/// Divides an associated color by its alpha. At alpha 0, the color is unchanged.
 pub(crate) fn divided(&color: &LinearRgb, &alpha: &f32) -> LinearRgb {
     if alpha == 0.0 {
         color
@@ -652,11 +656,11 @@ mod tests {
     use dapple::tile::Map;
     use std::path::Path;
 
-    /// The bytes of a PNG image of one color, with the chunk `cICP` for Display P3.
+    /// The bytes of a PNG image of one color, with a `cICP` chunk for Display P3.
     fn display_p3(color: [u8; 3]) -> Vec<u8> {
         let raster = Raster::filled([4, 4], color).unwrap();
         let mut bytes = encode_png(raster.view(), Transfer::Data).unwrap();
-        // The chunk follows the header, which ends at 33. Its checksum is the CRC-32 of its name and data.
+        // Insert the chunk after the header, which ends at byte 33. Its checksum is the CRC-32 of its name and data.
         let chunk = [
             b"\0\0\0\x04cICP\x0c\x0d\0\x01".as_slice(),
             &0x6e03_e3ef_u32.to_be_bytes(),

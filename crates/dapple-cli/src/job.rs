@@ -1,4 +1,4 @@
-//! A run of a subcommand: its files, its messages, and the JSON file beside the output.
+//! A run of a subcommand: its output files, its messages, and its sidecar, a JSON file next to the output.
 
 use crate::args::{ImageArgs, OutputArgs, Targets};
 use crate::arguments::GivenOption;
@@ -23,17 +23,17 @@ pub(crate) struct Context {
     pub(crate) quiet: bool,
     /// The style of the progress display.
     pub(crate) progress: Style,
-    /// The number of threads, or 0 for one on each core.
+    /// The number of threads; 0 for one per core.
     pub(crate) threads: u16,
     /// The command line.
     pub(crate) arguments: Vec<String>,
-    /// The options that were given, which errors name.
+    /// The options that were given, for error messages.
     pub(crate) options: Vec<GivenOption>,
 }
 
 #[cfg(feature = "studio")]
 impl Context {
-    /// These settings without output, for work whose messages are not shown.
+    /// The same settings without messages.
     pub(crate) fn silent(&self) -> Self {
         Self {
             quiet: true,
@@ -54,7 +54,7 @@ pub(crate) struct Job<'a> {
     sidecar: Option<OutputIdx>,
 }
 
-/// The entry of an output in the JSON file.
+/// The entry of an output in the sidecar.
 #[derive(Clone, Debug, Default, Serialize)]
 struct FileRecord {
     file: String,
@@ -62,22 +62,22 @@ struct FileRecord {
     format: Option<Format>,
     #[serde(skip_serializing_if = "Option::is_none")]
     size: Option<[u32; 2]>,
-    /// The smallest and the largest number, before they were clamped and rounded for the file.
+    /// Minimum and maximum of the numbers, before they were clamped and rounded for the file.
     #[serde(skip_serializing_if = "Option::is_none")]
     range: Option<[f32; 2]>,
-    /// The number of pixels with a number that the format clips.
+    /// Number of pixels with a number that the format clips.
     #[serde(skip_serializing_if = "is_zero")]
     clipped: u64,
     bytes: u64,
     sha256: String,
 }
 
-/// Whether nothing was clipped.
+/// Whether no pixel was clipped.
 fn is_zero(count: &u64) -> bool {
     *count == 0
 }
 
-/// The content of the JSON file beside the output.
+/// The content of the sidecar.
 #[derive(Serialize)]
 struct Sidecar<'a> {
     dapple: &'static str,
@@ -91,8 +91,8 @@ struct Sidecar<'a> {
     raw: Option<RawSize>,
 }
 
-/// The size and bits of raw heights, which their file lacks, with the names that the landscape importer of Unreal reads
-/// from the JSON file beside it.
+/// The size and bit depth of raw heights, which their file does not contain. The names are those that the landscape
+/// importer of Unreal reads from the sidecar.
 #[derive(Serialize)]
 struct RawSize {
     width: u32,
@@ -100,18 +100,18 @@ struct RawSize {
     bpp: u32,
 }
 
-/// The smallest share of clipped pixels that is said.
+/// Minimum fraction of clipped pixels that is reported.
 const CLIPPED_MIN: f64 = 0.01;
 
 impl FileRecord {
-    /// The share of clipped pixels, from 0 to 1, if it is heavy.
+    /// The fraction of clipped pixels, from 0 to 1, if it is at least [`CLIPPED_MIN`].
     fn clipped_share(&self) -> Option<f64> {
         let [width, height] = self.size?;
         let share = self.clipped as f64 / (f64::from(width) * f64::from(height));
         (share >= CLIPPED_MIN).then_some(share)
     }
 
-    /// The size of raw heights.
+    /// The size for the sidecar, if the file has raw heights.
     fn raw_size(&self) -> Option<RawSize> {
         let [width, height] = self.size.filter(|_| self.format == Some(Format::R16))?;
         Some(RawSize {
@@ -135,7 +135,7 @@ impl<'a> Job<'a> {
         }
     }
 
-    /// Claims a binary file.
+    /// Claims an output file with binary content.
     ///
     /// # Errors
     ///
@@ -148,7 +148,7 @@ impl<'a> Job<'a> {
         self.claim_text(target)
     }
 
-    /// Claims a file for each image, and the JSON file. Invalid names and formats fail here, before the work.
+    /// Claims a file for each image, and the sidecar. Invalid names and formats fail here, before the work.
     ///
     /// # Errors
     ///
@@ -167,7 +167,7 @@ impl<'a> Job<'a> {
         Ok(outputs)
     }
 
-    /// Claims a file of text.
+    /// Claims an output file with text.
     ///
     /// # Errors
     ///
@@ -182,13 +182,12 @@ impl<'a> Job<'a> {
         Ok(output)
     }
 
-    /// Claims the JSON file, if it is requested: beside the output, unless the command line names it. Raw heights
-    /// always have one, with their own name, since they do not contain their size. The outputs have to be claimed
-    /// before.
+    /// Claims the sidecar, if it is requested. It is next to the output, unless the command line names it. Raw heights
+    /// always have a sidecar with their name, since their file does not contain their size. Claim all outputs before.
     ///
     /// # Errors
     ///
-    /// The errors of [`Outputs::claim`], and if no name for it is given.
+    /// The errors of [`Outputs::claim`]; a sidecar without a name for standard output, or with the name of an output.
     pub(crate) fn claim_sidecar(&mut self, main: &Target) -> Result<()> {
         let target = match &self.args.json {
             None => {
@@ -208,7 +207,7 @@ impl<'a> Job<'a> {
         Ok(())
     }
 
-    /// Writes all bytes of a file.
+    /// Writes the content of a claimed file.
     ///
     /// # Errors
     ///
@@ -217,7 +216,7 @@ impl<'a> Job<'a> {
         self.outputs.write(output, bytes)
     }
 
-    /// Writes a map as an image of a given format, and records its size and range.
+    /// Writes a map as an image in a format, and records its size, its range and the number of clipped pixels.
     ///
     /// # Errors
     ///
@@ -232,14 +231,14 @@ impl<'a> Job<'a> {
         Ok(())
     }
 
-    /// Records how many pixels of an image have numbers that its format clips.
+    /// Records the number of pixels of an image that its format clips.
     pub(crate) fn note_clipped(&mut self, output: OutputIdx, n_pixels: u64) {
         for (_, record) in self.files.iter_mut().filter(|(at, _)| *at == output) {
             record.clipped = n_pixels;
         }
     }
 
-    /// The options of the files.
+    /// The output options of the subcommand.
     pub(crate) fn args(&self) -> &'a OutputArgs {
         self.args
     }
@@ -256,7 +255,7 @@ impl<'a> Job<'a> {
         self.outputs.target(output)
     }
 
-    /// A writer for a claimed file, from its start. It has to be flushed before the job is finished.
+    /// A writer for a claimed file, from its start. Flush it before [`finish`](Self::finish).
     ///
     /// # Errors
     ///
@@ -265,7 +264,7 @@ impl<'a> Job<'a> {
         self.outputs.writer(output)
     }
 
-    /// Whether there is a JSON file, for which [`note`](Self::note) records what is in the images.
+    /// Whether a sidecar is written. [`note`](Self::note) records the properties of the images for it.
     pub(crate) fn has_sidecar(&self) -> bool {
         self.sidecar.is_some()
     }
@@ -285,7 +284,7 @@ impl<'a> Job<'a> {
         }
     }
 
-    /// Chooses the format of a map, turns values to colors if there is a ramp, and writes it.
+    /// Applies the ramp to a map of values, chooses the format, and writes the image.
     ///
     /// # Errors
     ///
@@ -303,7 +302,7 @@ impl<'a> Job<'a> {
         self.write_map(output, &map, format)
     }
 
-    /// Writes an image like [`write_image`](Self::write_image), with its alpha if it is a color image with alpha.
+    /// Writes an image like [`write_image`](Self::write_image); a color image with the given alpha.
     ///
     /// # Errors
     ///
@@ -330,7 +329,7 @@ impl<'a> Job<'a> {
         Ok(())
     }
 
-    /// Prints a requested report on standard output, or on standard error if an output goes there.
+    /// Prints a requested report to standard output, or to standard error if an output file is standard output.
     ///
     /// # Errors
     ///
@@ -345,7 +344,7 @@ impl<'a> Job<'a> {
         say(text)
     }
 
-    /// Moves all files to their places and reports them.
+    /// Writes the sidecar, renames all files to their final paths, and reports them.
     ///
     /// # Errors
     ///
@@ -354,7 +353,7 @@ impl<'a> Job<'a> {
         self.finish_with(&|| serde_json::to_value(options), report)
     }
 
-    /// Moves all files to their places and reports them; `options` are asked for where there is a JSON file.
+    /// Implements [`finish`](Self::finish) without generics. `options` is called only if a sidecar is written.
     fn finish_with(
         mut self,
         options: &dyn Fn() -> serde_json::Result<Value>,
@@ -379,6 +378,7 @@ impl<'a> Job<'a> {
             text.push('\n');
             self.outputs.write(sidecar, text.as_bytes())?;
         }
+        // Commit the files, and report each on standard error.
         let is_file = |output| self.outputs.target(output) != &Target::Stdout;
         let files = self.files.iter().filter(|(output, _)| is_file(*output));
         let told = match self.context.progress {
@@ -393,7 +393,7 @@ impl<'a> Job<'a> {
         Ok(())
     }
 
-    /// Claims a file, and makes its folder if it does not exist.
+    /// Claims a file, and creates its directory if it does not exist.
     fn claim_in_folder(&mut self, target: &Target) -> Result<OutputIdx> {
         let folder = target.path().and_then(Path::parent);
         if let Some(folder) = folder.filter(|folder| !folder.as_os_str().is_empty()) {
@@ -402,7 +402,7 @@ impl<'a> Job<'a> {
         self.outputs.claim(target)
     }
 
-    /// The default JSON file: the output's name with the ending `.json`.
+    /// The default path of the sidecar: the path of the output with the extension `.json`.
     fn beside(&self, main: &Target) -> Result<Target> {
         let Some(path) = main.path() else {
             return Err(
@@ -435,7 +435,8 @@ pub(crate) fn say(text: &str) -> Result<()> {
     Ok(stdout.flush()?)
 }
 
-/// Writes a text to the output, or prints it without an output. In a folder the file has a default name: `NAME.ENDING`.
+/// Writes a text to the output, or to standard output if no output is given. In a directory, the file is
+/// `NAME.EXTENSION`.
 ///
 /// # Errors
 ///
@@ -458,12 +459,12 @@ pub(crate) fn put_text(
     Ok(Exit::Done)
 }
 
-/// Prints to standard error, and ignores errors.
+/// Prints a line to standard error, and ignores errors.
 pub(crate) fn eprintln_if_possible(text: &str) {
     let _ = writeln!(io::stderr().lock(), "{}", printable(text));
 }
 
-/// The line about a written file, as JSON.
+/// The message about a written file, as a line of JSON.
 fn told_as_json(record: &FileRecord) -> String {
     let mut line = serde_json::json!({
         "wrote": record.file, "size": record.size, "format": record.format
@@ -474,7 +475,7 @@ fn told_as_json(record: &FileRecord) -> String {
     line.to_string()
 }
 
-/// The line about a written file.
+/// The message about a written file.
 fn told(record: &FileRecord) -> String {
     let FileRecord {
         file, size, format, ..

@@ -1,4 +1,4 @@
-//! The content of the channels of an image: a map, or several maps packed into one image.
+//! The assignment of maps to the channels of an image: one map, or several maps packed into one image.
 
 use crate::encode::Format;
 use crate::encode::n_clipped;
@@ -11,7 +11,7 @@ use std::borrow::Cow;
 use std::fmt;
 use std::io::{Seek, Write};
 
-/// An image of a material.
+/// An output image of a material.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Image {
     pub(crate) layers: Layers,
@@ -21,9 +21,9 @@ pub(crate) struct Image {
 /// The content of the channels of an image.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Layers {
-    /// A map with all of its channels.
+    /// The channels of one map.
     Map(MapKind),
-    /// Red, green, blue and alpha, each a channel of its own.
+    /// Four independent channels: red, green, blue and alpha.
     Rgba([Channel; 4]),
 }
 
@@ -38,14 +38,14 @@ pub(crate) enum Channel {
     Always(f32),
 }
 
-/// Some rows of an image.
+/// Consecutive rows of an image.
 pub(crate) enum LayerRows<'a> {
     Map(Cow<'a, MapRows>),
     Rgba(Raster<[f32; 4]>),
 }
 
 impl Layers {
-    /// The maps in the channels.
+    /// The maps that the channels need.
     pub(crate) fn kinds(&self) -> Vec<MapKind> {
         match self {
             Self::Map(kind) => vec![*kind],
@@ -53,7 +53,7 @@ impl Layers {
         }
     }
 
-    /// The kind of image, which determines how it is written.
+    /// The content type of the image, which determines its encoding.
     pub(crate) fn content(&self) -> Content {
         match self {
             Self::Map(kind) => kind.content(),
@@ -61,7 +61,7 @@ impl Layers {
         }
     }
 
-    /// The number of numbers in a pixel.
+    /// Number of channels.
     pub(crate) fn n_channels(&self) -> u64 {
         match self.content() {
             Content::Gray => 1,
@@ -70,7 +70,7 @@ impl Layers {
         }
     }
 
-    /// The rows of the image, from a band that has all of its maps.
+    /// Assembles the rows of the image from a band, which must have all of its maps.
     pub(crate) fn rows<'a>(&self, band: &'a Band) -> Result<LayerRows<'a>> {
         match self {
             Self::Map(kind) => Ok(LayerRows::Map(Cow::Borrowed(map_of(*kind, band)?))),
@@ -108,7 +108,7 @@ impl Channel {
     }
 }
 
-/// The text for help: `albedo in sRGB`, or `R metallic, G ao, B 1, A 1 - roughness`.
+/// Describes the channels for help texts: `albedo in sRGB`, or `R metallic, G ao, B 1, A 1 - roughness`.
 impl fmt::Display for Layers {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -134,7 +134,7 @@ impl fmt::Display for Channel {
 }
 
 impl LayerRows<'_> {
-    /// Writes the rows as the next ones of an image with this content.
+    /// Writes the rows as the next rows of an image. The writer must have the content type of the layers.
     pub(crate) fn write<W: Write + Seek>(
         &self,
         writer: &mut RowWriter<W>,
@@ -145,7 +145,7 @@ impl LayerRows<'_> {
         }
     }
 
-    /// A range of numbers, extended by the finite numbers of these rows.
+    /// Extends a range, as minimum and maximum, by the finite numbers of these rows.
     pub(crate) fn range(&self, range: [f32; 2]) -> [f32; 2] {
         match self {
             Self::Map(rows) => rows.range(range),
@@ -162,13 +162,13 @@ impl LayerRows<'_> {
         }
     }
 
-    /// The number of pixels with a number below 0 or above 1, which images of whole numbers cannot hold.
+    /// Number of pixels with a number below 0 or above 1, which integer formats clip.
     pub(crate) fn n_clipped(&self) -> u64 {
         match self {
             Self::Map(rows) => match rows.as_ref() {
                 MapRows::Gray(rows) => n_clipped(rows, |number| [*number]),
                 MapRows::Color(rows) => n_clipped(rows, |color| color.to_array()),
-                // The parts of a unit vector fit.
+                // The components of unit vectors are in range.
                 MapRows::Normal(_) => 0,
                 MapRows::Packed(rows) => n_clipped(rows, |parts| *parts),
             },
@@ -176,7 +176,7 @@ impl LayerRows<'_> {
         }
     }
 
-    /// The rows with a copy of them to their right.
+    /// The rows repeated twice horizontally.
     pub(crate) fn beside_themselves(&self) -> Result<LayerRows<'static>> {
         fn twice<T: Copy + Send + Sync>(raster: &Raster<T>) -> Result<Raster<T>> {
             let [width, height] = raster.size();
@@ -195,14 +195,14 @@ impl LayerRows<'_> {
     }
 }
 
-/// The rows of a baked map.
+/// The rows of a map in a band.
 fn map_of(kind: MapKind, band: &Band) -> Result<&MapRows> {
     let found = band.maps.iter().find(|(other, _)| *other == kind);
     let (_, rows) = found.ok_or_else(|| anyhow!("the map {} was not baked", kind.name()))?;
     Ok(rows)
 }
 
-/// The rows of a map with one number at each pixel.
+/// The rows of a map with a single channel.
 fn numbers_of(kind: MapKind, band: &Band) -> Result<&Raster<f32>> {
     match map_of(kind, band)? {
         MapRows::Gray(rows) => Ok(rows),

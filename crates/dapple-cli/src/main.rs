@@ -1,10 +1,12 @@
 //! The command `dapple`: textures from the command line.
 //!
-//! `cli.rs` defines the command line, `commands/` has a file for each subcommand, and the other files are shared:
-//! `arguments.rs` normalizes the arguments, `words.rs` has names of values, `args.rs` options, `input.rs` reading,
-//! `encode.rs` and `output.rs` writing, `baking.rs` bakes recipes band by band, `layers.rs` has the channels of an
-//! image, `field.rs` a single field as a recipe, `shards.rs` the shards of a picture, `job.rs` a run from its first
-//! claimed file to its end, `error.rs` errors.
+//! `cli.rs` defines the command line, and `commands/` has a file for each subcommand. The other files are shared:
+//!
+//! - `arguments.rs` normalizes the arguments, `words.rs` parses names of values, and `args.rs` defines shared options.
+//! - `input.rs` reads files; `encode.rs` and `output.rs` write them.
+//! - `baking.rs` bakes recipes band by band, `layers.rs` assigns maps to the channels of images, `field.rs` renders a
+//!   single field as a recipe, and `shards.rs` names the shards of a map.
+//! - `job.rs` is a run of a subcommand, from its first claimed file to its last message. `error.rs` reports errors.
 
 #![forbid(unsafe_code)]
 

@@ -1,4 +1,4 @@
-//! Words on the command line, which are read without regard to case, and with `-` or `_`.
+//! Words on the command line. They are case-insensitive, with `-` or `_`.
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::error::ErrorKind;
@@ -7,17 +7,17 @@ use dapple::raster::Named;
 use dapple::recipe::similar_words;
 use std::ffi::OsStr;
 
-/// A word in the form of the names of maps and fields: in lower case, with `_`.
+/// Normalizes a word to the form of the names of maps and fields: lower case, with `_`.
 pub(crate) fn with_underscores(word: &str) -> String {
     word.trim().to_lowercase().replace('-', "_")
 }
 
-/// A word in the form of options and recipes: in lower case, with `-`.
+/// Normalizes a word to the form of the names of options and recipes: lower case, with `-`.
 pub(crate) fn with_dashes(word: &str) -> String {
     word.trim().to_lowercase().replace('_', "-")
 }
 
-/// The error message for an unknown word: the most similar name, or all names and `more`.
+/// The error message for an unknown word. It has the most similar name, or else all names, followed by `more`.
 pub(crate) fn unknown(kind: &str, word: &str, names: &[&str], more: &str) -> String {
     slip(kind, word, names.iter().copied()).unwrap_or_else(|| {
         format!(
@@ -27,7 +27,7 @@ pub(crate) fn unknown(kind: &str, word: &str, names: &[&str], more: &str) -> Str
     })
 }
 
-/// The error message for a misspelled name, if the word is one.
+/// The error message for a misspelled name; `None` if no name is similar to the word.
 pub(crate) fn slip<'a>(
     kind: &str,
     word: &str,
@@ -38,17 +38,17 @@ pub(crate) fn slip<'a>(
     (near != written).then(|| format!("unknown {kind} {word:?}: did you mean {near}?"))
 }
 
-/// A parser of a value by its name, which lists the names in the help.
+/// A clap parser of values by their names. The help of the option lists the names.
 #[derive(Clone, Debug)]
 pub(crate) struct NamedValueParser<T>(Vec<(PossibleValue, T)>);
 
 impl<T: Named> NamedValueParser<T> {
-    /// A parser of all values of a kind. The help of each is the first sentence of its documentation.
+    /// Parses all values of a type. The help of each value is the first sentence of its documentation.
     pub(crate) fn all() -> Self {
         Self::some(T::ALL)
     }
 
-    /// A parser of some values of a kind.
+    /// Parses some values of a type.
     pub(crate) fn some(values: &[T]) -> Self {
         let named = |&value: &T| {
             let aliases = value.aliases().iter().map(|alias| with_dashes(alias));
@@ -61,7 +61,7 @@ impl<T: Named> NamedValueParser<T> {
         Self(values.iter().map(named).collect())
     }
 
-    /// A parser of other values, each of which is made from one of these.
+    /// Converts the parsed values to another type.
     pub(crate) fn map<U>(self, change: fn(T) -> U) -> NamedValueParser<U> {
         let changed = |(name, value)| (name, change(value));
         NamedValueParser(self.0.into_iter().map(changed).collect())
@@ -69,7 +69,7 @@ impl<T: Named> NamedValueParser<T> {
 }
 
 impl<T> NamedValueParser<T> {
-    /// A parser of these values.
+    /// Parses the given values, by the given names, without help for each.
     pub(crate) fn of(values: impl IntoIterator<Item = (&'static str, T)>) -> Self {
         let values = values.into_iter();
         Self(
@@ -79,7 +79,7 @@ impl<T> NamedValueParser<T> {
         )
     }
 
-    /// A parser without values.
+    /// A parser that accepts no value, to which [`or`](Self::or) adds values.
     pub(crate) fn none() -> Self {
         Self(Vec::new())
     }
@@ -111,7 +111,7 @@ impl<T: Clone + Send + Sync + 'static> TypedValueParser for NamedValueParser<T> 
     }
 }
 
-/// The first sentence of a Markdown documentation, without its full stop.
+/// The first sentence of a documentation in Markdown, without backticks and without its period.
 fn first_sentence(documentation: &str) -> String {
     let words: Vec<_> = documentation.split_whitespace().collect();
     let text = words.join(" ");

@@ -1,4 +1,4 @@
-//! The option for alpha: keep it, drop it, or lay the image over a color.
+//! The option for alpha: keep it, drop it, or composite the image over a color.
 
 use super::ramp::color;
 use dapple::recipe::ImageAlpha;
@@ -13,11 +13,11 @@ pub(crate) struct AlphaArgs {
     pub(crate) alpha: Alpha,
 }
 
-/// The handling of alpha.
+/// How alpha is handled.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "lowercase", untagged)]
 pub(crate) enum Alpha {
-    /// Alpha is processed like the colors.
+    /// Alpha is processed like the color channels.
     #[serde(serialize_with = "keep")]
     Keep,
     /// Alpha is removed, and the result is opaque.
@@ -49,11 +49,11 @@ impl FromStr for Alpha {
     }
 }
 
-/// Parses the handling of alpha for an image that is used without it.
+/// Parses how alpha is handled for an image that is used without alpha: all values of [`Alpha`] except `keep`.
 ///
 /// # Errors
 ///
-/// If the text has no valid form.
+/// If the text is `keep`, or not a value of [`Alpha`].
 pub(crate) fn image_alpha(text: &str) -> Result<ImageAlpha, String> {
     match text.parse() {
         Ok(Alpha::Without(alpha)) => Ok(alpha),

@@ -1,4 +1,4 @@
-//! A frame of a loop on the command line: `3/24`, the third of 24.
+//! A frame of a loop on the command line: `3/24` is the third of 24 frames.
 
 use serde::{Serialize, Serializer};
 use std::fmt;
@@ -7,14 +7,14 @@ use std::str::FromStr;
 /// A frame of a loop in time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Frame {
-    /// The number of the frame, from 1.
+    /// The number of the frame, counted from 1.
     number: u32,
     /// The number of frames in the loop.
     count: u32,
 }
 
 impl Frame {
-    /// All frames of a loop; a single `None` without a loop.
+    /// All frames of a loop of `count` frames; a single `None` for a still image.
     pub(crate) fn all(count: Option<u32>) -> impl Iterator<Item = Option<Self>> {
         let pictures = 1..=count.unwrap_or(1);
         pictures.map(move |number| count.map(|count| Self { number, count }))
@@ -25,7 +25,7 @@ impl Frame {
         self.number == 1
     }
 
-    /// The elapsed part of the loop before this frame, from 0 to below 1.
+    /// The time of the frame as a fraction of the loop: 0 for the first frame, below 1 for the last.
     pub(crate) fn time(self) -> f64 {
         f64::from(self.number - 1) / f64::from(self.count)
     }
@@ -35,7 +35,8 @@ impl Frame {
         self.count
     }
 
-    /// The number of the frame as a part of file names: `001`, with as many digits as the last frame has.
+    /// The number of the frame for file names, such as `001`. It has the digits of the last frame's number, at least
+    /// three.
     pub(crate) fn label(self) -> String {
         let digits = self.count.to_string().len().max(3);
         format!("{:0digits$}", self.number)

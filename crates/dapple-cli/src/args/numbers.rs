@@ -1,9 +1,9 @@
-//! Several numbers on the command line, with commas between them: `3,4`.
+//! Several numbers on the command line, separated by commas: `3,4`.
 
 use serde::{Serialize, Serializer};
 use std::str::FromStr;
 
-/// `N` numbers.
+/// `N` numbers, separated by commas.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Numbers<T, const N: usize>(pub(crate) [T; N]);
 

@@ -1,17 +1,17 @@
-//! Color ramps on the command line: the name of a palette, or colors.
+//! Color ramps on the command line: the name of a palette, or colors separated by commas.
 
 use dapple::color::{ColorRamp, LinearRgb, Palette};
 use dapple::raster::Named;
 use serde::{Serialize, Serializer};
 use std::str::FromStr;
 
-/// A color ramp, with its text on the command line.
+/// A color ramp, with its text as typed.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct RampArg {
     text: String,
-    /// The colors, from low to high: at least one.
+    /// The colors from low to high; at least one.
     pub(crate) colors: Vec<LinearRgb>,
-    /// A ramp through the colors, mixed in Oklab.
+    /// The ramp through the colors at equal distances, interpolated in Oklab.
     pub(crate) ramp: ColorRamp,
 }
 

@@ -1,4 +1,4 @@
-//! The options of reading images: the layer, and numbers that are not finite.
+//! Options for reading images: the layer, and how NaN and infinite values are handled.
 
 use crate::words::NamedValueParser;
 use dapple::raster::Named as _;
@@ -34,7 +34,7 @@ pub(crate) struct FiniteArgs {
 }
 
 impl FiniteArgs {
-    /// The option as a word of a command line, if it differs from the default.
+    /// The option as an argument for a command line, if it differs from the default.
     pub(crate) fn word(self) -> Option<String> {
         let is_default = self.nonfinite == NonFinite::default();
         (!is_default).then(|| format!("--nonfinite={}", self.nonfinite.name()))

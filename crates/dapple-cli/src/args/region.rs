@@ -14,7 +14,7 @@ pub(crate) struct Region {
 }
 
 impl Region {
-    /// This region as an option of a bake.
+    /// Converts the region to an option of a bake.
     pub(crate) fn of_recipe(self) -> dapple::recipe::Region {
         dapple::recipe::Region {
             first: self.first,

@@ -1,4 +1,4 @@
-//! The positions of the samples of pictures.
+//! The option for the sample positions: pixel centers or grid corners.
 
 use super::Size;
 use crate::error::{Hint, usage};
@@ -20,7 +20,8 @@ pub(crate) struct SamplesArgs {
 }
 
 impl SamplesArgs {
-    /// The numbers of distances between samples from one side of the tile to the other.
+    /// The number of sample spacings from one side of the tile to the other, along each axis: for pixel centers the
+    /// number of samples, for corners one less.
     ///
     /// # Errors
     ///
@@ -38,7 +39,7 @@ impl SamplesArgs {
         Ok(Size(size.0.map(|side| side - 1)))
     }
 
-    /// The option as a word of a command line, if it differs from the default.
+    /// The option as an argument for a command line, if it differs from the default.
     pub(crate) fn word(self) -> Option<String> {
         let is_default = self.samples == Samples::default();
         (!is_default).then(|| format!("--samples={}", self.samples.name()))

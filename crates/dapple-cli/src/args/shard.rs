@@ -1,5 +1,5 @@
-//! A shard of a picture on the command line: `COLUMN,ROW,WxH`, such as `3,7,2048`, or `3,7,1009+1` for shards that overlap by a
-//! pixel.
+//! A shard of a map on the command line: `COLUMN,ROW,WxH`, such as `3,7,2048`, or `3,7,1009+1` for shards that overlap
+//! by one pixel.
 
 use super::Size;
 use crate::error::usage;
@@ -9,23 +9,23 @@ use serde::{Serialize, Serializer};
 use std::fmt;
 use std::str::FromStr;
 
-/// A shard: its place, and the size of all shards except the last ones.
+/// A shard: its position in the grid of shards, and the size of a shard that is not cropped at the border.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Shard {
-    /// The column and row of the shard, from 0.
+    /// The column and row of the shard in the grid, counted from 0.
     pub(crate) place: [u32; 2],
     /// Columns and rows of a shard, in pixels.
     pub(crate) size: Size,
-    /// The number of columns and rows that neighbors share.
+    /// The number of columns and rows that neighboring shards share.
     pub(crate) overlap: u32,
 }
 
 impl Shard {
-    /// The pixels of the shard in a picture of this size, cropped at the border.
+    /// The region of the shard in a map of a size, cropped at the border.
     ///
     /// # Errors
     ///
-    /// If the picture has no such shard.
+    /// If the column or the row is outside of the grid.
     pub(crate) fn region(self, picture: Size) -> Result<Region> {
         let shards = Shards::new(picture.0, self.size.0)?.with_overlap(self.overlap)?;
         let [columns, rows] = shards.grid();

@@ -1,17 +1,18 @@
-//! Widths and heights on the command line: in pixels, `1024x512` or `1024`; and in units of the plane, `2x1.5`.
+//! Sizes on the command line: columns and rows in pixels, `1024x512` or `1024`, and extents in units of the plane,
+//! `2x1.5`.
 
 use serde::Serialize;
 use std::fmt;
 use std::str::FromStr;
 
-/// The longest side, in pixels.
+/// Maximum length of a side, in pixels.
 const SIDE_MAX: u32 = 1 << 20;
 
-/// Columns and rows, each from 1 to 2^20.
+/// Columns and rows in pixels, each from 1 to 2^20.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub(crate) struct Size(pub(crate) [u32; 2]);
 
-/// A width and a height in the plane, above 0.
+/// Width and height in units of the plane, each finite and above 0.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub(crate) struct Extent(pub(crate) [f64; 2]);
 
@@ -58,7 +59,7 @@ impl fmt::Display for Size {
     }
 }
 
-/// Parses two sides, or one for both.
+/// Parses two sides separated by `x`, or one number for both.
 fn pair<T: Copy>(text: &str, side: impl Fn(&str) -> Result<T, String>) -> Result<[T; 2], String> {
     match text.split_once(['x', 'X', '×']) {
         Some((width, height)) => Ok([side(width)?, side(height)?]),

@@ -8,7 +8,7 @@ use std::fs;
 use std::io;
 use std::path::Path;
 
-/// The name of an input in messages.
+/// The name of an input for messages.
 pub(crate) fn name(path: &Path) -> String {
     if path == Path::new("-") {
         "standard input".to_owned()
@@ -17,7 +17,7 @@ pub(crate) fn name(path: &Path) -> String {
     }
 }
 
-/// Fails for a path that does not exist, a folder, and an empty file.
+/// Fails for a path that does not exist, a directory, a device, and an empty file.
 pub(super) fn check_file(path: &Path, what: &str) -> Result<()> {
     let found = match fs::metadata(path) {
         Ok(found) => found,
@@ -44,7 +44,8 @@ pub(super) fn check_file(path: &Path, what: &str) -> Result<()> {
     Ok(())
 }
 
-/// Whether a file is a device or a socket, from which reading may never end. A pipe is none: the user has made it.
+/// Whether a file is a device or a socket, from which reading may never end. Pipes are accepted, since the user has
+/// made them.
 #[cfg(unix)]
 fn is_device(found: &fs::Metadata) -> bool {
     use std::os::unix::fs::FileTypeExt;
@@ -57,12 +58,12 @@ fn is_device(_: &fs::Metadata) -> bool {
     false
 }
 
-/// Checks that a path that a file names, and not the command line, is a regular file. Pipes and devices of others could
-/// let the command wait for ever.
+/// Checks that a path named by an input file, instead of by the command line, is a regular file. A pipe or a device
+/// could block the command forever.
 ///
 /// # Errors
 ///
-/// If it exists and is no regular file.
+/// If the path does not exist, or is not a regular file.
 pub(crate) fn check_regular(path: &Path, what: &str) -> Result<()> {
     check_file(path, what)?;
     dapple::image::open_regular(path)
@@ -70,7 +71,7 @@ pub(crate) fn check_regular(path: &Path, what: &str) -> Result<()> {
         .with_context(|| format!("{} cannot be read as {what}", path.display()))
 }
 
-/// Similar names in the folder of a path, the most similar first.
+/// Similar names in the directory of a path, most similar first.
 fn similar_names(path: &Path) -> Vec<String> {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let folder = path.parent().unwrap_or(Path::new(""));

@@ -1,4 +1,4 @@
-//! Meshes, and notes of the parts of a model that are not used.
+//! Reading of meshes, and notes about parts of a model that are not used.
 
 use super::NAMES_MAX;
 use super::files::{check_file, name};
@@ -34,7 +34,8 @@ pub(crate) fn model(path: &Path) -> Result<Model> {
     })
 }
 
-/// What a mesh is not used for, as a line for people: what its reader left out, and unit squares that share a texture.
+/// A line that lists the parts of a model that are not used: parts that the reader left out, and unit squares of
+/// texture coordinates that share a texture.
 pub(crate) fn not_used(path: &Path, model: &Model) -> Option<String> {
     let mut parts = model.left_out.clone();
     parts.extend(unit_squares(model));
@@ -42,7 +43,7 @@ pub(crate) fn not_used(path: &Path, model: &Model) -> Option<String> {
     (!parts.is_empty()).then(|| format!("{}: not used: {parts}", name(path)))
 }
 
-/// The unit squares of texture coordinates, if there are several.
+/// A note on the unit squares of texture coordinates, if there are several and they share one texture.
 pub(crate) fn unit_squares(model: &Model) -> Option<String> {
     let squares = model.unit_squares();
     if squares.len() < 2 || !model.tiles.is_empty() {
@@ -59,7 +60,7 @@ pub(crate) fn unit_squares(model: &Model) -> Option<String> {
     ))
 }
 
-/// The endings of mesh files, as help texts list them.
+/// The file extensions of meshes, as a list for help texts.
 pub(crate) fn mesh_endings() -> String {
     let endings: Vec<_> = readable_endings()
         .map(|ending| format!(".{ending}"))

@@ -1,4 +1,4 @@
-//! Numbers as they are in their file: the input of `dapple info`.
+//! Reading of numbers as they are stored, for `dapple info`.
 
 use super::files::{check_file, name};
 use super::{advise, image_or_region, limits, text, whole};
@@ -10,7 +10,7 @@ use dapple::raster::Raster;
 use serde::Deserialize;
 use std::path::Path;
 
-/// The input of `dapple info`: an image, or an array or heights as the command writes them.
+/// The content of an input of `dapple info`.
 #[derive(Debug)]
 pub(crate) enum Content {
     /// An image.
@@ -21,20 +21,20 @@ pub(crate) enum Content {
     Raw(Raster<u16>),
 }
 
-/// Numbers that were read, as they are in their file.
+/// Numbers as they are stored in a file.
 #[derive(Debug)]
 pub(crate) struct Numbers {
     pub(crate) content: Content,
-    /// Whether only the pixels of the region were read.
+    /// Whether only the region was read.
     pub(crate) is_part: bool,
 }
 
-/// Reads an image, a NumPy array, or raw heights with the JSON file beside them. Of an image with too many pixels the
-/// region alone is read, where the format allows it.
+/// Reads an image, a NumPy array, or raw heights, whose size is in their sidecar. If an image has too many pixels and
+/// its format allows it, reads only the region.
 ///
 /// # Errors
 ///
-/// The errors of [`image`](super::image), and raw heights without a size.
+/// The errors of [`image`](super::image), and raw heights whose size is unknown.
 pub(crate) fn numbers(path: &Path, region: Option<Region>) -> Result<Numbers> {
     let ending = path.extension().unwrap_or_default().to_string_lossy();
     let content = match ending.to_ascii_lowercase().as_str() {
@@ -59,7 +59,7 @@ pub(crate) fn numbers(path: &Path, region: Option<Region>) -> Result<Numbers> {
     Ok(Numbers { content, is_part })
 }
 
-/// The size of raw heights, from the JSON file beside them.
+/// The size of raw heights, from the sidecar: the file with the same name and the extension `.json`.
 fn raw_size(path: &Path) -> Result<[u32; 2]> {
     #[derive(Deserialize)]
     struct Size {

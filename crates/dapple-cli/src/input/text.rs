@@ -1,4 +1,4 @@
-//! Text in UTF-8.
+//! Reading of text in UTF-8.
 
 use super::files::{check_file, name};
 use crate::error::Hint;
@@ -8,14 +8,14 @@ use std::fs;
 use std::io::{self, Read};
 use std::path::Path;
 
-/// The maximum number of bytes of a text.
+/// Maximum size of a text, in bytes.
 const TEXT_MAX: u64 = 1 << 28;
 
 /// Reads a text, without its byte order mark; `-` is standard input.
 ///
 /// # Errors
 ///
-/// If there is no such file, it is too long, or it is not UTF-8.
+/// If the file does not exist, is too long, or is not UTF-8.
 pub(crate) fn text(path: &Path) -> Result<String> {
     let mut bytes = Vec::new();
     let read = if path == Path::new("-") {
