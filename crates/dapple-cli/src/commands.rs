@@ -1,4 +1,4 @@
-//! The subcommands, a file for each.
+//! The subcommands, one file for each.
 
 mod bake;
 mod blend;

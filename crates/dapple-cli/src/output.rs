@@ -1,13 +1,14 @@
-//! The files of a run: claimed before the work starts, written under temporary names, and all moved to their places at
+//! The output files of a run: claimed before the work starts, written under temporary names, and renamed together at
 //! the end.
 //!
-//! Each file is written under a temporary name in its folder. When all of them are complete they are flushed to the disk
-//! and renamed, one right after the other, and then their folders are flushed: a reader finds the old file or the whole
-//! new one, however the command or the machine ends. Documents that name other files come after these. Without `--force`
-//! no existing file is replaced: this is checked when a file is claimed, before hours of work, and again when it is
-//! renamed.
+//! Each file is written under a temporary name in its directory. When all files are complete, they are flushed to disk
+//! and renamed in immediate succession. Then their directories are flushed. A reader finds the old file or the complete
+//! new one, even if the command or the machine crashes. A document that names other files is renamed after them.
 //!
-//! Standard output, devices and pipes get their bytes at the end.
+//! Without `--force`, no existing file is replaced. This is checked when a file is claimed, before hours of work, and
+//! again when it is renamed.
+//!
+//! Standard output, devices and pipes cannot be renamed to; their bytes are copied at the end.
 
 #![expect(
     clippy::disallowed_methods,
@@ -32,7 +33,7 @@ use std::fs::{self, File};
 use std::io::{self, BufWriter, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-/// The most missing folders that are made for an output.
+/// Maximum number of missing directories that are created for an output.
 const FOLDERS_MAX: usize = 64;
 
 /// The target of an output.
@@ -57,15 +58,16 @@ pub(crate) struct Content {
     pub(crate) sha256: String,
 }
 
-/// The files of a run. Those that were not committed are removed on drop.
+/// The output files of a run. Files that were not committed are removed on drop.
 #[derive(Debug)]
 pub(crate) struct Outputs {
     force: bool,
     files: Vec<Pending>,
-    /// The folders that were made, the outermost first.
+    /// The directories that were created, outermost first.
     folders: Vec<PathBuf>,
 }
 
+/// A claimed file that is not committed yet.
 #[derive(Debug)]
 struct Pending {
     target: Target,
@@ -84,9 +86,9 @@ enum Bytes {
 #[derive(Debug, PartialEq, Eq)]
 enum Place {
     Stdout,
-    /// A device or a named pipe, which is written to and not replaced.
+    /// A device or a named pipe, which is written to instead of being replaced.
     Device(PathBuf),
-    /// A file, with links resolved if it exists.
+    /// A file. If it exists, symbolic links are resolved.
     File(PathBuf),
 }
 
@@ -99,13 +101,13 @@ impl Target {
         }
     }
 
-    /// The name without its folder; empty for standard output.
+    /// The file name without its directory; empty for standard output.
     pub(crate) fn name(&self) -> String {
         let name = self.path().and_then(Path::file_name);
         name.unwrap_or_default().to_string_lossy().into_owned()
     }
 
-    /// The ending in lower case, without its dot; empty if there is none.
+    /// The file extension in lower case, without its dot; empty if there is no extension.
     pub(crate) fn ending(&self) -> String {
         let ending = self.path().and_then(Path::extension);
         ending
@@ -114,7 +116,7 @@ impl Target {
             .to_ascii_lowercase()
     }
 
-    /// This file with another ending.
+    /// This file with another extension.
     pub(crate) fn with_ending(self, ending: &str) -> Self {
         match self {
             Self::Stdout => Self::Stdout,
@@ -122,8 +124,8 @@ impl Target {
         }
     }
 
-    /// When the file is renamed: files that are named by others first, then materials, then documents and the JSON file
-    /// with checksums.
+    /// Order of renaming: images and other files first, then material libraries, then documents that name them, and
+    /// last the sidecar with the checksums.
     fn turn(&self) -> u8 {
         match self.ending().as_str() {
             "mtl" => 1,
@@ -133,11 +135,11 @@ impl Target {
         }
     }
 
-    /// The file beside this one for a part of the output: `NAME_PART.ENDING`; this file for a part without a name.
+    /// The file for a part of the output: `NAME_PART.EXTENSION`, or this file for a part with an empty name.
     ///
     /// # Errors
     ///
-    /// If this is standard output, which has no file beside it.
+    /// If this is standard output, which takes a single file.
     pub(crate) fn part(&self, part: &str) -> Result<Self> {
         match self {
             _ if part.is_empty() => Ok(self.clone()),
@@ -159,7 +161,8 @@ impl Target {
 }
 
 impl Target {
-    /// The file of a unit square: its number in place of `<UDIM>`, or else before the ending, as in `NAME.1001.ENDING`.
+    /// The file of a UDIM tile: its number replaces `<UDIM>` in the name, or else precedes the extension, as in
+    /// `NAME.1001.EXTENSION`.
     ///
     /// # Errors
     ///
@@ -197,7 +200,7 @@ impl fmt::Display for Target {
 }
 
 impl Outputs {
-    /// A run without files. With `force`, existing files are replaced.
+    /// Begins a run without files. With `force`, existing files are replaced.
     pub(crate) fn new(force: bool) -> Self {
         Self {
             force,
@@ -206,11 +209,12 @@ impl Outputs {
         }
     }
 
-    /// Makes a folder, and its missing parents, if it does not exist.
+    /// Creates a directory and its missing parents. They are removed again if the run fails.
     ///
     /// # Errors
     ///
-    /// If it cannot be made, for example because a file has its name, or if too many parents are missing.
+    /// If the directory cannot be created, for example because a file has its name, or if more than [`FOLDERS_MAX`]
+    /// directories are missing.
     pub(crate) fn make_folder(&mut self, folder: &Path) -> Result<()> {
         for folder in missing_folders(folder)?.into_iter().rev() {
             registry::make_folder(folder)
@@ -223,7 +227,7 @@ impl Outputs {
         Err(anyhow!("{} is a file, and not a folder", folder.display()))
     }
 
-    /// Makes a folder that stays, even if this run fails: other runs may write into it at the same time.
+    /// Creates a directory that remains even if this run fails, since other runs may write to it at the same time.
     ///
     /// # Errors
     ///
@@ -238,11 +242,11 @@ impl Outputs {
         Ok(())
     }
 
-    /// Creates the temporary file of an output.
+    /// Claims an output: checks its path, and creates its temporary file.
     ///
     /// # Errors
     ///
-    /// If the file exists and may not be replaced, is a folder, was claimed before, or cannot be written.
+    /// If the file exists and may not be replaced, is a directory, was claimed before, or cannot be written.
     pub(crate) fn claim(&mut self, target: &Target) -> Result<OutputIdx> {
         let place = place(target)?;
         if self.files.iter().any(|file| file.place == place) {
@@ -256,7 +260,7 @@ impl Outputs {
                 }
                 Bytes::File(Temporary::beside(path).map_err(|error| no_room(path, error))?)
             }
-            // There is no folder beside it, and its bytes are copied anyway.
+            // Spool the bytes of a stream, which has no directory for a temporary file.
             Place::Stdout | Place::Device(_) => Bytes::Stream(Spool::new()),
         };
         self.files.push(Pending {
@@ -267,11 +271,11 @@ impl Outputs {
         Ok(OutputIdx(self.files.len() - 1))
     }
 
-    /// A writer for a claimed file, from its start. It has to be flushed before [`commit`](Self::commit).
+    /// A writer for a claimed file, from its start. Flush it before [`commit`](Self::commit).
     ///
     /// # Errors
     ///
-    /// If the operating system has no further handle.
+    /// If the operating system has no file handle left.
     pub(crate) fn writer(&self, output: OutputIdx) -> Result<BufWriter<Sink>> {
         let sink = self.files[output.0].sink()?;
         Ok(BufWriter::with_capacity(1 << 18, sink))
@@ -297,22 +301,23 @@ impl Outputs {
     ///
     /// # Errors
     ///
-    /// If it cannot be read back.
+    /// If the file cannot be read back.
     pub(crate) fn content(&self, output: OutputIdx) -> Result<Content> {
         let file = &self.files[output.0];
         let content = read_back(file.sink()?);
         content.with_context(|| format!("{} cannot be read back", file.target))
     }
 
-    /// Moves all files to their places, where they are on the disk when this returns.
+    /// Renames all files to their final paths. They are flushed to disk when this returns.
     ///
     /// # Errors
     ///
-    /// If a file has appeared that may not be replaced, or the operating system fails; the message lists the files that
-    /// are in their places already.
+    /// If a file has appeared that may not be replaced, or the operating system fails. The message lists the files that
+    /// have been renamed already.
     pub(crate) fn commit(mut self) -> Result<()> {
+        // Flush all files to disk, and write the streams.
         for file in &self.files {
-            file.complete()
+        file.complete()
                 .with_context(|| cannot_be_written(&file.target))?;
         }
         self.files.sort_by_key(|file| file.target.turn());
@@ -320,7 +325,7 @@ impl Outputs {
         let mut placed: Vec<Target> = Vec::new();
         let mut changed = BTreeSet::new();
         changed.extend(self.folders.iter().filter_map(|folder| parent(folder)));
-        // After an error, the files that are still in the list are removed with `self`.
+        // Rename the files in order. After an error, the files that are left in the list are removed with `self`.
         while !self.files.is_empty() {
             let file = self.files.remove(0);
             let (Place::File(path), Bytes::File(temporary)) = (&file.place, file.content) else {
@@ -331,7 +336,7 @@ impl Outputs {
             }
             changed.extend(parent(path));
             let next = self.files.first().map(|file| file.target.turn());
-            // The names of one turn are on the disk before a document names them.
+            // Flush the directories before a document of the next turn names these files.
             if next != Some(file.target.turn())
                 && let Err(error) = changed.iter().try_for_each(|folder| sync_folder(folder))
             {
@@ -339,6 +344,7 @@ impl Outputs {
             }
             placed.push(file.target);
         }
+        // Keep the created directories.
         for folder in core::mem::take(&mut self.folders) {
             registry::forget(&mut held, &folder);
         }
@@ -355,7 +361,7 @@ impl Drop for Outputs {
             }
         }
         for folder in self.folders.drain(..).rev() {
-            // A folder that is not empty stays.
+            // A directory that is not empty remains.
             let _ = fs::remove_dir(&folder);
             registry::forget(&mut held, &folder);
         }
@@ -363,7 +369,7 @@ impl Drop for Outputs {
 }
 
 impl Pending {
-    /// What the bytes are written to and read from.
+    /// The sink that the bytes are written to and read back from.
     fn sink(&self) -> Result<Sink> {
         match &self.content {
             Bytes::File(temporary) => {
@@ -376,7 +382,7 @@ impl Pending {
         }
     }
 
-    /// Flushes a file to the disk. Copies the bytes to a stream, where a rename is not possible.
+    /// Flushes a file to disk, or copies the spooled bytes to a stream.
     fn complete(&self) -> io::Result<()> {
         match (&self.place, &self.content) {
             (Place::File(path), Bytes::File(temporary)) => temporary.sync(path),
@@ -393,12 +399,12 @@ impl Pending {
     }
 }
 
-/// The folder of a file or of a folder; an empty path is the current folder.
+/// The parent directory of a path; an empty path means the current directory.
 fn parent(path: &Path) -> Option<PathBuf> {
     path.parent().map(Path::to_owned)
 }
 
-/// The folder and those of its parents that do not exist, the innermost first.
+/// The directory and its parents that do not exist, innermost first.
 fn missing_folders(folder: &Path) -> Result<Vec<&Path>> {
     let is_missing = |folder: &&Path| !folder.as_os_str().is_empty() && !folder.exists();
     let missing = folder.ancestors().take_while(is_missing);
@@ -410,7 +416,7 @@ fn missing_folders(folder: &Path) -> Result<Vec<&Path>> {
     Ok(missing)
 }
 
-/// The final destination of a target, as far as it is known now.
+/// The final destination of a target, resolved when it is claimed.
 fn place(target: &Target) -> Result<Place> {
     let Target::Path(path) = target else {
         return Ok(Place::Stdout);
@@ -422,13 +428,13 @@ fn place(target: &Target) -> Result<Place> {
         }
         Ok(found) if !found.is_file() => Ok(Place::Device(path.clone())),
         Ok(_) => {
-            // The target of a link is replaced, and the link remains.
+            // Replace the target of a symbolic link, and keep the link.
             let path = fs::canonicalize(path);
             Ok(Place::File(
                 path.with_context(|| cannot_be_written(target))?,
             ))
         }
-        // The temporary name is shorter, so that only this would be noticed at the end.
+        // Refuse a name that is too long. The temporary name is shorter, so that the rename would be the first to fail.
         Err(error) if error.kind() == io::ErrorKind::InvalidFilename => {
             Err(error).with_context(|| cannot_be_written(target))
         }
@@ -439,7 +445,7 @@ fn place(target: &Target) -> Result<Place> {
     }
 }
 
-/// The error message for a target to which nothing can be written.
+/// The error message for a target that cannot be written.
 pub(crate) fn cannot_be_written(target: &Target) -> String {
     format!("{target} cannot be written")
 }
@@ -475,7 +481,7 @@ fn not_placed(target: &Target, error: io::Error, placed: &[Target]) -> Error {
     ))
 }
 
-/// The size and checksum of a file, from its start.
+/// Reads a file from its start, and returns its size and checksum.
 ///
 /// # Errors
 ///
@@ -497,7 +503,7 @@ pub(crate) fn read_back(mut file: impl Read + Seek) -> io::Result<Content> {
     Ok(Content { bytes, sha256 })
 }
 
-/// The SHA-256 of some bytes, in hexadecimal.
+/// The SHA-256 of bytes, in hexadecimal.
 pub(crate) fn sha256(bytes: &[u8]) -> String {
     hexadecimal(Sha256::new_with_prefix(bytes))
 }

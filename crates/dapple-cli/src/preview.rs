@@ -1,4 +1,4 @@
-//! Lit previews of a baked material: on a plane, seen at a slant, on a ball or on a ring.
+//! Lit previews of a baked material, on a plane seen at an angle, a sphere or a torus.
 
 use crate::baking::advise;
 use anyhow::{Result, bail};
@@ -10,12 +10,12 @@ use dapple::preview::{
 use dapple::raster::{Raster, Wrap};
 use dapple::recipe::{Bake, BakeOptions, Images, MapKind, MapRows, Plan, Recipe};
 
-/// The side of the picture, in pixels.
+/// Side of the preview, in pixels.
 const SIDE: u32 = 512;
-/// The pixels along the longer side of the maps in the picture.
+/// Pixels along the longer side of the baked maps.
 const TILE: u32 = 512;
 
-/// The radii of a ring and of its tube.
+/// Radii of the torus: of the ring, and of its tube.
 const RING: [f64; 2] = [0.9, 0.4];
 
 dapple::raster::named! {
@@ -31,17 +31,17 @@ dapple::raster::named! {
     }
 }
 
-/// The maps of a tile.
+/// The baked maps of a tile.
 struct Maps {
     normal: Raster<Vec3>,
     albedo: Raster<LinearRgb>,
-    /// Occlusion, roughness and metallic.
+    /// Occlusion, roughness and metallic, packed.
     orm: Raster<Vec3>,
-    /// The number of tiles along u and v.
+    /// Number of repeats of the tile along u and v.
     tiles: DVec2,
 }
 
-/// Renders the picture of a recipe on a shape.
+/// Renders the material of a recipe on a shape.
 ///
 /// # Errors
 ///
@@ -57,20 +57,20 @@ pub(crate) fn picture(
         Thing::Plane => {
             let half = [aspect.min(1.0), (1.0 / aspect).min(1.0)];
             let camera = Camera::look_at(DVec3::new(0.0, 3.1, 1.9), DVec3::new(0.0, 0.0, 0.06));
-            // u and v are in units of the plane: the rectangle is 2 wide, and so is the picture of 2 tiles.
+            // The longer side of the rectangle has the half-length 1. Repeat the tile twice along each side.
             let tiles = DVec2::new(1.0 / half[0], 1.0 / half[1]);
             (Shape::rectangle(half[0], half[1]), camera, tiles)
         }
         Thing::Sphere => {
             let camera = Camera::look_at(DVec3::new(0.0, 0.6, 3.2), DVec3::ZERO);
-            // The equator of a ball is twice as long as a meridian from pole to pole; the number of tiles around it is
-            // whole.
+            // The equator is twice as long as a meridian from pole to pole. Round the number of tiles around it to a
+            // whole number.
             let around = (2.0 / aspect).round().max(1.0);
             (Shape::sphere(1.0), camera, DVec2::new(around, 1.0))
         }
         Thing::Torus => {
             let camera = Camera::look_at(DVec3::new(0.0, 2.6, 2.9), DVec3::ZERO);
-            // The way around the ring is that around its tube, times the ratio of their radii.
+            // The circumference of the ring is the circumference of the tube times the ratio of their radii.
             let around = (RING[0] / RING[1] / aspect).round().max(1.0);
             let shape = Shape::torus(RING[0], RING[1]);
             (shape, camera, DVec2::new(around, 1.0))
@@ -128,7 +128,7 @@ impl Maps {
         })
     }
 
-    /// The material at a point of the surface.
+    /// The shading material at a point of the surface.
     fn material(&self, surface: &Surface) -> Material {
         let uv = surface.uv().unwrap_or_default() * self.tiles;
         let wrap = [Wrap::Repeat; 2];
@@ -138,7 +138,7 @@ impl Maps {
         let gloss = 1.0 - roughness.clamp(0.1, 1.0);
         let rough = roughness.clamp(0.1, 1.0) * roughness.clamp(0.1, 1.0);
         let [right, up] = directions(surface);
-        // A normal is level at the edge of a hole; such slopes are limited.
+        // Limit the slope, which is infinite where a normal is horizontal.
         let slope = normal.as_dvec3() / f64::from(normal.z.max(0.05));
         Material::matte(color * free)
             .with_bump(-slope.x * right - slope.y * up)
@@ -147,7 +147,7 @@ impl Maps {
     }
 }
 
-/// The directions of right and up of the maps at a point of a shape.
+/// The directions of right and up of the maps, at a point of a shape.
 fn directions(surface: &Surface) -> [DVec3; 2] {
     let at = surface.position;
     let outward = DVec2::new(at.x, at.z).length();

@@ -1,4 +1,4 @@
-//! Progress on standard error: a bar on a terminal, and lines elsewhere, if the work takes a while.
+//! Progress display on standard error: a bar on a terminal, and lines elsewhere, for work that takes a while.
 
 #![expect(
     clippy::disallowed_methods,
@@ -20,13 +20,13 @@ use std::sync::{
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// The time before a bar is shown.
+/// Delay before a bar is shown.
 const DELAY: Duration = Duration::from_millis(500);
-/// The time between frames of a bar.
+/// Time between frames of a bar.
 const TICK: Duration = Duration::from_millis(120);
-/// The time between lines for people.
+/// Time between lines of text.
 const PERIOD: Duration = Duration::from_secs(5);
-/// The time between lines for programs.
+/// Time between lines of JSON.
 const PERIOD_JSON: Duration = Duration::from_millis(100);
 
 dapple::raster::named! {
@@ -43,15 +43,15 @@ dapple::raster::named! {
     }
 }
 
-/// A bar, or a spinner for work of unknown length. It is removed on drop.
+/// A progress bar, or a spinner for work of unknown length. It is removed on drop.
 #[derive(Debug)]
 pub(crate) struct Progress {
     bar: ProgressBar,
     label: &'static str,
     style: Style,
-    /// The time of the next line, if lines are printed.
+    /// The time at which the next line is printed, if lines are printed.
     next_line: Option<Mutex<Instant>>,
-    /// Becomes true when the work is to stop.
+    /// Set to true to request that the work stops.
     #[cfg(feature = "studio")]
     stop: Option<Arc<AtomicBool>>,
 }
@@ -76,18 +76,18 @@ impl Progress {
         Self::new(ProgressBar::new(length), style, label, context)
     }
 
-    /// Lets the work stop as soon as this is true.
+    /// Sets the flag that requests a stop when it becomes true.
     #[cfg(feature = "studio")]
     pub(crate) fn until(mut self, stop: Arc<AtomicBool>) -> Self {
         self.stop = Some(stop);
         self
     }
 
-    /// Fails if the work is to stop.
+    /// Fails if a stop was requested.
     ///
     /// # Errors
     ///
-    /// That it was stopped.
+    /// An error that says that the work was stopped.
     pub(crate) fn check(&self) -> Result<()> {
         #[cfg(feature = "studio")]
         if is_set(&self.stop) {
@@ -96,7 +96,7 @@ impl Progress {
         Ok(())
     }
 
-    /// A callback for the progress of work, which stops it when it is to stop.
+    /// A progress callback that stops the work if a stop was requested.
     pub(crate) fn listener(
         &self,
     ) -> impl Fn(dapple::synth::Progress) -> ControlFlow<()> + Send + Sync + 'static {
@@ -173,7 +173,7 @@ impl Progress {
     }
 }
 
-/// A line about the progress.
+/// The text of a progress line.
 fn line(label: &str, done: u64, length: u64, is_json: bool) -> String {
     if is_json {
         return serde_json::json!({ "step": label, "done": done, "of": length }).to_string();

@@ -1,9 +1,9 @@
-//! The shards of a recipe in a folder: their description, their files, and their identity.
+//! The list of the shards of a recipe: its description, its files, and its identity.
 //!
-//! Files of one list lie in a folder whose name has a part of the list's checksum: that of the version of dapple, the
-//! recipe as it is baked, the content of its images, and the sizes. A file under its name is therefore complete and
-//! valid, whichever process baked it, and a recipe that has changed finds none of the old files. The list itself is
-//! `shards.json` beside that folder.
+//! The files of a list are in a directory whose name has the first digits of the list's checksum. The checksum covers
+//! the version of dapple, the recipe as it is baked, the content of its images, and the sizes. A file with the name of
+//! a shard is therefore complete and valid, regardless of the process that baked it, and a changed recipe does not
+//! reuse old files. The list itself is `shards.json`, next to that directory.
 
 use crate::args::{FiniteArgs, Frame, SamplesArgs, Shard, Size, file_name};
 use crate::error::Hint;
@@ -14,53 +14,53 @@ use dapple::recipe::{MapKind, Recipe, Region, Samples, Shards};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
-/// The file of a list.
+/// The file name of a list.
 const FILE: &str = "shards.json";
-/// The most files of a list: those of all shards, maps and frames.
+/// Maximum number of files of a list: shards times maps times frames.
 const FILES_MAX: u64 = 1 << 20;
-/// The number of digits of the checksum in the name of a folder.
+/// Number of digits of the checksum in the name of the directory.
 const DIGITS: usize = 12;
 
-/// The shards of a recipe.
+/// A list of the shards of a recipe, as stored in `shards.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct List {
     /// The version of dapple.
     dapple: String,
-    /// The recipe, as on the command line.
+    /// The recipe, as given on the command line.
     recipe: String,
     /// The name of the recipe.
     pub(crate) name: String,
     /// The checksum of all data that the bits of a shard depend on.
     sha256: String,
-    /// The columns and rows of the picture.
+    /// Columns and rows of the maps.
     pub(crate) size: [u32; 2],
     /// The positions of the samples.
     #[serde(default, skip_serializing_if = "is_default")]
     samples: Samples,
-    /// The columns and rows of a shard.
+    /// Columns and rows of a shard.
     pub(crate) shard: [u32; 2],
-    /// The columns and rows that neighboring shards share, as a part of their size.
+    /// Overlap: the columns and rows that neighboring shards share, as a part of their size.
     #[serde(default, skip_serializing_if = "is_default")]
     pub(crate) overlap: u32,
     /// The names of the maps.
     maps: Vec<String>,
-    /// The number of frames of the loop, if it is one.
+    /// Number of frames of a loop; `None` for still maps.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) frames: Option<u32>,
 }
 
-/// A shard of a list.
+/// A shard of a list, which a process bakes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Task {
-    /// The frame of the loop to which it belongs.
+    /// The frame of the loop.
     pub(crate) frame: Option<Frame>,
-    /// The shard, as on the command line.
+    /// The shard, as given on the command line.
     pub(crate) shard: Shard,
-    /// The pixels of the shard.
+    /// The region of the shard.
     pub(crate) region: Region,
 }
 
-/// The options for which a list is made.
+/// The options of a list.
 pub(crate) struct Wanted<'a> {
     pub(crate) size: Size,
     pub(crate) samples: SamplesArgs,
@@ -72,7 +72,8 @@ pub(crate) struct Wanted<'a> {
 }
 
 impl List {
-    /// The list for a recipe, as it is baked, with its images in `folder`.
+    /// Makes the list for a recipe, as it is baked, with its images in `folder`. `typed` is the recipe as given on the
+    /// command line.
     ///
     /// # Errors
     ///
@@ -97,7 +98,7 @@ impl List {
             finite,
         } = wanted;
         let all = (version, recipe, images, size, shard, frames);
-        // Options at their defaults are left out, so that lists of older versions keep their hashes.
+        // Leave options at their defaults out of the checksum, so that lists of older versions keep theirs.
         let described = match (overlap, finite.word(), samples.word()) {
             (0, None, None) => serde_json::to_vec(&all)?,
             (overlap, None, None) => serde_json::to_vec(&(all, overlap))?,
@@ -123,11 +124,11 @@ impl List {
         Ok(list)
     }
 
-    /// The list in a folder, if there is one.
+    /// Reads the list in a directory; `None` if there is no list.
     ///
     /// # Errors
     ///
-    /// If it cannot be read.
+    /// If the list cannot be read.
     pub(crate) fn read(folder: &Path) -> Result<Option<Self>> {
         let path = folder.join(FILE);
         if !path.exists() {
@@ -141,7 +142,7 @@ impl List {
         Ok(Some(list))
     }
 
-    /// The list, if its folder can exist and its files can be looked for.
+    /// Validates a list that was read: its checksum, its maps, and its number of files.
     fn checked(self) -> Result<Self> {
         let is_digit = |c: char| c.is_ascii_hexdigit();
         if self.sha256.len() != 64 || !self.sha256.chars().all(is_digit) {
@@ -154,7 +155,7 @@ impl List {
         Ok(self)
     }
 
-    /// Fails for a list of more files than anybody can look for.
+    /// Fails for a list of more than [`FILES_MAX`] files.
     fn check_count(&self) -> Result<()> {
         let n_files = self.n_tasks()?.saturating_mul(self.maps.len() as u64);
         if n_files <= FILES_MAX {
@@ -165,11 +166,11 @@ impl List {
         ))
     }
 
-    /// Writes the list into a folder; `may_replace` allows it to replace a list of other shards.
+    /// Writes the list to a directory. With `may_replace`, it replaces a list of other shards.
     ///
     /// # Errors
     ///
-    /// If there is a list of other shards, or the file cannot be written.
+    /// If the directory has a list of other shards that may not be replaced, or the file cannot be written.
     pub(crate) fn write(&self, folder: &Path, may_replace: bool) -> Result<()> {
         if !may_replace {
             self.check_folder(folder)?;
@@ -183,11 +184,11 @@ impl List {
         outputs.commit()
     }
 
-    /// Fails for a folder with a list of other shards.
+    /// Fails if a directory has a list of other shards.
     ///
     /// # Errors
     ///
-    /// If there is such a list.
+    /// If the checksum of the list in the directory differs, or that list cannot be read.
     pub(crate) fn check_folder(&self, folder: &Path) -> Result<()> {
         let Some(other) = Self::read(folder)? else {
             return Ok(());
@@ -203,11 +204,11 @@ impl List {
         Err(error.hint("take another folder, or list the shards again with `dapple shards --force`; files of the other list stay"))
     }
 
-    /// The maps.
+    /// The maps of the list.
     ///
     /// # Errors
     ///
-    /// If one has an unknown name, as in a list of another version.
+    /// If a map has an unknown name, as in a list of another version.
     pub(crate) fn map_kinds(&self) -> Result<Vec<MapKind>> {
         let kind = |name: &String| {
             MapKind::from_name(name).ok_or_else(|| anyhow!("there is no map {name:?}"))
@@ -215,7 +216,7 @@ impl List {
         self.maps.iter().map(kind).collect()
     }
 
-    /// The numbers of shards side by side, and one below the other.
+    /// Columns and rows of the grid of shards.
     ///
     /// # Errors
     ///
@@ -224,7 +225,7 @@ impl List {
         Ok(self.shards()?.grid())
     }
 
-    /// All shards; the frames of a loop follow one after the other.
+    /// All shards, frame by frame.
     ///
     /// # Errors
     ///
@@ -249,7 +250,7 @@ impl List {
         Ok(Frame::all(self.frames).flat_map(of_frame))
     }
 
-    /// The number of shards, those of all pictures together.
+    /// Number of shards of all frames together.
     ///
     /// # Errors
     ///
@@ -259,11 +260,11 @@ impl List {
         Ok(self.shards()?.len().saturating_mul(n_frames.into()))
     }
 
-    /// A row of shards of a picture, from left to right.
+    /// A row of shards of a frame, from left to right.
     ///
     /// # Errors
     ///
-    /// If there is no such row.
+    /// If the row is outside of the grid.
     pub(crate) fn row(&self, frame: Option<Frame>, row: u32) -> Result<Vec<Task>> {
         let [columns, _] = self.grid()?;
         let task = |column| {
@@ -282,8 +283,8 @@ impl List {
         (0..columns).map(task).collect()
     }
 
-    /// The file of a map of a shard, in the folder of the list. Each row of shards has a folder, so that none has very
-    /// many files.
+    /// The path of a map of a shard, relative to the directory of `shards.json`. Each row of shards has its own
+    /// directory, which limits the number of files per directory.
     pub(crate) fn file(&self, frame: Option<Frame>, place: [u32; 2], kind: MapKind) -> PathBuf {
         let [column, row] = place;
         let digits = self.sha256.get(..DIGITS).unwrap_or(&self.sha256);
@@ -298,7 +299,7 @@ impl List {
     }
 }
 
-/// Whether a value is left out of the list.
+/// Whether a value has its default, and so is left out of the list.
 fn is_default<T: Default + PartialEq>(value: &T) -> bool {
     *value == T::default()
 }

@@ -1,4 +1,4 @@
-//! `dapple bake`: the maps of recipes.
+//! `dapple bake`: bakes the maps of recipes.
 
 mod batch;
 mod claim;
@@ -127,11 +127,11 @@ pub(crate) struct Args {
     files: OutputArgs,
 }
 
-/// A recipe with what its images are relative to.
+/// A recipe to bake, with the directory of its images.
 struct Work {
     recipe: Recipe,
     folder: PathBuf,
-    /// What its shard belongs to, if it is baked in shards.
+    /// The list of its shards, if a shard is baked.
     list: Option<List>,
 }
 
@@ -139,7 +139,7 @@ struct Work {
 ///
 /// # Errors
 ///
-/// Options, recipes and files that are refused.
+/// Invalid options, recipes and files.
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     args.check_document()?;
     args.check_samples()?;
@@ -148,7 +148,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let mut batch = Batch::new(names.len(), args.keep_going, context);
     let mut works = Vec::new();
     for name in &names {
-        // All recipes are read and all files claimed before the work begins.
+        // Read all recipes, and check that all files can be claimed, before the work begins.
         let work = Work::read(name, args).and_then(|work| {
             for args in args.pictures() {
                 claim(&args, &files, &work, &mut Job::new(context, "bake", &files))?;
@@ -157,6 +157,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
         });
         works.extend(batch.checked(name, work)?);
     }
+    // Refuse recipes whose files would have the same names.
     for (index, (name, work)) in works.iter().enumerate() {
         let is_same = |(_, other): &(&String, Work)| other.recipe.name == work.recipe.name;
         if works[..index].iter().any(is_same) {
@@ -167,6 +168,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
             return Err(usage(message).hint("give each a `name`"));
         }
     }
+    // Bake each recipe.
     let rows = u64::from(args.n_rows()?) * u64::from(args.frames.unwrap_or(1));
     let progress = Progress::bar("baking", rows * works.len() as u64, context);
     for (index, (name, work)) in (0..).zip(&works) {
@@ -178,11 +180,12 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     Ok(batch.exit())
 }
 
-/// Bakes a recipe that lies in no file, with options as they are typed after `dapple bake RECIPE`, until `stop` is true.
+/// Bakes a recipe from memory, with options as they are typed after `dapple bake RECIPE`. Stops when `stop` becomes
+/// true.
 ///
 /// # Errors
 ///
-/// Options and recipes that are refused, and a bake that was stopped.
+/// Invalid options and recipes, and a bake that was stopped.
 #[cfg(feature = "studio")]
 pub(super) fn bake_with(
     words: &[String],
@@ -212,7 +215,7 @@ pub(super) fn bake_with(
     work.bake(&args, &files, context, &progress)
 }
 
-/// The presets with a sentence each.
+/// The names of the presets, with a sentence about each.
 #[cfg(feature = "studio")]
 pub(super) fn presets() -> impl Iterator<Item = (&'static str, &'static str)> {
     presets::PRESETS
@@ -220,15 +223,15 @@ pub(super) fn presets() -> impl Iterator<Item = (&'static str, &'static str)> {
         .map(|preset| (preset.name, preset.about()))
 }
 
-/// Images and values that the pictures of a loop share.
+/// Images and values that the frames of a loop share.
 struct Made {
-    /// The images of the recipe, as soon as a picture has needed them.
+    /// The images of the recipe, once a frame has needed them.
     images: Option<Images>,
-    /// The values of nodes; none for a single picture.
+    /// The cache of node values; `None` for a single frame.
     memory: Option<PlanCache>,
 }
 
-/// The most bytes of values that are kept from one picture of a loop to the next.
+/// Size of the cache of node values that the frames of a loop share, in bytes.
 const MEMORY: usize = 1 << 28;
 
 impl Work {
@@ -252,7 +255,7 @@ impl Work {
         })
     }
 
-    /// Bakes all pictures of a loop, or the only one. What does not change between them is made once.
+    /// Bakes all frames of a loop, or the single frame. Nodes that do not change with time are evaluated once.
     fn bake(
         &self,
         args: &Args,
@@ -295,7 +298,7 @@ impl Work {
         let (limits, memory) = (PlanLimits::default(), made.memory.as_ref());
         let listen = progress.listener();
         let plan = Plan::new_with_progress(recipe, images, time, &limits, memory, listen);
-        // A plan that was stopped is not the fault of an option.
+        // Report a stop as such, before an error of the plan is attributed to an option.
         progress.check()?;
         let plan = plan.map_err(|error| args.material.blame(error))?;
         if args.frames.is_some() && args.frame.is_none_or(Frame::is_first) && !plan.moves() {
@@ -319,7 +322,7 @@ impl Work {
     }
 }
 
-/// The options and the recipe that they were used with, for the JSON file.
+/// The options, and the recipe that was baked with them, for the sidecar.
 #[derive(Serialize)]
 struct BakeSidecar<'a> {
     #[serde(flatten)]
@@ -329,11 +332,11 @@ struct BakeSidecar<'a> {
 }
 
 impl Args {
-    /// Refuses samples on corners where copies lie beside each other.
+    /// Refuses samples on corners together with a sheet of copies.
     ///
     /// # Errors
     ///
-    /// If there are such copies.
+    /// If both were given, or if a side has a single sample on corners.
     fn check_samples(&self) -> Result<()> {
         self.material.samples.spaces(self.material.size)?;
         if self.sheet && self.material.samples.samples == Samples::Corners {
@@ -345,11 +348,11 @@ impl Args {
         Ok(())
     }
 
-    /// The only recipe, which has to be a file.
+    /// The path of the only recipe, which must be a file.
     ///
     /// # Errors
     ///
-    /// If it is none.
+    /// If there are several recipes, or the recipe is not a file.
     pub(super) fn only_file(&self) -> Result<&Path> {
         match self.recipes.as_slice() {
             [recipe] if Path::new(recipe).is_file() => Ok(Path::new(recipe)),
@@ -358,13 +361,14 @@ impl Args {
         }
     }
 
-    /// The handling of numbers of images that are not finite.
+    /// How NaN and infinite values of images are handled.
     #[cfg(feature = "studio")]
     pub(super) fn finite(&self) -> crate::args::FiniteArgs {
         self.material.finite
     }
 
-    /// The size, after one like it with a longer side of `small` pixels, if that is less.
+    /// The sizes to bake one after another: the size of the options, preceded by the same size scaled down to `small`
+    /// pixels along its longer side, if it is larger than that.
     pub(super) fn sizes(&self, small: u32) -> Vec<Size> {
         let size = self.material.size;
         let longer = size.0[0].max(size.0[1]);
@@ -376,13 +380,13 @@ impl Args {
         vec![Size(size.0.map(side)), size]
     }
 
-    /// Whether it was said where the files go.
+    /// Whether an output was given.
     #[cfg(feature = "studio")]
     pub(super) fn has_output(&self) -> bool {
         self.files.output.is_some()
     }
 
-    /// Whether files that are there are replaced.
+    /// Whether existing files are replaced.
     pub(super) fn may_replace(&self) -> bool {
         self.files.force
     }
@@ -395,7 +399,7 @@ impl Args {
         args
     }
 
-    /// These options for each picture of a loop; for the only picture where there is no loop.
+    /// These options for each frame of a loop; once, unchanged, without a loop.
     fn pictures(&self) -> impl Iterator<Item = Self> {
         Frame::all(self.frames).map(move |frame| {
             let frame = frame.or(self.frame);
@@ -406,10 +410,10 @@ impl Args {
         })
     }
 
-    /// The outputs of a number of recipes, which need a folder if there are several.
+    /// The output options for a number of recipes. Several recipes, and several frames, need a directory.
     fn files_for(&self, n_recipes: usize) -> Result<OutputArgs> {
         let mut files = self.files.clone();
-        // Another run may finish a shard first, with the same bytes.
+        // Another run may finish a shard first, with the same bytes, which this run may then replace.
         files.force |= self.shard.is_some();
         if self.frames.is_some() && matches!(files.json, Some(Some(_))) {
             let error = usage("--json=FILE is for one picture, and a loop has several");
@@ -427,7 +431,7 @@ impl Args {
                 format!("--name and --json=FILE are for one recipe, and there are {n_recipes}");
             return Err(usage(message).hint("their files are called after their names"));
         }
-        // With a slash at its end it is a folder for the files of each.
+        // Append a slash, so that the output is a directory for the files of each recipe.
         let folder = files.folder(n_recipes).map(|folder| folder.join(""));
         files.output = Some(folder.ok_or_else(|| {
             usage("several recipes need a folder").hint("let -o end with a slash, as in -o out/")
@@ -435,7 +439,7 @@ impl Args {
         Ok(files)
     }
 
-    /// The part of the tile that is made.
+    /// The region of the tile to bake: a shard, a region, or `None` for the whole tile.
     fn part(&self) -> Result<Option<dapple::recipe::Region>> {
         match self.shard {
             Some(shard) => shard.region(self.material.size).map(Some),
@@ -443,13 +447,13 @@ impl Args {
         }
     }
 
-    /// How many rows of maps are baked for a recipe.
+    /// Number of rows that are baked for a recipe; a sheet is baked twice.
     fn n_rows(&self) -> Result<u32> {
         let size = self.part()?.map_or(self.material.size.0, |part| part.size);
         Ok(if self.sheet { 2 * size[1] } else { size[1] })
     }
 
-    /// Puts what the command line says into the recipe.
+    /// Applies the options of the command line to the recipe.
     fn change(&self, recipe: &mut Recipe) -> Result<()> {
         let preset = self.preset().map(|preset| preset.normal_y);
         self.material.change(recipe, preset)

@@ -1,4 +1,4 @@
-//! `dapple synth`: texture from an example, in the plane or on a mesh.
+//! `dapple synth`: synthesizes a texture from an example, in the plane or on a mesh.
 
 mod along;
 mod corners;
@@ -129,7 +129,7 @@ pub(crate) struct Args {
     image: ImageArgs,
 }
 
-/// A map with its name.
+/// A map given as `NAME=FILE`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 struct MapArg {
     name: String,
@@ -160,7 +160,7 @@ impl FromStr for MapArg {
 ///
 /// # Errors
 ///
-/// Options, images, meshes and files that are refused.
+/// Invalid options, images, meshes and files.
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     args.check_used()?;
     match &args.surface.mesh {
@@ -172,7 +172,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
 }
 
 impl Args {
-    /// Refuses options that have no effect with or without a mesh.
+    /// Refuses options that have no effect, such as options for a mesh without a mesh.
     fn check_used(&self) -> Result<()> {
         material::check_names(&self.map)?;
         self.check_displacement()?;
@@ -195,7 +195,7 @@ impl Args {
         }
     }
 
-    /// The output. In a folder its name is that of a file that goes in.
+    /// The output path. In a directory, the file is named after `input`.
     fn target(&self, input: &Path, ending: &str) -> Result<Target> {
         let names = self.map_names();
         let parts: Vec<_> = [""].into_iter().chain(names).collect();
@@ -203,7 +203,7 @@ impl Args {
         Ok(self.image.files.targets(&stem, &parts, ending)?.main)
     }
 
-    /// Claims a file beside the output for each map: `NAME_MAP.ENDING`.
+    /// Claims a file next to the output for each map: `NAME_MAP.EXTENSION`.
     fn claim_maps(
         &self,
         target: &Target,
@@ -217,7 +217,7 @@ impl Args {
         Ok(outputs)
     }
 
-    /// The names of the maps, each once, in the order in which they were given.
+    /// The names of the maps, each once, in the order of the command line.
     fn map_names(&self) -> Vec<&str> {
         let mut names = Vec::new();
         for map in &self.map {
@@ -229,10 +229,10 @@ impl Args {
     }
 }
 
-/// Shows the progress of a synthesis.
+/// A callback that shows the progress of a synthesis.
 fn shown(progress: &Progress) -> impl FnMut(Steps) -> ControlFlow<()> + '_ {
     |steps: Steps| {
-        // Each pass is a part of the bar.
+        // Give each pass an equal part of the bar.
         let part = steps.done as f64 / steps.n_sites.max(1) as f64;
         let done = (steps.pass as f64 + part) / steps.n_passes.max(1) as f64;
         progress.set((done * f64::from(STEPS)) as u64);

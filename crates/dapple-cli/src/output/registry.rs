@@ -1,7 +1,7 @@
-//! The temporary files and new folders of this process, which an interrupt removes.
+//! Registry of the temporary files and new directories of this process, which the handler of Ctrl-C removes.
 //!
-//! The handler of Ctrl-C removes all of them. Creating and renaming such a file holds the lock of the registry, so that an
-//! interrupt comes before or after it.
+//! Creating and renaming such a file holds the lock of the registry, so that an interrupt is handled before or after
+//! it, never in between.
 
 #![expect(
     clippy::disallowed_methods,
@@ -21,11 +21,11 @@ pub(super) type Held = MutexGuard<'static, Vec<PathBuf>>;
 
 /// Locks the registry.
 pub(super) fn hold() -> Held {
-    // A list of paths is consistent even if a thread panicked with the lock.
+    // The list of paths is consistent even if a thread panicked while it held the lock.
     PATHS.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Creates a folder that is removed on an interrupt until it is forgotten.
+/// Creates a directory and registers it for removal.
 pub(super) fn make_folder(folder: &Path) -> io::Result<()> {
     let mut held = hold();
     fs::create_dir(folder)?;
@@ -33,16 +33,16 @@ pub(super) fn make_folder(folder: &Path) -> io::Result<()> {
     Ok(())
 }
 
-/// Removes a path from the list.
+/// Removes a path from the registry.
 pub(super) fn forget(held: &mut Held, path: &Path) {
     held.retain(|other| other != path);
 }
 
-/// Removes all files and folders on the list, and ends the process.
+/// Removes all registered files and directories, and exits the process.
 pub(crate) fn exit_without_rubbish(exit: Exit) -> ! {
     let held = hold();
     for path in held.iter().rev() {
-        // A folder that is not empty stays, and an error cannot be reported any more.
+        // A directory that is not empty remains. Errors cannot be reported at this point.
         let _ = if path.is_dir() {
             fs::remove_dir(path)
         } else {

@@ -1,5 +1,5 @@
-//! The bytes of an output until its run is done: a file under a temporary name in the folder of its final name, or, for
-//! streams, memory.
+//! Storage of the bytes of an output until its run is done: a temporary file in the directory of the final file, or,
+//! for streams, memory.
 
 use super::registry::{self, Held};
 use dapple::image::AtomicFile;
@@ -9,16 +9,16 @@ use std::path::Path;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use tempfile::SpooledTempFile;
 
-/// The most bytes of a stream that are kept in memory. More are moved to a file without a name in the folder for
-/// temporary files.
+/// Maximum number of bytes of a stream that are kept in memory. Longer streams are moved to an unnamed file in the
+/// directory for temporary files.
 const MEMORY: usize = 1 << 26;
 
-/// A temporary file that an interrupt removes.
+/// A temporary file that is removed on an interrupt.
 #[derive(Debug)]
 pub(super) struct Temporary(AtomicFile);
 
 impl Temporary {
-    /// A new file in the folder of `path`.
+    /// Creates a temporary file in the directory of `path`.
     pub(super) fn beside(path: &Path) -> io::Result<Self> {
         let mut held = registry::hold();
         let file = AtomicFile::beside(path)?;
@@ -26,17 +26,17 @@ impl Temporary {
         Ok(Self(file))
     }
 
-    /// The file.
+    /// The open file.
     pub(super) fn file(&self) -> &File {
         self.0.file()
     }
 
-    /// Flushes the file to the disk, before it becomes the one at `path`.
+    /// Flushes the file to disk, before it is renamed to `path`.
     pub(super) fn sync(&self, path: &Path) -> io::Result<()> {
         self.0.sync(path)
     }
 
-    /// Renames it to `path`; an existing file is replaced only with `force`.
+    /// Renames the file to `path`. An existing file is replaced only with `force`.
     pub(super) fn put(self, held: &mut Held, path: &Path, force: bool) -> io::Result<()> {
         registry::forget(held, self.0.temporary_path());
         self.0.rename(path, force)
@@ -48,17 +48,17 @@ impl Temporary {
     }
 }
 
-/// The bytes of a stream, such as standard output, until the run is done.
+/// The bytes for a stream, such as standard output, until the run is done.
 #[derive(Clone, Debug)]
 pub(super) struct Spool(Arc<Mutex<SpooledTempFile>>);
 
 impl Spool {
-    /// A stream without bytes.
+    /// An empty spool.
     pub(super) fn new() -> Self {
         Self(Arc::new(Mutex::new(SpooledTempFile::new(MEMORY))))
     }
 
-    /// Passes all bytes on, from the first.
+    /// Copies all bytes to a writer.
     pub(super) fn copy_to(&self, to: &mut dyn Write) -> io::Result<()> {
         let mut bytes = self.lock();
         bytes.seek(SeekFrom::Start(0))?;
@@ -67,21 +67,21 @@ impl Spool {
     }
 
     fn lock(&self) -> MutexGuard<'_, SpooledTempFile> {
-        // Bytes that were written half are an error of the thread that wrote them.
+        // If a thread panicked while it wrote, that thread reports the error.
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
-/// What an output is written to.
+/// The destination that the bytes of an output are written to during the run.
 #[derive(Debug)]
 pub(crate) enum Sink {
     /// A temporary file.
     File(File),
-    /// A stream.
+    /// A spool.
     Stream(StreamSink),
 }
 
-/// The bytes of a stream.
+/// A handle of a spool.
 #[derive(Debug)]
 pub(crate) struct StreamSink(Spool);
 

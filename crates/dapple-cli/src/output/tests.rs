@@ -1,11 +1,11 @@
-//! Files appear whole, all together, and never replace others without `--force`.
+//! Output files appear complete, all at once, and never replace existing files without `--force`.
 
 use super::{OutputIdx, Outputs, Target};
 use std::fs;
 use std::io::{Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-/// Creates an empty folder for a test.
+/// Creates an empty directory for a test.
 fn folder(name: &str) -> PathBuf {
     let folder = std::env::temp_dir().join(format!("dapple-cli-{}-{name}", std::process::id()));
     let _ = fs::remove_dir_all(&folder);
@@ -55,7 +55,7 @@ fn a_writer_seeks_and_the_content_is_read_back() {
     writer.write_all(b"c").unwrap();
     writer.flush().unwrap();
     let content = outputs.content(output).unwrap();
-    // Of the four bytes "abcx", as `sha256sum` has it.
+    // The checksum of the four bytes "abcx", as printed by `sha256sum`.
     let sha256 = "7571ce1f8e21c6b13dd7ec2c5ec7c9e4dd9852e209869511853f2f1f74b17927";
     assert_eq!((content.bytes, content.sha256.as_str()), (4, sha256));
     outputs.commit().unwrap();
@@ -127,7 +127,7 @@ fn what_a_dead_process_left_is_taken_away_and_nothing_else_is() {
         !kept.contains(&".dapple-a1b2c3.part".to_owned()),
         "{kept:?}"
     );
-    // No temporary files of ours, but that of a run that is still active, and the new one.
+    // Two files with other names, the temporary file of the run that is still active, and the new file.
     assert_eq!(kept.len(), 4, "{kept:?}");
     drop(living);
     assert_eq!(names(&folder).len(), 3, "it took its own away");
@@ -160,7 +160,7 @@ fn names_may_be_as_long_as_the_file_system_has_them() {
 fn documents_are_placed_after_what_they_name() {
     let folder = folder("documents");
     let names = ["a.json", "a.mtlx", "a.obj", "a.mtl", "a_b.png", "a.gltf"];
-    // The last one that is placed cannot be, since a file has appeared; the message lists the others in their order.
+    // The commit fails at the file `last`, which has appeared meanwhile. The message lists the files renamed before it.
     let placed = |last: &str| {
         let mut outputs = Outputs::new(false);
         for name in names {

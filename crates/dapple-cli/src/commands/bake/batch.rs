@@ -1,4 +1,4 @@
-//! A run over several recipes.
+//! A run over several recipes, with a summary at the end.
 
 use crate::error::{Exit, report};
 use crate::job::{Context, eprintln_if_possible};
@@ -13,7 +13,7 @@ pub(super) struct Batch<'a> {
 }
 
 impl<'a> Batch<'a> {
-    /// A run over this number of recipes, none of which has failed yet.
+    /// Begins a run over a number of recipes.
     pub(super) fn new(n_recipes: usize, keep_going: bool, context: &'a Context) -> Self {
         Self {
             n_recipes,
@@ -23,7 +23,7 @@ impl<'a> Batch<'a> {
         }
     }
 
-    /// The result of a recipe, or `None` after an error that was printed and does not end the run.
+    /// Unwraps the result for a recipe. With `--keep-going`, an error is printed and counted, and `None` is returned.
     ///
     /// # Errors
     ///
@@ -43,7 +43,7 @@ impl<'a> Batch<'a> {
         }
     }
 
-    /// Prints how many were baked, and returns the exit code.
+    /// Prints the number of baked recipes, and returns the exit code.
     pub(super) fn exit(&self) -> Exit {
         if self.n_recipes > 1 && !self.context.quiet {
             let n_baked = self.n_recipes - self.n_failed;

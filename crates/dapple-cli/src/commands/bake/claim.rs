@@ -1,4 +1,4 @@
-//! The files of a recipe: claimed before the work begins, and written when it is done.
+//! The output files of a recipe: claimed before the work begins, and written when it is done.
 
 use super::documents::{glb, mtlx};
 use super::presets::Document;
@@ -16,20 +16,20 @@ use anyhow::{Error, Result};
 use dapple::recipe::{Bake, MapKind, Recipe};
 use std::path::Path;
 
-/// The files of a recipe.
+/// The claimed files of a recipe.
 pub(super) struct Claimed {
-    /// The images that are to be made.
+    /// The images to bake.
     pub(super) images: Vec<Image>,
-    /// Files of a shard that are there already.
+    /// Files of a shard that exist already.
     pub(super) finished: Vec<Target>,
-    /// A file for each image, unless a document has them in it.
+    /// A file for each image; empty if a document embeds the images.
     files: Vec<MapFile>,
     document: Option<(OutputIdx, Document)>,
     pub(super) preview: Option<(OutputIdx, Format)>,
 }
 
-/// Claims a file for each image, and for all that goes with them: the output itself for a single one, unless that is a folder,
-/// and else `NAME_MAP.png`.
+/// Claims the document, a file for each image and its sheet, the preview, and the sidecar. A single file is the output
+/// itself, unless that is a directory; several files are `NAME_MAP.EXTENSION`.
 pub(super) fn claim(
     args: &Args,
     files: &OutputArgs,
@@ -84,14 +84,15 @@ pub(super) fn claim(
     Ok(claimed)
 }
 
-/// The names of all files: the document, each image with its sheet, and the preview; or those of a shard.
+/// The paths of all files, in the order of [`claim`]: the document, each image with its sheet, and the preview. For a
+/// shard, the files of its maps.
 fn targets(args: &Args, files: &OutputArgs, work: &Work) -> Result<Targets> {
     if let (Some(shard), Some(list)) = (args.shard, &work.list) {
         let folder = files.output.as_deref().ok_or_else(no_folder)?;
         return shard_targets(args, folder, shard, list);
     }
     let document = args.document();
-    // A document is the output itself.
+    // The document is the output itself, and so has an empty part name.
     let mut parts: Vec<_> = document.iter().map(|_| String::new()).collect();
     let images = args.images();
     for (part, ..) in images.iter().filter(|_| !args.has_images_in_it()) {
@@ -111,7 +112,7 @@ fn targets(args: &Args, files: &OutputArgs, work: &Work) -> Result<Targets> {
     let prefix = args.preset().map_or("", |preset| preset.prefix);
     let mut targets = files.targets(&format!("{prefix}{}", work.recipe.name), &parts, ending)?;
     if let (Some(frame), Some(_)) = (args.frame, args.frames) {
-        // Of a loop the output itself is numbered, too, as is the JSON file beside it.
+        // Number the output itself, too, so that each frame has its own document and sidecar.
         let numbered = targets.main.part(&frame.label())?;
         for file in targets
             .files
@@ -125,7 +126,8 @@ fn targets(args: &Args, files: &OutputArgs, work: &Work) -> Result<Targets> {
     Ok(targets)
 }
 
-/// The files of a shard, in a folder that is made for good: other runs may need it before this one is done.
+/// The files of a shard. Their directory is created here and remains, since other runs may need it before this one is
+/// done.
 fn shard_targets(args: &Args, folder: &Path, shard: Shard, list: &List) -> Result<Targets> {
     list.check_folder(folder)?;
     let kinds = args.material.map_kinds().iter();
@@ -143,14 +145,14 @@ fn no_folder() -> Error {
     usage("missing output").hint("add -o DIR/, the folder of the shards")
 }
 
-/// An image in the format of its file.
+/// An image in the format of its file, checked for its content.
 fn image(layers: Layers, asked: Option<Format>, target: &Target) -> Result<Image> {
     let format = baking::format(asked, target)?;
     format.check(layers.content(), target)?;
     Ok(Image { layers, format })
 }
 
-/// Claims the lit preview, which is a PNG where the maps are not images.
+/// Claims the lit preview. It is a PNG if the maps are neither PNG nor OpenEXR.
 fn claim_preview(args: &Args, target: Target, job: &mut Job<'_>) -> Result<(OutputIdx, Format)> {
     let target = match target.ending().as_str() {
         "png" | "exr" => target,
@@ -163,7 +165,7 @@ fn claim_preview(args: &Args, target: Target, job: &mut Job<'_>) -> Result<(Outp
     Ok((job.claim(&target)?, format))
 }
 
-/// Refuses a name that is none of such a document.
+/// Refuses a name without the extension of the document.
 fn check_ending(target: &Target, document: Document) -> Result<()> {
     let ending = document.ending();
     if *target == Target::Stdout || target.ending() == ending {
@@ -176,7 +178,7 @@ fn check_ending(target: &Target, document: Document) -> Result<()> {
 }
 
 impl Args {
-    /// Whether a file is a finished one of a shard. What is under the name of a shard is whole, and belongs to its list.
+    /// Whether a file of a shard exists already. A file with the name of a shard is complete and belongs to its list.
     fn is_finished(&self, target: &Target) -> bool {
         let is_there = |path: &Path| path.exists();
         self.shard.is_some() && !self.files.force && target.path().is_some_and(is_there)
@@ -184,7 +186,7 @@ impl Args {
 }
 
 impl Claimed {
-    /// The maps that the images are made of, each once.
+    /// The maps that the images need, each once.
     pub(super) fn map_kinds(&self) -> Vec<MapKind> {
         let mut kinds: Vec<MapKind> = Vec::new();
         for kind in self.images.iter().flat_map(|image| image.layers.kinds()) {
@@ -195,7 +197,7 @@ impl Claimed {
         kinds
     }
 
-    /// Writes the images, and the document that is made of them.
+    /// Bakes and writes the images, and the document that contains or names them.
     pub(super) fn write(
         &self,
         job: &mut Job<'_>,

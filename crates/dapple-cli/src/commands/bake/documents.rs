@@ -1,7 +1,7 @@
-//! Materials in one file: a plane of glTF, and a document of MaterialX.
+//! Documents of a whole material: a textured plane in glTF, and a MaterialX document.
 //!
 //! References: The Khronos Group, *glTF 2.0 Specification*, 2021 (ISO/IEC 12113:2022); Smythe, Stone et al., *MaterialX
-//! Specification* and *MaterialX Standard Nodes*, version 1.38, 2021. A unit of the plane is a meter in both.
+//! Specification* and *MaterialX Standard Nodes*, version 1.38, 2021. One unit of the plane is one meter in both.
 
 use crate::layers::Layers;
 use anyhow::{Result, anyhow};
@@ -10,8 +10,8 @@ use dapple::mesh_io::gltf;
 use dapple::points::glam::{DVec2, DVec3};
 use dapple::recipe::{MapKind, Recipe};
 
-/// A plane as large as the tile, level and seen from above (+y), with v toward +z, and the images of the preset: base color,
-/// occlusion with roughness and metallic, normals.
+/// Builds a GLB file of a horizontal rectangle with the extent of the tile. It faces up (+y), and v points toward +z.
+/// The images are, in order: base color, packed occlusion, roughness and metallic, and normals.
 pub(super) fn glb(recipe: &Recipe, images: Vec<Vec<u8>>) -> Result<Vec<u8>> {
     let images = images.into_iter().map(EncodedImage::new);
     let images = images.collect::<Result<Vec<_>, _>>()?;
@@ -40,15 +40,15 @@ pub(super) fn glb(recipe: &Recipe, images: Vec<Vec<u8>>) -> Result<Vec<u8>> {
     Ok(gltf::write(&model)?)
 }
 
-/// The image and input of a map in a document of MaterialX.
+/// The connection of a map to an input of the surface in MaterialX.
 struct Wire {
     kind: MapKind,
-    /// The name of its image.
+    /// The name of the image node.
     name: &'static str,
-    /// The type of its image, and of the input of the surface.
+    /// The type of the image node and of the input.
     type_name: &'static str,
     color_space: &'static str,
-    /// The input of the surface that it goes to; the height goes to the displacement.
+    /// The input of the surface; `None` for the height, which is connected to the displacement.
     input: Option<&'static str>,
 }
 
@@ -84,8 +84,8 @@ const WIRES: [Wire; 5] = [
     wire(MapKind::Height, "height", "float", None),
 ];
 
-/// A standard surface with an image for each map, by the names of their files, and a displacement in meters where there is a
-/// relief.
+/// Builds a MaterialX document: a standard surface with an image for each map, referenced by file name, and a
+/// displacement in meters unless the relief is 0.
 pub(super) fn mtlx(recipe: &Recipe, files: &[(Layers, String)]) -> String {
     let relief = recipe.material.relief;
     let mut graph = String::new();
@@ -130,10 +130,10 @@ pub(super) fn mtlx(recipe: &Recipe, files: &[(Layers, String)]) -> String {
     )
 }
 
-/// The input of a material that its displacement goes to.
+/// The displacement input of a material.
 const DISPLACEMENT_INPUT: &str = "    <input name=\"displacementshader\" type=\"displacementshader\" nodename=\"displacement\" />\n";
 
-/// The image of a map, and what makes a normal of it.
+/// The image node of a map; for normals, also the node that decodes them.
 fn image_node(wire: &Wire, file: &str) -> String {
     let Wire {
         name,
@@ -163,7 +163,7 @@ fn image_node(wire: &Wire, file: &str) -> String {
     text
 }
 
-/// The displacement by the height, with the meters of a height of 1.
+/// The displacement node. `relief` is the displacement of a height of 1, in meters.
 fn displacement(relief: f64) -> String {
     format!(
         r#"  <displacement name="displacement" type="displacementshader">
@@ -174,13 +174,13 @@ fn displacement(relief: f64) -> String {
     )
 }
 
-/// A name as MaterialX takes it: letters of ASCII, digits and `_`.
+/// Makes a name valid in MaterialX: characters other than ASCII letters and digits become `_`.
 fn identifier(name: &str) -> String {
     let plain = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
     name.chars().map(plain).collect()
 }
 
-/// A text as the value of an attribute.
+/// Escapes a text as the value of an XML attribute.
 fn escaped(text: &str) -> String {
     let text = text.replace('&', "&amp;").replace('<', "&lt;");
     text.replace('"', "&quot;")

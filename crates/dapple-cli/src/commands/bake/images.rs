@@ -1,4 +1,4 @@
-//! Which images are made of a recipe.
+//! Selection of the images that are baked from a recipe.
 
 use super::Args;
 use super::presets::{Document, Preset, PresetImage};
@@ -11,24 +11,24 @@ use dapple::recipe::{MapKind, Samples};
 use std::path::Path;
 
 impl Args {
-    /// The preset, named or by the ending of the output.
+    /// The preset, as given by `--preset` or by the extension of the output.
     pub(super) fn preset(&self) -> Option<&'static Preset> {
         let ending = self.files.output.as_deref().and_then(Path::extension);
         let ending = ending.unwrap_or_default().to_string_lossy().to_lowercase();
         self.preset.or_else(|| Preset::of_ending(&ending))
     }
 
-    /// The document that is made of the images, if one is.
+    /// The document of the material, if the preset has one.
     pub(super) fn document(&self) -> Option<Document> {
         self.preset().and_then(|preset| preset.document)
     }
 
-    /// Whether the images have no files of their own, since the document holds them.
+    /// Whether the document embeds the images, so that they have no separate files.
     pub(super) fn has_images_in_it(&self) -> bool {
         self.document() == Some(Document::Glb)
     }
 
-    /// Refuses options that a document does not have.
+    /// Refuses options that have no effect on a document.
     ///
     /// # Errors
     ///
@@ -63,8 +63,7 @@ impl Args {
         }
     }
 
-    /// The images that are made: the part of the name that says what each is, its channels, and its format if a preset has
-    /// one.
+    /// The images to bake: for each, its part of the file name, its channels, and its format if one was chosen.
     pub(super) fn images(&self) -> Vec<(&'static str, Layers, Option<Format>)> {
         if let Some(preset) = self.preset() {
             let images = preset.images.iter();

@@ -1,11 +1,11 @@
-//! The maps on the command line.
+//! A list of maps on the command line.
 
 use crate::words::{unknown, with_underscores};
 use dapple::recipe::MapKind;
 use serde::{Serialize, Serializer};
 use std::str::FromStr;
 
-/// The maps that are baked, each once.
+/// The maps to bake, each once.
 #[derive(Clone, Debug)]
 pub(super) struct Maps(pub(super) Vec<MapKind>);
 

@@ -1,4 +1,5 @@
-//! Options of the material that `bake` and `shards` share: size, maps, seed, relief, direction of normals.
+//! Options of the material, shared by `bake` and `shards`: size, maps, seed, relief, and the direction of green in
+//! normal maps.
 
 use super::maps::Maps;
 use crate::args::{FiniteArgs, SamplesArgs, Size, seed};
@@ -23,7 +24,7 @@ const USUAL: [MapKind; 5] = [
     MapKind::Roughness,
 ];
 
-/// A value of a recipe and its replacement, as `PATH=VALUE`.
+/// A replacement for a value of a recipe, as `PATH=VALUE`.
 #[derive(Clone, Debug, Serialize)]
 #[serde(into = "String")]
 pub(in crate::commands) struct Setting {
@@ -36,7 +37,7 @@ impl Setting {
     ///
     /// # Errors
     ///
-    /// Those of [`Recipe::set`], as wrong usage.
+    /// The errors of [`Recipe::set`], as wrong usage.
     pub(in crate::commands) fn apply(&self, recipe: &mut Recipe) -> Result<()> {
         recipe.set(&self.path, &self.value).map_err(|error| {
             let nearest = error.nearest().map(str::to_owned);
@@ -112,16 +113,17 @@ pub(in crate::commands) struct MaterialArgs {
 }
 
 impl MaterialArgs {
-    /// The maps that were asked for, or the usual ones.
+    /// The requested maps, or the default ones.
     pub(in crate::commands) fn map_kinds(&self) -> &[MapKind] {
         self.maps.as_ref().map_or(&USUAL, |maps| &maps.0)
     }
 
-    /// Puts what the command line says into the recipe; `normal_y` is what a preset says.
+    /// Applies the options to a recipe. `normal_y` is the direction of green in the preset, which `--normal-y`
+    /// overrides.
     ///
     /// # Errors
     ///
-    /// If `--set` names a value that the recipe does not have, or a form that the value cannot have.
+    /// If `--set` names a value that the recipe does not have, or gives it a value of the wrong type.
     pub(in crate::commands) fn change(
         &self,
         recipe: &mut Recipe,
@@ -142,11 +144,11 @@ impl MaterialArgs {
         Ok(())
     }
 
-    /// The refusal of a plan, as wrong usage if it is about the relief that was typed.
+    /// Converts an error of a plan: to wrong usage if it is about the relief given by `--relief`.
     pub(in crate::commands) fn blame(&self, error: RecipeError) -> Error {
-        // The recipe has the relief that was typed, which may be NaN, and so equal to nothing.
+        // Match the error by name, not by value: the given relief may be NaN, which equals nothing.
         let is_of_relief = matches!(error.kind(), RecipeErrorKind::Range { what: "relief", .. });
-        // A node may have a relief of its own.
+        // A node may have an option named `relief`, too.
         let is_of_material = error.node() == Some("material");
         match is_of_relief && is_of_material && self.relief.is_some() {
             true => advise(error).wrong_value(),
@@ -154,7 +156,7 @@ impl MaterialArgs {
         }
     }
 
-    /// These options as words of a command line.
+    /// These options as arguments for a command line.
     pub(in crate::commands) fn words(&self) -> Vec<String> {
         let maps = self.map_kinds().iter().map(|kind| kind.name());
         let maps = maps.collect::<Vec<_>>().join(",");

@@ -1,6 +1,6 @@
-//! Presets of programs: which images they take, the content of their channels, and their formats.
+//! Presets for programs: the images that they import, the maps in their channels, and their formats.
 //!
-//! References: each program's own documentation, beside its row in [`PRESETS`].
+//! References: the documentation of each program, cited at its entry in [`PRESETS`].
 
 use crate::encode::Format;
 use crate::layers::{Channel, Image, Layers};
@@ -10,13 +10,13 @@ use dapple::recipe::MapKind;
 use serde::{Serialize, Serializer};
 use std::fmt::Write as _;
 
-/// The images of a material as a program takes them.
+/// The images of a material, as a program imports them.
 #[derive(Debug, PartialEq)]
 pub(super) struct Preset {
     pub(super) name: &'static str,
-    /// The help.
+    /// The help text.
     about: &'static str,
-    /// The prefix of the names of its files in a folder.
+    /// The prefix of file names in a directory.
     pub(super) prefix: &'static str,
     pub(super) normal_y: NormalY,
     pub(super) images: &'static [PresetImage],
@@ -26,22 +26,22 @@ pub(super) struct Preset {
 /// An image of a preset.
 #[derive(Debug, PartialEq)]
 pub(super) struct PresetImage {
-    /// The part of its name after that of the material: `NAME_PART.png`.
+    /// The part of the file name after the name of the material: `NAME_PART.png`.
     pub(super) part: &'static str,
     pub(super) image: Image,
 }
 
-/// A file that puts the images together to a material.
+/// A file that combines the images to a material.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Document {
-    /// A plane of glTF 2.0, with the images in it.
+    /// A plane in glTF 2.0, with embedded images.
     Glb,
-    /// A MaterialX document, with the images beside it.
+    /// A MaterialX document that references image files.
     Mtlx,
 }
 
 impl Document {
-    /// The ending of its name.
+    /// The file extension.
     pub(super) fn ending(self) -> &'static str {
         match self {
             Self::Glb => "glb",
@@ -50,7 +50,7 @@ impl Document {
     }
 }
 
-/// An image with 8 bits for each channel.
+/// An image with 8 bits per channel.
 const fn eight(part: &'static str, layers: Layers) -> PresetImage {
     let format = Format::Png8;
     PresetImage {
@@ -59,7 +59,7 @@ const fn eight(part: &'static str, layers: Layers) -> PresetImage {
     }
 }
 
-/// An image with 16 bits for each channel.
+/// An image with 16 bits per channel.
 const fn sixteen(part: &'static str, layers: Layers) -> PresetImage {
     let format = Format::Png16;
     PresetImage {
@@ -68,7 +68,7 @@ const fn sixteen(part: &'static str, layers: Layers) -> PresetImage {
     }
 }
 
-/// Metallic, occlusion, where details are shown, and smoothness.
+/// Mask map of Unity: metallic, occlusion, detail mask (1 everywhere) and smoothness.
 const MASK: Layers = Layers::Rgba([
     Channel::Of(MapKind::Metallic),
     Channel::Of(MapKind::Occlusion),
@@ -76,7 +76,7 @@ const MASK: Layers = Layers::Rgba([
     Channel::OneLess(MapKind::Roughness),
 ]);
 
-/// Metallic and smoothness.
+/// Metallic map of Unity: metallic in red, green and blue, and smoothness in alpha.
 const METALLIC_SMOOTHNESS: Layers = Layers::Rgba([
     Channel::Of(MapKind::Metallic),
     Channel::Of(MapKind::Metallic),
@@ -84,14 +84,14 @@ const METALLIC_SMOOTHNESS: Layers = Layers::Rgba([
     Channel::OneLess(MapKind::Roughness),
 ]);
 
-/// The images of glTF, beside each other or in a document.
+/// The images of glTF, as separate files or embedded in a document.
 const GLTF: &[PresetImage] = &[
     eight("baseColor", Layers::Map(MapKind::Albedo)),
     eight("occlusionRoughnessMetallic", Layers::Map(MapKind::Orm)),
     eight("normal", Layers::Map(MapKind::Normal)),
 ];
 
-/// Images alone, without a prefix, with green up in normal maps.
+/// Defaults of a preset: no images, no prefix, no document, and green up in normal maps.
 const PLAIN: Preset = Preset {
     name: "",
     about: "",
@@ -191,13 +191,13 @@ pub(super) static PRESETS: [Preset; 7] = [
 ];
 
 impl Preset {
-    /// A sentence about it.
+    /// A sentence about the preset.
     #[cfg(feature = "studio")]
     pub(super) fn about(&self) -> &'static str {
         self.about
     }
 
-    /// Reads a preset by its name.
+    /// A parser of presets by their names.
     pub(super) fn parser() -> NamedValueParser<&'static Self> {
         let presets = PRESETS.iter();
         presets.fold(NamedValueParser::none(), |words, preset| {
@@ -205,7 +205,7 @@ impl Preset {
         })
     }
 
-    /// The preset of a document with this ending.
+    /// The preset of a document with this file extension.
     pub(super) fn of_ending(ending: &str) -> Option<&'static Self> {
         let writes = |document: Document| document.ending() == ending;
         PRESETS
@@ -220,7 +220,7 @@ impl Serialize for &'static Preset {
     }
 }
 
-/// The images of all presets, for the help.
+/// A table of the images of all presets, for the help.
 pub(super) fn table() -> String {
     let mut text = "Presets (see --preset):\n".to_owned();
     for preset in &PRESETS {

@@ -1,4 +1,4 @@
-//! The recipes that patterns such as `rocks/*.toml` stand for, also where a shell leaves them as they are.
+//! Expansion of patterns such as `rocks/*.toml`, for shells that do not expand them and for built-in recipes.
 
 use crate::error::{Hint, usage};
 use anyhow::{Context as _, Result};
@@ -6,11 +6,12 @@ use dapple::recipe::Recipe;
 use glob::{Pattern, glob};
 use std::path::Path;
 
-/// The names, with patterns replaced by what they match: files, or built-in recipes if there are none.
+/// Replaces each pattern by the files that it matches, or, if it matches no file, by the built-in recipes that it
+/// matches. Other names are unchanged.
 ///
 /// # Errors
 ///
-/// If a pattern is none, or matches nothing.
+/// If a pattern is invalid or matches nothing.
 pub(super) fn expanded(names: &[String]) -> Result<Vec<String>> {
     let mut all = Vec::new();
     for name in names {

@@ -1,4 +1,4 @@
-//! Synthesis of an image along directions and with scales that images say.
+//! Synthesis of an image along an orientation field and with scales, which are given as images.
 
 use super::guides::Values;
 use super::surface::{Covered, Layouts};
@@ -15,7 +15,7 @@ use dapple::synth::{PlaneAlong, PlaneScales, synthesize_plane_along};
 use serde_json::Value;
 use std::f32::consts::TAU;
 
-/// Makes the image, and the maps that follow it.
+/// Synthesizes the image, and transfers the maps of the example.
 pub(super) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let mut job = Job::new(context, "synth", &args.image.files);
     let target = args.target(&args.exemplar, args.image.ending())?;
@@ -61,13 +61,14 @@ pub(super) fn run(args: &Args, context: &Context) -> Result<Exit> {
 }
 
 impl Args {
-    /// Whether a texture in the plane follows images of directions or scales.
+    /// Whether a texture in the plane follows images of directions or scales, as opposed to a plain texture.
     pub(super) fn is_along(&self) -> bool {
         self.surface.mesh.is_none()
             && (self.surface.directions.is_some() || self.guides.given_for_scales().is_some())
     }
 
-    /// Refuses options that have no effect on a texture along directions and scales, and bounds of sizes that follow none.
+    /// Refuses options that have no effect on a texture along directions and scales, and `--scales` without an image
+    /// that it applies to.
     pub(super) fn check_along(&self) -> Result<()> {
         if !self.is_along() {
             return Ok(());
@@ -88,7 +89,8 @@ impl Args {
         Ok(())
     }
 
-    /// The angles of directions of all pixels, and scales if an image says them.
+    /// The angle of the direction at each pixel, in radians, and the scale at each pixel if an image of scales was
+    /// given.
     fn planes(&self) -> Result<(Raster<f32>, Option<Raster<f32>>)> {
         let scales = self.read_scale()?.map(Values::into_raster);
         let Some(first) = self.surface.directions.as_deref() else {

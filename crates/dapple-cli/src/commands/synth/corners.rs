@@ -1,11 +1,11 @@
-//! Columns of the corners of faces in a mesh file, carried over its repair: texture coordinates and normals.
+//! Texture coordinates and normals of the corners of faces in a mesh file, mapped to the repaired mesh.
 
 use crate::error::Hint;
 use anyhow::{Result, anyhow};
 use dapple::mesh::{CREASE, FaceIdx, Model, Repair, Surface};
 use dapple::points::glam::{DVec2, DVec3};
 
-/// The mesh's own texture coordinates, for the faces that repair has left.
+/// The mesh's own texture coordinates, for the faces of the repaired mesh.
 pub(super) fn own_uvs(
     surface: &Surface,
     model: &Model,
@@ -22,7 +22,8 @@ pub(super) fn own_uvs(
     })
 }
 
-/// The column of the corners of repaired faces as it was before; `None` for a corner that was elsewhere.
+/// For each repaired face, the values that its corners had in `column` before the repair; `None` for a corner whose
+/// position the repair has changed.
 fn before_repair<'a, T: Copy>(
     surface: &'a Surface,
     model: &'a Model,
@@ -33,7 +34,7 @@ fn before_repair<'a, T: Copy>(
     let faces = mesh.faces().iter().zip(&repair.face_before);
     faces.map(move |(face, &before)| {
         let corners_before = model.mesh.corners(before);
-        // Repair may have turned the face, or joined its vertices with others at the same places.
+        // Match corners by position: repair may have reversed the face, or merged vertices at equal positions.
         face.map(|vertex| {
             let at = mesh.positions()[vertex.index()];
             let corner = corners_before.iter().position(|&other| other == at);
@@ -42,8 +43,8 @@ fn before_repair<'a, T: Copy>(
     })
 }
 
-/// The normals of the corners of all faces: the mesh's own, or those between creases where it has none or the angle of a
-/// crease is given, in radians.
+/// The normals of the corners of all faces: the mesh's own normals, or computed ones if the mesh has none or `crease`
+/// is given. `crease` is the angle in radians above which an edge is a crease.
 pub(super) fn shading(
     crease: Option<f64>,
     surface: &Surface,
@@ -56,7 +57,7 @@ pub(super) fn shading(
     let own = before_repair(surface, model, repair, &own);
     for ((face, corners), own) in (0..).map(FaceIdx).zip(&mut normals).zip(own) {
         let own = own.map(Option::unwrap_or_default);
-        // Normals belong to the side that faces had when they were made, whichever way they go around.
+        // Flip the normals of a face whose orientation the repair has reversed.
         let is_other_side = own.iter().sum::<DVec3>().dot(surface.face_normal(face)) < 0.0;
         for (corner, own) in corners.iter_mut().zip(own) {
             let own = if is_other_side { -own } else { own };

@@ -1,4 +1,4 @@
-//! Geometry that the heights of the example move.
+//! Displacement of the geometry by the heights of the example.
 
 use super::example_mesh::is_mesh;
 use super::material::is_of;
@@ -13,11 +13,11 @@ use dapple::recipe::MapKind;
 use dapple::synth::{Exemplar, SurfaceTexture, Synthesizer, displaced_mesh, displaced_sites};
 
 impl Args {
-    /// Refuses a displacement without heights.
+    /// Refuses `--displace` without a map of heights.
     ///
     /// # Errors
     ///
-    /// If there is such.
+    /// If `--displace` was given without a map of heights.
     pub(super) fn check_displacement(&self) -> Result<()> {
         let mut names = self.map.iter().map(|map| &map.name);
         if self.surface.displace.is_none() || names.any(|name| is_of(name, MapKind::Height)) {
@@ -26,10 +26,11 @@ impl Args {
         Err(usage("--displace needs heights").hint("add --map height=FILE"))
     }
 
-    /// Moves the vertices of the mesh in a model, if that is asked for.
+    /// Displaces the vertices of the mesh in a model, if `--displace` was given.
     ///
-    /// With a map of normals, which already says the slopes, the mesh keeps the normals in whose frames that map is.
-    /// Otherwise the normals of its corners turn as those of its vertices do, so that it has no other creases than before.
+    /// If the material has a normal map, the mesh keeps its normals: the map already contains the slopes, and is
+    /// relative to these normals. Otherwise, the normals of corners rotate with the normals of vertices, so that the
+    /// creases stay the same.
     pub(super) fn displace_mesh(
         &self,
         model: &mut Model,
@@ -48,7 +49,7 @@ impl Args {
         Ok(())
     }
 
-    /// Moves the sites in a model of them, if that is asked for; they get the normals of the new shape.
+    /// Displaces the sites in a model of sites, if `--displace` was given. The sites get the normals of the new shape.
     pub(super) fn displace_sites(
         &self,
         model: &mut Model,
@@ -64,7 +65,7 @@ impl Args {
         Ok(())
     }
 
-    /// The heights of all sites.
+    /// The height at each site, transferred from the map of heights.
     fn heights(&self, texture: &SurfaceTexture, input: &Input) -> Result<Vec<f32>> {
         let mut maps = input.maps.iter();
         let found = maps.find(|(name, _)| is_of(name, MapKind::Height));
@@ -76,7 +77,7 @@ impl Args {
         if is_mesh(&self.exemplar) {
             return Ok(texture.transfer(&values)?);
         }
-        // Beside a larger version of the example, maps have its size.
+        // With `--detail`, maps have the size of the larger example. Reduce them to the size of the exemplar.
         let factor = values.size()[0] / size[0];
         let reduced = Exemplar::from_planes(&[(&values, 1.0)], edges)?.reduced(factor)?;
         let reduced = Raster::from_vec(size, reduced.pixels().to_vec())?;
@@ -84,7 +85,7 @@ impl Args {
     }
 }
 
-/// Turns the normals of corners as those of the vertices turn from one shape of a mesh to another.
+/// Rotates the normals of corners as the normals of their vertices rotate between two shapes of a mesh.
 fn turn(corners: &mut [[DVec3; 3]], from: &Mesh, to: &Mesh) {
     let (before, after) = (from.vertex_normals(), to.vertex_normals());
     let turn = |(&before, &after): (&DVec3, &DVec3)| {

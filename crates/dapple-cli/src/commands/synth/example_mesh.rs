@@ -1,4 +1,4 @@
-//! An example that is another textured mesh: its texture, maps and texture coordinates.
+//! An example that is a textured mesh: its texture, maps and texture coordinates.
 
 use super::corners::own_uvs;
 use super::material::is_of;
@@ -18,32 +18,32 @@ use dapple::synth::Atlas;
 use dapple::tile::Map;
 use std::path::Path;
 
-/// The side of the map that colors of vertices are drawn to.
+/// Side of the texture that vertex colors are rendered to, in texels.
 const DRAWN_SIDE: u32 = 2048;
 
-/// A mesh that is the example.
+/// A mesh as the example.
 #[derive(Clone)]
 pub(super) struct ExampleMesh {
     pub(super) model: Model,
-    /// Its mesh, repaired.
+    /// The surface of the repaired mesh.
     pub(super) surface: Surface,
-    /// The texture coordinates of its corners; in the sheet, if there is one.
+    /// The texture coordinates of the corners of faces; within the sheet, if there is one.
     pub(super) uvs: Vec<[DVec2; 3]>,
-    /// The places of the textures of unit squares in its texture and maps, if it has one for each.
+    /// The layout of the textures of UDIM tiles in one image; `None` for a mesh with a single texture.
     pub(super) sheet: Option<Sheet>,
-    /// Its texture.
+    /// The texture.
     pub(super) base: Loaded,
-    /// The maps in its material, by the names of options; those that were given go before them.
+    /// The maps of the material that were not given with `--map`, by their names for `--map`.
     pub(super) maps: Vec<(String, Loaded)>,
 }
 
-/// Whether a file is a mesh, by its ending.
+/// Whether a file is a mesh, by its extension.
 pub(super) fn is_mesh(path: &Path) -> bool {
     MeshFormat::of_path(path).is_some()
 }
 
 impl Args {
-    /// Refuses options that have no effect with a mesh as the example, and those that need one.
+    /// Refuses options that have no effect on an example that is a mesh; for an image, options that need a mesh.
     pub(super) fn check_example(&self) -> Result<()> {
         let name = input::name(&self.exemplar);
         if !is_mesh(&self.exemplar) {
@@ -108,7 +108,8 @@ impl Args {
                 }
                 let mut base = loaded.remove(0);
                 let factor = model.material.base_color_factor.color;
-                // The material of a mesh that is repaired keeps it.
+                // Multiply the texture by the base color factor. A repaired mesh keeps the factor in its material
+                // instead.
                 if let (Map::Color(colors), None) = (&mut base.map, &self.plane.repair) {
                     let tint = |color: &LinearRgb| {
                         LinearRgb::new(color.r * factor.r, color.g * factor.g, color.b * factor.b)
@@ -127,7 +128,7 @@ impl Args {
                 return Err(error.hint(input::not_used(path, &model).unwrap_or(hint)));
             }
         };
-        // The file of a repaired mesh keeps them.
+        // Note that vertex colors are not used. A repaired mesh keeps them in its file.
         if model.material.base_color.is_some()
             && model.colors.is_some()
             && self.plane.repair.is_none()
@@ -151,7 +152,7 @@ impl Args {
         }))
     }
 
-    /// The maps in a material, but for those that were given.
+    /// The maps in the material, except maps that were given with `--map`.
     fn maps_of(&self, model: &Model, sheet: Option<&Sheet>) -> Result<Vec<(String, Loaded)>> {
         let path = &self.exemplar;
         let load = |of: ImageOf, kind| {
@@ -196,21 +197,21 @@ impl Args {
 }
 
 impl ExampleMesh {
-    /// Whether there is a map of a kind.
+    /// Whether the material has a map of this kind.
     pub(super) fn has(&self, kind: MapKind) -> bool {
         self.maps.iter().any(|(name, _)| is_of(name, kind))
     }
 }
 
-/// A texture of a material.
+/// Selects a texture of a material.
 type ImageOf = fn(&Material) -> &Option<EncodedImage>;
 
-/// A texture of the material of a model: one image for each unit square with a material of its own, else one alone; `None` if
-/// there is none.
+/// The images of a texture of a model: one for each UDIM tile, or a single one without tiles; `None` if the material
+/// does not have this texture.
 ///
 /// # Errors
 ///
-/// If some unit squares have it and others lack it.
+/// If some tiles have the texture and others do not.
 fn images(model: &Model, of: ImageOf) -> Result<Option<Vec<&EncodedImage>>> {
     if model.tiles.is_empty() {
         return Ok(of(&model.material).as_ref().map(|image| vec![image]));
@@ -228,7 +229,7 @@ fn images(model: &Model, of: ImageOf) -> Result<Option<Vec<&EncodedImage>>> {
     images.collect::<Result<_>>().map(Some)
 }
 
-/// The codes of a channel of an image, which are data and no colors.
+/// A channel of a packed map as data: the stored codes, from 0 to 1, without sRGB decoding.
 fn channel_of(map: &Map, channel: usize) -> Result<Map> {
     let Map::Color(colors) = map else {
         return Err(anyhow!("a packed map has no colors"));
@@ -237,7 +238,7 @@ fn channel_of(map: &Map, channel: usize) -> Result<Map> {
     Ok(Map::Value(colors.map(code)))
 }
 
-/// The colors of vertices as a texture in charts.
+/// Renders vertex colors to a texture that is laid out in charts.
 fn drawn(surface: &Surface, model: &Model, repair: &Repair) -> Result<(Vec<[DVec2; 3]>, Loaded)> {
     let colors = model.colors.as_deref().unwrap_or_default();
     let faces = surface.mesh().faces();

@@ -1,4 +1,4 @@
-//! Guides: images that say where in the texture which part of the example goes.
+//! Guides: images that determine which part of the example goes where in the texture.
 
 use super::Args;
 use super::corners::own_uvs;
@@ -85,11 +85,11 @@ pub(super) struct GuideArgs {
     pub(super) scales: Option<Numbers<f32, 2>>,
 }
 
-/// The scales of black and white where none are given.
+/// The default scales of black and white.
 const SCALES: [f32; 2] = [1.0, 2.0];
 
 impl GuideArgs {
-    /// An option that was given and says how large pixels are.
+    /// The name of a given option that sets scales, if any.
     pub(super) fn given_for_scales(&self) -> Option<&'static str> {
         first_given(&[
             ("scale", self.scale.is_some()),
@@ -97,7 +97,7 @@ impl GuideArgs {
         ])
     }
 
-    /// An option that was given and asks for a guide.
+    /// The name of a given option that requests a guide, if any.
     pub(super) fn given(&self) -> Option<&'static str> {
         first_given(&[
             ("which", self.which.is_some()),
@@ -106,45 +106,45 @@ impl GuideArgs {
     }
 }
 
-/// The weight of a guide that chooses among examples: that of three channels together.
+/// Weight of the guide that selects among examples, relative to one color channel.
 const CHOICE_WEIGHT: f32 = 3.0;
 
-/// How far lightness is averaged: over two pixels the grain of an example is gone, and what it shows is not.
+/// Default blur of lightness, as a standard deviation in pixels: removes the grain of an example, and keeps its shapes.
 const LIGHTNESS_BLUR: f64 = 2.0;
 
-/// What says which part of the example goes where, and what it is compared with.
+/// A guide channel, whose values in the example and in the texture are compared.
 pub(super) struct Guide {
-    /// Its values at the pixels of the example.
+    /// The values at the pixels of the example.
     pub(super) example: Raster<f32>,
-    /// Those of the texture.
+    /// The desired values in the texture.
     pub(super) target: Values,
     pub(super) weight: f32,
 }
 
-/// Values from place to place.
+/// Values that vary over the texture.
 pub(super) enum Values {
-    /// At the pixels of a texture in the plane, or at texture coordinates of a mesh.
+    /// Values at the pixels of a texture in the plane, or in the texture coordinates of a mesh.
     Image(Raster<f32>),
-    /// At the vertices of a mesh, in a row.
+    /// Values at the vertices of a mesh, as a raster of one row.
     Vertices(Raster<f32>),
 }
 
 impl Values {
-    /// The image, or the row of a mesh.
+    /// The values as a raster: an image, or one row of vertices.
     pub(super) fn raster(&self) -> &Raster<f32> {
         match self {
             Self::Image(values) | Self::Vertices(values) => values,
         }
     }
 
-    /// The image, or the row of a mesh.
+    /// Converts the values to a raster: an image, or one row of vertices.
     pub(super) fn into_raster(self) -> Raster<f32> {
         match self {
             Self::Image(values) | Self::Vertices(values) => values,
         }
     }
 
-    /// The values that these become.
+    /// Applies a function to all values.
     fn map(&self, change: impl FnMut(&f32) -> f32) -> Self {
         match self {
             Self::Image(values) => Self::Image(values.map(change)),
@@ -154,8 +154,7 @@ impl Values {
 }
 
 impl Args {
-    /// Reads values from place to place: how light an image is or, for a texture on a mesh, the colors of the vertices of that
-    /// mesh are.
+    /// Reads values from the lightness of an image or, for a texture on a mesh, from the lightness of vertex colors.
     fn read_values(&self, path: &Path) -> Result<Values> {
         if !is_mesh(path) {
             return Ok(Values::Image(self.read_gray(path, None)?));
@@ -176,7 +175,7 @@ impl Args {
         Ok(Values::Vertices(row))
     }
 
-    /// The sizes that `--scale` says, if it was given.
+    /// Reads the scales from the image of `--scale`, if it was given.
     pub(super) fn read_scale(&self) -> Result<Option<Values>> {
         let Some(path) = &self.guides.scale else {
             return Ok(None);
@@ -186,10 +185,11 @@ impl Args {
         Ok(Some(shares.map(|share| black + (white - black) * share)))
     }
 
-    /// Reads the guides, for examples that lie side by side.
+    /// Reads the guides. `layout` places several examples side by side in one image.
     pub(super) fn read_guides(&self, layout: &SideBySide, example: &Loaded) -> Result<Vec<Guide>> {
         let mut guides = Vec::new();
         let args = &self.guides;
+        // `--which`: one guide per example, which is 1 where this example is selected.
         if let Some(path) = &args.which {
             let last = args.examples.len();
             let values = self.read_values(path)?;
@@ -203,6 +203,7 @@ impl Args {
                 });
             }
         }
+        // `--guide`: lightness, or the values of `--guide-of`.
         if let Some(path) = &args.guide {
             let guide = self.read_values(path)?;
             if let (Some(which), Values::Image(guide)) = (&args.which, &guide)
@@ -243,7 +244,7 @@ impl Args {
     }
 }
 
-/// A blur from 0 to 64 pixels.
+/// Parses a blur from 0 to 64 pixels.
 fn blur_range(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(sigma) if (0.0..=64.0).contains(&sigma) => Ok(sigma),
@@ -252,7 +253,7 @@ fn blur_range(text: &str) -> Result<f64, String> {
 }
 
 impl Args {
-    /// Reads an image as gray values: colors as how light they are.
+    /// Reads an image as gray values; colors become their lightness.
     pub(super) fn read_gray(&self, path: &Path, region: Option<Region>) -> Result<Raster<f32>> {
         gray(&input::map(
             path,
@@ -265,7 +266,7 @@ impl Args {
     }
 }
 
-/// A guide with the mean and the deviation of what it is compared with, where that is used.
+/// Matches the mean and the standard deviation of a guide to those of the example within its mask.
 fn like(guide: &Values, example: &Raster<f32>, mask: &Raster<bool>) -> Values {
     let pixels = example.pixels().iter().zip(mask.pixels());
     let used = pixels.filter_map(|(&value, &is_used)| is_used.then_some(value));
@@ -279,7 +280,7 @@ fn like(guide: &Values, example: &Raster<f32>, mask: &Raster<bool>) -> Values {
     guide.map(|&value| (mean + (f64::from(value) - own_mean) * scale) as f32)
 }
 
-/// The mean and the standard deviation.
+/// The mean and the standard deviation of values.
 fn moments(values: impl Iterator<Item = f32> + Clone) -> [f64; 2] {
     let n = values.clone().count().max(1) as f64;
     let mean = values.clone().map(f64::from).sum::<f64>() / n;
@@ -287,7 +288,8 @@ fn moments(values: impl Iterator<Item = f32> + Clone) -> [f64; 2] {
     [mean, (values.map(square).sum::<f64>() / n).sqrt()]
 }
 
-/// Values at all sites of a mesh: of images at the mesh's own texture coordinates, where they repeat, and of vertices in between.
+/// Samples values at all sites of a mesh, a column for each of `values`. Images are read at the mesh's own texture
+/// coordinates, and repeat. Values at vertices are interpolated.
 pub(super) fn at_sites(
     values: &[&Values],
     synthesizer: &Synthesizer,

@@ -1,4 +1,4 @@
-//! Images that show what a texture in the plane is made of.
+//! Diagnostic images of a texture in the plane: its pieces, its differences from the example, and its origins.
 
 use super::options::PlaneArgs;
 use super::reading::Input;
@@ -11,10 +11,10 @@ use dapple::hash::{Seed, hash2};
 use dapple::synth::PlaneTexture;
 use dapple::tile::Map;
 
-/// How much lighter differences are shown than they are: a quarter of what there can be is white.
+/// Gain of differences in the image: a quarter of the maximum difference is white.
 const LIGHTER: f32 = 4.0;
 
-/// What an image shows.
+/// The kind of a diagnostic image.
 #[derive(Clone, Copy, Debug)]
 enum View {
     Pieces,
@@ -22,7 +22,7 @@ enum View {
     Origins,
 }
 
-/// An image that was asked for, and its file.
+/// A requested diagnostic image, and its file.
 #[derive(Debug)]
 pub(super) struct Inspection {
     view: View,
@@ -30,7 +30,7 @@ pub(super) struct Inspection {
     format: Format,
 }
 
-/// Claims the files of all images that were asked for.
+/// Claims the files of all requested diagnostic images.
 pub(super) fn claim(args: &PlaneArgs, job: &mut Job<'_>) -> Result<Vec<Inspection>> {
     let mut inspections = Vec::new();
     for (view, path) in [
@@ -51,7 +51,7 @@ pub(super) fn claim(args: &PlaneArgs, job: &mut Job<'_>) -> Result<Vec<Inspectio
 }
 
 impl Inspection {
-    /// Writes the image; `last` is the last of the examples, from 0.
+    /// Writes the image. `last` is the index of the last example.
     pub(super) fn write(
         &self,
         texture: &PlaneTexture,
@@ -77,7 +77,7 @@ impl Inspection {
     }
 }
 
-/// The color of a piece.
+/// A pseudorandom color for a piece.
 fn color_of(piece: u32) -> LinearRgb {
     let bits = hash2(Seed(0), [i64::from(piece), 0], 0);
     LinearRgb::from_srgb([0, 8, 16].map(|shift| (bits >> shift) as u8))

@@ -1,4 +1,4 @@
-//! The material of a covered mesh: the maps that have a place in it.
+//! The material of a textured mesh, and the maps that it can contain.
 //!
 //! Reference: The Khronos Group, *glTF 2.0 Specification*, 2021, section 3.9: occlusion is red, roughness green and
 //! metalness blue, so that one image holds all three.
@@ -14,32 +14,32 @@ use dapple::raster::Raster;
 use dapple::recipe::MapKind;
 use dapple::tile::Map;
 
-/// The values of occlusion, roughness and metalness where no map says them: open to the whole sky, rough, and no metal.
+/// Default values of occlusion, roughness and metalness without a map: fully visible, rough, and not metallic.
 const DEFAULTS: [f32; 3] = [1.0, 1.0, 0.0];
 
 /// The baked maps of a material.
 #[derive(Default)]
 pub(super) struct MaterialMaps {
     normal: Option<EncodedImage>,
-    /// Occlusion, roughness and metalness.
+    /// The maps of occlusion, roughness and metalness.
     packed: [Option<Raster<f32>>; 3],
 }
 
-/// What the map with a name is in a material; nothing if it is of no kind that is known.
+/// The kind of the map with a name; `None` for an unknown name.
 fn kind_of(name: &str) -> Option<MapKind> {
     MapKind::from_name(&with_underscores(name))
 }
 
-/// Whether the map with a name is of a kind.
+/// Whether the map with this name is of this kind.
 pub(super) fn is_of(name: &str, kind: MapKind) -> bool {
     kind_of(name) == Some(kind)
 }
 
-/// Refuses two names of one map of a material.
+/// Refuses maps whose different names mean the same map of a material.
 ///
 /// # Errors
 ///
-/// If there are two, with both.
+/// If there are two such maps, with both names.
 pub(super) fn check_names(maps: &[MapArg]) -> Result<()> {
     for (at, map) in maps.iter().enumerate() {
         let is_other_name = |other: &&MapArg| {
@@ -55,7 +55,8 @@ pub(super) fn check_names(maps: &[MapArg]) -> Result<()> {
 }
 
 impl MaterialMaps {
-    /// Adds a baked map, if a material has a place for one of its name; `example` is what it was baked from.
+    /// Adds a baked map, if a material can contain a map of its kind. `example` is the map of the example that it was
+    /// baked from.
     pub(super) fn add(
         &mut self,
         name: &str,
@@ -75,7 +76,7 @@ impl MaterialMaps {
         Ok(())
     }
 
-    /// Puts the maps into a material.
+    /// Adds the maps to a material.
     pub(super) fn put_into(self, material: &mut Material, format: Format) -> Result<()> {
         if let Some(size) = self.packed.iter().flatten().map(Raster::size).next() {
             let packed = EncodedImage::new(encode_packed(&self.pack(size)?, format)?)?;
@@ -86,7 +87,7 @@ impl MaterialMaps {
         Ok(())
     }
 
-    /// Occlusion, roughness and metalness at each texel.
+    /// Packs occlusion, roughness and metalness into the channels of one image.
     fn pack(&self, size: [u32; 2]) -> Result<Raster<[f32; 3]>> {
         let mut pixels = Raster::filled(size, DEFAULTS)?;
         for (channel, map) in self.packed.iter().enumerate() {
@@ -101,7 +102,8 @@ impl MaterialMaps {
     }
 }
 
-/// What the alpha of an example does on a mesh: it cuts where more pixels are clear than in between, and else it blends.
+/// Chooses the alpha mode of a material: mask if more pixels of the example are fully transparent than partly
+/// transparent, otherwise blend.
 pub(super) fn alpha_mode(alpha: &Raster<f32>) -> AlphaMode {
     let count = |is_it: fn(&&f32) -> bool| alpha.pixels().iter().filter(is_it).count();
     let n_clear = count(|&&alpha| alpha <= 0.0);

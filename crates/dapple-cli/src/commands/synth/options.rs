@@ -49,7 +49,7 @@ dapple::raster::named! {
 }
 
 impl Channel {
-    /// The values of the channel in an image, as codes from 0 to 1; none where it has no such channel.
+    /// The values of the channel in an image, as stored codes from 0 to 1; `None` if the image has no such channel.
     pub(super) fn of(self, image: &Loaded) -> Option<Raster<f32>> {
         let at = match self {
             Self::Red => 0,
@@ -276,7 +276,7 @@ pub(super) fn first_given(options: &[(&'static str, bool)]) -> Option<&'static s
     given.map(|&(name, _)| name)
 }
 
-/// A length, which may be negative.
+/// Parses a finite length, which may be negative.
 fn length(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(length) if length.is_finite() => Ok(length),
@@ -284,7 +284,7 @@ fn length(text: &str) -> Result<f64, String> {
     }
 }
 
-/// The weight of a map, which has a name.
+/// The weight of a map, given as `NAME=N`.
 #[derive(Clone, Debug, Serialize)]
 struct WeightArg {
     name: String,
@@ -309,7 +309,7 @@ impl FromStr for WeightArg {
     }
 }
 
-/// An angle from 0 to 180 degrees.
+/// Parses an angle from 0 to 180 degrees.
 fn angle(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(angle) if (0.0..=180.0).contains(&angle) => Ok(angle),
@@ -318,7 +318,7 @@ fn angle(text: &str) -> Result<f64, String> {
 }
 
 impl PlaneArgs {
-    /// An option that was given.
+    /// The name of an option for the plane that was given, if any.
     pub(super) fn given(&self) -> Option<&'static str> {
         first_given(&[
             ("size", self.size.is_some()),
@@ -335,7 +335,7 @@ impl PlaneArgs {
         ])
     }
 
-    /// Which sides wrap.
+    /// For each axis, whether the texture wraps.
     pub(super) fn edges(&self) -> [Edges; 2] {
         let wrap = self.wrap.unwrap_or(Axes::None);
         wrap.flags()
@@ -344,7 +344,7 @@ impl PlaneArgs {
 }
 
 impl SurfaceArgs {
-    /// An option that was given and needs a mesh.
+    /// The name of an option that was given and needs a mesh, if any.
     pub(super) fn given(&self) -> Option<&'static str> {
         first_given(&[
             ("symmetry", self.symmetry.is_some()),
@@ -360,7 +360,7 @@ impl SurfaceArgs {
         ])
     }
 
-    /// An option that was given and needs an example that is a mesh.
+    /// The name of an option that was given and needs an example that is a mesh, if any.
     pub(super) fn given_for_example(&self) -> Option<&'static str> {
         first_given(&[
             ("example-directions", self.example_directions.is_some()),
@@ -368,7 +368,7 @@ impl SurfaceArgs {
         ])
     }
 
-    /// The sites of an example that is a mesh.
+    /// The options of the sites on an example that is a mesh.
     pub(super) fn example_sites(&self, matching: &MatchArgs) -> HierarchyOptions {
         let sites = self.sites(matching);
         HierarchyOptions {
@@ -391,12 +391,12 @@ impl SurfaceArgs {
         self.padding
     }
 
-    /// The angle of a crease in radians, if there is one.
+    /// The angle above which an edge is a crease, in radians, if it was given.
     pub(super) fn crease(&self) -> Option<f64> {
         self.crease.map(f64::to_radians)
     }
 
-    /// The sites, in as many levels as are matched.
+    /// The options of the sites on the mesh, with one level per level of matching.
     pub(super) fn sites(&self, matching: &MatchArgs) -> HierarchyOptions {
         let default = HierarchyOptions::default();
         HierarchyOptions {
@@ -409,11 +409,12 @@ impl SurfaceArgs {
 }
 
 impl SurfaceArgs {
-    /// The sites of a surface that is covered with an example of a size in pixels.
+    /// The options of the sites on a surface. With `--repeat`, the number of sites follows from the size of the
+    /// example, in pixels.
     ///
     /// # Errors
     ///
-    /// If the number of repeats is out of its range.
+    /// If the number of repeats is out of range.
     pub(super) fn sites_on(
         &self,
         surface: &Surface,
@@ -430,17 +431,17 @@ impl SurfaceArgs {
 }
 
 impl MatchArgs {
-    /// How much the map with a name counts in the match.
+    /// The weight of the map with a name in matching; 0 by default.
     pub(super) fn weight_of(&self, name: &str) -> f32 {
         let given = self.weight.iter().find(|weight| weight.name == name);
         given.map_or(0.0, |given| given.weight)
     }
 
-    /// Refuses weights of maps that are not there, and two of one map.
+    /// Refuses weights of maps that were not given, and several weights of one map.
     ///
     /// # Errors
     ///
-    /// If there are such, with the name.
+    /// The name of the first such weight.
     pub(super) fn check_weights(&self, maps: &[&str]) -> Result<()> {
         for (at, WeightArg { name, .. }) in self.weight.iter().enumerate() {
             if !maps.contains(&name.as_str()) {
@@ -455,7 +456,7 @@ impl MatchArgs {
         Ok(())
     }
 
-    /// An option that was given and changes nothing in an endless texture.
+    /// The name of an option that was given and has no effect on an endless texture, if any.
     pub(super) fn given_for_sweeps(&self) -> Option<&'static str> {
         first_given(&[
             ("coherence", self.coherence.is_some()),
@@ -464,13 +465,13 @@ impl MatchArgs {
         ])
     }
 
-    /// The levels of a sweep.
+    /// The number of levels of a sweep.
     fn n_levels(&self) -> usize {
         self.levels
             .map_or(Options::default().n_levels, |levels| levels as usize)
     }
 
-    /// The options of an endless texture that repeats after `period`.
+    /// The options of an endless texture with this period, in pixels; `None` along axes without a period.
     pub(super) fn endless(&self, period: [Option<u32>; 2]) -> EndlessOptions {
         EndlessOptions {
             seed: Seed(self.seed),
@@ -479,7 +480,7 @@ impl MatchArgs {
         }
     }
 
-    /// The options of the library.
+    /// The options of a sweep.
     pub(super) fn options(&self, surface: &SurfaceArgs) -> Options {
         let default = if self.paper {
             Options::paper()
@@ -489,7 +490,7 @@ impl MatchArgs {
         Options {
             seed: Seed(self.seed),
             n_levels: self.n_levels(),
-            // Those of the paper, for as many levels as there are.
+            // The schedule of the paper, for this number of levels.
             schedule: None,
             coherence: self.coherence.unwrap_or(default.coherence),
             evenness: self.evenness.unwrap_or(default.evenness),

@@ -1,4 +1,4 @@
-//! Synthesis of an image.
+//! Synthesis of an image in the plane, by all methods except along directions.
 
 use super::options::{MethodName, PlaneArgs};
 use super::reading::Input;
@@ -24,10 +24,10 @@ use std::path::Path;
 /// The default size of a texture.
 const SIZE: [u32; 2] = [512; 2];
 
-/// Up to here floating-point numbers of 32 bits have all whole numbers.
+/// The largest number up to which `f32` represents all whole numbers: 2^24.
 const MOST: f32 = 16_777_216.0;
 
-/// Makes the image, and the maps that follow it.
+/// Synthesizes the image, and transfers the maps of the example.
 pub(super) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let mut job = Job::new(context, "synth", &args.image.files);
     let target = args.target(&args.exemplar, args.image.ending())?;
@@ -45,6 +45,7 @@ pub(super) fn run(args: &Args, context: &Context) -> Result<Exit> {
         guides,
         ..
     } = &input;
+    // Synthesize: from sources of another texture, in a hole, with guides, or freely.
     let progress = Progress::bar("synthesizing", STEPS.into(), context);
     let options = args.matching.options(&args.surface);
     let edges = args.plane.edges();
@@ -55,7 +56,7 @@ pub(super) fn run(args: &Args, context: &Context) -> Result<Exit> {
             PlaneTexture::from_sources(sources, edges, example, exemplar.edges())
         }
         (None, Some(hole)) => {
-            // The first of several examples begins at the first pixel.
+            // Each pixel of the first example is its own source, since that example begins at the first pixel.
             let sources = Raster::from_fn(hole.size(), |column, row| [column, row])?;
             let edges = [exemplar.edges(); 2];
             PlaneTexture::from_sources(sources, edges, exemplar.size(), exemplar.edges())
@@ -69,13 +70,14 @@ pub(super) fn run(args: &Args, context: &Context) -> Result<Exit> {
     };
     let texture = texture.map_err(advise)?;
     drop(progress);
-    // Around a hole, pixels keep their bits.
+    // Keep the bits of the pixels around a hole.
     let clear = match input.hole {
         Some(_) => Clear::Keep,
         None => Clear::Bleed {
             wraps: edges.map(|edges| edges == Edges::Wrap),
         },
     };
+    // Transfer the example and its maps, and write them.
     let examples = [base].into_iter().chain(maps.iter().map(|(_, map)| map));
     for (output, example) in [output].into_iter().chain(map_outputs).zip(examples) {
         let map = follow(&texture, &example.map)?;
@@ -96,7 +98,8 @@ pub(super) fn run(args: &Args, context: &Context) -> Result<Exit> {
     Ok(Exit::Done)
 }
 
-/// Grows a texture by the method that was asked for, or by the first that can.
+/// Synthesizes a texture by the requested method. By default, the method is endless synthesis, or a sweep if options
+/// need it or the period does not fit the levels.
 fn grow(args: &Args, exemplar: &Exemplar, progress: &Progress) -> Result<PlaneTexture, SynthError> {
     let size = args.plane.size.map_or(SIZE, |size| size.0);
     let edges = args.plane.edges();
@@ -118,19 +121,19 @@ fn grow(args: &Args, exemplar: &Exemplar, progress: &Progress) -> Result<PlaneTe
 }
 
 impl PlaneArgs {
-    /// Whether the texture must be an endless one.
+    /// Whether endless synthesis was requested.
     pub(super) fn is_endless(&self) -> bool {
         self.method == Some(MethodName::Endless) || self.at.is_some()
     }
 }
 
 impl Args {
-    /// An option that was given and changes nothing in an endless texture.
+    /// The name of an option that was given and has no effect on an endless texture, if any.
     fn given_for_sweeps(&self) -> Option<&'static str> {
         self.matching.given_for_sweeps().or(self.guides.given())
     }
 
-    /// Whether the texture must be made in a sweep.
+    /// Whether a sweep was requested, or is needed by an option.
     fn is_swept(&self) -> bool {
         self.plane.method == Some(MethodName::Sweep) || self.given_for_sweeps().is_some()
     }
@@ -154,12 +157,12 @@ impl Args {
     }
 }
 
-/// A map of the example, transferred to the texture.
+/// Transfers a map of the example to the texture.
 fn follow(texture: &PlaneTexture, example: &Map) -> Result<Map> {
     Ok(map_raster!(example, raster => texture.transfer(raster)?))
 }
 
-/// Claims the file of the sources.
+/// Claims the file of the sources, if it was requested.
 fn claim_sources(path: Option<&Path>, job: &mut Job<'_>) -> Result<Option<OutputIdx>> {
     let Some(path) = path else {
         return Ok(None);
@@ -175,7 +178,7 @@ fn claim_sources(path: Option<&Path>, job: &mut Job<'_>) -> Result<Option<Output
     job.claim(&target).map(Some)
 }
 
-/// Reads the sources that `--sources` wrote.
+/// Reads sources that were written by `--sources`.
 fn read_sources(path: &Path) -> Result<Raster<[u32; 2]>> {
     let image = input::image(path)?;
     let places = image.color().with_context(|| input::name(path))?;

@@ -1,4 +1,4 @@
-//! The images of a synthesis: examples, their maps, masks and guides.
+//! Reading of the images of a synthesis: examples, their maps, masks and guides.
 
 use super::example_mesh::ExampleMesh;
 use super::guides::Guide;
@@ -18,22 +18,23 @@ use dapple::synth::{Edges, Exemplar, SideBySide, SynthError};
 use dapple::tile::Map;
 use std::path::{Path, PathBuf};
 
-/// The input of the synthesis. Several examples lie side by side in one image.
+/// The input of a synthesis. Several examples are placed side by side in one image.
 pub(super) struct Input {
-    /// The image that the texture shows: the example, or a larger version of it.
+    /// The image that the texture shows: the example, or the larger version given by `--detail`.
     pub(super) base: Loaded,
-    /// The maps that follow, with their names.
+    /// The maps of the example, with their names.
     pub(super) maps: Vec<(String, Loaded)>,
-    /// Where the examples lie in it.
+    /// The layout of the examples in one image.
     pub(super) layout: SideBySide,
     pub(super) exemplar: Exemplar,
-    /// The pixels that are made again, if the example is repaired.
+    /// The pixels to re-synthesize, if the example is repaired.
     pub(super) hole: Option<Raster<bool>>,
     pub(super) guides: Vec<Guide>,
 }
 
 impl Args {
-    /// Reads the examples, the larger version of the one, and the maps, which must have the sizes of what is shown.
+    /// Reads the examples, the larger version of a single example, the maps, which must have the size of the image that
+    /// is shown, the masks, and the guides.
     pub(super) fn read(&self) -> Result<Input> {
         let paths: Vec<_> = [&self.exemplar]
             .into_iter()
@@ -42,7 +43,7 @@ impl Args {
         let examples = paths.iter().map(|path| self.load(path, Kind::ByChannels));
         let mut examples: Vec<_> = examples.collect::<Result<_>>()?;
         if self.surface.mesh.is_some() {
-            // On a mesh colors are averaged with their alpha, and textures of models are straight.
+            // On a mesh, baking weights colors by their alpha, and textures of models have straight colors.
             examples.iter_mut().try_for_each(Loaded::divide)?;
         }
         let sizes: Vec<_> = examples.iter().map(|example| example.map.size()).collect();
@@ -52,9 +53,10 @@ impl Args {
             self.check_usable(path, example, (path, image), hole.as_ref())?;
         }
         if self.plane.repair_channel == Some(Channel::Alpha) {
-            // What is made again is as opaque as all else.
+            // Re-synthesized pixels are opaque, and so the whole result is.
             examples[0].alpha = None;
         }
+        // Join the examples, and add the mask and the guides.
         let example = joined(&layout, examples)?;
         let edges = match layout.size() == sizes[0] {
             true => self.matching.edges,
@@ -91,7 +93,7 @@ impl Args {
         })
     }
 
-    /// The input with a mesh as the example: its texture, and its maps beside those that were given.
+    /// The input with a mesh as the example: its texture, the maps given by `--map`, and the maps of its material.
     pub(super) fn read_with(&self, example: &ExampleMesh) -> Result<Input> {
         let base = example.base.clone();
         let mut exemplar = exemplar_of(&base.map, self.matching.edges).map_err(advise)?;
@@ -134,7 +136,8 @@ impl Args {
         })
     }
 
-    /// Reads the maps of what is shown: for each name as many as there are examples, side by side as they are.
+    /// Reads the maps. For each name, there must be one map per example; they are placed side by side like the
+    /// examples. `shown` are the images that the maps must match in size.
     fn load_maps(
         &self,
         layout: &SideBySide,
@@ -142,6 +145,7 @@ impl Args {
         size: [u32; 2],
         hole: Option<&Raster<bool>>,
     ) -> Result<Vec<(String, Loaded)>> {
+        // Group the maps by name.
         let mut maps: Vec<(String, Vec<&PathBuf>)> = Vec::new();
         for MapArg { name, path } in &self.map {
             match maps.iter_mut().find(|(other, _)| other == name) {
@@ -182,7 +186,7 @@ impl Args {
         Ok(loaded)
     }
 
-    /// Reads a map, whose name says what is in it.
+    /// Reads a map. The name `normal` means normals.
     fn load_map(&self, name: &str, path: &Path) -> Result<Loaded> {
         let kind = if is_of(name, MapKind::Normal) {
             Kind::Normals
@@ -200,7 +204,7 @@ impl Args {
         Ok(map)
     }
 
-    /// The exemplar with the maps that count in the match.
+    /// Adds the maps with a weight to the exemplar, as further channels for matching.
     fn with_weighted(
         &self,
         mut exemplar: Exemplar,
@@ -209,7 +213,7 @@ impl Args {
         for (name, Loaded { map, .. }) in maps {
             let weight = self.matching.weight_of(name);
             if weight > 0.0 {
-                // Beside a larger version of the example, maps have its size.
+                // With `--detail`, maps have the size of the larger example. Reduce them to the size of the exemplar.
                 let factor = map.size()[0] / exemplar.size()[0];
                 let map = exemplar_of(map, exemplar.edges())?.reduced(factor)?;
                 exemplar = exemplar.with_channels(&map, weight)?;
@@ -218,8 +222,8 @@ impl Args {
         Ok(exemplar)
     }
 
-    /// Fails for numbers of an image that are not finite at a pixel that is used: outside of what is made again, and where
-    /// the mask of its example, of this path and index, is white.
+    /// Fails if an image has NaN or infinite values at a pixel that is used: outside of the hole, and where the mask of
+    /// its example is white. `example` and `index` are the path and the index of the example.
     fn check_usable(
         &self,
         path: &Path,
@@ -241,7 +245,8 @@ impl Args {
         image.faults.check(&input::name(path), is_used)
     }
 
-    /// Which pixels of the examples textures may have, if not all: those of their masks that are not made again.
+    /// Reads the mask of usable pixels of the examples: white in their masks, and outside of the hole. `None` if all
+    /// pixels are usable.
     fn read_masks(
         &self,
         paths: &[&PathBuf],
@@ -272,7 +277,7 @@ impl Args {
         Ok(Some(layout.join(&masks, false)?))
     }
 
-    /// Reads which pixels of the first example are made again.
+    /// Reads the hole: the pixels of the first example to re-synthesize.
     fn read_hole(&self, example: &Loaded, sheet: Option<&Sheet>) -> Result<Option<Raster<bool>>> {
         if let Some(path) = &self.plane.repair {
             return self
@@ -290,7 +295,7 @@ impl Args {
         Ok(Some(values.map(|&value| value < 0.5)))
     }
 
-    /// Reads a mask as large as an example: whether its pixels are nearer to white than to black.
+    /// Reads a mask with the size of an example. Pixels are set if they are at least half as light as white.
     fn load_mask(
         &self,
         path: &Path,
@@ -314,7 +319,7 @@ impl Args {
         }
     }
 
-    /// Reads a version of the example that is a whole number of times as large.
+    /// Reads a larger version of the example, whose sides are the same integer multiple of the sides of the example.
     fn load_detail(&self, path: &Path, [width, height]: [u32; 2]) -> Result<Loaded> {
         let detail = self.load(path, Kind::ByChannels)?;
         let size = detail.map.size();
@@ -332,13 +337,13 @@ impl Args {
         Err(error.hint("make the example from it, by a whole number of pixels for one"))
     }
 
-    /// Reads an image. The caller checks its numbers that are not finite.
+    /// Reads an image. The caller must check it for NaN and infinite values.
     fn load(&self, path: &Path, kind: Kind) -> Result<Loaded> {
         input::map_with_faults(path, kind, self.region, self.alpha.alpha, &self.read)
     }
 }
 
-/// How light the pixels of an image are, as sRGB codes from 0 to 1; gray ones as they are.
+/// The lightness of the pixels of an image, as sRGB codes from 0 to 1. Gray images are unchanged.
 pub(super) fn gray(image: &Loaded) -> Result<Raster<f32>> {
     match &image.map {
         Map::Value(values) => Ok(values.clone()),
@@ -347,13 +352,13 @@ pub(super) fn gray(image: &Loaded) -> Result<Raster<f32>> {
     }
 }
 
-/// The code of the gray that is as light as a color.
+/// The lightness of a color: the sRGB code, from 0 to 1, of the gray with the same luminance.
 pub(super) fn lightness(color: &LinearRgb) -> f32 {
     let [code, ..] = LinearRgb::gray(color.luminance()).to_srgb::<u16>();
     f32::from(code) / f32::from(u16::MAX)
 }
 
-/// Images side by side. If some are gray and others colors, all are colors. A larger version of one image stays as it is.
+/// Places images side by side. If some are gray and others in color, all become colors. A single image is unchanged.
 pub(super) fn joined(layout: &SideBySide, mut images: Vec<Loaded>) -> Result<Loaded> {
     if layout.size() == layout.size_of(0) {
         return Ok(images.remove(0));
@@ -403,7 +408,7 @@ pub(super) fn joined(layout: &SideBySide, mut images: Vec<Loaded>) -> Result<Loa
     Ok(joined)
 }
 
-/// A part of all images, if all have it.
+/// The rasters of all images, if all images are of the kind that `part` selects.
 fn all<'a, T>(images: &'a [Loaded], part: impl Fn(&'a Map) -> Option<&'a T>) -> Option<Vec<&'a T>> {
     images.iter().map(|image| part(&image.map)).collect()
 }

@@ -1,4 +1,4 @@
-//! Repair of the texture of a mesh, and of the maps in its material.
+//! Repair of the texture of a mesh and of the maps in its material: re-synthesis of the texels in a mask.
 
 use super::example_mesh::ExampleMesh;
 use super::reading::Input;
@@ -25,19 +25,19 @@ use dapple::tile::Map;
 use serde_json::Value;
 use std::path::Path;
 
-/// A mesh whose texture is made again where a mask says so.
+/// A mesh whose texture has been re-synthesized within a mask.
 struct Repaired<'a> {
     args: &'a Args,
     exemplar: MeshExemplar,
     texture: SurfaceTexture,
     uvs: Vec<[DVec2; 3]>,
-    /// The places of the textures of unit squares, if there is one for each.
+    /// The layout of the textures of UDIM tiles, if the mesh has several.
     sheet: Option<Sheet>,
-    /// The texels that are made again.
+    /// The re-synthesized texels.
     hole: Raster<bool>,
 }
 
-/// A map, and its alpha.
+/// A repaired map, and its alpha.
 type Mended = (Map, Option<Raster<f32>>);
 
 /// Repairs the texture of the mesh that is the example.
@@ -100,7 +100,7 @@ pub(super) fn run(args: &Args, context: &Context) -> Result<Exit> {
         };
         let base = encoded(&map, alpha.as_ref(), base.is_deep)?;
         let new = repaired.model(model.clone(), &base)?;
-        // A file that holds images stays the same document.
+        // If the input file embeds its images, replace them, and keep the rest of the document.
         match replace_images(&args.exemplar, &replaced(&model.material, &new.material))? {
             Some(bytes) => job.write(output, &bytes)?,
             None => {
@@ -114,7 +114,7 @@ pub(super) fn run(args: &Args, context: &Context) -> Result<Exit> {
     Ok(Exit::Done)
 }
 
-/// Refuses a model as the output if there is a texture for each unit square.
+/// Refuses a model as the output if the mesh has a texture for each UDIM tile.
 fn check_tiles(format: Option<&MeshFormat>, example: &ExampleMesh, path: &Path) -> Result<()> {
     let (Some(format), Some(sheet)) = (format, &example.sheet) else {
         return Ok(());
@@ -127,7 +127,7 @@ fn check_tiles(format: Option<&MeshFormat>, example: &ExampleMesh, path: &Path) 
     Err(error.hint("let -o end in .png, for an image of each: NAME.1001.png and so on"))
 }
 
-/// Claims a file for each unit square, or for the only texture.
+/// Claims a file for each UDIM tile, or for the single texture.
 fn claim_tiles(
     target: &Target,
     sheet: Option<&Sheet>,
@@ -142,7 +142,7 @@ fn claim_tiles(
         .collect()
 }
 
-/// The format of a model as the output; nothing for an image.
+/// The format of the output if it is a model; `None` for an image.
 fn model_format(target: &Target) -> Result<Option<&'static MeshFormat>> {
     match Product::of(target)? {
         Product::Texture => Ok(None),
@@ -157,7 +157,7 @@ fn model_format(target: &Target) -> Result<Option<&'static MeshFormat>> {
 }
 
 impl Repaired<'_> {
-    /// The model with its textures mended.
+    /// Replaces the textures of a model by repaired ones.
     fn model(&self, mut model: Model, base: &EncodedImage) -> Result<Model> {
         let material = &mut model.material;
         material.base_color = Some(base.clone());
@@ -176,14 +176,15 @@ impl Repaired<'_> {
         Ok(model)
     }
 
-    /// An image of a material, mended.
+    /// Repairs an image of a material.
     fn mended_image(&self, image: &EncodedImage, kind: Kind) -> Result<EncodedImage> {
         let image = input::embedded(image, &self.args.exemplar, kind, Alpha::Keep)?;
         let (map, alpha) = self.mended_part(&image, &image, &self.uvs, &self.hole)?;
         encoded(&map, alpha.as_ref(), image.is_deep)
     }
 
-    /// A map with new texels in the hole and the old ones elsewhere: one for each unit square, if they have their own.
+    /// Repairs a map: new texels in the hole, and the old texels elsewhere. Returns one map for each UDIM tile, or a
+    /// single one.
     fn mended(&self, old: &Loaded) -> Result<Vec<Mended>> {
         let Some(sheet) = &self.sheet else {
             return Ok(vec![self.mended_part(old, old, &self.uvs, &self.hole)?]);
@@ -196,7 +197,8 @@ impl Repaired<'_> {
         (0..sheet.tiles.numbers.len()).map(mend).collect()
     }
 
-    /// The texture of faces with some texture coordinates, mended with texels of an image.
+    /// Repairs the texture of the faces with texture coordinates in `uvs`. `old` is this texture, and `from` is the
+    /// image that new texels are taken from.
     fn mended_part(
         &self,
         from: &Loaded,
@@ -236,7 +238,7 @@ impl Repaired<'_> {
     }
 }
 
-/// The new texels in the hole, which may have another size, and the old ones elsewhere.
+/// Combines new texels in the hole with the old texels elsewhere. The hole may have another size, and is scaled.
 fn within_hole<T: Copy>(
     old: &Raster<T>,
     new: &Raster<T>,
@@ -252,7 +254,7 @@ fn within_hole<T: Copy>(
     })?)
 }
 
-/// The images of a material with those in their places.
+/// Pairs of the images of a material: the old image and its replacement.
 fn replaced(old: &Material, new: &Material) -> Vec<(EncodedImage, EncodedImage)> {
     let images = |material: &Material| {
         let Material {
@@ -268,7 +270,7 @@ fn replaced(old: &Material, new: &Material) -> Vec<(EncodedImage, EncodedImage)>
     pairs.filter_map(|(old, new)| old.zip(new)).collect()
 }
 
-/// A map as an image in a mesh file.
+/// Encodes a map as an image for a mesh file.
 fn encoded(map: &Map, alpha: Option<&Raster<f32>>, is_deep: bool) -> Result<EncodedImage> {
     let format = default_format(map, is_deep);
     let bytes = match (map, alpha) {

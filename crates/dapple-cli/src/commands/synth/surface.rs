@@ -1,4 +1,4 @@
-//! Synthesis on a mesh, and the files that it gives.
+//! Synthesis on a mesh, and its output files.
 
 use super::corners::{own_uvs, shading};
 use super::example_mesh::ExampleMesh;
@@ -30,7 +30,7 @@ use dapple::tile::Map;
 use serde_json::json;
 use std::path::Path;
 
-/// The kind of output of a textured mesh.
+/// The kind of output for a mesh.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Product {
     /// The mesh with its texture.
@@ -41,30 +41,30 @@ pub(super) enum Product {
     Texture,
 }
 
-/// The first bytes of a PNG file.
+/// The signature of a PNG file.
 const PNG: &[u8] = b"\x89PNG\r\n\x1a\n";
-/// The endings of the names of images.
+/// The file extensions of images.
 const IMAGES: [&str; 4] = ["png", "exr", "npy", "r16"];
 
-/// The format of what has no name, in a stream or a folder.
+/// The file extension for standard output and for directories.
 const DEFAULT_ENDING: &str = "glb";
 
-/// The outputs that were claimed.
+/// The claimed output files.
 struct Claimed {
     product: Product,
-    /// The name of the output without its ending.
+    /// The file name of the output without its extension.
     stem: String,
-    /// The output; the textures of unit squares, if it is one for each.
+    /// The output; several for the textures of UDIM tiles.
     main: Vec<OutputIdx>,
-    /// The files beside that of the mesh, such as material and textures, with their names.
+    /// The files next to the mesh, such as materials and textures, with their names.
     beside: Vec<(String, OutputIdx)>,
-    /// The files of each map, as many as layouts; none of those that are beside the mesh already.
+    /// The files of each map, one per layout; empty for a map that is written next to the mesh or embedded only.
     maps: Vec<Vec<OutputIdx>>,
-    /// The format of textures that are files of their own.
+    /// The format of textures in separate files.
     format: Format,
 }
 
-/// Reads the mesh, and says what of it and of the example is not used.
+/// Reads the mesh, and prints the parts of it and of the example that are not used.
 fn read_target(
     args: &Args,
     mesh: &Path,
@@ -81,7 +81,7 @@ fn read_target(
     Ok(model)
 }
 
-/// The unit squares of the mesh's own texture coordinates that get a texture each; none if there is one texture.
+/// The UDIM tiles that get a texture each, with the mesh's own texture coordinates; empty for a single texture.
 fn squares(args: &Args, product: Product, model: &Model) -> Vec<TileMaterial> {
     let takes_several = match product {
         Product::Texture => true,
@@ -99,15 +99,15 @@ fn squares(args: &Args, product: Product, model: &Model) -> Vec<TileMaterial> {
     numbers.into_iter().map(tile).collect()
 }
 
-/// Says what of a mesh is not used, unless the command is quiet.
+/// Prints the parts of a mesh that are not used, unless the command is quiet.
 pub(super) fn announce(context: &Context, path: &Path, model: &Model) {
     if let Some(line) = input::not_used(path, model).filter(|_| !context.quiet) {
         eprintln_if_possible(&line);
     }
 }
 
-/// The sites for an example, and a note of the number of times that it repeats across the mesh, if it is an image of `size`
-/// pixels and not a mesh.
+/// The options of the sites on the mesh. For an example that is an image of `size` pixels, also a note with the number
+/// of times that it repeats across the mesh.
 fn sites(
     args: &Args,
     is_mesh: bool,
@@ -131,7 +131,7 @@ fn sites(
     Ok((sites, Some(note)))
 }
 
-/// Covers the mesh.
+/// Synthesizes a texture on the mesh, bakes it, and writes the output files.
 pub(super) fn run(args: &Args, mesh: &Path, context: &Context) -> Result<Exit> {
     let mut job = Job::new(context, "synth", &args.image.files);
     let example = args.read_example_mesh()?;
@@ -142,12 +142,13 @@ pub(super) fn run(args: &Args, mesh: &Path, context: &Context) -> Result<Exit> {
         Some(example) => args.read_with(example)?,
         None => args.read()?,
     };
+    // Repair the mesh.
     let (repaired, repair) = model.mesh.repair();
     if !context.quiet && repair.before != repair.after {
         eprintln_if_possible(&format!("{}: repaired; see dapple info", mesh.display()));
     }
     let surface = Surface::new(repaired).with_context(|| mesh.display().to_string())?;
-    // What is refused is refused before charts are cut, which takes long.
+    // Check all options before charts are cut, which takes long.
     let size = input.layout.size_of(0);
     let (sites, note) = sites(args, example.is_some(), &surface, size)?;
     sites.check(&surface).map_err(advise)?;
@@ -158,10 +159,11 @@ pub(super) fn run(args: &Args, mesh: &Path, context: &Context) -> Result<Exit> {
     };
     let shading = shading(args.surface.crease(), &surface, &model, &repair);
     let laid_out = layouts.report(&surface);
-    // Through what is transparent the inside is seen.
+    // Make a transparent texture double-sided, because the inside of the mesh is visible through it.
     let double_sided = model.material.double_sided
         || repair.before.back_to_back_faces > 0
         || input.base.alpha.is_some();
+    // Place the sites, and orient them.
     let spinner = Progress::spinner("scattering sites", context);
     let synthesizer = synthesizer(surface, args, &sites, &directions).map_err(advise)?;
     let synthesizer = scaled(synthesizer, args, &model, &repair)?;
@@ -203,7 +205,7 @@ pub(super) fn run(args: &Args, mesh: &Path, context: &Context) -> Result<Exit> {
     Ok(Exit::Done)
 }
 
-/// The values of the guides at the sites of the mesh.
+/// Samples the guides at the sites of the mesh, a column for each guide.
 fn guide_columns(
     input: &Input,
     synthesizer: &Synthesizer,
@@ -214,7 +216,8 @@ fn guide_columns(
     guides::at_sites(&targets, synthesizer, model, repair)
 }
 
-/// Synthesizes the texture at the sites of the mesh, from a mesh if the example is one; `columns` are the guides.
+/// Synthesizes the texture at the sites of the mesh, from an image or, with `exemplar`, from a mesh. `columns` are the
+/// values of the guides.
 fn grown(
     args: &Args,
     input: &Input,
@@ -234,7 +237,7 @@ fn grown(
     texture.map_err(advise)
 }
 
-/// The layout of a texture map, for the JSON file beside the output.
+/// The statistics of an atlas, for the sidecar.
 fn atlas_json(atlas: AtlasReport) -> serde_json::Value {
     json!({
         "pieces": atlas.pieces,
@@ -243,7 +246,7 @@ fn atlas_json(atlas: AtlasReport) -> serde_json::Value {
     })
 }
 
-/// The sites of an example that is a mesh.
+/// Makes an exemplar from a mesh: places sites on it, and samples its texture.
 pub(super) fn exemplar_of_mesh(
     args: &Args,
     example: ExampleMesh,
@@ -255,19 +258,19 @@ pub(super) fn exemplar_of_mesh(
     MeshExemplar::new(source, &example.uvs, texture).map_err(advise)
 }
 
-/// The layouts of the textures of a mesh.
+/// The atlases of the textures of a mesh.
 #[derive(Default)]
 pub(super) struct Layouts {
-    /// The layout of the texture; one for each unit square if there are `tiles`, and none for a mesh of sites.
+    /// The atlas of the texture; one per UDIM tile if there are `tiles`, and none for a mesh of sites.
     pub(super) atlases: Vec<Atlas>,
-    /// The unit squares that get a texture each, in the order of the layouts.
+    /// The UDIM tiles that get a texture each, in the order of the atlases.
     tiles: Vec<TileMaterial>,
     /// The mesh's own texture coordinates, if there are `tiles`.
     own_uvs: Option<Vec<[DVec2; 3]>>,
 }
 
 impl From<Atlas> for Layouts {
-    /// The layout of one texture.
+    /// The atlas of a single texture.
     fn from(atlas: Atlas) -> Self {
         Self {
             atlases: vec![atlas],
@@ -277,7 +280,7 @@ impl From<Atlas> for Layouts {
 }
 
 impl Layouts {
-    /// The layout of one texture, or those of all unit squares that get one each.
+    /// The atlas of a single texture, or the atlases of all UDIM tiles.
     fn new(
         args: &Args,
         surface: &Surface,
@@ -291,7 +294,7 @@ impl Layouts {
         }
     }
 
-    /// The layouts of unit squares: the mesh's own texture coordinates, in a texture for each.
+    /// The atlases of UDIM tiles, which use the mesh's own texture coordinates.
     fn of_tiles(args: &Args, surface: &Surface, model: &Model, repair: &Repair) -> Result<Self> {
         let numbers: Vec<_> = model.tiles.iter().map(|tile| tile.number).collect();
         let own_uvs = own_uvs(surface, model, repair)?;
@@ -309,7 +312,7 @@ impl Layouts {
         })
     }
 
-    /// The layouts, for the JSON file beside the output: an object, or a list of one for each unit square.
+    /// The statistics of the atlases, for the sidecar: an object, or a list with an object for each UDIM tile.
     fn report(&self, surface: &Surface) -> serde_json::Value {
         let reports = self.atlases.iter();
         let mut reports: Vec<_> = reports
@@ -322,20 +325,20 @@ impl Layouts {
     }
 }
 
-/// A mesh with its texture, not baked yet.
+/// A mesh with its synthesized texture, before baking.
 pub(super) struct Covered {
     pub(super) synthesizer: Synthesizer,
     pub(super) texture: SurfaceTexture,
     pub(super) layouts: Layouts,
     /// The normals of the corners of all faces.
     pub(super) shading: Vec<[DVec3; 3]>,
-    /// Whether faces are seen from both sides.
+    /// Whether faces are visible from both sides.
     pub(super) double_sided: bool,
     pub(super) input: Input,
 }
 
 impl Product {
-    /// What the ending of an output asks for.
+    /// The kind of output for the file extension of a target.
     pub(super) fn of(target: &Target) -> Result<Self> {
         let ending = match target {
             Target::Stdout if target.ending().is_empty() => DEFAULT_ENDING.to_owned(),
@@ -359,7 +362,7 @@ impl Product {
     }
 }
 
-/// The part of the help that says what the ending of the output gives.
+/// The part of the help that lists the kind of output for each file extension.
 pub(super) fn endings() -> String {
     let mut text = "What the ending of the output gives for a mesh:".to_owned();
     for format in FORMATS {
@@ -379,7 +382,7 @@ pub(super) fn endings() -> String {
 }
 
 impl Covered {
-    /// A map of the example, as a texture of the mesh in a layout.
+    /// Bakes a map of the example to a texture of the mesh.
     pub(super) fn bake(&self, map: &Map, atlas: &Atlas) -> Result<Map> {
         let (synthesizer, texture) = (&self.synthesizer, &self.texture);
         Ok(match map {
@@ -396,7 +399,7 @@ impl Covered {
         })
     }
 
-    /// The texture that is shown, and its alpha if the example has one.
+    /// Bakes the base texture, with its alpha if the example has alpha.
     pub(super) fn bake_base(&self, atlas: &Atlas) -> Result<(Map, Option<Raster<f32>>)> {
         let base = &self.input.base;
         let (Map::Color(colors), Some(alpha)) = (&base.map, &base.alpha) else {
@@ -429,7 +432,7 @@ impl Covered {
     }
 }
 
-/// The output, and its kind.
+/// The output path, and its kind.
 fn output(args: &Args, mesh: &Path) -> Result<(Target, Product)> {
     let ending = args.image.format.map_or(DEFAULT_ENDING, Format::ending);
     let target = args.target(mesh, ending)?;
@@ -437,7 +440,8 @@ fn output(args: &Args, mesh: &Path) -> Result<(Target, Product)> {
     Ok((target, product))
 }
 
-/// Claims the output, what belongs to it, and the maps.
+/// Checks the options against the kind of output, and claims the output, the files next to it, the maps and the
+/// sidecar.
 fn claim(
     args: &Args,
     (target, product): (Target, Product),
@@ -481,7 +485,7 @@ fn claim(
     };
     let mut beside = Vec::new();
     if let (Product::Model(format), Some(path)) = (product, target.path()) {
-        // The names of the files of the writer are known before: they have the stem of the model.
+        // Claim the files that the writer of the format will add, whose names follow from the stem.
         let has_normals = args.map.iter().any(|map| is_of(&map.name, MapKind::Normal))
             || example.is_some_and(|example| example.has(MapKind::Normal));
         for name in names_beside(format, path, has_normals, tiles)? {
@@ -489,7 +493,7 @@ fn claim(
             beside.push((name, output));
         }
     }
-    // Those that go into the model are files of their own as well, for other programs.
+    // Claim a separate file for each map, also for maps that are embedded in the model, for other programs.
     let mut maps = Vec::new();
     for name in args.map_names() {
         let target = target.part(name)?.with_ending(format.ending());
@@ -498,7 +502,7 @@ fn claim(
             None => target.clone(),
         };
         let file = first.path().and_then(Path::file_name);
-        // The normals of an OBJ have the name of the map.
+        // The normal map of an OBJ file already has the name of the map.
         let is_beside = is_of(name, MapKind::Normal)
             && beside.iter().any(|(name, _)| file == Some(name.as_ref()));
         if !is_beside && !matches!(product, Product::Sites(_)) {
@@ -507,7 +511,7 @@ fn claim(
             maps.push(Vec::new());
         }
     }
-    // Those of the example's material go into the new one alone.
+    // Maps of the example's material are embedded only, without separate files.
     let n_maps = maps.len() + example.map_or(0, |example| example.maps.len());
     maps.resize_with(n_maps, Vec::new);
     job.claim_sidecar(&target)?;
@@ -521,7 +525,7 @@ fn claim(
     })
 }
 
-/// Claims a file for each unit square, or for the only texture.
+/// Claims a file for each UDIM tile, or for the single texture.
 fn claim_tiles(
     target: &Target,
     tiles: &[TileMaterial],
@@ -536,7 +540,8 @@ fn claim_tiles(
         .collect()
 }
 
-/// The names of the files beside that of a mesh: those of an empty mesh with as many textures.
+/// The names of the files that a format writes next to a mesh. They are found by writing an empty mesh with the same
+/// textures.
 fn names_beside(
     format: &MeshFormat,
     path: &Path,
@@ -558,7 +563,7 @@ fn names_beside(
     Ok(files.into_iter().map(|file| file.name).collect())
 }
 
-/// Bakes and writes everything.
+/// Bakes the textures and writes all files.
 fn write(args: &Args, claimed: &Claimed, covered: &Covered, job: &mut Job<'_>) -> Result<()> {
     if let Product::Sites(format) = claimed.product {
         let (synthesizer, texture) = (&covered.synthesizer, &covered.texture);
@@ -566,6 +571,7 @@ fn write(args: &Args, claimed: &Claimed, covered: &Covered, job: &mut Job<'_>) -
         args.displace_sites(&mut model, synthesizer, texture, &covered.input)?;
         return write_model(format, claimed, &model, job);
     }
+    // Bake the texture and the maps in each atlas.
     let is_deep = covered.input.base.is_deep;
     let mut models = Vec::new();
     for (at, atlas) in covered.layouts.atlases.iter().enumerate() {
@@ -590,6 +596,7 @@ fn write(args: &Args, claimed: &Claimed, covered: &Covered, job: &mut Job<'_>) -
         let cover = Cover::of(alpha.as_ref(), false, Clear::NOT_WRAPPED);
         job.write_with_alpha(claimed.main[at], base, cover, is_deep, &args.image)?;
     }
+    // Combine the models of all UDIM tiles to one, displace it, and write it.
     let Product::Model(format) = claimed.product else {
         return Ok(());
     };
@@ -607,7 +614,7 @@ fn write(args: &Args, claimed: &Claimed, covered: &Covered, job: &mut Job<'_>) -
     write_model(format, claimed, &model, job)
 }
 
-/// The input mesh with its texture. A gray one becomes a color, which is what models have.
+/// The input mesh with its texture. A gray texture is converted to colors, which models need.
 fn model(
     args: &Args,
     covered: &Covered,
@@ -641,6 +648,7 @@ fn model(
     Ok(model)
 }
 
+/// Writes the files of a model to their claimed outputs.
 fn write_model(format: &MeshFormat, claimed: &Claimed, model: &Model, job: &Job<'_>) -> Result<()> {
     for file in format.write(model, &claimed.stem)? {
         let beside = claimed.beside.iter().find(|(name, _)| *name == file.name);
@@ -657,7 +665,7 @@ fn stem(path: &Path) -> String {
         .into_owned()
 }
 
-/// The layout of the texture.
+/// Makes the atlas of the texture by the method of `--atlas`.
 fn atlas(
     args: &Args,
     surface: &Surface,
@@ -686,7 +694,7 @@ fn atlas(
     atlas.map_err(advise)
 }
 
-/// The surface with its sites and their directions.
+/// Places sites on the surface, and computes their orientation field from the directions.
 fn synthesizer(
     surface: Surface,
     args: &Args,
@@ -700,7 +708,7 @@ fn synthesizer(
     Synthesizer::from_parts(surface, hierarchy, orientation, None)
 }
 
-/// The sites with pixels of the sizes that the user asked for.
+/// Sets the scales of the sites, from `--scale` or by `--scales` from the directions.
 fn scaled(
     synthesizer: Synthesizer,
     args: &Args,
@@ -718,7 +726,7 @@ fn scaled(
     scaled.map_err(advise)
 }
 
-/// The directions that the user gave.
+/// Reads the directions of a file in CSV or JSON; empty without a file.
 fn directions(path: Option<&Path>) -> Result<Vec<Direction>> {
     let Some(path) = path else {
         return Ok(Vec::new());

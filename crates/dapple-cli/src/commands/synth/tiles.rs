@@ -1,4 +1,5 @@
-//! Textures of unit squares of texture coordinates (UDIM): each is a tile, and all tiles of an example lie in one image.
+//! UDIM tiles: unit squares of texture coordinates with a texture each. The textures of an example are joined in one
+//! image, the sheet.
 
 use super::reading::joined;
 use crate::error::{Hint, usage};
@@ -11,32 +12,32 @@ use dapple::synth::SideBySide;
 use dapple::tile::Map;
 use std::path::{Path, PathBuf};
 
-/// The unit squares of the faces of a mesh.
+/// The UDIM tiles of a mesh, and the tile of each face.
 #[derive(Clone, Debug)]
 pub(super) struct Tiles {
-    /// Their numbers, as UDIM has them.
+    /// The UDIM numbers of the tiles, such as 1001.
     pub(super) numbers: Vec<u32>,
-    /// For each face, the index of its square.
+    /// For each face, the index of its tile.
     of_face: Vec<usize>,
-    /// The texture coordinates of faces within their squares.
+    /// The texture coordinates of each face within its tile, from 0 to 1.
     local: Vec<[DVec2; 3]>,
 }
 
-/// The textures of unit squares side by side, in borders of the texels at their sides: so a texture is read up to its sides
-/// without its neighbors.
+/// The layout of the textures of UDIM tiles side by side in one image. Each texture has a border that repeats its
+/// outermost texels, so that interpolation at its sides does not read its neighbors.
 #[derive(Clone, Debug)]
 pub(super) struct Sheet {
     pub(super) tiles: Tiles,
-    /// Columns and rows of a texture.
+    /// Columns and rows of the texture of a tile, without its border.
     size: [u32; 2],
     layout: SideBySide,
 }
 
-/// The columns and rows of the border of a tile.
+/// Width of the border of a tile, in texels.
 const BORDER: u32 = 1;
 
 impl Tiles {
-    /// The squares with some numbers, for faces with these texture coordinates.
+    /// Assigns faces with these texture coordinates to the tiles with these numbers.
     pub(super) fn new(numbers: Vec<u32>, uvs: &[[DVec2; 3]]) -> Result<Self> {
         let (mut of_face, mut local) = (Vec::new(), Vec::new());
         for corners in uvs {
@@ -45,7 +46,7 @@ impl Tiles {
             let number = 1001.0 + column + 10.0 * row;
             let found = numbers.iter().position(|&other| f64::from(other) == number);
             of_face.push(found.ok_or_else(|| anyhow!("a face lies in no unit square"))?);
-            // Corners may lie beyond the sides by rounding.
+            // Clamp corners, which may exceed the tile by rounding errors.
             let within = |uv: DVec2| (uv - DVec2::new(column, -row)).clamp(DVec2::ZERO, DVec2::ONE);
             local.push(corners.map(within));
         }
@@ -56,7 +57,7 @@ impl Tiles {
         })
     }
 
-    /// The texture coordinates of the faces of one square; NaN for all others, which a layout leaves out.
+    /// The texture coordinates of the faces of one tile. All other faces have NaN, so that an atlas leaves them out.
     pub(super) fn uvs_of(&self, tile: usize) -> Vec<[DVec2; 3]> {
         let faces = self.of_face.iter().zip(&self.local);
         let corners = |(&of_face, &local): (&usize, &[DVec2; 3])| match of_face == tile {
@@ -66,7 +67,7 @@ impl Tiles {
         faces.map(corners).collect()
     }
 
-    /// The files of all squares, for a name with a mark.
+    /// The files of all tiles, for a name with a placeholder such as `<UDIM>`; `None` for other names.
     fn paths(&self, path: &Path) -> Option<Vec<PathBuf>> {
         let name = path.file_name()?.to_str()?;
         let paths = self.numbers.iter().map(|&number| {
@@ -78,7 +79,7 @@ impl Tiles {
 }
 
 impl Sheet {
-    /// The sheet of textures of a size.
+    /// The sheet for tiles with textures of `size` columns and rows.
     pub(super) fn new(tiles: Tiles, size: [u32; 2]) -> Result<Self> {
         let with_border = size.map(|side| side.saturating_add(2 * BORDER));
         let layout = SideBySide::new(&vec![with_border; tiles.numbers.len()])?;
@@ -101,18 +102,18 @@ impl Sheet {
         faces.map(placed).collect()
     }
 
-    /// The first column and row of a texture.
+    /// The first column and row of the texture of a tile, within the sheet.
     fn first(&self, tile: usize) -> [u32; 2] {
         // The layout leaves a column between two images.
         let width = self.size[0] + 2 * BORDER + 1;
         [tile as u32 * width + BORDER, BORDER]
     }
 
-    /// One image of the textures of all squares.
+    /// Joins the textures of all tiles in one image.
     ///
     /// # Errors
     ///
-    /// If they differ in size.
+    /// If the textures differ in size.
     pub(super) fn join(&self, mut tiles: Vec<Loaded>) -> Result<Loaded> {
         for (tile, number) in tiles.iter_mut().zip(&self.tiles.numbers) {
             let [size, here] = [self.size, tile.map.size()];
@@ -137,18 +138,18 @@ impl Sheet {
         joined(&self.layout, tiles)
     }
 
-    /// One mask of those of all squares, whose borders are black.
+    /// Joins the masks of all tiles in one mask, which is black between the tiles.
     pub(super) fn join_masks(&self, masks: &[Raster<bool>]) -> Result<Raster<bool>> {
         let masks = masks.iter().map(bordered).collect::<Result<Vec<_>>>()?;
         Ok(self.layout.join(&masks.iter().collect::<Vec<_>>(), false)?)
     }
 
-    /// The texture of a square.
+    /// Crops the texture of a tile from the sheet.
     pub(super) fn part<T: Copy>(&self, sheet: &Raster<T>, tile: usize) -> Result<Raster<T>> {
         Ok(sheet.crop(self.first(tile), self.size)?)
     }
 
-    /// The map of a square, with its alpha.
+    /// Crops the map of a tile from the sheet, with its alpha.
     pub(super) fn part_of(&self, sheet: &Loaded, tile: usize) -> Result<Loaded> {
         let mut part = sheet.with_map(match &sheet.map {
             Map::Value(values) => Map::Value(self.part(values, tile)?),
@@ -161,11 +162,11 @@ impl Sheet {
         Ok(part)
     }
 
-    /// What is read of the file of each square.
+    /// Reads the file of each tile with `read`.
     ///
     /// # Errors
     ///
-    /// If the name of the file has no mark for the number of a square, and those of `read`.
+    /// If the file name has no placeholder for the number of a tile, and the errors of `read`.
     pub(super) fn read<T>(
         &self,
         path: &Path,
@@ -183,13 +184,13 @@ impl Sheet {
         paths.iter().map(|path| read(path)).collect()
     }
 
-    /// Columns and rows of a texture.
+    /// Columns and rows of the texture of a tile.
     pub(super) fn size(&self) -> [u32; 2] {
         self.size
     }
 }
 
-/// A texture in a border of the texels at its sides.
+/// Adds a border that repeats the outermost texels of a texture.
 fn bordered<T: Copy + Send + Sync>(raster: &Raster<T>) -> Result<Raster<T>> {
     let size = raster.size().map(|side| side.saturating_add(2 * BORDER));
     let inside = |at: u32| i64::from(at) - i64::from(BORDER);
@@ -213,7 +214,7 @@ mod tests {
             Raster::from_fn([6, 4], value).unwrap()
         };
         let tiles = [100, 500, 900].map(tile);
-        // The sides of squares, too.
+        // Include corners on the sides of a tile.
         let local = [[0.0, 0.0], [1.0, 0.0], [0.3, 1.0]].map(DVec2::from_array);
         let firsts = [[0.0, 0.0], [3.0, 0.0], [1.0, -2.0]].map(DVec2::from_array);
         let uvs = firsts.map(|first| local.map(|uv| uv + first));
