@@ -93,7 +93,7 @@ pub(crate) struct Args {
 ///
 /// # Errors
 ///
-/// Errors of options, images and files.
+/// Invalid options, images and files.
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let mut job = Job::new(context, "blend", &args.image.files);
     let outputs = claim(args, &mut job)?;
@@ -103,7 +103,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let mut materials = read.collect::<Result<Vec<_>>>()?;
     reader.agree(&args.layers, &mut materials)?;
     if outputs.len() > materials[0].maps.len() {
-        // The heights are written as a map, too.
+        // Write the heights as a map, too.
         for material in &mut materials {
             let height = material.height.clone().map(Map::Value);
             material.maps.extend(height);
@@ -113,7 +113,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let tile = tile(args, &mut reader)?;
     let weights = layer::weights(&materials, materials[0].maps[0].size())?;
     let mut layers = Vec::new();
-    // The first layer of the library lies where the tile is lowest, which is where the upper layers begin.
+    // Reverse the order: the library shows its first layer where the tile is lowest, where the top layer shall begin.
     for (material, weight) in materials.iter().zip(&weights).rev() {
         layers.push(Layer {
             maps: &material.maps,
@@ -138,14 +138,14 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     drop(progress);
     let is_deep = materials.iter().any(|material| material.is_deep);
     for (map, output) in maps.into_iter().zip(outputs) {
-        // The alpha is that of the first map.
+        // The alpha belongs to the first map.
         job.write_with_alpha(output, map, cover.take(), is_deep, &args.image)?;
     }
     job.finish(args, Value::Null)?;
     Ok(Exit::Done)
 }
 
-/// Claims an output for each map, and in a folder for the heights, too, if all layers have one.
+/// Claims an output for each map. In a directory, the heights get an output, too, if all layers have heights.
 fn claim(args: &Args, job: &mut Job<'_>) -> Result<Vec<OutputIdx>> {
     let names = args.layers[0].map_names();
     for layer in &args.layers[1..] {
@@ -170,7 +170,8 @@ fn claim(args: &Args, job: &mut Job<'_>) -> Result<Vec<OutputIdx>> {
     job.claim_images(&targets, args.image.format)
 }
 
-/// Reads the blend tile, in the size of the blend.
+/// Reads the blend tile, repeated or cropped to the size of the blend. Unless `--plain-tile` is given, its values
+/// become ranks.
 fn tile(args: &Args, reader: &mut Reader<'_>) -> Result<Option<Raster<f32>>> {
     let Some(path) = &args.tile else {
         return Ok(None);

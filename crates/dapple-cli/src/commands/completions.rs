@@ -1,4 +1,4 @@
-//! `dapple completions`: shell completions.
+//! `dapple completions`: prints shell completions.
 
 use crate::cli::Cli;
 use crate::error::Exit;
@@ -24,7 +24,7 @@ pub(crate) struct Args {
     shell: Shell,
 }
 
-/// Prints the script.
+/// Prints the completion script.
 ///
 /// # Errors
 ///

@@ -1,4 +1,4 @@
-//! `dapple copies`: maps of varied copies of tiles.
+//! `dapple copies`: covers a map with varied copies of tiles.
 
 mod method;
 
@@ -86,7 +86,7 @@ pub(crate) struct Args {
 ///
 /// # Errors
 ///
-/// Errors of options, images and files.
+/// Invalid options, images and files.
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let method = args.method.method(args.images.len(), args.tiles)?;
     let names = names(args)?;
@@ -117,7 +117,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
             Clear::NOT_WRAPPED,
         );
         for (map, output) in maps.into_iter().zip(&mut outputs) {
-            // The alpha is that of the first map.
+            // The alpha belongs to the first map.
             job.write_with_alpha(output, map, cover.take(), is_deep, &args.image)?;
         }
     }
@@ -125,7 +125,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     Ok(Exit::Done)
 }
 
-/// The names of the maps, which all tiles must have; the height is the last.
+/// The names of the maps, height last. Fails unless all tiles have the same maps.
 fn names(args: &Args) -> Result<Vec<&str>> {
     let of = |tile: &LayerArg| -> Vec<String> {
         let height = tile.has_height().then_some(HEIGHT);
@@ -156,7 +156,7 @@ fn names(args: &Args) -> Result<Vec<&str>> {
     Ok(first.map_names().into_iter().chain(height).collect())
 }
 
-/// Claims an output for each map of each tile of a set; a map has a set of one tile without a name.
+/// Claims an output for each map of each tile in `sets`. A whole map is a set of one tile with an empty name.
 fn claim(
     args: &Args,
     sets: &[String],
@@ -180,8 +180,8 @@ fn claim(
     job.claim_images(&targets, args.image.format)
 }
 
-/// The maps of all tiles, with the height and then alpha last; the form of alpha, and whether an image has more than 8
-/// bits.
+/// Reads the maps of all tiles, height and then alpha last. Also returns the form of alpha, and whether an image has
+/// more than 8 bits per channel.
 fn read(args: &Args) -> Result<(Vec<Vec<Map>>, AlphaForm, bool)> {
     let mut reader = Reader::new(
         None,

@@ -77,11 +77,11 @@ dapple::raster::named! {
     }
 }
 
-/// The findings about a file.
+/// The description of a file.
 pub(super) struct Findings {
-    /// The findings as text.
+    /// The description as text.
     text: String,
-    /// The findings as JSON.
+    /// The description as JSON.
     json: Value,
     /// Whether `--check` passes.
     is_good: bool,
@@ -127,7 +127,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
 }
 
 impl Args {
-    /// The output of the findings: standard output by default.
+    /// The output; standard output by default.
     fn target(&self) -> Result<Target> {
         let ending = match self.format {
             Some(Format::Text) => "txt",
@@ -140,7 +140,7 @@ impl Args {
     }
 }
 
-/// Seam reports as JSON, with their verdict.
+/// Seam reports as JSON, with their faults and whether they pass.
 pub(super) fn seams_json(reports: &SeamReports) -> Value {
     let of_channel = |of: &ChannelReport| {
         let faults = of.report.faults().into_iter();
@@ -152,6 +152,7 @@ pub(super) fn seams_json(reports: &SeamReports) -> Value {
     json!({ "passes": reports.passes(), "faults": faults, "channels": reports.channels() })
 }
 
+/// Describes an image: its channels, its transparency and its seams.
 fn image_findings(path: &Path, args: &Args) -> Result<Findings> {
     let image = match input::numbers(path, args.region) {
         Ok(image) => image,
@@ -212,7 +213,7 @@ fn image_findings(path: &Path, args: &Args) -> Result<Findings> {
     })
 }
 
-/// The findings about an image with too many pixels: what its header says.
+/// Describes an image with too many pixels by its header. Returns `error` if it has another cause.
 fn header_findings(path: &Path, error: Error) -> Result<Findings> {
     let Some(limit) = input::exceeded_limit(&error) else {
         return Err(error);
@@ -237,7 +238,7 @@ fn header_findings(path: &Path, error: Error) -> Result<Findings> {
     Ok(Findings {
         text,
         json,
-        // What was not looked at does not pass.
+        // An image whose pixels were not read does not pass.
         is_good: false,
     })
 }

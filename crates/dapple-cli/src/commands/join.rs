@@ -30,9 +30,9 @@ Examples:
 The files are those that `dapple bake` writes of the whole picture, byte for byte. In memory is a row of shards of one map:
 of a picture that is 200000 pixels wide, shards of 2048 x 256 take an eighth of what those of 2048 x 2048 do.";
 
-/// The number of rows of an image that are joined at once.
+/// Number of rows of an image that are joined at a time.
 const BAND: u32 = 64;
-/// The largest number of missing files in a message.
+/// Maximum number of missing files that a message names.
 const NAMED: usize = 5;
 
 /// Join the shards of a picture to one file for each map.
@@ -77,7 +77,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
         return Err(error.hint("use --json, which writes one file for each picture"));
     }
     for frame in Frame::all(list.frames) {
-        // All files are claimed before the work begins.
+        // Check that all files can be claimed before the work begins.
         args.claim(
             &list,
             &kinds,
@@ -97,11 +97,11 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     Ok(Exit::Done)
 }
 
-/// Checks that no file in the folder is missing.
+/// Checks that no file of the list is missing.
 fn check_whole(folder: &Path, list: &List, kinds: &[MapKind]) -> Result<()> {
     let mut named = Vec::new();
     let [mut n_missing, mut n_files] = [0_u64; 2];
-    // The last folder that was looked at, and whether it is there. Without it none of its files is looked for.
+    // The directory of the last row, and whether it exists. If it does not, its files need not be looked for.
     let mut last = (PathBuf::new(), false);
     for Task { frame, shard, .. } in list.tasks()? {
         for &kind in kinds {
@@ -134,7 +134,7 @@ fn check_whole(folder: &Path, list: &List, kinds: &[MapKind]) -> Result<()> {
 }
 
 impl Args {
-    /// Claims a file for each map of a picture.
+    /// Claims a file for each map of a frame.
     fn claim(
         &self,
         list: &List,
@@ -146,7 +146,7 @@ impl Args {
         let part = |kind: &MapKind| format!("{}{number}", kind.name());
         let mut parts: Vec<_> = kinds.iter().map(part).collect();
         if frame.is_some() {
-            // A loop has several files, also for one map.
+            // Add a part, so that the single map of a frame is numbered like the maps of several.
             parts.push(String::new());
         }
         let ending = self.format.map_or("exr", Format::ending);
@@ -165,7 +165,7 @@ impl Args {
         Ok(all)
     }
 
-    /// The format of a map, if it can be made from shards.
+    /// The format of a map. Fails for a format that cannot be made from shards.
     fn format_of(&self, kind: MapKind, target: &Target) -> Result<Format> {
         let asked = match target {
             Target::Stdout => self.format.or(Some(Format::Exr)),
@@ -184,7 +184,7 @@ impl Args {
 }
 
 impl Joined {
-    /// Writes the image row of shards by row of shards.
+    /// Writes the image, one row of shards after another.
     fn write(
         &self,
         folder: &Path,
@@ -202,7 +202,7 @@ impl Joined {
         let mut range = [f32::INFINITY, f32::NEG_INFINITY];
         let mut n_clipped = 0;
         for number in 0..list.grid()?[1] {
-            // Rows and columns that shards share are taken from the upper and the left one.
+            // Take rows and columns that shards share from the upper and from the left shard.
             let shared = if number > 0 { list.overlap } else { 0 };
             let row = list.row(frame, number)?;
             let height = row.first().map_or(0, |task| task.region.size[1]);
@@ -240,7 +240,7 @@ impl Joined {
         Ok(image)
     }
 
-    /// Joins some rows of the picture, from shards side by side.
+    /// Joins rows of the map from the shards of one row of the grid.
     fn band(&self, shards: &[ExrImage], list: &List, rows: Range<u32>) -> Result<MapRows> {
         let size = [list.size[0], rows.end - rows.start];
         let plane = |name: &str| -> Result<Vec<f32>> {
@@ -274,7 +274,8 @@ fn finish(writer: RowWriter<BufWriter<Sink>>) -> Result<()> {
     Ok(writer.finish()?.flush()?)
 }
 
-/// The content of an image of a map. Normals are numbers from 0 to 1 in shards, which are coded to the same codes.
+/// The content type of a joined image. Normals are stored in shards as numbers from 0 to 1, and encoded to the same
+/// codes as normals.
 fn content(kind: MapKind) -> Content {
     match kind.content() {
         Content::Normal => Content::Packed,
@@ -282,7 +283,7 @@ fn content(kind: MapKind) -> Content {
     }
 }
 
-/// The planes of a shard.
+/// The names of the OpenEXR planes of a map's shard.
 fn planes(kind: MapKind) -> &'static [&'static str] {
     match content(kind) {
         Content::Gray => &["Y"],

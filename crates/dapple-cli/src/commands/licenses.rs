@@ -1,10 +1,10 @@
-//! `dapple licenses`: the texts of the licenses of other people's code.
+//! `dapple licenses`: prints the licenses of third-party code.
 
 use crate::error::Exit;
 use crate::job::say;
 use anyhow::Result;
 
-/// The texts of the crates, which `cargo xtask licenses` writes.
+/// The licenses of the crates, written by `cargo xtask licenses`.
 const CRATES: &str = include_str!("../../THIRD-PARTY.txt");
 
 const EXAMPLES: &str = "\

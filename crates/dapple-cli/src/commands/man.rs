@@ -1,4 +1,4 @@
-//! `dapple man`: the manual pages.
+//! `dapple man`: prints or writes the manual pages.
 
 use crate::args::OutputArgs;
 use crate::cli::Cli;
@@ -52,7 +52,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let mut commands = vec![(String::from("dapple"), command.clone())];
     for subcommand in subcommands {
         let name = format!("dapple-{}", subcommand.get_name());
-        // The name has a dash, since a manual page is found by one word.
+        // Join the names by a dash, since a manual page has a name of one word.
         let subcommand = subcommand
             .clone()
             .name(name.clone())
@@ -68,7 +68,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     Ok(Exit::Done)
 }
 
-/// The page of a command; each ends with the exit codes.
+/// Renders the page of a command, with the exit codes at its end.
 fn page(command: Command) -> Result<Vec<u8>> {
     let after = command.get_after_long_help().or(command.get_after_help());
     let after = after.map(ToString::to_string).unwrap_or_default();

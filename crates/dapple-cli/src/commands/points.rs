@@ -92,7 +92,7 @@ dapple::raster::named! {
 ///
 /// # Errors
 ///
-/// Errors of options, images and files.
+/// Invalid options, images and files.
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let target = match &args.output.output {
         Some(_) => (args.output).target("points", args.format.map_or("csv", Format::name))?,
@@ -130,7 +130,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     Ok(Exit::Done)
 }
 
-/// The format in the options, or that of the ending.
+/// The requested format, or else the format of the file extension.
 fn format(args: &Args, target: &Target) -> Result<Format> {
     let by_ending = match target.ending().as_str() {
         "csv" | "txt" => Some(Format::Csv),
@@ -158,7 +158,7 @@ fn csv(scattered: &Scattered) -> String {
     let is_nested = scattered.lengths.len() > 1;
     let mut text = String::from(if is_nested { "x,y,level\n" } else { "x,y\n" });
     for (point, at) in scattered.points.iter() {
-        // The shortest digits that read back as the same number.
+        // Rust prints the shortest digits that parse to the same number.
         text += &format!("{},{}", at.x, at.y);
         if is_nested {
             text += &format!(",{}", scattered.level(point.index()));
@@ -168,7 +168,7 @@ fn csv(scattered: &Scattered) -> String {
     text
 }
 
-/// The points as JSON: the domain, the points, and the number of points in each level.
+/// The points as JSON, with the seed, the domain, the radius, and the number of points up to each level.
 fn json_text(args: &Args, scattered: &Scattered) -> Result<String> {
     let set: &PointSet = &scattered.points;
     let domain = set.domain();

@@ -1,4 +1,4 @@
-//! `dapple pups`: partition-of-unity textures.
+//! `dapple pups`: renders partition-of-unity textures.
 
 mod points;
 
@@ -136,11 +136,11 @@ pub(crate) struct Args {
     image: ImageArgs,
 }
 
-/// Which texture: an index into [`PupsNode::KINDS`].
+/// The kind of a texture, as an index into [`PupsNode::KINDS`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Kind(usize);
 
-/// Textures that have a shorter name on the command line than in recipes.
+/// Names of textures in recipes, with a shorter name on the command line.
 const SHORT_NAMES: [(&str, &str); 3] = [
     ("space_giraffe", "giraffe"),
     ("label_ramp", "ramp"),
@@ -170,7 +170,7 @@ impl Kind {
         with_dashes(short.map_or(name, |(_, short)| short))
     }
 
-    /// The texture with all its defaults, as data.
+    /// The texture with its default options, as JSON.
     fn defaults(self) -> Result<Value> {
         let texture = PupsNode::of_kind(self.in_recipes());
         Ok(texture.map_or(Ok(Value::Null), |texture| texture.to_json())?)
@@ -195,11 +195,11 @@ impl Serialize for Kind {
     }
 }
 
-/// Draws the texture.
+/// Renders the texture.
 ///
 /// # Errors
 ///
-/// Options that the texture does not have or that are out of range, or a file that cannot be read or written.
+/// Options that the texture does not have or that are out of range, and files that cannot be read or written.
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let node = args.node()?;
     let field = Field {
@@ -217,23 +217,25 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     draw(&field, &args.field, &args.image, args, context)
 }
 
-/// The radius of the circles of a loop beside mean distances: points of a Poisson-disk set stay apart.
+/// Default radius of the circles of a loop, as a fraction of the mean distance of neighbors. Points of a Poisson-disk
+/// set remain apart at this radius.
 const MOTION: f64 = 0.25;
 
-/// The shorter side of a picture, in units of the plane: that of the paper's torus.
+/// Default shorter side of the image, in units of the plane: the side of the paper's torus.
 const SIDE: f64 = 2.0;
 
-/// An option of the command line.
+/// An option that was given on the command line, as JSON.
 struct Given {
     option: &'static str,
-    /// The names of what it sets in the options of a texture, of which each texture has one at most.
+    /// The names that the option may have in the options of a texture. A texture has at most one of them.
     names: &'static [&'static str],
     value: Value,
 }
 
 impl Args {
-    /// The texture with what the command line says of it.
+    /// The texture with the options of the command line.
     fn node(&self) -> Result<PupsNode> {
+        // Set each given option in the default options of the texture.
         let kind = self.kind;
         let mut data = kind.defaults()?;
         for given in self.given()? {
@@ -261,7 +263,7 @@ impl Args {
         Ok(PupsNode::from_json(&data)?)
     }
 
-    /// The options of textures that the command line gives.
+    /// The options of textures that were given on the command line.
     fn given(&self) -> Result<Vec<Given>> {
         let points = self.points.as_deref().map(points::read).transpose()?;
         let spacings = self.spacings.map(|Numbers(distances)| distances);
@@ -293,7 +295,7 @@ impl Args {
         Ok(all.into_iter().flatten().collect())
     }
 
-    /// The image that the texture follows, if it follows one.
+    /// Reads the reference image, if the texture needs one.
     fn images(&self, node: &PupsNode) -> Result<Images> {
         let Some(name) = node.image_file() else {
             return Ok(Images::new());
@@ -307,7 +309,7 @@ impl Args {
     }
 }
 
-/// Where in the data of a texture the option of one of these names is, if it has one.
+/// The JSON pointer to an option with one of these names in the options of a texture; `None` if it has no such option.
 fn path(data: &Value, kind: Kind, names: &[&str]) -> Option<String> {
     let kind = kind.in_recipes();
     let parts = ["", "/options", "/net", "/options/net"];
@@ -319,7 +321,7 @@ fn path(data: &Value, kind: Kind, names: &[&str]) -> Option<String> {
     paths.find(|path| data.pointer(path).is_some())
 }
 
-/// The refusal of an option that a texture does not have, with those that have it.
+/// The error for an option that a texture does not have. The hint lists the textures that have it.
 fn not_for(given: &Given, kind: Kind) -> Error {
     let has_it = |&kind: &Kind| {
         kind.defaults()
@@ -330,7 +332,7 @@ fn not_for(given: &Given, kind: Kind) -> Error {
         .hint(format!("it is for {}", others.join(", ")))
 }
 
-/// An option as data, if it is given. Its numbers must be finite.
+/// Converts an option to JSON, if it was given. Fails for NaN and infinite numbers.
 fn given(
     option: &'static str,
     names: &'static [&'static str],
@@ -340,7 +342,7 @@ fn given(
         return Ok(None);
     };
     let value = serde_json::to_value(value)?;
-    // JSON has no form for what is not finite.
+    // Serde writes NaN and infinite numbers as null.
     let parts = value
         .as_array()
         .map_or(slice::from_ref(&value), Vec::as_slice);

@@ -137,7 +137,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
 }
 
 impl Args {
-    /// The format in the options, or that of the ending of the output.
+    /// The requested format, or JSON if the output has its extension; `None` otherwise.
     fn format(&self) -> Option<Text> {
         let is_json = self.files.output.as_deref().is_some_and(is_json);
         self.to
@@ -145,7 +145,7 @@ impl Args {
     }
 }
 
-/// The names of the built-in recipes, with a sentence each.
+/// Prints the names of the built-in recipes, with a sentence about each.
 fn list() -> Result<Exit> {
     let mut lines = Vec::new();
     for name in Recipe::builtin_names() {

@@ -1,4 +1,4 @@
-//! `dapple shards`: lists the commands that bake a picture in shards.
+//! `dapple shards`: lists the commands that bake a recipe in shards.
 
 mod openjd;
 
@@ -100,7 +100,7 @@ pub(crate) struct Args {
 ///
 /// # Errors
 ///
-/// Errors of a recipe that cannot be baked in shards, and of a folder with other shards.
+/// A recipe that cannot be baked in shards, and a directory with a list of other shards.
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     if args.recipe == "-" {
         let error = usage("shards need a recipe file, since every one of them reads it again");
@@ -152,7 +152,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     Ok(Exit::Done)
 }
 
-/// Fails where the bake of a shard would fail.
+/// Prepares the bake of a shard, and fails if this fails.
 fn check(plan: &Plan, args: &Args, region: Option<Region>) -> Result<()> {
     let options = BakeOptions {
         size: args.material.size.0,
@@ -167,7 +167,7 @@ fn check(plan: &Plan, args: &Args, region: Option<Region>) -> Result<()> {
     Ok(())
 }
 
-/// Writes a shell command for each shard, with the options of the bakes.
+/// Writes a shell command for each shard. `options` are the options of all bakes.
 fn lines(args: &Args, options: &[String], list: &List, out: &mut impl Write) -> Result<()> {
     let output = text_of_path(&args.output)?;
     for Task { frame, shard, .. } in list.tasks()? {
@@ -182,7 +182,7 @@ fn lines(args: &Args, options: &[String], list: &List, out: &mut impl Write) -> 
     Ok(())
 }
 
-/// Writes the list with all shards as a document.
+/// Writes the list with all shards as a JSON document.
 fn json(list: &List, maps: &[MapKind], out: &mut impl Write) -> Result<()> {
     let document = Document {
         list,
@@ -192,6 +192,7 @@ fn json(list: &List, maps: &[MapKind], out: &mut impl Write) -> Result<()> {
     Ok(out.write_all(b"\n")?)
 }
 
+/// The list of shards as a JSON document.
 #[derive(Serialize)]
 struct Document<'a> {
     #[serde(flatten)]
@@ -199,7 +200,7 @@ struct Document<'a> {
     shards: Entries<'a>,
 }
 
-/// The shards of a list, each of which is created when it is written.
+/// The shards of a list, generated during serialization, so that a list of any length takes no memory.
 struct Entries<'a> {
     list: &'a List,
     maps: &'a [MapKind],
@@ -234,7 +235,7 @@ impl Serialize for Entries<'_> {
     }
 }
 
-/// A path as text, if it is valid UTF-8.
+/// A path as text. Fails unless it is valid UTF-8.
 fn text_of_path(path: &Path) -> Result<&str> {
     path.to_str().ok_or_else(|| {
         usage(format!(
@@ -244,7 +245,7 @@ fn text_of_path(path: &Path) -> Result<&str> {
     })
 }
 
-/// A word quoted for shells.
+/// Quotes a word for a POSIX shell, if necessary.
 fn quoted(word: &str) -> String {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "_-./,:=+@%".contains(c);
     if !word.is_empty() && word.chars().all(is_plain) {

@@ -1,4 +1,4 @@
-//! `dapple studio`: a page to make recipes in.
+//! `dapple studio`: serves the recipe editor in the browser.
 
 use super::bake;
 use crate::args::FiniteArgs;
@@ -34,7 +34,7 @@ images are read from the recipe's folder, and recipes are written only when they
 A forwarded port (ssh, containers) needs no option: open the printed address with that port. Give
 --public-url where a proxy has a name of its own. Keep the address to yourself: it opens the page.";
 
-/// The warning of a program that was built without the page.
+/// The warning for a program that was built without the page of the editor.
 const NO_PAGE: &str = "warning: this program was built without the page: `cargo xtask studio` in the repository of dapple builds \
     both, with Node";
 
@@ -80,11 +80,11 @@ pub(crate) struct PageArgs {
     dist: Option<PathBuf>,
 }
 
-/// Runs it until it is interrupted.
+/// Runs the subcommand until it is interrupted.
 ///
 /// # Errors
 ///
-/// If there is no such recipe, or the port is taken.
+/// If the recipe does not exist, or the port is in use.
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let recipe = args.recipe.as_deref();
     args.page.serve(recipe, Mode::Studio, args.finite, context)
@@ -95,7 +95,7 @@ impl PageArgs {
     ///
     /// # Errors
     ///
-    /// If there is no such recipe, or the port is taken.
+    /// If the recipe does not exist, or the port is in use.
     pub(crate) fn serve(
         &self,
         recipe: Option<&str>,
@@ -126,7 +126,7 @@ impl PageArgs {
             if !has_page {
                 eprintln_if_possible(NO_PAGE);
             }
-            // Where nobody reads it, the browser has it.
+            // Ignore errors: if standard output is closed, the browser still has the address.
             let _ = say(url);
         });
         told.map_err(advise)?;
@@ -134,7 +134,7 @@ impl PageArgs {
     }
 }
 
-/// An error of the studio with its hint.
+/// Converts an error of the studio, with its hint.
 fn advise(error: StudioError) -> Error {
     let hint = error.hint().map(str::to_owned);
     let error = Error::new(error);
@@ -144,7 +144,8 @@ fn advise(error: StudioError) -> Error {
     }
 }
 
-/// The name of a recipe as a page opens it, and its folder.
+/// The name by which the page opens a recipe, and the directory of the recipe. Built-in recipes have an empty
+/// directory.
 fn place(name: &str) -> Result<(Option<String>, PathBuf)> {
     let path = Path::new(name);
     let builtin = with_dashes(name);
@@ -167,7 +168,7 @@ fn place(name: &str) -> Result<(Option<String>, PathBuf)> {
     Ok((file, path.parent().unwrap_or(Path::new("")).to_owned()))
 }
 
-/// Reads images and makes files as the other commands do.
+/// The host of the studio: reads images and bakes files as the other subcommands do.
 struct Bakes {
     context: Context,
     finite: FiniteArgs,
@@ -207,7 +208,7 @@ impl Host for Bakes {
 }
 
 impl Bakes {
-    /// The files that `dapple bake` makes of a recipe.
+    /// Bakes a recipe to a temporary directory with the code of `dapple bake`, and returns the files.
     #[expect(
         clippy::disallowed_methods,
         reason = "what a bake has written is read for the page"
@@ -240,7 +241,8 @@ impl Bakes {
     }
 }
 
-/// The options of `dapple bake` that an export stands for. Each is one word, whatever it holds.
+/// The options of `dapple bake` for an export. Each option is one word, `--NAME=VALUE`, so that its value cannot be
+/// parsed as another option.
 fn words(export: &Export) -> Vec<String> {
     let mut words = Vec::new();
     let mut add = |name: &str, value: Option<String>| {
@@ -265,7 +267,7 @@ fn words(export: &Export) -> Vec<String> {
     words
 }
 
-/// An error as a page tells it.
+/// Converts an error to a message for the page.
 fn told(error: Error) -> StudioError {
     StudioError::new(format!("{error:#}"))
 }

@@ -85,7 +85,7 @@ pub(crate) struct Args {
     image: ImageArgs,
 }
 
-/// An image, its name, and the output of its tile.
+/// An image, its name, and the outputs of its tile and of the sheet.
 struct Source {
     name: String,
     loaded: Loaded,
@@ -96,14 +96,14 @@ struct Source {
 ///
 /// # Errors
 ///
-/// Errors of options, images and files.
+/// Invalid options, images and files.
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     args.method.check_used()?;
     let mut job = Job::new(context, "tile", &args.image.files);
     let sources = sources(args, &mut job)?;
     let progress = Progress::spinner("making it repeat", context);
     let maps = sources.iter().map(|source| source.loaded.map.clone());
-    // Alpha is one more map with the same cut.
+    // Treat the alpha channels as further maps with the same cut.
     let alphas = sources
         .iter()
         .filter_map(|source| source.loaded.alpha.clone());
@@ -149,7 +149,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     })
 }
 
-/// Reads all images, after their outputs were claimed.
+/// Claims the outputs, and reads all images.
 fn sources(args: &Args, job: &mut Job<'_>) -> Result<Vec<Source>> {
     let images = args.images.iter().map(|path| (path, Kind::ByChannels));
     let normals = args.normal.iter().map(|path| (path, Kind::Normals));
@@ -176,7 +176,7 @@ fn sources(args: &Args, job: &mut Job<'_>) -> Result<Vec<Source>> {
     Ok(sources)
 }
 
-/// Claims the tiles of images, and their sheets; no files for a report only.
+/// Claims the outputs of tiles and their sheets; none if only a report was requested.
 fn claim(paths: &[&Path], args: &Args, job: &mut Job<'_>) -> Result<Vec<[Option<OutputIdx>; 2]>> {
     let files = &args.image.files;
     if files.output.is_none() && (args.report || args.check) {
@@ -192,14 +192,14 @@ fn claim(paths: &[&Path], args: &Args, job: &mut Job<'_>) -> Result<Vec<[Option<
     };
     let mut outputs = Vec::new();
     for (stem, target) in stems.iter().zip(targets.files) {
-        // In a folder, tiles keep the names of their images unless another was given.
+        // In a directory, tiles have the names of their images, unless `--name` is given.
         let target = match files.folder(paths.len()) {
             Some(folder) if files.name.is_none() => {
                 Target::Path(folder.join(format!("{stem}.{}", args.image.ending())))
             }
             _ => target,
         };
-        // An invalid ending fails before the work, whatever the map will be.
+        // Refuse an invalid extension before the work. The default format does not matter here.
         Format::choose(args.image.format, &target, Format::Png16)?;
         let output = job.claim(&target)?;
         let sheet = match args.sheet {
@@ -212,7 +212,7 @@ fn claim(paths: &[&Path], args: &Args, job: &mut Job<'_>) -> Result<Vec<[Option<
     Ok(outputs)
 }
 
-/// The name of a file without its ending.
+/// The file name without its extension; `tile` for standard input.
 fn stem(path: &Path) -> String {
     match path.file_stem() {
         Some(stem) if path != Path::new("-") => stem.to_string_lossy().into_owned(),
@@ -220,20 +220,21 @@ fn stem(path: &Path) -> String {
     }
 }
 
-/// The map of an image, by its name: `normal` for `rock_normal`.
+/// The name of the map in a file name: `normal` for `rock_normal`.
 fn map_of(stem: &str) -> &str {
     stem.rsplit_once('_').map_or(stem, |(_, map)| map)
 }
 
-/// The tiles of all maps, made by a method.
+/// The tiles of all maps, made by one method.
 struct Made {
     candidate: Candidate,
     tiles: Vec<Map>,
-    /// The reports of all maps, if they were made to choose the method.
+    /// The seam reports of all maps; empty unless they were needed to choose the method.
     reports: Vec<SeamReports>,
 }
 
-/// Makes the tiles by the only method, or by the one with the best reports among those that can be used.
+/// Makes the tiles by a single candidate, or by each candidate, and returns the tiles with the best [`Rank`].
+/// Candidates that fail are skipped, unless all fail.
 fn best(args: &Args, maps: &[Map], mut candidates: Vec<Candidate>) -> Result<Made> {
     let axes = args.wrap.flags();
     let make = |candidate: Candidate| -> Result<Made> {
@@ -279,11 +280,11 @@ fn best(args: &Args, maps: &[Map], mut candidates: Vec<Candidate>) -> Result<Mad
     }
 }
 
-/// The order of tiles, the best first: those that pass come before others.
+/// The quality of tiles; smaller is better. Tiles that pass come before tiles that fail.
 #[derive(PartialEq, PartialOrd)]
 struct Rank {
     fails: bool,
-    /// The badness of the worst channel, and the part of the finest octave that it has lost.
+    /// Maximum over all channels of the badness plus the lost fraction of the finest octave.
     cost: f64,
 }
 
@@ -310,7 +311,8 @@ fn options(args: &Args, candidate: &Candidate) -> SeamOptions {
     }
 }
 
-/// Prints the requested reports, and makes missing ones; returns them as JSON, and whether all tiles pass.
+/// Makes the reports if they are needed, and prints them if requested. Returns them as JSON, and whether all tiles
+/// pass.
 fn reports(
     args: &Args,
     sources: &[Source],
@@ -351,12 +353,12 @@ fn reports(
     Ok((Value::Array(all), passes))
 }
 
-/// A map twice beside and twice below itself.
+/// A sheet of 2 × 2 copies of a map.
 fn doubled(map: &Map) -> Result<Map> {
     Ok(map_raster!(map, raster => twice(raster)?))
 }
 
-/// A raster twice beside and twice below itself.
+/// A sheet of 2 × 2 copies of a raster.
 fn twice<T: Copy + Send + Sync>(raster: &Raster<T>) -> Result<Raster<T>> {
     let size = raster.size().map(|side| side.saturating_mul(2));
     Ok(repeat(raster, size)?)

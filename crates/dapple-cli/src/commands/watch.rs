@@ -1,4 +1,4 @@
-//! `dapple watch`: bakes a recipe at every save.
+//! `dapple watch`: bakes a recipe each time it is saved.
 
 use super::bake;
 use crate::baking::read_recipe;
@@ -21,7 +21,7 @@ With -o each save is baked small first, so that something can be seen at once, a
 
 /// The longer side of the first bake after a save, in pixels.
 const SMALL: u32 = 256;
-/// Time between two looks at the files.
+/// Interval at which the files are checked for changes.
 const LOOK: Duration = Duration::from_millis(60);
 
 /// Bake a recipe again at every save of it or of its images, small first.
@@ -41,7 +41,7 @@ pub(crate) struct Args {
 ///
 /// # Errors
 ///
-/// If there is no file to watch, or the first files cannot be written.
+/// If the recipe is not a single file, or the first bake fails.
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let recipe = args.bake.only_file()?;
     #[cfg(feature = "studio")]
@@ -54,7 +54,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let mut may_replace = args.bake.may_replace();
     loop {
         let files = files_of(recipe);
-        // Before they are read: what is written from now on is a change.
+        // Note the state of the files before they are read, so that later writes count as changes.
         let mut changes = FileChanges::new(&files);
         for &size in &sizes {
             match bake::run(&args.bake.at(size, may_replace), context) {
@@ -78,10 +78,10 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     }
 }
 
-/// The files of a recipe: its own, and its images.
+/// The files to watch: the recipe, and its images.
 fn files_of(recipe: &Path) -> Vec<PathBuf> {
     let mut files = vec![recipe.to_owned()];
-    // The images of a recipe that cannot be read are not known yet.
+    // Without a valid recipe, its images are unknown.
     if let Ok((content, folder)) = read_recipe(&recipe.to_string_lossy()) {
         let images = content.image_files();
         files.extend(images.into_iter().map(|file| folder.join(file)));

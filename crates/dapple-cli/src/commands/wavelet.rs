@@ -1,4 +1,4 @@
-//! `dapple wavelet`: wavelet noise.
+//! `dapple wavelet`: renders wavelet noise.
 
 use crate::args::{ImageArgs, Size};
 use crate::error::{Exit, Hint, usage};
@@ -96,10 +96,10 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     draw(&field, &args.field, &args.image, args, context)
 }
 
-/// The smallest number of cells along an axis on which noise repeats.
+/// Minimum number of cells along an axis on which noise repeats.
 const FEWEST_CELLS: f64 = 4.0;
 
-/// Checks that the numbers of cells along the sides can repeat; the hint lists numbers that can.
+/// Checks that the noise can repeat with these numbers of cells along the sides. The hint lists numbers that can.
 fn check_cells(cells: [f64; 2], repeats: [bool; 2], size: Size) -> Result<()> {
     let holds =
         |axis: usize| !repeats[axis] || (cells[axis] >= FEWEST_CELLS && cells[axis] % 2.0 == 0.0);
@@ -114,9 +114,9 @@ fn check_cells(cells: [f64; 2], repeats: [bool; 2], size: Size) -> Result<()> {
     Err(usage(message).hint(other_cells(cells, size)))
 }
 
-/// The hint with numbers of cells that repeat.
+/// A hint with the nearest numbers of cells that can repeat.
 fn other_cells(cells: [f64; 2], size: Size) -> String {
-    // Along the shorter side, multiples of this give whole even numbers along both.
+    // Multiples of `step` along the shorter side give whole even numbers along both sides.
     let [width, height] = size.0;
     let step = f64::from(2 * (width.min(height) / greatest_common_divisor(width, height)));
     let shorter = cells[0].min(cells[1]);

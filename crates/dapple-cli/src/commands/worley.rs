@@ -1,4 +1,4 @@
-//! `dapple worley`: Worley's cellular basis.
+//! `dapple worley`: renders Worley's cellular basis.
 
 use crate::args::{Extent, ImageArgs, Numbers};
 use crate::error::{Exit, Hint};
@@ -25,7 +25,7 @@ Examples:
 Values are distances in cells. In PNG the range that 998 of 1000 places have becomes black to
 white, measured over the texture and not over the picture; --range says otherwise.";
 
-/// The help of `--value`.
+/// The help text of `--value`.
 const VALUE: &str = "\
 The value that is drawn: f1, f2, f3, f4, f2_minus_f1, f1_plus_f2, f3_minus_f1, f3_minus_f2, f4_minus_f1, f4_minus_f3, \
 2f3_minus_f2_minus_f1, cell_value (a random gray for each cell), or edge_distance";
@@ -34,7 +34,7 @@ The value that is drawn: f1, f2, f3, f4, f2_minus_f1, f1_plus_f2, f3_minus_f1, f
 #[derive(clap::Args, Debug, Serialize)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Args {
-    // Written as a constant, since a doc comment would need markup around the names.
+    // The help is a constant, since names in a doc comment would need markup.
     #[arg(long, value_name = "VALUE", default_value = "f1",
         help = VALUE, value_parser = value, help_heading = "Texture")]
     value: WorleyValue,
@@ -199,9 +199,10 @@ impl Args {
         })
     }
 
-    /// The range that becomes black to white, measured on a texture with the same options over very many cells.
+    /// The range of values that becomes black to white, measured on a texture with the same options over very many
+    /// cells.
     fn range(&self, node: &WorleyNode) -> Result<[f32; 2]> {
-        /// The number of positions at which values are measured.
+        /// Number of positions at which values are measured.
         const N: u32 = 20_000;
         let WorleyValue::Combination(combination) = node.value else {
             return Ok([0.0, 1.0]);

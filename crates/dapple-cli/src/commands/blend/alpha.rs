@@ -1,4 +1,4 @@
-//! Alpha in a blend: colors are mixed premultiplied by alpha, so that transparent pixels add no color.
+//! Alpha in a blend: colors are mixed premultiplied by alpha, so that transparent pixels contribute no color.
 
 use super::layer::Material;
 use crate::input::divided;
@@ -7,18 +7,18 @@ use dapple::color::LinearRgb;
 use dapple::raster::Raster;
 use dapple::tile::Map;
 
-/// The form of the colors beside alpha, once they are mixed.
+/// The relation of the mixed colors to alpha.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::commands) enum AlphaForm {
-    /// There is no alpha.
+    /// The image has no alpha.
     None,
-    /// Alpha is divided out, as in PNG.
+    /// Straight colors, as in PNG.
     Straight,
-    /// Alpha stays multiplied into the colors, since a layer is of OpenEXR, where light may cover nothing.
+    /// Colors multiplied by alpha, since a layer is an OpenEXR image, where pixels with alpha 0 may emit light.
     Associated,
 }
 
-/// Multiplies alpha into the first maps, and adds it as the last map of every layer, if any layer has alpha.
+/// If any layer has alpha, multiplies the first map of each layer by its alpha, and appends the alpha as the last map.
 pub(in crate::commands) fn multiply(materials: &mut [Material]) -> Result<AlphaForm> {
     if materials.iter().all(|material| material.alpha.is_none()) {
         return Ok(AlphaForm::None);
@@ -40,7 +40,7 @@ pub(in crate::commands) fn multiply(materials: &mut [Material]) -> Result<AlphaF
     Ok(form)
 }
 
-/// Removes alpha from the end of the maps, and gives the first the form.
+/// Removes the alpha from the end of the maps, and converts the first map to the form.
 pub(in crate::commands) fn take(
     maps: &mut Vec<Map>,
     form: AlphaForm,

@@ -16,7 +16,7 @@ use std::str::FromStr;
 /// The name of the first map of a layer.
 const BASE: &str = "base";
 
-/// The name of the map that is a layer's height.
+/// The name of the map with the height of a layer.
 pub(in crate::commands) const HEIGHT: &str = "height";
 
 /// A layer on the command line.
@@ -24,7 +24,7 @@ pub(in crate::commands) const HEIGHT: &str = "height";
 pub(in crate::commands) struct LayerArg {
     path: PathBuf,
     weight: Option<Weight>,
-    /// The other maps by name, in order; [`HEIGHT`] and `normal` are special.
+    /// The other maps, sorted by name; [`HEIGHT`] and `normal` have a special meaning.
     maps: Vec<(String, PathBuf)>,
 }
 
@@ -36,18 +36,18 @@ enum Weight {
     Mask(PathBuf),
 }
 
-/// A layer with its images.
+/// A layer with its images, as read.
 #[derive(Debug)]
 pub(in crate::commands) struct Material {
     /// The maps, in the order of their names.
     pub(in crate::commands) maps: Vec<Map>,
     /// The alpha of the first map, if it is kept.
     pub(in crate::commands) alpha: Option<Raster<f32>>,
-    /// Whether alpha is multiplied into the first map.
+    /// Whether the first map is associated: multiplied by alpha.
     pub(in crate::commands) is_associated: bool,
     /// The height of the layer.
     pub(in crate::commands) height: Option<Raster<f32>>,
-    /// Whether an image has more than 8 bits.
+    /// Whether an image has more than 8 bits per channel.
     pub(in crate::commands) is_deep: bool,
     weight: Option<ReadWeight>,
 }
@@ -108,7 +108,7 @@ impl LayerArg {
         self.maps.iter().any(|(name, _)| name == HEIGHT)
     }
 
-    /// The names of the maps, without the height.
+    /// The names of the maps, except the height.
     pub(in crate::commands) fn map_names(&self) -> Vec<&str> {
         let others = self.maps.iter().map(|(name, _)| name.as_str());
         let others: Vec<_> = others.filter(|name| *name != HEIGHT).collect();
@@ -119,7 +119,7 @@ impl LayerArg {
     ///
     /// # Errors
     ///
-    /// If one cannot be read.
+    /// If an image cannot be read.
     pub(in crate::commands) fn read(&self, reader: &mut Reader<'_>) -> Result<Material> {
         let base = reader.read(&self.path, Kind::ByChannels)?;
         let (mut maps, mut height, mut is_deep) = (vec![base.map], None, base.is_deep);
@@ -154,7 +154,7 @@ impl LayerArg {
         })
     }
 
-    /// The files of the maps that are blended, in the order of their names.
+    /// The files of the maps, except the height, in the order of [`map_names`](Self::map_names).
     fn map_paths(&self) -> impl Iterator<Item = &Path> {
         let others = self.maps.iter().filter(|(name, _)| name != HEIGHT);
         let others = others.map(|(_, path)| path.as_path());
@@ -162,23 +162,24 @@ impl LayerArg {
     }
 }
 
-/// A reader of the images of all layers, which have one size in the end.
+/// Reads the images of all layers, and brings them to one size.
 #[derive(Debug)]
 pub(in crate::commands) struct Reader<'a> {
-    /// The size to which images are repeated or cropped.
+    /// The size to which images are repeated or cropped, if given.
     size: Option<Size>,
-    /// The handling of alpha.
+    /// How alpha is handled.
     alpha: Alpha,
-    /// The options of reading.
+    /// The options for reading images.
     read: &'a ReadArgs,
-    /// The first image that was read, and its size.
+    /// The path and size of the first image, for the check of sizes.
     first: Option<(PathBuf, [u32; 2])>,
     /// The hint for images of different sizes.
     hint: &'static str,
 }
 
 impl<'a> Reader<'a> {
-    /// A reader for images of a size, or of the size of the first image, with a hint for images of another size.
+    /// Makes a reader that repeats or crops images to `size`. Without `size`, all images must have the size of the
+    /// first one; the error for another size has this hint.
     pub(in crate::commands) fn new(
         size: Option<Size>,
         alpha: Alpha,
@@ -198,7 +199,7 @@ impl<'a> Reader<'a> {
     ///
     /// # Errors
     ///
-    /// If it cannot be read, or has another size.
+    /// If the image cannot be read, or has another size than the first one.
     pub(in crate::commands) fn read(&mut self, path: &Path, kind: Kind) -> Result<Loaded> {
         let mut loaded = input::map_with_alpha(path, kind, None, self.alpha, self.read)?;
         if let Some(size) = self.size {
@@ -216,7 +217,7 @@ impl<'a> Reader<'a> {
     ///
     /// # Errors
     ///
-    /// The errors of [`read`](Self::read); and if it is partly transparent and alpha is kept.
+    /// The errors of [`read`](Self::read); and if the image is partly transparent and its alpha is kept.
     pub(in crate::commands) fn read_opaque(&mut self, path: &Path, kind: Kind) -> Result<Loaded> {
         let loaded = self.read(path, kind)?;
         if loaded.alpha.is_some() {
@@ -229,11 +230,11 @@ impl<'a> Reader<'a> {
         Ok(loaded)
     }
 
-    /// Reads gray maps again as color if another layer has color.
+    /// Reads gray maps again as colors if the same map of another layer has colors.
     ///
     /// # Errors
     ///
-    /// If one cannot be read.
+    /// If an image cannot be read.
     pub(in crate::commands) fn agree(
         &mut self,
         layers: &[LayerArg],
@@ -256,7 +257,7 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// The weight of each layer at every pixel. Layers without a weight share the rest of 1.
+/// The weight of each layer at every pixel. Layers without a weight share equally what the others leave of 1.
 ///
 /// # Errors
 ///
@@ -285,7 +286,7 @@ pub(in crate::commands) fn weights(
         .collect())
 }
 
-/// The numbers of a map, or the luminance of a color map.
+/// The values of a map: for colors the luminance, for normals the z component.
 pub(in crate::commands) fn values(map: Map) -> Raster<f32> {
     match map {
         Map::Value(values) => values,
@@ -294,8 +295,7 @@ pub(in crate::commands) fn values(map: Map) -> Raster<f32> {
     }
 }
 
-/// Splits the text into the image before the first `,key=`, and the keys with their values. Other commas belong to file
-/// names.
+/// Splits a text at each `,key=` into the image and the pairs of keys and values. Other commas are part of file names.
 fn split(text: &str) -> (String, Vec<(String, String)>) {
     let mut parts = text.split(',');
     let mut path = parts.next().unwrap_or_default().to_owned();
@@ -315,6 +315,7 @@ fn split(text: &str) -> (String, Vec<(String, String)>) {
     (path, pairs)
 }
 
+/// Whether a text has only the characters of a key: ASCII letters, `_` and `-`.
 fn is_key(key: &str) -> bool {
     !key.is_empty()
         && key
@@ -322,13 +323,13 @@ fn is_key(key: &str) -> bool {
             .all(|byte| byte.is_ascii_alphabetic() || b"_-".contains(&byte))
 }
 
-/// Fails for a key that looks like a misspelled option; other keys are names of maps.
+/// Fails for a key that is similar to a known one; all other keys are names of maps.
 fn check_key(key: &str) -> Result<(), String> {
     let maps = MapKind::ALL.into_iter().map(MapKind::name);
     slip("key", key, ["weight"].into_iter().chain(maps)).map_or(Ok(()), Err)
 }
 
-/// Parses a number, or the name of a mask.
+/// Parses a weight: a number, or the file of a mask.
 fn weight(text: &str) -> Result<Weight, String> {
     match text.parse::<f32>() {
         Ok(number) if number >= 0.0 && number.is_finite() => Ok(Weight::Number(number)),
@@ -337,7 +338,7 @@ fn weight(text: &str) -> Result<Weight, String> {
     }
 }
 
-/// A map in another size: repeated, or cropped.
+/// Repeats or crops a map to a size.
 fn repeated(map: &Map, size: Size) -> Result<Map> {
     let context = "the images cannot be repeated";
     Ok(map_raster!(map, raster => repeat(raster, size.0).context(context)?))

@@ -1,4 +1,4 @@
-//! The weighting and the mixing of `dapple blend`.
+//! The options for weighting and mixing of `dapple blend`.
 
 use crate::args::Axes;
 use crate::error::{Hint, usage};
@@ -68,11 +68,12 @@ pub(super) struct MixingArgs {
 }
 
 impl MixingArgs {
-    /// The options of the blend; the default weighting depends on the inputs.
+    /// The options of the blend. The default weighting is mask with a blend tile, otherwise height if a layer has a
+    /// height, otherwise the given weights.
     ///
     /// # Errors
     ///
-    /// If an option has no effect.
+    /// If an option has no effect, or the mask weighting lacks a blend tile.
     pub(super) fn blend(&self, has_tile: bool, has_heights: bool) -> Result<Blend> {
         let weighting = self.weighting.unwrap_or(match (has_tile, has_heights) {
             (true, _) => WeightingName::Mask,

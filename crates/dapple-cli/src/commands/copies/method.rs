@@ -1,4 +1,4 @@
-//! The methods of `dapple copies`, and the options that each of them takes.
+//! The methods of `dapple copies`, and their options.
 
 use crate::error::{Hint, usage};
 use crate::words::NamedValueParser;
@@ -7,7 +7,7 @@ use dapple::hash::Seed;
 use dapple::tile::{BorderSource, CornerTiles, Disturbance, Map, MatchBorders, TileError};
 use serde::Serialize;
 
-/// The largest number of tiles for corners.
+/// Maximum number of tiles for the method `corners`.
 const CORNERS_MAX: usize = 4;
 
 dapple::raster::named! {
@@ -57,7 +57,7 @@ pub(super) struct MethodArgs {
     share: Option<f64>,
 }
 
-/// A method with its options; those whose default depends on the tiles may be missing.
+/// A method with its options. An option is `None` if its default depends on the tiles.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Method {
     Disturb {
@@ -74,7 +74,7 @@ pub(super) enum Method {
 }
 
 impl MethodArgs {
-    /// The method for a number of tiles, for a map or for the tiles themselves.
+    /// The method for `count` tiles, which writes a map or, with `writes_tiles`, the tiles themselves.
     ///
     /// # Errors
     ///
@@ -113,7 +113,7 @@ impl MethodArgs {
         }
     }
 
-    /// Fails for options of other methods, which would have no effect.
+    /// Fails for an option of another method, which would have no effect.
     fn check_used(&self, method: Name) -> Result<()> {
         for (option, is_given, used_by) in [
             ("frozen", self.frozen.is_some(), Name::Disturb),
@@ -132,7 +132,7 @@ impl MethodArgs {
 }
 
 impl Method {
-    /// The names of the tiles of a set from `count` tiles.
+    /// The names of the tiles in the set that is made from `count` tiles, in the order of [`Tiles::tiles`].
     pub(super) fn tile_names(self, count: usize) -> Vec<String> {
         let Self::Corners { .. } = self else {
             return (1..=count).map(|tile| tile.to_string()).collect();
@@ -144,7 +144,7 @@ impl Method {
     }
 }
 
-/// A method, and the maps of its tiles, at least one.
+/// A method, and the maps of its tiles; at least one tile.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Tiles<'a> {
     pub(super) method: Method,
@@ -170,7 +170,7 @@ impl Tiles<'_> {
                 disturbance.render_maps(&self.materials[0], [0, 0], size)
             }
             Method::Corners { share } => {
-                // Maps of whole tiles repeat.
+                // Let the map repeat along each axis along which it is a whole number of tiles.
                 let side = self.materials[0][0].size();
                 let period = [0, 1].map(|axis| {
                     let tiles = size[axis] / side[axis];
@@ -227,7 +227,7 @@ mod tests {
         let names = Method::Corners { share: 0.5 }.tile_names(3);
         assert_eq!(names.len(), 81);
         assert_eq!(names[..4], ["1111", "2111", "3111", "1211"]);
-        // The order of the library: a + b C + c C² + d C³.
+        // The library counts corners as digits: a + b C + c C² + d C³.
         assert_eq!(names[2 + 3 + 27], "3212");
     }
 }

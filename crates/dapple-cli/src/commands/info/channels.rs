@@ -1,4 +1,4 @@
-//! The channels of an image in its file, and their statistics.
+//! The channels of an image as stored in its file, and their statistics.
 
 use crate::input::Content;
 use anyhow::Result;
@@ -9,12 +9,12 @@ use serde::Serialize;
 use serde_json::{Value, json};
 use std::fmt;
 
-/// The number of parts of a histogram.
+/// Number of bins of a histogram.
 const BINS: u32 = 24;
-/// The bars of a histogram, from an empty part to the fullest.
+/// The bars of a histogram, from an empty bin to the fullest.
 const BARS: [char; 9] = [' ', '▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
 
-/// The smallest width of the column of names.
+/// Minimum width of the column of names, in characters.
 const NAME_MIN: usize = 9;
 
 const GRAY: [&str; 1] = ["gray"];
@@ -29,12 +29,12 @@ pub(super) struct Channel {
 }
 
 impl Channel {
-    /// The number of pixels that are NaN or infinite.
+    /// Number of pixels that are NaN or infinite.
     pub(super) fn n_not_finite(&self) -> usize {
         self.values.statistics().n_not_finite
     }
 
-    /// The statistics as JSON. Numbers that are not finite become null.
+    /// The statistics as JSON. NaN and infinite numbers become null.
     pub(super) fn to_json(&self) -> Value {
         let statistics = self.values.statistics();
         json!({
@@ -52,13 +52,13 @@ impl Channel {
             .count()
     }
 
-    /// The number of pixels in each part of the range.
+    /// Number of pixels in each bin, from the minimum to the maximum.
     fn histogram(&self) -> Vec<usize> {
         let statistics = self.values.statistics();
         let finite = self.values.pixels().iter().copied();
         let finite: Vec<_> = finite.filter(|value| value.is_finite()).collect();
         let length = u32::try_from(finite.len()).unwrap_or(u32::MAX);
-        // Without a finite pixel there is no raster, and the histogram is zero.
+        // Without a finite pixel, no raster can be made, and all bins are 0.
         Raster::from_vec([length, 1], finite).map_or_else(
             |_| vec![0; BINS as usize],
             |values| values.histogram(statistics.min, statistics.max, BINS),
@@ -70,14 +70,14 @@ impl Channel {
         let counts = self.histogram();
         let most = counts.iter().copied().max().unwrap_or(0).max(1);
         let bar = |&count: &usize| {
-            // A count above 0 has a visible bar.
+            // Round up, so that a count above 0 has a visible bar.
             let height = (count * (BARS.len() - 1)).div_ceil(most);
             BARS[height]
         };
         counts.iter().map(bar).collect()
     }
 
-    /// The line of the table, whose first column is as wide as the longest name.
+    /// The line of the channel in the table. `width` is the width of the column of names.
     fn line(&self, width: usize) -> String {
         let statistics = self.values.statistics();
         let [min, max] = [statistics.min, statistics.max].map(f64::from);
@@ -100,11 +100,11 @@ impl Channel {
     }
 }
 
-/// The channels of an image, uncoded as in the file.
+/// The channels of an image, with codes converted to 0 to 1 but no color space applied.
 ///
 /// # Errors
 ///
-/// If the channels have no known names.
+/// If an image of another format cannot be converted to colors.
 pub(super) fn channels(content: &Content) -> Result<Vec<Channel>> {
     Ok(match content {
         Content::Raw(codes) => split(&codes.map(|&code| [code]), GRAY),
@@ -142,7 +142,7 @@ pub(super) fn channels(content: &Content) -> Result<Vec<Channel>> {
     })
 }
 
-/// The format of an image, in words.
+/// The format of an image as text.
 pub(super) fn format(content: &Content) -> String {
     let image = match content {
         Content::Raw(_) => return "raw heights of 16 bits".to_owned(),
@@ -168,12 +168,12 @@ pub(super) fn format(content: &Content) -> String {
     }
 }
 
-/// The transparent parts of an image, as fractions of its pixels.
+/// The amount of transparency of an image, as fractions of its pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub(super) struct Transparency {
-    /// The fraction with an alpha of 0.
+    /// The fraction of pixels with alpha 0 or less.
     fully: f64,
-    /// The fraction with an alpha between 0 and 1.
+    /// The fraction of pixels with an alpha between 0 and 1.
     partly: f64,
 }
 
@@ -190,7 +190,7 @@ impl fmt::Display for Transparency {
     }
 }
 
-/// The transparent parts of an image, if it has alpha.
+/// The transparency of an image; `None` without an alpha channel.
 pub(super) fn transparency(channels: &[Channel]) -> Option<Transparency> {
     let alpha = channels
         .iter()
@@ -205,7 +205,7 @@ pub(super) fn transparency(channels: &[Channel]) -> Option<Transparency> {
     })
 }
 
-/// A line for each channel, below a header; each begins with a line end.
+/// A table with a header and a line for each channel. Each line begins with a line feed.
 pub(super) fn table(channels: &[Channel]) -> String {
     let names = channels.iter().map(|channel| channel.name.chars().count());
     let width = names.max().unwrap_or(0).max(NAME_MIN);
@@ -220,7 +220,7 @@ pub(super) fn table(channels: &[Channel]) -> String {
     table
 }
 
-/// A number in at most 11 characters: with four decimals, or with a power of ten if these show nothing or too much of it.
+/// Formats a number in at most 11 characters: with four decimals from 0.001 to 10,000, otherwise in exponential form.
 fn number(number: f64) -> String {
     let size = number.abs();
     if size != 0.0 && size.is_finite() && !(1e-3..1e4).contains(&size) {

@@ -1,4 +1,4 @@
-//! The content of a mesh, and its faults.
+//! The description of a mesh: its content and its faults.
 
 use super::Findings;
 use crate::input;
@@ -8,7 +8,7 @@ use dapple::points::glam::DVec3;
 use serde_json::{Value, json};
 use std::path::Path;
 
-/// The findings about a mesh.
+/// Describes a mesh.
 ///
 /// # Errors
 ///
@@ -62,6 +62,7 @@ pub(super) fn findings(path: &Path) -> Result<Findings> {
     })
 }
 
+/// The counts of a mesh report, with their names.
 fn counts(report: &MeshReport) -> [(&'static str, usize); 12] {
     [
         ("vertices", report.vertices),
@@ -88,7 +89,7 @@ fn counts(report: &MeshReport) -> [(&'static str, usize); 12] {
     ]
 }
 
-/// The corners of the bounding box, if the mesh has a vertex.
+/// The corners of the bounding box with the smallest and the largest coordinates; `None` without vertices.
 fn bounds(model: &Model) -> Option<[DVec3; 2]> {
     let positions = model.mesh.positions();
     let (&first, rest) = positions.split_first()?;
@@ -96,7 +97,7 @@ fn bounds(model: &Model) -> Option<[DVec3; 2]> {
     Some(rest.iter().fold([first; 2], grow))
 }
 
-/// The names of the attributes besides positions.
+/// The names of the attributes and textures of a model, except positions.
 fn columns(model: &Model) -> Vec<&'static str> {
     let material = &model.material;
     let all = [

@@ -1,4 +1,4 @@
-//! Pictures of points: a dot for each, in the color of its level.
+//! Images of point sets: a dot for each point, in the color of its level.
 
 use super::scatter::Scattered;
 use crate::args::{RampArg, Size};
@@ -9,18 +9,18 @@ use dapple::points::Domain;
 use dapple::points::glam::DVec2;
 use dapple::raster::Raster;
 
-/// The longest side of a picture, in pixels.
+/// Maximum side of an image, in pixels.
 const SIDE_MAX: u32 = 1 << 14;
-/// The default radius of a dot, as a fraction of the mean distance.
+/// Default radius of a dot, as a fraction of the mean distance of points.
 const DOT: f64 = 0.25;
-/// The smallest default radius, in pixels, so that a dot is visible.
+/// Minimum default radius of a dot, in pixels, so that it is visible.
 const DOT_MIN: f64 = 0.6;
 
-/// Draws the picture, as large as fits into `size` with square pixels.
+/// Draws the points. The image is the largest that fits into `size` with square pixels.
 ///
 /// # Errors
 ///
-/// If it is too large, or a dot has no size.
+/// If `size` is too large, or the radius of a dot is not above 0.
 pub(super) fn picture(
     scattered: &Scattered,
     size: Size,
@@ -57,7 +57,7 @@ pub(super) fn picture(
     Ok(picture)
 }
 
-/// The background, and the colors of the levels: at least one.
+/// The color of the background, followed by the colors of the levels; at least one.
 fn colors(ramp: Option<&RampArg>, n_levels: usize) -> Vec<LinearRgb> {
     match ramp.map(|ramp| ramp.colors.as_slice()) {
         Some(colors) if colors.len() > 1 => colors.to_vec(),
@@ -67,7 +67,7 @@ fn colors(ramp: Option<&RampArg>, n_levels: usize) -> Vec<LinearRgb> {
     }
 }
 
-/// The shifts of copies of the domain that reach into it.
+/// The shifts of the copies of a wrapping domain whose dots may reach into it.
 fn shifts(domain: &Domain) -> impl Iterator<Item = DVec2> {
     let steps = |axis: usize| if domain.wrap[axis] { -1..=1 } else { 0..=0 };
     let (columns, rows, size) = (steps(0), steps(1), domain.size);
@@ -77,7 +77,7 @@ fn shifts(domain: &Domain) -> impl Iterator<Item = DVec2> {
     })
 }
 
-/// Draws a disk with a soft edge, as far as it lies in the picture; `center` and `radius` are in pixels.
+/// Draws the part of an antialiased disk that is within the image. `center` and `radius` are in pixels.
 fn draw(picture: &mut Raster<LinearRgb>, center: DVec2, radius: f64, color: LinearRgb) {
     let [columns, rows] = [0, 1].map(|axis| {
         let side = f64::from(picture.size()[axis]);

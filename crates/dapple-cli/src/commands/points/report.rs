@@ -6,7 +6,7 @@ use dapple::points::{EmptyCircle, PointSet, Spectrum, SpectrumOptions, spectrum}
 use serde_json::{Value, json};
 use std::fmt;
 
-/// The frequency, in units of sqrt(N / area), below which a set without clumps has hardly any power.
+/// Upper limit of low frequencies, in units of sqrt(N / area). A blue-noise set has hardly any power below it.
 const LOW: f64 = 0.5;
 
 /// The measurements of a point set.
@@ -16,7 +16,7 @@ pub(super) struct Report {
     radius: Option<f64>,
     least_distance: Option<f64>,
     empty_circle: Option<EmptyCircle>,
-    /// The number of points per square of the radius, if there is a radius.
+    /// Number of points per square of the radius, if there is a radius.
     density: Option<f64>,
     spectrum: Option<Spectrum>,
 }
@@ -26,7 +26,7 @@ impl Report {
     ///
     /// # Errors
     ///
-    /// None for points of this command.
+    /// Never for points that this command scatters.
     pub(super) fn of(scattered: &Scattered) -> Result<Self> {
         let points: &PointSet = &scattered.points;
         let options = SpectrumOptions::default();
@@ -39,7 +39,7 @@ impl Report {
             density: scattered
                 .radius
                 .map(|radius| points.normalized_density(radius)),
-            // Very many points have no spectrum in a reasonable time; the other measurements still hold.
+            // Leave out the spectrum of a set that is too large for it.
             spectrum: spectrum(core::slice::from_ref(points), &options).ok(),
         })
     }

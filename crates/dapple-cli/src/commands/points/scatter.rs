@@ -20,9 +20,9 @@ use std::path::PathBuf;
 use std::str::FromStr;
 use std::sync::Arc;
 
-/// The default number of points.
+/// Default number of points.
 const COUNT: u32 = 1000;
-/// The largest number of columns and rows at which the density of an image is read.
+/// Maximum number of columns and rows at which the density of an image is sampled.
 const PLACES_MAX: u32 = 2048;
 
 dapple::raster::named! {
@@ -123,14 +123,14 @@ pub(super) struct ScatterArgs {
 #[derive(Debug)]
 pub(super) struct Scattered {
     pub(super) points: PointSet,
-    /// The number of points in each level and the ones before; a single number for points without levels.
+    /// For each level, the number of points up to this level; a single number for points without levels.
     pub(super) lengths: Vec<usize>,
-    /// The smallest distance, if there is one.
+    /// Minimum distance of points, if there is one.
     pub(super) radius: Option<f64>,
 }
 
 impl Scattered {
-    /// The level of a point, 0 the coarsest.
+    /// The level of a point; 0 is the coarsest.
     pub(super) fn level(&self, index: usize) -> usize {
         self.lengths.partition_point(|&length| length <= index)
     }
@@ -141,7 +141,7 @@ impl ScatterArgs {
     ///
     /// # Errors
     ///
-    /// If an option does not belong to the kind, or has a bad value.
+    /// If an option belongs to another kind, or is out of range.
     pub(super) fn scatter(&self) -> Result<Scattered> {
         self.check_used()?;
         let Extent([width, height]) = self.domain;
@@ -189,7 +189,7 @@ impl ScatterArgs {
         let radii = if self.radii.is_empty() {
             let finest = poisson_disk_radius(domain, count).map_err(advise)?;
             let n_levels = self.levels.unwrap_or(3);
-            // Twice the radius gives a quarter of the points.
+            // Double the radius from level to level, which gives a quarter of the points.
             let radius = |level| finest * f64::from(1_u32 << (n_levels - 1 - level));
             (0..n_levels).map(radius).collect()
         } else {
@@ -203,7 +203,7 @@ impl ScatterArgs {
         })
     }
 
-    /// The radius that follows the density.
+    /// The radius as a function of position that gives the density of the options.
     fn variable_radius(&self, domain: Domain, count: u32) -> Result<Varying> {
         let (from, end) = (domain.origin, domain.end());
         let path = match &self.density {
@@ -245,7 +245,7 @@ impl ScatterArgs {
         radius.map_err(advise).with_context(|| input::name(path))
     }
 
-    /// Fails for options of other kinds, which would have no effect.
+    /// Fails for an option of another kind, which would have no effect.
     fn check_used(&self) -> Result<()> {
         let given = [
             ("radius", self.radius.is_some(), Kind::Poisson),
@@ -267,7 +267,7 @@ impl ScatterArgs {
     }
 }
 
-/// An image, or the values at the left and at the right.
+/// A density: an image, or a ramp with values at the left and at the right.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 enum Density {
@@ -300,7 +300,7 @@ fn flat(points: PointSet, radius: Option<f64>) -> Scattered {
     }
 }
 
-/// The columns and rows of nearly square cells, about as many as the number of points.
+/// Columns and rows of a grid of about `count` nearly square cells.
 fn square_cells(domain: Domain, count: u32) -> [u32; 2] {
     let side = (domain.area() / f64::from(count)).sqrt();
     let along = |length: f64| ((length / side + 0.5).floor().max(1.0)) as u32;

@@ -11,7 +11,7 @@ use std::path::Path;
 ///
 /// # Errors
 ///
-/// If there is no such file, or a line is no control point; the message names the line.
+/// If the file does not exist, or has an invalid line. The message names the line.
 pub(crate) fn read(path: &Path) -> Result<Vec<ControlPoint>> {
     let text = input::text(path)?;
     let points = if text.trim_start().starts_with('[') {
@@ -26,10 +26,10 @@ pub(crate) fn read(path: &Path) -> Result<Vec<ControlPoint>> {
     Ok(points)
 }
 
-/// The columns of a control point, without and with an orientation.
+/// The columns of CSV, without and with an orientation.
 const FORMS: [&[&str]; 2] = [&["x", "y", "value"], &["x", "y", "value", "ox", "oy"]];
 
-/// The points of CSV.
+/// Parses control points in CSV.
 fn csv(text: &str) -> Result<Vec<ControlPoint>> {
     let rows = parse_table(text, &FORMS)?.into_iter();
     rows.map(|row| point(&row)).collect()
@@ -37,7 +37,7 @@ fn csv(text: &str) -> Result<Vec<ControlPoint>> {
 
 fn point(row: &TableRow) -> Result<ControlPoint> {
     let TableRow { line, numbers, .. } = row;
-    // Values are in single precision.
+    // Refuse numbers that overflow in single precision, in which values are stored.
     if let Some(number) = numbers.iter().find(|&&number| !(number as f32).is_finite()) {
         bail!("line {line}: {number:e} is too large");
     }

@@ -1,4 +1,4 @@
-//! A job template of Open Job Description.
+//! Job templates of Open Job Description, for render farms.
 //!
 //! Reference: Open Job Description, *Template Schemas*, `jobtemplate-2023-09`, <https://github.com/OpenJobDescription>.
 
@@ -9,10 +9,10 @@ use anyhow::{Context as _, Result};
 use serde::Serialize;
 use std::path::{Component, Path, absolute};
 
-/// The largest number of letters in the name of a job.
+/// Maximum number of characters in the name of a job.
 const NAME_MAX: usize = 128;
 
-/// A job: its parameters, and the step that bakes.
+/// A job template: its parameters, and its step, which bakes.
 #[derive(Serialize)]
 #[serde(rename_all = "camelCase")]
 pub(super) struct Template {
@@ -22,7 +22,7 @@ pub(super) struct Template {
     steps: [Step; 1],
 }
 
-/// A parameter that the user may change when the job is submitted.
+/// A job parameter, which the user may change when the job is submitted.
 #[derive(Serialize)]
 #[serde(rename_all = "camelCase")]
 struct Parameter {
@@ -44,14 +44,14 @@ struct Step {
     script: Script,
 }
 
-/// A task for each combination of the values.
+/// The parameter space of a step: one task for each combination of the values.
 #[derive(Serialize)]
 #[serde(rename_all = "camelCase")]
 struct Space {
     task_parameter_definitions: Vec<Range>,
 }
 
-/// A parameter of tasks that takes all whole numbers of a range.
+/// A task parameter that takes all whole numbers of a range.
 #[derive(Serialize)]
 struct Range {
     name: &'static str,
@@ -77,12 +77,12 @@ struct Action {
     args: Vec<String>,
 }
 
-/// A job with a task for each shard, with the given options of the bakes. The recipe, the folder and the command are
-/// parameters.
+/// Makes a job template with a task for each shard. `options` are the options of all bakes. The recipe, the output
+/// directory and the command are job parameters.
 ///
 /// # Errors
 ///
-/// If a path is not in UTF-8.
+/// If a path is not valid UTF-8.
 pub(super) fn template(args: &Args, options: Vec<String>, list: &List) -> Result<Template> {
     let [columns, rows] = list.grid()?;
     let mut ranges = vec![range("Column", 0, columns - 1), range("Row", 0, rows - 1)];
@@ -135,7 +135,7 @@ fn range(name: &'static str, first: u32, last: u32) -> Range {
     }
 }
 
-/// The parameter of the recipe: a file, or the name of a built-in one.
+/// The job parameter of the recipe: the path of a file, or the name of a built-in recipe.
 fn recipe(typed: &str) -> Result<Parameter> {
     match Path::new(typed).is_file() {
         true => path("Recipe", ["FILE", "IN"], Path::new(typed)),
@@ -143,8 +143,9 @@ fn recipe(typed: &str) -> Result<Parameter> {
     }
 }
 
-/// A parameter with the path of a file or folder, which a farm may map. Templates allow such paths only below their own
-/// folder, which is assumed to be the current one. Other paths are strings, the same on every machine.
+/// A job parameter with the path of a file or directory, which a farm may map to other machines. Templates allow such
+/// paths only below their own directory, which is assumed to be the current one. Other paths become absolute and are
+/// passed as strings, which must be valid on every machine.
 fn path(name: &'static str, what: [&'static str; 2], path: &Path) -> Result<Parameter> {
     let is_below = |part: Component<'_>| matches!(part, Component::Normal(_) | Component::CurDir);
     if path.components().all(is_below) {
@@ -160,7 +161,7 @@ fn path(name: &'static str, what: [&'static str; 2], path: &Path) -> Result<Para
     Ok(string(name, text_of_path(&path)?))
 }
 
-/// A string parameter.
+/// A job parameter of type string.
 fn string(name: &'static str, default: &str) -> Parameter {
     Parameter {
         name,

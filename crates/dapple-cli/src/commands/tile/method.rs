@@ -11,18 +11,18 @@ use dapple::tile::{
 use dapple::wavelet::{Degree, Phase};
 use serde::Serialize;
 
-/// The entry of a method.
+/// The table row of a method.
 struct Row {
     name: &'static str,
     /// The help text of the method.
     about: &'static str,
     /// The options of the method, without `--`.
     options: &'static [&'static str],
-    /// Makes the method with its options, for images of a size.
+    /// Builds the method from the options, for images of a size.
     make: fn(&MethodArgs, [u32; 2]) -> How,
 }
 
-/// All methods.
+/// The table of all methods.
 const METHODS: [Row; 8] = [
     Row {
         name: "periodic",
@@ -79,22 +79,22 @@ const METHODS: [Row; 8] = [
     },
 ];
 
-/// How a tile is made.
+/// The way a tile is made.
 pub(super) enum How {
-    /// By one of the methods that change pixels.
+    /// By a method of `dapple-tile`.
     Seamless(Method),
-    /// By synthesis of a strip.
+    /// By re-synthesis of a strip along the seam.
     Synth(Resynthesis),
 }
 
-/// Options of a synthesis of the strip along a seam.
+/// Options of the re-synthesis of a strip along the seam.
 pub(super) struct Resynthesis {
-    /// The width of the strip, in pixels; nothing for 3/16 of the shorter side.
+    /// Width of the strip, in pixels; 3/16 of the shorter side by default.
     pub(super) margin: Option<u32>,
     pub(super) seed: Seed,
 }
 
-/// The name of the method that takes much longer than all others.
+/// The name of the re-synthesis, which takes much longer than all other methods.
 const SYNTH: &str = "synth";
 
 /// The name of the default method.
@@ -103,10 +103,10 @@ const SOFT_CUT: &str = "soft-cut";
 /// The name that selects the best of all methods.
 const AUTO: &str = "auto";
 
-/// The options of splines.
+/// The options of the spline methods.
 const PROJECT_OPTIONS: &[&str] = &["levels", "basis", "phase", "pixels"];
 
-/// Parses the name of a method.
+/// A parser of the names of methods.
 fn method() -> NamedValueParser<&'static str> {
     let auto = NamedValueParser::none().or(
         AUTO,
@@ -118,17 +118,17 @@ fn method() -> NamedValueParser<&'static str> {
         .fold(auto, |words, row| words.or(row.name, row.about, row.name))
 }
 
-/// A method with its options.
+/// A method with its options, which may be tried.
 pub(super) struct Candidate {
     /// The name of the method on the command line.
     pub(super) name: String,
     pub(super) how: How,
-    /// The distance in pixels, along each axis, of boundaries of the tile that are like its wrap.
+    /// For each axis, the distance between boundaries of the tile that are comparable to its wrap, in pixels.
     pub(super) lattice: [u32; 2],
 }
 
 impl Candidate {
-    /// Whether the candidate is tried only where no other passes.
+    /// Whether the candidate is tried only if no other candidate passes.
     pub(super) fn is_last_resort(&self) -> bool {
         matches!(self.how, How::Synth(_))
     }
@@ -148,13 +148,13 @@ impl Candidate {
     }
 }
 
-/// Parses the basis functions of a tile.
+/// A parser of the basis functions of spline tiles.
 fn basis() -> NamedValueParser<Basis> {
     let splines = NamedValueParser::<Degree>::all().map(Basis::Spline);
     splines.or("sines", "Sines and cosines", Basis::Sines)
 }
 
-/// The default margin: that of the library, if the image has room for it.
+/// The default margin, in pixels: the default of the library, but at most a quarter of the shorter side.
 fn default_margin(size: [u32; 2]) -> u32 {
     let shorter = size[0].min(size[1]);
     SoftCut::default().margin.min((shorter / 4).max(1))
@@ -211,8 +211,8 @@ pub(super) struct MethodArgs {
 }
 
 impl MethodArgs {
-    /// The method with its options for images of a size; if the best is to be found, the methods to try, with the one
-    /// that is tried only where no other passes at the end.
+    /// The method with its options, for images of a size. For `auto`, all methods to try; the last resort is the last
+    /// one.
     pub(super) fn candidates(&self, size: [u32; 2]) -> Vec<Candidate> {
         let candidates_of = |is_wanted: &dyn Fn(&str) -> bool| -> Vec<Candidate> {
             let wanted = METHODS.iter().filter(|row| is_wanted(row.name));
@@ -223,8 +223,8 @@ impl MethodArgs {
         if !self.is_auto() {
             return candidates_of(&|name| name == self.method);
         }
-        // Poisson with a zero gradient equals the periodic part. A mirror, and a crossfade with the image moved by half, show
-        // two pictures in one all over the tile, whatever a report of the seam says.
+        // Leave out `poisson` with a zero gradient, which equals `periodic`. Leave out `mirror`, and `feather` without
+        // a margin, which superimpose two images over the whole tile; a report of the seam does not see this.
         let mut candidates =
             candidates_of(&|name| ![SYNTH, "poisson", "feather", "mirror"].contains(&name));
         let margin = default_margin(size);
@@ -237,12 +237,12 @@ impl MethodArgs {
             format!("feather --margin {margin}"),
             How::Seamless(Method::Feather(Feather::Margin { margin, crossfade })),
         ));
-        // Synthesis takes seconds where all others take moments.
+        // Try re-synthesis last: it takes seconds, and all others take moments.
         candidates.extend(candidates_of(&|name| name == SYNTH));
         candidates
     }
 
-    /// Whether the best of all methods is to be found.
+    /// Whether the best method is chosen automatically.
     pub(super) fn is_auto(&self) -> bool {
         self.method == AUTO
     }
@@ -282,11 +282,11 @@ impl MethodArgs {
         }
     }
 
-    /// Fails for options of other methods, which would have no effect.
+    /// Fails for an option of another method, which would have no effect.
     ///
     /// # Errors
     ///
-    /// If there is such an option.
+    /// If such an option was given.
     pub(super) fn check_used(&self) -> Result<()> {
         let given = [
             ("margin", self.margin.is_some()),
