@@ -1,4 +1,4 @@
-//! Tiles whose seam is synthesized.
+//! The method `synth` of `dapple tile`: re-synthesizes a strip along the seam.
 
 use super::method::Resynthesis;
 use crate::encode::map_raster;
@@ -9,18 +9,21 @@ use core::ops::ControlFlow;
 use dapple::synth::{Edges, Exemplar, Options, SynthError, tile_plane};
 use dapple::tile::Map;
 
-/// The longest side that is matched. Larger images are made smaller for it, and their tiles copy them as they are.
+/// Maximum side of the exemplar for matching, in pixels. Larger images are reduced for matching; their tiles copy
+/// blocks
+/// of the original pixels.
 const MOST: u32 = 512;
 
-/// The shortest side that is matched on one level more.
+/// Minimum shorter side of the exemplar, in pixels, for which matching uses four levels instead of three.
 const LARGE: u32 = 384;
 
-/// Makes tiles of maps, all with the same sources.
+/// Makes a tile of each map, all with the same sources of pixels.
 ///
 /// # Errors
 ///
-/// Those of the library.
+/// The errors of the synthesis.
 pub(super) fn tiles(maps: &[Map], axes: [bool; 2], how: &Resynthesis) -> Result<Vec<Map>> {
+    // Reduce the exemplar to the maximum side.
     let exemplar = exemplar(maps)?;
     let [width, height] = exemplar.size();
     let factor = width.max(height).div_ceil(MOST);
@@ -40,6 +43,7 @@ pub(super) fn tiles(maps: &[Map], axes: [bool; 2], how: &Resynthesis) -> Result<
         ControlFlow::Continue(())
     });
     let texture = texture.map_err(advise)?;
+    // Transfer the original pixels of each map.
     let size = size.map(|side| side * factor);
     let tile = |map: &Map| -> Result<Map> {
         Ok(map_raster!(map, raster => texture.transfer(&raster.crop([0; 2], size)?)?))
@@ -47,7 +51,7 @@ pub(super) fn tiles(maps: &[Map], axes: [bool; 2], how: &Resynthesis) -> Result<
     maps.iter().map(tile).collect()
 }
 
-/// The exemplar of a material: all channels of its maps.
+/// The exemplar of a material: the channels of all its maps.
 fn exemplar(maps: &[Map]) -> Result<Exemplar> {
     let mut exemplars = maps.iter().map(|map| exemplar_of(map, Edges::Cut));
     let Some(first) = exemplars.next() else {
@@ -57,7 +61,7 @@ fn exemplar(maps: &[Map]) -> Result<Exemplar> {
     Ok(joined?)
 }
 
-/// Adds a hint to errors of sizes.
+/// Adds a hint to an error, which is about a size.
 fn advise(error: SynthError) -> Error {
     Error::new(error)
         .hint("take a larger image, or another --margin")
