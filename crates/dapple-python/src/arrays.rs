@@ -14,17 +14,17 @@ use numpy::{
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 
-/// Loads NumPy with its tables of functions, which the first array would load otherwise: a signal that comes then, after
-/// long work, would make that array a panic.
+/// Loads NumPy and its function tables. Otherwise the first array would load them, and a signal that arrives then,
+/// after long work, would cause a panic.
 pub(crate) fn load(py: Python<'_>) -> Result<()> {
     py.import("numpy")?;
     let array = numpy::PyArray1::<f32>::zeros(py, 0, false);
-    // Borrows are counted in a table that all packages share.
+    // Also load the table of borrows, which all packages share.
     drop(array.try_readwrite().map_err(PyErr::from)?);
     Ok(())
 }
 
-/// Values as an array of a shape, without a copy.
+/// Converts values to an array of a shape, without a copy.
 pub(crate) fn array<'py, T: Element>(
     py: Python<'py>,
     values: Vec<T>,
@@ -35,7 +35,7 @@ pub(crate) fn array<'py, T: Element>(
     Ok(array.into_pyarray(py).into_any())
 }
 
-/// An array of a shape whose values are written by `fill`, in parts: a new one, or `out`.
+/// Fills an array of a shape by `fill`: a new array, or `out`, which must be float32, of this shape, and in C order.
 pub(crate) fn filled<'py>(
     py: Python<'py>,
     shape: &[usize],
@@ -80,12 +80,12 @@ pub(crate) fn filled<'py>(
 
 /// Allocates zeros; fails if there is not enough memory.
 fn zeros(count: usize) -> Result<Vec<f32>> {
-    // Zeros are pages that the system has not touched yet, and the reservation does not touch them either.
+    // Try a reservation first, which can fail. Neither it nor the zeroed allocation touches the memory pages.
     reserve(&mut Vec::new(), count)?;
     Ok(vec![0.0; count])
 }
 
-/// Reserves memory for `count` numbers; fails if there is not enough.
+/// Reserves memory for `count` numbers; fails if there is not enough memory.
 pub(crate) fn reserve(values: &mut Vec<f32>, count: usize) -> Result<()> {
     values.try_reserve_exact(count).map_err(|_| {
         let message = format!("there is no memory for {count} numbers");
@@ -93,13 +93,13 @@ pub(crate) fn reserve(values: &mut Vec<f32>, count: usize) -> Result<()> {
     })
 }
 
-/// A raster of numbers as an array (rows, columns).
+/// Converts a raster of numbers to an array (rows, columns).
 pub(crate) fn numbers<'py>(py: Python<'py>, raster: Raster<f32>) -> Result<Bound<'py, PyAny>> {
     let [width, height] = raster.size().map(|side| side as usize);
     array(py, raster.into_pixels(), &[height, width])
 }
 
-/// A raster of several numbers a pixel as an array (rows, columns, channels).
+/// Converts a raster with several numbers per pixel to an array (rows, columns, channels).
 pub(crate) fn channels<'py, const N: usize>(
     py: Python<'py>,
     raster: Raster<[f32; N]>,
@@ -114,7 +114,7 @@ pub(crate) fn channels<'py, const N: usize>(
 
 /// Positions from an array of the shape (…, axes).
 pub(crate) struct Positions {
-    /// The coordinates, one position after the other.
+    /// The flat coordinates: all coordinates of a position are adjacent, x first.
     pub(crate) numbers: Vec<f64>,
     /// The shape of the array without its last axis.
     pub(crate) shape: Vec<usize>,
@@ -152,7 +152,7 @@ pub(crate) fn raster(what: &str, data: &Bound<'_, PyAny>) -> Result<Raster<f32>>
     Ok(Raster::from_vec(raster_size(what, array.shape())?, values)?)
 }
 
-/// The columns and rows of an array whose first axes are rows and columns.
+/// Columns and rows of an array whose first axes are rows and columns.
 pub(crate) fn raster_size(what: &str, shape: &[usize]) -> Result<[u32; 2]> {
     let side = |length: usize| {
         u32::try_from(length).map_err(|_| {

@@ -13,7 +13,7 @@ use dapple::wavelet::{Bands, Border, SplineFilter, WaveletError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// A filter from its options.
+/// Reads the options of a filter.
 fn filter(options: Option<&Bound<'_, PyDict>>) -> Result<SplineFilter> {
     data::options_or(
         "options",
@@ -22,7 +22,7 @@ fn filter(options: Option<&Bound<'_, PyDict>>) -> Result<SplineFilter> {
     )
 }
 
-/// Applies a step to each channel, and returns the results as an array.
+/// Applies a function to each channel of an image, and returns the results as an array.
 fn each<'py>(
     py: Python<'py>,
     image: &Bound<'py, PyAny>,

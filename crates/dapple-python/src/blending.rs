@@ -166,7 +166,8 @@ pub(crate) fn blend<'py>(
     layout.python(py, maps)
 }
 
-/// The items of all layers; `None` for a layer without one.
+/// Reads an optional item for each layer, such as a weight; `None` for a layer without the item. Fails unless there is
+/// one entry per layer.
 fn column<'py, T>(
     what: &str,
     data: Option<&Bound<'py, PyAny>>,
@@ -194,7 +195,8 @@ fn column<'py, T>(
     Err(Error::new("count", message))
 }
 
-/// Changes colors by their alpha. Colors are mixed premultiplied, so that transparent pixels add no color.
+/// Changes colors by their alpha. Colors are mixed premultiplied by alpha, so that transparent pixels contribute no
+/// color.
 fn multiply(
     layout: &Layout,
     maps: &mut [Map],

@@ -23,10 +23,10 @@ pub(crate) struct ColorField {
     vectors: Arc<dyn Vectors>,
 }
 
-/// The number of positions that a thread takes at a time.
+/// Number of positions that a thread takes at a time.
 const CHUNK: usize = 1024;
 
-/// Makes the field of a description: a `ColorField` if it has channels, else a `Field`.
+/// Makes the field of a description: a `ColorField` if it has channels, otherwise a `Field`.
 pub(crate) fn object(py: Python<'_>, made: Made) -> Result<Py<PyAny>> {
     let (made, vectors) = threads::run(py, move || {
         let vectors = made.vectors();
@@ -201,7 +201,7 @@ impl ColorField {
 }
 
 impl Made {
-    /// Makes the function of several numbers, or `None` if the description has a single number.
+    /// Makes the function with several numbers at each position; `None` if the description has a single number.
     fn vectors(&self) -> Result<Option<Arc<dyn Vectors>>> {
         let values = match self {
             Self::Pups(made) => made.get()?,

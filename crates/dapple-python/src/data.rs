@@ -1,4 +1,4 @@
-//! Conversion of options from Python to data: dictionaries, lists, strings and numbers, also of NumPy.
+//! Conversion of options from Python objects (dictionaries, lists, strings, numbers, NumPy arrays) to JSON data.
 
 use crate::error::{Error, Result};
 use pyo3::exceptions::PyTypeError;
@@ -7,15 +7,15 @@ use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyMapping, PySequence, PyStrin
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Number, Value};
 
-/// The deepest nesting of data.
+/// Maximum depth of nested data.
 const DEEPEST: usize = 100;
 
-/// Reads options in the form of a recipe; `what` names them in messages.
+/// Reads options in the form in which recipes write them. `what` names the options in error messages.
 pub(crate) fn options<T: DeserializeOwned>(what: &str, data: &Bound<'_, PyAny>) -> Result<T> {
     read(what, value(data)?)
 }
 
-/// Reads options in the form of a recipe, or returns their default if there are none.
+/// Reads options in the form in which recipes write them; returns `default` without data.
 pub(crate) fn options_or<T: DeserializeOwned>(
     what: &str,
     data: Option<&Bound<'_, PyAny>>,
@@ -32,7 +32,7 @@ pub(crate) fn read<T: DeserializeOwned>(what: &str, data: Value) -> Result<T> {
     })
 }
 
-/// A message about a word that is not known, without the words of Rust.
+/// Rewrites a message about an unknown word without the terms of Rust.
 fn in_our_words(message: &str) -> String {
     let parts = ["unknown variant ", "unknown field "].into_iter();
     let Some(rest) = parts.filter_map(|start| message.strip_prefix(start)).next() else {
@@ -42,7 +42,7 @@ fn in_our_words(message: &str) -> String {
         .replacen(", expected ", " is not ", 1)
 }
 
-/// Converts Python data to JSON text, each entry on a line of its own, in the order of the dictionaries.
+/// Converts Python data to JSON text, with each entry on a separate line, in the order of the dictionaries.
 pub(crate) fn text(data: &Bound<'_, PyAny>) -> Result<String> {
     let mut text = String::new();
     write(data, 0, &mut text)?;
@@ -141,7 +141,7 @@ fn list(data: &Bound<'_, PyAny>, depth: usize) -> Result<Value> {
     Ok(Value::Array(items.collect::<Result<_>>()?))
 }
 
-/// Converts numbers of Python and NumPy, and NumPy arrays.
+/// Converts Python and NumPy numbers, and NumPy arrays.
 fn number(data: &Bound<'_, PyAny>, depth: usize) -> Result<Value> {
     if data.hasattr("tolist")? {
         return nested(&data.call_method0("tolist")?, depth + 1);
@@ -167,12 +167,12 @@ fn number(data: &Bound<'_, PyAny>, depth: usize) -> Result<Value> {
     Err(PyTypeError::new_err(message).into())
 }
 
-/// The value with a name, for a kind of values with names.
+/// The value of a type with this name.
 pub(crate) fn named<T: dapple::raster::Named>(what: &str, name: &str) -> Result<T> {
     T::from_name(name).ok_or_else(|| unknown_name(what, name, T::NAMES))
 }
 
-/// The error of a name that is not one of some, with the nearest of them.
+/// The error for an unknown name, with the known names and the nearest of them.
 pub(crate) fn unknown_name(what: &str, name: &str, known: &[&str]) -> Error {
     let message = format!(
         "the {what} is `{name}`, but it must be one of {}",

@@ -10,7 +10,7 @@ use pyo3::exceptions::{PyIsADirectoryError, PyOSError, PyUserWarning, PyValueErr
 use pyo3::prelude::*;
 use std::{io, path::Path};
 
-/// The number of this error in C, on all systems.
+/// The C error number for "is a directory", which is the same on all systems.
 const EISDIR: i32 = 21;
 
 pyo3::create_exception!(
@@ -48,7 +48,7 @@ pub(crate) struct Refusal {
 pub(crate) type Result<T> = core::result::Result<T, Error>;
 
 impl Error {
-    /// An error of the package itself: its kind in lower case, and its message.
+    /// Makes an error of the package itself. The kind is in lower case.
     pub(crate) fn new(kind: &str, message: impl Into<String>) -> Self {
         Self::Refused(Refusal {
             kind: kind.to_owned(),
@@ -58,7 +58,7 @@ impl Error {
         })
     }
 
-    /// This error with another message.
+    /// Replaces the message.
     pub(crate) fn with_message(self, message: String) -> Self {
         match self {
             Self::Refused(refusal) => Self::Refused(Refusal { message, ..refusal }),
@@ -66,7 +66,7 @@ impl Error {
         }
     }
 
-    /// This error with the nearest valid name as a hint.
+    /// Adds the nearest valid name as a hint.
     pub(crate) fn with_near(self, near: Option<String>) -> Self {
         match (self, near) {
             (Self::Refused(refusal), Some(near)) => Self::Refused(Refusal {
@@ -78,14 +78,15 @@ impl Error {
         }
     }
 
-    /// An error of the operating system by its number: a `FileNotFoundError`, `IsADirectoryError`, or another `OSError`.
+    /// Makes the exception for an error number of the operating system: `FileNotFoundError`, `IsADirectoryError`, or
+    /// another `OSError`.
     pub(crate) fn of_system(code: i32, path: Option<&Path>) -> Self {
         Self::Python(Python::attach(|py| {
             let make = || -> PyResult<PyErr> {
-                // Called as a class, since it returns the subclass for the number.
+                // Call the class, which returns an instance of the subclass for the number.
                 let class = py.get_type::<PyOSError>();
                 let error = if cfg!(windows) {
-                    // Windows has numbers of its own, which are the fourth argument; Python finds those of C for them.
+                    // Pass the Windows error number as the fourth argument; Python derives the C error number from it.
                     let text = io::Error::from_raw_os_error(code).to_string();
                     class.call1((0, text, path, code))?
                 } else {
@@ -98,13 +99,13 @@ impl Error {
         }))
     }
 
-    /// The error of a folder where a file is needed, which the library has found without the system.
+    /// The exception for a directory in place of a file, if the library itself has detected it.
     fn of_folder(path: Option<&Path>) -> Self {
         let arguments = (EISDIR, "Is a directory", path.map(Path::to_owned));
         Self::Python(PyIsADirectoryError::new_err(arguments))
     }
 
-    /// An error of a crate; its kind is the name of the enum variant.
+    /// Converts an error of a crate. Its kind is the name of the enum variant, in snake case.
     fn of(kind: &impl core::fmt::Debug, message: &impl ToString) -> Self {
         Self::new(&snake_case(&format!("{kind:?}")), message.to_string())
     }

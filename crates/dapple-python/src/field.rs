@@ -25,13 +25,13 @@ pub(crate) struct Field {
     function: Function,
 }
 
-/// The number of positions that a thread takes at a time.
+/// Number of positions that a thread takes at a time.
 const CHUNK: usize = 4096;
 
-/// The number of values that are computed before the first look for signals.
+/// Number of values that are computed before the first check for signals.
 pub(crate) const FIRST: usize = 1 << 14;
 
-/// The largest number of columns that are rendered at a time.
+/// Maximum number of columns that are rendered at a time.
 const STRIP: u32 = 1 << 17;
 
 impl Field {
@@ -44,7 +44,7 @@ impl Field {
         Ok(Self { made, function })
     }
 
-    /// The function, if it is one of the plane.
+    /// The function; an error unless it has two axes.
     pub(crate) fn plane(&self) -> Result<Arc<dyn dapple::raster::Field>> {
         self.made.plane()
     }
@@ -54,13 +54,13 @@ impl Field {
         self.function.period()
     }
 
-    /// The extent that is shown along each of four axes without a period.
+    /// The default extent along each of four axes, for axes without a period.
     fn shown(&self) -> [f64; 4] {
         let shown = self.made.made().shown();
         [shown[0], shown[1], shown[0], shown[0]]
     }
 
-    /// Writes the values at the pixels of a grid into memory of the right length.
+    /// Writes the values at the pixels of a grid. `values` must have the length of the grid.
     fn fill(&self, grid: &Grid, values: &mut [f32], stop: &Stop) -> Result<()> {
         match &self.function {
             Function::Plane(field) => fill_planes(field.as_ref(), grid, values, stop),
@@ -71,7 +71,7 @@ impl Field {
 
     /// Writes the values at some positions.
     fn sample_chunk(&self, positions: &[f64], values: &mut [f32]) {
-        // The lengths are equal, and there are no other errors.
+        // Ignore the result: only unequal lengths are an error, and the lengths are equal.
         let _ = self.function.values(positions, values);
     }
 
@@ -112,7 +112,7 @@ impl Field {
     }
 }
 
-/// A field, or a number as a field.
+/// An operand of a binary operation: a field, or a number converted to a constant field.
 pub(crate) struct Operand(Shared<Made>);
 
 impl<'py> FromPyObject<'_, 'py> for Operand {
@@ -741,7 +741,7 @@ fn fill_planes<const N: usize>(
     Ok(())
 }
 
-/// Writes the values at the pixels of windows of one size, one after the other.
+/// Writes the values at the pixels of several windows of equal size, window by window.
 fn fill_windows<const N: usize>(
     field: &dyn dapple::raster::Field<N>,
     windows: &[Window<N>],
@@ -752,7 +752,7 @@ fn fill_windows<const N: usize>(
         return Ok(());
     };
     let n_pixels = window.n_pixels();
-    // Small planes are rendered together.
+    // Render small windows together.
     if windows.len() > 1 && n_pixels <= FIRST {
         return watch::in_parts(stop, windows.len(), FIRST / n_pixels.max(1), |part| {
             let values = &mut values[part.start * n_pixels..part.end * n_pixels];
@@ -763,6 +763,7 @@ fn fill_windows<const N: usize>(
             Ok(field.render_stack(&windows[part], views)?)
         });
     }
+    // Render large windows in strips of columns, and each strip in parts of some milliseconds.
     let width = window.size[0] as usize;
     for (whole, values) in windows.iter().zip(values.chunks_mut(n_pixels)) {
         for left in (0..window.size[0]).step_by(STRIP as usize) {

@@ -15,7 +15,7 @@ use sha2::{Digest, Sha256};
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::sync::Arc;
 
-/// A function of the plane, or of more axes.
+/// A function of two, three or four axes.
 #[derive(Clone)]
 pub(crate) enum Function {
     /// A function of the plane.
@@ -36,7 +36,7 @@ impl Function {
         }
     }
 
-    /// The distances after which it repeats along each axis.
+    /// The period along each axis; `None` for an axis without a period.
     pub(crate) fn period(&self) -> Vec<Option<f64>> {
         match self {
             Self::Plane(field) => field.period().to_vec(),
@@ -55,7 +55,7 @@ impl Function {
         Ok(())
     }
 
-    /// The plane along the first two axes at fixed further coordinates.
+    /// A slice along the first two axes, at fixed coordinates along the other axes.
     fn slice(self, rest: &[f64]) -> Result<Arc<dyn Field>> {
         match (self, rest) {
             (Self::Space(field), &[z]) => Ok(Arc::new(field.slice([z]))),
@@ -89,7 +89,7 @@ pub(crate) enum Made {
     Texture(Shared<TextureMade>),
     /// A node of a recipe.
     Node(Shared<NodeMade>),
-    /// A plane through a function of more axes.
+    /// A slice along the first two axes through a function of three or four axes.
     Slice { field: Shared<Made>, rest: Vec<f64> },
     /// A field at positions times a frequency.
     Frequency {
@@ -103,7 +103,7 @@ pub(crate) enum Made {
     },
     /// A field at positions rotated by an angle.
     Rotate { field: Shared<Made>, angle: f64 },
-    /// A field at positions that two other fields displace.
+    /// A field at positions that are displaced by other fields.
     Warp {
         field: Shared<Made>,
         x: Shared<Made>,
@@ -148,23 +148,23 @@ pub(crate) enum Made {
     },
 }
 
-/// A Python function, and its arguments.
+/// The value of Python's `__reduce__`: a function, and its arguments.
 pub(crate) type Reduced = (Py<PyAny>, (String,));
 
-/// A function, and the size of its composition.
+/// A function, with the depth and the size of its composition.
 #[derive(Clone)]
 pub(crate) struct Built {
     pub(crate) function: Function,
-    /// The longest chain of operations in it.
+    /// Length of the longest chain of nested operations.
     depth: usize,
-    /// The number of operations and of elementary fields, as often as they are evaluated.
+    /// Number of operations and elementary fields, counted as often as they are evaluated.
     n_parts: usize,
 }
 
-/// The deepest composition: its description nests two levels for each operation, and JSON readers stop at 127.
+/// Maximum depth of a composition. Its description nests two levels for each operation, and JSON parsers stop at 127.
 const DEEPEST: usize = 60;
 
-/// The largest number of parts of a composition.
+/// Maximum number of parts of a composition.
 const MOST_PARTS: usize = 1 << 16;
 
 impl Build for Made {
@@ -198,7 +198,7 @@ impl Build for Made {
 }
 
 impl Shared<Made> {
-    /// Makes the function, if it is one of the plane.
+    /// Makes the function; an error unless it has two axes.
     pub(crate) fn plane(&self) -> Result<Arc<dyn Field>> {
         match self.get()?.function {
             Function::Plane(field) => Ok(field),
@@ -211,7 +211,7 @@ impl Shared<Made> {
 }
 
 impl Made {
-    /// The fields of which it is composed.
+    /// The fields that the operation combines.
     fn parts(&self) -> Vec<&Shared<Self>> {
         match self {
             Self::Constant(_)
@@ -241,7 +241,7 @@ impl Made {
         }
     }
 
-    /// The width and height that a picture shows where the field has no period: some cells of noise, and otherwise 1.
+    /// Default width and height of a rendered image along axes without a period: 8 cells of noise, otherwise 1.
     pub(crate) fn shown(&self) -> [f64; 2] {
         match self {
             Self::Worley(_) | Self::GradientNoise(_) => [CELLS; 2],
@@ -259,7 +259,7 @@ impl Made {
         }
     }
 
-    /// Checks that all numbers are finite, since descriptions cannot hold others.
+    /// Checks that all numbers are finite, since JSON cannot represent others.
     fn check_numbers(&self) -> Result<()> {
         let numbers = match self {
             Self::Constant(number) => vec![f64::from(*number)],
@@ -330,7 +330,7 @@ impl Made {
                 "fields of three and of four axes are not combined: take a `slice(…)`, or fields of the same number of axes",
             )
         };
-        // A field of the plane is the same in every plane of space.
+        // Extrude fields of the plane to the number of axes of the other fields.
         let parts = parts.into_iter();
         Ok(match n_axes {
             2 => Function::Plane(self.composed(parts.map(|part| match part {
@@ -350,14 +350,14 @@ impl Made {
         })
     }
 
-    /// Composes fields with any number of axes.
+    /// Applies the operation to fields of `N` axes.
     fn composed<const N: usize>(
         &self,
         parts: impl Iterator<Item = Result<Arc<dyn Field<N>>>>,
     ) -> Result<Arc<dyn Field<N>>> {
         let parts: Vec<_> = parts.collect::<Result<_>>()?;
         let part = |index: usize| Arc::clone(&parts[index]);
-        // Axes without a number keep their coordinate.
+        // Fill up to `N` numbers, so that further axes keep their coordinate.
         let along = |numbers: &[f64], default: f64| -> [f64; N] {
             core::array::from_fn(|axis| numbers.get(axis).copied().unwrap_or(default))
         };
@@ -398,9 +398,9 @@ impl Made {
         serde_json::to_string(self).map_err(|error| Error::new("description", error.to_string()))
     }
 
-    /// The beginning of the description, for people.
+    /// The beginning of the description, for display.
     pub(crate) fn summary(&self) -> Result<String> {
-        /// The largest number of useful letters.
+        /// Maximum number of displayed characters.
         const MOST: usize = 500;
         let description = self.description()?;
         Ok(match description.char_indices().nth(MOST) {
@@ -416,14 +416,14 @@ impl Made {
         Ok(hasher.finish())
     }
 
-    /// The function and the arguments by which Python makes the field again in another process.
+    /// The function and the arguments with which Python rebuilds the field in another process.
     pub(crate) fn reduced(&self, py: Python<'_>) -> Result<Reduced> {
         let module = py.import("dapple_textures._native")?;
         let make = module.getattr("_field_from_description")?;
         Ok((make.unbind(), (self.description()?,)))
     }
 
-    /// A token of the description: the same in all processes, and different for different descriptions.
+    /// A hash of the description for Dask. It is equal in all processes, and differs for different descriptions.
     pub(crate) fn token(&self) -> Result<String> {
         Ok(hex(&Sha256::digest(self.description()?)))
     }
@@ -434,7 +434,7 @@ pub(crate) fn hex(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// The function that keeps values between two bounds.
+/// A function that clamps values to two bounds and keeps NaN.
 fn clamp([low, high]: [f32; 2]) -> Result<impl Fn(f32) -> f32 + Send + Sync> {
     if low > high || low.is_nan() || high.is_nan() {
         return Err(Error::new(

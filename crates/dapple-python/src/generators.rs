@@ -12,7 +12,7 @@ use crate::error::{Error, Result};
 use crate::grid::per_axis;
 use pyo3::prelude::*;
 
-/// Periods along axes in cells: one for all, or one for each; None for an axis along which a field does not repeat.
+/// Reads the periods along axes, in cells: one for all axes, or one for each axis. `None` means no period.
 fn periods(data: Option<&Bound<'_, PyAny>>, n_axes: usize) -> Result<Vec<Option<u32>>> {
     let Some(data) = data else {
         return Ok(vec![None; n_axes]);
@@ -33,7 +33,7 @@ fn unknown_axes(dims: usize, known: &str) -> Error {
     )
 }
 
-/// The numbers as an array of fixed length.
+/// Converts numbers to an array of fixed length; an error for another length.
 fn array<T: Copy, const N: usize>(numbers: &[T]) -> Result<[T; N]> {
     numbers.try_into().map_err(|_| {
         Error::new(

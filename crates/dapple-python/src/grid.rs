@@ -1,4 +1,4 @@
-//! Pixel grids of arrays: the size, the rectangle, the positions of the samples, and the part to compute.
+//! Pixel grids of arrays: size, extent, sample positions, and the window to compute.
 
 use crate::data::named;
 use crate::error::{Error, Result};
@@ -14,8 +14,8 @@ pub(crate) struct Grid {
     axes: Vec<Axis>,
 }
 
-/// The pixels along an axis: the center of pixel `i` is at `origin + (first + i + ½) · pixel`. On corners the origin lies half
-/// a pixel before that of the caller.
+/// The pixels along an axis: the center of pixel `i` is at `origin + (first + i + ½) · pixel`. For samples on corners,
+/// `origin` is half a pixel less than the origin of the caller.
 #[derive(Clone, Copy, Debug)]
 struct Axis {
     origin: f64,
@@ -23,11 +23,11 @@ struct Axis {
     whole: u32,
     first: i64,
     size: u32,
-    /// The index of the corner that is a copy of corner 0, if there is one.
+    /// The index of the corner that is a copy of corner 0, if any.
     copy: Option<i64>,
 }
 
-/// Pixels of an array that are copies of others: columns and rows on the side where a tile ends.
+/// Pixels of an array that are copies of other pixels: the last column or row of a tile sampled on corners.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Copies {
     /// The pixels to evaluate.
@@ -47,7 +47,7 @@ pub(crate) struct GridArguments<'a, 'py> {
 }
 
 impl Grid {
-    /// Makes the grid for the arguments and the periods of what is drawn. The default extent is [`default_extent`].
+    /// Makes the grid for the arguments and for the periods of the field. The default extent is [`default_extent`].
     pub(crate) fn new(
         arguments: &GridArguments<'_, '_>,
         period: &[Option<f64>],
@@ -97,11 +97,11 @@ impl Grid {
             .collect()
     }
 
-    /// The number of values; fails if there are too many.
+    /// Number of values; an error if there are too many.
     pub(crate) fn n_values(&self) -> Result<usize> {
         let sizes = self.axes.iter().map(|axis| axis.size as usize);
         let count = sizes.clone().try_fold(1_usize, usize::checked_mul);
-        // A NumPy array has at most 2^63 bytes; memory is exhausted long before.
+        // Stay far below 2^63 bytes, the limit of NumPy arrays. Memory is exhausted earlier.
         count.filter(|&count| count <= 1 << 40).ok_or_else(|| {
             let message = format!("an array of shape {:?} has too many values", self.shape());
             Error::new("too_large", message)
@@ -120,8 +120,8 @@ impl Grid {
         }
     }
 
-    /// The pixels of each plane to evaluate after those of [`plane`](Self::plane), and to write over them in this order: the
-    /// last column, row and pixel of a tile on corners, which have the bits of the first ones.
+    /// The copies to write over the pixels of each [`plane`](Self::plane), in this order: the last column, the last
+    /// row and the last pixel of a tile sampled on corners, which have the bits of the first ones.
     pub(crate) fn copies(&self) -> Vec<Copies> {
         let plane = self.plane();
         let [column, row] = [0, 1].map(|axis| self.axes[axis].copied());
@@ -144,12 +144,12 @@ impl Grid {
         copies
     }
 
-    /// The further coordinates of each plane, one plane after the other in the order of the array.
+    /// For each plane, its coordinates along the axes after the first two, in the order of the array.
     pub(crate) fn planes(&self) -> Vec<Vec<f64>> {
         let mut planes = vec![Vec::new()];
         for axis in &self.axes[2..] {
             let centers: Vec<f64> = (0..axis.size).map(|index| axis.center(index)).collect();
-            // The last axis of positions is the first of the array: it changes slowest.
+            // The last axis of positions is the first axis of the array, which varies slowest.
             let all = centers.iter().flat_map(|&center| {
                 planes
                     .iter()
@@ -162,7 +162,7 @@ impl Grid {
 }
 
 impl Copies {
-    /// Writes these pixels into an array of rows of `width` pixels with `n_channels` values each.
+    /// Writes these pixels to an array with rows of `width` pixels and `n_channels` values per pixel.
     pub(crate) fn write<T: Copy>(
         &self,
         part: &[T],
@@ -190,8 +190,8 @@ impl Axis {
         }
     }
 
-    /// The corners from one side of the extent to the other. The last one is a copy of the first where the extent is a
-    /// whole number of periods.
+    /// Samples on corners, from one side of the extent to the other. The last corner is a copy of the first one if the
+    /// extent is a whole number of periods.
     fn on_corners(origin: f64, extent: f64, whole: u32, period: Option<f64>) -> Result<Self> {
         if whole < 2 {
             let message =
@@ -203,7 +203,8 @@ impl Axis {
         let repeats =
             period.is_some_and(|period| period == 0.0 || (extent / period).fract() == 0.0);
         Ok(Self {
-            // The centers of pixels become corners. For an origin of 0 the first one is exact.
+            // Shift by half a pixel, so that pixel centers become corners. For an origin of 0, the first corner is
+            // exact.
             origin: origin - 0.5 * pixel,
             pixel,
             whole,
@@ -213,13 +214,13 @@ impl Axis {
         })
     }
 
-    /// The place of the copy of corner 0 in the part to compute, if it is in there.
+    /// The index of the copy of corner 0 within the window to compute; `None` if it is outside.
     fn copied(&self) -> Option<usize> {
         let at = usize::try_from(self.copy? - self.first).ok()?;
         (at < self.size as usize).then_some(at)
     }
 
-    /// The center of a pixel, computed as windows of the plane compute it.
+    /// The center of a pixel, computed with the same operations as in [`Window`].
     fn center(&self, index: u32) -> f64 {
         let index = self.first + i64::from(index);
         let index = if self.copy == Some(index) { 0 } else { index };
@@ -227,22 +228,22 @@ impl Axis {
     }
 }
 
-/// The positions of samples by their name: the centers of pixels by default.
+/// The sample positions with a name; pixel centers by default.
 pub(crate) fn samples(name: Option<&str>) -> Result<Samples> {
     name.map_or(Ok(Samples::default()), |name| named("samples", name))
 }
 
-/// The number of cells that are shown along an axis without a period.
+/// Number of cells that are rendered by default along an axis without a period.
 pub(crate) const CELLS: f64 = 8.0;
 
-/// The extent of a picture for which none is given: one period along each axis, and `shown` where there is none.
+/// The default extent: one period along each axis, and `shown` along axes without a period.
 pub(crate) fn default_extent(period: &[Option<f64>], shown: &[f64]) -> Vec<f64> {
     let axes = period.iter().zip(shown);
     axes.map(|(period, &shown)| period.filter(|&period| period > 0.0).unwrap_or(shown))
         .collect()
 }
 
-/// One value for all axes, or one for each; `None` for other data.
+/// Reads one value for all axes, or one value for each axis; `None` for other data.
 pub(crate) fn per_axis<'py, T>(data: &Bound<'py, PyAny>, n_axes: usize) -> Option<Vec<T>>
 where
     T: Clone + FromPyObjectOwned<'py>,
@@ -255,7 +256,7 @@ where
     values.filter(|values| values.len() == n_axes)
 }
 
-/// Numbers of pixels: one for all axes, or one for each.
+/// Reads numbers of pixels, each at least 1: one for all axes, or one for each axis.
 pub(crate) fn sizes(size: &Bound<'_, PyAny>, n_axes: usize) -> Result<Vec<u32>> {
     let sizes = per_axis(size, n_axes).filter(|sizes| !sizes.contains(&0));
     sizes.ok_or_else(|| {
@@ -266,13 +267,13 @@ pub(crate) fn sizes(size: &Bound<'_, PyAny>, n_axes: usize) -> Result<Vec<u32>> 
     })
 }
 
-/// The columns and rows of an array of two axes.
+/// Reads the size of an array of two axes, and returns columns and rows.
 pub(crate) fn size(size: &Bound<'_, PyAny>) -> Result<[u32; 2]> {
     let sizes = sizes(size, 2)?;
     Ok([sizes[1], sizes[0]])
 }
 
-/// Numbers along axes: one for all, or one for each.
+/// Reads numbers along axes: one for all axes, or one for each axis.
 pub(crate) fn numbers(what: &str, data: &Bound<'_, PyAny>, n_axes: usize) -> Result<Vec<f64>> {
     per_axis(data, n_axes).ok_or_else(|| {
         let message = format!(
@@ -282,7 +283,7 @@ pub(crate) fn numbers(what: &str, data: &Bound<'_, PyAny>, n_axes: usize) -> Res
     })
 }
 
-/// A number along both axes of the plane: one for both, or one for each.
+/// Reads numbers along the two axes of the plane: one for both axes, or one for each axis.
 pub(crate) fn pair(what: &str, data: &Bound<'_, PyAny>) -> Result<DVec2> {
     Ok(DVec2::from_slice(&numbers(what, data, 2)?))
 }

@@ -18,14 +18,14 @@ use std::fs;
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
-/// Options of reading an image: its content, and the handling of its alpha.
+/// Options for reading an image: its content, how its alpha is handled, and its layer.
 struct Reading {
     content: Option<Content>,
     alpha: Alpha,
     layer: Option<String>,
 }
 
-/// The handling of the alpha of an image.
+/// How the alpha of an image is handled.
 #[derive(PartialEq)]
 enum Alpha {
     /// Alpha is kept if a pixel is not opaque.
@@ -51,7 +51,7 @@ impl Reading {
         })
     }
 
-    /// The maps of an image, and their kind.
+    /// Converts an image to maps, and returns them with their kind.
     fn maps(&self, image: &Image) -> Result<(Kind, Vec<Map>)> {
         let layer = self.layer.as_ref().map(|name| image.layer(name));
         let layer = layer.transpose()?;
@@ -98,7 +98,8 @@ impl Reading {
         };
         let color = match plain {
             ImageAlpha::Drop => pixels.map(|pixel| pixel.color),
-            // Composited as in the command: light of OpenEXR that covers nothing is added to what lies below.
+            // Composite as the command does: OpenEXR colors are associated, so that light at alpha 0 is added to the
+            // color below.
             ImageAlpha::Over(below) => {
                 let covered = match image {
                     Image::Exr(exr) => exr.associated()?.0,
@@ -113,7 +114,7 @@ impl Reading {
     }
 }
 
-/// The codes of a PNG image from 0 to 1, one raster for each channel, without any curve.
+/// The channels of an image as data: codes from 0 to 1, without sRGB decoding, one raster per channel.
 fn channels(image: &Image) -> Result<Vec<Raster<f32>>> {
     fn codes<T: Code, const N: usize>(raster: &Raster<[T; N]>) -> Vec<Raster<f32>> {
         (0..N)
@@ -451,7 +452,8 @@ pub(crate) fn encode_image<'py>(
     Ok(PyBytes::new(py, &bytes))
 }
 
-/// Encodes an array, and warns of heavy clipping; `name` is that of the image in the warning.
+/// Encodes an array, and warns if at least [`CLIPPED_MIN`] of the pixels are clipped. `name` is the name of the image
+/// in the warning.
 fn encoded(
     py: Python<'_>,
     name: &str,
@@ -485,11 +487,11 @@ fn encoded(
     Ok(bytes)
 }
 
-/// The smallest share of clipped pixels of which is warned, as the command does.
+/// Minimum fraction of clipped pixels for a warning; the command uses the same value.
 const CLIPPED_MIN: f64 = 0.01;
 
-/// The share of pixels that a format of whole numbers clips: those with a number below 0 or above 1, by more than half
-/// a code of 16 bits. Unit vectors are within their range.
+/// Fraction of pixels that an integer format clips: pixels with a number below 0 or above 1 by more than half a 16-bit
+/// code. Normals are never clipped.
 fn clipped_share(kind: Kind, values: &[f32], encoding: Encoding, stop: &Stop) -> Result<f64> {
     const HALF_CODE: f32 = 0.5 / 65_535.0;
     if kind.content == Content::Normal || matches!(encoding, Encoding::Exr | Encoding::Npy) {
@@ -596,5 +598,5 @@ pub(crate) fn encode(
     Ok(rows.finish()?.into_inner())
 }
 
-/// The number of pixels that are converted to colors and encoded at a time.
+/// Number of pixels that are converted and encoded at a time.
 const BAND: usize = 1 << 18;

@@ -1,7 +1,7 @@
 //! The native part of the Python package `dapple-textures`: the crates of dapple with NumPy arrays.
 //!
-//! A call checks its arguments while it holds the interpreter, and works without it, on the threads of the package
-//! ([`threads`]). Fields are descriptions that can be made again in other processes ([`function`]).
+//! A call checks its arguments while it holds the interpreter lock. It then releases the lock and works on the threads
+//! of the package ([`threads`]). Fields are descriptions, from which other processes can rebuild them ([`function`]).
 
 mod arrays;
 mod bands;
@@ -87,7 +87,7 @@ mod _native {
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
         arrays::load(module.py())?;
-        // Attributes that an error does not set are None.
+        // Set class attributes, so that attributes that an error does not set are None.
         let error = module.getattr("DappleError")?;
         for attribute in ["kind", "node", "hint"] {
             error.setattr(attribute, module.py().None())?;

@@ -21,7 +21,7 @@ use pyo3::types::{PyDict, PyString};
 use rayon::prelude::*;
 use serde_json::Value;
 
-/// The wrapping past the edges: a name for both axes, or one for each, x first.
+/// Reads a named value per axis, such as the wrap: one name for both axes, or one for each axis, x first.
 pub(crate) fn per_axis<T: Named>(
     what: &str,
     data: Option<&Bound<'_, PyAny>>,
@@ -37,7 +37,7 @@ pub(crate) fn per_axis<T: Named>(
     Ok([data::named(what, &x)?, data::named(what, &y)?])
 }
 
-/// The plane of heights.
+/// The scale of heights: relief, extent and wrap.
 fn plane(
     relief: f64,
     extent: Option<&Bound<'_, PyAny>>,
@@ -297,7 +297,7 @@ pub(crate) fn ramp<'py>(
     kind.array(py, vec![Map::Color(colors)])
 }
 
-/// A ramp of a list of colors, or of positions with colors.
+/// Reads a ramp from a list of colors, or of pairs of position and color.
 fn stops(colors: &Value) -> Result<ColorRamp> {
     let refused = || {
         Error::new(
@@ -331,7 +331,7 @@ fn stops(colors: &Value) -> Result<ColorRamp> {
     Ok(ColorRamp::new(stops)?)
 }
 
-/// A color from `#rrggbb` or three linear numbers.
+/// Reads a color: `#rrggbb`, or three numbers in linear light.
 fn color(color: &Value) -> Result<LinearRgb> {
     match color {
         Value::String(text) => Ok(LinearRgb::from_hex(text)?),
@@ -453,7 +453,7 @@ fn codes<'py, T: Element + Copy + Sync, U: Element + Send>(
     code: fn(T) -> U,
 ) -> Result<Bound<'py, PyAny>> {
     let view = array.as_array();
-    // One pass over memory: it is waited for.
+    // Do not divide the work into parts, since it is a single fast pass over memory.
     let made: Vec<U> = watch::within(py, |_| {
         Ok(match view.to_slice() {
             Some(values) => values.par_iter().map(|&value| code(value)).collect(),

@@ -51,14 +51,14 @@ pub(crate) fn mesh(data: &Bound<'_, PyAny>) -> Result<Mesh> {
     mesh_of(&vertices, &faces)
 }
 
-/// A mesh of trimesh or Blender as an object with vertices, faces and texture coordinates, and whether it is one of
-/// Blender; others as they are.
+/// Converts a mesh of trimesh or Blender to an object with vertices, faces and texture coordinates; other objects are
+/// unchanged. The second value is whether the mesh is from Blender.
 pub(crate) fn plain<'py>(data: &Bound<'py, PyAny>) -> Result<(Bound<'py, PyAny>, bool)> {
     let helper = data.py().import("dapple_textures._meshes")?;
     Ok(helper.call_method1("plain", (data,))?.extract()?)
 }
 
-/// A mesh of an array of vertices and one of faces.
+/// Makes a mesh from an array of vertices and an array of faces.
 pub(crate) fn mesh_of(vertices: &Bound<'_, PyAny>, faces: &Bound<'_, PyAny>) -> Result<Mesh> {
     let vertices = vectors::<3>("vertices", vertices, &[3])?;
     if let Ok(array) = faces.cast::<PyUntypedArray>()
@@ -93,7 +93,7 @@ pub(crate) fn mesh_of(vertices: &Bound<'_, PyAny>, faces: &Bound<'_, PyAny>) -> 
             return Err(Error::new("corner", message));
         }
     }
-    // All of them are vertices, of which there are fewer than 2^32.
+    // The indices were checked above, and a mesh has fewer than 2^32 vertices.
     let faces = faces
         .iter()
         .map(|face| face.map(|at| u32::try_from(at).unwrap_or(u32::MAX)));
@@ -107,7 +107,7 @@ pub(crate) fn positions<'py>(py: Python<'py>, positions: &[DVec3]) -> Result<Bou
     arrays::array(py, numbers.into_flattened(), &[positions.len(), 3])
 }
 
-/// The vertices of faces as an array (n, 3).
+/// The vertex indices of faces as an array (n, 3).
 pub(crate) fn faces<'py>(py: Python<'py>, mesh: &Mesh) -> Result<Bound<'py, PyAny>> {
     let faces = mesh.faces().iter().flatten();
     let numbers = faces.map(|vertex| i64::from(vertex.0)).collect();
@@ -157,7 +157,7 @@ pub(crate) fn read_model(py: Python<'_>, path: PathBuf) -> Result<Bound<'_, PyAn
     let mut model = threads::run(py, move || mesh_io::read_model(&path))??;
     let n_tiles = model.tiles.len();
     if n_tiles > 0 {
-        // The first of them alone would lie on all faces.
+        // Leave the textures of UDIM tiles out, since the texture of the first tile would cover all faces.
         model.material.base_color = None;
         let what = format!("the textures of {n_tiles} unit squares (UDIM)");
         model.left_out.push(what);

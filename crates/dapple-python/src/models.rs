@@ -53,7 +53,7 @@ dapple::raster::named! {
 pub(crate) struct Model {
     mesh: Mesh,
     uvs: Vec<[DVec2; 3]>,
-    /// Whether coarse levels of the texture do not mix faces that are far apart.
+    /// Whether the texture may have mipmaps: coarse levels do not mix faces that are far apart.
     mipmaps: bool,
     shading: Vec<[DVec3; 3]>,
     is_double_sided: bool,
@@ -64,7 +64,7 @@ pub(crate) struct Model {
     points: SitePoints,
 }
 
-/// The points of the surface as a mesh, with a color for each.
+/// The sites as a mesh, with a color for each site.
 enum SitePoints {
     /// Not yet a mesh.
     Sites(Box<Synthesizer>, Vec<LinearRgba>),
@@ -73,7 +73,7 @@ enum SitePoints {
 }
 
 impl SitePoints {
-    /// Makes the mesh.
+    /// The mesh of the sites; an error if the sites are not a mesh.
     fn model(&self) -> Result<dapple::mesh::Model> {
         match self {
             Self::Sites(synthesizer, colors) => Ok(site_model(synthesizer, colors.clone())?),
@@ -209,7 +209,7 @@ pub(crate) fn synthesize_on<'py>(
     progress: Option<&Bound<'py, PyAny>>,
 ) -> Result<Model> {
     let atlas = data::named("atlas", atlas)?;
-    // Coarse levels of tiles mix faces that are far apart.
+    // Mipmaps of atlases of triangles would mix faces that are far apart.
     let has_mipmaps = matches!(atlas, AtlasKind::Charts | AtlasKind::Uv);
     let (mesh, is_blender) = crate::meshes::plain(mesh)?;
     let mesh = &mesh;
@@ -262,7 +262,7 @@ pub(crate) fn synthesize_on<'py>(
     let cover = move |heard: watch::Heard<'_>, _: &Stop| -> Result<Model> {
         let (repaired, repair) = mesh.repair();
         let surface = Surface::new(repaired)?;
-        // What is refused is refused before charts are cut, which takes long.
+        // Check all options before charts are cut, which takes long.
         hierarchy.check(&surface)?;
         let uvs = match needs_uvs {
             true => own_uvs(&surface, &mesh, &repair, &uvs)?,
@@ -330,10 +330,10 @@ pub(crate) fn synthesize_on<'py>(
     watch::run(py, progress, cover)?
 }
 
-/// Part of the work that is done once charts are cut.
+/// Fraction of the work that cutting charts takes.
 const CHARTS: f64 = 0.3;
 
-/// The progress of a part of the work, which takes a range of all of it.
+/// The progress of a part of the work. `range` is the range of the whole progress that the part takes.
 fn part_of(range: core::ops::Range<f64>, part: f64) -> Progress {
     const STEPS: u32 = 1 << 16;
     let done = range.start + (range.end - range.start) * part;
@@ -378,7 +378,7 @@ fn directions(directions: Option<(Bound<'_, PyAny>, Bound<'_, PyAny>)>) -> Resul
     Ok(pairs.map(direction).collect())
 }
 
-/// Reads the texture coordinates of the corners of a mesh, which may have none.
+/// Reads the texture coordinates of the corners of a mesh; an error if it has none.
 fn uvs_of(what: &str, mesh: &Bound<'_, PyAny>) -> Result<Vec<[f64; 2]>> {
     let uvs = mesh.getattr("uv").ok().filter(|uvs| !uvs.is_none());
     let uvs = uvs.ok_or_else(|| Error::new("uv", format!("the {what} has no attribute uv")))?;
@@ -406,7 +406,7 @@ fn own_uvs(
     })
 }
 
-/// The values that the corners of faces had before a repair, for the faces that remain; none if a face was cut.
+/// For the faces that remain after a repair, the values of their corners before the repair; `None` if a face was cut.
 fn at_corners<T: Copy>(
     surface: &Surface,
     before: &Mesh,
@@ -416,7 +416,7 @@ fn at_corners<T: Copy>(
     let mesh = surface.mesh();
     let faces = mesh.faces().iter().zip(&repair.face_before);
     let whole = faces.map(|(face, &at)| {
-        // Repair may have turned the face, or merged its vertices with others at the same places.
+        // Match corners by position: repair may have reversed the face, or merged vertices at equal positions.
         let corners = before.corners(at);
         let own = face.map(|vertex| {
             let here = mesh.positions()[vertex.index()];
@@ -428,7 +428,7 @@ fn at_corners<T: Copy>(
     whole.collect()
 }
 
-/// A map of the example as a texture of the mesh.
+/// Bakes a map of the example to a texture of the mesh.
 fn bake(
     synthesizer: &Synthesizer,
     texture: &SurfaceTexture,
@@ -450,7 +450,7 @@ fn bake(
     })
 }
 
-/// The color that a gray value is displayed as: its sRGB code is the value, as in a gray PNG file.
+/// The color that displays a gray value: the value is its sRGB code, as in a gray PNG file.
 fn color_of(value: f32) -> LinearRgb {
     LinearRgb::from_srgb([u16::from_unit(value); 3])
 }
@@ -537,7 +537,7 @@ impl Model {
     /// OSError
     ///     If the system cannot read or write the file: `FileNotFoundError` if it does not exist.
     fn export(&self, py: Python<'_>, path: PathBuf) -> Result<()> {
-        // A file is written to its end.
+        // Wait for the work after an interruption, so that the file is complete.
         watch::within(py, |stop| -> Result<()> {
             let format =
                 MeshFormat::of_path(&path).filter(|format| format.written_ending().is_some());
@@ -609,7 +609,7 @@ impl Model {
 }
 
 impl Model {
-    /// The maps of a picture.
+    /// The baked maps of the image with this index in the layout.
     fn picture(&self, at: usize) -> Vec<Map> {
         let before: usize = self.layout.kinds[..at]
             .iter()
@@ -618,7 +618,7 @@ impl Model {
         self.baked[before..before + self.layout.kinds[at].n_maps()].to_vec()
     }
 
-    /// The mesh with its material, whose textures are PNG.
+    /// The mesh with its material, whose textures are PNG images.
     fn model(&self, stop: &Stop) -> Result<dapple::mesh::Model> {
         let base = match &self.baked[0] {
             Map::Value(values) => values.map(|&value| color_of(value)),
@@ -626,7 +626,7 @@ impl Model {
             Map::Normal(_) => return Err(Error::new("channels", "normals are no colors")),
         };
         let base = png(Content::Color, &base.map(|color| color.to_array()), stop)?;
-        // Faces that have no place in the texture show its first corner, as in `textured_model`.
+        // Faces outside of the atlas show the first corner of the texture, as in `textured_model`.
         let placed = |uv: DVec2| if uv.is_finite() { uv } else { DVec2::ZERO };
         let mut model = dapple::mesh::Model::from(self.mesh.clone());
         model.uvs = Some(self.uvs.iter().map(|face| face.map(placed)).collect());
@@ -657,7 +657,7 @@ impl Model {
     }
 }
 
-/// The points of a surface as arrays: positions, faces, normals and colors.
+/// The sites as arrays: positions, faces, normals and colors.
 type PointParts<'py> = (
     Bound<'py, PyAny>,
     Bound<'py, PyAny>,
@@ -665,7 +665,7 @@ type PointParts<'py> = (
     Bound<'py, PyAny>,
 );
 
-/// A model as arrays: vertices, faces, texture coordinates, normals, maps, flags of the material, and points.
+/// A model as arrays: vertices, faces, texture coordinates, normals, maps, flags (mipmaps, double-sided), and sites.
 type Parts<'py> = (
     Bound<'py, PyAny>,
     Bound<'py, PyAny>,
@@ -719,7 +719,7 @@ pub(crate) fn _model_from_parts(
     })
 }
 
-/// An image of three channels as PNG with 8 bits.
+/// Encodes an image of three channels as PNG with 8 bits per channel.
 fn png(content: Content, raster: &Raster<[f32; 3]>, stop: &Stop) -> Result<EncodedImage> {
     let kind = Kind {
         content,

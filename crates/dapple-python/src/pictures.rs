@@ -1,7 +1,7 @@
-//! Conversion of pictures of one to four numbers per pixel, alone or in dictionaries, to maps of the library and back.
+//! Conversion of images with one to four numbers per pixel, single or in dictionaries, to maps of the library and back.
 //!
-//! An array (rows, columns) is numbers, (rows, columns, 3) a color in linear light, and (rows, columns, 4) a color with
-//! alpha, which is stored as one more map. In a dictionary, `normal` is unit vectors and `orm` three independent
+//! An array (rows, columns) has numbers, (rows, columns, 3) colors in linear light, and (rows, columns, 4) colors with
+//! alpha, which becomes a separate map. In a dictionary, `normal` has unit vectors and `orm` three independent
 //! numbers.
 
 use crate::arrays;
@@ -31,23 +31,23 @@ dapple::raster::named! {
     }
 }
 
-/// The kind of a picture: its content and number of channels.
+/// The kind of an image: its content and number of channels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Kind {
     pub(crate) content: Content,
     pub(crate) n_channels: usize,
 }
 
-/// Whether a picture is alone or in a dictionary, with the names and kinds.
+/// The form of the input, a single image or a dictionary of images, with names and kinds.
 #[derive(Clone)]
 pub(crate) struct Layout {
-    /// The names in the dictionary; `None` for a single picture.
+    /// The names in the dictionary; `None` for a single image.
     pub(crate) names: Option<Vec<String>>,
     pub(crate) kinds: Vec<Kind>,
 }
 
 impl Kind {
-    /// The kind of a picture with a number of channels; the content is guessed if it is not given.
+    /// The kind of an image with a number of channels. Without `content`, one channel is gray, and several are a color.
     pub(crate) fn new(what: &str, content: Option<Content>, n_channels: usize) -> Result<Self> {
         let content = content.unwrap_or(match n_channels {
             1 => Content::Gray,
@@ -72,7 +72,7 @@ impl Kind {
         Err(Error::new("channels", message))
     }
 
-    /// The number of maps of a picture.
+    /// Number of maps of the image: colors with alpha have two, data has one per channel.
     pub(crate) fn n_maps(self) -> usize {
         match self.content {
             Content::Gray | Content::Normal => 1,
@@ -81,7 +81,7 @@ impl Kind {
         }
     }
 
-    /// Makes the maps from a picture's numbers, in pixel order.
+    /// Makes the maps from the numbers of an image, in pixel order.
     fn maps(self, size: [u32; 2], values: Cow<'_, [f32]>) -> Result<Vec<Map>> {
         let n = self.n_channels;
         let channel = |channel| -> Result<Map> {
@@ -139,13 +139,14 @@ impl Kind {
     }
 }
 
-/// The numbers of pixels, one after the other, in the memory of the pixels.
+/// Flattens pixels to numbers, which reuse the memory of the pixels.
 fn flattened<T>(raster: Raster<T>, numbers: fn(T) -> [f32; 3]) -> Vec<f32> {
     let pixels: Vec<[f32; 3]> = raster.into_pixels().into_iter().map(numbers).collect();
     pixels.into_flattened()
 }
 
-/// Writes the channels of a map to the front of every pixel of `n` numbers, and returns their number.
+/// Writes the channels of a map to the first numbers of each pixel. Pixels are `n` numbers apart. Returns the number
+/// of channels.
 fn interleave(map: &Map, values: &mut [f32], n: usize) -> usize {
     match map {
         Map::Value(raster) => {
@@ -169,16 +170,16 @@ fn interleave(map: &Map, values: &mut [f32], n: usize) -> usize {
     }
 }
 
-/// The array of a picture that is being read.
+/// The array of an image that is being read.
 pub(crate) struct Pixels<'py> {
     array: PyArrayLikeDyn<'py, f32, AllowTypeChange>,
-    /// The numbers of columns and rows.
+    /// Columns and rows.
     pub(crate) size: [u32; 2],
     pub(crate) n_channels: usize,
 }
 
 impl<'py> Pixels<'py> {
-    /// Fails for data that is not a picture, and for whole numbers, which are codes and not linear light.
+    /// Reads an array. Fails for data that is not an image, and for integers, which are codes and not linear light.
     pub(crate) fn read(what: &str, data: &Bound<'py, PyAny>) -> Result<Self> {
         if let Ok(array) = data.cast::<PyUntypedArray>() {
             let dtype = array.dtype();
@@ -211,7 +212,7 @@ impl<'py> Pixels<'py> {
         })
     }
 
-    /// The numbers in pixel order: in place if possible, else copied.
+    /// The numbers in pixel order, borrowed if possible, otherwise copied.
     pub(crate) fn values(&self) -> Cow<'_, [f32]> {
         let view: ArrayViewD<'_, f32> = self.array.as_array();
         match view.to_slice() {
@@ -243,7 +244,7 @@ pub(crate) fn array_of_planes(
     kind.array(py, planes.into_iter().map(Map::Value).collect())
 }
 
-/// Reads the maps of a picture, or of several in a dictionary, one after the other.
+/// Reads the maps of an image, or of all images in a dictionary, in order.
 pub(crate) fn read(what: &str, data: &Bound<'_, PyAny>) -> Result<(Layout, Vec<Map>)> {
     let (mut maps, mut kinds) = (Vec::new(), Vec::new());
     let mut add = |what: &str, data: &Bound<'_, PyAny>, content| -> Result<()> {
@@ -275,7 +276,7 @@ pub(crate) fn read(what: &str, data: &Bound<'_, PyAny>) -> Result<(Layout, Vec<M
     Ok((Layout { names, kinds }, maps))
 }
 
-/// Reads the maps of a list of pictures or of dictionaries, which must all be alike.
+/// Reads the maps of a list of images or of dictionaries, which must all have the same names and kinds.
 pub(crate) fn read_all(what: &str, data: &Bound<'_, PyAny>) -> Result<(Layout, Vec<Vec<Map>>)> {
     let mut all = Vec::new();
     let mut first: Option<Layout> = None;
@@ -296,7 +297,7 @@ pub(crate) fn read_all(what: &str, data: &Bound<'_, PyAny>) -> Result<(Layout, V
     Ok((layout, all))
 }
 
-/// Numbers (rows, columns).
+/// Reads an image with one channel: an array (rows, columns).
 pub(crate) fn numbers(what: &str, data: &Bound<'_, PyAny>) -> Result<Raster<f32>> {
     let pixels = Pixels::read(what, data)?;
     if pixels.n_channels != 1 {
@@ -310,7 +311,7 @@ pub(crate) fn numbers(what: &str, data: &Bound<'_, PyAny>) -> Result<Raster<f32>
 }
 
 impl Layout {
-    /// The name of each picture; `alone` for a single picture.
+    /// The name of each image; `alone` for a single image.
     pub(crate) fn names_or<'a>(&'a self, alone: &'a str) -> Vec<&'a str> {
         match &self.names {
             None => vec![alone],
@@ -318,7 +319,7 @@ impl Layout {
         }
     }
 
-    /// Splits the list of all maps into those of each picture.
+    /// Splits a list of all maps into a list for each image.
     pub(crate) fn split<T>(&self, maps: impl IntoIterator<Item = T>) -> Vec<Vec<T>> {
         let mut maps = maps.into_iter();
         let kinds = self.kinds.iter();
@@ -327,7 +328,7 @@ impl Layout {
             .collect()
     }
 
-    /// Converts the maps to the form of the input: a picture, or a dictionary of them.
+    /// Converts maps to the form of the input: an image, or a dictionary of images.
     pub(crate) fn python<'py>(&self, py: Python<'py>, maps: Vec<Map>) -> Result<Bound<'py, PyAny>> {
         let pictures = self.split(maps).into_iter().zip(&self.kinds);
         let mut arrays = pictures.map(|(maps, kind)| kind.array(py, maps));

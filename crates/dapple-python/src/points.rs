@@ -1,4 +1,4 @@
-//! Points in domains that may wrap: domains, placement, statistics, and graphs.
+//! Point sets in domains that may wrap: domains, sampling, statistics, and graphs.
 
 mod domain;
 mod graphs;

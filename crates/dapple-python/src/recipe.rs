@@ -55,22 +55,23 @@ pub(crate) struct Recipe {
     recipe: RustRecipe,
 }
 
-/// The hash of some data, in hexadecimal.
+/// The SHA-256 of a list of byte strings, in hexadecimal.
 fn sha256(parts: &[&[u8]]) -> String {
     let mut hash = Sha256::new();
     for part in parts {
-        // The lengths are included, so that no two lists of parts are alike.
+        // Include the lengths, so that different lists have different hashes.
         hash.update((part.len() as u64).to_le_bytes());
         hash.update(part);
     }
     hex(&hash.finalize())
 }
 
-/// Reads a recipe from data. Errors name the entry, and no place in a text, since there is none.
+/// Reads a recipe from Python data. Errors name the entry instead of a line, since the user has no text.
 fn from_data(data: &Bound<'_, PyAny>) -> Result<RustRecipe> {
     let text = data::text(data)?;
     RustRecipe::from_json(&text).map_err(|error| {
-        // For a value without its closing bracket, the error is at the line after it.
+        // Search upward from the line of the error for a line with content, since an error may be reported at a
+        // closing bracket.
         let before = error.place().map_or(0, |place| place.line);
         let mut lines = text
             .lines()
@@ -401,7 +402,7 @@ impl Recipe {
     }
 }
 
-/// An image of a recipe: its file, its layer, and the handling of its alpha.
+/// An image of a recipe: its file, its layer, and how its alpha is handled.
 type Source<'a> = (&'a str, Option<&'a str>, Option<String>);
 
 impl Recipe {
@@ -445,7 +446,7 @@ fn section<'a>(text: &'a str, heading: &str) -> Option<&'a str> {
     Some(text[start..ends.min().map_or(text.len(), |end| after + end)].trim_end())
 }
 
-/// The key of an image, as `ImageSource::key` has it: the name of its file, or of the file and the layer.
+/// Reads the key of an image in the form of `ImageSource::key`, from a file name or a pair of file name and layer.
 fn image_key(name: &Bound<'_, PyAny>) -> Result<String> {
     match name.extract::<(String, String)>() {
         Ok((file, layer)) => Ok(format!("{file}\0{layer}")),
@@ -453,7 +454,7 @@ fn image_key(name: &Bound<'_, PyAny>) -> Result<String> {
     }
 }
 
-/// The key of an image for people.
+/// The key of an image as text for messages.
 fn shown(key: &str) -> String {
     match key.split_once('\0') {
         Some((file, layer)) => format!("`{file}` with the layer `{layer}`"),

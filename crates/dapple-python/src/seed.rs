@@ -1,11 +1,11 @@
-//! Seeds.
+//! Seeds as arguments.
 
 use crate::error::Error;
 use dapple::hash::Seed;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 
-/// A whole number from 0 to 2^64 - 1, of Python or of NumPy.
+/// A seed: a Python or NumPy integer from 0 to 2^64 - 1.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct SeedArgument(pub(crate) Seed);
 

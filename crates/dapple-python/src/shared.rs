@@ -1,4 +1,4 @@
-//! Descriptions that share the objects made from them.
+//! Descriptions that share the objects built from them.
 
 use crate::error::Result;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -13,11 +13,12 @@ pub(crate) trait Build {
     fn build(&self) -> Result<Self::Built>;
 }
 
-/// A description and the object made from it, once, for all clones. As data and in comparisons it is the description.
+/// A description with the object built from it. The object is built once, on first use, and shared by all clones.
+/// Serialization and comparison use the description alone.
 pub(crate) struct Shared<T: Build>(Arc<(T, OnceLock<T::Built>)>);
 
 impl<T: Build> Shared<T> {
-    /// A description without its object yet.
+    /// Wraps a description, without building its object.
     pub(crate) fn new(made: T) -> Self {
         Self(Arc::new((made, OnceLock::new())))
     }

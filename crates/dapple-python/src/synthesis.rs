@@ -1,4 +1,4 @@
-//! Textures from an example, in the plane.
+//! Synthesis of textures from an example, in the plane.
 
 use crate::arrays;
 use crate::data;
@@ -36,7 +36,7 @@ pub(crate) enum Coherence {
     Word(String),
 }
 
-/// The options that synthesis in the plane and on meshes share.
+/// Options of matching, shared by synthesis in the plane and on meshes.
 pub(crate) struct Matching {
     pub(crate) seed: SeedArgument,
     pub(crate) levels: usize,
@@ -48,7 +48,7 @@ pub(crate) struct Matching {
 }
 
 impl Matching {
-    /// Those of a repair.
+    /// The options of a repair.
     pub(crate) fn of_repair(
         seed: SeedArgument,
         levels: usize,
@@ -65,7 +65,7 @@ impl Matching {
         }
     }
 
-    /// The options in the form of the library, read like those of the command.
+    /// Converts the options to the options of the library, with the defaults of the command.
     pub(crate) fn options(self) -> Result<Options> {
         let default = match self.paper {
             true => Options::paper(),
@@ -93,7 +93,7 @@ impl Matching {
     }
 }
 
-/// The example whose first map is matched; the others follow it.
+/// Makes the exemplar from the first map, which is matched. The other maps are transferred.
 pub(crate) fn exemplar(maps: &[Map], edges: &str) -> Result<Exemplar> {
     let edges: Edges = data::named("edges", edges)?;
     match maps {
@@ -243,7 +243,8 @@ pub(crate) fn synthesize<'py>(
     followed(py, layout, &maps, &texture, sources)
 }
 
-/// The method that was asked for, or that options need; nothing if it is the first that can.
+/// The requested method, or the method that other options need. `None` means endless synthesis, or a sweep if the
+/// period does not fit the levels.
 fn method(
     asked: Option<&str>,
     at: Option<[i64; 2]>,
@@ -271,7 +272,7 @@ fn method(
     })
 }
 
-/// An exemplar with its guides, and those of a texture of a size.
+/// Adds the guides to an exemplar, and returns it with the guides of the texture, which must have its size.
 fn guided(
     exemplar: Exemplar,
     size: [u32; 2],
@@ -361,7 +362,8 @@ pub(crate) fn repair<'py>(
     followed(py, layout, &maps, &texture, sources)
 }
 
-/// The maps of a texture in the layout of its example, and the sources if they are asked for.
+/// Transfers the maps of the example to a texture, and returns them in the layout of the example; with `sources`, also
+/// the source of each pixel.
 fn followed<'py>(
     py: Python<'py>,
     layout: Layout,
@@ -396,7 +398,7 @@ pub(crate) fn check_sizes(maps: &[Map]) -> Result<()> {
     Ok(())
 }
 
-/// A map of the example, transferred to the texture.
+/// Transfers a map of the example to the texture.
 fn transfer(texture: &PlaneTexture, map: &Map) -> core::result::Result<Map, SynthError> {
     Ok(match map {
         Map::Value(raster) => Map::Value(texture.transfer(raster)?),

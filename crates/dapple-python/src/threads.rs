@@ -1,4 +1,4 @@
-//! The threads of the package: a pool of its own, which a forked process makes anew.
+//! The thread pool of the package. A forked process creates a new pool.
 
 use crate::error::{Error, Result};
 use crate::watch;
@@ -6,14 +6,14 @@ use pyo3::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// The pool, the process that made it, and the requested number of threads (0: one for each core).
+/// The pool, the id of the process that created it, and the requested number of threads (0: one per core).
 struct Threads {
     wanted: Option<usize>,
     pool: Option<(u32, Arc<ThreadPool>)>,
 }
 
-/// It is locked with the interpreter held, and unlocked before the interpreter is released, so that it is never locked
-/// in a fork.
+/// The state of the pool. It is locked only while the interpreter lock is held, so that it is never locked during a
+/// fork.
 static THREADS: Mutex<Threads> = Mutex::new(Threads {
     wanted: None,
     pool: None,
@@ -22,11 +22,11 @@ static THREADS: Mutex<Threads> = Mutex::new(Threads {
 /// The environment variable with the number of threads.
 const VARIABLE: &str = "DAPPLE_THREADS";
 
-/// The largest number of threads.
+/// Maximum number of threads.
 const MOST: usize = 1024;
 
-/// Runs `work` on the threads of the package and without the interpreter, and returns its result, unless a signal
-/// raises an exception; then the work is left behind ([`watch`]).
+/// Runs `work` on the threads of the package without the interpreter lock, and returns its result. If a signal raises
+/// an exception, the call returns and the work is abandoned ([`watch`]).
 pub(crate) fn run<T: Send + 'static>(
     py: Python<'_>,
     work: impl FnOnce() -> T + Send + 'static,
@@ -43,7 +43,8 @@ pub(crate) fn pool(_py: Python<'_>) -> Result<Arc<ThreadPool>> {
             threads.pool = Some((maker, Arc::clone(&pool)));
             return Ok(pool);
         }
-        // The threads of a pool do not survive a fork, and waiting for them would never end.
+        // Forget a pool of the parent process: its threads do not survive a fork, and dropping it would wait for them
+        // forever.
         Some((_, pool)) => core::mem::forget(pool),
         None => {}
     }
@@ -61,7 +62,7 @@ pub(crate) fn pool(_py: Python<'_>) -> Result<Arc<ThreadPool>> {
     Ok(pool)
 }
 
-/// Leaves a pool to the work on it, so that the next call has a new one. The threads end with their work.
+/// Abandons a busy pool, so that the next call creates a new one. The threads of the old pool end with their work.
 pub(crate) fn leave(busy: &Arc<ThreadPool>) {
     let mut threads = THREADS.lock().unwrap_or_else(PoisonError::into_inner);
     let is_it = |(_, pool): &(u32, Arc<ThreadPool>)| Arc::ptr_eq(pool, busy);
@@ -70,7 +71,7 @@ pub(crate) fn leave(busy: &Arc<ThreadPool>) {
     }
 }
 
-/// The number of threads in the environment; 0 if it is not set.
+/// The number of threads from the environment variable; 0 if it is not set.
 fn from_environment() -> Result<usize> {
     let Ok(text) = std::env::var(VARIABLE) else {
         return Ok(0);
@@ -118,7 +119,7 @@ pub(crate) fn set_threads(count: &Bound<'_, PyAny>) -> Result<()> {
     })?;
     let mut threads = THREADS.lock().unwrap_or_else(PoisonError::into_inner);
     threads.wanted = Some(count);
-    // A forked process leaves the pool of its parent alone.
+    // Forget a pool of the parent process instead of dropping it.
     if let Some((maker, pool)) = threads.pool.take()
         && maker != std::process::id()
     {

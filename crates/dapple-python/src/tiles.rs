@@ -18,7 +18,7 @@ use pyo3::types::{PyDict, PyList, PyString};
 use serde_json::{Map as Object, Value, json};
 use std::sync::Arc;
 
-/// A bool for both axes, or one for each, x first.
+/// Reads a flag per axis: one bool for both axes, or one for each axis, x first.
 pub(crate) fn flags(data: Option<&Bound<'_, PyAny>>, default: bool) -> Result<[bool; 2]> {
     let Some(data) = data else {
         return Ok([default; 2]);
@@ -29,12 +29,12 @@ pub(crate) fn flags(data: Option<&Bound<'_, PyAny>>, default: bool) -> Result<[b
     }
 }
 
-/// The first pixel of a map in the plane, x first.
+/// Reads the position of the first pixel of a map in the plane, x first; (0, 0) by default.
 fn first(data: Option<&Bound<'_, PyAny>>) -> Result<[i64; 2]> {
     Ok(data.map_or(Ok([0; 2]), |first| first.extract())?)
 }
 
-/// Maps of a window of the plane, rendered some rows at a time, so that the work ends soon after an interruption.
+/// Renders maps of a window of the plane in bands of rows, so that the work ends soon after an interruption.
 fn rows(
     py: Python<'_>,
     first: [i64; 2],
@@ -60,10 +60,10 @@ fn rows(
     })?
 }
 
-/// The number of pixels that are rendered at a time: copies of a tile cross few bands.
+/// Number of pixels of a band. It is large, so that few copies of a tile are cut by bands and rendered twice.
 const BAND: usize = 1 << 22;
 
-/// Appends the rows of maps to those of others of the same kinds and width.
+/// Appends the rows of maps to maps of the same kinds and width.
 fn extend(whole: &mut [Map], maps: Vec<Map>) -> Result<()> {
     fn both<T>(above: &mut Raster<T>, below: Raster<T>) -> Result<()> {
         let size = [above.width(), above.height() + below.height()];
@@ -84,7 +84,7 @@ fn extend(whole: &mut [Map], maps: Vec<Map>) -> Result<()> {
     Ok(())
 }
 
-/// A method of making images repeat, by its name and options.
+/// Reads a method of making images repeat from its name and options.
 fn method(
     name: &Bound<'_, PyAny>,
     options: Option<&Bound<'_, PyDict>>,
@@ -272,7 +272,7 @@ pub(crate) fn seam_report<'py>(
     }
 }
 
-/// The report of a picture, from those of its maps, as Python's `SeamReport`.
+/// Combines the reports of the maps of an image to a `SeamReport` of Python.
 fn report<'py>(py: Python<'py>, reports: &[SeamReports], kind: Kind) -> Result<Bound<'py, PyAny>> {
     let (mut channels, mut faults, mut texts) = (Vec::new(), Vec::new(), Vec::new());
     for (at, map) in reports.iter().enumerate() {
@@ -518,7 +518,7 @@ fn borders(width: Option<u32>, source: Option<&str>) -> Result<MatchBorders> {
     })
 }
 
-/// Makes a list of pictures.
+/// Converts lists of maps to a list of images in a layout.
 fn list<'py>(py: Python<'py>, layout: &Layout, all: Vec<Vec<Map>>) -> Result<Bound<'py, PyList>> {
     let pictures = all.into_iter().map(|maps| layout.python(py, maps));
     Ok(PyList::new(py, pictures.collect::<Result<Vec<_>>>()?)?)
@@ -554,7 +554,7 @@ fn list<'py>(py: Python<'py>, layout: &Layout, all: Vec<Vec<Map>>) -> Result<Bou
 pub(crate) struct CornerTiles {
     tiles: Arc<Corners>,
     layout: Layout,
-    /// What it was made from, for pickles.
+    /// The maps of the source tiles, for pickling.
     sources: Vec<Vec<Map>>,
     width: f64,
     period: [Option<u32>; 2],

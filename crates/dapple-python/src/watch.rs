@@ -1,12 +1,12 @@
-//! Calls that stop at Ctrl-C and show their progress.
+//! Calls that can be interrupted with Ctrl-C and report their progress.
 //!
-//! The work is done on the threads of the package. The calling thread waits for it, and periodically takes the
-//! interpreter to run the handlers of signals, which only the main thread may do, and the callback for the progress.
+//! The work runs on the threads of the package. The calling thread waits for it. Periodically, it takes the
+//! interpreter lock to run the signal handlers, which only the main thread may do, and the progress callback.
 //!
-//! A thread cannot be stopped from outside. Work that owns its data ([`run`]) is left behind when a handler raises an
-//! exception: the call ends at once, and the work ends when it looks at [`Stop`] next, or else when it is done; the next
-//! call has new threads. Work that writes into memory of the caller ([`within`]) is waited for, and comes in parts of
-//! some milliseconds ([`in_parts`]).
+//! A thread cannot be stopped from outside. Work that owns its data ([`run`]) is abandoned when a handler raises an
+//! exception: the call returns at once, the work ends when it next checks [`Stop`] or when it is done, and the next
+//! call gets new threads. Work that writes to memory of the caller ([`within`]) is waited for, and is divided into
+//! parts of some milliseconds ([`in_parts`]).
 
 use crate::error::{Error, Result};
 use crate::threads;
@@ -22,28 +22,27 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::time::Instant;
 
-/// The time between checks for signals.
+/// Time between checks for signals.
 const PERIOD: Duration = Duration::from_millis(25);
 
-/// The time for a part of work: far below a period, and far above the time to begin one.
+/// Target time of a part of the work: far less than [`PERIOD`], and far more than the overhead of a part.
 const PART: Duration = Duration::from_millis(10);
 
 /// A callback for the progress of a synthesis, which can stop it.
 pub(crate) type Heard<'a> = &'a mut (dyn FnMut(Progress) -> ControlFlow<()> + Send);
 
-/// Whether the result of some work is no longer wanted.
+/// A flag that requests that work stops. Clones share it.
 #[derive(Clone, Default)]
 pub(crate) struct Stop(Arc<AtomicBool>);
 
 thread_local! {
-    /// The request to stop the work that this thread does, for objects that are made deep inside of it from their
-    /// descriptions.
+    /// The stop flag of the work on this thread, for objects that are built from their descriptions deep within it.
     static CURRENT: RefCell<Stop> = RefCell::default();
 }
 
-/// Does work whose request to stop is the one of the thread meanwhile.
+/// Runs work with `stop` as the current stop flag of the thread.
 fn with_current<T>(stop: &Stop, work: impl FnOnce() -> T) -> T {
-    /// Restores the request of other work, which this thread goes on with after this one.
+    /// Restores the previous stop flag on drop, for the work that this thread continues afterward.
     struct Restore(Stop);
     impl Drop for Restore {
         fn drop(&mut self) {
@@ -55,18 +54,18 @@ fn with_current<T>(stop: &Stop, work: impl FnOnce() -> T) -> T {
 }
 
 impl Stop {
-    /// The request to stop the work that this thread does.
+    /// The stop flag of the work on this thread.
     pub(crate) fn current() -> Self {
         CURRENT.with_borrow(Self::clone)
     }
 
-    /// The request in the form that options of textures hold.
+    /// The flag in the form that options of textures take.
     pub(crate) fn cancel(&self) -> Cancel {
         let stop = self.clone();
         Cancel::by(move || stop.is_set())
     }
 
-    /// What a callback for progress returns.
+    /// The flag as the return value of a progress callback.
     pub(crate) fn flow(&self) -> ControlFlow<()> {
         match self.is_set() {
             true => ControlFlow::Break(()),
@@ -79,7 +78,7 @@ impl Stop {
         self.0.load(Ordering::Relaxed)
     }
 
-    /// Ends the work with an error, which nobody sees, if its result is no longer wanted.
+    /// Returns an error if a stop was requested. The error ends the work and is not shown, since the call has returned.
     pub(crate) fn check(&self) -> Result<()> {
         match self.is_set() {
             true => Err(Error::new("interrupted", "the call was interrupted")),
@@ -88,16 +87,16 @@ impl Stop {
     }
 }
 
-/// A message of work to the thread that waits for it.
+/// A message from the work to the thread that waits for it.
 enum Message<T> {
-    /// The part of the work done, from 0 to 1.
+    /// The progress of the work, from 0 to 1.
     Part(f64),
     /// The result, or the panic that ended the work.
     Done(std::thread::Result<T>),
 }
 
-/// Runs `work` on the threads of the package and without the interpreter, and returns its result, unless a signal or
-/// `progress` raises an exception. `progress` is called with the part of the work done, from 0 to 1.
+/// Runs `work` on the threads of the package without the interpreter lock, and returns its result, unless a signal or
+/// `progress` raises an exception. `progress` is called with the fraction of the work that is done, from 0 to 1.
 pub(crate) fn run<T: Send + 'static>(
     py: Python<'_>,
     progress: Option<&Bound<'_, PyAny>>,
@@ -110,11 +109,11 @@ pub(crate) fn run<T: Send + 'static>(
     let ended = stop.clone();
     pool.spawn(move || {
         let mut tell = |steps: Progress| {
-            // After an exception nobody receives the progress.
+            // Ignore errors: after an exception, nobody receives the progress.
             let _ = sender.send(Message::Part(steps.part()));
             ended.flow()
         };
-        // A panic in a spawned task would end the process.
+        // Catch panics, since a panic in a spawned task would abort the process.
         let made = catch_unwind(AssertUnwindSafe(|| {
             with_current(&ended, || work(&mut tell, &ended))
         }));
@@ -132,8 +131,8 @@ pub(crate) fn run<T: Send + 'static>(
     }
 }
 
-/// Runs work that borrows on the threads of the package and without the interpreter. After an exception it is waited
-/// for, so `work` must look at [`Stop`] often.
+/// Runs work that borrows data on the threads of the package, without the interpreter lock. It is waited for even
+/// after an exception, so `work` must check [`Stop`] often.
 pub(crate) fn within<T: Send>(
     py: Python<'_>,
     work: impl FnOnce(&Stop) -> Result<T> + Send,
@@ -147,7 +146,7 @@ pub(crate) fn within<T: Send>(
         pool.in_place_scope(|scope| {
             scope.spawn(move |_| {
                 *made = Some(work(stop));
-                // The end of the channel is the end of the work.
+                // Close the channel, which signals the end of the work.
                 drop(sender);
             });
             let heard = listen(&receiver, None);
@@ -159,8 +158,8 @@ pub(crate) fn within<T: Send>(
     made.unwrap_or_else(|| Err(Error::new("threads", "the work was not done")))
 }
 
-/// Does the work of a number of items in parts that take some milliseconds, until its result is no longer wanted.
-/// `first` is the number of items of the first part.
+/// Processes `count` items in parts that take some milliseconds each; stops on request. `first` is the number of items
+/// of the first part.
 #[expect(
     clippy::disallowed_methods,
     reason = "the clock decides how many items come at once, and no value depends on it"
@@ -177,7 +176,7 @@ pub(crate) fn in_parts(
         let end = begin.saturating_add(size).min(count);
         let start = Instant::now();
         work(begin..end)?;
-        // The next part takes about the wanted time if its items are like those of this one.
+        // Choose the size of the next part by the time that this one took per item.
         let ratio = PART.as_secs_f64() / start.elapsed().as_secs_f64().max(1e-9);
         size = ((size as f64 * ratio.clamp(0.05, 4.0)) as usize).max(1);
         begin = end;
@@ -185,7 +184,7 @@ pub(crate) fn in_parts(
     Ok(())
 }
 
-/// Waits until the work is done, or an exception is raised.
+/// Waits until the work is done or an exception is raised. Returns `None` if the channel is closed without a result.
 #[expect(
     clippy::disallowed_methods,
     reason = "the clock says when to look for signals, and no value depends on it"

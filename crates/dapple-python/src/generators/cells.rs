@@ -38,7 +38,7 @@ pub(crate) struct CellsMade {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 enum CellsRange {
-    /// No range: the values are distances.
+    /// No range: values are unscaled distances.
     Plain,
     /// The measured range.
     Normalized,
@@ -56,7 +56,7 @@ impl CellsMade {
         }
     }
 
-    /// The basis, without the combination of its distances.
+    /// The cellular basis, without a combination of distances.
     fn basis<const N: usize>(&self) -> Result<Basis<N>>
     where
         Dimensions: Space<N>,
@@ -215,7 +215,7 @@ pub(crate) fn worley(
     Worley::with(py, made)
 }
 
-/// Calls a function with the numbers of axes and of feature points as constants.
+/// Calls a function with the number of axes and the number of feature points as const generics.
 macro_rules! with_counts {
     ($dims:expr, $count:expr, $call:ident($($argument:expr),*)) => {
         match ($dims, $count) {

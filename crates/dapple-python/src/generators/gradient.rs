@@ -22,7 +22,7 @@ pub(crate) struct GradientMade {
     octaves: Option<OctavesMade>,
 }
 
-/// The options of a fractal sum, in which each octave has a seed of its own.
+/// The options of a fractal sum, in which each octave has a separate seed.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct OctavesMade {
     count: u32,

@@ -1,4 +1,4 @@
-//! Textures in the plane along directions and with scales.
+//! Synthesis in the plane along an orientation field and with scales.
 
 use super::bake;
 use super::surface_guides::bounds;

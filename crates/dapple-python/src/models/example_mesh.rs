@@ -1,4 +1,4 @@
-//! An example that is the texture of another mesh.
+//! An example that is a textured mesh.
 
 use super::{directions, own_uvs, uvs_of};
 use crate::error::{Error, Result};
@@ -8,7 +8,7 @@ use dapple::mesh::{Mesh, Surface};
 use dapple::synth::{Direction, Exemplar, HierarchyOptions, MeshExemplar, Synthesizer};
 use pyo3::prelude::*;
 
-/// A mesh and its texture coordinates.
+/// A mesh as the example: its texture coordinates, and the options of its sites.
 pub(super) struct ExampleMesh {
     mesh: Mesh,
     uvs: Vec<[f64; 2]>,
@@ -17,7 +17,7 @@ pub(super) struct ExampleMesh {
 }
 
 impl ExampleMesh {
-    /// Reads the arguments that describe the mesh; nothing without one.
+    /// Reads the arguments that describe the mesh; `None` without a mesh.
     pub(super) fn read(
         example_mesh: Option<&Bound<'_, PyAny>>,
         n_sites: Option<usize>,
@@ -34,7 +34,7 @@ impl ExampleMesh {
         Self::new(example_mesh, "example_mesh", n_sites, directions).map(Some)
     }
 
-    /// Reads a mesh, which the caller knows by this name, and the directions of its texture.
+    /// Reads a mesh and the directions of its texture. `name` is the argument of the caller, for error messages.
     pub(super) fn new(
         of: &Bound<'_, PyAny>,
         name: &str,
@@ -50,7 +50,8 @@ impl ExampleMesh {
         })
     }
 
-    /// The mesh with points and its texture, and where that is on its faces; `sites` are those of the mesh that gets the texture, but for the seed.
+    /// Places sites on the mesh and samples its texture. Returns the exemplar, and the texture coordinates of the
+    /// repaired mesh. `sites` are the options of the mesh that gets the texture, with another seed.
     pub(super) fn textured(
         self,
         sites: &HierarchyOptions,

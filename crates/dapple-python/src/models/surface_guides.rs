@@ -1,4 +1,4 @@
-//! Numbers on a mesh: the arguments `guides` and `scales` of a texture on it.
+//! The arguments `guides` and `scales` of synthesis on a mesh: numbers that vary over the surface.
 
 use super::at_corners;
 use crate::error::{Error, Result};
@@ -10,10 +10,10 @@ use dapple::synth::{Exemplar, Synthesizer};
 use numpy::{AllowTypeChange, PyArrayLike1, PyArrayLikeDyn};
 use pyo3::prelude::*;
 
-/// A guide as the caller gives it: that of the example, that of the mesh, and the weight.
+/// A guide as an argument: its values in the example, its values on the mesh, and its weight.
 pub(super) type Guide<'py> = (Bound<'py, PyAny>, Bound<'py, PyAny>, f32);
 
-/// The guides of an example and of the mesh that it covers.
+/// The guides, with their values in the example and on the mesh.
 pub(super) struct SurfaceGuides {
     of_example: Vec<(Raster<f32>, f32)>,
     of_mesh: Vec<OfMesh>,
@@ -21,16 +21,16 @@ pub(super) struct SurfaceGuides {
 
 /// The argument `scales`.
 pub(super) enum SurfaceScales {
-    /// Between two bounds, by the directions.
+    /// Scales between two bounds that follow from the directions.
     Conformal([f32; 2]),
     OfMesh(OfMesh),
 }
 
-/// A number for each place on a mesh.
+/// Numbers that vary over a mesh.
 pub(super) enum OfMesh {
-    /// One for each vertex, and in between those of the corners mixed.
+    /// A number for each vertex, interpolated within faces.
     Vertices(Vec<f32>),
-    /// An image that repeats, at the mesh's own texture coordinates.
+    /// An image, read at the mesh's own texture coordinates; it repeats.
     Image(Raster<f32>),
 }
 
@@ -60,14 +60,14 @@ impl SurfaceGuides {
             .try_for_each(|guide| guide.check("a guide", mesh))
     }
 
-    /// An example with its guides.
+    /// Adds the guides to an exemplar.
     pub(super) fn of_example(&self, exemplar: Exemplar) -> Result<Exemplar> {
         let planes = self.of_example.iter();
         let planes: Vec<_> = planes.map(|(plane, weight)| (plane, *weight)).collect();
         Ok(exemplar.with_guides(&planes)?)
     }
 
-    /// The numbers of each guide at sites.
+    /// Samples each guide at the sites.
     pub(super) fn at_sites(&self, sites: &SitesOfMesh<'_>) -> Result<Vec<Vec<f32>>> {
         self.of_mesh
             .iter()
@@ -98,7 +98,7 @@ impl SurfaceScales {
         }
     }
 
-    /// The sites with pixels of these sizes.
+    /// Sets these scales on the sites.
     pub(super) fn scaled(
         &self,
         synthesizer: Synthesizer,
@@ -119,18 +119,18 @@ impl SurfaceScales {
     }
 }
 
-/// The numbers of what has two, which is neither a plane nor a number for each vertex of a mesh.
+/// Reads two numbers, which are bounds; `None` for other data, such as an image or a number for each vertex.
 pub(super) fn bounds(scales: &Bound<'_, PyAny>) -> Option<[f32; 2]> {
     let numbers: PyArrayLike1<'_, f32, AllowTypeChange> = scales.extract().ok()?;
     numbers.as_array().to_vec().try_into().ok()
 }
 
-/// Sites on a mesh that was repaired, and what it was before.
+/// Sites on a repaired mesh, with the mesh before its repair.
 pub(super) struct SitesOfMesh<'a> {
     pub(super) synthesizer: &'a Synthesizer,
     pub(super) before: &'a Mesh,
     pub(super) repair: &'a Repair,
-    /// The texture coordinates of the corners of all faces, if an image is read at them.
+    /// The texture coordinates of the corners of all faces; empty if no image is read.
     pub(super) uvs: &'a [[DVec2; 3]],
 }
 
@@ -162,7 +162,7 @@ impl OfMesh {
         }
     }
 
-    /// The numbers at sites.
+    /// Samples the numbers at the sites.
     pub(super) fn at_sites(&self, sites: &SitesOfMesh<'_>) -> Result<Vec<f32>> {
         let SitesOfMesh { before, repair, .. } = *sites;
         let surface = sites.synthesizer.surface();

@@ -1,4 +1,4 @@
-//! The rectangle of points, whose opposite sides may be joined.
+//! The domain of a point set: a rectangle that may wrap along each axis.
 
 use crate::error::Result;
 use crate::grid::pair;

@@ -1,4 +1,4 @@
-//! Graphs of points: the neighbors of each.
+//! Graphs of point sets.
 
 use super::{Domain, Points, set};
 use crate::arrays;
@@ -86,7 +86,7 @@ impl Graph {
         Arc::clone(&self.graph)
     }
 
-    /// Each edge once: the first point, and its axis there. Edges of a graph that is not symmetric have one end only.
+    /// Iterates over the edges, each once, as the first point and its axis. A directed graph lists each of its edges.
     fn each_edge(&self) -> impl Iterator<Item = (u32, &Axis)> {
         let one_way = !self.graph.is_symmetric();
         let from = (0..self.graph.n_points() as u32).map(PointIdx);
@@ -98,7 +98,7 @@ impl Graph {
         .map(|(from, axis)| (from.0, axis))
     }
 
-    /// The triangles, for graphs that have them.
+    /// The triangles of a Delaunay graph; an error for other graphs.
     fn each_triangle(&self, py: Python<'_>) -> Result<Vec<dapple::graph::Triangle>> {
         if self.made != GraphMade::Delaunay {
             return Err(Error::new(
@@ -113,7 +113,7 @@ impl Graph {
     }
 }
 
-/// Indices of points for NumPy and SciPy, in rows of N.
+/// Converts rows of `N` point indices to an array of int64, as NumPy and SciPy take them.
 fn indices<const N: usize>(
     py: Python<'_>,
     rows: impl Iterator<Item = [u32; N]>,

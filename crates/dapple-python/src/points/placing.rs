@@ -1,4 +1,4 @@
-//! Placement of points.
+//! Sampling of point sets.
 
 use super::{Domain, Points, varying};
 use crate::data;
@@ -11,7 +11,7 @@ use dapple::points::{PointSet, PointsError, RSA_DENSITY, VariablePoissonOptions}
 use dapple::raster::Varying;
 use pyo3::prelude::*;
 
-/// The distance or the number of points.
+/// The requested distance or number of points.
 enum Wanted {
     /// At least this distance, in units of the domain.
     Distance(Varying),
@@ -55,7 +55,7 @@ impl Wanted {
     }
 }
 
-/// The columns and rows at which a density is read: about two along the mean distance of points, and 64 to 4096.
+/// Columns and rows at which a density is sampled: about two per mean distance of points, from 64 to 4096.
 fn places(domain: &dapple::points::Domain, count: u32) -> [u32; 2] {
     let distance = (RSA_DENSITY * domain.area() / f64::from(count.max(1))).sqrt();
     let along = |side: f64| (2.0 * side / distance).clamp(64.0, 4096.0) as u32;

@@ -42,7 +42,7 @@ pub(crate) struct Points {
     array: PyOnceLock<Py<PyAny>>,
 }
 
-/// The largest coordinate at which the corners of a rectangle around points are still in range.
+/// Maximum magnitude of coordinates for which the corners of a rectangle around points stay finite.
 const FARTHEST: f64 = 1e299;
 
 impl Points {
@@ -115,7 +115,7 @@ pub(crate) fn positions<'py>(py: Python<'py>, positions: &[DVec2]) -> Result<Bou
 
 /// The smallest rectangle around positions, with sides of positive length.
 fn rectangle_around(positions: &[DVec2]) -> dapple::points::Domain {
-    // Positions that are not finite fail with their index when the set is made.
+    // Clamp infinite positions; `PointSet::new` reports them with their index.
     let held = || {
         positions
             .iter()
@@ -126,7 +126,7 @@ fn rectangle_around(positions: &[DVec2]) -> dapple::points::Domain {
     let largest = (high - low).max_element();
     let least = if largest > 0.0 { largest * 1e-6 } else { 1.0 };
     let size = (high - low).max(DVec2::splat(least));
-    // Far from the origin, rounding may lose the size, or leave the last point outside.
+    // Enlarge the rectangle if rounding, far from the origin, loses its size or excludes the last point.
     let rounding = low.abs().max(high.abs()) * (2.0 * f64::EPSILON);
     let is_lost = (low + size).cmplt(high) | (low + size).cmple(low);
     let size = DVec2::select(is_lost, size + rounding, size);

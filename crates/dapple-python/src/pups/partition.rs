@@ -54,7 +54,7 @@ impl Build for NetMade {
 pub(crate) struct PupsMade {
     net: Shared<NetMade>,
     values: Vec<f32>,
-    /// The number of values in a row, if there are rows.
+    /// Number of values per control point; `None` for single numbers.
     channels: Option<usize>,
     labels: Option<Vec<u32>>,
 }
@@ -191,7 +191,7 @@ impl NetArguments<'_, '_> {
     }
 }
 
-/// Reads values, and their number in a row.
+/// Reads values of control points, and the number of values per control point; `None` for single numbers.
 fn read_values(values: &Bound<'_, PyAny>) -> Result<(Vec<f32>, Option<usize>)> {
     let array: PyArrayLikeDyn<'_, f32, AllowTypeChange> = values.extract()?;
     let array = array.as_array();

@@ -24,7 +24,7 @@ use std::sync::Arc;
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct TextureMade {
     kind: String,
-    /// All options, without the domain if there is another one.
+    /// All options; the domain among them is replaced by `domain` if that is given.
     options: Value,
     domain: Option<dapple::points::Domain>,
     image: Option<Image>,
@@ -92,7 +92,8 @@ impl<T: PupsRecipe<ReferenceImage> + DeserializeOwned + Serialize> Texture for R
     }
 }
 
-/// The options with a domain; it does not wrap along axes along which the texture changes.
+/// Sets the domain of the options. It does not wrap along axes along which the default domain of the texture does not
+/// wrap.
 fn placed<T: PupsRecipe<I>, I>(mut options: T, domain: Option<dapple::points::Domain>) -> T {
     if let Some(domain) = domain {
         let usual = T::default().domain_mut().wrap;
@@ -105,7 +106,7 @@ fn placed<T: PupsRecipe<I>, I>(mut options: T, domain: Option<dapple::points::Do
     options
 }
 
-/// The row of a kind in the table.
+/// The table row of a kind of textures.
 const fn row<T: Texture>(name: &'static str, about: &'static str) -> Kind {
     Kind {
         name,
@@ -168,7 +169,7 @@ pub(crate) fn _texture(
 #[pyfunction]
 pub(crate) fn _texture_defaults() -> Result<String> {
     let described = KINDS.iter().map(|kind| {
-        // Points have no default, since they are given one by one.
+        // `points` is a required option; describe it as an empty list.
         let given = if kind.name == "points" {
             "{\"points\": []}"
         } else {

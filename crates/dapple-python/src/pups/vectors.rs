@@ -11,13 +11,13 @@ pub(crate) trait Vectors: Send + Sync {
     /// The number of channels.
     fn n_channels(&self) -> usize;
 
-    /// The distances after which it repeats.
+    /// The period along each axis; `None` for an axis without a period.
     fn period(&self) -> [Option<f64>; 2];
 
     /// Writes the numbers at a position.
     fn sample(&self, position: DVec2, vector: &mut [f32]);
 
-    /// Writes the numbers of the pixels of a window, one pixel after the other.
+    /// Writes the numbers at the pixels of a window, pixel by pixel.
     fn render(&self, window: &Window, values: &mut [f32]) -> core::result::Result<(), RasterError>;
 }
 
@@ -81,11 +81,12 @@ pub(crate) enum Values {
     Vectors(Arc<dyn Vectors>),
 }
 
-/// The largest number of values of a control point.
+/// Maximum number of values per control point.
 pub(crate) const MOST_CHANNELS: usize = 8;
 
 impl Values {
-    /// Makes the field of values at control points, or of their labels: single numbers, or rows of them.
+    /// Makes the field of values at control points or, with `labels`, of the values of their labels. `channels` is the
+    /// number of values per control point or label; `None` for single numbers.
     pub(crate) fn new(
         pups: Pups,
         values: &[f32],
@@ -117,7 +118,7 @@ impl Values {
         }))
     }
 
-    /// The field, if it has single numbers.
+    /// The field; an error unless it has a single number at each position.
     pub(crate) fn numbers(self) -> Result<Arc<dyn Field>> {
         match self {
             Self::Numbers(field) => Ok(field),

@@ -21,13 +21,13 @@ pub(super) fn kind_of(map: MapKind) -> Kind {
     }
 }
 
-/// The content of a picture with this name, if its channels alone would make it a color.
+/// The content of an image with the name of a map, if it has several channels and is not a color.
 pub(crate) fn content_of(name: &str) -> Option<Content> {
     let kind = kind_of(MapKind::from_name(name)?);
     (kind.n_channels > 1 && kind.content != Content::Color).then_some(kind.content)
 }
 
-/// The maps for one name or several, each of them once.
+/// Reads one name of a map or several; an error for a name that is given twice.
 pub(super) fn maps(names: &Bound<'_, PyAny>) -> Result<Vec<MapKind>> {
     let names: Vec<String> = match names.cast::<PyString>() {
         Ok(name) => vec![name.to_str()?.to_owned()],

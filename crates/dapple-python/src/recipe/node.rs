@@ -31,7 +31,7 @@ impl Build for NodeMade {
     }
 }
 
-/// The plan of a recipe, unless it is no longer wanted.
+/// Makes the plan of a recipe; stops on request.
 pub(super) fn plan(
     recipe: &Recipe,
     images: &Images,

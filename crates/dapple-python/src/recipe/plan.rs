@@ -56,7 +56,7 @@ struct Gathered {
 }
 
 impl Gathered {
-    /// Adds rows of a map with `n_values` numbers in all. A map in one piece is moved, not copied.
+    /// Appends rows of a map that has `n_values` numbers in total. Rows of the whole map are moved instead of copied.
     fn push(&mut self, rows: MapRows, n_values: usize) -> Result<()> {
         let rows = match rows {
             MapRows::Gray(raster) => raster.into_pixels(),
@@ -76,7 +76,7 @@ impl Gathered {
     }
 }
 
-/// The numbers of pixels, in the memory of the pixels.
+/// Flattens pixels to numbers, which reuse the memory of the pixels.
 fn flat<T>(pixels: Vec<T>, numbers: impl Fn(T) -> [f32; 3]) -> Vec<f32> {
     pixels
         .into_iter()
@@ -85,7 +85,7 @@ fn flat<T>(pixels: Vec<T>, numbers: impl Fn(T) -> [f32; 3]) -> Vec<f32> {
         .into_flattened()
 }
 
-/// Bakes all bands of maps, until the result is no longer wanted; returns the columns and rows, too.
+/// Bakes all bands of the maps; stops on request. Returns columns and rows, and the maps.
 fn bake_all(
     plan: &RustPlan,
     options: &BakeOptions,
@@ -129,7 +129,7 @@ fn dictionary<'py>(
     Ok(dictionary)
 }
 
-/// The columns and rows of a window of a picture, which must lie within it.
+/// Reads a window of a map, which must be within the map.
 fn region(size: &Bound<'_, PyAny>, window: &Bound<'_, PyAny>) -> Result<Region> {
     let arguments = GridArguments {
         size,

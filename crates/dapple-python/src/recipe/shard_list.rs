@@ -1,4 +1,4 @@
-//! Shards: the parts of a picture for independent bakes.
+//! Shards: the regions of a map for independent bakes.
 
 use crate::error::Result;
 use crate::grid::size as size_of;

@@ -10,8 +10,7 @@ use dapple::synth::{Edges, Exemplar, Options, SynthError, tile_plane};
 use dapple::tile::Map;
 
 /// Maximum side of the exemplar for matching, in pixels. Larger images are reduced for matching; their tiles copy
-/// blocks
-/// of the original pixels.
+/// blocks of the original pixels.
 const MOST: u32 = 512;
 
 /// Minimum shorter side of the exemplar, in pixels, for which matching uses four levels instead of three.

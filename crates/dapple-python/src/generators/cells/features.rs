@@ -9,7 +9,7 @@ use crate::watch::{self, Stop};
 use dapple::raster::{RasterViewMut, Window};
 use dapple::worley::{Dimensions, FeatureView, MAX_NEAREST, Space, Vector};
 
-/// The number of positions between two looks for an interruption.
+/// Number of positions between two checks for an interruption.
 const PART: usize = 1 << 15;
 
 pub(super) fn check_count(count: usize) -> Result<()> {
@@ -59,7 +59,7 @@ where
     Ok(found)
 }
 
-/// The planes of the nearest feature points, those of the nearest first.
+/// The requested planes of the nearest feature points, nearest point first.
 pub(super) struct Drawn {
     pub(super) distance: Option<Vec<f32>>,
     pub(super) vector: Option<Vec<f32>>,

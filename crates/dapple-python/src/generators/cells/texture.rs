@@ -31,7 +31,7 @@ where
     }
 }
 
-/// The plane along the first two axes at fixed further coordinates.
+/// The plane along the first two axes, at fixed coordinates along the other axes.
 pub(super) fn plane<const N: usize>(rest: &[f64]) -> Plane<N>
 where
     Dimensions: Space<N>,
