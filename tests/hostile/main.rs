@@ -1,6 +1,6 @@
-//! Broken inputs for all readers: every reader returns a result or an error, in a short time.
+//! Tests all readers with malformed inputs: every reader returns a result or an error, in a short time.
 //!
-//! libFuzzer can run the same functions for any length of time: see `tests/fuzz`.
+//! libFuzzer can run the same functions for any length of time; see `tests/fuzz`.
 
 mod mutate;
 #[expect(
@@ -13,7 +13,7 @@ use mutate::Mutator;
 use std::panic::catch_unwind;
 use targets::TARGETS;
 
-/// Runs a target on its seed inputs, and on `rounds` changed copies of each.
+/// Runs a target on its seed inputs, and on `rounds` mutated copies of each.
 fn try_out(target: &str, rounds: u64) {
     let found = TARGETS.into_iter().find(|(name, ..)| *name == target);
     let (name, run, seeds) = found.expect("the name of a target");

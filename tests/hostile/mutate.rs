@@ -1,4 +1,4 @@
-//! Random changes of inputs that keep much of them valid, the same in every run.
+//! Random mutations of inputs, which keep much of an input valid. They are the same in every run.
 
 use dapple::hash::{Seed, rand_core::Rng};
 
@@ -34,7 +34,7 @@ const BYTES: [[u8; 4]; 8] = [
     [0, 0, 0xc0, 0x7f],
 ];
 
-/// Makes random changes to inputs.
+/// Makes random mutations of inputs.
 pub(crate) struct Mutator {
     random: Box<dyn FnMut() -> u64>,
 }
@@ -52,7 +52,7 @@ impl Mutator {
         ((self.random)() % n as u64) as usize
     }
 
-    /// Returns the bytes with one to four changes; some changes insert parts of the other inputs.
+    /// Returns a copy of the bytes with one to four mutations. Some of them insert parts of other inputs.
     pub(crate) fn changed(&mut self, bytes: &[u8], others: &[Vec<u8>]) -> Vec<u8> {
         let mut bytes = bytes.to_vec();
         for _ in 0..=self.below(4) {
@@ -83,7 +83,7 @@ impl Mutator {
         bytes
     }
 
-    /// Replaces up to as many bytes by a part of other bytes.
+    /// Inserts a part of `other`, 1 to 40 bytes, at a position. The part replaces at most as many bytes.
     fn splice(&mut self, bytes: &mut Vec<u8>, at: usize, other: &[u8]) {
         if other.is_empty() {
             return;

@@ -1,4 +1,4 @@
-//! The whole chain, from a seed through points, graph and texture to the bytes of a file.
+//! Checks the whole chain, from a seed through points, graph and texture to the bytes of a file.
 
 use crate::with_threads;
 use dapple_hash::{Seed, hash2, unit_f32, unit_f64};

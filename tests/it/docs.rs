@@ -1,4 +1,4 @@
-//! The pictures in the documentation of the crates are up to date, small, and included.
+//! Checks the images in the documentation of the crates: they are up to date, small, and included.
 //!
 //! `cargo xtask docs-images` rewrites them.
 #![expect(
@@ -11,7 +11,7 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// The limit on the total size of a crate's pictures, in bytes, since users download them with the source.
+/// Maximum total size of a crate's images, in bytes. Users download them with the source.
 const BYTES_MAX: u64 = 350_000;
 
 fn folder(documented: &Documented, name: &str) -> PathBuf {
@@ -19,7 +19,7 @@ fn folder(documented: &Documented, name: &str) -> PathBuf {
     root.join(documented.folder).join(name)
 }
 
-/// Iterates over the crates without the workspace itself, whose folder `docs` may have other files.
+/// Iterates over the crates. The workspace itself is left out, since its folder `docs` may have other files.
 fn crates() -> impl Iterator<Item = &'static Documented> {
     documented()
         .iter()

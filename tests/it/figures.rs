@@ -1,5 +1,4 @@
-//! Renders every figure at a small size and compares it with its line in figures.lock, with one thread or
-//! several.
+//! Renders every figure at a small size, with one or several threads, and compares it with its line in figures.lock.
 
 use crate::with_threads;
 use dapple::recipe::Recipe;
@@ -12,10 +11,11 @@ fn lock() -> Lock {
         .expect("figures.lock can be read")
 }
 
-/// Renders every third figure from `first` on with `n_threads` threads, and returns how they differ from the lock.
+/// Renders every third figure, starting at `first`, with `n_threads` threads, and returns the differences from the
+/// lock.
 ///
-/// Neighbors in the list are of one kind, so that each kind is rendered with each number of threads; the crates compare
-/// these numbers for each of their algorithms.
+/// Adjacent figures in the list are of the same kind, so that each kind is rendered with each number of threads. The
+/// tests of the crates compare numbers of threads for every algorithm.
 fn changes(first: usize, n_threads: usize) -> Vec<Change> {
     let mut found = lock();
     for figure in figures().skip(first).step_by(3) {
@@ -68,8 +68,8 @@ fn figures_have_names_of_their_own_captions_and_numbers() {
     }
 }
 
-/// One figure in five, so that each kind has some: [`Figure::render`](dapple_gallery::Figure::render) refuses pictures of
-/// other sizes of any figure.
+/// Renders every fifth figure, so that each kind is included. [`Figure::render`](dapple_gallery::Figure::render)
+/// returns an error if an image does not have the requested size.
 #[test]
 fn figures_keep_their_shape_at_another_size() {
     for figure in figures().step_by(5) {

@@ -1,6 +1,6 @@
-//! Golden images: small pictures of what a crate draws, compared pixel for pixel with `tests/golden/`.
+//! Golden images: small images of the output of a crate, compared with the files in `tests/golden/` pixel by pixel.
 //!
-//! `cargo xtask golden --bless` rewrites the files. A failed run leaves the new picture as `<name>.new.png` in
+//! `cargo xtask golden --bless` rewrites the files. A failed run leaves the new image as `<name>.new.png` in
 //! `target/tmp/golden/`, for comparison with the old one. Every image shows one subject and has at most 8 KiB.
 #![expect(clippy::disallowed_methods, reason = "golden images are files")]
 
@@ -26,10 +26,10 @@ use dapple_worley::{Combination, Metric, Octaves, Plane, Worley2, Worley3};
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 
-/// The largest file, in bytes.
+/// Maximum size of a file, in bytes.
 const BYTES_MAX: usize = 8 * 1024;
 
-/// The width and height of most images, in pixels.
+/// Width and height of most images, in pixels.
 const SIZE: u32 = 96;
 
 /// A golden image: its name, and the function that makes its file.
@@ -189,7 +189,7 @@ fn pups_noise() -> anyhow::Result<Vec<u8>> {
     gray(&noise.to_raster(&window()?)?)
 }
 
-/// Returns a random point in each of 6 × 6 cells of the unit torus.
+/// Makes a jittered grid: one random point in each of 6 × 6 cells of the unit torus.
 fn jittered_points() -> anyhow::Result<PointSet> {
     let jitter = |cell, axis| unit_f64(hash2(Seed(1), cell, axis));
     let position = |cell: [i64; 2]| {
@@ -200,7 +200,7 @@ fn jittered_points() -> anyhow::Result<PointSet> {
     Ok(PointSet::new(unit_torus(), positions.collect())?)
 }
 
-/// Corner tiles made from two tiles of cracks, one finer than the other, shown by random corner colors.
+/// Draws corner tiles with random corner colors, made from two source tiles of cracks, one finer than the other.
 fn tile_corner_tiles() -> anyhow::Result<Vec<u8>> {
     let cracks = |cells: u16| {
         let period = Some(u32::from(cells));
@@ -217,7 +217,7 @@ fn tile_corner_tiles() -> anyhow::Result<Vec<u8>> {
     gray(map)
 }
 
-/// Black and white blended by a tile of noise, with more white to the right.
+/// Draws black and white blended by a tile of noise, with more white to the right.
 fn tile_mask() -> anyhow::Result<Vec<u8>> {
     let tile = rank_equalize(&wavelet_tile([32; 2], &[0.0, 0.5, 1.0], Seed(5))?)?;
     let tile = repeat(&tile, [SIZE; 2])?;
@@ -238,7 +238,7 @@ fn tile_mask() -> anyhow::Result<Vec<u8>> {
     }
 }
 
-/// Two by two copies of a crop of cells that does not repeat, made seamless by a soft cut.
+/// Draws two by two copies of a crop of cells that does not repeat, made seamless by a soft cut.
 fn tile_soft_cut() -> anyhow::Result<Vec<u8>> {
     let cells = Worley2::new(Seed(6)).combine(Combination::F1);
     let crop = Window::new(DVec2::ZERO, DVec2::splat(4.0), [64; 2])?;
@@ -250,14 +250,14 @@ fn tile_soft_cut() -> anyhow::Result<Vec<u8>> {
     gray(&repeat(&tile, [SIZE; 2])?)
 }
 
-/// Three bands of a noise tile of eight cells, shown one and a half times.
+/// Draws three bands of a noise tile of eight cells, repeated one and a half times.
 fn wavelet_noise() -> anyhow::Result<Vec<u8>> {
     let noise = WaveletNoise2::new(8, Seed(7))?.with_weights(&[0.2, 0.05, 0.01])?;
     let window = Window::new(DVec2::ZERO, DVec2::splat(12.0), [SIZE; 2])?;
     gray(&noise.to_raster(&window)?.map(|value| 0.5 + value))
 }
 
-/// Manhattan cells that repeat after four, colored by their ids.
+/// Draws Manhattan cells with a period of four, colored by their ids.
 fn worley_cells() -> anyhow::Result<Vec<u8>> {
     let period = [Some(4), Some(4)];
     let worley = Worley2::new(Seed(3)).with_metric(Metric::Manhattan)?;
@@ -269,7 +269,7 @@ fn worley_cells() -> anyhow::Result<Vec<u8>> {
     color(&cells)
 }
 
-/// F1 above and F2 - F1 below, each plain on the left and fractal on the right.
+/// Draws F1 at the top and F2 - F1 at the bottom, a single octave on the left and fractal on the right.
 fn worley_combinations() -> anyhow::Result<Vec<u8>> {
     let worley = Worley3::new(Seed(5));
     let half = SIZE / 2;
@@ -318,7 +318,7 @@ fn unit_torus() -> Domain {
     Domain::torus(DVec2::ZERO, DVec2::ONE)
 }
 
-/// Returns a window of the paper's whole torus.
+/// Returns a window of the whole torus of the paper on partition-of-unity parametrics.
 fn paper_window() -> anyhow::Result<Window> {
     let Domain { origin, size, .. } = Domain::paper_torus();
     Ok(Window::new(origin, size, [SIZE; 2])?)

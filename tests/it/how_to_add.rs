@@ -18,7 +18,7 @@ struct Example {
     words: &'static [&'static str],
     /// The text that `NAME` in the row's file names stands for.
     file: &'static str,
-    /// The largest allowed number of files.
+    /// Maximum number of files.
     most: usize,
 }
 

@@ -12,7 +12,7 @@ use std::sync::Arc;
 
 const README: &str = include_str!("../../crates/dapple-recipe/README.md");
 
-/// A recipe to which the examples of nodes are added: `a` and `b` are numbers, `c` is a color.
+/// A recipe for the examples of nodes, which are added to it. `a` and `b` are numbers, `c` is a color.
 const AROUND: &str = r##"
 dapple = 1
 extent = [8.0, 8.0]
@@ -26,7 +26,7 @@ b = { coordinate = { along = [0.125, 0.0] } }
 c = { ramp = { input = "a", palette = "lagoon" } }
 "##;
 
-/// Iterates over the rows of the tables of nodes: the kind of node and its example.
+/// Iterates over the rows of the tables of nodes, as the kind of node and its example.
 fn rows() -> impl Iterator<Item = (&'static str, &'static str)> {
     README.lines().filter_map(|line| {
         let (kind, rest) = line.strip_prefix("| `")?.split_once('`')?;
@@ -129,7 +129,7 @@ fn fur_has_no_bands_across_its_height() {
         });
         let rows = means.expect("a row for each").statistics().deviation;
         let contrast = rows / height.statistics().deviation;
-        // Unrelated rows of pixels have 1/16; hair is 2 pixels wide and has 0.07 to 0.10.
+        // Independent pixels have a contrast of 1/16 between rows. Hair, 2 pixels wide, has 0.07 to 0.10.
         assert!(contrast < 0.13, "{name}: rows differ by {contrast}");
     }
 }

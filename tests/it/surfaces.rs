@@ -1,5 +1,5 @@
-//! Textures on surfaces: features follow the orientation, colors do not jump between faces, and real meshes and
-//! photographs go through the whole chain.
+//! Checks textures on surfaces: features follow the orientation, colors are continuous across edges of faces, and real
+//! meshes and photographs go through the whole chain.
 
 use dapple_color::LinearRgb;
 use dapple_hash::Seed;
@@ -14,7 +14,7 @@ use dapple_synth::{
 };
 use std::path::{Path, PathBuf};
 
-/// Makes vertical stripes, dark and light together `width` pixels wide: the texture changes only along P.
+/// Makes vertical stripes with a period of `width` pixels. The texture changes only along P.
 fn stripes(width: u32) -> Exemplar {
     let image = Raster::from_fn([4 * width, 32], |x, _| {
         let turns = f64::from(x % width) / f64::from(width);
@@ -24,10 +24,11 @@ fn stripes(width: u32) -> Exemplar {
     Exemplar::new(&image.unwrap(), Edges::Wrap).unwrap()
 }
 
-/// Returns the median angle between the field and the direction of the texture, in degrees. The direction of the
-/// texture is the direction of least change of the structure tensor (Bigün and Granlund 1987).
+/// Returns the median angle between the orientation field and the direction of the texture, in degrees. The direction
+/// of the texture is the direction of least change of the structure tensor (Bigün and Granlund 1987).
 ///
-/// The tensor comes from the gradients in a ball as wide as a stripe, which always contains an edge.
+/// The tensor is summed over the gradients in a ball whose diameter is the period of the stripes, `stripe` spacings of
+/// sites, so that it always contains an edge of a stripe.
 fn median_turn(synthesizer: &Synthesizer, values: &[f64], stripe: u32) -> f64 {
     let hierarchy = synthesizer.hierarchy();
     let (sites, level) = (hierarchy.sites(), &hierarchy.levels()[0]);
@@ -51,7 +52,7 @@ fn median_turn(synthesizer: &Synthesizer, values: &[f64], stripe: u32) -> f64 {
                 xy += x * y;
                 yy += y * y;
             });
-            // The direction of most change is P if the texture follows the field.
+            // The direction of greatest change is P if the texture follows the field.
             (0.5 * libm::atan2(2.0 * xy, xx - yy)).abs().to_degrees()
         })
         .collect();
@@ -61,8 +62,8 @@ fn median_turn(synthesizer: &Synthesizer, values: &[f64], stripe: u32) -> f64 {
 
 /// Returns the gradient that best fits the differences to the neighbors of a site.
 ///
-/// A sum over edges, each with its own difference, would be cheaper. But it is biased where neighbors are unevenly
-/// spread: by 3 degrees in the median for a correct texture.
+/// A tensor summed over edges, each with its own difference, would be cheaper. But it is biased where neighbors are
+/// unevenly distributed: by 3 degrees in the median for a correct texture.
 fn gradient(hierarchy: &Hierarchy, site: SiteIdx, values: &[f64]) -> DVec3 {
     let sites = hierarchy.sites();
     let normal = sites.normals()[site.index()];
@@ -87,7 +88,7 @@ fn gradient(hierarchy: &Hierarchy, site: SiteIdx, values: &[f64]) -> DVec3 {
     right * along_right + down * ((xx * of_y - xy * of_x) / determinant)
 }
 
-/// Returns the sites of a model, once with the field of each set of directions.
+/// Returns a synthesizer for each set of directions, all with the same sites of a mesh.
 fn with_fields(mesh: Mesh, fields: &[&[[DVec3; 2]]]) -> Vec<Synthesizer> {
     let surface = Surface::new(mesh).unwrap();
     let hierarchy = Hierarchy::new(&surface, &sites(40_000, 3)).unwrap();
@@ -156,8 +157,8 @@ fn turn_of_a_texture_that_is_right_is_none() {
     let [synthesizer] = &with_fields(models::bunny(4000).unwrap(), &[&[]])[..] else {
         panic!("one field");
     };
-    // Rings around the axis of the field are at right angles to it. So the stripes are turned by 90 degrees, less the
-    // bend of the surface within the tensor's ball.
+    // Rings around the y axis are perpendicular to the field. So the stripes are turned by 90 degrees, less an
+    // error due to the curvature of the surface within the tensor's ball.
     let hierarchy = synthesizer.hierarchy();
     let spacing = hierarchy.levels()[0].spacing();
     let heights = hierarchy
@@ -190,13 +191,13 @@ fn nothing_jumps_across_the_edges_of_the_mesh() {
             };
             let corners = surface.mesh().corners(face);
             let at = corners[usize::from(edge)].lerp(corners[(usize::from(edge) + 1) % 3], 0.4);
-            // The color as a texture map shows it, with the smooth normal that both faces have in common.
+            // Interpolate the color as in a texture map, with the smooth normal at the edge, which both faces share.
             let [here, there] = [face, other.face].map(|face| {
                 let normal = surface.normal(surface.project(face, at));
                 let value = hierarchy.interpolate(0, &values, at, normal);
                 value.unwrap().unwrap()
             });
-            // The same sites have weight on both sides, so the colors have the same bits.
+            // The same sites have weights on both sides, so the colors have the same bits.
             assert_eq!(here, there, "{face:?}, edge {edge}");
             n_edges += 1;
         }
@@ -204,7 +205,8 @@ fn nothing_jumps_across_the_edges_of_the_mesh() {
     assert_eq!(n_edges, 9000, "all edges from both sides");
 }
 
-/// Returns the path of a data file beside the workspace; if it does not exist, prints a note and returns `None`.
+/// Returns the path of a file in `shared/data`, next to the workspace. If it does not exist, prints a note and returns
+/// `None`.
 fn data(file: &str) -> Option<PathBuf> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data");
     let path = path.join(file);
@@ -275,7 +277,7 @@ fn charts_of_models_use_most_of_the_map_and_hardly_stretch() {
     for (name, mesh, used) in [
         ("spot", spot, 0.70),
         ("bunny", made(models::bunny(14_000)), 0.70),
-        // Thin arms and tubes fill less.
+        // Charts of thin arms and tubes use less of the map.
         ("octopus", made(models::octopus(14_000)), 0.54),
         ("tori", made(models::blended_tori(14_000)), 0.60),
     ] {

@@ -1,7 +1,7 @@
 //! Checks images that are made to repeat: they have no seam and keep their detail.
 //!
-//! Fractal noise and gravel are generated. Photographs come from `shared/data/exemplars` beside the workspace, and are
-//! skipped if they do not exist.
+//! Fractal noise and gravel are generated. Photographs are read from `shared/data/exemplars`, next to the workspace,
+//! and are skipped if they do not exist.
 
 use anyhow::{Context, Result};
 use dapple_hash::Seed;
@@ -12,10 +12,11 @@ use dapple_wavelet::WaveletNoise2;
 use dapple_worley::{Combination, Worley2};
 use std::path::Path;
 
-/// The width and height of a crop in pixels.
+/// Width and height of a crop in pixels.
 const CROP: u32 = 128;
 
-/// Photographs of grains and blades. Bricks are left out, since they are longer than a margin.
+/// Photographs of sand, gravel, rock and grass. Bricks are left out, since they are longer than the margin of a soft
+/// cut.
 const PHOTOGRAPHS: [&str; 6] = [
     "skimage_grass_gray_512.png",
     "skimage_gravel_gray_512.png",
@@ -31,9 +32,9 @@ struct Means {
     seam_at_1: f64,
     seam_at_4: f64,
     top_octave: f64,
-    /// The largest deviation of the top octave's ratio from 1.
+    /// Maximum deviation of the top octave's ratio from 1.
     furthest: f64,
-    /// The least local detail, as a multiple of the source's.
+    /// The lowest local detail, as a multiple of that of the source.
     local: f64,
 }
 
@@ -98,7 +99,7 @@ fn gravel() -> Result<Raster<f32>> {
     Ok(texture.to_raster(&window)?)
 }
 
-/// Returns the means over all crops of an image, made to repeat by a method, or unchanged.
+/// Returns the means over all crops of an image. The crops are made to repeat by a method, or unchanged without one.
 fn means(image: &Raster<f32>, method: Option<Method>) -> Result<Means> {
     let [columns, rows] = image.size().map(|side| side / CROP);
     let n = f64::from(columns * rows);
@@ -109,8 +110,8 @@ fn means(image: &Raster<f32>, method: Option<Method>) -> Result<Means> {
             Some(method) => Seamless::new(method).apply(&crop)?,
             None => crop.clone(),
         };
-        // A soft cut leaves out the last columns and rows. The rest is compared with itself, so that the report shows
-        // the effect of the method and not the difference between parts of an image.
+        // A soft cut leaves out the last columns and rows. Compare with a source of equal size, so that the report
+        // shows the effect of the method and not the difference between parts of an image.
         let source = crop.crop([0; 2], tile.size())?;
         let report = SeamReport::beside(&source, &tile, &SeamOptions::default())?;
         let ratio = |index: usize| report.seams[index].both.context("too small");

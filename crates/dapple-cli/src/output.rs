@@ -317,7 +317,7 @@ impl Outputs {
     pub(crate) fn commit(mut self) -> Result<()> {
         // Flush all files to disk, and write the streams.
         for file in &self.files {
-        file.complete()
+            file.complete()
                 .with_context(|| cannot_be_written(&file.target))?;
         }
         self.files.sort_by_key(|file| file.target.turn());

@@ -1,6 +1,6 @@
 //! A source of numbers from the bytes of an input.
 
-/// The bytes that are not yet consumed. After the last byte follow zeros.
+/// The bytes that are not consumed yet. After the last byte, zeros follow.
 pub(super) struct Bytes<'a>(pub(super) &'a [u8]);
 
 impl Bytes<'_> {
@@ -9,7 +9,7 @@ impl Bytes<'_> {
         byte
     }
 
-    /// Returns any number, and often one at which code branches.
+    /// Returns any number, often a special value at which code may branch.
     pub(super) fn number(&mut self) -> f64 {
         const SPECIAL: [f64; 16] = [
             0.0,

@@ -13,7 +13,7 @@ const LIMITS: Limits = Limits {
     bytes: 1 << 22,
 };
 
-/// Decodes an image: it is within the limits or refused, and stays the same when written and read again.
+/// Decodes an image. It is rejected, or it is within the limits and unchanged after it is written and read again.
 pub fn image(bytes: &[u8]) {
     let Some(image) = accepted(decode_image(bytes, &LIMITS)) else {
         return;
@@ -38,7 +38,7 @@ fn check_png(image: &PngImage) {
     let bytes = png(image).expect("what was read can be written");
     let limits = Limits::default();
     let again = decode_png(&bytes, &limits).expect("what was written can be read");
-    // What is written declares its colors, also where the image that was read does not.
+    // Compare pixels and transfer only: the encoder declares colors even if the decoded image did not.
     let same = |image: &PngImage| (image.pixels.clone(), image.transfer);
     assert!(same(&again) == same(image), "written and read again");
 }
@@ -58,7 +58,7 @@ fn png(image: &PngImage) -> Result<Vec<u8>, dapple::image::ImageError> {
 }
 
 fn check_exr(image: &ExrImage) {
-    // Parts may have planes of different sizes, or names that are too long together; such images cannot be written.
+    // Images cannot be written if planes of several parts differ in size, or if joined names are too long.
     let Some(bytes) = accepted(encode_exr(&image.planes)) else {
         return;
     };

@@ -1,4 +1,5 @@
-//! The target for textures of meshes, and for these as examples: meshes, sizes, texture coordinates and masks of any kind.
+//! The target for synthesis on meshes, also from the texture of a mesh: arbitrary meshes, scales, texture coordinates
+//! and masks.
 
 use super::accepted;
 use super::bytes::Bytes;
@@ -11,16 +12,16 @@ use dapple::synth::{
     Synthesizer, bake_values,
 };
 
-/// The largest numbers of vertices, faces and sites.
+/// Maximum numbers of vertices, faces and sites.
 const MOST_VERTICES: u8 = 8;
 const MOST_FACES: u8 = 12;
 const MOST_SITES: u8 = 64;
-/// The sides of the texture and of the map.
+/// Sides of the example and of the baked map, in pixels.
 const SIDE: u32 = 16;
 const MAP_SIDE: u32 = 64;
 
-/// Makes an image or a texture of a mesh the example for the same mesh, or mends it: it is refused, or values are those of the
-/// texture.
+/// Synthesizes a texture on a mesh from an image or from the mesh's own texture, or repairs that texture. The input is
+/// rejected, or all baked values are within the range of the example.
 pub fn lift(bytes: &[u8]) {
     let mut bytes = Bytes(bytes);
     let choice = bytes.byte();
@@ -82,7 +83,7 @@ pub fn lift(bytes: &[u8]) {
     }
 }
 
-/// A small mesh with sites, unless it is refused.
+/// Makes a small mesh with sites; `None` if it is rejected.
 fn synthesizer(bytes: &mut Bytes<'_>, n_levels: usize) -> Option<Synthesizer> {
     let [n_vertices, n_faces, n_sites] =
         [MOST_VERTICES, MOST_FACES, MOST_SITES].map(|most| 1 + bytes.byte() % most);
@@ -101,7 +102,7 @@ fn synthesizer(bytes: &mut Bytes<'_>, n_levels: usize) -> Option<Synthesizer> {
     accepted(Synthesizer::new(surface, &[], &sites))
 }
 
-/// The texture as a map of the mesh.
+/// Bakes the texture to a map of the mesh.
 fn baked(
     synthesizer: &Synthesizer,
     made: &SurfaceTexture,
@@ -112,7 +113,7 @@ fn baked(
 }
 
 pub(super) fn seeds() -> Vec<Vec<u8>> {
-    // The corners of a tetrahedron at 0 and 1, as the codes of these numbers.
+    // The coordinates of the corners of a tetrahedron, as the codes of 0 and 1.
     let corners = [[0, 0, 0], [2, 0, 0], [0, 2, 0], [0, 0, 2]];
     let faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
     let seed = |choice: u8| {
@@ -122,7 +123,7 @@ pub(super) fn seeds() -> Vec<Vec<u8>> {
         if choice & 32 != 0 {
             seed.extend([4, 5]); // From 0.5 to 2.
         }
-        // Texture coordinates from 0 to 1, in two bytes after their code.
+        // Texture coordinates from 0 to 1: a code, and two bytes with the number.
         seed.extend((0..24_u8).flat_map(|at| [200, at, at.wrapping_mul(53)]));
         seed.extend([0xf0, 0x7e]);
         seed

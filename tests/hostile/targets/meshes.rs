@@ -6,7 +6,8 @@ use dapple::mesh::glam::{DVec2, DVec3};
 use dapple::mesh::{EncodedImage, Mesh, Model, Surface};
 use dapple::mesh_io::{self as io, MeshIoError};
 
-/// Reads OBJ: a model is refused or can be repaired, laid out and written, and stays the same when read again.
+/// Reads OBJ. A model is rejected, or it can be repaired, used as a surface and written, and is unchanged when read
+/// again.
 pub fn obj(bytes: &[u8]) {
     // The file also serves as its own material library and texture.
     check(
@@ -22,8 +23,8 @@ pub fn obj(bytes: &[u8]) {
     );
 }
 
-/// Reads PLY: a model is refused or can be repaired, laid out and written, in binary and as text, and stays the same
-/// when read again.
+/// Reads PLY. A model is rejected, or it can be repaired, used as a surface and written, in binary and as text, and is
+/// unchanged when read again.
 pub fn ply(bytes: &[u8]) {
     check(io::ply::read(bytes), |model| {
         io::ply::read(&io::ply::write(model)?)
@@ -33,7 +34,8 @@ pub fn ply(bytes: &[u8]) {
     });
 }
 
-/// Reads glTF or GLB: a model is refused or can be repaired, laid out and written, and stays the same when read again.
+/// Reads glTF or GLB. A model is rejected, or it can be repaired, used as a surface and written, and is unchanged when
+/// read again.
 pub fn gltf(bytes: &[u8]) {
     check(
         io::gltf::read_with(bytes, &mut |_| Some(bytes.to_vec())),
@@ -41,12 +43,13 @@ pub fn gltf(bytes: &[u8]) {
     );
 }
 
-/// Reads OFF: a model is refused or can be repaired and laid out. OFF cannot be written.
+/// Reads OFF. A model is rejected, or it can be repaired and used as a surface. OFF cannot be written.
 pub fn off(bytes: &[u8]) {
     check(io::off::read(bytes), |model| Ok(model.clone()));
 }
 
-/// Reads STL: a model is refused or can be repaired, laid out and written, and stays the same when read again.
+/// Reads STL. A model is rejected, or it can be repaired, used as a surface and written, and is unchanged when read
+/// again.
 pub fn stl(bytes: &[u8]) {
     check(io::stl::read(bytes), |model| {
         io::stl::read(&io::stl::write(model)?)
@@ -59,7 +62,7 @@ fn check(read: Result<Model, MeshIoError>, again: impl Fn(&Model) -> Result<Mode
     };
     model.check().expect("what is read is valid");
     check_mesh(&model.mesh);
-    // A format may lose a part of a model of another format, but it must keep its own.
+    // The first writing may lose data that the format cannot represent. The second must not lose any.
     let once = again(&model).expect("what was read can be written and read");
     let twice = again(&once).expect("it can be written and read again");
     assert_eq!(once, twice, "written and read again");

@@ -1,7 +1,7 @@
 //! Properties that must hold for any bytes: one function for each kind of input, and seed inputs.
 //!
-//! The test `hostile` passes changed copies of the seed inputs to the functions, and `tests/fuzz` passes inputs of
-//! libFuzzer. A function returns soon and without much memory; a panic is a finding.
+//! The test `hostile` passes mutated copies of the seed inputs to the functions, and `tests/fuzz` passes inputs of
+//! libFuzzer. A function must return soon and use little memory. A panic is a failure.
 
 mod bytes;
 mod images;
@@ -35,7 +35,7 @@ pub const TARGETS: [Target; 10] = [
     ("directions", directions, recipes::direction_seeds),
 ];
 
-/// Returns the value of a successful result. An error must have a text.
+/// Returns the value of a successful result, and `None` for an error, whose message must not be empty.
 fn accepted<T, E: Error>(result: Result<T, E>) -> Option<T> {
     result
         .map_err(|error| {

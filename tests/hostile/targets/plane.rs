@@ -1,4 +1,4 @@
-//! The target for points: domains of any kind, statistics of their points, and their graphs.
+//! The target for point sets: arbitrary domains and positions, statistics, and graphs.
 
 use super::accepted;
 use super::bytes::Bytes;
@@ -6,10 +6,10 @@ use dapple::graph::{EdgeDirection, delaunay, gabriel, k_nearest, yao};
 use dapple::points::glam::DVec2;
 use dapple::points::{Domain, PointSet, SpectrumOptions, spectrum};
 
-/// The largest number of points, since some steps take time proportional to its square.
+/// Maximum number of points. It is small, since some steps take time proportional to its square.
 const MOST_POINTS: usize = 32;
 
-/// Makes a point set: it is refused, or its statistics and graphs are computed or refused.
+/// Makes a point set. It is rejected, or its statistics and its graph are computed or rejected.
 pub fn points(bytes: &[u8]) {
     let mut bytes = Bytes(bytes);
     let choice = bytes.byte();
@@ -44,7 +44,7 @@ pub fn points(bytes: &[u8]) {
         EdgeDirection::Symmetric
     };
     let count = u32::from(choice >> 6) * 3;
-    // Only one graph per input: on thin domains each graph may use all the work that it is allowed.
+    // Build only one graph per input: on thin domains, each graph may use its whole limit of work.
     let graph = match choice >> 4 & 3 {
         0 => delaunay(&points),
         1 => gabriel(&points),

@@ -1,4 +1,4 @@
-//! Targets for recipes, and for the lists of points and directions that the command reads.
+//! Targets for recipes, and for lists of control points and directions, which the command reads.
 
 use super::accepted;
 use dapple::color::LinearRgb;
@@ -16,8 +16,8 @@ const LIMITS: PlanLimits = PlanLimits {
     pixels: 1 << 12,
 };
 
-/// Reads a recipe: it is refused or stays the same when written and read again, and its bake is within limits or
-/// refused.
+/// Reads a recipe. It is rejected, or it is unchanged when written and read again, and its bake is within limits or
+/// rejected.
 pub fn recipe(bytes: &[u8]) {
     let Ok(text) = core::str::from_utf8(bytes) else {
         return;
@@ -58,7 +58,7 @@ fn check_text(recipe: &Recipe) {
     if let Some(text) = accepted(recipe.to_toml()) {
         let again = Recipe::from_toml(&text).expect("what was written can be read");
         let second = again.to_toml().expect("what was read can be written");
-        // The first reading sorts nodes by name, so the length stays the same afterward.
+        // Compare only lengths: the first reading sorts nodes by name.
         assert_eq!(text.len(), second.len(), "something was lost in {text}");
         let again = Recipe::from_toml(&second).expect("what was written can be read");
         assert_eq!(again.to_toml().as_ref(), Ok(&second), "TOML again");
@@ -98,7 +98,7 @@ fn check_bake(recipe: &Recipe) {
     }
 }
 
-/// A recipe to which the README's examples of nodes are added: `a` and `b` are numbers, `c` is a color.
+/// A recipe for the README's examples of nodes, which are added to it. `a` and `b` are numbers, `c` is a color.
 const AROUND: &str = r##"
 dapple = 1
 seed = 3

@@ -23,8 +23,8 @@ use dapple_worley::{
     Worley2, Worley3, Worley4,
 };
 
-/// Options for textures made of cells of one unit, or of pairs of half-unit cells, whose boundaries may differ from
-/// other places.
+/// Options for textures with a lattice that has one cell, or two half-unit cells, along a unit. Boundaries of cells may
+/// differ from other places.
 const CELLS: SeamOptions = SeamOptions {
     axes: [true; 2],
     lattice: [UNIT; 2],
@@ -36,7 +36,7 @@ const AROUND: SeamOptions = SeamOptions {
     ..CELLS
 };
 
-/// Options for textures without a lattice, which are alike everywhere.
+/// Options for textures without a lattice, whose statistics are equal everywhere.
 const ANYWHERE: SeamOptions = SeamOptions {
     axes: [true; 2],
     lattice: [1; 2],
@@ -93,7 +93,7 @@ impl Generator {
         }
     }
 
-    /// Draws with twice as many pixels, for edges of patches, which vary more than smooth fields.
+    /// Draws with twice as many pixels per unit, for edges of patches, which vary more than smooth fields.
     const fn twice_as_fine(self) -> Self {
         Self {
             unit: 2 * UNIT,
@@ -211,7 +211,7 @@ fn cell_values(seed: Seed, window: &Window) -> Result<Raster<f32>> {
     Ok(Raster::from_window(window, value)?)
 }
 
-/// Draws a map of the unit sphere by azimuth and polar angle, with a square cell for every unit.
+/// Draws a map of the unit sphere by azimuth and polar angle, with one square cell per unit.
 fn radial(seed: Seed, window: &Window) -> Result<Raster<f32>> {
     let cells = RadialCells {
         around: PERIOD,
@@ -349,7 +349,7 @@ fn ridged_noise(seed: Seed, window: &Window) -> Result<Raster<f32>> {
 /// The weights of the bands of wavelet noise; the first band has two cells per unit.
 const WEIGHTS: [f32; 2] = [1.0, 0.5];
 
-/// Converts a window from units to cells of wavelet noise, of which a period has `2 * PERIOD`.
+/// Converts a window from units to cells of wavelet noise. A period has `2 * PERIOD` cells.
 fn in_half_units(window: &Window) -> Result<Window> {
     let extent = DVec2::new(f64::from(window.size[0]), f64::from(window.size[1]));
     Ok(Window::new(

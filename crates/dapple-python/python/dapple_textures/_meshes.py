@@ -118,7 +118,7 @@ def _arrays_of_blender(mesh: Any, matrix: npt.NDArray[np.float64]) -> _Plain:
         loops = read(mesh.loop_triangles, "loops", (3,), np.int32)
         uv = read(mesh.uv_layers.active.data, "uv", (2,), np.float32)[loops] * [1.0, -1.0] + [0.0, 1.0]
     if np.linalg.det(matrix[:3, :3]) < 0:
-        # A mirrored object shows the other side of its faces.
+        # A mirrored object reverses its faces, so reverse the order of their corners.
         faces, uv = faces[:, ::-1], None if uv is None else uv[:, ::-1]
     return _Plain(vertices, faces, uv)
 
@@ -135,7 +135,7 @@ def to_trimesh(model: Model) -> Any:
     def image(name: str, content: Literal["color", "normal", "data"]) -> Any:
         pixels = maps[name]
         if content == "color" and pixels.ndim == 2:
-            # Plain numbers are written without the curve of colors.
+            # Write gray values without sRGB encoding.
             pixels, content = np.stack([pixels] * 3, 2), "data"
         return Image.open(io.BytesIO(_native.encode_image(pixels, "png", content=content, depth=8)))
 

@@ -115,8 +115,8 @@ def _image(path: Path, alpha: str | None, layer: str | None) -> npt.NDArray[np.f
         hint = 'give its node alpha = "drop" or alpha = "over:#rrggbb"'
         raise refusal("alpha", f"{path} is partly transparent, which is not possible here", hint)
     if alpha == "drop" and image.ndim == 3:
-        # A gray image with alpha holds plain numbers: those of OpenEXR are multiplied by alpha, the others lie on the curve
-        # of colors, which is not undone.
+        # A gray image with alpha is data. For OpenEXR, whose values are multiplied by alpha, take the values of
+        # `image`, which are divided by it. For other formats, take the codes without sRGB decoding.
         channels = read_image(path, content="data", layer=layer)
         if channels.ndim == 3 and channels.shape[2] == 2:
             with path.open("rb") as file:

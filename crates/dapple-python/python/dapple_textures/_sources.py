@@ -131,7 +131,7 @@ class RecipeSource:
 
     def attributes(self, plane: str) -> dict[str, Any]:
         recipe = Recipe.from_json(self.recipe)
-        # All maps are shares or directions; a height times the relief is in units of the plane.
+        # Values of maps have no unit. Heights times the relief are in units of the plane.
         made = {"recipe": recipe.name, "seed": recipe.seed, "time": self.time, "units": "1"}
         if plane == "height":
             made["relief"] = recipe.to_dict()["material"].get("relief", 0.1)

@@ -109,14 +109,14 @@ def bake_into(
     baked = plan.bake(size, maps)
     low, high = 0.0, 1.0
     if displacement:
-        # A file holds heights from 0 to 1; the displacement node scales them back.
+        # Store heights from 0 to 1; the displacement node scales them to the original range.
         low, high = min(low, float(baked["height"].min())), max(high, float(baked["height"].max()))
         baked["height"] = (baked["height"] - np.float32(low)) / np.float32(high - low)
     before = _images_of(made)
     images = {kind: _image(bpy, kind, values, *_IMAGES[kind]) for kind, values in baked.items()}
     relief = float(plan.recipe.to_dict()["material"].get("relief", 0.1))
     _shader(bpy, made, images, relief * (high - low), (0.5 - low) / (high - low), scale)
-    # Copies of the material keep their images.
+    # Remove images without users only, since copies of the material may use the others.
     for image in before:
         if image.users == 0:
             bpy.data.images.remove(image)
@@ -167,7 +167,7 @@ def import_model(model: Any, *, up: Literal["y", "z"] | None = None) -> list[Any
     made = [thing for thing in bpy.data.objects if thing not in before]
     is_file = isinstance(model, (str, os.PathLike))
     if (up or ("y" if is_file else "z")) == "z":
-        # Blender has turned (x, y, z) into (x, -z, y).
+        # Undo the importer's rotation of (x, y, z) to (x, -z, y).
         back = Matrix(((1, 0, 0, 0), (0, 0, 1, 0), (0, -1, 0, 0), (0, 0, 0, 1)))
         for thing in made:
             thing.location = back @ thing.location
@@ -208,8 +208,8 @@ def _image(bpy: Any, kind: str, values: Any, depth: _Depth, content: _Content, s
     data = encode_image(values, "png", content=content, depth=depth)
     image = bpy.data.images.new(kind, values.shape[1], values.shape[0], is_data=space != "sRGB")
     image[_PROPERTY] = kind
-    # Blender looks for a file as long as nothing is packed, so the source is set first and the data packed afterward.
-    # Generated pixels would be lost when the file is saved; a packed file is not.
+    # Pack a file, since generated pixels would be lost when the file is saved. Set the source before packing: Blender
+    # searches for a file as long as nothing is packed.
     image.filepath_raw = f"//{kind}.png"
     image.source = "FILE"
     image.pack(data=data, data_len=len(data))

@@ -92,7 +92,7 @@ def bake(
     sides = da.core.normalize_chunks((*chunks, *last), shape=(*shape, *last), dtype=np.float32)
     return da.map_blocks(
         _workers.block,
-        # All chunks share one object, so that it is sent to a worker only once.
+        # Share one object among all chunks, so that it is sent to a worker only once.
         delayed(source, name=f"dapple-source-{_sources.digest(source.to_data())}", pure=True),
         shape=shape,
         plane=plane,
@@ -238,7 +238,7 @@ class _Run:
             try:
                 records = done.result(timeout=_PATIENCE * 10)
             except (CancelledError, TimeoutError):
-                # The result was lost with its worker, but the shards are in the store and will be found.
+                # The result was lost with its worker, but the shards are in the store, and `missing` finds them.
                 records = []
             self.records += [record for record in records if record.hashes]
             return

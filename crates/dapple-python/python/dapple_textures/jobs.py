@@ -288,7 +288,7 @@ def create(
         "layout": {"chunk": list(chunk), "compressors": repr(compressors)},
     }
     store = place_of(store)
-    # The form that it has when it is read from JSON.
+    # Convert the data to the form in which JSON is read.
     data = json.loads(json.dumps(data))
     group = _group(store, data)
     before = group.attrs.get(_ATTRIBUTE)
@@ -348,7 +348,7 @@ def _describe(group: zarr.Group, source: _sources.RecipeSource | _sources.FieldS
             array = found
         array[:] = values
     with warnings.catch_warnings():
-        # Zarr warns that other programs may not know consolidated metadata; they read the rest.
+        # Ignore Zarr's warning that other programs may not support consolidated metadata: they read the other metadata.
         warnings.simplefilter("ignore")
         zarr.consolidate_metadata(group.store, path=group.path)
 
