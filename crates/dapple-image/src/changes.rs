@@ -1,26 +1,26 @@
-//! Changes of files, found by looking at them again and again.
+//! Detection of changed files by polling their metadata.
 //!
-//! Events of the system are no help where it counts: they miss what is written through a link and on network mounts, and
-//! report every other file of a folder. Looking at a few files costs microseconds.
+//! File-system events are not used. They miss writes through a link and on network mounts, and they report every other
+//! file of the folder. Polling a few files costs microseconds.
 
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
-/// The size, the time of the last write, and the identity of a file: they differ when its content was changed.
+/// Size, modification time and identity of a file. A stamp that differs means that the content may have changed.
 ///
-/// Links are followed, so that the stamp is that of the content which is read.
+/// Links are followed: the stamp describes the file that would be read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FileStamp {
     bytes: u64,
     modified: Option<SystemTime>,
-    /// The device and the inode, where there are any: a file that took the place of another differs in it.
+    /// Device and inode numbers, on Unix. They differ after the file was replaced by another one.
     identity: Option<[u64; 2]>,
 }
 
 impl FileStamp {
-    /// The stamp of the file at `path`; none if it cannot be found.
+    /// Stamp of the file at `path`; `None` if it cannot be found.
     #[must_use]
     pub fn of(path: &Path) -> Option<Self> {
         let found = fs::metadata(path).ok()?;
@@ -43,12 +43,14 @@ fn identity(_: &fs::Metadata) -> Option<[u64; 2]> {
     None
 }
 
-/// Decides when changed files are read: once they stay as they are from one look to the next, since programs write in
-/// several steps, and at the latest after [`LONGEST`](Self::LONGEST) looks.
+/// Debounced detection of file changes.
+///
+/// Programs write files in several steps, so a change is reported once two successive looks find the same stamps, and
+/// at the latest after [`LONGEST`](Self::LONGEST) looks.
 #[derive(Clone, Debug, Default)]
 pub struct FileChanges {
     seen: BTreeMap<PathBuf, Option<FileStamp>>,
-    /// Number of looks since the first change that was not reported yet; 0 if there is none.
+    /// Number of looks since the first change not yet reported; 0 if there is no such change.
     n_looks: u32,
 }
 
@@ -56,7 +58,7 @@ impl FileChanges {
     /// Number of looks after which a change is reported even if the files keep changing.
     pub const LONGEST: u32 = 12;
 
-    /// Remembers the files as they are now.
+    /// Takes the stamps of `files` as the initial state.
     #[must_use]
     pub fn new(files: &[PathBuf]) -> Self {
         let mut changes = Self::default();
@@ -64,22 +66,23 @@ impl FileChanges {
         changes
     }
 
-    /// Remembers a file as it is now, if it was not known. Called before the file is read, it makes the next look find
-    /// whatever is written after that.
+    /// Records the current stamp of a file that is not yet known. If this is called before the file is read, the next
+    /// look detects every write that follows.
     pub fn remember(&mut self, file: PathBuf) {
         let entry = self.seen.entry(file);
         entry.or_insert_with_key(|file| FileStamp::of(file));
     }
 
-    /// Whether a file differs from how it was at the last look.
+    /// Returns whether a file differs from its stamp at the last look.
     #[must_use]
     pub fn has_changed(&self) -> bool {
         let mut seen = self.seen.iter();
         seen.any(|(path, stamp)| FileStamp::of(path) != *stamp)
     }
 
-    /// Looks at these files, and returns whether changes of them are to be read now. Files that were neither among those
-    /// of the last look nor [remembered](Self::remember) count from now on.
+    /// Looks at `files` and returns whether they should be read again now.
+    ///
+    /// A file that was neither part of the last look nor [remembered](Self::remember) is only recorded.
     pub fn look(&mut self, files: &[PathBuf]) -> bool {
         let stamps = files.iter().map(|file| (file.clone(), FileStamp::of(file)));
         let now: BTreeMap<_, _> = stamps.collect();
@@ -117,7 +120,7 @@ mod tests {
         let mut changes = FileChanges::new(&files);
         assert!(!changes.has_changed());
         assert!(!changes.look(&files));
-        // One that was not there, and one that is longer.
+        // A new file, and a file that got longer.
         for (file, text) in [(&files[1], "1"), (&files[0], "12")] {
             fs::write(file, text).unwrap();
             assert!(changes.has_changed());
@@ -125,10 +128,10 @@ mod tests {
             assert!(changes.look(&files));
             assert!(!changes.look(&files), "it is reported once");
         }
-        // Another file of the folder does not count.
+        // A change of another file in the folder is ignored.
         fs::write(folder.path().join("c"), "1").unwrap();
         assert!(!changes.look(&files) && !changes.look(&files));
-        // One that changes all the time.
+        // A file that changes at every look.
         let n_looks = (1..).find(|&count| {
             fs::write(&files[0], "x".repeat(count)).unwrap();
             changes.look(&files)

@@ -8,17 +8,17 @@ use core::fmt;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Channels {
-    /// One number: [`Image::gray`] reads it.
+    /// One value per pixel: read with [`Image::gray`].
     Gray,
-    /// One number and alpha.
+    /// One value per pixel, and alpha.
     GrayAlpha,
-    /// Red, green and blue: [`Image::color`] reads them.
+    /// Red, green and blue: read with [`Image::color`].
     Rgb,
-    /// Red, green, blue and alpha: [`Image::color_alpha`] reads them.
+    /// Red, green, blue and alpha: read with [`Image::color_alpha`].
     Rgba,
-    /// The components X, Y and Z of vectors: [`Image::normals`] reads them.
+    /// Components X, Y and Z of vectors: read with [`Image::normals`].
     Vectors,
-    /// Planes of an OpenEXR file with other names: [`ExrImage::plane`] reads them.
+    /// Planes of an OpenEXR file with other names: read with [`ExrImage::plane`].
     Planes,
 }
 
@@ -44,7 +44,7 @@ impl fmt::Display for Channels {
 }
 
 impl Image {
-    /// The name of the format: `PNG`, `JPEG` or `OpenEXR`.
+    /// Name of the format: `PNG`, `JPEG` or `OpenEXR`.
     #[must_use]
     pub const fn format(&self) -> &'static str {
         match self {
@@ -54,7 +54,7 @@ impl Image {
         }
     }
 
-    /// The channels that the file has.
+    /// Channels of the file.
     #[must_use]
     pub fn channels(&self) -> Channels {
         match self {
@@ -63,7 +63,7 @@ impl Image {
         }
     }
 
-    /// The bits of a channel: 8 or 16, and 32 for OpenEXR, whose numbers are all read as `f32`.
+    /// Bits per channel: 8 or 16, and 32 for OpenEXR, whose samples are all read as `f32`.
     #[must_use]
     pub const fn bits(&self) -> u32 {
         match self {

@@ -1,12 +1,12 @@
-//! What a file says of its colors, and the way from its codes to linear light with the primaries of ITU-R BT.709.
+//! Color space declared by a file, and the conversion of its codes to linear light with the primaries of ITU-R BT.709.
 //!
 //! References: ICC.1:2022 (profiles of three components with a matrix and curves); ITU-T H.273, 2021 (the code points of
 //! `cICP`); the W3C recommendation "Portable Network Graphics (PNG) Specification (Third Edition)", 2025, section 4.3
 //! (`cICP` before `iCCP` before `sRGB` before `gAMA` and `cHRM`); SMPTE RP 177 (matrices from chromaticities). A white
-//! other than D65 is adapted by the method of Bradford, as profiles do, so that white stays white.
+//! point other than D65 is adapted by the Bradford method, as in ICC profiles, so that white stays white.
 //!
-//! Everything is computed in `f64` with the powers of `libm`, so that it has the same bits on every machine. Colors outside
-//! of BT.709 get components below 0 or above 1.
+//! All computations use `f64` and the power function of `libm`, which gives the same bits on every machine. Colors
+//! outside of the gamut of BT.709 have components below 0 or above 1.
 
 use crate::{ImageError, ImageErrorKind};
 use core::fmt;
@@ -17,90 +17,90 @@ pub(crate) type Primaries = [[f64; 2]; 4];
 
 type Matrix = [[f64; 3]; 3];
 
-/// White of the illuminant D65, as BT.709 and sRGB have it.
+/// White point of the illuminant D65, as in BT.709 and sRGB.
 pub(crate) const D65: [f64; 2] = [0.3127, 0.329];
 
-/// The primaries of ITU-R BT.709 and sRGB.
+/// Primaries of ITU-R BT.709 and sRGB.
 pub(crate) const BT709: Primaries = [[0.64, 0.33], [0.3, 0.6], [0.15, 0.06], D65];
 
-/// The primaries of Adobe RGB (1998).
+/// Primaries of Adobe RGB (1998).
 #[cfg(feature = "jpeg")]
 pub(crate) const ADOBE_RGB: Primaries = [[0.64, 0.33], [0.21, 0.71], [0.15, 0.06], D65];
 
-/// The exponent of Adobe RGB (1998), 2 + 51 / 256.
+/// Exponent of Adobe RGB (1998), 2 + 51 / 256.
 #[cfg(feature = "jpeg")]
 pub(crate) const ADOBE_GAMMA: f64 = 563.0 / 256.0;
 
-/// White of the connection space of profiles, an approximation of D50 (ICC.1, section 6.3.4.3).
+/// White point of the profile connection space, an approximation of D50 (ICC.1, section 6.3.4.3).
 pub(crate) const D50_XYZ: [f64; 3] = [0.9642, 1.0, 0.8249];
 
-/// The responses of cones in the method of Bradford: Lam, "Metamerism and colour constancy", 1985.
+/// Cone response matrix of the Bradford method: Lam, "Metamerism and colour constancy", 1985.
 const BRADFORD: Matrix = [
     [0.8951, 0.2664, -0.1614],
     [-0.7502, 1.7135, 0.0367],
     [0.0389, -0.0685, 1.0296],
 ];
 
-/// The largest entry by which the matrix of an sRGB profile differs from the identity: profiles round their numbers and
-/// adapt D65 in different ways.
+/// Tolerance for recognizing the matrix of an sRGB profile: largest difference of an entry from the identity. Profiles
+/// round their numbers and adapt D65 in different ways.
 const MATRIX_TOLERANCE: f64 = 0.003;
 
-/// What a file says of its colors.
+/// Color space declared by a file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ColorSpace {
     source: Source,
     conversion: Conversion,
 }
 
-/// The part of a file that says what its colors are.
+/// Part of a file that declares its color space.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) enum Source {
-    /// None.
+    /// No declaration.
     #[default]
     None,
-    /// The chunk `sRGB` of PNG, or a `gAMA` of 0.45455.
+    /// Chunk `sRGB` of PNG, or a `gAMA` of 0.45455.
     Srgb,
-    /// The chunk `cICP` of PNG.
+    /// Chunk `cICP` of PNG.
     Cicp,
-    /// An ICC profile.
+    /// ICC profile.
     Icc,
-    /// The chunks `gAMA` and `cHRM` of PNG.
+    /// Chunks `gAMA` and `cHRM` of PNG.
     Gamma,
-    /// The color space of Exif.
+    /// Color space field of Exif.
     Exif,
 }
 
-/// The way from codes to linear light.
+/// Conversion of codes to linear light.
 #[derive(Clone, Debug, Default, PartialEq)]
 enum Conversion {
-    /// That of sRGB.
+    /// The conversion of sRGB.
     #[default]
     Srgb,
-    /// Curves, and a matrix.
+    /// One curve per channel, then a matrix.
     Matrix(Box<MatrixSpace>),
-    /// None that is known: the name of what cannot be converted.
+    /// Not supported; holds the name of the unsupported feature.
     Unknown(&'static str),
 }
 
-/// Curves of red, green and blue, and the matrix from their light to that of BT.709.
+/// Curves of red, green and blue, and the matrix from their linear light to BT.709.
 #[derive(Clone, Debug, PartialEq)]
 struct MatrixSpace {
     matrix: Matrix,
     curves: [Curve; 3],
 }
 
-/// A curve from codes to light, both from 0 to 1.
+/// Transfer curve from codes to light, both from 0 to 1.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Curve {
-    /// The curve of sRGB.
+    /// The sRGB curve.
     Srgb,
-    /// The inverse of the curve of cameras in ITU-R BT.709.
+    /// Inverse of the camera curve of ITU-R BT.709.
     Bt709,
-    /// A power; 1 for light itself.
+    /// Power function with this exponent; 1 for linear codes.
     Power(f64),
-    /// `(a x + b)^g + e` from `d` on, and `c x + f` below (ICC.1, section 10.18): g, a, b, c, d, e, f.
+    /// `(a x + b)^g + e` for `x ≥ d`, else `c x + f` (ICC.1, section 10.18). The order is g, a, b, c, d, e, f.
     Parametric([f64; 7]),
-    /// Values at even steps, with straight lines between them.
+    /// Values at evenly spaced codes, interpolated linearly.
     Table(Vec<f64>),
 }
 
@@ -129,20 +129,20 @@ impl Curve {
         }
     }
 
-    /// Whether the curve is that of sRGB, to half of a code of 8 bits.
+    /// Returns whether the curve equals that of sRGB within half a code of 8 bits.
     fn is_srgb(&self) -> bool {
         (0..=255_u8).all(|code| {
             let code = f64::from(code);
             let border = |code: f64| Self::Srgb.light(code.clamp(0.0, 255.0) / 255.0);
             let light = self.light(code / 255.0);
-            // The ends have no neighbor on one side, and are exact in every profile of sRGB.
+            // The first and the last code have a neighbor on one side only, and are exact in every sRGB profile.
             (border(code - 0.5) - 1e-4..=border(code + 0.5) + 1e-4).contains(&light)
         })
     }
 }
 
 impl ColorSpace {
-    /// A color space that is declared to be sRGB.
+    /// Color space that is declared to be sRGB.
     #[cfg(any(feature = "png", feature = "jpeg"))]
     pub(crate) fn srgb(source: Source) -> Self {
         Self {
@@ -151,7 +151,7 @@ impl ColorSpace {
         }
     }
 
-    /// A color space that cannot be converted, by its name.
+    /// Color space that cannot be converted; `name` describes it in errors.
     pub(crate) fn unknown(source: Source, name: &'static str) -> Self {
         Self {
             source,
@@ -159,7 +159,7 @@ impl ColorSpace {
         }
     }
 
-    /// The color space of primaries and one curve.
+    /// Color space with these primaries and one curve for all channels.
     #[cfg(any(feature = "png", feature = "jpeg"))]
     pub(crate) fn from_primaries(source: Source, primaries: Primaries, curve: Curve) -> Self {
         match bt709_from(&primaries) {
@@ -170,7 +170,7 @@ impl ColorSpace {
         }
     }
 
-    /// The color space of curves and the columns of a profile, in XYZ adapted to D50.
+    /// Color space of an ICC matrix profile: its curves, and its columns in XYZ adapted to D50.
     pub(crate) fn from_columns(columns: [[f64; 3]; 3], curves: [Curve; 3]) -> Self {
         let column = |row: usize| columns.map(|column| column[row]);
         let profile = [0, 1, 2].map(column);
@@ -197,17 +197,17 @@ impl ColorSpace {
         Self { source, conversion }
     }
 
-    /// Whether the colors are those of sRGB, declared or not.
+    /// Returns whether the colors are sRGB, either declared or by default.
     #[must_use]
     pub fn is_srgb(&self) -> bool {
         self.conversion == Conversion::Srgb
     }
 
-    /// A function from codes of a depth to linear light of BT.709; `None` for that of sRGB.
+    /// Returns the converter from codes of 0 to `max` to linear light of BT.709; `None` for sRGB.
     ///
     /// # Errors
     ///
-    /// [`ImageErrorKind::ColorSpace`] if it cannot be converted.
+    /// [`ImageErrorKind::ColorSpace`] if the color space cannot be converted.
     pub(crate) fn converter(&self, max: u16) -> Result<Option<Converter>, ImageError> {
         match &self.conversion {
             Conversion::Srgb => Ok(None),
@@ -230,7 +230,7 @@ impl ColorSpace {
     }
 }
 
-/// The words for reports: `no color space declared`, `an ICC profile, converted to BT.709`.
+/// Text for reports, such as `no color space declared` or `colors by an ICC profile, read as BT.709`.
 impl fmt::Display for ColorSpace {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let source = match self.source {
@@ -249,28 +249,28 @@ impl fmt::Display for ColorSpace {
     }
 }
 
-/// The conversion of codes to linear light.
+/// Converter of codes to linear light: a lookup table per channel, then a matrix.
 pub(crate) struct Converter {
     matrix: Matrix,
     tables: [Vec<f64>; 3],
 }
 
 impl Converter {
-    /// The color of three codes.
+    /// Converts the codes of one pixel.
     pub(crate) fn color(&self, codes: [u16; 3]) -> LinearRgb {
         let light = |channel: usize| self.tables[channel][usize::from(codes[channel])];
         times(&self.matrix, [0, 1, 2].map(light))
     }
 }
 
-/// The linear color of BT.709 for one of other primaries.
+/// Applies a matrix to linear light and returns a color of BT.709.
 pub(crate) fn times(matrix: &Matrix, light: [f64; 3]) -> LinearRgb {
     apply(matrix, light).map(|part| part as f32).into()
 }
 
-/// The matrix from linear light of primaries to that of BT.709; `None` if they span no colors.
+/// Matrix from linear light of `primaries` to BT.709; `None` if the primaries are collinear.
 ///
-/// White is adapted, except for the primaries of XYZ itself, whose numbers are what an eye or an instrument sees.
+/// White is adapted, except for the primaries of XYZ itself, whose values are measured stimuli.
 pub(crate) fn bt709_from(primaries: &Primaries) -> Option<Matrix> {
     let to_xyz = rgb_to_xyz(primaries)?;
     let from_xyz = inverse(&rgb_to_xyz(&BT709)?)?;
@@ -283,7 +283,7 @@ pub(crate) fn bt709_from(primaries: &Primaries) -> Option<Matrix> {
     Some(product(&from_xyz, &product(&adapted, &to_xyz)))
 }
 
-/// The matrix from linear light of primaries to XYZ, in which white has a luminance of 1.
+/// Matrix from linear light of `primaries` to XYZ. White has a luminance of 1.
 fn rgb_to_xyz(primaries: &Primaries) -> Option<Matrix> {
     let [red, green, blue, white] = primaries;
     if white[1].is_nan() || white[1] <= 0.0 {
@@ -299,7 +299,7 @@ fn xyz_of_white([x, y]: [f64; 2]) -> [f64; 3] {
     [x / y, 1.0, (1.0 - x - y) / y]
 }
 
-/// The matrix that adapts one white to another.
+/// Bradford matrix that adapts the white point `from` to `to`.
 fn adapted(from: [f64; 3], to: [f64; 3]) -> Option<Matrix> {
     let [from, to] = [from, to].map(|white| apply(&BRADFORD, white));
     let scaled = [0, 1, 2].map(|row| BRADFORD[row].map(|entry| entry * (to[row] / from[row])));
@@ -316,7 +316,7 @@ fn product(a: &Matrix, b: &Matrix) -> Matrix {
     [0, 1, 2].map(|row| columns.map(|column| column[row]))
 }
 
-/// The inverse by cofactors; `None` if there is none.
+/// Inverse by cofactors; `None` for a singular matrix.
 fn inverse(m: &Matrix) -> Option<Matrix> {
     let minor = |r: usize, c: usize| {
         let [r1, r2, c1, c2] = [(r + 1) % 3, (r + 2) % 3, (c + 1) % 3, (c + 2) % 3];

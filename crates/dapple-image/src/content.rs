@@ -1,6 +1,6 @@
-//! The content of images, and the encoding of each kind as the numbers of a file.
+//! Content of images, and its encoding as samples of a file.
 //!
-//! Only this module turns values into codes and planes; the writers of whole images and of rows share it.
+//! Only this module converts values to codes and planes. The writers of whole images and of rows share it.
 
 use crate::PngPixel;
 #[cfg(feature = "png")]
@@ -22,16 +22,16 @@ pub enum Content {
     /// Unit vectors. PNG: RGB of `round((part + 1) / 2 · max)`, linear, without a color chunk. OpenEXR: `(part + 1) /
     /// 2`, unrounded, in the planes `R`, `G` and `B`, as programs expect of a normal map.
     Normal,
-    /// Three numbers that are no color, such as occlusion, roughness and metallic. PNG: RGB from 0 to 1, linear, without a
-    /// color chunk. OpenEXR: the planes `R`, `G` and `B`, any numbers.
+    /// Three values that are not a color, such as occlusion, roughness and metallic. PNG: RGB from 0 to 1, linear,
+    /// without a color chunk. OpenEXR: the planes `R`, `G` and `B`, any numbers.
     Packed,
-    /// Four numbers that are no color, of which the fourth is no coverage, such as metallic, occlusion, a mask and
-    /// smoothness. PNG: RGBA from 0 to 1, linear, without a color chunk. OpenEXR: the planes `R`, `G`, `B` and `A`, any
-    /// numbers.
+    /// Four values that are not a color, the fourth of which is not coverage, such as metallic, occlusion, a mask and
+    /// smoothness. PNG: RGBA from 0 to 1, linear, without a color chunk. OpenEXR: the planes `R`, `G`, `B` and `A`,
+    /// any numbers.
     PackedFour,
 }
 
-/// The number of bits of a channel in a PNG file.
+/// Bits per channel of a PNG file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Depth {
     /// 8 bits: 256 steps.
@@ -41,7 +41,7 @@ pub enum Depth {
     Sixteen,
 }
 
-/// The format of a file and of its numbers.
+/// Format of a file and of its samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Encoding {
@@ -51,17 +51,17 @@ pub enum Encoding {
     /// OpenEXR with 32-bit floating point, in tiles.
     #[cfg(feature = "exr")]
     Exr,
-    /// A NumPy array (`.npy`, format 1.0) of little-endian `f32` in C order, with the shape (height, width) for gray,
-    /// (height, width, 3) and, with alpha or a fourth number, (height, width, 4). The numbers are not coded: colors are
-    /// linear, alpha is not multiplied into them, the components of normals are from -1 to 1.
+    /// A NumPy array (`.npy`, format 1.0) of little-endian `f32` in C order. Its shape is (height, width) for gray,
+    /// (height, width, 3) for three channels, and (height, width, 4) with alpha or a fourth value. The values are not
+    /// encoded: colors are linear, alpha is not multiplied into them, and the components of normals are from -1 to 1.
     Npy,
-    /// Raw heights (`.r16`, and `.raw` for some): `round(value · 65535)` as two bytes, the low one first, the top row
-    /// first, without a header. Only for [`Content::Gray`].
+    /// Raw heights (`.r16` or `.raw`): `round(value · 65535)` in two bytes, little endian, top row first, without a
+    /// header. Only for [`Content::Gray`].
     R16,
 }
 
 impl Content {
-    /// The name in error messages.
+    /// Name in error messages.
     pub(crate) const fn name(self) -> &'static str {
         match self {
             Self::Gray => "gray",
@@ -81,7 +81,7 @@ impl Content {
         }
     }
 
-    /// The names of the planes of an OpenEXR file, sorted as the format requires.
+    /// Names of the planes of an OpenEXR file, sorted as the format requires.
     pub(crate) const fn planes(self) -> &'static [&'static str] {
         match self {
             Self::Gray => &["Y"],
@@ -91,29 +91,29 @@ impl Content {
     }
 }
 
-/// A type of pixels that can be written.
+/// A pixel type that can be written.
 #[cfg_attr(
     not(feature = "png"),
     expect(dead_code, reason = "codes are what PNG files hold")
 )]
 pub(crate) trait Pixel: Sync {
-    /// The content of images with such pixels.
+    /// Content of images with this pixel type.
     const CONTENT: Content;
-    /// The pixel in codes of 8 bits.
+    /// Pixel in 8-bit codes.
     type Eight: PngPixel;
-    /// The pixel in codes of 16 bits.
+    /// Pixel in 16-bit codes.
     type Sixteen: PngPixel;
-    /// The numbers of a pixel in an array.
+    /// Values of a pixel in a NumPy array.
     type Numbers: AsRef<[f32]>;
 
     fn eight(&self) -> Self::Eight;
 
     fn sixteen(&self) -> Self::Sixteen;
 
-    /// The number of the pixel in a plane; the index is that in [`Content::planes`].
+    /// Value of the pixel in a plane, by its index in [`Content::planes`].
     fn part(&self, plane: usize) -> f32;
 
-    /// The numbers of the pixel, uncoded.
+    /// Values of the pixel, not encoded.
     fn numbers(&self) -> Self::Numbers;
 }
 

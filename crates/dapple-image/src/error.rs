@@ -20,7 +20,7 @@ dapple_raster::error_kind! {
     ImageErrorKind {
         /// A file could not be read or written; the source is the error of the operating system.
         Io => "the file cannot be read or written";
-        /// The first bytes are not those of a format that is read, or not those of the expected format.
+        /// The first bytes are not the signature of a supported format, or not of the expected format.
         UnknownFormat => "the bytes are of no format that is known here";
         /// The bytes break the rules of their format, or end too soon.
         Damaged {
@@ -32,48 +32,48 @@ dapple_raster::error_kind! {
             /// The name of the feature.
             feature: &'static str,
         } => "{feature} is not supported";
-        /// The data window of an OpenEXR file has no pixel of its display window, so nothing of it is in the picture.
+        /// The data window and the display window of an OpenEXR file do not overlap, so no pixel would be visible.
         Windows {
-            /// The first column and row of the data window, and its numbers of columns and rows.
+            /// First column and row, width and height of the data window.
             data: [i64; 4],
             /// The display window, in the same form.
             display: [i64; 4],
         } => "the data window ({} × {} pixels at {}, {}) and the display window ({} × {} pixels at {}, {}) have no pixel in common", data[2], data[3], data[0], data[1], display[2], display[3], display[0], display[1];
         /// The image has no pixel.
         Empty {
-            /// The numbers of columns and rows.
+            /// Width and height in pixels.
             size: [u64; 2],
         } => "an image of {} × {} pixels is empty", size[0], size[1];
         /// The image has more pixels than the limit.
         TooManyPixels {
-            /// The numbers of columns and rows.
+            /// Width and height in pixels.
             size: [u64; 2],
-            /// The largest number of pixels.
+            /// Maximum number of pixels.
             limit: u64,
         } => "an image of {} × {} pixels is larger than the limit of {limit} pixels", size[0], size[1];
         /// The image takes more memory than the limit, in bytes.
         TooManyBytes {
-            /// The number of bytes, as far as it is known.
+            /// Number of bytes, or a lower bound if it is not known exactly.
             bytes: u64,
-            /// The largest number of bytes.
+            /// Maximum number of bytes.
             limit: u64,
         } => "the image takes {bytes} bytes or more, but the limit is {limit}";
         /// The image has a side that is too long for the format.
         TooLarge {
             /// The name of the format.
             format: &'static str,
-            /// The numbers of columns and rows.
+            /// Width and height in pixels.
             size: [u32; 2],
-            /// The longest allowed side, in pixels.
+            /// Maximum length of a side, in pixels.
             limit: u32,
         } => "an image of {} × {} pixels does not fit into {format}: the limit is {limit} a side", size[0], size[1];
-        /// The part to read reaches out of the image.
+        /// The requested part extends beyond the image.
         Outside {
-            /// The first column and row of the part.
+            /// First column and row of the part.
             first: [u32; 2],
-            /// The numbers of columns and rows of the part.
+            /// Width and height of the part.
             size: [u32; 2],
-            /// The numbers of columns and rows of the image.
+            /// Width and height of the image.
             image: [u32; 2],
         } => "a part of {} × {} pixels at {},{} reaches out of the image of {} × {}", size[0], size[1], first[0], first[1], image[0], image[1];
         /// The rows to write have another width than the image.
@@ -85,7 +85,7 @@ dapple_raster::error_kind! {
         } => "the rows have {width} pixels, but the image has {needed} columns";
         /// More rows were passed to a writer than the image has.
         TooManyRows {
-            /// The number of rows with the additional ones.
+            /// Number of rows including the surplus.
             rows: u64,
             /// The number of rows of the image.
             needed: u32,
@@ -126,21 +126,21 @@ dapple_raster::error_kind! {
             /// The name of the format.
             format: &'static str,
         } => "{format} has no layers";
-        /// No layer of the file is marked as its picture, or several are.
+        /// No layer of the file is marked as its main image, or several layers are.
         AmbiguousLayer {
             /// The names of all layers of the file.
             layers: Vec<String>,
         } => "it is not clear which layer is the picture; the layers are {}", layers.join(", ");
-        /// The names of the planes to write are empty, too long, or not different.
+        /// A plane name is empty, not ASCII, too long, or used twice.
         PlaneName {
-            /// The first bad name.
+            /// The first invalid name.
             name: String,
         } => "the plane name {name:?} is empty, longer than 255 bytes, or used twice";
         /// Two planes of one image have different sizes.
         SizeMismatch {
             /// The size of the plane, in pixels.
             size: [u32; 2],
-            /// The size of the planes before it.
+            /// The size of the preceding planes.
             needed: [u32; 2],
         } => "the plane has {} × {} pixels, but the planes before it have {} × {}", size[0], size[1], needed[0], needed[1];
     }
@@ -155,7 +155,7 @@ impl ImageError {
         }
     }
 
-    /// An error of bytes that break the rules of `format`; the reason is `source`.
+    /// Error for bytes that violate the rules of `format`, with `source` as the reason.
     pub(crate) fn damaged(
         format: &'static str,
         source: impl Into<Box<dyn Error + Send + Sync>>,

@@ -1,8 +1,8 @@
 //! OpenEXR files: named planes of `f32`, writing and reading.
 //!
-//! The format is that of the Academy Software Foundation's "OpenEXR File Layout", <https://openexr.com>; the codec is
-//! the crate `exr`. Colors are linear, with the chromaticities of the file or else the primaries of ITU-R BT.709, and alpha
-//! is multiplied into them in the file, as the format requires.
+//! The format is defined in the Academy Software Foundation's "OpenEXR File Layout", <https://openexr.com>; the codec
+//! is the crate `exr`. Colors are linear. Their primaries are the chromaticities of the file, or ITU-R BT.709 if it
+//! has none. As the format requires, the file stores colors with alpha multiplied in.
 
 #[cfg(feature = "exr")]
 mod decode;
@@ -32,19 +32,19 @@ use crate::{ImageError, ImageErrorKind};
 use dapple_color::{Code, LinearRgb, LinearRgba, Normal};
 use dapple_raster::Raster;
 
-/// A channel of an OpenEXR file: a name and numbers.
+/// A channel of an OpenEXR file: a name and its values.
 ///
 /// By convention `R`, `G`, `B` and `A` are color and alpha, `Y` is gray, and `layer.channel` belongs to a layer.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ExrPlane {
-    /// The name: 1 to 255 bytes of ASCII.
+    /// Name of 1 to 255 bytes of ASCII.
     pub name: String,
-    /// The numbers; every `f32` is kept bit for bit, also NaN and infinity.
+    /// Values; every `f32` is preserved bit for bit, including NaN and infinity.
     pub values: Raster<f32>,
 }
 
 impl ExrPlane {
-    /// A plane with a name.
+    /// Creates a plane with a name.
     #[must_use]
     pub fn new(name: impl Into<String>, values: Raster<f32>) -> Self {
         Self {
@@ -73,19 +73,19 @@ impl ExrPlane {
     }
 }
 
-/// The content of an OpenEXR file: its planes, in the order of the file (by name, within each part).
+/// Content of an OpenEXR file: its planes in file order (by name, within each part).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ExrImage {
-    /// The planes. Those of a named part are named `part.channel`, unless it is the only part of the file.
+    /// The planes. A plane of a named part is named `part.channel`, unless the file has only one part.
     pub planes: Vec<ExrPlane>,
-    /// The names of the views, such as the eyes of a stereo image, in lower case: the default view first.
+    /// Names of the views in lower case, such as the eyes of a stereo image; the default view comes first.
     pub views: Vec<String>,
-    /// The chromaticities x and y of red, green, blue and white, if the file has them; else they are those of BT.709.
+    /// Chromaticities x and y of red, green, blue and white; `None` means BT.709.
     pub chromaticities: Option<[[f32; 2]; 4]>,
 }
 
 impl ExrImage {
-    /// The plane with a name.
+    /// Returns the plane with a name.
     ///
     /// # Errors
     ///
@@ -98,14 +98,14 @@ impl ExrImage {
         })
     }
 
-    /// The values of a gray picture; alpha is allowed if it is 1 everywhere.
+    /// Values of a gray image; alpha is allowed if it is 1 everywhere.
     ///
-    /// The picture is the only plane of the file, or a plane `Y`; of several layers it is chosen as
-    /// [`to_picture`](Self::to_picture) says.
+    /// The image is the only plane of the file, or a plane `Y`. [`to_picture`](Self::to_picture) describes how the
+    /// main image is chosen among several layers.
     ///
     /// # Errors
     ///
-    /// [`ImageErrorKind::Channels`] if the picture is not gray, or partly transparent, else the errors of
+    /// [`ImageErrorKind::Channels`] if the image is not gray, or partly transparent, else the errors of
     /// [`to_picture`](Self::to_picture).
     pub fn gray(&self) -> Result<&Raster<f32>, ImageError> {
         let needed = "gray";
@@ -123,14 +123,15 @@ impl ExrImage {
         Err(ImageError::new(ImageErrorKind::Channels { found, needed }))
     }
 
-    /// The colors of the picture with the alpha divided out, or 1 where there is none. A gray picture becomes gray colors.
+    /// Colors of the main image with alpha divided out. Alpha is 1 if the file has none. A gray image becomes gray
+    /// colors.
     ///
-    /// Of several layers the picture is chosen as [`to_picture`](Self::to_picture) says. Where alpha is 0, the color is as
-    /// in the file.
+    /// [`to_picture`](Self::to_picture) describes how the main image is chosen among several layers. Where alpha is 0,
+    /// the color is returned as stored.
     ///
     /// # Errors
     ///
-    /// [`ImageErrorKind::Channels`] if the picture is one of vectors, else the errors of
+    /// [`ImageErrorKind::Channels`] if the image contains vectors, else the errors of
     /// [`to_picture`](Self::to_picture).
     pub fn color_alpha(&self) -> Result<Raster<LinearRgba>, ImageError> {
         let (colors, alpha) = self.associated()?;
@@ -141,10 +142,10 @@ impl ExrImage {
         pixels.map_err(|error| ImageError::damaged("OpenEXR", error))
     }
 
-    /// The colors of the picture as they are in the file, with alpha multiplied into them, and the alpha.
+    /// Colors of the main image as stored, with alpha multiplied in, and the alpha.
     ///
-    /// Light may cover nothing: a color with an alpha of 0 is added to what lies below, and has no color that could be
-    /// divided out.
+    /// A stored color with an alpha of 0 represents light without coverage: it is added to the background, and there
+    /// is no alpha to divide by.
     ///
     /// # Errors
     ///
@@ -172,14 +173,14 @@ impl ExrImage {
         Ok((colors, alpha.cloned()))
     }
 
-    /// The unit vectors of the picture.
+    /// Unit vectors of the main image.
     ///
-    /// Planes `X`, `Y` and `Z` are vectors. Planes of color are vectors, too, if one of their numbers is below 0, and else
-    /// codes from 0 to 1, `(part + 1) / 2`.
+    /// Planes `X`, `Y` and `Z` hold vectors. Planes `R`, `G` and `B` hold vectors if any of their values is negative;
+    /// otherwise they hold codes from 0 to 1, `(part + 1) / 2`.
     ///
     /// # Errors
     ///
-    /// [`ImageErrorKind::Channels`] if the picture is gray or partly transparent, else the errors of
+    /// [`ImageErrorKind::Channels`] if the image is gray or partly transparent, else the errors of
     /// [`to_picture`](Self::to_picture).
     pub fn normals(&self) -> Result<Raster<Normal>, ImageError> {
         let needed = "a normal map";
@@ -204,7 +205,7 @@ impl ExrImage {
             if is_signed {
                 normalized(parts)
             } else {
-                // With the precision of 16-bit codes, and normalized by the same rule.
+                // Quantize to 16-bit codes, so that the same normalization applies.
                 Normal::from_codes(parts.map(u16::from_unit))
             }
         };
@@ -213,7 +214,7 @@ impl ExrImage {
             .map_err(|error| ImageError::damaged("OpenEXR", error))
     }
 
-    /// The matrix from the colors of the file to those of BT.709, if they differ.
+    /// Matrix from the colors of the file to BT.709; `None` if the primaries are equal.
     fn matrix(&self) -> Result<Option<[[f64; 3]; 3]>, ImageError> {
         let Some(primaries) = self.chromaticities else {
             return Ok(None);
@@ -226,7 +227,7 @@ impl ExrImage {
         {
             return Ok(None);
         }
-        // Chromaticities have four digits as numbers of 32 bits, but the computation is in 64.
+        // Chromaticities are `f32` with about four significant digits; round before computing in `f64`.
         let rounded = primaries.map(|point| point.map(|number| (number * 1e6).round() / 1e6));
         bt709_from(&rounded).map(Some).ok_or_else(|| {
             let found = "chromaticities that span no colors";
@@ -234,7 +235,7 @@ impl ExrImage {
         })
     }
 
-    /// An image without planes that has all else of this one.
+    /// Copy of the image without its planes.
     fn without_planes(&self) -> Self {
         Self {
             planes: Vec::new(),
@@ -244,13 +245,13 @@ impl ExrImage {
     }
 }
 
-/// The largest difference of chromaticities that are meant to be the same: they are rounded to four digits.
+/// Maximum difference of equal chromaticities, which files round to four digits.
 const SAME_CHROMATICITY: f64 = 0.000_2;
 
-/// The name of a picture of vectors in errors.
+/// Description of vector images in errors.
 const VECTORS: &str = "of the vectors X, Y and Z";
 
-/// The unit vector in a direction; that of a flat surface if there is none.
+/// Normalizes a vector; returns the normal of a flat surface if its length is zero or not finite.
 fn normalized(parts: [f32; 3]) -> Normal {
     // In f64, squares of f32 neither overflow nor vanish.
     let [x, y, z] = parts.map(f64::from);
@@ -263,7 +264,7 @@ fn normalized(parts: [f32; 3]) -> Normal {
     }
 }
 
-/// Checks that a plane has the size of those before it.
+/// Checks that a plane has the size of the preceding planes.
 fn check_size(size: [u32; 2], needed: [u32; 2]) -> Result<(), ImageError> {
     if size == needed {
         Ok(())
@@ -275,7 +276,7 @@ fn check_size(size: [u32; 2], needed: [u32; 2]) -> Result<(), ImageError> {
     }
 }
 
-/// A color with its alpha divided out of it.
+/// Divides alpha out of a color. Where alpha is 0, the color is returned as it is.
 fn straight(multiplied: [f32; 3], alpha: f32) -> LinearRgba {
     let color = if alpha == 0.0 {
         multiplied

@@ -1,13 +1,13 @@
-//! Access to files: reading a whole file within a limit, and replacing one as a whole.
+//! File access: reading a whole file within a limit, and atomic replacement of a file.
 //!
-//! A file is written under a temporary name beside its own, `.dapple-XXXXXX.part`, and then renamed. So no program ever
-//! sees half of it, and the previous content remains if writing fails. Before the rename the bytes are flushed to the
-//! disk, and after it the folder is: once a write has been reported as done, a power cut leaves the new file, and before
-//! that the old one or the new one, never an empty one. (Pillai et al., "All File Systems Are Not Created Equal", OSDI
-//! 2014, names what goes wrong without these steps.)
+//! A file is written under a temporary name in the same folder, `.dapple-XXXXXX.part`, and then renamed. Other
+//! programs therefore never see a partial file, and the previous content remains if writing fails. The bytes are
+//! flushed to the disk before the rename, and the folder is flushed after it. After a write has been reported as done,
+//! a power cut leaves the new file. Before that, it leaves the old or the new file, never an empty one. (Pillai et
+//! al., "All File Systems Are Not Created Equal", OSDI 2014, describes the failures without these steps.)
 //!
 //! The process that writes a file holds a lock on it, which the operating system releases however the process ends. A
-//! temporary file without a lock was left behind, and [`remove_left_behind`] removes it.
+//! temporary file without a lock is a leftover, and [`remove_left_behind`] removes it.
 
 #![expect(
     clippy::disallowed_methods,
@@ -20,12 +20,12 @@ use std::io::{self, Read, Write};
 use std::path::Path;
 use tempfile::{Builder, NamedTempFile};
 
-/// The beginning of the temporary names.
+/// Prefix of temporary names.
 const PREFIX: &str = ".dapple-";
-/// The end of the temporary names.
+/// Suffix of temporary names.
 const SUFFIX: &str = ".part";
 
-/// All bytes of a regular file with at most `limit` bytes.
+/// Reads a regular file of at most `limit` bytes.
 pub(crate) fn read(path: &Path, limit: u64) -> Result<Vec<u8>, ImageError> {
     let io = |error: io::Error| ImageError::new(ImageErrorKind::Io).because(error);
     let too_many = |bytes| ImageError::new(ImageErrorKind::TooManyBytes { bytes, limit });
@@ -35,7 +35,7 @@ pub(crate) fn read(path: &Path, limit: u64) -> Result<Vec<u8>, ImageError> {
         if bytes > limit {
             return Err(too_many(bytes));
         }
-        // The length of some files of the system is unknown, so the reader stops by itself, one byte past the limit.
+        // Some system files report no length, so stop reading one byte past the limit.
         let mut content = Vec::with_capacity(usize::try_from(bytes).unwrap_or(0));
         let mut file = file.take(limit.saturating_add(1));
         file.read_to_end(&mut content).map_err(io)?;
@@ -47,7 +47,7 @@ pub(crate) fn read(path: &Path, limit: u64) -> Result<Vec<u8>, ImageError> {
     read().map_err(|error: ImageError| error.at(path))
 }
 
-/// Opens a regular file for reading; links are followed. It never waits, as opening a named pipe does.
+/// Opens a regular file for reading and follows links. It never blocks, which opening a named pipe could do.
 ///
 /// # Errors
 ///
@@ -58,7 +58,7 @@ pub fn open_regular(path: impl AsRef<Path>) -> io::Result<File> {
     check_regular(&fs::metadata(path)?)?;
     let mut options = File::options();
     options.read(true);
-    // The file may have been replaced by a pipe meanwhile.
+    // The file may have been replaced by a pipe since the check, so open without blocking and check again.
     let file = without_waiting(&mut options).open(path)?;
     check_regular(&file.metadata()?)?;
     Ok(file)
@@ -78,7 +78,7 @@ fn check_regular(found: &fs::Metadata) -> io::Result<()> {
     Err(io::Error::new(kind, what))
 }
 
-/// Lets a pipe or a device be opened at once.
+/// Opens pipes and devices without blocking.
 fn without_waiting(options: &mut OpenOptions) -> &mut OpenOptions {
     #[cfg(unix)]
     std::os::unix::fs::OpenOptionsExt::custom_flags(options, libc::O_NONBLOCK);
@@ -86,11 +86,11 @@ fn without_waiting(options: &mut OpenOptions) -> &mut OpenOptions {
 }
 
 /// A file that is written under a temporary name in its final folder, and then renamed. It is removed if it is dropped
-/// before that.
+/// before the rename.
 ///
-/// The steps are those of a commit: write all bytes into [`file`](Self::file), [`sync`](Self::sync),
-/// [`rename`](Self::rename), then [`sync_folder`]. Several files are renamed one right after the other when all of them
-/// are synced.
+/// The steps of a commit are: write all bytes into [`file`](Self::file), [`sync`](Self::sync),
+/// [`rename`](Self::rename), then [`sync_folder`]. For several files, sync all of them first, then rename them in
+/// sequence.
 ///
 /// # Examples
 ///
@@ -113,7 +113,7 @@ fn without_waiting(options: &mut OpenOptions) -> &mut OpenOptions {
 pub struct AtomicFile(NamedTempFile);
 
 impl AtomicFile {
-    /// Creates and locks an empty file in the folder of `path`. Its permissions are those of any new file.
+    /// Creates and locks an empty file in the folder of `path`, with the default permissions of new files.
     ///
     /// # Errors
     ///
@@ -136,7 +136,7 @@ impl AtomicFile {
         self.0.as_file()
     }
 
-    /// Flushes the bytes to the disk. If there is a file at `path`, its permissions are taken over before.
+    /// Flushes the bytes to the disk. If a file exists at `path`, its permissions are copied first.
     ///
     /// # Errors
     ///
@@ -159,7 +159,7 @@ impl AtomicFile {
             return Ok(());
         }
         if let Err(refused) = self.0.persist_noclobber(path) {
-            // Not every file system can rename without replacing. There, the name is checked before the rename.
+            // Not every file system can rename without replacing. In this case, check for the name before the rename.
             if refused.error.kind() == io::ErrorKind::AlreadyExists {
                 return Err(refused.error);
             }
@@ -172,9 +172,9 @@ impl AtomicFile {
     }
 }
 
-/// Flushes the names in a folder to the disk: files that were renamed in it, and folders that were made in it.
+/// Flushes the entries of a folder to the disk: renamed files and new folders.
 ///
-/// Systems other than Unix flush names on their own. A folder that may not be read is left to the system, too.
+/// Does nothing on systems other than Unix, which flush names themselves. A folder without read permission is skipped.
 ///
 /// # Errors
 ///
@@ -195,7 +195,7 @@ pub fn sync_folder(path: &Path) -> io::Result<()> {
     }
 }
 
-/// Treats a file system that cannot flush as one that has nothing to flush.
+/// Ignores the error of a file system that does not support flushing.
 fn tolerate_unsupported(synced: io::Result<()>) -> io::Result<()> {
     use io::ErrorKind::{InvalidInput, Unsupported};
     match synced {
@@ -204,7 +204,7 @@ fn tolerate_unsupported(synced: io::Result<()>) -> io::Result<()> {
     }
 }
 
-/// Removes the temporary files that ended processes have left in the folder of `path`. Errors are ignored: a folder that
+/// Removes temporary files that ended processes have left in the folder of `path`. Errors are ignored: a folder that
 /// cannot be read is reported when the file is written.
 pub fn remove_left_behind(path: &Path) {
     let Ok(entries) = fs::read_dir(folder(path)) else {
@@ -214,11 +214,11 @@ pub fn remove_left_behind(path: &Path) {
         let name = entry.file_name();
         let name = name.as_encoded_bytes();
         let is_ours = name.starts_with(PREFIX.as_bytes()) && name.ends_with(SUFFIX.as_bytes());
-        // Somebody else may have given such a name to a link or to a pipe, which would be waited for.
+        // A link or a pipe may have such a name, and opening a pipe would block.
         if !is_ours || !entry.file_type().is_ok_and(|found| found.is_file()) {
             continue;
         }
-        // Opened for writing, since some file systems only lock files open for writing.
+        // Open for writing, since some file systems lock only files that are open for writing.
         let mut options = File::options();
         options.write(true);
         #[cfg(unix)]
@@ -226,7 +226,7 @@ pub fn remove_left_behind(path: &Path) {
             &mut options,
             libc::O_NONBLOCK | libc::O_NOFOLLOW,
         );
-        // The lock is held during the removal, or else another process could lock the file in between.
+        // Hold the lock during the removal; otherwise another process could lock the file in between.
         if let Ok(file) = options.open(entry.path())
             && file.try_lock().is_ok()
         {
@@ -235,10 +235,10 @@ pub fn remove_left_behind(path: &Path) {
     }
 }
 
-/// Replaces the content of the file at `path` with `bytes`: it changes from the old to the new content at once, and is on
-/// the disk when this returns.
+/// Replaces the content of the file at `path` with `bytes`. The change is atomic, and on the disk when the function
+/// returns.
 ///
-/// An existing file keeps its permissions; if `path` is a link, the file that it leads to is replaced.
+/// An existing file keeps its permissions. If `path` is a link, its target is replaced.
 ///
 /// # Errors
 ///
@@ -257,7 +257,7 @@ fn write_and_rename(path: &Path, bytes: &[u8]) -> io::Result<()> {
     sync_folder(folder(&path))
 }
 
-/// The folder of a file.
+/// Folder of a file; `.` for a bare name.
 fn folder(path: &Path) -> &Path {
     match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
@@ -265,14 +265,14 @@ fn folder(path: &Path) -> &Path {
     }
 }
 
-/// Creates a file and locks it. Its permissions are those of any new file.
+/// Creates and locks a file, with the default permissions of new files.
 fn create_locked(path: &Path) -> io::Result<File> {
     let mut options = File::options();
     let file = options.read(true).write(true).create_new(true).open(path)?;
     match file.try_lock() {
-        // Without locks, no process takes a file for one that was left behind.
+        // The file system has no locks, so no process can take the file for a leftover.
         Ok(()) | Err(TryLockError::Error(_)) if path.exists() => Ok(file),
-        // Another process has removed it as left behind, so that another name is tried.
+        // Another process removed the file as a leftover; the error makes the caller try another name.
         _ => Err(io::ErrorKind::AlreadyExists.into()),
     }
 }

@@ -1,4 +1,4 @@
-//! Sizes of images of any size, by the first bytes of their files.
+//! Size and format of image files of any size, read from their first bytes.
 //!
 //! Reference: PNG Specification, third edition (W3C, 2025), section 11.2.1; OpenEXR, "The OpenEXR File Layout".
 
@@ -7,28 +7,28 @@ use crate::{ImageError, ImageErrorKind, Limits, file, read_image};
 use std::io::Read;
 use std::path::Path;
 
-/// The number of bytes of a PNG file up to the end of its header: the signature, the length and the name of the chunk, and
-/// 13 bytes of content.
+/// Length of a PNG file up to the end of its header, in bytes: the signature, the length and name of the chunk, and 13
+/// bytes of content.
 const PNG_HEADER: usize = 8 + 8 + 13;
 
-/// The size and the format of an image, without its pixels.
+/// Size and format of an image, without its pixels.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ImageHeader {
-    /// The name of the format: PNG, JPEG or OpenEXR.
+    /// Name of the format: PNG, JPEG or OpenEXR.
     pub format: &'static str,
-    /// The numbers of columns and rows.
+    /// Width and height in pixels.
     pub size: [u64; 2],
-    /// The number of bits of a channel, where the first bytes say it.
+    /// Bits per channel; `None` if the first bytes do not contain it.
     pub bits: Option<u32>,
 }
 
-/// Reads the size and the format of an image file, without its pixels, so that it may be of any size.
+/// Reads the size and format of an image file of any size, without its pixels.
 ///
-/// Of PNG the header is read. Other formats are read up to their size, after which all pixels are too many.
+/// For PNG, only the header is read. Other formats are decoded with a limit of 0 pixels, which stops after the size.
 ///
 /// # Errors
 ///
-/// The errors of [`read_image`](crate::read_image) but [`ImageErrorKind::TooManyPixels`].
+/// The errors of [`read_image`](crate::read_image) except [`ImageErrorKind::TooManyPixels`].
 pub fn read_header(path: impl AsRef<Path>) -> Result<ImageHeader, ImageError> {
     let path = path.as_ref();
     let io = |error| ImageError::new(ImageErrorKind::Io).because(error).at(path);
@@ -46,7 +46,7 @@ pub fn read_header(path: impl AsRef<Path>) -> Result<ImageHeader, ImageError> {
     } else {
         return Err(ImageError::new(ImageErrorKind::UnknownFormat).at(path));
     };
-    // With a limit below every image, decoding ends at the size.
+    // With a limit of 0 pixels, decoding stops at the size.
     let limits = Limits {
         pixels: 0,
         ..Limits::default()
@@ -64,7 +64,7 @@ pub fn read_header(path: impl AsRef<Path>) -> Result<ImageHeader, ImageError> {
     }
 }
 
-/// The header of a PNG file.
+/// Parses the header of a PNG file.
 fn png(first: &[u8]) -> Result<ImageHeader, ImageError> {
     let header = first.get(12..PNG_HEADER);
     let Some(header) = header.and_then(|header| header.strip_prefix(b"IHDR")) else {
@@ -81,7 +81,7 @@ fn png(first: &[u8]) -> Result<ImageHeader, ImageError> {
     if size.contains(&0) {
         return Err(ImageError::new(ImageErrorKind::Empty { size }));
     }
-    // Colors of a palette have 8 bits.
+    // Palette colors have 8 bits per channel.
     let bits = match header[9] {
         3 => 8,
         _ => header[8].into(),

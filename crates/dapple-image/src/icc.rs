@@ -1,4 +1,4 @@
-//! ICC profiles: the tags of three components with a matrix and curves.
+//! ICC profiles: tags of three-component profiles with a matrix and curves.
 //!
 //! Reference: International Color Consortium, ICC.1:2022 "Image technology colour management: architecture, profile format
 //! and data structure", sections 7 (header and tags), 8.3 (matrix profiles), 10.6 (`curv`), 10.18 (`para`) and 10.31
@@ -6,10 +6,10 @@
 
 use crate::color_space::{ColorSpace, Curve, Source};
 
-/// The length of the header of a profile, in bytes.
+/// Length of the profile header, in bytes.
 const HEADER: usize = 128;
 
-/// The color space of a profile.
+/// Color space of a profile.
 pub(crate) fn color_space(profile: &[u8]) -> ColorSpace {
     let unknown = |name| ColorSpace::unknown(Source::Icc, name);
     if profile.get(36..40) != Some(b"acsp") {
@@ -39,7 +39,7 @@ pub(crate) fn color_space(profile: &[u8]) -> ColorSpace {
     }
 }
 
-/// The data of a tag.
+/// Data of a tag.
 fn tag<'a>(profile: &'a [u8], name: &[u8; 4]) -> Option<&'a [u8]> {
     let n_tags = whole(profile, HEADER)?;
     let table = profile.get(HEADER + 4..)?;
@@ -49,13 +49,13 @@ fn tag<'a>(profile: &'a [u8], name: &[u8; 4]) -> Option<&'a [u8]> {
     profile.get(start..start.checked_add(length)?)
 }
 
-/// The three numbers of a tag of the type `XYZ`.
+/// The three numbers of a tag of type `XYZ`.
 fn xyz(data: &[u8]) -> Option<[f64; 3]> {
     let numbers = data.strip_prefix(b"XYZ ")?;
     Some([fixed(numbers, 4)?, fixed(numbers, 8)?, fixed(numbers, 12)?])
 }
 
-/// The curve of a tag of the type `curv` or `para`.
+/// Curve of a tag of type `curv` or `para`.
 fn curve(data: &[u8]) -> Option<Curve> {
     if data.starts_with(b"curv") {
         let count = whole(data, 8)?;
@@ -74,7 +74,7 @@ fn curve(data: &[u8]) -> Option<Curve> {
     let kind = u16::from_be_bytes([*data.get(4)?, *data.get(5)?]);
     let number = |at: usize| fixed(data, 8 + 4 * at);
     let g = number(0).filter(|&g| g > 0.0)?;
-    // Each kind is a case of the last, with the numbers g, a, b, c, d, e and f.
+    // Each kind is a special case of the last one, with the parameters g, a, b, c, d, e and f.
     let parametric = match kind {
         0 => return Some(Curve::Power(g)),
         1 => {
@@ -96,13 +96,13 @@ fn curve(data: &[u8]) -> Option<Curve> {
     is_finite.then_some(Curve::Parametric(parametric))
 }
 
-/// A whole number of 32 bits.
+/// Unsigned 32-bit integer, big endian.
 fn whole(bytes: &[u8], at: usize) -> Option<usize> {
     let bytes = bytes.get(at..)?.first_chunk::<4>()?;
     usize::try_from(u32::from_be_bytes(*bytes)).ok()
 }
 
-/// A number with a sign and 16 bits behind the point.
+/// Signed fixed-point number with 16 fractional bits.
 fn fixed(bytes: &[u8], at: usize) -> Option<f64> {
     let bytes = bytes.get(at..)?.first_chunk::<4>()?;
     Some(f64::from(i32::from_be_bytes(*bytes)) / 65536.0)

@@ -5,13 +5,13 @@ use dapple_color::{LinearRgb, LinearRgba, Normal};
 use dapple_raster::Raster;
 use std::path::Path;
 
-/// The bytes that every PNG file begins with.
+/// Signature of PNG files.
 pub(crate) const PNG_SIGNATURE: [u8; 8] = [0x89, b'P', b'N', b'G', b'\r', b'\n', 0x1a, b'\n'];
 
-/// The bytes that every JPEG file begins with.
+/// Signature of JPEG files.
 pub(crate) const JPEG_SIGNATURE: [u8; 3] = [0xff, 0xd8, 0xff];
 
-/// The bytes that every OpenEXR file begins with.
+/// Signature of OpenEXR files.
 pub(crate) const EXR_SIGNATURE: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
 
 /// An image of one of the supported formats.
@@ -20,18 +20,18 @@ pub(crate) const EXR_SIGNATURE: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
 pub enum Image {
     /// A PNG file.
     Png(PngImage),
-    /// A JPEG file, as a PNG image of the same pixels.
+    /// A JPEG file, decoded to the same type as a PNG image.
     Jpeg(PngImage),
     /// An OpenEXR file.
     Exr(ExrImage),
 }
 
-/// Decodes the bytes of an image file, whose format is recognized by its first bytes.
+/// Decodes an image file. The format is recognized by its signature.
 ///
 /// # Errors
 ///
-/// [`ImageErrorKind::UnknownFormat`] if it is not a known format, [`ImageErrorKind::Unsupported`] if the feature of the
-/// crate for the format is off, else those of `decode_png`, `decode_jpeg` and `decode_exr`.
+/// [`ImageErrorKind::UnknownFormat`] if the signature is unknown, [`ImageErrorKind::Unsupported`] if the crate feature
+/// of the format is disabled, else the errors of `decode_png`, `decode_jpeg` and `decode_exr`.
 pub fn decode_image(bytes: &[u8], limits: &Limits) -> Result<Image, ImageError> {
     #[cfg(feature = "png")]
     if bytes.starts_with(&PNG_SIGNATURE) {
@@ -55,18 +55,18 @@ pub fn decode_image(bytes: &[u8], limits: &Limits) -> Result<Image, ImageError> 
     }))
 }
 
-/// The signatures of formats whose codec may be compiled out, and the text of the error.
+/// Signatures of formats whose codec may be compiled out, and the feature name for the error.
 const LEFT_OUT: [(&[u8], &str); 3] = [
     (&PNG_SIGNATURE, "PNG without the feature `png`"),
     (&JPEG_SIGNATURE, "JPEG without the feature `jpeg`"),
     (&EXR_SIGNATURE, "OpenEXR without the feature `exr`"),
 ];
 
-/// Reads an image file, whose format is recognized by its first bytes (the name does not matter).
+/// Reads an image file. The format is recognized by its signature; the file name does not matter.
 ///
 /// # Errors
 ///
-/// [`ImageErrorKind::Io`] if the file cannot be read, else those of [`decode_image`].
+/// [`ImageErrorKind::Io`] if the file cannot be read, else the errors of [`decode_image`].
 pub fn read_image(path: impl AsRef<Path>, limits: &Limits) -> Result<Image, ImageError> {
     let path = path.as_ref();
     let bytes = file::read(path, limits.bytes)?;
@@ -74,7 +74,7 @@ pub fn read_image(path: impl AsRef<Path>, limits: &Limits) -> Result<Image, Imag
 }
 
 impl Image {
-    /// The numbers of columns and rows (of the first plane, where there are several).
+    /// Width and height in pixels (of the first plane, if there are several).
     #[must_use]
     pub fn size(&self) -> [u32; 2] {
         match self {
@@ -86,10 +86,10 @@ impl Image {
         }
     }
 
-    /// The uncoded numbers of a gray image: from 0 to 1 in PNG and JPEG, of any size in OpenEXR.
+    /// Values of a gray image: from 0 to 1 in PNG and JPEG, of any magnitude in OpenEXR.
     ///
-    /// This is for data (heights, masks). No transfer curve is applied, whatever the file says. Alpha is allowed if it
-    /// is 1 everywhere.
+    /// Use this for data (heights, masks). No transfer curve is applied, regardless of the declared color space. Alpha
+    /// is allowed if it is 1 everywhere.
     ///
     /// # Errors
     ///
@@ -101,13 +101,14 @@ impl Image {
         }
     }
 
-    /// The colors of the image in linear light. Gray images become gray colors; alpha is allowed if it is 1 everywhere.
+    /// Colors in linear light. Gray images become gray colors; alpha is allowed if it is 1 everywhere.
     ///
-    /// PNG and JPEG are read by the color space that they declare, and as sRGB if there is none, as on the web.
+    /// PNG and JPEG are converted from the color space that they declare; without a declaration they are sRGB, as on
+    /// the web.
     ///
     /// # Errors
     ///
-    /// [`ImageErrorKind::ColorSpace`] if this color space cannot be converted,
+    /// [`ImageErrorKind::ColorSpace`] if the declared color space cannot be converted,
     /// [`ImageErrorKind::Channels`] if the image is partly transparent, [`ImageErrorKind::MissingPlane`] or
     /// [`ImageErrorKind::SizeMismatch`] if an OpenEXR file does not have three planes of color.
     pub fn color(&self) -> Result<Raster<LinearRgb>, ImageError> {
@@ -123,9 +124,10 @@ impl Image {
         }
     }
 
-    /// The colors of the image in linear light with their alpha, which is 1 where the file has none.
+    /// Colors in linear light with alpha, which is 1 if the file has none.
     ///
-    /// PNG and JPEG are read by the color space that they declare, and as sRGB if there is none, as on the web.
+    /// PNG and JPEG are converted from the color space that they declare; without a declaration they are sRGB, as on
+    /// the web.
     ///
     /// # Errors
     ///
@@ -140,13 +142,13 @@ impl Image {
 }
 
 impl Image {
-    /// The unit vectors of a normal map, whatever its colors are said to mean. Alpha of PNG is ignored.
+    /// Unit vectors of a normal map, regardless of the declared color space. Alpha of PNG is ignored.
     ///
-    /// The codes of PNG and JPEG are `(part + 1) / 2`; [`ExrImage::normals`] says what the numbers of OpenEXR are.
+    /// The codes of PNG and JPEG are `(part + 1) / 2`; [`ExrImage::normals`] describes the values of OpenEXR.
     ///
     /// # Errors
     ///
-    /// [`ImageErrorKind::Channels`] if the image is gray, else those of [`ExrImage::normals`].
+    /// [`ImageErrorKind::Channels`] if the image is gray, else the errors of [`ExrImage::normals`].
     pub fn normals(&self) -> Result<Raster<Normal>, ImageError> {
         let png = match self {
             Self::Png(png) | Self::Jpeg(png) => png,
@@ -168,7 +170,8 @@ impl Image {
         }
     }
 
-    /// The same codes as sRGB, whatever the file says of its colors: the rule of glTF 2.0, section 3.8.3, for textures.
+    /// Reinterprets the codes as sRGB and ignores the declared color space: the rule of glTF 2.0, section 3.8.3, for
+    /// textures.
     #[must_use]
     pub fn without_color_space(mut self) -> Self {
         if let Self::Png(image) | Self::Jpeg(image) = &mut self {
@@ -177,11 +180,11 @@ impl Image {
         self
     }
 
-    /// The image of one layer of an OpenEXR file with several.
+    /// Returns the image of one layer of an OpenEXR file with several layers.
     ///
     /// # Errors
     ///
-    /// [`ImageErrorKind::MissingLayer`] if there is no layer of this name, [`ImageErrorKind::NoLayers`] if it is a PNG or
+    /// [`ImageErrorKind::MissingLayer`] if there is no layer of this name, [`ImageErrorKind::NoLayers`] for a PNG or
     /// JPEG file.
     pub fn layer(&self, name: &str) -> Result<Self, ImageError> {
         match self {
@@ -193,7 +196,7 @@ impl Image {
     }
 }
 
-/// The error of an image with alpha where no alpha is allowed.
+/// Error for an image with alpha where alpha is not allowed.
 pub(crate) fn transparent(needed: &'static str) -> ImageError {
     ImageError::new(ImageErrorKind::Channels {
         found: "partly transparent",

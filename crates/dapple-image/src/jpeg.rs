@@ -2,8 +2,8 @@
 //!
 //! Reference: ITU-T T.81, "Digital compression and coding of continuous-tone still images", 1992, with JFIF (ITU-T
 //! T.871) and Exif. The codec is the crate `zune-jpeg`, without its SIMD, so that a file has the same pixels on every
-//! machine. The color space is that of an ICC profile, else that of Exif, else sRGB. An image with an Exif orientation is turned upright, as in
-//! browsers and editors. Other codings, other depths and CMYK are errors that name the feature.
+//! machine. The color space is taken from the ICC profile, else from Exif; the default is sRGB. The Exif orientation
+//! is applied, as in browsers and editors. Other codings, other depths and CMYK give errors that name the feature.
 //!
 //! Where a program unwinds on panic (the default), a panic of the codec is caught here and becomes
 //! [`ImageErrorKind::Damaged`].
@@ -21,32 +21,31 @@ use zune_jpeg::zune_core::bytestream::ZCursor;
 use zune_jpeg::zune_core::colorspace::ColorSpace;
 use zune_jpeg::zune_core::options::DecoderOptions;
 
-/// The second byte of the marker at the beginning of a scan.
+/// Second byte of the start-of-scan marker.
 const START_OF_SCAN: u8 = 0xda;
 
-/// The second byte of the marker at the end of an image.
+/// Second byte of the end-of-image marker.
 const END_OF_IMAGE: u8 = 0xd9;
 
-/// The longest side of the format, in pixels.
+/// Maximum side of the format, in pixels.
 const SIDE_LIMIT: usize = 65_535;
 
-/// Bytes of memory for each sample: its code, and its coefficient of 16 bits, of which a progressive file needs all.
+/// Memory per sample, in bytes: its code, and its 16-bit coefficient, since a progressive file needs all coefficients.
 const SAMPLE_BYTES: u64 = 3;
 
-/// Decodes the bytes of a JPEG file to a PNG image of the same pixels: [`PngPixels::Gray8`] or [`PngPixels::Rgb8`],
-/// with their color space, which is sRGB if the file says nothing else.
+/// Decodes a JPEG file to [`PngPixels::Gray8`] or [`PngPixels::Rgb8`] with its color space; the default is sRGB.
 ///
 /// # Errors
 ///
-/// [`ImageErrorKind::UnknownFormat`] if the bytes do not begin like JPEG, [`ImageErrorKind::Damaged`] if they break its
-/// rules or end too soon, [`ImageErrorKind::Unsupported`] for CMYK, for arithmetic, lossless or hierarchical coding, and for other than 8 bits,
-/// [`ImageErrorKind::TooManyPixels`] or [`ImageErrorKind::TooManyBytes`] past a limit, where each sample counts for three
-/// bytes, since decoding may take as much.
+/// [`ImageErrorKind::UnknownFormat`] if the bytes lack the JPEG signature, [`ImageErrorKind::Damaged`] if they violate
+/// its rules or end too soon, [`ImageErrorKind::Unsupported`] for CMYK, for arithmetic, lossless or hierarchical
+/// coding, and for depths other than 8 bits. [`ImageErrorKind::TooManyPixels`] or [`ImageErrorKind::TooManyBytes`]
+/// past a limit; each sample counts as three bytes, which decoding may take.
 pub fn decode_jpeg(bytes: &[u8], limits: &Limits) -> Result<PngImage, ImageError> {
     if !bytes.starts_with(&SIGNATURE) {
         return Err(ImageError::new(ImageErrorKind::UnknownFormat));
     }
-    // No data that a panic could leave half done outlives the call.
+    // A panic leaves no inconsistent data behind: nothing mutable outlives the call.
     catch_unwind(AssertUnwindSafe(|| decode(bytes, limits)))
         .unwrap_or_else(|_| Err(ImageError::damaged("JPEG", "the codec gave up")))
 }
@@ -99,9 +98,9 @@ fn decode(bytes: &[u8], limits: &Limits) -> Result<PngImage, ImageError> {
     })
 }
 
-/// Checks that the last scan of a file has an end; otherwise the codec makes up its last pixels.
+/// Checks that the last scan of a file is complete; otherwise the codec would invent its last pixels.
 ///
-/// Within a scan neither marker can occur, and a preview in the header ends before the first scan begins.
+/// Neither marker can occur within a scan, and an embedded preview ends before the first scan begins.
 fn check_end(bytes: &[u8]) -> Result<(), ImageError> {
     let last = |marker: u8| bytes.windows(2).rposition(|pair| pair == [0xff, marker]);
     if last(END_OF_IMAGE) > last(START_OF_SCAN) {
@@ -111,16 +110,14 @@ fn check_end(bytes: &[u8]) -> Result<(), ImageError> {
     }
 }
 
-/// The coding of a file: a marker, the bits of a sample, and the number of channels.
-///
-/// It stands in the header of the frame (T.81, B.2.2), before the first scan.
+/// Frame header of a file: marker, bits per sample, and number of channels (T.81, B.2.2). It precedes the first scan.
 fn frame(bytes: &[u8]) -> Option<[u8; 3]> {
     let mut rest = bytes.get(2..)?;
     loop {
         match *rest {
-            // A marker may be preceded by any number of these.
+            // Fill bytes may precede a marker.
             [0xff, 0xff, ..] => rest = &rest[1..],
-            // Tables of Huffman and arithmetic codes, and reserved markers, are no frames.
+            // Huffman tables, arithmetic tables and reserved markers are not frames.
             [
                 0xff,
                 marker @ (0xc0..=0xcf | 0xf7),
@@ -144,7 +141,7 @@ fn frame(bytes: &[u8]) -> Option<[u8; 3]> {
     }
 }
 
-/// The name of the unsupported feature of a frame (T.81, table B.1; T.87 for JPEG-LS).
+/// Name of the unsupported feature of a frame (T.81, table B.1; T.87 for JPEG-LS).
 fn unread_feature([marker, bits, channels]: [u8; 3]) -> Option<&'static str> {
     Some(match marker {
         0xc3 | 0xc7 | 0xcb | 0xcf => "lossless JPEG",

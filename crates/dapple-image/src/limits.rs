@@ -1,8 +1,8 @@
-//! Limits of the size of images that are read.
+//! Limits on the size of images that are read.
 
 use crate::{ImageError, ImageErrorKind};
 
-/// Limits of the size of images that are read.
+/// Limits on the size of images that are read.
 ///
 /// A few kilobytes of PNG can claim terabytes of pixels; the limits are checked against the claimed size, before memory
 /// for the pixels is allocated.
@@ -17,9 +17,9 @@ use crate::{ImageError, ImageErrorKind};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Limits {
-    /// The largest number of pixels. By default 2^28, which is 16384 × 16384.
+    /// Maximum number of pixels [default: 2^28, which is 16384 × 16384].
     pub pixels: u64,
-    /// The largest number of bytes: of the file, and again of its pixels in memory. By default 2^32, which is 4 GiB.
+    /// Maximum number of bytes, of the file and of its pixels in memory separately [default: 2^32, which is 4 GiB].
     pub bytes: u64,
 }
 
@@ -33,7 +33,7 @@ impl Default for Limits {
 }
 
 impl Limits {
-    /// Checks that an image has pixels, and no more than the limit.
+    /// Checks that an image is not empty and that its pixels are within the limit.
     pub(crate) fn check_pixels(&self, size: [u64; 2]) -> Result<(), ImageError> {
         let limit = self.pixels;
         if size.contains(&0) {
@@ -48,7 +48,7 @@ impl Limits {
         Ok(())
     }
 
-    /// Checks that an image takes no more memory than the limit.
+    /// Checks that the memory of an image is within the limit.
     pub(crate) fn check_bytes(&self, bytes: u64) -> Result<(), ImageError> {
         let limit = self.bytes;
         if bytes > limit {
@@ -61,7 +61,7 @@ impl Limits {
     }
 }
 
-/// Checks that an image to be written has pixels, and no side that is too long for the format.
+/// Checks that an image to write is not empty and that its sides fit the format.
 pub(crate) fn check_side(
     size: [u32; 2],
     limit: u32,

@@ -1,7 +1,7 @@
-//! PNG files: their pixels, writing and reading.
+//! PNG files: pixels, encoder and decoder.
 //!
-//! The format is that of the W3C recommendation "Portable Network Graphics (PNG) Specification (Third Edition)", 2025,
-//! <https://www.w3.org/TR/png-3/>; files are read by the crate `png`.
+//! The format is defined in the W3C recommendation "Portable Network Graphics (PNG) Specification (Third Edition)",
+//! 2025, <https://www.w3.org/TR/png-3/>; files are decoded by the crate `png`.
 
 #[cfg(feature = "png")]
 mod decode;
@@ -30,11 +30,11 @@ pub use shortcut::{write_color_alpha_png, write_color_png, write_gray_png, write
 #[cfg(feature = "png")]
 pub(crate) use stream::{PngStream, Samples};
 
-/// The `gAMA` of sRGB, 0.45455 times 100 000, by the specification.
+/// `gAMA` value of sRGB in the specification: 0.45455 times 100 000.
 #[cfg(feature = "png")]
 const GAMMA_OF_SRGB: u32 = 45_455;
 
-/// The transfer curve of the numbers in an 8- or 16-bit file.
+/// Transfer curve of the codes in an 8- or 16-bit file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Transfer {

@@ -1,8 +1,8 @@
-//! Files of plain numbers, NumPy arrays and raw heights: written row by row, and read as a whole.
+//! Files of plain numbers: NumPy arrays and raw heights, written row by row and read as a whole.
 //!
-//! Reference: NumPy Developers, "A Simple File Format for NumPy Arrays" (`numpy.lib.format`), version 1.0; there is no
-//! standard for raw heights, which the terrain importers of Unity and Unreal call RAW and r16: codes of 16 bits, the low
-//! byte first, the top row first, without a header.
+//! Reference: NumPy Developers, "A Simple File Format for NumPy Arrays" (`numpy.lib.format`), version 1.0. Raw heights
+//! have no standard; the terrain importers of Unity and Unreal call them RAW and r16. They are 16-bit codes, little
+//! endian, top row first, without a header.
 
 use crate::content::Pixel;
 mod read;
@@ -15,19 +15,20 @@ use dapple_color::Code;
 use dapple_raster::RasterView;
 use std::io::Write;
 
-/// The alignment of the end of the header of a NumPy file, in bytes.
+/// Alignment of the data in a NumPy file, in bytes.
 const ALIGNMENT: usize = 64;
-/// The length of the part before the text of the header: the magic string, the version 1.0, and the length of the text.
+/// Length of the preamble: the magic string, the version 1.0, and the length of the header text.
 const PREAMBLE: usize = 10;
 
-/// A file of plain numbers that is being written into a sink.
+/// A file of plain numbers being written into a sink.
 pub(crate) struct RawStream {
-    /// The bytes of a row.
+    /// Buffer for the bytes of a row.
     bytes: Vec<u8>,
 }
 
 impl RawStream {
-    /// Begins a NumPy array of `f32` with the shape (height, width), or (height, width, channels) for several channels.
+    /// Starts a NumPy array of `f32` with the shape (height, width), or (height, width, channels) for several
+    /// channels.
     pub(crate) fn npy(
         sink: &mut dyn Write,
         size: [u32; 2],
@@ -39,7 +40,7 @@ impl RawStream {
         Ok(Self { bytes: Vec::new() })
     }
 
-    /// Begins a file of heights as codes of 16 bits, without a header.
+    /// Starts a file of heights as 16-bit codes, without a header.
     pub(crate) fn r16(size: [u32; 2]) -> Result<Self, ImageError> {
         check_side(size, u32::MAX, "raw heights")?;
         Ok(Self { bytes: Vec::new() })
@@ -58,7 +59,7 @@ impl RawStream {
         })
     }
 
-    /// Writes rows as codes of 16 bits.
+    /// Writes rows as 16-bit codes.
     pub(crate) fn write_codes<T: Pixel>(
         &mut self,
         sink: &mut dyn Write,
@@ -88,7 +89,7 @@ impl RawStream {
     }
 }
 
-/// The header of an array in C order, padded with spaces to the alignment of the data.
+/// Header of an array in C order, padded with spaces to the alignment of the data.
 fn npy_header([width, height]: [u32; 2], n_channels: usize) -> Vec<u8> {
     let shape = match n_channels {
         1 => format!("({height}, {width})"),
@@ -99,7 +100,7 @@ fn npy_header([width, height]: [u32; 2], n_channels: usize) -> Vec<u8> {
     text.extend(std::iter::repeat_n(' ', length - PREAMBLE - text.len() - 1));
     text.push('\n');
     let mut header = b"\x93NUMPY\x01\x00".to_vec();
-    // The text has less than 128 bytes.
+    // The text is shorter than 128 bytes.
     header.extend((text.len() as u16).to_le_bytes());
     header.extend(text.into_bytes());
     header

@@ -1,4 +1,4 @@
-//! Writing of an image of any size by its rows, from the top down.
+//! Row-by-row writing of images of any size, from the top down.
 
 #[cfg(feature = "png")]
 use crate::Depth;
@@ -14,13 +14,17 @@ use dapple_color::{LinearRgb, LinearRgba, Normal};
 use dapple_raster::RasterView;
 use std::io::{Seek, Write};
 
-/// Writes an image by its rows, from the top down, so that it never has to be in memory as a whole.
+/// Writes an image row by row, from the top down, so that the whole image is never in memory.
 ///
-/// The rows come in bands of any height; how they are divided does not change a byte of the file. PNG takes two MiB of
-/// memory for each thread, or a few rows if these are larger, and the file equals that of
-/// [`encode_png`](crate::encode_png). OpenEXR is written in tiles of 64 × 64 pixels and takes a band of these: 64 rows of
-/// 4 bytes for each plane. Both are compressed on all cores where the feature `rayon` is on. NumPy arrays and raw heights
-/// take a row.
+/// Rows are passed in bands of any height; the division into bands does not change the bytes of the file. Buffer
+/// memory:
+///
+/// - PNG: two MiB per thread, or a few rows if these are larger. The file equals the output of
+///   [`encode_png`](crate::encode_png).
+/// - OpenEXR, in tiles of 64 × 64 pixels: 64 rows of 4 bytes per pixel and plane.
+/// - NumPy arrays and raw heights: one row.
+///
+/// PNG and OpenEXR are compressed on all cores if the feature `rayon` is enabled.
 ///
 /// The sink should be empty, and buffered if it is a file. Its content is complete only after [`finish`](Self::finish).
 ///
@@ -46,24 +50,24 @@ pub struct RowWriter<W: Write + Seek> {
     rows: Rows,
 }
 
-/// What a file is written to.
+/// Target of a file that is written.
 pub(crate) trait Sink: Write + Seek {}
 
 impl<W: Write + Seek> Sink for W {}
 
-/// An image that is being written into a sink. It does not know the type of the sink, so that the formats are compiled in
-/// this crate and not in those that write images.
+/// An image being written. It is independent of the type of the sink, so that the formats are compiled in this crate
+/// and not in crates that write images.
 struct Rows {
     content: Content,
     size: [u32; 2],
-    /// The number of rows written so far.
+    /// Number of rows written so far.
     rows: u32,
-    /// Whether writing a row failed, so that the file can never be complete.
+    /// Whether writing a row failed; the file can then never be completed.
     is_broken: bool,
     file: File,
 }
 
-/// The state of the file for each encoding.
+/// State of the file for each encoding.
 enum File {
     #[cfg(feature = "png")]
     Eight(Box<PngStream>),
@@ -86,7 +90,7 @@ enum Band<'a> {
 }
 
 impl<W: Write + Seek> RowWriter<W> {
-    /// Begins an image of `size` columns and rows in `sink`. The header is written at once.
+    /// Starts an image of `size` columns and rows in `sink`, and writes the header.
     ///
     /// # Errors
     ///
@@ -109,8 +113,9 @@ impl<W: Write + Seek> RowWriter<W> {
     /// # Errors
     ///
     /// [`ImageErrorKind::RowWidth`] if the rows do not have the width of the image, [`ImageErrorKind::TooManyRows`] if
-    /// there are more than are missing, [`ImageErrorKind::Channels`] if the image has another content; then no row is
-    /// written, and writing may continue. [`ImageErrorKind::Io`] if the sink fails, and on each later call.
+    /// there are more rows than the image lacks, [`ImageErrorKind::Channels`] if the image has another content. After
+    /// these errors no row has been written, and writing may continue. [`ImageErrorKind::Io`] if the sink fails, and
+    /// on each later call.
     pub fn write_gray(&mut self, rows: RasterView<'_, f32>) -> Result<(), ImageError> {
         self.rows.write(&mut self.sink, Band::Gray(rows))
     }
@@ -163,7 +168,7 @@ impl<W: Write + Seek> RowWriter<W> {
         self.rows.write(&mut self.sink, Band::PackedFour(rows))
     }
 
-    /// Ends the file and returns the sink.
+    /// Completes the file and returns the sink.
     ///
     /// # Errors
     ///
@@ -217,7 +222,7 @@ impl Rows {
         self.check_whole()?;
         let [_, height] = rows.size();
         self.check_rows::<T>(rows.size())?;
-        // Remains true after an early return.
+        // Remains set after an early return.
         self.is_broken = true;
         match &mut self.file {
             #[cfg(feature = "png")]

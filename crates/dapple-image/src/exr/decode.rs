@@ -1,7 +1,8 @@
-//! Reading OpenEXR: all flat parts, scan lines or tiles, 16- and 32-bit numbers; of several resolutions the largest.
+//! Decoder of OpenEXR: all flat parts, scan lines or tiles, 16- and 32-bit samples, and the largest of several
+//! resolutions.
 //!
-//! A plane has the pixels of the display window, as the "Technical Introduction to OpenEXR" defines the picture: what the
-//! data window has beyond is cropped, and pixels outside of the data window are 0.
+//! A plane has the pixels of the display window, as the "Technical Introduction to OpenEXR" defines. Pixels of the
+//! data window outside of it are cropped, and pixels without data are 0.
 //!
 //! Deep data and subsampled channels are errors. The sizes of all parts are checked against the limits before memory
 //! for the pixels is allocated. The codec has assertions that damaged bytes can reach; where a program unwinds on panic
@@ -27,13 +28,14 @@ use std::io::Cursor;
 use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// The image in the bytes of an OpenEXR file.
+/// Decodes the bytes of an OpenEXR file.
 ///
-/// 16-bit numbers become the same `f32`, 32-bit whole numbers the nearest one.
+/// 16-bit floating-point samples convert to `f32` exactly; 32-bit integers convert to the nearest `f32`.
 ///
 /// # Errors
 ///
-/// [`ImageErrorKind::UnknownFormat`] if the bytes do not begin like OpenEXR, [`ImageErrorKind::Damaged`] if they break its
+/// [`ImageErrorKind::UnknownFormat`] if the bytes lack the OpenEXR signature, [`ImageErrorKind::Damaged`] if they
+/// violate its
 /// rules or end too soon, [`ImageErrorKind::Unsupported`] for deep data and subsampled channels,
 /// [`ImageErrorKind::Windows`] if the data and display windows have no pixel in common,
 /// [`ImageErrorKind::TooManyPixels`] or [`ImageErrorKind::TooManyBytes`] past a limit.
@@ -41,12 +43,12 @@ pub fn decode_exr(bytes: &[u8], limits: &Limits) -> Result<ExrImage, ImageError>
     guarded(bytes, || decode(bytes, limits))
 }
 
-/// Decodes a part of the picture in an OpenEXR file: `size` pixels from column and row `first` of the display window. Only the
-/// blocks of pixels that it meets are decompressed, and only the part has to be within the limits.
+/// Decodes a part of the image in an OpenEXR file: `size` pixels starting at column and row `first` of the display
+/// window. Only blocks that intersect the part are decompressed, and only the part counts against the limits.
 ///
 /// # Errors
 ///
-/// The errors of [`decode_exr`]; [`ImageErrorKind::Outside`] if the part reaches out of the picture.
+/// The errors of [`decode_exr`]; [`ImageErrorKind::Outside`] if the part extends beyond the image.
 pub fn decode_exr_region(
     bytes: &[u8],
     first: [u32; 2],
@@ -56,7 +58,7 @@ pub fn decode_exr_region(
     guarded(bytes, || decode_region(bytes, first, size, limits))
 }
 
-/// Decodes bytes that begin as an OpenEXR file does; a panic of the codec becomes an error.
+/// Decodes bytes with the OpenEXR signature; a panic of the codec becomes an error.
 fn guarded(
     bytes: &[u8],
     decode: impl FnOnce() -> Result<ExrImage, ImageError>,
@@ -64,7 +66,7 @@ fn guarded(
     if !bytes.starts_with(&SIGNATURE) {
         return Err(ImageError::new(ImageErrorKind::UnknownFormat));
     }
-    // No data that a panic could leave half done outlives the call.
+    // A panic leaves no inconsistent data behind: nothing mutable outlives the call.
     catch_unwind(AssertUnwindSafe(decode))
         .unwrap_or_else(|_| Err(ImageError::damaged("OpenEXR", "the codec gave up")))
 }
@@ -84,7 +86,7 @@ fn decode(bytes: &[u8], limits: &Limits) -> Result<ExrImage, ImageError> {
         .map_err(refusal)?;
     let mut parts = image.layer_data;
     if let [layer] = parts.as_mut_slice() {
-        // A single part needs no name to be distinguished.
+        // The name of a single part is not needed.
         layer.attributes.layer_name = None;
     }
     let display = image.attributes.display_window;
@@ -121,6 +123,7 @@ fn decode_region(
     limits.check_pixels(size.map(u64::from))?;
     let n_pixels = u64::from(size[0]) * u64::from(size[1]);
     let (mut parts, mut n_bytes) = (Vec::new(), 0_u64);
+    // Check each part, and allocate its planes.
     for header in &headers {
         check_features(header)?;
         check_windows(
@@ -129,7 +132,7 @@ fn decode_region(
         )?;
         let n_channels = header.channels.list.len() as u64;
         n_bytes = n_bytes.saturating_add(n_pixels.saturating_mul(4 * n_channels));
-        // A block is decompressed as a whole.
+        // Blocks are decompressed as a whole.
         limits.check_bytes(n_bytes.saturating_add(header.max_block_byte_size() as u64))?;
         let data = header.data_window().position;
         let corner =
@@ -143,6 +146,7 @@ fn decode_region(
             planes: vec![vec![0.0; n_pixels as usize]; header.channels.list.len()],
         });
     }
+    // Decompress the blocks of the full resolution that intersect the region.
     let is_met = |_: &MetaData, tile: TileCoordinates, block: BlockIndex| {
         let corners = [block.pixel_position, block.pixel_size].map(|Vec2(x, y)| [x, y]);
         let is_whole = tile.level_index == Vec2(0, 0);
@@ -157,6 +161,7 @@ fn decode_region(
             parts[block.index.layer].put(line, channels)?;
         }
     }
+    // Name the planes.
     let is_single = headers.len() == 1;
     let mut planes = Vec::new();
     for (header, part) in headers.iter().zip(parts) {
@@ -172,24 +177,24 @@ fn decode_region(
     Ok(with_planes(&headers, planes))
 }
 
-/// The pixels of a region in a part of a file.
+/// Pixels of a region in one part of a file.
 struct Part {
-    /// The first column and row of the region, counted in the data window.
+    /// First column and row of the region, relative to the data window.
     first: [i64; 2],
     size: [u32; 2],
-    /// The values of each channel; 0 where there is no data.
+    /// Values of each channel; 0 where the file has no data.
     planes: Vec<Vec<f32>>,
 }
 
 impl Part {
-    /// The columns or rows of a block that lie in the region, counted in the data window.
+    /// Range of columns or rows of a block inside the region, relative to the data window.
     fn span(&self, [position, size]: [[usize; 2]; 2], axis: usize) -> Range<i64> {
         let (first, end) = (position[axis] as i64, (position[axis] + size[axis]) as i64);
         let last = self.first[axis] + i64::from(self.size[axis]);
         first.max(self.first[axis])..end.min(last)
     }
 
-    /// Takes what is in the region from a line of a channel.
+    /// Copies the samples of a line that are inside the region.
     fn put(&mut self, line: LineRef<'_>, channels: &ChannelList) -> Result<(), ImageError> {
         let at = line.location;
         let corners = [[at.position.0, at.position.1], [at.sample_count, 1]];
@@ -214,7 +219,7 @@ impl Part {
     }
 }
 
-/// Copies the next samples of a line.
+/// Converts and copies samples of a line into `target`.
 fn copy<T>(
     target: &mut [f32],
     samples: impl Iterator<Item = exr::error::Result<T>>,
@@ -226,7 +231,7 @@ fn copy<T>(
     Ok(())
 }
 
-/// The image of some planes, with the views and the chromaticities of a file.
+/// Creates an image from planes, with the views and chromaticities of the headers.
 fn with_planes(headers: &[Header], planes: Vec<ExrPlane>) -> ExrImage {
     let text = |text: &Text| text.to_string();
     let attributes = headers.iter().map(|header| &header.own_attributes);
@@ -247,7 +252,7 @@ fn with_planes(headers: &[Header], planes: Vec<ExrPlane>) -> ExrImage {
     }
 }
 
-/// Checks for unsupported features.
+/// Rejects deep data and subsampled channels.
 fn check_features(header: &Header) -> Result<(), ImageError> {
     let unsupported = |feature| Err(ImageError::new(ImageErrorKind::Unsupported { feature }));
     if header.deep {
@@ -260,7 +265,7 @@ fn check_features(header: &Header) -> Result<(), ImageError> {
     Ok(())
 }
 
-/// Checks for unsupported features and sizes past the limits, by the headers alone.
+/// Rejects unsupported features and sizes above the limits, based on the headers alone.
 fn check_headers(headers: &[Header], limits: &Limits) -> Result<(), ImageError> {
     let mut bytes = 0_u64;
     for header in headers {
@@ -280,7 +285,7 @@ fn check_headers(headers: &[Header], limits: &Limits) -> Result<(), ImageError> 
     Ok(())
 }
 
-/// Checks that some pixels of the data are in the picture.
+/// Checks that the data window and the display window overlap.
 fn check_windows(data: IntegerBounds, display: IntegerBounds) -> Result<(), ImageError> {
     let corners = |window: IntegerBounds| {
         let Vec2(x, y) = window.position;
@@ -298,20 +303,20 @@ fn check_windows(data: IntegerBounds, display: IntegerBounds) -> Result<(), Imag
     Ok(())
 }
 
-/// The values of the pixels in the display window, from those of the data window; 0 where there is no data.
+/// Crops or pads values of the data window to the display window; pixels without data are 0.
 fn shown(
     values: Vec<f32>,
     data: IntegerBounds,
     display: IntegerBounds,
 ) -> Result<Raster<f32>, ImageError> {
-    // The format has no side past 2^31; if one did not fit, the raster below would report the length.
+    // Sides in the format are at most 2^31. A side that did not fit would be reported by the raster below.
     let side = |side: usize| u32::try_from(side).unwrap_or(u32::MAX);
     let damaged = |error| ImageError::damaged("OpenEXR", error);
     let size = [side(display.size.0), side(display.size.1)];
     if data == display {
         return Raster::from_vec(size, values).map_err(damaged);
     }
-    // The first pixel of the display window in the data, and the columns and rows that both windows have.
+    // Offset of the display window in the data, and the columns and rows of the intersection.
     let first = display.position - data.position;
     let [columns, rows] = [
         (first.0, display.size.0, data.size.0),
@@ -353,7 +358,7 @@ fn push_planes(
     Ok(())
 }
 
-/// The name of a plane of a channel, with that of its part if there are several.
+/// Name of a plane: the channel, prefixed with the part if there are several parts.
 fn plane_name(part: Option<&Text>, channel: &Text) -> String {
     match part {
         Some(part) => format!("{part}.{channel}"),

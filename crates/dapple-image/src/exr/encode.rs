@@ -1,4 +1,4 @@
-//! Writing OpenEXR: one part, scan lines, 32-bit floating point, ZIP compression without loss.
+//! Encoder of OpenEXR: one part, scan lines, 32-bit floating point, lossless ZIP compression.
 
 use super::{ExrPlane, check_size};
 use crate::{ImageError, ImageErrorKind, file};
@@ -9,16 +9,16 @@ use exr::meta::attribute::{LineOrder, Text};
 use std::io::Cursor;
 use std::path::Path;
 
-/// The longest name of a channel, in bytes, in a file with long names.
+/// Maximum length of a channel name, in bytes, in a file with long names.
 const NAME_LIMIT: usize = 255;
 
-/// An OpenEXR file in memory from planes of the same size.
+/// Encodes planes of the same size as an OpenEXR file in memory.
 ///
 /// The bytes depend on the planes alone. The order of the planes does not matter: the format sorts them by name.
 ///
 /// # Errors
 ///
-/// [`ImageErrorKind::PlaneName`] if a name is empty, not ASCII, too long or there twice,
+/// [`ImageErrorKind::PlaneName`] if a name is empty, not ASCII, too long or used twice,
 /// [`ImageErrorKind::SizeMismatch`] if the planes have different sizes, [`ImageErrorKind::Empty`] if there is no plane,
 /// [`ImageErrorKind::Unsupported`] if a side is too long for the format.
 ///
@@ -63,12 +63,12 @@ pub fn encode_exr(planes: &[ExrPlane]) -> Result<Vec<u8>, ImageError> {
     Ok(bytes)
 }
 
-/// Writes an OpenEXR file from planes of the same size.
+/// Writes planes of the same size to an OpenEXR file.
 ///
 /// # Errors
 ///
-/// The errors of [`encode_exr`], and [`ImageErrorKind::Io`] if the file cannot be written; a file that was there before
-/// is then unchanged.
+/// The errors of [`encode_exr`], and [`ImageErrorKind::Io`] if the file cannot be written; an existing file is then
+/// unchanged.
 pub fn write_exr(path: impl AsRef<Path>, planes: &[ExrPlane]) -> Result<(), ImageError> {
     let path = path.as_ref();
     let bytes = encode_exr(planes).map_err(|error| error.at(path))?;
@@ -86,7 +86,7 @@ fn check_name(name: &str, before: &[ExrPlane]) -> Result<(), ImageError> {
 }
 
 fn channel(plane: &ExrPlane) -> AnyChannel<FlatSamples> {
-    // ASCII was checked, so that no byte is lost.
+    // `check_name` has verified ASCII, so no byte is lost.
     let name = Text::from_slice_unchecked(plane.name.as_bytes());
     AnyChannel::new(name, FlatSamples::F32(plane.values.pixels().to_vec()))
 }

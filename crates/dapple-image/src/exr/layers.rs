@@ -1,9 +1,9 @@
-//! The layers of an OpenEXR file, and the choice of the one that is its picture.
+//! Layers of an OpenEXR file, and the choice of its main image.
 //!
-//! Reference: "Technical Introduction to OpenEXR", the sections on layers, multi-view and multi-part files: a plane
-//! `layer.channel` belongs to a layer, a plane without a dot to the picture itself, and the planes of the default view
-//! have no prefix. Renderers depart from this, so that names are compared without regard to case, `red` counts as `R`,
-//! and the picture may be named: `ViewLayer.Combined` (Blender), `rgba`, `beauty`.
+//! Reference: "Technical Introduction to OpenEXR", sections on layers, multi-view and multi-part files. A plane
+//! `layer.channel` belongs to a layer, a plane without a dot belongs to the main image, and the planes of the default
+//! view have no prefix. Renderers depart from this convention. Therefore names are compared without regard to case,
+//! `red` means `R`, and the main image may have a layer name: `ViewLayer.Combined` (Blender), `rgba`, `beauty`.
 
 use super::{ExrImage, ExrPlane, check_size};
 use crate::{ImageError, ImageErrorKind};
@@ -11,33 +11,33 @@ use core::cmp::Reverse;
 use dapple_raster::Raster;
 
 #[cfg(feature = "exr")]
-/// The names of the views in files that do not list them.
+/// Names of the views in files that do not list them.
 const USUAL_VIEWS: [&str; 2] = ["left", "right"];
 
-/// The planes of a picture.
+/// Planes of an image.
 pub(crate) enum Picture<'a> {
-    /// One number, and alpha.
+    /// One value per pixel, and alpha.
     Gray {
         values: &'a Raster<f32>,
         alpha: Option<&'a Raster<f32>>,
     },
-    /// Red, green, blue, and alpha.
+    /// Red, green and blue, and alpha.
     Color {
         parts: [&'a Raster<f32>; 3],
         alpha: Option<&'a Raster<f32>>,
     },
-    /// The components X, Y and Z of vectors.
+    /// Components X, Y and Z of vectors.
     Vectors([&'a Raster<f32>; 3]),
 }
 
-/// A layer: its name, and its planes with the names that they have in it.
+/// A layer: its name, and its planes with their names inside the layer.
 struct Layer<'a> {
     name: &'a str,
     planes: Vec<(&'a str, &'a ExrPlane)>,
 }
 
 impl<'a> Layer<'a> {
-    /// The plane with one of these names, in any case.
+    /// Returns the plane with one of these names, ignoring case.
     fn plane(&self, names: &[&str]) -> Option<&'a Raster<f32>> {
         let is_named = |name: &str| names.iter().any(|other| name.eq_ignore_ascii_case(other));
         let mut planes = self.planes.iter();
@@ -45,7 +45,7 @@ impl<'a> Layer<'a> {
         Some(&plane.values)
     }
 
-    /// What the planes are, if it is clear from their names.
+    /// Interprets the planes by their names; `None` if the names are ambiguous.
     fn picture(&self) -> Option<Picture<'a>> {
         let alpha = self.plane(&["A", "alpha"]);
         let [r, g, b] = [&["R", "red"], &["G", "green"], &["B", "blue"]].map(|of| self.plane(of));
@@ -64,10 +64,10 @@ impl<'a> Layer<'a> {
         }
     }
 
-    /// The rank of the layer among those of a file: the picture has the smallest.
+    /// Rank of the layer among the layers of a file; the main image has the smallest rank.
     ///
-    /// Vectors come last. Then the name decides: none, `Combined`, `rgba`, `beauty`, another; then the view; and of two
-    /// layers with other names, color comes before gray.
+    /// Vectors come last. Then the order of names is: no name, `Combined`, `rgba`, `beauty`, any other name. Then the
+    /// order of views applies. Of two layers with other names, color comes before gray.
     fn rank(&self, picture: &Picture<'_>, views: &[String]) -> [usize; 4] {
         let name = self.name.to_lowercase();
         let words: Vec<&str> = name.split(['.', '_']).collect();
@@ -91,9 +91,9 @@ impl<'a> Layer<'a> {
 }
 
 impl ExrImage {
-    /// The names of the layers, in the order of the file. A plane without a dot in its name is listed by itself.
+    /// Names of the layers, in file order. A plane without a dot in its name is listed as a layer.
     ///
-    /// These are the names that [`layer`](Self::layer) takes.
+    /// [`layer`](Self::layer) accepts these names.
     #[must_use]
     pub fn layers(&self) -> Vec<&str> {
         let mut names = Vec::new();
@@ -107,13 +107,13 @@ impl ExrImage {
         names
     }
 
-    /// The image of one layer, whose planes have names without that of the layer, or of one plane.
+    /// Returns the image of one layer, or of one plane. The planes lose the prefix of the layer.
     ///
-    /// The case of the name matters only between two layers that differ by nothing else.
+    /// An exact match takes precedence; otherwise the case of the name is ignored.
     ///
     /// # Errors
     ///
-    /// [`ImageErrorKind::MissingLayer`] with all layers if there is none of this name.
+    /// [`ImageErrorKind::MissingLayer`], which lists all layers, if there is no layer of this name.
     pub fn layer(&self, name: &str) -> Result<Self, ImageError> {
         let layers = self.split();
         let is_same = |other: &str| other == name;
@@ -146,15 +146,16 @@ impl ExrImage {
         })
     }
 
-    /// The planes that are the picture of the file.
+    /// Planes of the main image of the file.
     ///
-    /// The only plane of a file is gray. Of several layers the one without a name is chosen, then one named `Combined`,
-    /// `rgba` or `beauty`, then the only one with a picture; of the same layer of several views the first.
+    /// The only plane of a file is a gray image. Of several layers, the one without a name is chosen, then one named
+    /// `Combined`, `rgba` or `beauty`, then the only one with an image. If several views have the layer, the first
+    /// view is chosen.
     ///
     /// # Errors
     ///
     /// [`ImageErrorKind::MissingPlane`] if one of red, green and blue is missing in the only layer,
-    /// [`ImageErrorKind::AmbiguousLayer`] if no layer or several may be meant, and
+    /// [`ImageErrorKind::AmbiguousLayer`] if no layer or several layers qualify, and
     /// [`ImageErrorKind::SizeMismatch`] if the sizes of the planes differ.
     pub(crate) fn picture(&self) -> Result<Picture<'_>, ImageError> {
         if let [plane] = self.planes.as_slice() {
@@ -181,12 +182,12 @@ impl ExrImage {
         }
     }
 
-    /// The image of the planes that are the picture of the file: `R`, `G`, `B`, or `X`, `Y`, `Z`, or one of any name; and
+    /// Image with the planes of the main image only: `R`, `G`, `B`, or `X`, `Y`, `Z`, or one plane of any name; and
     /// `A` last, if there is alpha.
     ///
     /// # Errors
     ///
-    /// [`ImageErrorKind::AmbiguousLayer`] with all layers if none or several may be meant,
+    /// [`ImageErrorKind::AmbiguousLayer`], which lists all layers, if no layer or several layers qualify,
     /// [`ImageErrorKind::MissingPlane`] if one of red, green and blue is missing in the only layer, and
     /// [`ImageErrorKind::SizeMismatch`] if the sizes of the planes differ.
     pub fn to_picture(&self) -> Result<Self, ImageError> {
@@ -209,7 +210,7 @@ impl ExrImage {
         })
     }
 
-    /// The error of an image whose planes do not say what its picture is.
+    /// Error for an image whose main image is not determined by the names of its planes.
     fn no_picture(&self, layers: &[Layer<'_>]) -> ImageError {
         if let [layer] = layers {
             let colors = [["R", "red"], ["G", "green"], ["B", "blue"]];
@@ -225,7 +226,7 @@ impl ExrImage {
         ImageError::new(ImageErrorKind::AmbiguousLayer { layers })
     }
 
-    /// The planes by layer, in the order of the file.
+    /// Groups the planes by layer, in file order.
     fn split(&self) -> Vec<Layer<'_>> {
         let mut layers: Vec<Layer<'_>> = Vec::new();
         for plane in &self.planes {
@@ -243,7 +244,7 @@ impl ExrImage {
 }
 
 impl Picture<'_> {
-    /// Checks that all planes have one size.
+    /// Checks that all planes have the same size.
     fn check_sizes(&self) -> Result<(), ImageError> {
         let (parts, alpha): (&[&Raster<f32>], _) = match self {
             Self::Gray { values, alpha } => (core::slice::from_ref(values), *alpha),
@@ -256,7 +257,7 @@ impl Picture<'_> {
     }
 }
 
-/// The names of the views of a file in lower case, the default view first.
+/// Names of the views of a file in lower case, the default view first.
 #[cfg(feature = "exr")]
 pub(super) fn views(
     listed: impl IntoIterator<Item = String>,

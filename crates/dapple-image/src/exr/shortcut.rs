@@ -1,4 +1,4 @@
-//! Functions that write rasters as OpenEXR files in one call. Every number is kept.
+//! Functions that write rasters as OpenEXR files in one call. Values are preserved exactly.
 
 use super::{ExrPlane, write_exr};
 use crate::ImageError;
@@ -6,7 +6,7 @@ use dapple_color::{LinearRgb, LinearRgba};
 use dapple_raster::Raster;
 use std::path::Path;
 
-/// Writes data as an OpenEXR file with the one plane `Y`.
+/// Writes data as an OpenEXR file with the single plane `Y`.
 ///
 /// # Errors
 ///

@@ -1,12 +1,12 @@
-//! An OpenEXR file in tiles that is written row by row, with one band of tiles in memory.
+//! Tiled OpenEXR files, written row by row with one band of tiles in memory.
 //!
-//! A file has a header, a table with the place of every tile, and the tiles. The codec makes the header and the tiles;
-//! this module keeps their order: tiles go to the file band by band, and the table is written last, into the gap that
-//! was left for it.
+//! A file consists of a header, a table with the offset of every tile, and the tiles. The codec encodes the header and
+//! the tiles; this module arranges them. Tiles are written band by band, and the table is written last, into the gap
+//! reserved for it.
 //!
-//! Only runs of equal bytes are compressed. Measured on a fractal height of 2048 × 2048 pixels and on colors and
-//! normals from it, ZIP makes files that are 0.6 to 2.5 % smaller, since the lower bits of `f32` are noise, and takes
-//! eleven times as long; PIZ gains less and takes longer still. Masks, cells and flat parts are runs.
+//! The compression is run-length encoding. On a fractal height of 2048 × 2048 pixels and on colors and normals derived
+//! from it, ZIP makes files 0.6 to 2.5 % smaller, since the lower bits of `f32` are noise, and takes eleven times as
+//! long; PIZ gains less and takes longer still. Masks, cells and flat parts consist of runs.
 
 use crate::limits::check_side;
 use crate::rows::Sink;
@@ -23,40 +23,39 @@ use exr::meta::header::{Header, LayerAttributes};
 use exr::meta::{BlockDescription, MetaData, magic_number};
 use std::io::SeekFrom;
 
-/// The numbers of columns and rows of a tile.
+/// Width and height of a tile, in pixels.
 const TILE: usize = 64;
 
-/// The number of tiles that are compressed before they are written.
+/// Number of tiles that are compressed before they are written.
 const GROUP: usize = 64;
 
-/// The longest side that can be written, in pixels. Coordinates have 32 bits with a sign, and programs reject those
-/// past half of that.
+/// Maximum side that can be written, in pixels. Coordinates are signed 32-bit integers, and programs reject values
+/// above half of their range.
 const SIDE_LIMIT: u32 = i32::MAX as u32 / 2 - 1;
 
-/// An OpenEXR file that is being written into a sink. It does not own the sink, so that the codec is compiled once for
-/// all.
+/// An OpenEXR file being written into a sink. It does not own the sink, so that the codec is compiled only once.
 pub(crate) struct TileStream {
     band: Band,
-    /// The place of the table of tiles in the file.
+    /// Offset of the tile table in the file.
     table: u64,
-    /// The place of the next tile in the file.
+    /// Offset of the next tile in the file.
     position: u64,
-    /// The places of the tiles written so far.
+    /// Offsets of the tiles written so far.
     places: Vec<u64>,
 }
 
-/// The rows that are not yet in the file.
+/// Rows that are not yet in the file.
 struct Band {
     /// The only header of the file.
     headers: [Header; 1],
-    /// The numbers of each row: those of the first plane, then those of the second, and so on.
+    /// Values of each row, plane by plane.
     values: Vec<f32>,
-    /// The first row of the band.
+    /// First row of the band.
     first_row: usize,
 }
 
 impl TileStream {
-    /// Begins a file of planes, whose names are sorted, in an empty sink. The header is written at once.
+    /// Starts a file in an empty sink and writes its header. The names of `planes` are sorted.
     pub(crate) fn new(
         sink: &mut dyn Sink,
         size: [u32; 2],
@@ -66,7 +65,7 @@ impl TileStream {
         let headers = [header(size, planes)];
         let feature = "an OpenEXR image of this size";
         let unsupported = || ImageError::new(ImageErrorKind::Unsupported { feature });
-        // The format counts tiles with 32 bits and a sign, and the codec relies on it.
+        // The format counts tiles in a signed 32-bit integer, and the codec relies on it.
         i32::try_from(headers[0].chunk_count).map_err(|error| unsupported().because(error))?;
         let bytes = header_bytes(&headers).map_err(|error| unsupported().because(error))?;
         let table = bytes.len() as u64;
@@ -85,8 +84,7 @@ impl TileStream {
         })
     }
 
-    /// Writes whole rows of the width of the file, no more than are missing. `part` returns the number of a value in a
-    /// plane.
+    /// Writes complete rows, at most as many as the file still lacks. `part` returns the value of a pixel in a plane.
     pub(crate) fn write_rows<T>(
         &mut self,
         sink: &mut dyn Sink,
@@ -105,7 +103,7 @@ impl TileStream {
         Ok(())
     }
 
-    /// Ends the file, after all of its rows.
+    /// Completes the file after all rows were written.
     pub(crate) fn finish(self, sink: &mut dyn Sink) -> Result<(), ImageError> {
         let table: Vec<u8> = self.places.iter().flat_map(|at| at.to_le_bytes()).collect();
         let mut write = || {
@@ -117,7 +115,7 @@ impl TileStream {
         write().map_err(failure)
     }
 
-    /// Writes the tiles of the waiting rows, from left to right.
+    /// Compresses and writes the tiles of the buffered rows, from left to right.
     fn write_band(&mut self, sink: &mut dyn Sink) -> Result<(), ImageError> {
         let columns: Vec<usize> = (0..self.band.size().x()).step_by(TILE).collect();
         let mut bytes = Vec::new();
@@ -156,7 +154,7 @@ impl Band {
         self.height() == TILE || self.first_row + self.height() == self.size().y()
     }
 
-    /// The compressed tile that begins in a column.
+    /// Compresses the tile that starts at a column.
     fn chunk(&self, column: usize) -> exr::error::Result<Chunk> {
         let columns = self.size().x();
         let width = TILE.min(columns - column);
@@ -187,7 +185,7 @@ fn header(size: [u32; 2], planes: &[&str]) -> Header {
         rounding_mode: RoundingMode::Down,
     });
     let size = (size[0] as usize, size[1] as usize);
-    // The name is that of a part, and the only part of a file needs none.
+    // The name belongs to the part, and the only part of a file needs no name.
     Header::new(Text::default(), size, planes.iter().map(channel).collect())
         .with_encoding(Compression::RLE, blocks, LineOrder::Increasing)
         .with_attributes(LayerAttributes::default())

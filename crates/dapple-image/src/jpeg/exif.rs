@@ -1,24 +1,24 @@
-//! The data of Exif: a TIFF file without pixels, whose directories have entries by number.
+//! Exif data: a TIFF file without pixels, whose directories contain numbered entries.
 //!
-//! Reference: "Exchangeable image file format for digital still cameras: Exif Version 2.32", CIPA DC-008, 2019. Damaged
-//! data counts as missing.
+//! Reference: "Exchangeable image file format for digital still cameras: Exif Version 2.32", CIPA DC-008, 2019.
+//! Damaged data is treated as missing.
 
 use crate::color_space::{ADOBE_GAMMA, ADOBE_RGB, ColorSpace, Curve, Source};
 
-/// The length of an entry in a directory, in bytes.
+/// Length of a directory entry, in bytes.
 const ENTRY: usize = 12;
 
-/// The tag of the place of the directory of Exif.
+/// Tag of the offset of the Exif directory.
 const EXIF: u16 = 0x8769;
 
-/// The tag of the color space: 1 for sRGB, 65535 for another one, and from some cameras 2 for Adobe RGB.
+/// Tag of the color space: 1 is sRGB, 65535 is uncalibrated, and some cameras write 2 for Adobe RGB.
 const COLOR_SPACE: u16 = 0xa001;
 
-/// The tag of the place of the directory of interoperability, whose first entry names a rule: `R03` is Adobe RGB ("Design
-/// rule for Camera File system", DCF 2.0).
+/// Tag of the offset of the interoperability directory. Its first entry names a rule: `R03` is Adobe RGB ("Design rule
+/// for Camera File system", DCF 2.0).
 const INTEROPERABILITY: u16 = 0xa005;
 
-/// The color space of a photograph.
+/// Color space of a photograph.
 pub(super) fn color_space(exif: &[u8]) -> ColorSpace {
     let is_adobe = || {
         let tiff = Tiff::new(exif)?;
@@ -43,7 +43,7 @@ pub(super) fn color_space(exif: &[u8]) -> ColorSpace {
     }
 }
 
-/// The bytes of Exif, from the TIFF header on.
+/// Exif bytes, starting at the TIFF header.
 pub(super) struct Tiff<'a> {
     bytes: &'a [u8],
     is_little: bool,
@@ -59,7 +59,7 @@ impl<'a> Tiff<'a> {
         Some(Self { bytes, is_little })
     }
 
-    /// The number of 16 bits at a place.
+    /// 16-bit integer at an offset.
     pub(super) fn short(&self, at: usize) -> Option<u16> {
         let bytes = self.bytes.get(at..)?.first_chunk::<2>()?;
         Some(if self.is_little {
@@ -78,21 +78,21 @@ impl<'a> Tiff<'a> {
         })
     }
 
-    /// The place of the first directory.
+    /// Offset of the first directory.
     pub(super) fn first(&self) -> Option<usize> {
         self.long(4)
     }
 
-    /// The place of the directory that an entry of another one names.
+    /// Offset of the directory that an entry points to.
     fn place(&self, directory: usize, tag: u16) -> Option<usize> {
         self.long(self.entry(directory, tag)?)
     }
 
-    /// The place of the value of an entry; values of at most four bytes are in it.
+    /// Offset of the value of an entry; values of at most four bytes are stored in the entry.
     pub(super) fn entry(&self, directory: usize, tag: u16) -> Option<usize> {
         let n_entries = self.short(directory)?;
         let entries = (0..usize::from(n_entries)).map(|entry| directory + 2 + ENTRY * entry);
-        // The value follows tag, type and count.
+        // The value follows the tag, type and count.
         entries
             .take_while(|&at| at < self.bytes.len())
             .find(|&at| self.short(at) == Some(tag))

@@ -1,16 +1,16 @@
-//! The orientation of a photograph by its Exif data, and turning it upright.
+//! Exif orientation of a photograph, and its conversion to upright.
 //!
-//! Reference: "Exchangeable image file format for digital still cameras: Exif Version 2.32", CIPA DC-008, 2019, tag 274
-//! of the first directory of its TIFF data. Malformed data means the usual orientation.
+//! Reference: "Exchangeable image file format for digital still cameras: Exif Version 2.32", CIPA DC-008, 2019, tag
+//! 274 of the first directory of its TIFF data. Malformed data counts as upright.
 
 use super::exif::Tiff;
 use crate::ImageError;
 use dapple_raster::Raster;
 
-/// The tag of the orientation in a directory.
+/// Tag of the orientation.
 const TAG: u16 = 274;
 
-/// The orientation of the rows and columns of a file in the picture: from 1 (upright) to 8.
+/// Exif orientation of the stored rows and columns: 1 (upright) to 8.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Orientation(u16);
 
@@ -21,7 +21,7 @@ impl Default for Orientation {
 }
 
 impl Orientation {
-    /// The orientation in bytes that begin with the TIFF header.
+    /// Reads the orientation from bytes that start with the TIFF header.
     pub(super) fn from_exif(exif: &[u8]) -> Self {
         match find(exif) {
             Some(number @ 1..=8) => Self(number),
@@ -29,7 +29,7 @@ impl Orientation {
         }
     }
 
-    /// The upright picture of the pixels of a file of `size` columns and rows with this orientation.
+    /// Returns the upright image. `size` is the stored width and height.
     pub(super) fn raster<T: Copy>(
         self,
         size: [u32; 2],
@@ -57,7 +57,7 @@ impl Orientation {
     }
 }
 
-/// The number in the entry of the orientation, if there is one.
+/// Value of the orientation entry, if there is one.
 fn find(exif: &[u8]) -> Option<u16> {
     let tiff = Tiff::new(exif)?;
     tiff.short(tiff.entry(tiff.first()?, TAG)?)

@@ -1,7 +1,7 @@
 //! Decoder of PNG.
 //!
-//! Palettes, 1, 2 and 4 bits, the transparent color (`tRNS`) and interlacing are all resolved into the eight kinds of
-//! [`PngPixels`]; of an animation the first picture is read. The size is checked against the limits before memory for
+//! Palettes, 1, 2 and 4 bits, the transparent color (`tRNS`) and interlacing are resolved into the eight variants of
+//! [`PngPixels`]. Of an animation, the first frame is read. The size is checked against the limits before memory for
 //! the pixels is allocated.
 
 use super::{PngImage, PngPixel, PngPixels, Transfer, space};
@@ -15,8 +15,8 @@ use std::io::Cursor;
 ///
 /// # Errors
 ///
-/// [`ImageErrorKind::UnknownFormat`] if the bytes do not begin like PNG, [`ImageErrorKind::Damaged`] if they break its
-/// rules or end too soon, [`ImageErrorKind::TooManyPixels`] or [`ImageErrorKind::TooManyBytes`] past a limit.
+/// [`ImageErrorKind::UnknownFormat`] if the bytes lack the PNG signature, [`ImageErrorKind::Damaged`] if they violate
+/// its rules or end too soon, [`ImageErrorKind::TooManyPixels`] or [`ImageErrorKind::TooManyBytes`] past a limit.
 pub fn decode_png(bytes: &[u8], limits: &Limits) -> Result<PngImage, ImageError> {
     if !bytes.starts_with(&SIGNATURE) {
         return Err(ImageError::new(ImageErrorKind::UnknownFormat));
@@ -33,18 +33,18 @@ pub fn decode_png(bytes: &[u8], limits: &Limits) -> Result<PngImage, ImageError>
     limits.check_bytes(length as u64)?;
     let mut samples = vec![0; length];
     reader.next_frame(&mut samples).map_err(refuse)?;
-    // Without the end of the file, chunks after the pixels may be lost, so it counts as damaged, too.
+    // Read to the end of the file: an error in later chunks makes the whole file damaged.
     reader.finish().map_err(refuse)?;
     image_of(&reader, size, &samples)
 }
 
-/// Decodes a part of a PNG file, row by row: `size` pixels from column and row `first`. Only the part has to be within the
-/// limits, and rows below it are not read, not even for damage.
+/// Decodes a part of a PNG file: `size` pixels starting at column and row `first`. Only the part counts against the
+/// limits. Rows below the part are neither read nor checked for damage.
 ///
 /// # Errors
 ///
-/// The errors of [`decode_png`]; [`ImageErrorKind::Outside`] if the part reaches out of the image;
-/// [`ImageErrorKind::Unsupported`] for an interlaced file, whose rows do not follow each other.
+/// The errors of [`decode_png`]; [`ImageErrorKind::Outside`] if the part extends beyond the image;
+/// [`ImageErrorKind::Unsupported`] for an interlaced file, whose rows are not stored in order.
 pub fn decode_png_region(
     bytes: &[u8],
     first: [u32; 2],
@@ -74,7 +74,7 @@ pub fn decode_png_region(
     }
     limits.check_pixels(size.map(u64::from))?;
     let row_length = reader.output_line_size(image[0]).unwrap_or(usize::MAX);
-    // Rows are whole numbers of bytes, since fewer than 8 bits are expanded.
+    // Rows are whole numbers of bytes, since depths below 8 bits are expanded.
     let pixel_length = row_length / image[0] as usize;
     let [left, width] = [first[0], size[0]].map(|columns| columns as usize * pixel_length);
     limits.check_bytes((width as u64).saturating_mul(size[1].into()))?;
@@ -90,7 +90,7 @@ pub fn decode_png_region(
     image_of(&reader, size, &samples)
 }
 
-/// The image of decoded samples, with what the file says of its colors.
+/// Creates an image from decoded samples, with the color space that the file declares.
 fn image_of(
     reader: &png::Reader<Cursor<&[u8]>>,
     size: [u32; 2],
@@ -106,7 +106,7 @@ fn image_of(
     })
 }
 
-/// The codec for some bytes, which resolves palettes and fewer than 8 bits.
+/// Creates the decoder, configured to expand palettes and depths below 8 bits.
 fn decoder<'a>(bytes: &'a [u8], limits: &Limits) -> png::Decoder<Cursor<&'a [u8]>> {
     let mut decoder = png::Decoder::new_with_options(Cursor::new(bytes), options());
     decoder.set_limits(png::Limits {
@@ -116,9 +116,9 @@ fn decoder<'a>(bytes: &'a [u8], limits: &Limits) -> png::Decoder<Cursor<&'a [u8]
     decoder
 }
 
-/// Checks that the size has pixels, which the codec reports like other damage.
+/// Checks that the size is not 0, which the codec would report as damage.
 fn check_not_empty(bytes: &[u8]) -> Result<(), ImageError> {
-    // After the signature comes the length of the first chunk, its name, and columns and rows of four bytes each.
+    // The signature is followed by the length of the first chunk, its name, and width and height in four bytes each.
     let Some(header) = bytes
         .get(12..24)
         .and_then(|header| header.strip_prefix(b"IHDR"))
@@ -137,7 +137,7 @@ fn check_not_empty(bytes: &[u8]) -> Result<(), ImageError> {
     Ok(())
 }
 
-/// Checks that a palette does not end within a color. Version 0.18.1 of the codec takes the missing part from beyond
+/// Checks that a palette does not end within a color. Version 0.18.1 of the codec reads the missing bytes from beyond
 /// its end (image-rs/image-png, issue 694).
 fn check_palette(info: &png::Info<'_>) -> Result<(), ImageError> {
     match &info.palette {
@@ -152,7 +152,7 @@ fn check_palette(info: &png::Info<'_>) -> Result<(), ImageError> {
     }
 }
 
-/// The options of the codec: all checks on, and unused chunks skipped.
+/// Options of the codec: all checks enabled, unused chunks skipped.
 fn options() -> png::DecodeOptions {
     let mut options = png::DecodeOptions::default();
     options.set_ignore_checksums(false);
@@ -199,7 +199,7 @@ impl PngPixels {
             (Rgb, Sixteen) => Self::Rgb16(raster(size, samples)?),
             (Rgba, Eight) => Self::Rgba8(raster(size, samples)?),
             (Rgba, Sixteen) => Self::Rgba16(raster(size, samples)?),
-            // The codec was configured to resolve these.
+            // Other combinations are expanded by the codec.
             _ => {
                 let feature = "this kind of PNG pixel";
                 return Err(ImageError::new(ImageErrorKind::Unsupported { feature }));

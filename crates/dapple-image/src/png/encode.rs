@@ -1,8 +1,8 @@
 //! Encoder of PNG.
 //!
-//! Color is marked with the chunk `sRGB` (perceptual intent) and, for programs that do not know it, with `gAMA`, as the
-//! specification recommends. Data has no color chunk at all: a `gAMA` of 1 would make viewers brighten a height map,
-//! while programs that read data use the plain numbers.
+//! Color is marked with the chunk `sRGB` (perceptual intent) and also with `gAMA` for programs that do not support
+//! `sRGB`, as the specification recommends. Data has no color chunk: viewers would brighten a height map with a `gAMA`
+//! of 1, while programs that read data use the codes.
 
 use super::stream::{PngStream, Samples};
 use super::{PngPixel, Transfer};
@@ -10,7 +10,7 @@ use crate::{ImageError, file};
 use dapple_raster::RasterView;
 use std::path::Path;
 
-/// A PNG file in memory from pixels of 8 or 16 bits.
+/// Encodes pixels of 8 or 16 bits as a PNG file in memory.
 ///
 /// The bytes depend on the pixels and `transfer` alone.
 ///
@@ -42,12 +42,12 @@ pub fn encode_png<P: PngPixel>(
     Ok(bytes)
 }
 
-/// Writes a PNG file from pixels of 8 or 16 bits.
+/// Writes pixels of 8 or 16 bits to a PNG file.
 ///
 /// # Errors
 ///
-/// The errors of [`encode_png`], and [`Io`](crate::ImageErrorKind::Io) if the file cannot be written; a file that was
-/// there before is then unchanged.
+/// The errors of [`encode_png`], and [`Io`](crate::ImageErrorKind::Io) if the file cannot be written; an existing file
+/// is then unchanged.
 pub fn write_png<P: PngPixel>(
     path: impl AsRef<Path>,
     pixels: RasterView<'_, P>,

@@ -1,14 +1,15 @@
-//! The choice of a filter for each row: that whose differences have the least sum, as the specification recommends.
+//! Choice of a filter for each row: the one with the smallest sum of absolute differences, as the specification
+//! recommends.
 //!
-//! Each byte is replaced by its difference to a prediction from the bytes of the pixels at the left, above and at the
-//! corner between them, which are 0 outside of the picture.
+//! Each byte is replaced by its difference from a prediction. The prediction uses the bytes of the pixels at the left,
+//! above, and above left, which are 0 outside of the image.
 
 use dapple_raster::simd;
 
-/// The number of bytes that are processed side by side.
+/// Number of bytes processed in parallel.
 const LANES: usize = 64;
 
-/// The number of registers of differences whose sum, of up to 128 each, is below 2^16 in every lane.
+/// Number of additions before a 16-bit lane can overflow: each absolute difference is at most 128.
 const REGISTERS: usize = 256;
 
 const SUB: u8 = 1;
@@ -16,7 +17,7 @@ const UP: u8 = 2;
 const AVERAGE: u8 = 3;
 const PAETH: u8 = 4;
 
-/// The bytes of a row and of those that predict them, all of one length.
+/// Bytes of a row and the bytes that predict them, all of the same length.
 #[derive(Clone, Copy)]
 pub(super) struct Row<'a> {
     pub(super) here: &'a [u8],
@@ -25,7 +26,7 @@ pub(super) struct Row<'a> {
     pub(super) corner: &'a [u8],
 }
 
-/// Writes the number of the chosen filter and the filtered bytes of a row.
+/// Writes the number of the chosen filter, and then the filtered bytes of a row.
 pub(super) fn filter(row: Row<'_>, out: &mut [u8]) {
     simd::dispatch!(simd::level(), simd => choose(row, out));
 }
@@ -38,7 +39,7 @@ fn choose(row: Row<'_>, out: &mut [u8]) {
         (cost::<AVERAGE>(row), AVERAGE),
         (cost::<PAETH>(row), PAETH),
     ];
-    // Of equal costs, that of the simplest filter counts.
+    // On a tie, the simplest filter wins.
     let (_, kind) = costs
         .into_iter()
         .min_by_key(|&(cost, _)| cost)
@@ -53,7 +54,7 @@ fn choose(row: Row<'_>, out: &mut [u8]) {
     }
 }
 
-/// The sum of the differences of a row, each with its distance to 0 as a number with a sign.
+/// Sum of the absolute differences of a row, as signed bytes.
 #[inline(always)]
 fn cost<const KIND: u8>(row: Row<'_>) -> u64 {
     let mut sum = 0;
@@ -71,7 +72,7 @@ fn cost<const KIND: u8>(row: Row<'_>) -> u64 {
         for (((here, left), above), corner) in here.iter().zip(left).zip(above).zip(corner) {
             add::<KIND>(&mut lanes, here, left, above, corner);
         }
-        // Where all bytes are 0 the differences are, too.
+        // Pad the remainder with zeros, which add nothing to the sum.
         let [here, left, above, corner] = [here_end, left_end, above_end, corner_end].map(padded);
         add::<KIND>(&mut lanes, &here, &left, &above, &corner);
         sum += lanes.into_iter().map(u64::from).sum::<u64>();
@@ -79,7 +80,7 @@ fn cost<const KIND: u8>(row: Row<'_>) -> u64 {
     sum
 }
 
-/// Adds the sizes of differences.
+/// Adds absolute differences to the lanes.
 #[inline(always)]
 fn add<const KIND: u8>(
     lanes: &mut [u16; LANES],
@@ -91,7 +92,7 @@ fn add<const KIND: u8>(
     for lane in 0..LANES {
         let predicted = predicted::<KIND>(left[lane], above[lane], corner[lane]);
         let difference = here[lane].wrapping_sub(predicted).cast_signed();
-        // It does not wrap around, and without a check it is one instruction for many lanes.
+        // The sum cannot overflow, and without a check this is one instruction for many lanes.
         lanes[lane] = lanes[lane].wrapping_add(difference.unsigned_abs().into());
     }
 }
@@ -125,7 +126,7 @@ fn predicted<const KIND: u8>(left: u8, above: u8, corner: u8) -> u8 {
     }
 }
 
-/// That of the three bytes which is nearest to `left + above - corner`; of equally near ones the first.
+/// Paeth predictor: the neighbor nearest to `left + above - corner`; the first one on a tie.
 #[inline(always)]
 fn paeth(left: u8, above: u8, corner: u8) -> u8 {
     let of = i16::from;

@@ -1,10 +1,10 @@
-//! The content of a PNG file; JPEG files are read to the same type.
+//! Content of a PNG file. JPEG files are decoded to the same type.
 
 use super::Transfer;
 use crate::ColorSpace;
 use dapple_raster::Raster;
 
-/// The content of a PNG file.
+/// Content of a PNG file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PngImage {
     /// The pixels.
@@ -12,11 +12,11 @@ pub struct PngImage {
     /// [`Transfer::Srgb`] if the file declares it (with the chunk `sRGB`, or a `gAMA` of 0.45455), else
     /// [`Transfer::Data`]; a file without a declaration may still hold color.
     pub transfer: Transfer,
-    /// What the file says of its colors. Gray images and data are the codes of the file, whatever it says.
+    /// Declared color space. It does not affect gray images and data, which use the codes of the file.
     pub space: ColorSpace,
 }
 
-/// Pixels of one of the kinds that PNG has; alpha comes last.
+/// Pixels in one of the formats of PNG; alpha comes last.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PngPixels {
     /// Gray, 8 bits.
@@ -38,7 +38,7 @@ pub enum PngPixels {
 }
 
 impl PngPixels {
-    /// Columns and rows.
+    /// Width and height in pixels.
     #[must_use]
     pub fn size(&self) -> [u32; 2] {
         match self {

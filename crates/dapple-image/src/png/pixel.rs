@@ -1,19 +1,19 @@
-//! The types of pixels in a PNG file.
+//! Pixel types of PNG files.
 
 /// A pixel of 8 or 16 bits per channel: gray, gray with alpha, RGB, or RGB with alpha.
 ///
 /// It is implemented for `u8` and `u16` and for arrays of two, three and four of them. Alpha comes last and is not
 /// multiplied into the color.
 pub trait PngPixel: Copy + Sync + sealed::Sealed {
-    /// The number of samples of a pixel: 1 to 4.
+    /// Number of samples per pixel: 1 to 4.
     #[doc(hidden)]
     const CHANNELS: usize;
 
-    /// The bits of a sample: 8 or 16.
+    /// Bits per sample: 8 or 16.
     #[doc(hidden)]
     const BITS: u32;
 
-    /// Writes the samples, in the byte order of the file, into bytes of their length.
+    /// Writes the samples in the byte order of the file; `bytes` has exactly their length.
     #[doc(hidden)]
     fn write_bytes(self, bytes: &mut [u8]);
 

@@ -22,7 +22,7 @@ pub fn write_gray_png(
     })
 }
 
-/// Writes colors as an RGB PNG file under the sRGB curve, with the chunk that says so.
+/// Writes colors as an RGB PNG file under the sRGB curve, with the chunk that declares it.
 ///
 /// # Errors
 ///
@@ -38,7 +38,8 @@ pub fn write_color_png(
     })
 }
 
-/// Writes colors with alpha as an RGBA PNG file: color under the sRGB curve, with the chunk that says so, alpha linear.
+/// Writes colors with alpha as an RGBA PNG file: color under the sRGB curve, with the chunk that declares it; alpha
+/// linear.
 ///
 /// # Errors
 ///

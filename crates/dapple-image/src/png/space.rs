@@ -1,20 +1,20 @@
-//! The color space that a PNG file declares: `cICP` before `iCCP` before `sRGB` before `gAMA` and `cHRM`.
+//! Color space that a PNG file declares: `cICP` before `iCCP` before `sRGB` before `gAMA` and `cHRM`.
 
 use super::GAMMA_OF_SRGB;
 use crate::color_space::{BT709, ColorSpace, Curve, D65, Primaries, Source};
 use crate::icc;
 use png::{CodingIndependentCodePoints, Info, SourceChromaticities};
 
-/// The white of cinema projectors (SMPTE RP 431-2).
+/// White point of cinema projectors (SMPTE RP 431-2).
 const DCI: [f64; 2] = [0.314, 0.351];
 
-/// The white of the illuminant C.
+/// White point of the illuminant C.
 const C: [f64; 2] = [0.310, 0.316];
 
-/// The white of the illuminant E.
+/// White point of the illuminant E.
 const E: [f64; 2] = [1.0 / 3.0, 1.0 / 3.0];
 
-/// The color space of a file, by its chunks.
+/// Color space of a file, by its chunks.
 pub(super) fn of(info: &Info<'_>) -> ColorSpace {
     if let Some(points) = &info.coding_independent_code_points {
         return of_code_points(points);
@@ -27,7 +27,7 @@ pub(super) fn of(info: &Info<'_>) -> ColorSpace {
     }
     let gamma = info.gama_chunk.map(png::ScaledFloat::into_scaled);
     let curve = match gamma {
-        // Files of sRGB have this number, rounded in one way or another; the curve is meant, and not a power.
+        // sRGB files have this gamma, with varying rounding; use the sRGB curve instead of a power.
         None => Curve::Srgb,
         Some(gamma) if gamma.abs_diff(GAMMA_OF_SRGB) <= 1 => Curve::Srgb,
         Some(gamma) => Curve::Power(100_000.0 / f64::from(gamma)),
@@ -46,7 +46,7 @@ fn primaries(points: &SourceChromaticities) -> Primaries {
     [points.red, points.green, points.blue, points.white].map(point)
 }
 
-/// The color space of the code points of ITU-T H.273, tables 2 and 3.
+/// Color space of code points of ITU-T H.273, tables 2 and 3.
 fn of_code_points(points: &CodingIndependentCodePoints) -> ColorSpace {
     let unknown = |name| ColorSpace::unknown(Source::Cicp, name);
     if points.matrix_coefficients != 0 || !points.is_video_full_range_image {

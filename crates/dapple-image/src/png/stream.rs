@@ -1,11 +1,11 @@
-//! Writing of a PNG file row by row, in strips of rows that are filtered and compressed on all cores.
+//! PNG files, written row by row in strips that are filtered and compressed on all cores.
 //!
-//! A strip is half a MiB of rows. Its compressed bytes depend on its rows and the row above alone, and end with an empty
-//! block that fills up the last byte, so that those of all strips, one after the other, are a stream of the format.
+//! A strip is half a MiB of rows. Its compressed bytes depend only on its rows and the row above. They end with an
+//! empty block that fills the last byte, so that concatenated strips are a valid stream.
 //!
-//! Measured on six maps of all built-in recipes in 512 × 512 pixels: with 8 bits level 3 of the compression takes a fifth
-//! of the time of level 6, for files that are at most 5 % larger, where level 1 would make them up to a third larger. With 16
-//! bits level 1 makes files no larger than level 6 does: the lower half of a sample is nearly noise.
+//! Measured on six maps of all built-in recipes at 512 × 512 pixels. With 8 bits, compression level 3 takes a fifth of
+//! the time of level 6 for files that are at most 5 % larger; level 1 would make them up to a third larger. With 16
+//! bits, level 1 makes files no larger than level 6 does, since the lower half of a sample is nearly noise.
 
 use super::filter::{Row, filter};
 use super::{GAMMA_OF_SRGB, PngPixel, Transfer};
@@ -15,52 +15,52 @@ use dapple_raster::{RasterView, parallel};
 use flate2::{Compress, CompressError, Compression, FlushCompress};
 use std::io::{self, Write};
 
-/// The longest side of the format, in pixels.
+/// Maximum side of the format, in pixels.
 const SIDE_LIMIT: u32 = i32::MAX as u32;
 
-/// The longest row that can be written, in bytes.
+/// Maximum length of a row, in bytes.
 const ROW_LIMIT: u64 = 1 << 30;
 
-/// The number of bytes of a strip, if it has more than one row.
+/// Size of a strip in bytes, if it has more than one row.
 const STRIP: usize = 1 << 19;
 
-/// The number of strips for each thread that are compressed before they are written.
+/// Number of strips per thread that are compressed before they are written.
 const STRIPS: usize = 2;
 
-/// The number of zeros before each row, in place of the pixel at its left; the largest pixel has as many bytes.
+/// Number of zero bytes before each row, in place of the pixel at its left: the size of the largest pixel.
 const LEFT: usize = 8;
 
-/// A PNG file that is being written into a sink. It does not own the sink, so that all is compiled once.
+/// A PNG file being written into a sink. It does not own the sink, so that the code is compiled only once.
 pub(crate) struct PngStream {
     samples: Samples,
-    /// The number of bytes of a row.
+    /// Bytes per row.
     length: usize,
-    /// The row above those that are not in the file yet, and these, each with zeros at its left.
+    /// The last row in the file, then the rows not yet in the file, each preceded by `LEFT` zeros.
     rows: Vec<u8>,
-    /// The checksum of all filtered rows so far.
+    /// Adler-32 checksum of all filtered rows so far.
     adler: u32,
 }
 
-/// The kind of samples of a file, by the kind of its pixels.
+/// Sample layout of a file.
 #[derive(Clone, Copy)]
 pub(crate) struct Samples {
-    /// The number of samples of a pixel: 1 to 4.
+    /// Number of samples per pixel: 1 to 4.
     channels: usize,
-    /// The bits of a sample: 8 or 16.
+    /// Bits per sample: 8 or 16.
     bits: u32,
 }
 
 /// The compressed rows of a strip.
 struct Strip {
     bytes: Vec<u8>,
-    /// The checksum of the filtered rows.
+    /// Adler-32 checksum of the filtered rows.
     adler: u32,
-    /// The number of bytes of the filtered rows.
+    /// Length of the filtered rows, in bytes.
     length: usize,
 }
 
 impl Samples {
-    /// The samples of pixels of type `P`.
+    /// Sample layout of the pixel type `P`.
     pub(crate) fn of<P: PngPixel>() -> Self {
         Self {
             channels: P::CHANNELS,
@@ -68,14 +68,14 @@ impl Samples {
         }
     }
 
-    /// The number of bytes of a pixel.
+    /// Bytes per pixel.
     fn pixel(self) -> usize {
         self.channels * self.bits as usize / 8
     }
 }
 
 impl PngStream {
-    /// Begins a file of pixels of one kind; the header is written at once.
+    /// Starts a file and writes its header.
     pub(crate) fn new(
         sink: &mut dyn Write,
         size: [u32; 2],
@@ -92,7 +92,7 @@ impl PngStream {
         })
     }
 
-    /// Writes whole rows of the width of the file, no more than are missing.
+    /// Writes complete rows, at most as many as the file still lacks. `code` encodes a pixel.
     pub(crate) fn write_rows<T: Sync, P: PngPixel>(
         &mut self,
         sink: &mut dyn Write,
@@ -102,6 +102,7 @@ impl PngStream {
         let most = self.rows_of_strip() * STRIPS * parallel::n_threads();
         let mut first = 0;
         while first < rows.size()[1] {
+            // Encode as many rows as fit into the buffer.
             let free = (most - self.n_rows().min(most)).max(1);
             let taken = rows.size()[1].min(first.saturating_add(free as u32));
             let waiting = self.rows.len();
@@ -115,12 +116,13 @@ impl PngStream {
                 }
             });
             first = taken;
+            // Write all complete strips.
             self.write_strips(sink, self.n_rows() / self.rows_of_strip())?;
         }
         Ok(())
     }
 
-    /// Ends the file, after all of its rows.
+    /// Completes the file after all rows were written.
     pub(crate) fn finish(mut self, sink: &mut dyn Write) -> Result<(), ImageError> {
         self.write_strips(sink, self.n_rows().div_ceil(self.rows_of_strip()))?;
         // An empty last block, and the checksum.
@@ -131,17 +133,17 @@ impl PngStream {
         sink.flush().map_err(failure)
     }
 
-    /// The number of rows of all strips but the last one.
+    /// Rows per strip, except for the last strip.
     fn rows_of_strip(&self) -> usize {
         (STRIP / self.length).max(1)
     }
 
-    /// The number of rows that are not in the file yet.
+    /// Number of rows not yet in the file.
     fn n_rows(&self) -> usize {
         self.rows.len() / (LEFT + self.length) - 1
     }
 
-    /// Writes the next strips, all of whose rows are there; only the last one of the file may have fewer.
+    /// Writes the next strips from the buffered rows. Only the last strip of the file may have fewer rows.
     fn write_strips(&mut self, sink: &mut dyn Write, n_strips: usize) -> Result<(), ImageError> {
         let strips = parallel::map(n_strips, |strip| self.strip(strip));
         for strip in strips {
@@ -154,13 +156,13 @@ impl PngStream {
         Ok(())
     }
 
-    /// Filters and compresses a strip of the rows that are there.
+    /// Filters and compresses a strip of the buffered rows.
     fn strip(&self, index: usize) -> Result<Strip, CompressError> {
         let first = index * self.rows_of_strip();
         let last = self.n_rows().min(first + self.rows_of_strip());
         let mut filtered = vec![0; (last - first) * (1 + self.length)];
         for (row, out) in (first..last).zip(filtered.chunks_exact_mut(1 + self.length)) {
-            // The row above comes first.
+            // Row 0 of the buffer is the row above the strips.
             let bytes = |row: usize, left: usize| {
                 let start = row * (LEFT + self.length) + LEFT - left;
                 &self.rows[start..start + self.length]
@@ -186,7 +188,7 @@ impl PngStream {
     }
 }
 
-/// Compressed bytes of a part of a stream: blocks that are not the last, up to a whole byte.
+/// Compresses a part of a stream into non-final blocks that end at a byte boundary.
 fn compressed(bytes: &[u8], level: u32) -> Result<Vec<u8>, CompressError> {
     let mut deflate = Compress::new(Compression::new(level), false);
     let mut out = Vec::with_capacity(bytes.len() + 1024);
@@ -200,19 +202,19 @@ fn compressed(bytes: &[u8], level: u32) -> Result<Vec<u8>, CompressError> {
     }
 }
 
-/// The checksum of bytes followed by those of a strip: Adler-32 of RFC 1950, a sum and the sum of all its values.
+/// Adler-32 checksum (RFC 1950) of bytes followed by a strip: the sum of the bytes, and the sum of all partial sums.
 fn joined(before: u32, strip: &Strip) -> u32 {
     const BASE: u64 = 65521;
     let sums = |adler: u32| [u64::from(adler & 0xffff), u64::from(adler >> 16)];
     let [[before, all_before], [after, all_after]] = [sums(before), sums(strip.adler)];
-    // Each begins with 1.
+    // Both sums start at 1.
     let before = before + BASE - 1;
     let sum = (before + after) % BASE;
     let all = (all_before + all_after + strip.length as u64 % BASE * before) % BASE;
     (all << 16 | sum) as u32
 }
 
-/// The number of bytes of a row, for a size that can be written.
+/// Checks the size and returns the number of bytes per row.
 fn check_size(size: [u32; 2], samples: Samples) -> Result<usize, ImageError> {
     check_side(size, SIDE_LIMIT, "PNG")?;
     let bytes = u64::from(size[0]) * samples.pixel() as u64;
@@ -226,7 +228,7 @@ fn check_size(size: [u32; 2], samples: Samples) -> Result<usize, ImageError> {
     Ok(bytes as usize)
 }
 
-/// Writes all that comes before the rows: the chunks of the header, and the beginning of the compressed stream.
+/// Writes the signature, the header chunks, and the header of the compressed stream.
 fn write_header(
     sink: &mut dyn Write,
     [width, height]: [u32; 2],
@@ -244,7 +246,7 @@ fn write_header(
     let kind = [samples.bits as u8, color, 0, 0, 0];
     write_chunk(sink, b"IHDR", &[&width[..], &height, &kind].concat())?;
     if transfer == Transfer::Srgb {
-        // Of the perceptual intent.
+        // Perceptual intent.
         write_chunk(sink, b"sRGB", &[0])?;
         write_chunk(sink, b"gAMA", &GAMMA_OF_SRGB.to_be_bytes())?;
     }
@@ -253,7 +255,7 @@ fn write_header(
 }
 
 fn write_chunk(sink: &mut dyn Write, name: &[u8; 4], data: &[u8]) -> io::Result<()> {
-    // What is compressed at once is half a MiB of rows or, since a row has up to 2^30 bytes, about a row.
+    // The length fits: a strip is half a MiB of rows, or a single row of up to 2^30 bytes.
     sink.write_all(&(data.len() as u32).to_be_bytes())?;
     let mut checksum = crc32fast::Hasher::new();
     for part in [&name[..], data] {

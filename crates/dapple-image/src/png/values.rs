@@ -1,4 +1,4 @@
-//! Conversion of the codes of a PNG file to values and colors.
+//! Conversion of PNG codes to values and colors.
 
 use super::{PngImage, PngPixels};
 use crate::image::transparent;
@@ -7,7 +7,8 @@ use dapple_color::{Code, LinearRgb, LinearRgba};
 use dapple_raster::Raster;
 
 impl PngImage {
-    /// The numbers of a gray image, `code / max`, from 0 to 1; no transfer curve is applied, whatever the file says.
+    /// Values of a gray image, `code / max`, from 0 to 1. No transfer curve is applied, regardless of the declared
+    /// color space.
     ///
     /// # Errors
     ///
@@ -29,8 +30,8 @@ impl PngImage {
         }
     }
 
-    /// The colors in linear light of ITU-R BT.709, from the color space that the file declares, and else from sRGB. Gray
-    /// images become gray colors under the curve of sRGB, whatever the file says.
+    /// Colors in linear light of ITU-R BT.709, converted from the declared color space or, without a declaration, from
+    /// sRGB. Gray images become gray colors under the sRGB curve, regardless of the declaration.
     ///
     /// # Errors
     ///
@@ -53,7 +54,7 @@ impl PngImage {
         })
     }
 
-    /// The colors as [`color`](Self::color) has them, with their alpha, which is 1 where the file has none.
+    /// Colors as in [`color`](Self::color), with alpha, which is 1 if the file has none.
     ///
     /// # Errors
     ///
@@ -93,7 +94,7 @@ impl PngImage {
         })
     }
 
-    /// The largest code.
+    /// Maximum code.
     fn max(&self) -> u16 {
         match self.bits() {
             8 => u8::MAX.into(),

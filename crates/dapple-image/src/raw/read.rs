@@ -1,29 +1,30 @@
 //! Decoders of NumPy arrays and raw heights.
 //!
-//! Reference: NumPy Developers, "A Simple File Format for NumPy Arrays" (`numpy.lib.format`), versions 1 to 3: a magic
-//! string, the version, the length of the header, and the header as a dictionary of Python. Arrays of whole numbers and of
-//! floating point in little endian are read, in C order; others are refused by name.
+//! Reference: NumPy Developers, "A Simple File Format for NumPy Arrays" (`numpy.lib.format`), versions 1 to 3. A file
+//! has a magic string, the version, the length of the header, and the header as a Python dictionary. Little-endian
+//! arrays of integers and floating-point numbers in C order are supported; the error for other arrays names the
+//! feature.
 
 use crate::{ImageError, ImageErrorKind, Limits};
 use dapple_raster::Raster;
 
-/// The format in errors.
+/// Name of the format in errors.
 const NPY: &str = "NumPy";
-/// The bytes that every NumPy file begins with.
+/// Magic string of NumPy files.
 const MAGIC: &[u8] = b"\x93NUMPY";
-/// The largest number of channels of an image.
+/// Maximum number of channels of an image.
 const CHANNELS_MAX: usize = 4;
 
-/// How the bytes of a number are read.
+/// Conversion of the bytes of a number.
 type Number = fn(&[u8]) -> f32;
 
-/// Decodes the bytes of a NumPy array with the shape (height, width) or (height, width, channels), for at most four
-/// channels, into a raster for each channel. The numbers are those of the array; `f64` is rounded to `f32`.
+/// Decodes a NumPy array with the shape (height, width) or (height, width, channels), with at most four channels.
+/// Returns one raster per channel. Values are exact, except that `f64` is rounded to `f32`.
 ///
 /// # Errors
 ///
-/// [`ImageErrorKind::UnknownFormat`] if the bytes do not begin like an array, [`ImageErrorKind::Damaged`] if they end too
-/// soon or too late, [`ImageErrorKind::Unsupported`] for other shapes, orders and types,
+/// [`ImageErrorKind::UnknownFormat`] if the bytes lack the magic string, [`ImageErrorKind::Damaged`] if their number
+/// does not match the shape, [`ImageErrorKind::Unsupported`] for other shapes, orders and types,
 /// [`ImageErrorKind::TooManyPixels`] or [`ImageErrorKind::Empty`] by its size.
 ///
 /// # Examples
@@ -79,7 +80,7 @@ pub fn decode_npy(bytes: &[u8], limits: &Limits) -> Result<Vec<Raster<f32>>, Ima
         return Err(ImageError::damaged(NPY, why));
     }
     let numbers: Vec<f32> = data.chunks_exact(length).map(number).collect();
-    // A side has at most as many pixels as the limit allows in all, and a raster refuses what is longer than `u32`.
+    // A side has at most as many pixels as the limit for the image, and the raster rejects sides above `u32`.
     let size = [width, height].map(|side| u32::try_from(side).unwrap_or(u32::MAX));
     let channel = |channel| {
         let numbers = numbers.iter().skip(channel).step_by(n_channels).copied();
@@ -89,11 +90,11 @@ pub fn decode_npy(bytes: &[u8], limits: &Limits) -> Result<Vec<Raster<f32>>, Ima
     channels.map_err(|error| ImageError::damaged(NPY, error))
 }
 
-/// Decodes raw heights: codes of 16 bits, the low byte first, the top row first. The file lacks its size.
+/// Decodes raw heights: 16-bit codes, little endian, top row first. The size is not part of the file.
 ///
 /// # Errors
 ///
-/// [`ImageErrorKind::Damaged`] if the bytes are not those of an image of this size, [`ImageErrorKind::TooManyPixels`] or
+/// [`ImageErrorKind::Damaged`] if the number of bytes does not match the size, [`ImageErrorKind::TooManyPixels`] or
 /// [`ImageErrorKind::Empty`] by its size.
 pub fn decode_r16(
     bytes: &[u8],
@@ -116,7 +117,7 @@ pub fn decode_r16(
         .map_err(|error| ImageError::damaged("raw", error))
 }
 
-/// The text of a value in the header, which is a dictionary of Python with three keys.
+/// Text of a value in the header, a Python dictionary with three keys.
 fn value_of<'a>(header: &'a str, key: &str) -> Option<&'a str> {
     let at = ['\'', '"']
         .iter()
@@ -131,7 +132,7 @@ fn value_of<'a>(header: &'a str, key: &str) -> Option<&'a str> {
     Some(value[..end].trim())
 }
 
-/// The number of bytes of a number, and how it is read.
+/// Number of bytes of a value, and its conversion.
 fn number_of(descr: &str) -> Result<(usize, Number), ImageError> {
     let feature = match descr.trim_matches(['\'', '"']) {
         "<f4" => return Ok((4, |b| f32::from_le_bytes([b[0], b[1], b[2], b[3]]))),
@@ -148,7 +149,7 @@ fn number_of(descr: &str) -> Result<(usize, Number), ImageError> {
     Err(ImageError::new(ImageErrorKind::Unsupported { feature }))
 }
 
-/// The height and width, and the number of channels.
+/// Height and width, and number of channels.
 fn shape_of(shape: &str) -> Result<([u64; 2], usize), ImageError> {
     let sides = shape.trim_matches(['(', ')']).split(',').map(str::trim);
     let sides = sides.filter(|side| !side.is_empty()).map(str::parse);
